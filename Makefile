@@ -1,0 +1,147 @@
+# sheen's menu:
+#   make            build/sheend and build/sheen
+#   make demo       install what is missing, build, render the demo model to a PNG
+#   make check      install what is missing, build, lint, run every test
+#   make unit | oracle | service    one kind of test
+#   make bench      programs that print ratios against peers
+#   make fuzz       replay the fuzz corpora
+#   make lint       format, static analysis, dependency rules
+#   make format     let clang-format rewrite the sources
+#   make deps       install Debian packages (needs root or sudo)
+#   make install    PREFIX=/usr/local DESTDIR=
+#   make clean
+# SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize.
+
+VERSION := 0.1.0
+PREFIX ?= /usr/local
+CC ?= gcc
+CXX ?= g++
+SANITIZE ?=
+
+comma := ,
+BUILD := build$(if $(SANITIZE),/sanitize)
+OPT := $(if $(SANITIZE),-O1 -fsanitize=address$(comma)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer,-O2)
+WARN := -Wall -Wextra -Werror -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-qual
+CWARN := $(WARN) -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
+# No contraction: the tables must not depend on the processor that built them.
+BASE := $(OPT) -g -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(SANITIZE),0,2) \
+        -I. -I$(BUILD)/gen -MMD -MP -DSHEEN_VERSION=\"$(VERSION)\" -pthread
+CFLAGS += -std=c11 -D_GNU_SOURCE $(CWARN) $(BASE)
+CXXFLAGS += -std=c++17 $(WARN) $(BASE)
+LDFLAGS += $(OPT) -pthread -Wl,-z,relro,-z,now
+
+NANOPB := /usr/bin/python3 /usr/bin/nanopb_generator.py -q
+GEN := $(BUILD)/gen/sheen.pb.h $(BUILD)/gen/sheen.pb.c $(BUILD)/gen/shaders.c
+
+# V=1 shows every command.
+Q := $(if $(V),,@)
+say = $(if $(V),,@echo '  $(1)')
+
+obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
+PROTOCOL_SRC := $(wildcard protocol/*.c)
+CAGE_SRC := $(wildcard server/cage/*.c server/cage/*.cpp)
+LIMIT_SRC := $(wildcard server/limit/*.c)
+GPU_SRC := $(wildcard server/gpu/*.c)
+IMAGE_SRC := $(wildcard server/image/*.c server/image/*.cpp)
+SERVICE_SRC := $(wildcard server/service/*.c)
+CLIENT_SRC := $(wildcard client/*.c)
+SHADERS := $(sort $(wildcard shaders/*.glsl))
+
+PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
+CORE_OBJ := $(call obj,$(CAGE_SRC) $(LIMIT_SRC) server/error.c)
+RENDER_OBJ := $(call obj,$(GPU_SRC)) $(BUILD)/obj/gen/shaders.c.o
+SERVER_OBJ := $(call obj,server/main.c $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
+              $(call obj,$(IMAGE_SRC)) $(PROTOCOL_OBJ)
+CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
+
+SERVER_LIBS := -lepoxy -lOpenImageIO -lOpenImageIO_Util -ltinygltf -lprotobuf-nanopb -lzstd -lcrypto -linih -lm
+CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lcrypto -lm
+
+.PHONY: all
+all: $(BUILD)/sheend $(BUILD)/sheen
+
+$(BUILD)/sheend: $(SERVER_OBJ)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
+$(BUILD)/sheen: $(CLIENT_OBJ)
+	$(call say,LD $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CLIENT_LIBS)
+
+$(BUILD)/obj/gen/%.c.o: $(BUILD)/gen/%.c
+	@mkdir -p $(@D)
+	$(call say,CC $<)
+	$(Q)$(CC) $(filter-out -Wundef -Wmissing-prototypes,$(CFLAGS)) -c -o $@ $<
+$(BUILD)/obj/%.c.o: %.c | $(GEN)
+	@mkdir -p $(@D)
+	$(call say,CC $<)
+	$(Q)$(CC) $(CFLAGS) -c -o $@ $<
+$(BUILD)/obj/%.cpp.o: %.cpp | $(GEN)
+	@mkdir -p $(@D)
+	$(call say,CXX $<)
+	$(Q)$(CXX) $(CXXFLAGS) -c -o $@ $<
+
+$(BUILD)/gen/sheen.pb.c $(BUILD)/gen/sheen.pb.h &: protocol/sheen.proto protocol/sheen.options
+	@mkdir -p $(@D)
+	$(Q)$(NANOPB) -I protocol -D $(BUILD)/gen sheen.proto
+$(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
+	@mkdir -p $(@D)
+	$(Q)sh shaders/embed.sh $(SHADERS) > $@
+
+# --- tests ---------------------------------------------------------------------------------------
+# Every test links everything but the two mains.
+LIB_OBJ := $(filter-out %/server/main.c.o,$(SERVER_OBJ)) \
+           $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
+TEST_LIB := $(BUILD)/libtests.a
+$(TEST_LIB): $(LIB_OBJ)
+	$(Q)rm -f $@ && ar rcs $@ $^
+
+UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
+ORACLE_SHARED := $(call obj,$(filter-out tests/oracle/test_%.cpp tests/oracle/fake_sheen.cpp,$(wildcard tests/oracle/*.cpp)))
+ORACLE_TESTS := $(patsubst tests/oracle/%.cpp,$(BUILD)/tests/%,$(wildcard tests/oracle/test_*.cpp) tests/oracle/fake_sheen.cpp)
+
+$(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(TEST_LIB)
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(TEST_LIB) -lcmocka $(SERVER_LIBS)
+$(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(SERVER_LIBS)
+
+.PHONY: tests unit service oracle check lint format demo deps install clean
+tests: all $(UNIT_TESTS) $(ORACLE_TESTS)
+unit: $(UNIT_TESTS)
+	sh tests/run.sh unit $(BUILD)
+service: all
+	sh tests/run.sh service $(BUILD)
+oracle: all $(ORACLE_TESTS)
+	sh tests/run.sh oracle $(BUILD)
+check:
+	$(MAKE) deps
+	$(MAKE) lint
+	$(MAKE) tests
+	sh tests/run.sh all $(BUILD)
+
+lint:
+	sh tests/lint.sh
+format:
+	clang-format -i $$(git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp')
+
+# --- for users -----------------------------------------------------------------------------------
+demo:
+	$(MAKE) deps
+	$(MAKE) all
+	$(BUILD)/sheen render tests/models/fender.gltf -o $(BUILD)/demo.png
+	@echo "The demo model's reflection lines are in $(BUILD)/demo.png"
+
+deps:
+	sh deploy/deps.sh
+
+install: all
+	install -Dm755 $(BUILD)/sheend $(DESTDIR)$(PREFIX)/bin/sheend
+	install -Dm755 $(BUILD)/sheen $(DESTDIR)$(PREFIX)/bin/sheen
+
+clean:
+	rm -rf build
+
+-include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)

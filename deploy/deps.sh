@@ -1,0 +1,29 @@
+#!/bin/sh
+# Installs the Debian packages that building, running and testing sheen take. Does nothing when all
+# are there, so that it needs root only once.
+set -eu
+packages="gcc g++ make pkg-config python3 python3-protobuf protobuf-compiler nanopb libnanopb-dev
+ libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri libopenimageio-dev libtinygltf-dev
+ nlohmann-json3-dev libzstd-dev libssl-dev libinih-dev
+ libcmocka-dev libosd-dev clang-format cppcheck git"
+missing=
+for package in $packages; do
+    state=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null || true)
+    case $state in
+    ii*) ;;
+    *) missing="$missing $package" ;;
+    esac
+done
+[ -n "$missing" ] || exit 0
+echo "installing:$missing"
+as_root=
+if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || {
+        echo "deps: run this as root, or install:$missing" >&2
+        exit 1
+    }
+    as_root=sudo
+fi
+$as_root apt-get update -qq
+# shellcheck disable=SC2086 # a list of words
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing
