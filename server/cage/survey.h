@@ -1,0 +1,26 @@
+/* Counts that say what a cage is: for `sheen info` and for people who wonder where the lines bend.
+ * Pure. Thread: any; the cage is only read. */
+#ifndef SHEEN_CAGE_SURVEY_H
+#define SHEEN_CAGE_SURVEY_H
+
+#include "server/cage/cage.h"
+
+#define SURVEY_MAX_VALENCES 64
+
+struct cage_survey {
+    uint32_t n_triangles, n_quads, n_ngons; /* faces of 3, 4, and 5 or more corners */
+    uint32_t n_boundary_edges;              /* edges of one face */
+    uint32_t n_boundary_extraordinary;      /* vertices on such edges in other than 2 faces */
+
+    /* Vertices off the boundary in other than 4 faces, by number of faces, ascending. When there
+     * are more numbers than entries the last entry counts the rest under the smallest of them. */
+    uint32_t n_valences;
+    struct {
+        uint32_t valence, count;
+    } extraordinary[SURVEY_MAX_VALENCES];
+};
+
+/* `cage` has passed cage_check(). ERROR_SERVER when memory is short. */
+bool cage_survey(const struct cage *cage, struct cage_survey *survey, struct error *error);
+
+#endif
