@@ -1,0 +1,166 @@
+#include "server/limit/corner.h"
+
+#include <math.h>
+
+#include "server/limit/bound.h"
+#include "server/limit/texels.h"
+
+/* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the vertex's ring. */
+struct net {
+    struct vec grid[5][5];
+    struct ring ring;
+};
+
+size_t corner_points(const struct quad *quad)
+{
+    return 2 * (2 * (size_t)quad->corner[0].n_faces + 1);
+}
+
+static struct vec to_frame(struct vec p, struct vec origin, const struct vec axis[3])
+{
+    struct vec d = vec_sub(p, origin);
+    return (struct vec){vec_dot(d, axis[0]), vec_dot(d, axis[1]), vec_dot(d, axis[2])};
+}
+
+/* The net of level 0 in the vertex's frame: only i,j <= 2 are set. */
+static void first_net(const struct quad *quad, struct vec origin, const struct vec axis[3],
+                      struct net *net)
+{
+    struct vec grid[4][4];
+    quad_grid(quad, grid);
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++)
+            net->grid[j][i] = to_frame(grid[j][i], origin, axis);
+    const struct ring *ring = &quad->corner[0];
+    net->ring.at = ring->at;
+    net->ring.sharp = ring->sharp;
+    net->ring.centre = to_frame(ring->centre, origin, axis);
+    for (uint32_t k = 0; k < ring_edges(ring); k++)
+        net->ring.edge[k] = to_frame(ring->edge[k], origin, axis);
+    for (uint32_t k = 0; k < ring->n_faces; k++)
+        net->ring.face[k] = to_frame(ring->face[k], origin, axis);
+}
+
+/* Catmull-Clark at grid point (i,j) of the finer net, by the parity of i and j (limit-surface 4.2).
+ * Reads only points with i,j = -1..2, and never (-1,-1) for the points it is asked for. */
+static struct vec refine_point(struct vec grid[5][5], int i, int j)
+{
+    int a = (i + 2) / 2 - 1, b = (j + 2) / 2 - 1; /* floor(i/2), floor(j/2) for i,j >= -2 */
+    struct vec(*g)[5] = (struct vec(*)[5]) & grid[b + 1][a + 1];
+    if (i & 1 && j & 1)
+        return vec_scale(vec_add(vec_add(g[0][0], g[0][1]), vec_add(g[1][0], g[1][1])), 0.25);
+    if (i & 1) {
+        struct vec ends = vec_add(g[0][0], g[0][1]);
+        struct vec wings = vec_add(vec_add(g[-1][0], g[-1][1]), vec_add(g[1][0], g[1][1]));
+        return vec_mad(vec_scale(ends, 0.375), 0.0625, wings);
+    }
+    if (j & 1) {
+        struct vec ends = vec_add(g[0][0], g[1][0]);
+        struct vec wings = vec_add(vec_add(g[0][-1], g[1][-1]), vec_add(g[0][1], g[1][1]));
+        return vec_mad(vec_scale(ends, 0.375), 0.0625, wings);
+    }
+    struct vec edges = vec_add(vec_add(g[0][-1], g[0][1]), vec_add(g[-1][0], g[1][0]));
+    struct vec faces = vec_add(vec_add(g[-1][-1], g[-1][1]), vec_add(g[1][-1], g[1][1]));
+    return vec_mad(vec_mad(vec_scale(g[0][0], 0.5625), 0.09375, edges), 0.015625, faces);
+}
+
+/* The points around the vertex come from its refined ring; beyond a sector's end, phantoms. */
+static void ring_points(const struct ring *ring, struct vec grid[5][5])
+{
+    grid[1][1] = ring->centre;
+    grid[1][2] = ring_edge(ring, 0);
+    grid[2][2] = ring_face(ring, 0);
+    grid[2][1] = ring_edge(ring, 1);
+    if (ring_has_face(ring, 1)) {
+        grid[2][0] = ring_face(ring, 1);
+        grid[1][0] = ring_edge(ring, 2);
+    }
+    if (ring_has_face(ring, -1)) {
+        grid[0][2] = ring_face(ring, -1);
+        grid[0][1] = ring_edge(ring, -1);
+    }
+}
+
+static void phantom_points(const struct ring *ring, struct vec grid[5][5])
+{
+    for (int k = 1; k < 5; k++) {
+        if (!ring_has_face(ring, 1))
+            grid[k][0] = vec_sub(vec_scale(grid[k][1], 2), grid[k][2]);
+        if (!ring_has_face(ring, -1))
+            grid[0][k] = vec_sub(vec_scale(grid[1][k], 2), grid[2][k]);
+    }
+}
+
+/* One level further: refine, then move the limit position back to zero. */
+static void next_net(const struct net *in, struct net *out)
+{
+    struct vec coarse[5][5];
+    for (int j = 0; j < 5; j++)
+        for (int i = 0; i < 5; i++)
+            coarse[j][i] = in->grid[j][i];
+    for (int j = -1; j <= 3; j++)
+        for (int i = -1; i <= 3; i++)
+            if (i > 1 || j > 1)
+                out->grid[j + 1][i + 1] = refine_point(coarse, i, j);
+    ring_refine(&in->ring, &out->ring);
+    ring_points(&out->ring, out->grid);
+    phantom_points(&out->ring, out->grid);
+
+    struct vec limit = ring_limit(&out->ring);
+    for (int j = 0; j < 5; j++)
+        for (int i = 0; i < 5; i++)
+            out->grid[j][i] = vec_sub(out->grid[j][i], limit);
+    out->ring.centre = vec_sub(out->ring.centre, limit);
+    for (uint32_t k = 0; k < ring_edges(&out->ring); k++)
+        out->ring.edge[k] = vec_sub(out->ring.edge[k], limit);
+    for (uint32_t k = 0; k < out->ring.n_faces; k++)
+        out->ring.face[k] = vec_sub(out->ring.face[k], limit);
+}
+
+/* The rotation whose columns are the axes, as a unit quaternion (Shepperd 1978). */
+static void write_quaternion(const struct vec axis[3], float q[4])
+{
+    const double m[3][3] = {{axis[0].x, axis[1].x, axis[2].x},
+                            {axis[0].y, axis[1].y, axis[2].y},
+                            {axis[0].z, axis[1].z, axis[2].z}};
+    double trace = m[0][0] + m[1][1] + m[2][2], r[4];
+    int i = m[1][1] > m[0][0] ? 1 : 0;
+    i = m[2][2] > m[i][i] ? 2 : i;
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    if (trace > m[i][i]) {
+        r[3] = 1 + trace;
+        r[0] = m[2][1] - m[1][2];
+        r[1] = m[0][2] - m[2][0];
+        r[2] = m[1][0] - m[0][1];
+    } else {
+        r[i] = 1 + m[i][i] - m[j][j] - m[k][k];
+        r[j] = m[i][j] + m[j][i];
+        r[k] = m[i][k] + m[k][i];
+        r[3] = m[k][j] - m[j][k];
+    }
+    double length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+    for (int n = 0; n < 4; n++)
+        q[n] = (float)(r[n] / length);
+}
+
+void corner_table(const struct quad *quad, struct arena *arena, float (*texels)[4],
+                  struct limit_bound bounds[LIMIT_LEVELS], double origin[3])
+{
+    const struct ring *ring = &quad->corner[0];
+    struct vec axis[3], limit = ring_limit(ring);
+    ring_frame(ring, axis);
+    struct net net[2] = {0};
+    for (int k = 0; k < 2; k++)
+        net[k].ring = ring_take(arena, ring->n_faces, ring->closed);
+    first_net(quad, limit, axis, &net[0]);
+    for (int n = 0; n < LIMIT_LEVELS; n++) {
+        struct net *fine = &net[(n + 1) & 1];
+        next_net(&net[n & 1], fine);
+        texels_write(&fine->grid[0][1], LIMIT_LEVEL_POINTS, texels + n * LIMIT_LEVEL_POINTS);
+        bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true);
+    }
+    write_quaternion(axis, texels[LIMIT_CORNER_TEXELS - 1]);
+    origin[0] = limit.x;
+    origin[1] = limit.y;
+    origin[2] = limit.z;
+}

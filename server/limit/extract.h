@@ -1,0 +1,33 @@
+/* Quads with their rings, out of the cage: at level 0 where everything around is a quad, else at
+ * level 1, where everything is.
+ *
+ * The level-1 points of the whole cage are computed once, when it has faces that are no quads. */
+#ifndef SHEEN_LIMIT_EXTRACT_H
+#define SHEEN_LIMIT_EXTRACT_H
+
+#include "server/limit/quad.h"
+#include "server/limit/topology.h"
+
+struct refined_points {
+    struct vec *vertex; /* [vertices] */
+    struct vec *edge;   /* [corners]: of the corner's half-edge; twins hold the same */
+    struct vec *face;   /* [faces] */
+};
+
+bool refined_points_init(struct refined_points *points, const struct topology *topology,
+                         struct error *error);
+void refined_points_finish(struct refined_points *points);
+
+/* The quad whose corner 0 is the cage corner c, at level 0. */
+struct quad extract_quad(const struct topology *topology, uint32_t c, struct arena *arena);
+
+/* The level-1 quad between cage corner c (its corner 0), the edge points beside it and the face
+ * point (its corner 2). */
+struct quad extract_refined_quad(const struct topology *topology,
+                                 const struct refined_points *points, uint32_t c,
+                                 struct arena *arena);
+
+/* How many vecs of arena those take at most, for any corner of the cage. */
+size_t extract_points(const struct topology *topology);
+
+#endif

@@ -1,0 +1,131 @@
+#include "server/limit/quad.h"
+
+unsigned quad_extraordinary(const struct quad *quad)
+{
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 4; i++)
+        bits |= (unsigned)!ring_is_regular(&quad->corner[i]) << i;
+    return bits;
+}
+
+struct quad quad_rotated(const struct quad *quad, unsigned by)
+{
+    struct quad out;
+    for (unsigned i = 0; i < 4; i++)
+        out.corner[i] = quad->corner[(i + by) & 3];
+    return out;
+}
+
+size_t quad_refine_points(const struct quad *quad)
+{
+    size_t points = 4 * 8 + 8; /* the rings of four edge points and of the face point */
+    for (int i = 0; i < 4; i++)
+        points += 2 * (size_t)quad->corner[i].n_faces + 1;
+    return points;
+}
+
+/* The ring of the new vertex on edge i (corner i to i + 1), listed from corner i + 1. `fine` are
+ * the refined rings of the corners. */
+static struct ring edge_ring(const struct ring fine[4], unsigned i, struct arena *arena)
+{
+    const struct ring *from = &fine[i], *to = &fine[(i + 1) & 3];
+    bool closed = ring_has_face(from, -1);
+    struct ring ring = ring_take(arena, closed ? 4 : 2, closed);
+    ring.centre = ring_edge(from, 0);
+    ring.edge[0] = to->centre;
+    ring.edge[1] = ring_face(from, 0);
+    ring.edge[2] = from->centre;
+    ring.face[0] = ring_edge(to, 0);
+    ring.face[1] = ring_edge(from, 1);
+    if (closed) {
+        ring.edge[3] = ring_face(from, -1);
+        ring.face[2] = ring_edge(from, -1);
+        ring.face[3] = ring_edge(to, 2);
+    }
+    return ring;
+}
+
+static struct ring face_ring(const struct ring fine[4], struct arena *arena)
+{
+    struct ring ring = ring_take(arena, 4, true);
+    ring.centre = ring_face(&fine[0], 0);
+    for (unsigned k = 0; k < 4; k++) {
+        ring.edge[k] = ring_edge(&fine[k], 0);
+        ring.face[k] = fine[(k + 1) & 3].centre;
+    }
+    return ring;
+}
+
+static struct ring seen_from(struct ring ring, uint32_t at)
+{
+    ring.at = at;
+    return ring;
+}
+
+void quad_refine(const struct quad *quad, struct arena *arena, struct quad child[4])
+{
+    struct ring fine[4], edge[4], face;
+    for (unsigned i = 0; i < 4; i++) {
+        fine[i] = ring_take(arena, quad->corner[i].n_faces, quad->corner[i].closed);
+        ring_refine(&quad->corner[i], &fine[i]);
+    }
+    for (unsigned i = 0; i < 4; i++)
+        edge[i] = edge_ring(fine, i, arena);
+    face = face_ring(fine, arena);
+    for (unsigned i = 0; i < 4; i++) {
+        child[i].corner[i] = fine[i];
+        child[i].corner[(i + 1) & 3] = seen_from(edge[i], 1);
+        child[i].corner[(i + 2) & 3] = seen_from(face, (i + 3) & 3);
+        child[i].corner[(i + 3) & 3] = seen_from(edge[(i + 3) & 3], 0);
+    }
+}
+
+/* Two points of the row beyond an edge: next to the corner looked from, and one further. */
+struct beyond {
+    struct vec near, far;
+};
+
+/* A phantom: what continues the row `edge`, `inner` to the other side of a sector's end. */
+static struct vec mirrored(struct vec edge, struct vec inner)
+{
+    return vec_sub(vec_scale(edge, 2), inner);
+}
+
+static struct beyond beyond_first_edge(const struct ring *ring)
+{
+    if (ring_has_face(ring, -1))
+        return (struct beyond){ring_edge(ring, -1), ring_face(ring, -1)};
+    return (struct beyond){mirrored(ring->centre, ring_edge(ring, 1)),
+                           mirrored(ring_edge(ring, 0), ring_face(ring, 0))};
+}
+
+static struct beyond beyond_second_edge(const struct ring *ring)
+{
+    if (ring_has_face(ring, 1))
+        return (struct beyond){ring_edge(ring, 2), ring_face(ring, 1)};
+    return (struct beyond){mirrored(ring->centre, ring_edge(ring, 0)),
+                           mirrored(ring_edge(ring, 1), ring_face(ring, 0))};
+}
+
+void quad_grid(const struct quad *quad, struct vec grid[4][4])
+{
+    /* Corner i sits at grid[y][x]; its first edge runs along (ax,ay), its second along (bx,by). */
+    static const int at[4][6] = {
+        {1, 1, 1, 0, 0, 1}, {2, 1, 0, 1, -1, 0}, {2, 2, -1, 0, 0, -1}, {1, 2, 0, -1, 1, 0}};
+    for (unsigned i = 0; i < 4; i++) {
+        const struct ring *ring = &quad->corner[i];
+        int x = at[i][0], y = at[i][1], ax = at[i][2], ay = at[i][3], bx = at[i][4], by = at[i][5];
+        struct beyond first = beyond_first_edge(ring), second = beyond_second_edge(ring);
+        grid[y][x] = ring->centre;
+        grid[y - by][x - bx] = first.near;
+        grid[y - by + ay][x - bx + ax] = first.far;
+        grid[y - ay][x - ax] = second.near;
+        grid[y - ay + by][x - ax + bx] = second.far;
+        /* Diagonally beyond an open corner: the phantom of the row that is there, or of a row of
+         * phantoms. */
+        bool only_second = !ring_has_face(ring, -1) && ring_has_face(ring, 1);
+        struct beyond row = only_second ? second : first;
+        grid[y - ay - by][x - ax - bx] =
+            ring->closed ? ring_face(ring, 2) : mirrored(row.near, row.far);
+    }
+}

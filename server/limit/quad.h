@@ -1,0 +1,32 @@
+/* A quad with the rings of its four corners: all that its piece of limit surface depends on.
+ *
+ * corner[i].at is this quad in ring i: ring_edge(0) is corner i+1, ring_face(0) corner i+2,
+ * ring_edge(1) corner i+3. (u,v) is (0,0) at corner 0, (1,0) at 1, (1,1) at 2, (0,1) at 3. */
+#ifndef SHEEN_LIMIT_QUAD_H
+#define SHEEN_LIMIT_QUAD_H
+
+#include <stdint.h>
+
+#include "server/limit/ring.h"
+
+struct quad {
+    struct ring corner[4];
+};
+
+/* Bit i set: corner i is extraordinary (its ring is not regular). */
+unsigned quad_extraordinary(const struct quad *quad);
+
+/* The same quad with (0,0) at corner `by`. */
+struct quad quad_rotated(const struct quad *quad, unsigned by);
+
+/* One Catmull-Clark step: child[i] covers the quarter at corner i, in the parent's orientation.
+ * Rings come from the arena; they need at most quad_refine_points() vecs. */
+void quad_refine(const struct quad *quad, struct arena *arena, struct quad child[4]);
+size_t quad_refine_points(const struct quad *quad);
+
+/* The 4x4 B-spline control points grid[j + 1][i + 1], i along u and j along v in -1..2, with
+ * phantom points beyond boundaries (limit-surface 4.5). The point diagonally beyond a corner is
+ * right only where that corner is regular. */
+void quad_grid(const struct quad *quad, struct vec grid[4][4]);
+
+#endif

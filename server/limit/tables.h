@@ -1,0 +1,105 @@
+/* The limit surface of a cage as the tables that the GPU reads: what Yasui and Kanai (2004) call
+ * P_i(n,k), kept exact in single precision.
+ *
+ * The surface is a list of nodes. The first n_faces nodes are the Ptex faces' roots (OpenSubdiv's
+ * numbering: a quad is one Ptex face, an n-gon is n). A node is
+ *   REGULAR  one bicubic B-spline patch: 16 points, 4 (j + 1) + (i + 1) for i,j = -1..2;
+ *   CORNER   one extraordinary vertex at local (0,0): 32 levels of 24 points in the vertex's own
+ *            orthonormal frame, re-centred on its limit position each level (corner.h); one texel
+ *            more holds the frame as a quaternion;
+ *   SPLIT    four children at (0,0) (1,0) (1,1) (0,1) of the half-size cells;
+ *   HOLE     no surface (boundary mode NONE).
+ * Points are relative to the node's origin and divided by a power of two, their w (texels.h).
+ *
+ * Built in two steps so that callers may use threads (this module knows none): limit_plan() reads
+ * the cage and sizes everything; limit_build_faces() fills any range of faces, ranges in parallel
+ * as long as they do not overlap. All arithmetic is double; tables are rounded once at the end. */
+#ifndef SHEEN_LIMIT_TABLES_H
+#define SHEEN_LIMIT_TABLES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/cage/cage.h"
+#include "server/error.h"
+
+#define LIMIT_LEVELS 32       /* dyadic rings towards an extraordinary vertex */
+#define LIMIT_LEVEL_POINTS 24 /* the 5x5 grid i,j = -1..3 without (-1,-1) */
+#define LIMIT_REGULAR_POINTS 16
+#define LIMIT_CORNER_TEXELS (LIMIT_LEVELS * LIMIT_LEVEL_POINTS + 1)
+#define LIMIT_NO_FACE UINT32_MAX
+/* The cost of a corner grows with its valence, and a vertex has as many corners. */
+#define LIMIT_MAX_VALENCE 4096
+
+enum limit_kind { LIMIT_REGULAR, LIMIT_CORNER, LIMIT_SPLIT, LIMIT_HOLE };
+
+/* 48 bytes, three RGBA32UI texels on the GPU. */
+struct limit_node {
+    double origin[3]; /* world; the points are relative to it */
+    uint32_t first;   /* REGULAR, CORNER: first texel in `points`; SPLIT: first of 4 children */
+    uint32_t face;    /* Ptex face */
+    uint32_t cell;    /* x | y << 16: which cell of the 2^depth by 2^depth grid over the face */
+    uint8_t kind;     /* enum limit_kind */
+    uint8_t depth;    /* the node spans 2^-depth of its Ptex face */
+    uint8_t rotation; /* local (0,0) is this corner 0..3 of the cell */
+    uint8_t unused;
+    uint32_t ngon_size;   /* of a root: corners of its n-gon, 0 for a quad */
+    uint32_t ngon_corner; /* and which of them is this Ptex face's corner 0 */
+};
+
+/* What lies across edge e (corner e to corner e + 1) of a Ptex face: face << 2 | its edge there,
+ * or LIMIT_NO_FACE. The quad beside an n-gon borders two of its Ptex faces: the one named is at the
+ * end of edge e, the next one of the n-gon (by ngon_corner) at its start. 16 bytes, one RGBA32UI
+ * texel. */
+struct limit_adjacency {
+    uint32_t across[4];
+};
+
+/* How far a piece of surface reaches and bends: for culling and for choosing its grid. */
+struct limit_bound {
+    float radius; /* of a sphere about the node's origin that holds the control points, in units */
+    float bend;   /* M1 + 2 M2 + M3 of limit-surface 3.2 (Filip, Magedson, Markot 1986), in units */
+};
+
+struct limit_tables {
+    size_t n_faces; /* Ptex faces */
+    size_t n_nodes;
+    struct limit_node *nodes;
+    struct limit_adjacency *adjacency; /* [n_faces] */
+    size_t n_points;
+    float (*points)[4];
+
+    /* Bounds for the CPU's choice of grids; not on the GPU. bound_first[node] indexes bounds: one
+     * for REGULAR, LIMIT_LEVELS for CORNER. */
+    uint32_t *bound_first; /* [n_nodes] */
+    struct limit_bound *bounds;
+    size_t n_bounds;
+
+    double box_min[3], box_max[3]; /* of the control vertices that the surface uses */
+
+    /* Counts for `sheen info`. */
+    size_t n_regular, n_corner, n_split, n_hole;
+};
+
+struct limit_plan; /* topology of the cage and the layout of its tables */
+
+/* Reads the cage's topology and sizes the tables. The cage must outlive the plan. NULL on failure:
+ * ERROR_MODEL for what is not evaluated yet, ERROR_SERVER when memory is short. */
+struct limit_plan *limit_plan_create(const struct cage *cage, struct error *error);
+void limit_plan_destroy(struct limit_plan *plan);
+
+/* Allocates the tables of a plan. ERROR_SERVER names the bytes when there is no memory. */
+bool limit_tables_init(struct limit_tables *tables, const struct limit_plan *plan,
+                       struct error *error);
+void limit_tables_finish(struct limit_tables *tables);
+
+/* Fills the nodes and points of Ptex faces [first, last). Pure but for what it writes into that
+ * range; disjoint ranges may run in different threads. ERROR_SERVER when memory is short. */
+bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,
+                       size_t last, struct error *error);
+
+/* Bytes that the GPU holds for these tables: nodes + adjacency + points. */
+size_t limit_tables_bytes(const struct limit_tables *tables);
+
+#endif

@@ -1,0 +1,173 @@
+#include "server/limit/topology.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Edges around each vertex, counted while the half-edges are paired. */
+struct vertex_count {
+    uint32_t edges, boundary, nonmanifold, faces;
+};
+
+/* The half-edges whose lower vertex is the same, to be paired by their higher one. */
+struct half_edge {
+    uint32_t high, corner;
+    bool forward; /* runs from the lower to the higher vertex */
+};
+
+static int compare_half_edges(const void *a, const void *b)
+{
+    const struct half_edge *p = a, *q = b;
+    if (p->high != q->high)
+        return p->high < q->high ? -1 : 1;
+    return p->corner < q->corner ? -1 : p->corner > q->corner;
+}
+
+static void count_edge(struct vertex_count *count, uint32_t low, uint32_t high, bool boundary,
+                       bool nonmanifold)
+{
+    const uint32_t end[2] = {low, high};
+    for (int i = 0; i < 2; i++) {
+        count[end[i]].edges++;
+        count[end[i]].boundary += boundary;
+        count[end[i]].nonmanifold += nonmanifold;
+    }
+}
+
+static void pair_bucket(struct topology *t, struct half_edge *bucket, size_t n, uint32_t low,
+                        struct vertex_count *count)
+{
+    qsort(bucket, n, sizeof *bucket, compare_half_edges);
+    for (size_t first = 0, last; first < n; first = last) {
+        for (last = first + 1; last < n && bucket[last].high == bucket[first].high; last++)
+            ;
+        bool paired = last - first == 2 && bucket[first].forward != bucket[first + 1].forward;
+        if (paired) {
+            t->twin[bucket[first].corner] = bucket[first + 1].corner;
+            t->twin[bucket[first + 1].corner] = bucket[first].corner;
+        }
+        bool boundary = last - first == 1;
+        count_edge(count, low, bucket[first].high, boundary, !paired && !boundary);
+    }
+}
+
+static bool pair_half_edges(struct topology *t, struct vertex_count *count)
+{
+    const struct cage *cage = t->cage;
+    size_t n_corners = cage->face_start[cage->n_faces];
+    size_t *start = calloc(cage->n_vertices + 2, sizeof *start);
+    struct half_edge *sorted = malloc(n_corners * sizeof *sorted);
+    if (!start || !sorted) {
+        free(start);
+        free(sorted);
+        return false;
+    }
+    for (int fill = 0; fill < 2; fill++) {
+        for (uint32_t c = 0; c < n_corners; c++) {
+            uint32_t a = corner_vertex(t, c), b = corner_vertex(t, corner_next(t, c));
+            uint32_t low = a < b ? a : b;
+            if (fill)
+                sorted[start[low + 1]++] = (struct half_edge){a < b ? b : a, c, a < b};
+            else
+                start[low + 2]++;
+        }
+        /* After this, start[v + 1] is where v's bucket begins; filling moves it to its end, so
+         * that start[v] .. start[v + 1] is v's bucket then. */
+        for (size_t v = 2; !fill && v < cage->n_vertices + 2; v++)
+            start[v] += start[v - 1];
+    }
+    for (uint32_t v = 0; v < cage->n_vertices; v++)
+        pair_bucket(t, sorted + start[v], start[v + 1] - start[v], v, count);
+    free(start);
+    free(sorted);
+    return true;
+}
+
+/* OpenSubdiv's rule for which vertices are interpolated: see topologyRefinerFactory.cpp. */
+static bool vertex_is_sharp(const struct topology *t, uint32_t corner,
+                            const struct vertex_count *count)
+{
+    if (count->faces == 1 && count->edges == 2 &&
+        t->cage->boundary == CAGE_BOUNDARY_EDGE_AND_CORNER)
+        return true;
+    bool one_sector = topology_sector(t, corner).n_faces == count->faces;
+    if (one_sector && count->nonmanifold == 0)
+        return false;
+    /* A fin: two opposite edges of several faces each, no boundary. The crease rule holds there. */
+    return !(count->nonmanifold == 2 && count->boundary == 0 && count->faces > count->edges);
+}
+
+static void flag_vertices(struct topology *t, struct vertex_count *count)
+{
+    const struct cage *cage = t->cage;
+    size_t n_corners = cage->face_start[cage->n_faces];
+    for (uint32_t c = 0; c < n_corners; c++)
+        count[corner_vertex(t, c)].faces++;
+    for (uint32_t c = 0; c < n_corners; c++) {
+        uint32_t v = corner_vertex(t, c);
+        uint8_t *flags = &t->vertex_flags[v];
+        if (face_size(t, t->face[c]) != 4)
+            *flags |= VERTEX_BY_NGON;
+        if (count[v].faces == 0)
+            continue; /* done already at an earlier corner */
+        if (count[v].boundary)
+            *flags |= VERTEX_BOUNDARY;
+        if (vertex_is_sharp(t, c, &count[v]))
+            *flags |= VERTEX_SHARP;
+        count[v].faces = 0;
+    }
+}
+
+bool topology_init(struct topology *t, const struct cage *cage, struct error *error)
+{
+    size_t n_corners = cage->face_start[cage->n_faces];
+    *t = (struct topology){
+        .cage = cage,
+        .twin = malloc(n_corners * sizeof *t->twin),
+        .face = malloc(n_corners * sizeof *t->face),
+        .vertex_flags = calloc(cage->n_vertices, 1),
+        .quads_only = true,
+    };
+    struct vertex_count *count = calloc(cage->n_vertices, sizeof *count);
+    if (!t->twin || !t->face || !t->vertex_flags || !count)
+        goto no_memory;
+    memset(t->twin, 0xff, n_corners * sizeof *t->twin);
+    for (uint32_t f = 0; f < cage->n_faces; f++) {
+        for (uint32_t c = cage->face_start[f]; c < cage->face_start[f + 1]; c++)
+            t->face[c] = f;
+        t->quads_only &= face_size(t, f) == 4;
+    }
+    if (!pair_half_edges(t, count))
+        goto no_memory;
+    flag_vertices(t, count);
+    free(count);
+    return true;
+
+no_memory:
+    free(count);
+    topology_finish(t);
+    return error_set(error, ERROR_SERVER, "out of memory for the topology of %zu faces",
+                     cage->n_faces);
+}
+
+void topology_finish(struct topology *t)
+{
+    free(t->twin);
+    free(t->face);
+    free(t->vertex_flags);
+    *t = (struct topology){0};
+}
+
+struct sector topology_sector(const struct topology *t, uint32_t corner)
+{
+    struct sector sector = {corner, 1, 0, false};
+    for (uint32_t c = corner_cw(t, corner); c != CORNER_NONE; c = corner_cw(t, c)) {
+        if (c == corner)
+            return (struct sector){corner, sector.n_faces, 0, true};
+        sector.first = c;
+        sector.at++;
+        sector.n_faces++;
+    }
+    for (uint32_t c = corner_ccw(t, corner); c != CORNER_NONE; c = corner_ccw(t, c))
+        sector.n_faces++;
+    return sector;
+}

@@ -1,0 +1,80 @@
+/* The cage's connectivity as half-edges, one per face corner.
+ *
+ * Corner c of face f is also the half-edge from its vertex to the face's next vertex. Edges that
+ * two faces share in opposite directions have twins; all others (boundary edges, edges of three
+ * and more faces, edges that two faces run along in the same direction) end a sector, as
+ * OpenSubdiv makes them infinitely sharp (far/topologyRefinerFactory.cpp). Read-only once built. */
+#ifndef SHEEN_LIMIT_TOPOLOGY_H
+#define SHEEN_LIMIT_TOPOLOGY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "server/cage/cage.h"
+#include "server/error.h"
+
+#define CORNER_NONE UINT32_MAX
+
+struct topology {
+    const struct cage *cage;
+    uint32_t *twin;        /* [corners]: the half-edge the other way, or CORNER_NONE */
+    uint32_t *face;        /* [corners]: the face it belongs to */
+    uint8_t *vertex_flags; /* [vertices] */
+    bool quads_only;
+};
+
+enum {
+    VERTEX_SHARP = 1, /* interpolated: a one-face corner in mode EDGE_AND_CORNER, or non-manifold */
+    VERTEX_BOUNDARY = 2, /* an edge of only one face ends here */
+    VERTEX_BY_NGON = 4,  /* a face that is no quad touches it */
+};
+
+/* ERROR_SERVER when memory is short. */
+bool topology_init(struct topology *topology, const struct cage *cage, struct error *error);
+void topology_finish(struct topology *topology);
+
+static inline uint32_t corner_vertex(const struct topology *t, uint32_t c)
+{
+    return t->cage->face_vertex[c];
+}
+
+static inline uint32_t face_size(const struct topology *t, uint32_t face)
+{
+    return t->cage->face_start[face + 1] - t->cage->face_start[face];
+}
+
+static inline uint32_t corner_next(const struct topology *t, uint32_t c)
+{
+    uint32_t face = t->face[c];
+    return c + 1 == t->cage->face_start[face + 1] ? t->cage->face_start[face] : c + 1;
+}
+
+static inline uint32_t corner_prev(const struct topology *t, uint32_t c)
+{
+    uint32_t face = t->face[c];
+    return c == t->cage->face_start[face] ? t->cage->face_start[face + 1] - 1 : c - 1;
+}
+
+/* The corner at the same vertex in the next face counter-clockwise, or CORNER_NONE. */
+static inline uint32_t corner_ccw(const struct topology *t, uint32_t c)
+{
+    return t->twin[corner_prev(t, c)];
+}
+
+/* The same clockwise. */
+static inline uint32_t corner_cw(const struct topology *t, uint32_t c)
+{
+    uint32_t twin = t->twin[c];
+    return twin == CORNER_NONE ? CORNER_NONE : corner_next(t, twin);
+}
+
+/* The faces around a corner's vertex that its sector holds. */
+struct sector {
+    uint32_t first;   /* the clockwise-most corner, or the given one when closed */
+    uint32_t n_faces; /* >= 1 */
+    uint32_t at;      /* how many ccw steps from first to the given corner */
+    bool closed;
+};
+struct sector topology_sector(const struct topology *t, uint32_t corner);
+
+#endif
