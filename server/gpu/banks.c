@@ -1,0 +1,79 @@
+/* Tables into buffer textures: as many as the device's texel limit asks for. */
+#include "server/gpu/gpu.h"
+
+#include <stdlib.h>
+
+static bool upload(struct bank_set *set, int max_banks, GLenum format, const void *data,
+                   size_t n_texels, size_t max_texels, const char *what, struct error *error)
+{
+    size_t n_banks = n_texels ? (n_texels + max_texels - 1) / max_texels : 1;
+    if (n_banks > (size_t)max_banks)
+        return error_set(error, ERROR_DEVICE,
+                         "the model's %s need %zu texels, but this device holds %zu in %d buffer "
+                         "textures",
+                         what, n_texels, max_texels * (size_t)max_banks, max_banks);
+    set->n = (int)n_banks;
+    glCreateBuffers(set->n, set->buffer);
+    glCreateTextures(GL_TEXTURE_BUFFER, set->n, set->texture);
+    for (size_t b = 0; b < n_banks; b++) {
+        size_t first = b * max_texels;
+        size_t n = n_texels - first < max_texels ? n_texels - first : max_texels;
+        const char *from = (const char *)data + first * 16;
+        glNamedBufferStorage(set->buffer[b], (GLsizeiptr)((n ? n : 1) * 16), n ? from : NULL, 0);
+        glTextureBuffer(set->texture[b], format, set->buffer[b]);
+    }
+    return gpu_check(what, error);
+}
+
+static void banks_finish(struct bank_set *set)
+{
+    glDeleteTextures(set->n, set->texture);
+    glDeleteBuffers(set->n, set->buffer);
+    *set = (struct bank_set){0};
+}
+
+int banks_bind(const struct bank_set *set, int unit)
+{
+    for (int b = 0; b < set->n; b++)
+        glBindTextureUnit((GLuint)unit++, set->texture[b]);
+    return unit;
+}
+
+struct renderer_model *renderer_model_create(struct renderer *renderer,
+                                             const struct limit_tables *tables, struct error *error)
+{
+    struct renderer_model *model = calloc(1, sizeof *model);
+    if (!model) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    model->tables = tables;
+    model->serial = ++renderer->next_serial;
+    size_t max = renderer->info.max_texels;
+    /* A node's three texels stay in one bank. */
+    size_t node_max = max / 3 * 3;
+    if (upload(&model->points, MAX_POINT_BANKS, GL_RGBA32F, tables->points, tables->n_points, max,
+               "points", error) &&
+        upload(&model->nodes, MAX_NODE_BANKS, GL_RGBA32UI, tables->nodes, 3 * tables->n_nodes,
+               node_max, "nodes", error) &&
+        upload(&model->adjacency, MAX_ADJACENCY_BANKS, GL_RGBA32UI, tables->adjacency,
+               tables->n_faces, max, "adjacency", error))
+        model->programs =
+            programs_for(renderer, model->points.n, model->nodes.n, model->adjacency.n, error);
+    if (!model->programs) {
+        renderer_model_destroy(renderer, model);
+        return NULL;
+    }
+    return model;
+}
+
+void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model)
+{
+    (void)renderer;
+    if (!model)
+        return;
+    banks_finish(&model->points);
+    banks_finish(&model->nodes);
+    banks_finish(&model->adjacency);
+    free(model);
+}

@@ -1,0 +1,53 @@
+/* Stage 2: the pixel's ray against the limit surface, in two passes. */
+#include "server/gpu/gpu.h"
+
+static void set_uniforms(GLuint program, const struct tile *area, bool want_ptex)
+{
+    glUseProgram(program);
+    glUniform1i(glGetUniformLocation(program, "want_ptex"), want_ptex);
+    glUniform4i(glGetUniformLocation(program, "area"), (GLint)area->x, (GLint)area->y,
+                (GLint)area->width, (GLint)area->height);
+}
+
+static void bind_planes(const struct renderer *r, const struct renderer_model *model)
+{
+    int unit = banks_bind(&model->points, 0);
+    unit = banks_bind(&model->nodes, unit);
+    unit = banks_bind(&model->adjacency, unit);
+    glBindTextureUnit((GLuint)unit, r->target.seen);
+    glBindTextureUnit((GLuint)unit + 1, r->target.seen_depth);
+    glBindImageTexture(0, r->target.position, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    glBindImageTexture(1, r->target.normal, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    glBindImageTexture(2, r->target.shape, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+    glBindImageTexture(3, r->target.ptex, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32UI);
+}
+
+/* What lies outside the area is missed without asking. */
+static void clear_planes(const struct renderer *r, bool want_ptex)
+{
+    static const GLfloat nothing[4] = {0, 0, 0, 0};
+    static const GLuint no_face[4] = {UINT32_MAX, 0, 0, 0};
+    glClearTexImage(r->target.position, 0, GL_RGBA, GL_FLOAT, nothing);
+    if (want_ptex)
+        glClearTexImage(r->target.ptex, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, no_face);
+}
+
+void stage_evaluate(struct renderer *r, const struct renderer_model *model, const struct tile *tile,
+                    bool want_ptex)
+{
+    static const GLuint no_work[4] = {0, 1, 1, 0};
+    const struct tile *area = &r->pieces.area;
+    if (area->width < tile->width || area->height < tile->height)
+        clear_planes(r, want_ptex);
+    glNamedBufferSubData(r->target.unsolved, 0, sizeof no_work, no_work);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, r->target.unsolved);
+    bind_planes(r, model);
+    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    set_uniforms(model->programs->evaluate, area, want_ptex);
+    glDispatchCompute((area->width + 7) / 8, (area->height + 7) / 8, 1);
+
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    set_uniforms(model->programs->unsolved, area, want_ptex);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->target.unsolved);
+    glDispatchComputeIndirect(0);
+}

@@ -1,0 +1,109 @@
+/* What the renderer's files share. Private to server/gpu; GL thread only. */
+#ifndef SHEEN_GPU_GPU_H
+#define SHEEN_GPU_GPU_H
+
+#include <epoxy/gl.h>
+
+#include "server/gpu/egl.h"
+#include "server/gpu/pieces.h"
+#include "server/gpu/renderer.h"
+#include "server/gpu/view.h"
+
+/* How many buffer textures each table may be spread over (shaders/tables.glsl). */
+enum { MAX_POINT_BANKS = 8, MAX_NODE_BANKS = 4, MAX_ADJACENCY_BANKS = 2 };
+
+/* A table in one or more buffer textures. */
+struct bank_set {
+    GLuint buffer[MAX_POINT_BANKS];
+    GLuint texture[MAX_POINT_BANKS];
+    int n;
+};
+
+/* The programs that read tables spread over so many banks. */
+struct table_programs {
+    int point_banks, node_banks, adjacency_banks;
+    GLuint visibility, evaluate, unsolved;
+};
+
+struct renderer_model {
+    const struct limit_tables *tables;
+    struct bank_set points, nodes, adjacency;
+    const struct table_programs *programs;
+    uint64_t serial; /* never reused: tells whose planes are kept */
+};
+
+struct renderer_image {
+    GLuint texture;
+};
+
+/* The images of one tile, grown to the largest tile asked for. */
+struct target {
+    uint32_t width, height;
+    GLuint framebuffer;
+    GLuint seen, seen_depth;        /* visibility: RG32UI, DEPTH32F */
+    GLuint position, normal, shape; /* evaluate: RGBA32F, RGBA32F, RG32F */
+    GLuint ptex;                    /* RGBA32UI */
+    GLuint colour;                  /* RGBA8 */
+    GLuint light, curvature;        /* RG32F */
+    GLuint unsolved;                /* buffer: shaders/planes.glsl */
+};
+
+/* What the planes of the target hold, so that a light-only change can reuse them. */
+struct kept {
+    uint64_t model_serial; /* 0: nothing */
+    uint32_t width_px, height_px;
+    struct camera camera;
+    bool ptex;
+};
+
+enum { MAX_PROGRAM_SETS = 16 };
+
+struct renderer {
+    struct egl egl;
+    struct renderer_info info;
+    struct target target;
+    struct kept kept;
+    struct pieces pieces;
+    struct table_programs programs[MAX_PROGRAM_SETS];
+    int n_programs;
+    GLuint shade;
+    GLuint view_buffer, light_buffer, piece_buffer;
+    GLuint vertex_array;
+    GLuint grid_buffer[PIECE_BUCKETS]; /* element indices of each bucket's grid */
+    GLuint blank_texture;              /* stands in where a pattern has no image */
+    uint64_t next_serial;
+};
+
+/* Every bank of a set bound to texture units from `unit`; returns the next free unit. */
+int banks_bind(const struct bank_set *set, int unit);
+
+/* The programs for these bank counts, compiled when first asked for. */
+const struct table_programs *programs_for(struct renderer *renderer, int point_banks,
+                                          int node_banks, int adjacency_banks, struct error *error);
+
+/* Grows the target to hold a tile. ERROR_DEVICE when the device has no memory. */
+bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error);
+void target_finish(struct target *target);
+
+/* The three stages, on the tile that the view block in view_buffer describes. */
+bool stage_visibility_init(struct renderer *renderer, struct error *error);
+void stage_visibility(struct renderer *renderer, const struct renderer_model *model,
+                      const struct tile *tile);
+void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
+                    const struct tile *tile, bool want_ptex);
+bool stage_shade_init(struct renderer *renderer, struct error *error);
+void stage_shade(struct renderer *renderer, const struct frame_request *request,
+                 const struct tile *tile);
+
+/* Copies the planes asked for from the target into the frame. */
+bool readback(struct renderer *renderer, const struct frame_request *request,
+              const struct tile *tile, struct frame *frame, struct error *error);
+
+/* Turns a pending GL error into ERROR_DEVICE; `doing` names what was tried. */
+bool gpu_check(const char *doing, struct error *error);
+
+/* ERROR_REQUEST naming the field and its range, or true. */
+bool request_check(const struct renderer_info *info, const struct frame_request *request,
+                   struct error *error);
+
+#endif

@@ -1,0 +1,281 @@
+#include "server/gpu/pieces.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "server/limit/bound.h"
+#include "server/limit/vec.h"
+
+/* How far a triangle may be from the surface, px. Stage 2 mends the rest. */
+static const double TOLERANCE_PX = 0.5;
+/* Pieces are cut in four at most this often: 2^20 squares across a face. */
+enum { MAX_DEPTH = 20 };
+
+/* What choosing needs at every turn. */
+struct chooser {
+    struct pieces *out;
+    const struct limit_tables *tables;
+    const struct view *view;
+    double side[4][3];      /* unit inward normals of the tile's sides, camera space */
+    double offset[4];       /* signed distance = side . p + offset */
+    double low[2], high[2]; /* covered so far, px of the picture */
+    bool failed;
+};
+
+/* The part of the surface under consideration: a sphere in camera space and how much it bends. */
+struct extent {
+    double centre[3], radius, bend;
+};
+
+static void set_sides(struct chooser *c, const struct tile *tile)
+{
+    const struct view *view = c->view;
+    const double low[2] = {tile->x, tile->y};
+    const double high[2] = {(double)tile->x + tile->width, (double)tile->y + tile->height};
+    for (int k = 0; k < 2; k++) {
+        double a = (low[k] - view->centre_px[k]) * view->units_per_px;
+        double b = (high[k] - view->centre_px[k]) * view->units_per_px;
+        double *first = c->side[2 * k], *second = c->side[2 * k + 1];
+        for (int i = 0; i < 3; i++)
+            first[i] = second[i] = 0;
+        double la = view->perspective ? hypot(1, a) : 1, lb = view->perspective ? hypot(1, b) : 1;
+        first[k] = 1 / la;
+        second[k] = -1 / lb;
+        first[2] = view->perspective ? -a / la : 0;
+        second[2] = view->perspective ? b / lb : 0;
+        c->offset[2 * k] = view->perspective ? 0 : -a;
+        c->offset[2 * k + 1] = view->perspective ? 0 : b;
+    }
+}
+
+static bool is_outside(const struct chooser *c, const struct extent *e)
+{
+    if (e->centre[2] + e->radius < c->view->near)
+        return true;
+    for (int s = 0; s < 4; s++) {
+        double distance = c->side[s][0] * e->centre[0] + c->side[s][1] * e->centre[1] +
+                          c->side[s][2] * e->centre[2] + c->offset[s];
+        if (distance < -e->radius)
+            return true;
+    }
+    return false;
+}
+
+/* How many px a length can span at the extent's nearest depth. */
+static double in_px(const struct chooser *c, const struct extent *e, double length)
+{
+    double z = fmax(e->centre[2] - e->radius, c->view->near);
+    return length / (c->view->perspective ? z * c->view->units_per_px : c->view->units_per_px);
+}
+
+/* Widens the covered rectangle by a sphere's outline. */
+static void cover(struct chooser *c, const struct extent *e)
+{
+    double nearest = e->centre[2] - e->radius, farthest = e->centre[2] + e->radius;
+    bool whole = c->view->perspective && nearest < c->view->near;
+    for (int k = 0; k < 2; k++) {
+        double low = e->centre[k] - e->radius, high = e->centre[k] + e->radius;
+        if (c->view->perspective) {
+            low = fmin(low / nearest, low / farthest);
+            high = fmax(high / nearest, high / farthest);
+        }
+        /* A pixel more on either side: stage 2 looks at neighbours. */
+        low = low / c->view->units_per_px + c->view->centre_px[k] - 2;
+        high = high / c->view->units_per_px + c->view->centre_px[k] + 2;
+        c->low[k] = whole ? -INFINITY : fmin(c->low[k], low);
+        c->high[k] = whole ? INFINITY : fmax(c->high[k], high);
+    }
+}
+
+static void emit(struct chooser *c, unsigned bucket, struct piece piece,
+                 const struct extent *extent)
+{
+    cover(c, extent);
+    struct piece_list *list = &c->out->bucket[bucket];
+    if (list->n == list->capacity) {
+        size_t capacity = list->capacity ? 2 * list->capacity : 1024;
+        struct piece *grown = realloc(list->piece, capacity * sizeof *grown);
+        if (!grown) {
+            c->failed = true;
+            return;
+        }
+        list->piece = grown;
+        list->capacity = capacity;
+    }
+    list->piece[list->n++] = piece;
+}
+
+/* The B-spline points of [a, b] of a segment on [0, 1]: blossoms at the finer knots. */
+static void restrict_segment(const struct vec *p, int stride, double a, double b, struct vec out[4])
+{
+    double h = b - a;
+    const double knots[4][3] = {
+        {a - 2 * h, a - h, a}, {a - h, a, b}, {a, b, b + h}, {b, b + h, b + 2 * h}};
+    for (int i = 0; i < 4; i++) {
+        double r = knots[i][0], s = knots[i][1], t = knots[i][2];
+        struct vec q[3], e[2];
+        for (int k = 0; k < 3; k++) {
+            double w = (r + 2 - k) / 3;
+            q[k] = vec_mad(vec_scale(p[k * stride], 1 - w), w, p[(k + 1) * stride]);
+        }
+        for (int k = 0; k < 2; k++) {
+            double w = (s + 1 - k) / 2;
+            e[k] = vec_mad(vec_scale(q[k], 1 - w), w, q[k + 1]);
+        }
+        out[i] = vec_mad(vec_scale(e[0], 1 - t), t, e[1]);
+    }
+}
+
+/* The 16 points of the patch that a piece is part of, in the node's frame, world units. */
+static void patch_points(const struct limit_tables *tables, const struct piece *piece,
+                         struct vec grid[16])
+{
+    const struct limit_node *node = &tables->nodes[piece->node];
+    unsigned level = piece->where & 63, square = piece->where >> 6 & 3;
+    size_t first = node->first, stride = 4;
+    if (node->kind == LIMIT_CORNER) {
+        first += (level - 1) * LIMIT_LEVEL_POINTS + (square == 2 ? 5 : square == 3 ? 4 : 0);
+        stride = 5;
+    }
+    for (size_t k = 0; k < 16; k++) {
+        const float *p = tables->points[first + k / 4 * stride + k % 4];
+        grid[k] = (struct vec){(double)p[0] * p[3], (double)p[1] * p[3], (double)p[2] * p[3]};
+    }
+}
+
+/* The world direction of a frame vector of a node. */
+static struct vec frame_to_world(const struct limit_tables *tables, const struct limit_node *node,
+                                 struct vec v)
+{
+    if (node->kind != LIMIT_CORNER)
+        return v;
+    const float *q = tables->points[node->first + LIMIT_CORNER_TEXELS - 1];
+    struct vec axis = {q[0], q[1], q[2]};
+    struct vec t = vec_scale(vec_cross(axis, v), 2);
+    return vec_add(vec_mad(v, q[3], t), vec_cross(axis, t));
+}
+
+static struct extent square_extent(const struct chooser *c, const struct piece *piece,
+                                   const struct vec patch[16])
+{
+    double size = ldexp(1, -(int)(piece->where >> 8));
+    double x = piece->x * size, y = piece->y * size;
+    struct vec rows[16], grid[16], middle = {0, 0, 0};
+    for (int j = 0; j < 4; j++)
+        restrict_segment(patch + 4 * j, 1, x, x + size, rows + 4 * j);
+    for (int i = 0; i < 4; i++) {
+        struct vec column[4];
+        restrict_segment(rows + i, 4, y, y + size, column);
+        for (int j = 0; j < 4; j++)
+            grid[4 * j + i] = column[j];
+    }
+    for (int k = 0; k < 16; k++)
+        middle = vec_mad(middle, 1.0 / 16, grid[k]);
+    for (int k = 0; k < 16; k++)
+        grid[k] = vec_sub(grid[k], middle);
+    struct limit_bound bound = bound_of_grid(grid, 4, false);
+    const struct limit_node *node = &c->tables->nodes[piece->node];
+    struct vec at = frame_to_world(c->tables, node, middle);
+    const double world[3] = {node->origin[0] + at.x, node->origin[1] + at.y,
+                             node->origin[2] + at.z};
+    struct extent extent = {.radius = bound.radius, .bend = bound.bend};
+    view_transform(c->view, world, extent.centre);
+    return extent;
+}
+
+static void choose_square(struct chooser *c, struct piece piece, const struct extent *extent);
+
+/* Too large for the finest grid: four quarters, each with its own bounds. */
+static void choose_quarters(struct chooser *c, struct piece piece)
+{
+    struct vec patch[16];
+    patch_points(c->tables, &piece, patch);
+    for (uint32_t i = 0; i < 4; i++) {
+        struct piece quarter = {piece.node, piece.where + (1u << 8), 2 * piece.x + (i & 1),
+                                2 * piece.y + (i >> 1)};
+        struct extent extent = square_extent(c, &quarter, patch);
+        choose_square(c, quarter, &extent);
+    }
+}
+
+static void choose_square(struct chooser *c, struct piece piece, const struct extent *extent)
+{
+    if (is_outside(c, extent))
+        return;
+    double cells = sqrt(in_px(c, extent, extent->bend) / (8 * TOLERANCE_PX));
+    unsigned bucket = 0;
+    while (bucket < PIECE_BUCKETS - 1 && (1u << bucket) < cells)
+        bucket++;
+    if (cells > 1u << bucket && piece.where >> 8 < MAX_DEPTH)
+        choose_quarters(c, piece);
+    else
+        emit(c, bucket, piece, extent);
+}
+
+static void choose_regular(struct chooser *c, uint32_t node)
+{
+    const struct limit_bound *bound = &c->tables->bounds[c->tables->bound_first[node]];
+    struct extent extent = {.radius = bound->radius, .bend = bound->bend};
+    view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
+    choose_square(c, (struct piece){node, 0, 0, 0}, &extent);
+}
+
+/* Rings from the outside in, until what is left is smaller than the tolerance. */
+static void choose_corner(struct chooser *c, uint32_t node)
+{
+    const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
+    struct extent extent;
+    view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
+    uint32_t level = 0;
+    for (; level < LIMIT_LEVELS; level++) {
+        extent.radius = bounds[level].radius;
+        extent.bend = bounds[level].bend;
+        if (is_outside(c, &extent))
+            return;
+        if (in_px(c, &extent, extent.radius) < TOLERANCE_PX)
+            break;
+        for (uint32_t square = 1; square <= 3; square++)
+            choose_square(c, (struct piece){node, (level + 1) | square << 6, 0, 0}, &extent);
+    }
+    emit(c, 0, (struct piece){node, level, 0, 0}, &extent);
+}
+
+/* The covered rectangle cut to the tile, on whole pixels. */
+static void set_area(const struct chooser *c, const struct tile *tile)
+{
+    double origin[2] = {tile->x, tile->y}, size[2] = {tile->width, tile->height};
+    uint32_t low[2], high[2];
+    for (int k = 0; k < 2; k++) {
+        low[k] = (uint32_t)fmin(fmax(floor(c->low[k] - origin[k]), 0), size[k]);
+        high[k] = (uint32_t)fmin(fmax(ceil(c->high[k] - origin[k]), low[k]), size[k]);
+    }
+    c->out->area = (struct tile){low[0], low[1], high[0] - low[0], high[1] - low[1]};
+}
+
+bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
+                   const struct view *view, const struct tile *tile)
+{
+    struct chooser c = {.out = pieces,
+                        .tables = tables,
+                        .view = view,
+                        .low = {INFINITY, INFINITY},
+                        .high = {-INFINITY, -INFINITY}};
+    set_sides(&c, tile);
+    for (int b = 0; b < PIECE_BUCKETS; b++)
+        pieces->bucket[b].n = 0;
+    for (uint32_t node = 0; node < tables->n_nodes; node++) {
+        if (tables->nodes[node].kind == LIMIT_REGULAR)
+            choose_regular(&c, node);
+        else if (tables->nodes[node].kind == LIMIT_CORNER)
+            choose_corner(&c, node);
+    }
+    set_area(&c, tile);
+    return !c.failed;
+}
+
+void pieces_finish(struct pieces *pieces)
+{
+    for (int b = 0; b < PIECE_BUCKETS; b++)
+        free(pieces->bucket[b].piece);
+    *pieces = (struct pieces){0};
+}

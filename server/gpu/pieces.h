@@ -1,0 +1,42 @@
+/* Which pieces of the surface are drawn, and how finely, so that no triangle strays more than
+ * half a pixel from the surface (limit-surface 3.2). Pure: no GL here.
+ *
+ * A piece is a square of a node's local coordinates: a part of a REGULAR node, of one unit square
+ * of a CORNER's level ring, or all that is left of a CORNER below one level. */
+#ifndef SHEEN_GPU_PIECES_H
+#define SHEEN_GPU_PIECES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/gpu/view.h"
+#include "server/limit/tables.h"
+
+/* Pieces come in buckets by their grid: bucket b is drawn with 2^b x 2^b cells. */
+enum { PIECE_BUCKETS = 7 };
+
+/* As shaders/visibility.vert.glsl reads it. */
+struct piece {
+    uint32_t node;
+    uint32_t where; /* level | square << 6 | depth << 8 */
+    uint32_t x, y;  /* which square of the 2^depth by 2^depth ones */
+};
+
+struct piece_list {
+    struct piece *piece;
+    size_t n, capacity;
+};
+
+struct pieces {
+    struct piece_list bucket[PIECE_BUCKETS];
+    /* The rectangle, px from the tile's corner, outside which the pieces cover nothing. */
+    struct tile area;
+};
+
+/* Chooses the pieces that the tile may show. Lists keep their memory from call to call; zero them
+ * before the first. False when memory is short. */
+bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
+                   const struct view *view, const struct tile *tile);
+void pieces_finish(struct pieces *pieces);
+
+#endif

@@ -1,0 +1,147 @@
+/* From the target's images to the planes of a frame in main memory. */
+#include "server/gpu/gpu.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* The rows of a tile inside a plane of the whole frame. */
+struct rows {
+    char *first;
+    size_t stride, pixel;
+};
+
+static struct rows tile_rows(const struct frame *frame, int plane, const struct tile *tile)
+{
+    size_t pixel = renderer_plane_bytes((enum renderer_plane)(1 << plane));
+    size_t stride = pixel * frame->width_px;
+    char *first = (char *)frame->plane[plane] + tile->y * stride + tile->x * pixel;
+    return (struct rows){first, stride, pixel};
+}
+
+/* Planes that the target holds as they are read. */
+static void read_direct(GLuint texture, GLenum format, GLenum type, const struct rows *rows,
+                        uint32_t frame_width, const struct tile *tile)
+{
+    glPixelStorei(GL_PACK_ROW_LENGTH, (GLint)frame_width);
+    glGetTextureSubImage(
+        texture, 0, 0, 0, 0, (GLsizei)tile->width, (GLsizei)tile->height, 1, format, type,
+        (GLsizei)((tile->height - 1) * rows->stride + tile->width * rows->pixel), rows->first);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+}
+
+static void read_four(GLuint texture, GLenum format, GLenum type, const struct tile *tile,
+                      void *texels)
+{
+    glGetTextureSubImage(texture, 0, 0, 0, 0, (GLsizei)tile->width, (GLsizei)tile->height, 1,
+                         format, type, (GLsizei)(tile->width * tile->height * 16), texels);
+}
+
+/* World positions are formed here, in double: the target holds them relative to the eye. */
+static void pack_position(const float (*texels)[4], const double eye[3], const struct rows *rows,
+                          const struct tile *tile)
+{
+    for (uint32_t y = 0; y < tile->height; y++) {
+        float(*out)[3] = (float(*)[3])(void *)(rows->first + y * rows->stride);
+        for (uint32_t x = 0; x < tile->width; x++, texels++)
+            for (int k = 0; k < 3; k++)
+                out[x][k] = (*texels)[3] > 0 ? (float)(eye[k] + (double)(*texels)[k]) : NAN;
+    }
+}
+
+static void pack_normal(const float (*texels)[4], const float (*position)[4],
+                        const struct rows *rows, const struct tile *tile)
+{
+    for (uint32_t y = 0; y < tile->height; y++) {
+        float(*out)[3] = (float(*)[3])(void *)(rows->first + y * rows->stride);
+        for (uint32_t x = 0; x < tile->width; x++, texels++, position++)
+            for (int k = 0; k < 3; k++)
+                out[x][k] = (*position)[3] > 0 ? (*texels)[k] : NAN;
+    }
+}
+
+static void pack_ptex(const uint32_t (*texels)[4], const struct rows *rows, const struct tile *tile)
+{
+    for (uint32_t y = 0; y < tile->height; y++) {
+        uint32_t(*out)[3] = (uint32_t(*)[3])(void *)(rows->first + y * rows->stride);
+        for (uint32_t x = 0; x < tile->width; x++, texels++)
+            for (int k = 0; k < 3; k++)
+                out[x][k] = (*texels)[k];
+    }
+}
+
+static bool read_packed(struct renderer *r, const struct frame_request *request,
+                        const struct tile *tile, struct frame *frame, struct error *error)
+{
+    enum { NEED_POSITION = PLANE_POSITION | PLANE_NORMAL };
+    if (!(request->planes & (NEED_POSITION | PLANE_PTEX)))
+        return true;
+    size_t bytes = (size_t)tile->width * tile->height * 16;
+    void *position = malloc(bytes), *other = malloc(bytes);
+    bool ok = position && other;
+    if (ok && request->planes & NEED_POSITION)
+        read_four(r->target.position, GL_RGBA, GL_FLOAT, tile, position);
+    if (ok && request->planes & PLANE_POSITION) {
+        struct rows rows = tile_rows(frame, 1, tile);
+        pack_position(position, request->camera.eye, &rows, tile);
+    }
+    if (ok && request->planes & PLANE_NORMAL) {
+        struct rows rows = tile_rows(frame, 2, tile);
+        read_four(r->target.normal, GL_RGBA, GL_FLOAT, tile, other);
+        pack_normal(other, position, &rows, tile);
+    }
+    if (ok && request->planes & PLANE_PTEX) {
+        struct rows rows = tile_rows(frame, 3, tile);
+        read_four(r->target.ptex, GL_RGBA_INTEGER, GL_UNSIGNED_INT, tile, other);
+        pack_ptex(other, &rows, tile);
+    }
+    free(position);
+    free(other);
+    return ok || error_set(error, ERROR_SERVER,
+                           "out of memory: reading a tile back needs %zu bytes", 2 * bytes);
+}
+
+bool readback(struct renderer *r, const struct frame_request *request, const struct tile *tile,
+              struct frame *frame, struct error *error)
+{
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    const struct {
+        int plane;
+        GLuint texture;
+        GLenum format, type;
+    } direct[] = {
+        {0, r->target.colour, GL_RGBA, GL_UNSIGNED_BYTE},
+        {4, r->target.light, GL_RG, GL_FLOAT},
+        {5, r->target.curvature, GL_RG, GL_FLOAT},
+    };
+    for (size_t i = 0; i < sizeof direct / sizeof direct[0]; i++) {
+        if (!(request->planes & 1u << direct[i].plane))
+            continue;
+        struct rows rows = tile_rows(frame, direct[i].plane, tile);
+        read_direct(direct[i].texture, direct[i].format, direct[i].type, &rows, frame->width_px,
+                    tile);
+    }
+    return read_packed(r, request, tile, frame, error) && gpu_check("reading a frame back", error);
+}
+
+size_t renderer_plane_bytes(enum renderer_plane plane)
+{
+    switch (plane) {
+    case PLANE_COLOUR:
+        return 4;
+    case PLANE_POSITION:
+    case PLANE_NORMAL:
+    case PLANE_PTEX:
+        return 12;
+    case PLANE_LIGHT:
+    case PLANE_CURVATURE:
+        return 8;
+    }
+    return 0;
+}
+
+void frame_finish(struct frame *frame)
+{
+    for (int p = 0; p < PLANE_COUNT; p++)
+        free(frame->plane[p]);
+    *frame = (struct frame){0};
+}

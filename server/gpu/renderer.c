@@ -1,0 +1,164 @@
+#include "server/gpu/renderer.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "server/gpu/gpu.h"
+#include "server/gpu/program.h"
+
+bool gpu_check(const char *doing, struct error *error)
+{
+    GLenum code = glGetError();
+    if (code == GL_NO_ERROR)
+        return true;
+    while (glGetError() != GL_NO_ERROR)
+        ;
+    if (code == GL_OUT_OF_MEMORY)
+        return error_set(error, ERROR_DEVICE, "the device is out of memory for %s", doing);
+    return error_set(error, ERROR_DEVICE, "OpenGL error 0x%04x in %s", code, doing);
+}
+
+static void query_info(struct renderer *r, size_t max_texels)
+{
+    GLint texels = 0, texture = 0, viewport[2] = {0, 0};
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
+    GLint width = texture < viewport[0] ? texture : viewport[0];
+    GLint height = texture < viewport[1] ? texture : viewport[1];
+    r->info = (struct renderer_info){
+        .device = (const char *)glGetString(GL_RENDERER),
+        .driver = (const char *)glGetString(GL_VERSION),
+        .software = r->egl.software,
+        .max_width_px = (uint32_t)width,
+        .max_height_px = (uint32_t)height,
+        .max_texels = (size_t)texels,
+    };
+    if (max_texels && max_texels < r->info.max_texels)
+        r->info.max_texels = max_texels;
+}
+
+struct renderer *renderer_create(const struct renderer_options *options, struct error *error)
+{
+    struct renderer *r = calloc(1, sizeof *r);
+    if (!r) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    if (!egl_init(&r->egl, options->device ? options->device : "auto", error)) {
+        free(r);
+        return NULL;
+    }
+    query_info(r, options->max_texels);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glCreateBuffers(1, &r->view_buffer);
+    glNamedBufferData(r->view_buffer, sizeof(struct view_block), NULL, GL_STREAM_DRAW);
+    if (!stage_visibility_init(r, error) || !stage_shade_init(r, error)) {
+        renderer_destroy(r);
+        return NULL;
+    }
+    return r;
+}
+
+void renderer_destroy(struct renderer *r)
+{
+    if (!r)
+        return;
+    /* GL objects go with their context. */
+    egl_finish(&r->egl);
+    pieces_finish(&r->pieces);
+    free(r);
+}
+
+const struct renderer_info *renderer_info(const struct renderer *r)
+{
+    return &r->info;
+}
+
+const struct table_programs *programs_for(struct renderer *r, int point_banks, int node_banks,
+                                          int adjacency_banks, struct error *error)
+{
+    static const char *const vertex[] = {"view.glsl", "tables.glsl", "surface.glsl",
+                                         "visibility.vert.glsl", NULL};
+    static const char *const fragment[] = {"visibility.frag.glsl", NULL};
+#define STAGE_2                                                                                    \
+    "view.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "planes.glsl", "newton.glsl",        \
+        "neighbours.glsl"
+    static const char *const evaluate[] = {STAGE_2, "evaluate.comp.glsl", NULL};
+    static const char *const unsolved[] = {STAGE_2, "unsolved.comp.glsl", NULL};
+#undef STAGE_2
+    for (int i = 0; i < r->n_programs; i++) {
+        const struct table_programs *p = &r->programs[i];
+        if (p->point_banks == point_banks && p->node_banks == node_banks &&
+            p->adjacency_banks == adjacency_banks)
+            return p;
+    }
+    if (r->n_programs == MAX_PROGRAM_SETS) {
+        error_set(error, ERROR_DEVICE, "models of too many different sizes at once");
+        return NULL;
+    }
+    char defines[256];
+    snprintf(defines, sizeof defines,
+             "#define POINT_BANKS %d\n#define NODE_BANKS %d\n#define ADJACENCY_BANKS %d\n"
+             "#define BANK_TEXELS %zu\n#define NODE_BANK_TEXELS %zu\n#define TEXTURES_FREE %d\n",
+             point_banks, node_banks, adjacency_banks, r->info.max_texels,
+             r->info.max_texels / 3 * 3, point_banks + node_banks + adjacency_banks);
+    struct table_programs *p = &r->programs[r->n_programs];
+    p->visibility = program_raster(defines, vertex, fragment, error);
+    p->evaluate = p->visibility ? program_compute(defines, evaluate, error) : 0;
+    p->unsolved = p->evaluate ? program_compute(defines, unsolved, error) : 0;
+    if (!p->unsolved) {
+        glDeleteProgram(p->visibility);
+        glDeleteProgram(p->evaluate);
+        return NULL;
+    }
+    p->point_banks = point_banks;
+    p->node_banks = node_banks;
+    p->adjacency_banks = adjacency_banks;
+    r->n_programs++;
+    return p;
+}
+
+struct renderer_image *renderer_image_create(struct renderer *r, const struct image *image,
+                                             struct error *error)
+{
+    struct renderer_image *out = calloc(1, sizeof *out);
+    if (!out) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    if (image->width_px > r->info.max_width_px || image->height_px > r->info.max_height_px) {
+        error_set(error, ERROR_IMAGE, "the image is %ux%u, more than the device's %ux%u",
+                  image->width_px, image->height_px, r->info.max_width_px, r->info.max_height_px);
+        free(out);
+        return NULL;
+    }
+    uint32_t larger = image->width_px > image->height_px ? image->width_px : image->height_px;
+    GLsizei levels = 32 - __builtin_clz(larger);
+    glCreateTextures(GL_TEXTURE_2D, 1, &out->texture);
+    glTextureStorage2D(out->texture, levels, image->is_float ? GL_RGBA16F : GL_RGBA8,
+                       (GLsizei)image->width_px, (GLsizei)image->height_px);
+    glTextureSubImage2D(out->texture, 0, 0, 0, (GLsizei)image->width_px, (GLsizei)image->height_px,
+                        GL_RGBA, image->is_float ? GL_FLOAT : GL_UNSIGNED_BYTE, image->pixels);
+    glGenerateTextureMipmap(out->texture);
+    glTextureParameteri(out->texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(out->texture, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTextureParameteri(out->texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(out->texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glTextureParameterf(out->texture, GL_TEXTURE_MAX_ANISOTROPY, 16);
+    if (!gpu_check("a light image", error)) {
+        renderer_image_destroy(r, out);
+        return NULL;
+    }
+    return out;
+}
+
+void renderer_image_destroy(struct renderer *r, struct renderer_image *image)
+{
+    (void)r;
+    if (!image)
+        return;
+    glDeleteTextures(1, &image->texture);
+    free(image);
+}

@@ -1,0 +1,129 @@
+/* The renderer: limit tables in, frames out. The one header through which the service reaches the
+ * GPU; no GL type or call appears here.
+ *
+ * Thread: all functions of one renderer are called by the one thread that created it. */
+#ifndef SHEEN_GPU_RENDERER_H
+#define SHEEN_GPU_RENDERER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/error.h"
+#include "server/image/image.h"
+#include "server/limit/tables.h"
+
+struct renderer;
+struct renderer_model; /* one cage's tables on the GPU */
+struct renderer_image; /* one light image on the GPU */
+
+/* Planes a frame can carry, one bit each. */
+enum renderer_plane {
+    PLANE_COLOUR = 1 << 0,    /* uint8_t[4] RGBA, straight alpha */
+    PLANE_POSITION = 1 << 1,  /* float[3] world, NaN where nothing is hit */
+    PLANE_NORMAL = 1 << 2,    /* float[3] unit, world, along the face winding; NaN where none */
+    PLANE_PTEX = 1 << 3,      /* uint32 face (0xffffffff: none), float u, float v: 12 bytes */
+    PLANE_LIGHT = 1 << 4,     /* float s, t on the light rectangle; NaN where the ray misses it */
+    PLANE_CURVATURE = 1 << 5, /* float k.min, k.max, 1/unit, signed against N; NaN where none */
+};
+#define PLANE_COUNT 6
+
+struct renderer_options {
+    const char *device; /* "auto", "software" or a number: the n-th EGL device */
+    size_t max_texels;  /* tests only: pretend that buffer textures hold no more; 0: ask */
+};
+
+/* What the device is, in its own words. Strings live as long as the renderer. */
+struct renderer_info {
+    const char *device; /* GL_RENDERER */
+    const char *driver; /* GL_VERSION */
+    bool software; /* EGL says so (EGL_MESA_device_software) or no hardware node is behind it */
+    uint32_t max_width_px, max_height_px;
+    size_t max_texels; /* per buffer texture */
+};
+
+enum camera_kind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC };
+/* World units; right-handed. up need not be perpendicular, but not parallel to target - eye. */
+struct camera {
+    enum camera_kind kind;
+    double eye[3], target[3], up[3];
+    double fov_deg;      /* perspective: vertical field of view, (0, 180) */
+    double ortho_height; /* orthographic: world units from top to bottom of the picture */
+};
+
+/* x = centre + (s - 1/2) u + (t - 1/2) v, s and t in [0,1]; seen from both sides. */
+struct light {
+    double centre[3], u[3], v[3];
+};
+
+enum pattern_kind { PATTERN_STRIPES, PATTERN_LATTICE, PATTERN_CIRCLES, PATTERN_IMAGE };
+/* What the light shows. Stripes: `count` periods along s, bright for the first `duty` of each.
+ * Lattice: stripes along s or along t. Circles: `count` rings about the centre, to the nearer
+ * edge. Image: s to the right, t upwards. Colours are RGBA in [0,1], as displayed. */
+struct pattern {
+    enum pattern_kind kind;
+    double count;                       /* (0, 100000] */
+    double duty;                        /* [0, 1] */
+    float foreground[4];                /* bright part */
+    float background[4];                /* dark part */
+    const struct renderer_image *image; /* PATTERN_IMAGE */
+};
+
+struct frame_request {
+    uint32_t width_px, height_px;
+    struct camera camera;
+    struct light light;
+    struct pattern pattern;
+    float miss[4];   /* colour where the reflected ray misses the light */
+    float empty[4];  /* colour where no surface is hit */
+    uint32_t planes; /* enum renderer_plane bits to read back */
+};
+
+struct frame_times {
+    uint64_t visibility_us, evaluate_us, shade_us, readback_us;
+};
+
+/* One finished frame. Plane pointers are rows top first, tightly packed, NULL when not asked for;
+ * they belong to the caller, who gives them back with frame_finish(). */
+struct frame {
+    uint32_t width_px, height_px;
+    void *plane[PLANE_COUNT]; /* indexed by bit number */
+    uint64_t covered_px;
+    struct frame_times times;
+};
+
+/* EGL by device enumeration, surfaceless, OpenGL 4.5 core. NULL with ERROR_DEVICE when there is
+ * none, saying what was found. */
+struct renderer *renderer_create(const struct renderer_options *options, struct error *error);
+void renderer_destroy(struct renderer *renderer); /* NULL is safe */
+const struct renderer_info *renderer_info(const struct renderer *renderer);
+
+/* Uploads tables. The tables must stay until the model is destroyed (their bounds choose the
+ * grids every frame). */
+struct renderer_model *renderer_model_create(struct renderer *renderer,
+                                             const struct limit_tables *tables,
+                                             struct error *error);
+void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model);
+
+struct renderer_image *renderer_image_create(struct renderer *renderer, const struct image *image,
+                                             struct error *error);
+void renderer_image_destroy(struct renderer *renderer, struct renderer_image *image);
+
+/* Renders one frame. The request is checked here too: ERROR_REQUEST names the field and its range.
+ * A second request that differs from the last in light, pattern or colours only, on the same
+ * model, reuses the evaluated planes. */
+bool renderer_render(struct renderer *renderer, struct renderer_model *model,
+                     const struct frame_request *request, struct frame *frame, struct error *error);
+void frame_finish(struct frame *frame);
+
+/* Bytes of one pixel of a plane (a single bit). */
+size_t renderer_plane_bytes(enum renderer_plane plane);
+
+/* A camera that frames the box (three-quarter view from above, z up when the box is flatter in z,
+ * 35 degrees), and a light that hangs over it, larger than the model. */
+void renderer_default_camera(const double box_min[3], const double box_max[3], uint32_t width_px,
+                             uint32_t height_px, struct camera *camera);
+void renderer_default_light(const double box_min[3], const double box_max[3],
+                            const struct camera *camera, struct light *light);
+
+#endif

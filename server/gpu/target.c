@@ -1,0 +1,69 @@
+#include "server/gpu/gpu.h"
+
+#include <stddef.h>
+
+/* Every image of a target, by where its name is kept and its format. */
+static const struct {
+    size_t member;
+    GLenum format;
+} images[] = {
+    {offsetof(struct target, seen), GL_RG32UI},
+    {offsetof(struct target, seen_depth), GL_DEPTH_COMPONENT32F},
+    {offsetof(struct target, position), GL_RGBA32F},
+    {offsetof(struct target, normal), GL_RGBA32F},
+    {offsetof(struct target, shape), GL_RG32F},
+    {offsetof(struct target, ptex), GL_RGBA32UI},
+    {offsetof(struct target, colour), GL_RGBA8},
+    {offsetof(struct target, light), GL_RG32F},
+    {offsetof(struct target, curvature), GL_RG32F},
+};
+
+static GLuint *image_name(struct target *target, size_t i)
+{
+    return (GLuint *)(void *)((char *)target + images[i].member);
+}
+
+bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error)
+{
+    if (width <= target->width && height <= target->height)
+        return true;
+    width = width > target->width ? width : target->width;
+    height = height > target->height ? height : target->height;
+    target_finish(target);
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
+        GLuint *name = image_name(target, i);
+        glCreateTextures(GL_TEXTURE_2D, 1, name);
+        glTextureStorage2D(*name, 1, images[i].format, (GLsizei)width, (GLsizei)height);
+        /* Integer textures are incomplete with any other filter. */
+        glTextureParameteri(*name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTextureParameteri(*name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    glCreateBuffers(1, &target->unsolved);
+    glNamedBufferData(target->unsolved, (GLsizeiptr)(16 + (size_t)width * height * 4), NULL,
+                      GL_DYNAMIC_COPY);
+    glCreateFramebuffers(1, &target->framebuffer);
+    glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->seen, 0);
+    glNamedFramebufferTexture(target->framebuffer, GL_DEPTH_ATTACHMENT, target->seen_depth, 0);
+    target->width = width;
+    target->height = height;
+    if (!gpu_check("the planes of a frame", error)) {
+        target_finish(target);
+        return false;
+    }
+    if (glCheckNamedFramebufferStatus(target->framebuffer, GL_FRAMEBUFFER) !=
+        GL_FRAMEBUFFER_COMPLETE) {
+        target_finish(target);
+        return error_set(error, ERROR_DEVICE, "the device refuses a %ux%u visibility buffer", width,
+                         height);
+    }
+    return true;
+}
+
+void target_finish(struct target *target)
+{
+    glDeleteBuffers(1, &target->unsolved);
+    glDeleteFramebuffers(1, &target->framebuffer);
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
+        glDeleteTextures(1, image_name(target, i));
+    *target = (struct target){0};
+}

@@ -1,0 +1,44 @@
+/* The camera in double precision, and as the shaders see it. Pure. */
+#ifndef SHEEN_GPU_VIEW_H
+#define SHEEN_GPU_VIEW_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "server/gpu/renderer.h"
+
+/* A rectangle of the picture, px. */
+struct tile {
+    uint32_t x, y, width, height;
+};
+
+/* Camera space: x right, y down, z forward from the eye (shaders/view.glsl). */
+struct view {
+    double eye[3];
+    double axis[3][3]; /* right, down, forward: orthonormal, world */
+    bool perspective;
+    double units_per_px; /* orthographic: everywhere; perspective: at depth 1 */
+    double centre_px[2]; /* where the axis meets the picture */
+    double near, far;    /* depths that the picture holds */
+    uint32_t width_px, height_px;
+};
+
+/* std140 block `View` of shaders/view.glsl. */
+struct view_block {
+    double eye[4];
+    float axis[3][4];
+    float ray[4];
+    float clip[4];
+    float depth[4];
+    int32_t tile[4];
+};
+
+/* The request has been checked. The box bounds what is drawn and sets near and far. */
+void view_init(struct view *view, const struct camera *camera, uint32_t width_px,
+               uint32_t height_px, const double box_min[3], const double box_max[3]);
+void view_block_fill(struct view_block *block, const struct view *view, const struct tile *tile);
+
+/* World to camera space. */
+void view_transform(const struct view *view, const double world[3], double camera[3]);
+
+#endif

@@ -1,0 +1,79 @@
+// The pixel's ray as two planes through it, and Newton's method on the distances from them
+// (limit-surface 3.4): f(s,t) = 0 where the surface meets the ray.
+//
+// Distances are measured in the patch's own frame and scale, so a patch is projected once, to a
+// net of 2-D points, and steps cost little.
+
+struct Ray {
+    vec2 slope;  // camera space: the ray is (start, 0) + z (slope, 1)
+    vec2 start;
+};
+
+Ray ray_of(ivec2 pixel)
+{
+    vec2 q = pixel_offset(pixel);
+    return Ray(q * ray.x, q * ray.y);
+}
+
+// The 16 points' distances from the planes, in units of scale.
+void project(Node node, mat3 frame, vec3 p[16], float scale, Ray r, out vec2 net[16])
+{
+    vec3 h = vec3(1.0, 0.0, -r.slope.x) * frame, k = vec3(0.0, 1.0, -r.slope.y) * frame;
+    vec2 at = (node.origin.xy - r.start - r.slope * node.origin.z) / scale;
+    for (int i = 0; i < 16; i++)
+        net[i] = at + vec2(dot(h, p[i]), dot(k, p[i]));
+}
+
+// One step from st; returns f there. The step is cut at half a sub-patch: beyond it the linear
+// model says little. Where the ray touches the surface (no inverse) the step is 0.
+vec2 newton_step(vec2 net[16], vec2 st, out vec2 step_st)
+{
+    vec4 bu, du, bv, dv, unused;
+    blends(st.x, bu, du, unused);
+    blends(st.y, bv, dv, unused);
+    vec2 f = vec2(0.0), fu = vec2(0.0), fv = vec2(0.0);
+    for (int j = 0; j < 4; j++) {
+        vec2 p0 = net[4 * j], p1 = net[4 * j + 1], p2 = net[4 * j + 2], p3 = net[4 * j + 3];
+        vec2 c = bu.x * p0 + bu.y * p1 + bu.z * p2 + bu.w * p3;
+        f += bv[j] * c;
+        fv += dv[j] * c;
+        fu += bv[j] * (du.x * p0 + du.y * p1 + du.z * p2 + du.w * p3);
+    }
+    float det = fu.x * fv.y - fu.y * fv.x;
+    bool touches = !(abs(det) > 1e-7 * (dot(fu, fu) + dot(fv, fv)));
+    step_st = vec2(f.y * fv.x - f.x * fv.y, f.x * fu.y - f.y * fu.x) / (touches ? 1.0 : det);
+    float longest = max(abs(step_st.x), abs(step_st.y));
+    step_st *= touches ? 0.0 : min(1.0, 0.5 / max(longest, 1e-30));
+    return f;
+}
+
+// How far from the ray counts as on it, px: far below what a pixel can show, unless the patch is so
+// much larger than a pixel that single precision cannot tell.
+float close_enough(float px_per_scale)
+{
+    return max(0.0005, 5e-7 * px_per_scale);
+}
+
+// Newton's method inside one sub-patch, whose polynomials also hold a little beyond it. Returns
+// how far from the ray, px, the surface then is.
+float solve_patch(vec2 net[16], float px_per_scale, inout vec2 st)
+{
+    float residual = 1e30, enough = close_enough(px_per_scale);
+    for (int i = 0; i < 5; i++) {
+        vec2 step_st;
+        residual = length(newton_step(net, st, step_st)) * px_per_scale;
+        if (residual < enough)
+            break;
+        st += step_st;
+        if (any(lessThan(st, vec2(-0.5))) || any(greaterThan(st, vec2(1.5))))
+            break;
+    }
+    return residual;
+}
+
+// The visibility buffer's guess as local coordinates of its node.
+vec2 guess_xy(uint packed_guess)
+{
+    vec2 st = vec2(packed_guess >> 6 & 8191u, packed_guess >> 19) * (2.0 / 8191.0);
+    return clamp(ldexp(st, ivec2(-int(packed_guess & 63u))), 0.0, 1.0);
+}

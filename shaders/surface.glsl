@@ -1,0 +1,98 @@
+// The limit surface of one node: Stam's exact evaluation as Yasui and Kanai (2004) put it,
+// s(u,v) = sum P_i(n,k) b_i(t_kn(u,v)), with uniform cubic B-spline blends b_i.
+//
+// Local coordinates x,y in [0,1] run over the node; a CORNER has its extraordinary vertex at (0,0).
+
+struct Surface {
+    vec3 s;               // position relative to the eye, camera space, world units
+    vec3 su, sv;          // derivatives by the sub-patch's own parameters, divided by scale
+    vec3 suu, suv, svv;   // second derivatives, alike
+    float scale;          // power of two
+};
+
+void blends(float t, out vec4 b, out vec4 d, out vec4 dd)
+{
+    float r = 1.0 - t;
+    b = vec4(r * r * r, 4.0 + t * t * (3.0 * t - 6.0), 4.0 + r * r * (3.0 * r - 6.0), t * t * t) *
+        (1.0 / 6.0);
+    d = vec4(-r * r, t * (3.0 * t - 4.0), -r * (3.0 * r - 4.0), t * t) * 0.5;
+    dd = vec4(r, 3.0 * t - 2.0, 3.0 * r - 2.0, t);
+}
+
+// Columns: the frame's axes in camera space.
+mat3 frame_of(Node node)
+{
+    mat3 camera = transpose(mat3(axis[0].xyz, axis[1].xyz, axis[2].xyz));
+    if (node.kind != CORNER)
+        return camera;
+    vec4 q = point_at(node.first + uint(LEVELS * LEVEL_POINTS));
+    vec3 d = 2.0 * q.xyz;
+    float xx = q.x * d.x, yy = q.y * d.y, zz = q.z * d.z;
+    float xy = q.x * d.y, xz = q.x * d.z, yz = q.y * d.z;
+    float wx = q.w * d.x, wy = q.w * d.y, wz = q.w * d.z;
+    return camera * mat3(1.0 - (yy + zz), xy + wz, xz - wy, xy - wz, 1.0 - (xx + zz), yz + wx,
+                         xz + wy, yz - wx, 1.0 - (xx + yy));
+}
+
+// The sub-patch of a node that holds a place (limit-surface 4.3).
+struct SubPatch {
+    int level;    // n: 0 for REGULAR; its parameters run 2^n times faster than the node's x,y
+    vec2 origin;  // where it begins, in those parameters
+    vec2 st;      // the place, in [0,1]
+    uint first;   // its 16 points: rows of 4, `stride` texels apart
+    uint stride;
+    bool limit;   // beyond the last level: the extraordinary vertex itself
+};
+
+SubPatch sub_patch_at(Node node, vec2 xy)
+{
+    bool corner = node.kind == CORNER;
+    int e;
+    frexp(max(xy.x, xy.y), e);
+    int level = corner ? max(1, 1 - e) : 0;
+    bool limit = corner && (level > LEVELS || max(xy.x, xy.y) <= 0.0);
+    level = min(level, LEVELS);
+    vec2 st = ldexp(xy, ivec2(level));
+    bvec2 far = corner ? greaterThanEqual(st, vec2(1.0)) : bvec2(false);
+    uint first = node.first + (corner ? uint(LEVEL_POINTS * (level - 1)) : 0u);
+    first += far.y ? (far.x ? 5u : 4u) : 0u;
+    return SubPatch(level, vec2(far), st - vec2(far), first, corner ? 5u : 4u, limit);
+}
+
+void fetch_points(SubPatch patch_, out vec3 p[16], out float scale)
+{
+    for (uint k = 0u; k < 16u; k++) {
+        vec4 texel = point_at(patch_.first + (k >> 2) * patch_.stride + (k & 3u));
+        p[k] = texel.xyz;
+        scale = texel.w;
+    }
+}
+
+// The patch of 16 points at st, with first and second derivatives.
+Surface patch_at(Node node, mat3 frame, vec3 p[16], float scale, vec2 st)
+{
+    vec4 bu, du, ddu, bv, dv, ddv;
+    blends(st.x, bu, du, ddu);
+    blends(st.y, bv, dv, ddv);
+    vec3 s = vec3(0.0), su = vec3(0.0), sv = vec3(0.0);
+    vec3 suu = vec3(0.0), suv = vec3(0.0), svv = vec3(0.0);
+    for (int j = 0; j < 4; j++) {
+        vec3 p0 = p[4 * j], p1 = p[4 * j + 1], p2 = p[4 * j + 2], p3 = p[4 * j + 3];
+        vec3 c = bu.x * p0 + bu.y * p1 + bu.z * p2 + bu.w * p3;
+        vec3 d = du.x * p0 + du.y * p1 + du.z * p2 + du.w * p3;
+        s += bv[j] * c;
+        su += bv[j] * d;
+        sv += dv[j] * c;
+        suu += bv[j] * (ddu.x * p0 + ddu.y * p1 + ddu.z * p2 + ddu.w * p3);
+        suv += dv[j] * d;
+        svv += ddv[j] * c;
+    }
+    return Surface(node.origin + frame * (s * scale), frame * su, frame * sv, frame * suu,
+                   frame * suv, frame * svv, scale);
+}
+
+// The extraordinary vertex itself, where all levels end: the origin and axes of its frame.
+Surface limit_of(Node node, mat3 frame, float scale)
+{
+    return Surface(node.origin, frame[0], frame[1], vec3(0.0), vec3(0.0), vec3(0.0), scale);
+}
