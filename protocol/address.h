@@ -1,0 +1,31 @@
+/* Addresses of a daemon as people write them:
+ *
+ *   unix:PATH          a Unix socket, PATH up to 107 bytes
+ *   tcp:HOST:PORT      HOST an IPv4 address, a name, or an IPv6 address in brackets: tcp:[::1]:7410
+ *
+ * Parsing only: nothing is resolved or opened here. Pure, any thread, no ownership. */
+#ifndef SHEEN_PROTOCOL_ADDRESS_H
+#define SHEEN_PROTOCOL_ADDRESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define ADDRESS_PATH_BYTES 108 /* sockaddr_un.sun_path, with its 0 */
+#define ADDRESS_HOST_BYTES 254 /* a DNS name is at most 253 */
+#define ADDRESS_TEXT_BYTES 480 /* of an error text, with its 0 */
+
+enum address_kind { ADDRESS_UNIX, ADDRESS_TCP };
+
+struct address {
+    enum address_kind kind;
+    char path[ADDRESS_PATH_BYTES]; /* ADDRESS_UNIX: not empty, no control character */
+    char host[ADDRESS_HOST_BYTES]; /* ADDRESS_TCP: without brackets; for getaddrinfo() */
+    uint16_t port;                 /* ADDRESS_TCP: 0 is for listeners: the system chooses */
+};
+
+/* Fills *address. On failure returns false and writes one line to error_text that says what is
+ * wrong and what an address looks like; *address is then undefined. */
+bool address_parse(struct address *address, const char *text,
+                   char error_text[static ADDRESS_TEXT_BYTES]);
+
+#endif

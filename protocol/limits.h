@@ -1,0 +1,37 @@
+/* Every number that a peer can hit, in one table. README.md repeats them for people.
+ *
+ * A receiver checks these before it allocates or reads; going over one costs an ERROR message that
+ * names the limit. Plain constants: no thread, no ownership. */
+#ifndef SHEEN_PROTOCOL_LIMITS_H
+#define SHEEN_PROTOCOL_LIMITS_H
+
+#include <stdint.h>
+
+/* Largest bodies, in bytes, by message type. Larger than what version 1.0 sends where a later minor
+ * version may add fields; message.c holds at compile time that 1.0 fits. */
+#define PROTOCOL_MAX_SMALL_BODY_BYTES 2048u    /* every type that is not named below */
+#define PROTOCOL_MAX_MODEL_INFO_BYTES 8192u    /* MODEL_INFO carries warnings */
+#define PROTOCOL_MAX_CHUNK_BYTES (256u * 1024) /* UPLOAD_CHUNK */
+#define PROTOCOL_MAX_DATA_BYTES (1024u * 1024) /* DATA */
+
+/* Uploads and frames. */
+#define PROTOCOL_MAX_UPLOAD_BYTES (1024ull * 1024 * 1024) /* one model or image file */
+#define PROTOCOL_MAX_FRAME_BYTES (4096ull * 1024 * 1024)  /* one frame: its planes, or its file */
+#define PROTOCOL_MAX_SIZE_PX 65536u /* width and height; the device's limit is lower */
+
+/* Requests sent and not yet answered, per connection. More is left in the socket's buffer. */
+#define PROTOCOL_MAX_IN_FLIGHT 4u
+
+/* Ranges of numbers in requests. */
+#define PROTOCOL_MAX_COORDINATE 1e30 /* absolute; squares stay finite in double */
+#define PROTOCOL_MAX_PATTERN_COUNT 100000.0
+
+/* Strips of an ENCODING_ZSTD frame hold this many bytes of a plane, or one row if that is more. */
+#define PROTOCOL_STRIP_BYTES (512u * 1024)
+
+/* Times, in milliseconds. */
+#define PROTOCOL_HELLO_TIMEOUT_MS 3000u  /* server: from accept to a whole HELLO */
+#define PROTOCOL_STALL_TIMEOUT_MS 30000u /* server: no byte moved in the middle of a message */
+#define PROTOCOL_PROGRESS_MS 200u        /* server: PROGRESS this often while tables are built */
+
+#endif

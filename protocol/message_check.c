@@ -1,0 +1,276 @@
+/* The checks of message.h: what the schema cannot say. */
+#include "protocol/message.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "protocol/codec.h"
+
+static bool __attribute__((format(printf, 2, 3))) refuse(char *text, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, MESSAGE_TEXT_BYTES, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+size_t message_utf8_length(const char *text)
+{
+    const unsigned char *c = (const unsigned char *)text;
+    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
+    if (*c < 0x80)
+        return 1;
+    size_t n = *c >= 0xf0 && *c < 0xf8 ? 4 : *c >= 0xe0 ? 3 : *c >= 0xc0 ? 2 : 0;
+    if (n == 0 || *c >= 0xf8)
+        return 0;
+    uint32_t code = *c & (0xffu >> (n + 1));
+    for (size_t i = 1; i < n; i++) {
+        if ((c[i] & 0xc0) != 0x80)
+            return 0;
+        code = code << 6 | (c[i] & 0x3f);
+    }
+    bool surrogate = code >= 0xd800 && code < 0xe000;
+    bool c1_control = code < 0xa0;
+    return code < least[n] || code > 0x10ffff || surrogate || c1_control ? 0 : n;
+}
+
+bool message_is_text(const char *text, bool lines)
+{
+    const unsigned char *c = (const unsigned char *)text;
+    while (*c) {
+        if ((*c < 0x20 && !(lines && *c == '\n')) || *c == 0x7f)
+            return false;
+        size_t n = message_utf8_length((const char *)c);
+        if (n == 0)
+            return false;
+        c += n;
+    }
+    return true;
+}
+
+static bool check_text(const char *value, const char *field, char *text)
+{
+    return message_is_text(value, false) ||
+           refuse(text, "%s is not UTF-8 text without control characters", field);
+}
+
+static bool check_vec3(const sheen_Vec3 *v, const char *field, char *text)
+{
+    const double value[3] = {v->x, v->y, v->z};
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(value[i]) <= PROTOCOL_MAX_COORDINATE))
+            return refuse(text, "%s.%c is %g; it must be a number from -%g to %g", field, "xyz"[i],
+                          value[i], PROTOCOL_MAX_COORDINATE, PROTOCOL_MAX_COORDINATE);
+    return true;
+}
+
+static bool check_range(double value, double low, double high, const char *field, char *text)
+{
+    return (value >= low && value <= high) ||
+           refuse(text, "%s is %g; it must be from %g to %g", field, value, low, high);
+}
+
+static bool check_positive(double value, double high, const char *field, char *text)
+{
+    return (value > 0 && value <= high) ||
+           refuse(text, "%s is %g; it must be above 0 and at most %g", field, value, high);
+}
+
+static bool check_enum(unsigned value, unsigned last, const char *field, char *text)
+{
+    return value <= last || refuse(text, "%s is %u; it must be from 0 to %u", field, value, last);
+}
+
+static bool check_colour(const sheen_Colour *colour, const char *field, char *text)
+{
+    const float value[4] = {colour->r, colour->g, colour->b, colour->a};
+    for (int i = 0; i < 4; i++)
+        if (!(value[i] >= 0 && value[i] <= 1))
+            return refuse(text, "%s.%c is %g; it must be from 0 to 1", field, "rgba"[i],
+                          (double)value[i]);
+    return true;
+}
+
+/* |a x b|^2 <= 1e-24 |a|^2 |b|^2 after scaling both to size one, so that nothing overflows. Zero
+ * vectors are parallel to everything. */
+static bool is_parallel(const sheen_Vec3 *a, const sheen_Vec3 *b)
+{
+    double scale_a = fmax(fabs(a->x), fmax(fabs(a->y), fabs(a->z)));
+    double scale_b = fmax(fabs(b->x), fmax(fabs(b->y), fabs(b->z)));
+    if (!(scale_a > 0 && scale_b > 0))
+        return true;
+    const double p[3] = {a->x / scale_a, a->y / scale_a, a->z / scale_a};
+    const double q[3] = {b->x / scale_b, b->y / scale_b, b->z / scale_b};
+    const double c[3] = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
+                         p[0] * q[1] - p[1] * q[0]};
+    return c[0] * c[0] + c[1] * c[1] + c[2] * c[2] <= 1e-24;
+}
+
+static bool check_camera(const sheen_Camera *camera, char *text)
+{
+    if (!check_vec3(&camera->eye, "camera.eye", text) ||
+        !check_vec3(&camera->target, "camera.target", text) ||
+        !check_vec3(&camera->up, "camera.up", text))
+        return false;
+    const sheen_Vec3 view = {camera->target.x - camera->eye.x, camera->target.y - camera->eye.y,
+                             camera->target.z - camera->eye.z};
+    if (view.x == 0 && view.y == 0 && view.z == 0)
+        return refuse(text, "camera.eye and camera.target are the same point");
+    if (is_parallel(&view, &camera->up))
+        return refuse(text, "camera.up is zero or along the line of sight");
+    if (camera->has_fov_deg == camera->has_ortho_height)
+        return refuse(text, "camera needs one of fov_deg and ortho_height");
+    if (camera->has_ortho_height)
+        return check_positive(camera->ortho_height, PROTOCOL_MAX_COORDINATE, "camera.ortho_height",
+                              text);
+    return (camera->fov_deg > 0 && camera->fov_deg < 180) ||
+           refuse(text, "camera.fov_deg is %g; it must be above 0 and below 180", camera->fov_deg);
+}
+
+static bool check_light(const sheen_Light *light, char *text)
+{
+    if (!check_vec3(&light->centre, "light.centre", text) ||
+        !check_vec3(&light->u, "light.u", text) || !check_vec3(&light->v, "light.v", text))
+        return false;
+    return !is_parallel(&light->u, &light->v) ||
+           refuse(text, "light.u and light.v span no rectangle: one is zero or both are parallel");
+}
+
+static bool check_pattern(const sheen_Pattern *pattern, char *text)
+{
+    if (!check_enum(pattern->kind, sheen_PatternKind_PATTERN_IMAGE, "pattern.kind", text))
+        return false;
+    if (pattern->has_count &&
+        !check_positive(pattern->count, PROTOCOL_MAX_PATTERN_COUNT, "pattern.count", text))
+        return false;
+    if (pattern->has_duty && !check_range(pattern->duty, 0, 1, "pattern.duty", text))
+        return false;
+    if (pattern->has_foreground && !check_colour(&pattern->foreground, "pattern.foreground", text))
+        return false;
+    if (pattern->has_background && !check_colour(&pattern->background, "pattern.background", text))
+        return false;
+    if (pattern->has_image_sha256 != (pattern->kind == sheen_PatternKind_PATTERN_IMAGE))
+        return refuse(text, "pattern.image_sha256 belongs to an image pattern and to no other");
+    return true;
+}
+
+/* "" when the planes suit the encoding, else what they must be. */
+static const char *planes_wanted(uint32_t planes, unsigned encoding)
+{
+    if (planes == 0)
+        return "at least one";
+    if (planes & ~CODEC_ALL_PLANES)
+        return "bits 0 to 5";
+    bool picture = encoding == sheen_Encoding_ENCODING_PNG ||
+                   encoding == sheen_Encoding_ENCODING_JPEG ||
+                   encoding == sheen_Encoding_ENCODING_TIFF;
+    return picture && planes != sheen_Plane_PLANE_COLOUR ? "1 (colour) for PNG, JPEG and TIFF" : "";
+}
+
+static bool check_planes(uint32_t planes, unsigned encoding, char *text)
+{
+    if (!check_enum(encoding, sheen_Encoding_ENCODING_TIFF, "encoding", text))
+        return false;
+    const char *wanted = planes_wanted(planes, encoding);
+    return !*wanted || refuse(text, "planes is %u; it must be %s", planes, wanted);
+}
+
+bool message_check_hello(const sheen_Hello *hello, char text[static MESSAGE_TEXT_BYTES])
+{
+    return check_text(hello->client, "client", text);
+}
+
+bool message_check_upload_begin(const sheen_UploadBegin *begin,
+                                char text[static MESSAGE_TEXT_BYTES])
+{
+    if (!check_enum(begin->kind, sheen_UploadKind_UPLOAD_IMAGE, "kind", text) ||
+        !check_text(begin->name, "name", text))
+        return false;
+    return (begin->size_bytes > 0 && begin->size_bytes <= PROTOCOL_MAX_UPLOAD_BYTES) ||
+           refuse(text, "size_bytes is %llu; it must be from 1 to %llu",
+                  (unsigned long long)begin->size_bytes,
+                  (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
+}
+
+bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
+                          char text[static MESSAGE_TEXT_BYTES])
+{
+    if (render->width_px == 0 || render->width_px > max_width_px)
+        return refuse(text, "width is %u px; it must be from 1 to %u", render->width_px,
+                      max_width_px);
+    if (render->height_px == 0 || render->height_px > max_height_px)
+        return refuse(text, "height is %u px; it must be from 1 to %u", render->height_px,
+                      max_height_px);
+    if (!check_planes(render->planes, render->encoding, text))
+        return false;
+    struct codec_layout layout;
+    if (!codec_layout_init(&layout, render->width_px, render->height_px, render->planes))
+        return refuse(text, "%ux%u px with planes %u is over %llu bytes or %u px a side",
+                      render->width_px, render->height_px, render->planes,
+                      (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
+    return (!render->has_camera || check_camera(&render->camera, text)) &&
+           (!render->has_light || check_light(&render->light, text)) &&
+           (!render->has_pattern || check_pattern(&render->pattern, text)) &&
+           (!render->has_miss || check_colour(&render->miss, "miss", text)) &&
+           (!render->has_empty || check_colour(&render->empty, "empty", text));
+}
+
+static bool check_frame(const sheen_Frame *frame, char *text)
+{
+    struct codec_layout layout;
+    if (!check_planes(frame->planes, frame->encoding, text))
+        return false;
+    if (!codec_layout_init(&layout, frame->width_px, frame->height_px, frame->planes))
+        return refuse(text, "%ux%u px is no frame's size", frame->width_px, frame->height_px);
+    if (frame->data_bytes == 0 || frame->data_bytes > PROTOCOL_MAX_FRAME_BYTES)
+        return refuse(text, "data_bytes is %llu; it must be from 1 to %llu",
+                      (unsigned long long)frame->data_bytes,
+                      (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
+    return check_camera(&frame->camera, text) && check_light(&frame->light, text) &&
+           check_pattern(&frame->pattern, text) && check_text(frame->device, "device", text) &&
+           check_text(frame->driver, "driver", text) && check_text(frame->server, "server", text);
+}
+
+static bool check_model_info(const sheen_ModelInfo *info, char *text)
+{
+    if (!message_is_text(info->warnings, true))
+        return refuse(text, "warnings are not lines of UTF-8 text");
+    return check_text(info->name, "name", text) && check_vec3(&info->box_min, "box_min", text) &&
+           check_vec3(&info->box_max, "box_max", text);
+}
+
+bool message_check_answer(uint8_t type, const void *body, char text[static MESSAGE_TEXT_BYTES])
+{
+    switch (type) {
+    case MESSAGE_HELLO_OK: {
+        const sheen_HelloOk *ok = body;
+        return check_text(ok->server, "server", text) && check_text(ok->device, "device", text) &&
+               check_text(ok->driver, "driver", text);
+    }
+    case MESSAGE_UPLOAD_STATE:
+        return true;
+    case MESSAGE_MODEL_INFO:
+        return check_model_info(body, text);
+    case MESSAGE_FRAME:
+        return check_frame(body, text);
+    case MESSAGE_PROGRESS:
+        return check_text(((const sheen_Progress *)body)->stage, "stage", text);
+    case MESSAGE_STATS: {
+        const sheen_Stats *stats = body;
+        return check_text(stats->server, "server", text) &&
+               check_text(stats->device, "device", text) &&
+               check_text(stats->driver, "driver", text);
+    }
+    case MESSAGE_ERROR: {
+        const sheen_Error *error = body;
+        if (error->code == sheen_ErrorCode_ERROR_NONE)
+            return refuse(text, "code is 0; an error has one");
+        return check_enum(error->code, sheen_ErrorCode_ERROR_DEVICE, "code", text) &&
+               check_text(error->text, "text", text);
+    }
+    default:
+        return refuse(text, "a server sends no %s", message_type_name(type));
+    }
+}

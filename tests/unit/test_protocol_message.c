@@ -1,0 +1,337 @@
+/* Bodies of messages: bounds, and the checks the schema cannot make. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include "protocol/message.h"
+
+static const sheen_Render GOOD = {
+    .width_px = 640,
+    .height_px = 480,
+    .has_camera = true,
+    .camera = {{3, -4, 2}, {0, 0, 0}, {0, 0, 1}, .has_fov_deg = true, .fov_deg = 35},
+    .has_light = true,
+    .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
+    .has_pattern = true,
+    .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                .has_count = true,
+                .count = 20,
+                .has_duty = true,
+                .duty = 0.5,
+                .has_foreground = true,
+                .foreground = {1, 1, 1, 1},
+                .has_background = true,
+                .background = {0, 0, 0, 1}},
+    .has_miss = true,
+    .has_empty = true,
+    .planes = sheen_Plane_PLANE_COLOUR,
+    .encoding = sheen_Encoding_ENCODING_ZSTD,
+};
+
+static bool check(const sheen_Render *render, char *text)
+{
+    return message_check_render(render, 16384, 16384, text);
+}
+
+/* The request GOOD with one field changed is refused with a text that names the field. */
+#define REFUSED(field, value, word)                                                                \
+    do {                                                                                           \
+        sheen_Render changed = GOOD;                                                               \
+        char why[MESSAGE_TEXT_BYTES] = "";                                                         \
+        assert_true(check(&changed, why));                                                         \
+        changed.field = value;                                                                     \
+        assert_false(check(&changed, why));                                                        \
+        assert_non_null(strstr(why, word));                                                        \
+    } while (0)
+#define ACCEPTED(field, value)                                                                     \
+    do {                                                                                           \
+        sheen_Render changed = GOOD;                                                               \
+        char why[MESSAGE_TEXT_BYTES] = "";                                                         \
+        changed.field = value;                                                                     \
+        assert_true(check(&changed, why));                                                         \
+    } while (0)
+
+static void render_sizes(void **state)
+{
+    (void)state;
+    REFUSED(width_px, 0, "width is 0");
+    REFUSED(height_px, 0, "height is 0");
+    REFUSED(width_px, 16385, "1 to 16384");
+    REFUSED(height_px, 100000, "height is 100000");
+    REFUSED(width_px, UINT32_MAX, "width");
+    ACCEPTED(width_px, 16384);
+    /* A device without a limit of its own is held by the protocol's. */
+    sheen_Render render = GOOD;
+    char text[MESSAGE_TEXT_BYTES];
+    render.width_px = render.height_px = 100000;
+    assert_false(message_check_render(&render, UINT32_MAX, UINT32_MAX, text));
+    render.width_px = render.height_px = 65536;
+    assert_false(message_check_render(&render, UINT32_MAX, UINT32_MAX, text));
+    assert_non_null(strstr(text, "4294967296 bytes"));
+}
+
+static void render_floats(void **state)
+{
+    (void)state;
+    REFUSED(camera.eye.x, NAN, "camera.eye.x");
+    REFUSED(camera.target.y, INFINITY, "camera.target.y");
+    REFUSED(camera.up.z, 1.1e30, "camera.up.z");
+    REFUSED(light.centre.z, -INFINITY, "light.centre.z");
+    REFUSED(light.u.x, NAN, "light.u.x");
+    REFUSED(light.v.y, 1e308, "light.v.y");
+    REFUSED(camera.fov_deg, 0, "fov_deg");
+    REFUSED(camera.fov_deg, 180, "fov_deg");
+    REFUSED(camera.fov_deg, NAN, "fov_deg");
+    REFUSED(pattern.count, 0, "pattern.count");
+    REFUSED(pattern.count, 100001, "pattern.count");
+    REFUSED(pattern.count, NAN, "pattern.count");
+    REFUSED(pattern.duty, -0.001, "pattern.duty");
+    REFUSED(pattern.duty, 1.001, "pattern.duty");
+    REFUSED(pattern.duty, NAN, "pattern.duty");
+    REFUSED(pattern.foreground.r, 1.01f, "pattern.foreground.r");
+    REFUSED(pattern.background.a, NAN, "pattern.background.a");
+    REFUSED(miss.g, -0.01f, "miss.g");
+    REFUSED(empty.b, INFINITY, "empty.b");
+    ACCEPTED(camera.fov_deg, 179.9);
+    ACCEPTED(pattern.count, 100000);
+    ACCEPTED(pattern.duty, 0);
+    ACCEPTED(camera.eye.x, 1e30);
+}
+
+static void render_geometry(void **state)
+{
+    (void)state;
+    sheen_Vec3 along = {-3, 4, -2}, zero = {0, 0, 0};
+    REFUSED(camera.eye, GOOD.camera.target, "same point");
+    REFUSED(camera.up, along, "line of sight");
+    REFUSED(camera.up, zero, "line of sight");
+    REFUSED(light.u, zero, "rectangle");
+    REFUSED(light.v, GOOD.light.u, "rectangle");
+    REFUSED(camera.has_fov_deg, false, "fov_deg and ortho_height");
+    REFUSED(camera.has_ortho_height, true, "fov_deg and ortho_height");
+    sheen_Render ortho = GOOD;
+    char text[MESSAGE_TEXT_BYTES];
+    ortho.camera.has_fov_deg = false;
+    ortho.camera.has_ortho_height = true;
+    ortho.camera.ortho_height = 2;
+    assert_true(check(&ortho, text));
+    ortho.camera.ortho_height = 0;
+    assert_false(check(&ortho, text));
+    /* Far apart in size, yet a proper rectangle and view. */
+    sheen_Vec3 tiny = {0, 1e-200, 0}, huge = {1e30, 0, 0};
+    ACCEPTED(light.v, tiny);
+    ACCEPTED(light.u, huge);
+}
+
+static void render_kinds(void **state)
+{
+    (void)state;
+    REFUSED(planes, 0, "planes");
+    REFUSED(planes, 64, "planes");
+    REFUSED(planes, UINT32_MAX, "planes");
+    REFUSED(encoding, (sheen_Encoding)6, "encoding");
+    REFUSED(pattern.kind, (sheen_PatternKind)4, "pattern.kind");
+    REFUSED(pattern.kind, sheen_PatternKind_PATTERN_IMAGE, "image_sha256");
+    REFUSED(pattern.has_image_sha256, true, "image_sha256");
+    sheen_Render png = GOOD;
+    char text[MESSAGE_TEXT_BYTES];
+    png.encoding = sheen_Encoding_ENCODING_PNG;
+    assert_true(check(&png, text));
+    png.planes = 3;
+    assert_false(check(&png, text));
+    png.encoding = sheen_Encoding_ENCODING_EXR;
+    assert_true(check(&png, text));
+}
+
+static void left_out_fields_are_not_looked_at(void **state)
+{
+    (void)state;
+    sheen_Render render = {.width_px = 1, .height_px = 1, .planes = 1};
+    char text[MESSAGE_TEXT_BYTES];
+    render.camera.eye.x = NAN;
+    render.light.u.x = NAN;
+    render.pattern.count = NAN;
+    render.miss.r = NAN;
+    assert_true(check(&render, text));
+}
+
+static void text_is_utf8_without_controls(void **state)
+{
+    (void)state;
+    static const char *const good[] = {"",
+                                       "hood.obj",
+                                       "Kotfl\xc3\xbcgel",
+                                       "\xe2\x82\xac",
+                                       "\xf0\x9f\x98\x80",
+                                       "\xf4\x8f\xbf\xbf",
+                                       "\xc2\xa0"};
+    static const char *const bad[] = {"a\nb",
+                                      "\x1b[2J",
+                                      "\x7f",
+                                      "\x80",
+                                      "\xc3",
+                                      "\xc0\x80", /* overlong */
+                                      "\xc1\xbf",
+                                      "\xe0\x9f\xbf",     /* overlong */
+                                      "\xed\xa0\x80",     /* surrogate */
+                                      "\xf0\x80\x80\x80", /* overlong */
+                                      "\xf4\x90\x80\x80", /* over U+10FFFF */
+                                      "\xf8\x88\x80\x80\x80",
+                                      "\xff",
+                                      "\xe2\x82",
+                                      "\xe2(\xa1",
+                                      "\xc2\x9b" /* C1: a terminal's control sequence */};
+    for (size_t i = 0; i < sizeof(good) / sizeof(*good); i++)
+        assert_true(message_is_text(good[i], false));
+    for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++)
+        assert_false(message_is_text(bad[i], false));
+    assert_true(message_is_text("one\ntwo\n", true));
+    assert_false(message_is_text("one\rtwo", true));
+}
+
+static void uploads_are_checked(void **state)
+{
+    (void)state;
+    const sheen_UploadBegin good = {.size_bytes = 1, .name = "a.obj"};
+    char text[MESSAGE_TEXT_BYTES];
+    assert_true(message_check_upload_begin(&good, text));
+    sheen_UploadBegin bad = good;
+    bad.size_bytes = 0;
+    assert_false(message_check_upload_begin(&bad, text));
+    bad.size_bytes = PROTOCOL_MAX_UPLOAD_BYTES;
+    assert_true(message_check_upload_begin(&bad, text));
+    bad.size_bytes++;
+    assert_false(message_check_upload_begin(&bad, text));
+    assert_non_null(strstr(text, "size_bytes"));
+    bad = good;
+    strcpy(bad.name, "a\x1b.obj");
+    assert_false(message_check_upload_begin(&bad, text));
+    assert_non_null(strstr(text, "name"));
+    bad = good;
+    bad.kind = (sheen_UploadKind)2;
+    assert_false(message_check_upload_begin(&bad, text));
+    const sheen_Hello hello = {.client = "\xff"};
+    assert_false(message_check_hello(&hello, text));
+}
+
+static void answers_are_checked(void **state)
+{
+    (void)state;
+    char text[MESSAGE_TEXT_BYTES];
+    sheen_Error error = {.code = sheen_ErrorCode_ERROR_MODEL, .text = "a.obj: line 3"};
+    assert_true(message_check_answer(MESSAGE_ERROR, &error, text));
+    error.code = sheen_ErrorCode_ERROR_NONE;
+    assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
+    error.code = (sheen_ErrorCode)11;
+    assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
+    error.code = sheen_ErrorCode_ERROR_MODEL;
+    strcpy(error.text, "a\x1b[2J");
+    assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
+    static sheen_ModelInfo info;
+    strcpy(info.warnings, "one\ntwo");
+    assert_true(message_check_answer(MESSAGE_MODEL_INFO, &info, text));
+    info.box_max.z = NAN;
+    assert_false(message_check_answer(MESSAGE_MODEL_INFO, &info, text));
+    assert_non_null(strstr(text, "box_max.z"));
+    sheen_Frame frame = {.width_px = 2,
+                         .height_px = 2,
+                         .planes = 1,
+                         .data_bytes = 16,
+                         .camera = GOOD.camera,
+                         .light = GOOD.light,
+                         .pattern = GOOD.pattern};
+    assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.data_bytes = 0;
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.data_bytes = UINT64_MAX;
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.data_bytes = 16;
+    frame.width_px = UINT32_MAX;
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    assert_false(message_check_answer(MESSAGE_RENDER, &GOOD, text));
+}
+
+static void encoding_stays_within_its_buffer(void **state)
+{
+    (void)state;
+    uint8_t whole[MESSAGE_BUFFER_BYTES], small[MESSAGE_BUFFER_BYTES];
+    size_t length = 0, other = 0;
+    assert_true(message_encode(MESSAGE_RENDER, 9, &GOOD, whole, sizeof(whole), &length));
+    for (size_t capacity = 0; capacity < length; capacity++) {
+        memset(small, 0xaa, sizeof(small));
+        assert_false(message_encode(MESSAGE_RENDER, 9, &GOOD, small, capacity, &other));
+        for (size_t i = capacity; i < length; i++)
+            assert_int_equal(small[i], 0xaa);
+    }
+    assert_true(message_encode(MESSAGE_RENDER, 9, &GOOD, small, length, &other));
+    assert_memory_equal(small, whole, length);
+    assert_false(message_encode(MESSAGE_DATA, 9, &GOOD, whole, sizeof(whole), &length));
+    assert_false(message_encode(200, 9, &GOOD, whole, sizeof(whole), &length));
+    sheen_Error error = {.code = sheen_ErrorCode_ERROR_MODEL};
+    memset(error.text, 'x', sizeof(error.text)); /* a text without its end */
+    assert_false(message_encode(MESSAGE_ERROR, 9, &error, whole, sizeof(whole), &length));
+}
+
+static void the_largest_messages_fit(void **state)
+{
+    (void)state;
+    static sheen_ModelInfo info;
+    uint8_t buffer[MESSAGE_BUFFER_BYTES];
+    size_t length = 0;
+    memset(info.warnings, 'w', sizeof(info.warnings) - 1);
+    memset(info.name, 'n', sizeof(info.name) - 1);
+    info.extraordinary_count = 64;
+    for (int i = 0; i < 64; i++)
+        info.extraordinary[i] = (sheen_ValenceCount){UINT32_MAX, UINT32_MAX};
+    assert_true(message_encode(MESSAGE_MODEL_INFO, 1, &info, buffer, sizeof(buffer), &length));
+    static sheen_ModelInfo decoded;
+    assert_true(message_decode(MESSAGE_MODEL_INFO, buffer + 16, length - 16, &decoded));
+    assert_memory_equal(decoded.warnings, info.warnings, sizeof(info.warnings));
+}
+
+static void malformed_bodies_are_refused(void **state)
+{
+    (void)state;
+    uint8_t buffer[MESSAGE_BUFFER_BYTES], id[32];
+    size_t length = 0;
+    sheen_Render render;
+    sheen_Hello hello = {.client = "c"};
+    assert_true(message_encode(MESSAGE_RENDER, 9, &GOOD, buffer, sizeof(buffer), &length));
+    for (size_t n = 0; n + 1 < length - 16; n++)
+        assert_false(message_decode(MESSAGE_RENDER, buffer + 16, n, &render));
+    /* A string longer than its bound. */
+    uint8_t progress[64] = {0x0a, 40};
+    memset(progress + 2, 's', 40);
+    memcpy(progress + 42, "\x10\x01\x18\x02", 4);
+    sheen_Progress body;
+    assert_false(message_decode(MESSAGE_PROGRESS, progress, 46, &body));
+    progress[1] = 31;
+    memcpy(progress + 33, "\x10\x01\x18\x02", 4);
+    assert_true(message_decode(MESSAGE_PROGRESS, progress, 37, &body));
+    /* An id of another length than 32. */
+    assert_false(message_decode(MESSAGE_MODEL_QUERY, (const uint8_t *)"\x0a\x02xy", 4, &render));
+    assert_true(message_hello_encode(1, id, &hello, buffer, sizeof(buffer), &length));
+    for (size_t n = 0; n < length - 16; n++)
+        assert_false(message_hello_decode(buffer + 16, n, id, &hello));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(render_sizes),
+        cmocka_unit_test(render_floats),
+        cmocka_unit_test(render_geometry),
+        cmocka_unit_test(render_kinds),
+        cmocka_unit_test(left_out_fields_are_not_looked_at),
+        cmocka_unit_test(text_is_utf8_without_controls),
+        cmocka_unit_test(uploads_are_checked),
+        cmocka_unit_test(answers_are_checked),
+        cmocka_unit_test(encoding_stays_within_its_buffer),
+        cmocka_unit_test(the_largest_messages_fit),
+        cmocka_unit_test(malformed_bodies_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,369 @@
+/* protocol/README.md is the specification: its hex examples are run against the codecs, both ways.
+ * Runs in the repository's root. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "protocol/codec.h"
+#include "protocol/message.h"
+
+#define SPECIFICATION "protocol/README.md"
+#define MAX_EXAMPLE_BYTES 4096
+
+/* What a decoded struct is compared by: its own encoding, which names every field that is set. */
+static void same_message(uint8_t type, uint32_t seq, const void *body, const uint8_t *bytes,
+                         size_t size)
+{
+    uint8_t buffer[MESSAGE_BUFFER_BYTES];
+    size_t length = 0;
+    assert_true(message_encode(type, seq, body, buffer, sizeof(buffer), &length));
+    assert_int_equal(length, size);
+    assert_memory_equal(buffer, bytes, size);
+
+    struct message_header header;
+    union {
+        sheen_ModelInfo info;
+        sheen_Frame frame;
+        sheen_Render render;
+        sheen_Stats stats;
+        sheen_Error error;
+    } decoded;
+    assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
+    assert_int_equal(header.type, type);
+    assert_int_equal(header.flags, 0);
+    assert_int_equal(header.seq, seq);
+    assert_int_equal(header.length, size - MESSAGE_HEADER_BYTES);
+    if (type == MESSAGE_STATS_QUERY)
+        return;
+    assert_true(message_decode(type, bytes + MESSAGE_HEADER_BYTES, header.length, &decoded));
+    assert_true(message_encode(type, seq, &decoded, buffer, sizeof(buffer), &length));
+    assert_int_equal(length, size);
+    assert_memory_equal(buffer, bytes, size);
+    /* One field short must not pass as the same message. */
+    assert_false(header.length > 0 &&
+                 message_decode(type, bytes + MESSAGE_HEADER_BYTES, header.length - 1, &decoded));
+}
+
+static void count_id(uint8_t id[32])
+{
+    for (int i = 0; i < 32; i++)
+        id[i] = (uint8_t)i;
+}
+
+static void check_hello(const uint8_t *bytes, size_t size)
+{
+    const sheen_Hello hello = {.minor = 0, .client = "sheen 0.1.0"};
+    uint8_t id[32], buffer[256], decoded_id[32];
+    size_t length = 0;
+    count_id(id);
+    assert_true(message_hello_encode(1, id, &hello, buffer, sizeof(buffer), &length));
+    assert_int_equal(length, size);
+    assert_memory_equal(buffer, bytes, size);
+    assert_memory_equal(bytes + 16, id, 32); /* where a balancer looks */
+
+    sheen_Hello decoded;
+    struct message_header header;
+    assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
+    assert_int_equal(header.type, MESSAGE_HELLO);
+    assert_true(message_hello_decode(bytes + 16, header.length, decoded_id, &decoded));
+    assert_memory_equal(decoded_id, id, 32);
+    assert_int_equal(decoded.minor, 0);
+    assert_string_equal(decoded.client, "sheen 0.1.0");
+}
+
+static void check_hello_ok(const uint8_t *bytes, size_t size)
+{
+    const sheen_HelloOk ok = {.minor = 0,
+                              .server = "0.1.0",
+                              .device = "llvmpipe",
+                              .driver = "Mesa",
+                              .software = true,
+                              .max_width_px = 16384,
+                              .max_height_px = 16384,
+                              .max_upload_bytes = 1073741824};
+    same_message(MESSAGE_HELLO_OK, 1, &ok, bytes, size);
+}
+
+static void check_upload_begin(const uint8_t *bytes, size_t size)
+{
+    sheen_UploadBegin begin = {
+        .kind = sheen_UploadKind_UPLOAD_MODEL, .size_bytes = 8, .name = "a.obj"};
+    count_id(begin.sha256);
+    same_message(MESSAGE_UPLOAD_BEGIN, 2, &begin, bytes, size);
+}
+
+static void check_upload_chunk(const uint8_t *bytes, size_t size)
+{
+    struct message_header header;
+    assert_true(size > MESSAGE_HEADER_BYTES);
+    assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
+    assert_int_equal(header.type, MESSAGE_UPLOAD_CHUNK);
+    assert_int_equal(header.seq, 2);
+    assert_int_equal(header.length, 8);
+    assert_int_equal(size, MESSAGE_HEADER_BYTES + 8);
+    assert_memory_equal(bytes + MESSAGE_HEADER_BYTES, "v 1 2 3\n", 8);
+    uint8_t encoded[MESSAGE_HEADER_BYTES];
+    message_header_encode(&header, encoded);
+    assert_memory_equal(encoded, bytes, sizeof(encoded));
+}
+
+static void check_upload_state(const uint8_t *bytes, size_t size)
+{
+    const sheen_UploadState state = {.complete = true, .received_bytes = 8};
+    same_message(MESSAGE_UPLOAD_STATE, 2, &state, bytes, size);
+}
+
+static void check_model_query(const uint8_t *bytes, size_t size)
+{
+    sheen_ModelQuery query;
+    count_id(query.sha256);
+    same_message(MESSAGE_MODEL_QUERY, 3, &query, bytes, size);
+}
+
+static void check_model_info(const uint8_t *bytes, size_t size)
+{
+    sheen_ModelInfo info = {.name = "cube.obj",
+                            .file_bytes = 300,
+                            .vertices = 8,
+                            .faces = 6,
+                            .quads = 6,
+                            .ptex_faces = 6,
+                            .extraordinary_count = 1,
+                            .extraordinary = {{.valence = 3, .count = 8}},
+                            .corner_patches = 24,
+                            .split_nodes = 6,
+                            .table_bytes = 296832,
+                            .regular_bytes = 320,
+                            .corner_bytes = 12368,
+                            .tables_us = 1500,
+                            .box_min = {-0.5, -0.5, -0.5},
+                            .box_max = {0.5, 0.5, 0.5}};
+    count_id(info.sha256);
+    same_message(MESSAGE_MODEL_INFO, 3, &info, bytes, size);
+}
+
+static void check_render_least(const uint8_t *bytes, size_t size)
+{
+    sheen_Render render = {.width_px = 1280,
+                           .height_px = 720,
+                           .planes = sheen_Plane_PLANE_COLOUR,
+                           .encoding = sheen_Encoding_ENCODING_PNG};
+    count_id(render.model_sha256);
+    same_message(MESSAGE_RENDER, 4, &render, bytes, size);
+}
+
+static void check_render_full(const uint8_t *bytes, size_t size)
+{
+    sheen_Render render = {
+        .width_px = 2,
+        .height_px = 1,
+        .has_camera = true,
+        .camera = {{3, -4, 2}, {0, 0, 0.5}, {0, 0, 1}, .has_fov_deg = true, .fov_deg = 35},
+        .has_light = true,
+        .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
+        .has_pattern = true,
+        .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                    .has_count = true,
+                    .count = 20,
+                    .has_duty = true,
+                    .duty = 0.5,
+                    .has_foreground = true,
+                    .foreground = {1, 1, 1, 1},
+                    .has_background = true,
+                    .background = {0, 0, 0, 1}},
+        .has_miss = true,
+        .miss = {0.125f, 0.125f, 0.125f, 1},
+        .has_empty = true,
+        .empty = {0, 0, 0, 0},
+        .planes = sheen_Plane_PLANE_COLOUR | sheen_Plane_PLANE_PTEX,
+        .encoding = sheen_Encoding_ENCODING_ZSTD};
+    count_id(render.model_sha256);
+    same_message(MESSAGE_RENDER, 5, &render, bytes, size);
+}
+
+static void check_frame(const uint8_t *bytes, size_t size)
+{
+    const sheen_Frame frame = {
+        .width_px = 2,
+        .height_px = 1,
+        .planes = sheen_Plane_PLANE_COLOUR,
+        .encoding = sheen_Encoding_ENCODING_RAW,
+        .data_bytes = 8,
+        .times = {.visibility_us = 12000,
+                  .evaluate_us = 20000,
+                  .shade_us = 3000,
+                  .readback_us = 500,
+                  .total_us = 36000},
+        .camera = {{3, -4, 2}, {0, 0, 0.5}, {0, 0, 1}, .has_fov_deg = true, .fov_deg = 35},
+        .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
+        .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                    .has_count = true,
+                    .count = 20,
+                    .has_duty = true,
+                    .duty = 0.5},
+        .device = "llvmpipe",
+        .driver = "Mesa",
+        .software = true,
+        .covered_px = 1,
+        .server = "0.1.0"};
+    same_message(MESSAGE_FRAME, 5, &frame, bytes, size);
+}
+
+static void check_data(const uint8_t *bytes, size_t size)
+{
+    struct message_header header;
+    uint8_t colour[8], encoded[MESSAGE_HEADER_BYTES];
+    void *const planes[CODEC_PLANES] = {colour};
+    struct codec_layout layout;
+    assert_int_equal(size, MESSAGE_HEADER_BYTES + 8);
+    assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
+    assert_int_equal(header.type, MESSAGE_DATA);
+    assert_int_equal(header.flags, MESSAGE_END);
+    message_header_encode(&header, encoded);
+    assert_memory_equal(encoded, bytes, sizeof(encoded));
+    assert_true(codec_layout_init(&layout, 2, 1, 1));
+    assert_null(codec_raw_decode(&layout, bytes + MESSAGE_HEADER_BYTES, header.length, planes));
+    assert_memory_equal(colour, "\xff\xff\xff\xff\x00\x00\x00\x00", 8);
+}
+
+/* zstd may compress otherwise in another version: the example is unpacked, and a packed copy of its
+ * pixels must unpack to the same. */
+static void check_zstd_data(const uint8_t *bytes, size_t size)
+{
+    const uint8_t colour[8] = {255, 255, 255, 255, 0, 0, 0, 0};
+    const struct {
+        uint32_t face;
+        float u, v;
+    } ptex[2] = {{3, 0.25f, 0.5f}, {UINT32_MAX, 0, 0}};
+    uint8_t colour_read[8], ptex_read[24];
+    void *const planes[CODEC_PLANES] = {[0] = colour_read, [3] = ptex_read};
+    struct codec_layout layout;
+    struct codec_decoder *decoder = codec_decoder_create();
+    assert_non_null(decoder);
+    assert_true(codec_layout_init(&layout, 2, 1, 1 | 8));
+    assert_null(codec_zstd_decode(decoder, &layout, bytes, size, planes));
+    assert_memory_equal(colour_read, colour, sizeof(colour));
+    assert_memory_equal(ptex_read, ptex, sizeof(ptex));
+    codec_decoder_destroy(decoder);
+}
+
+static void check_progress(const uint8_t *bytes, size_t size)
+{
+    const sheen_Progress progress = {.stage = "tables", .done = 128, .total = 434};
+    same_message(MESSAGE_PROGRESS, 4, &progress, bytes, size);
+}
+
+static void check_stats_query(const uint8_t *bytes, size_t size)
+{
+    same_message(MESSAGE_STATS_QUERY, 6, NULL, bytes, size);
+}
+
+static void check_stats(const uint8_t *bytes, size_t size)
+{
+    const sheen_Stats stats = {.uptime_us = 60000000,
+                               .sessions = 1,
+                               .frames = 2,
+                               .models = 1,
+                               .model_bytes = 296832,
+                               .uploads_bytes = 300,
+                               .sent_bytes = 5000,
+                               .device = "llvmpipe",
+                               .driver = "Mesa",
+                               .software = true,
+                               .server = "0.1.0",
+                               .mean = {.total_us = 36000}};
+    same_message(MESSAGE_STATS, 6, &stats, bytes, size);
+}
+
+static void check_error(const uint8_t *bytes, size_t size)
+{
+    const sheen_Error error = {.code = sheen_ErrorCode_ERROR_REQUEST,
+                               .text = "width is 0 px; it must be from 1 to 16384"};
+    same_message(MESSAGE_ERROR, 7, &error, bytes, size);
+}
+
+static const struct {
+    const char *name;
+    void (*check)(const uint8_t *bytes, size_t size);
+} EXAMPLES[] = {
+    {"hello", check_hello},
+    {"hello-ok", check_hello_ok},
+    {"upload-begin", check_upload_begin},
+    {"upload-chunk", check_upload_chunk},
+    {"upload-state", check_upload_state},
+    {"model-query", check_model_query},
+    {"model-info", check_model_info},
+    {"render-least", check_render_least},
+    {"render-full", check_render_full},
+    {"frame", check_frame},
+    {"data", check_data},
+    {"zstd-data", check_zstd_data},
+    {"progress", check_progress},
+    {"stats-query", check_stats_query},
+    {"stats", check_stats},
+    {"error", check_error},
+};
+#define N_EXAMPLES (sizeof(EXAMPLES) / sizeof(*EXAMPLES))
+
+/* Appends the bytes of one line of an example; '#' begins a comment. */
+static size_t read_hex_line(const char *line, uint8_t *bytes, size_t size)
+{
+    while (*line && *line != '#' && *line != '\n') {
+        if (isspace((unsigned char)*line)) {
+            line++;
+            continue;
+        }
+        unsigned value;
+        assert_int_equal(sscanf(line, "%2x", &value), 1);
+        assert_true(isxdigit((unsigned char)line[1]));
+        assert_true(size < MAX_EXAMPLE_BYTES);
+        bytes[size++] = (uint8_t)value;
+        line += 2;
+    }
+    return size;
+}
+
+static void run_example(const char *name, const uint8_t *bytes, size_t size, bool *seen)
+{
+    for (size_t i = 0; i < N_EXAMPLES; i++)
+        if (strcmp(EXAMPLES[i].name, name) == 0) {
+            assert_false(seen[i]);
+            seen[i] = true;
+            EXAMPLES[i].check(bytes, size);
+            return;
+        }
+    fail_msg("%s has an example '%s' that this test does not know", SPECIFICATION, name);
+}
+
+static void every_example_is_what_the_codecs_say(void **state)
+{
+    (void)state;
+    char line[400], name[64];
+    bool seen[N_EXAMPLES] = {false};
+    FILE *file = fopen(SPECIFICATION, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof(line), file)) {
+        if (sscanf(line, "```hex %63s", name) != 1)
+            continue;
+        uint8_t bytes[MAX_EXAMPLE_BYTES];
+        size_t size = 0;
+        while (fgets(line, sizeof(line), file) && strncmp(line, "```", 3) != 0)
+            size = read_hex_line(line, bytes, size);
+        run_example(name, bytes, size, seen);
+    }
+    fclose(file);
+    for (size_t i = 0; i < N_EXAMPLES; i++)
+        if (!seen[i])
+            fail_msg("%s lacks the example '%s'", SPECIFICATION, EXAMPLES[i].name);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_example_is_what_the_codecs_say)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
