@@ -1,0 +1,108 @@
+/* sheen info: what a model is and costs. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "client/commands.h"
+#include "client/job.h"
+
+static void print_json(struct json *json, const struct sheen_model_info *info)
+{
+    const struct {
+        const char *key;
+        uint64_t value;
+    } numbers[] = {
+        {"file_bytes", info->file_bytes},
+        {"vertices", info->vertices},
+        {"faces", info->faces},
+        {"triangles", info->triangles},
+        {"quads", info->quads},
+        {"ngons", info->ngons},
+        {"ptex_faces", info->ptex_faces},
+        {"boundary_edges", info->boundary_edges},
+        {"boundary_extraordinary", info->boundary_extraordinary},
+        {"regular_patches", info->regular_patches},
+        {"corner_patches", info->corner_patches},
+        {"split_nodes", info->split_nodes},
+        {"hole_nodes", info->hole_nodes},
+        {"table_bytes", info->table_bytes},
+        {"regular_bytes", info->regular_bytes},
+        {"corner_bytes", info->corner_bytes},
+        {"tables_us", info->tables_us},
+    };
+    json_object_begin(json, NULL);
+    json_hex(json, "sha256", info->id, SHEEN_ID_BYTES);
+    json_string(json, "name", info->name);
+    for (size_t i = 0; i < sizeof(numbers) / sizeof(*numbers); i++)
+        json_uint(json, numbers[i].key, numbers[i].value);
+    json_array_begin(json, "extraordinary");
+    for (uint32_t i = 0; i < info->n_valences; i++) {
+        json_object_begin(json, NULL);
+        json_uint(json, "valence", info->extraordinary[i].valence);
+        json_uint(json, "count", info->extraordinary[i].count);
+        json_object_end(json);
+    }
+    json_array_end(json);
+    json_vec3(json, "box_min", info->box_min);
+    json_vec3(json, "box_max", info->box_max);
+    json_lines(json, "warnings", info->warnings);
+    json_object_end(json);
+}
+
+static void print_table(const struct sheen_model_info *info)
+{
+    printf("%-16s %s\n%-16s ", "name", info->name, "sha256");
+    for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
+        printf("%02x", info->id[i]);
+    printf("\n%-16s %" PRIu64 " bytes\n", "file", info->file_bytes);
+    printf("%-16s %u vertices, %u faces: %u triangles, %u quads, %u larger\n", "cage",
+           info->vertices, info->faces, info->triangles, info->quads, info->ngons);
+    printf("%-16s %.9g %.9g %.9g to %.9g %.9g %.9g\n", "box", info->box_min[0], info->box_min[1],
+           info->box_min[2], info->box_max[0], info->box_max[1], info->box_max[2]);
+    printf("%-16s %u edges, %u extraordinary vertices\n", "boundary", info->boundary_edges,
+           info->boundary_extraordinary);
+    printf("%-16s", "extraordinary");
+    for (uint32_t i = 0; i < info->n_valences; i++)
+        printf("%s %u of valence %u", i ? "," : "", info->extraordinary[i].count,
+               info->extraordinary[i].valence);
+    printf("%s\n", info->n_valences ? "" : " none inside");
+    printf("%-16s %u faces: %u regular, %u corner patches, %u split, %u without surface\n", "ptex",
+           info->ptex_faces, info->regular_patches, info->corner_patches, info->split_nodes,
+           info->hole_nodes);
+    printf("%-16s %" PRIu64 " bytes on the GPU: %" PRIu64 " a regular patch, %" PRIu64
+           " a corner patch\n",
+           "tables", info->table_bytes, info->regular_bytes, info->corner_bytes);
+    printf("%-16s %.1f ms\n", "built in", (double)info->tables_us / 1e3);
+}
+
+static int run(const struct options *options)
+{
+    struct job job;
+    struct sheen_model_info info;
+    enum sheen_status status = job_init(&job, options);
+    if (!status)
+        status = sheen_query_model(job.session, job.model_id, &job.report, &info, &job.error);
+    progress_clear(&job.progress);
+    if (!status && !options->quiet)
+        job_print_warnings(&job, options->model, info.warnings);
+    if (!status && options->json) {
+        struct json json = {.out = stdout};
+        print_json(&json, &info);
+        status = job_finish_json(&job, &json);
+    } else if (!status) {
+        print_table(&info);
+    }
+    return job_finish(&job, status);
+}
+
+static const struct option_row *const TABLES[] = {OPTIONS_COMMON, NULL};
+
+const struct command COMMAND_INFO = {
+    .name = "info",
+    .arguments = "MODEL [option]...",
+    .summary = "Says what a model is made of, and what its tables cost on the GPU.",
+    .tables = TABLES,
+    .examples = "  sheen info hood.obj\n"
+                "  sheen info hood.obj --json\n",
+    .takes_model = true,
+    .run = run,
+};

@@ -1,0 +1,136 @@
+/* sheen render: one frame of a model into a file. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "client/commands.h"
+#include "client/file.h"
+#include "client/job.h"
+#include "client/values.h"
+
+static bool apply_output(struct options *options, const char *value, char *why)
+{
+    options->output = value;
+    return value_format(value, &options->request.format) ||
+           options_refuse(why, "must end in .png .exr .jpg .jpeg .tif or .tiff");
+}
+
+static bool apply_aov(struct options *options, const char *value, char *why)
+{
+    return value_planes(value, &options->aov_planes) ||
+           options_refuse(why, "must be some of P,N,ptex,light,k");
+}
+
+static bool check(struct options *options, char *why)
+{
+    if (!options->output)
+        return options_refuse(why, "-o FILE is missing");
+    if (options->aov_planes && options->request.format != SHEEN_FILE_EXR)
+        return options_refuse(why, "--aov needs an output that ends in .exr");
+    options->request.planes |= options->aov_planes;
+    return options_check_scene(options, why);
+}
+
+static void print_json(struct json *json, const struct options *options, const struct job *job,
+                       const struct sheen_frame *frame, const struct sheen_model_info *info)
+{
+    json_object_begin(json, NULL);
+    json_string(json, "file", options->output);
+    json_uint(json, "file_bytes", frame->file_bytes);
+    json_uint(json, "width", frame->width_px);
+    json_uint(json, "height", frame->height_px);
+    json_string(json, "device", frame->device);
+    json_string(json, "driver", frame->driver);
+    json_bool(json, "software", frame->software);
+    json_string(json, "server", frame->server);
+    json_string(json, "model", options->model);
+    json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
+    json_uint(json, "faces", info->faces);
+    json_uint(json, "covered_px", frame->covered_px);
+    job_json_times(json, &frame->times);
+    json_object_begin(json, "camera");
+    json_vec3(json, "eye", frame->camera.eye);
+    json_vec3(json, "target", frame->camera.target);
+    json_vec3(json, "up", frame->camera.up);
+    if (frame->camera.projection == SHEEN_PROJECTION_ORTHOGRAPHIC)
+        json_double(json, "ortho_height", frame->camera.ortho_height);
+    else
+        json_double(json, "fov_deg", frame->camera.fov_deg);
+    json_object_end(json);
+    json_object_begin(json, "light");
+    json_vec3(json, "center", frame->light.centre);
+    json_vec3(json, "u", frame->light.u);
+    json_vec3(json, "v", frame->light.v);
+    json_object_end(json);
+    json_lines(json, "warnings", info->warnings);
+    json_object_end(json);
+}
+
+static void print_summary(struct job *job, const struct options *options,
+                          const struct sheen_frame *frame, const struct sheen_model_info *info)
+{
+    progress_clear(&job->progress);
+    job_print_warnings(job, options->model, info->warnings);
+    fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %" PRIu32 " faces, %s, %.0f ms\n",
+            options->output, frame->width_px, frame->height_px, info->faces, frame->device,
+            (double)frame->times.total_us / 1e3);
+}
+
+static int run(const struct options *options)
+{
+    struct job job = {0};
+    struct sheen_frame frame = {0};
+    struct sheen_model_info info;
+    struct sheen_request request = options->request;
+    enum sheen_status status = file_check_writable(options->output, &job.error);
+    if (status)
+        return job_finish(&job, status);
+    status = job_init(&job, options);
+    if (!status && options->image_path)
+        status = job_upload_image(&job, options->image_path, request.pattern.image_id);
+    for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
+        request.model_id[i] = job.model_id[i];
+    if (!status)
+        status = sheen_render(job.session, &request, &job.report, &frame, &job.error);
+    /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
+    if (!status)
+        status = sheen_query_model(job.session, job.model_id, &job.report, &info, &job.error);
+    if (!status)
+        status = file_write(options->output, frame.file, frame.file_bytes, &job.error);
+    if (!status && !options->quiet)
+        print_summary(&job, options, &frame, &info);
+    if (!status && options->json) {
+        struct json json = {.out = stdout};
+        print_json(&json, options, &job, &frame, &info);
+        status = job_finish_json(&job, &json);
+    }
+    sheen_frame_finish(&frame);
+    return job_finish(&job, status);
+}
+
+static const struct option_row ROWS[] = {
+    {"output", 'o', "FILE",
+     "the picture; its ending tells the format: .png .exr .jpg .jpeg .tif .tiff", apply_output},
+    {"aov", 0, "LIST",
+     "planes beside colour, EXR only: some of P (position), N (normal), ptex,\n"
+     "light (s, t on the light), k (principal curvatures), with commas between",
+     apply_aov},
+    {0},
+};
+
+static const struct option_row *const TABLES[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON, NULL};
+
+const struct command COMMAND_RENDER = {
+    .name = "render",
+    .arguments = "MODEL -o FILE [option]...",
+    .summary = "Renders the reflection lines on a model's limit surface, exact at every pixel.\n"
+               "MODEL is a control cage: OBJ, glTF or GLB.",
+    .tables = TABLES,
+    .examples =
+        "  sheen render hood.obj -o hood.png\n"
+        "  sheen render hood.glb -o hood.png --size 1920x1080 --eye 3,-4,2 --target 0,0,0.5\n"
+        "  sheen render hood.glb -o hood.png --pattern stripes:count=40,duty=0.3,bg=#202020\n"
+        "  sheen render hood.obj -o hood.exr --aov P,N,ptex --server tcp:render1:7410 --json\n",
+    .takes_model = true,
+    .check = check,
+    .run = run,
+};

@@ -1,0 +1,280 @@
+/* sheen stream: requests back to back while the camera or the light moves, and what each stage
+ * took. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "client/commands.h"
+#include "client/job.h"
+#include "client/status.h"
+#include "client/values.h"
+
+#define MAX_FRAMES 1000000u
+#define IN_FLIGHT 2u    /* the next request waits at the daemon while a frame travels */
+#define LIGHT_SWING 0.1 /* of the light's u edge */
+
+/* One frame's numbers; the last is ours: from request to decoded frame. */
+enum stage { TABLES, VISIBILITY, EVALUATE, SHADE, READBACK, ENCODE, TOTAL, ROUND_TRIP, N_STAGES };
+static const char *const STAGE_NAMES[N_STAGES] = {
+    "tables", "visibility", "evaluate", "shade", "readback", "encode", "total", "round_trip"};
+
+struct record {
+    uint64_t stage_us[N_STAGES];
+    uint64_t data_bytes;
+};
+
+struct stream {
+    struct sheen_request request; /* its camera and light move */
+    struct sheen_camera camera;   /* of the first frame */
+    struct sheen_light light;
+    struct sheen_frame frame;
+    struct record *records;                /* [frames] */
+    uint64_t sent_us[SHEEN_MAX_IN_FLIGHT]; /* by frame number modulo its size */
+    uint64_t elapsed_us; /* of all frames but the first, which may wait for tables */
+};
+
+static uint64_t now_us(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000 + (uint64_t)now.tv_nsec / 1000;
+}
+
+/* Turns the eye about the axis through the target along up. */
+static void orbit(struct sheen_camera *camera, const struct sheen_camera *start, double angle_rad)
+{
+    const double *up = start->up;
+    double length = hypot(hypot(up[0], up[1]), up[2]);
+    double axis[3], arm[3];
+    for (int i = 0; i < 3; i++) {
+        axis[i] = up[i] / length;
+        arm[i] = start->eye[i] - start->target[i];
+    }
+    double along = axis[0] * arm[0] + axis[1] * arm[1] + axis[2] * arm[2];
+    *camera = *start;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double across = axis[j] * arm[k] - axis[k] * arm[j];
+        camera->eye[i] = start->target[i] + arm[i] * cos(angle_rad) + across * sin(angle_rad) +
+                         axis[i] * along * (1 - cos(angle_rad));
+    }
+}
+
+static void move(struct stream *stream, const struct options *options, uint32_t number)
+{
+    const double degree = 3.14159265358979323846 / 180;
+    double angle = number * options->orbit_deg * degree;
+    stream->request.camera = stream->camera;
+    stream->request.light = stream->light;
+    if (!options->light_only) {
+        orbit(&stream->request.camera, &stream->camera, angle);
+        return;
+    }
+    for (int i = 0; i < 3; i++)
+        stream->request.light.centre[i] += LIGHT_SWING * sin(angle) * stream->light.u[i];
+}
+
+static enum sheen_status send_one(struct job *job, struct stream *stream, uint32_t number)
+{
+    stream->sent_us[number % SHEEN_MAX_IN_FLIGHT] = now_us();
+    return sheen_send(job->session, &stream->request, &job->error);
+}
+
+static enum sheen_status receive_one(struct job *job, struct stream *stream, uint32_t number)
+{
+    enum sheen_status status =
+        sheen_receive(job->session, &job->report, &stream->frame, &job->error);
+    if (status)
+        return status;
+    const struct sheen_times *times = &stream->frame.times;
+    uint64_t round_trip_us = now_us() - stream->sent_us[number % SHEEN_MAX_IN_FLIGHT];
+    stream->records[number] = (struct record){
+        .stage_us = {times->tables_us, times->visibility_us, times->evaluate_us, times->shade_us,
+                     times->readback_us, times->encode_us, times->total_us, round_trip_us},
+        .data_bytes = stream->frame.data_bytes,
+    };
+    return SHEEN_OK;
+}
+
+static enum sheen_status run_frames(struct job *job, struct stream *stream,
+                                    const struct options *options)
+{
+    /* The first frame goes alone: its answer tells the camera and the light that move. */
+    enum sheen_status status = send_one(job, stream, 0);
+    if (!status)
+        status = receive_one(job, stream, 0);
+    if (status)
+        return status;
+    progress_clear(&job->progress);
+    stream->camera = stream->frame.camera;
+    stream->light = stream->frame.light;
+    uint64_t start_us = now_us();
+    uint32_t n_sent = 1, n_received = 1;
+    while (!status && n_received < options->frames) {
+        if (n_sent < options->frames && n_sent - n_received < IN_FLIGHT) {
+            move(stream, options, n_sent);
+            status = send_one(job, stream, n_sent++);
+        } else {
+            status = receive_one(job, stream, n_received++);
+            job->report.report(job->report.context, "frames", n_received, options->frames);
+        }
+    }
+    stream->elapsed_us = now_us() - start_us;
+    return status;
+}
+
+static double frames_per_second(const struct stream *stream, uint32_t n_frames)
+{
+    if (n_frames < 2)
+        return 1e6 / (double)stream->records[0].stage_us[ROUND_TRIP];
+    return (n_frames - 1) * 1e6 / (double)stream->elapsed_us;
+}
+
+static int compare_us(const void *a, const void *b)
+{
+    uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
+    return left < right ? -1 : left > right;
+}
+
+/* sorted[] is scratch of n_frames. */
+static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t *sorted)
+{
+    const struct sheen_frame *frame = &stream->frame;
+    printf("%u frames, %ux%u, %s\n", n_frames, frame->width_px, frame->height_px, frame->device);
+    printf("%-12s %10s %10s %10s   ms\n", "stage", "min", "median", "p95");
+    for (int stage = 0; stage < N_STAGES; stage++) {
+        for (uint32_t i = 0; i < n_frames; i++)
+            sorted[i] = stream->records[i].stage_us[stage];
+        qsort(sorted, n_frames, sizeof(*sorted), compare_us);
+        uint32_t p95 = (uint32_t)(((uint64_t)n_frames * 95 + 99) / 100) - 1; /* nearest rank */
+        printf("%-12s %10.2f %10.2f %10.2f\n", STAGE_NAMES[stage], (double)sorted[0] / 1e3,
+               (double)sorted[(n_frames - 1) / 2] / 1e3, (double)sorted[p95] / 1e3);
+    }
+    printf("%.1f frames per second%s\n", frames_per_second(stream, n_frames),
+           n_frames > 1 ? ", the first left out" : "");
+}
+
+static void print_json(struct json *json, const struct stream *stream, uint32_t n_frames,
+                       const struct job *job)
+{
+    const struct sheen_frame *frame = &stream->frame;
+    json_object_begin(json, NULL);
+    json_uint(json, "width", frame->width_px);
+    json_uint(json, "height", frame->height_px);
+    json_string(json, "device", frame->device);
+    json_string(json, "driver", frame->driver);
+    json_bool(json, "software", frame->software);
+    json_string(json, "server", frame->server);
+    json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
+    json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
+    json_array_begin(json, "frames");
+    for (uint32_t i = 0; i < n_frames; i++) {
+        json_object_begin(json, NULL);
+        for (int stage = 0; stage < N_STAGES; stage++) {
+            char key[24];
+            snprintf(key, sizeof(key), "%s_us", STAGE_NAMES[stage]);
+            json_uint(json, key, stream->records[i].stage_us[stage]);
+        }
+        json_uint(json, "data_bytes", stream->records[i].data_bytes);
+        json_object_end(json);
+    }
+    json_array_end(json);
+    json_object_end(json);
+}
+
+static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_t *sorted,
+                                 const struct options *options)
+{
+    enum sheen_status status = job_init(job, options);
+    memcpy(stream->request.model_id, job->model_id, SHEEN_ID_BYTES);
+    if (!status && options->image_path)
+        status = job_upload_image(job, options->image_path, stream->request.pattern.image_id);
+    if (!status)
+        status = run_frames(job, stream, options);
+    progress_clear(&job->progress);
+    if (status)
+        return status;
+    if (!options->json) {
+        print_table(stream, options->frames, sorted);
+        return SHEEN_OK;
+    }
+    struct json json = {.out = stdout};
+    print_json(&json, stream, options->frames, job);
+    return job_finish_json(job, &json);
+}
+
+static int run(const struct options *options)
+{
+    struct job job = {0};
+    struct stream stream = {.request = options->request};
+    stream.request.format = SHEEN_PLANES_ZSTD;
+    stream.records = calloc(options->frames, sizeof(*stream.records));
+    uint64_t *sorted = calloc(options->frames, sizeof(*sorted));
+    enum sheen_status status = stream.records && sorted
+                                   ? run_job(&job, &stream, sorted, options)
+                                   : status_set(&job.error, SHEEN_NO_MEMORY,
+                                                "no memory for %u frames' times", options->frames);
+    sheen_frame_finish(&stream.frame);
+    free(sorted);
+    free(stream.records);
+    return job_finish(&job, status);
+}
+
+static bool apply_frames(struct options *options, const char *value, char *why)
+{
+    options->given |= GIVEN_FRAMES;
+    return (value_uint32(value, &options->frames) && options->frames > 0 &&
+            options->frames <= MAX_FRAMES) ||
+           options_refuse(why, "must be a whole number from 1 to %u", MAX_FRAMES);
+}
+
+static bool apply_orbit(struct options *options, const char *value, char *why)
+{
+    return (value_double(value, &options->orbit_deg) && fabs(options->orbit_deg) <= 360) ||
+           options_refuse(why, "must be a number of degrees from -360 to 360");
+}
+
+static bool apply_light_only(struct options *options, const char *value, char *why)
+{
+    (void)value;
+    (void)why;
+    return options->light_only = true;
+}
+
+static bool check(struct options *options, char *why)
+{
+    if (!(options->given & GIVEN_FRAMES))
+        return options_refuse(why, "--frames N is missing");
+    return options_check_scene(options, why);
+}
+
+static const struct option_row ROWS[] = {
+    {"frames", 'n', "N", "how many, from 1 to 1000000", apply_frames},
+    {"orbit", 0, "DEG",
+     "the camera goes about the target by so many degrees a frame,\n"
+     "from -360 to 360 (default: 1)",
+     apply_orbit},
+    {"light-only", 0, NULL,
+     "the light swings along its u edge by a tenth of it instead, a full swing\n"
+     "in 360 degrees of --orbit; only the shade stage runs anew",
+     apply_light_only},
+    {0},
+};
+
+static const struct option_row *const TABLES_LIST[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON, NULL};
+
+const struct command COMMAND_STREAM = {
+    .name = "stream",
+    .arguments = "MODEL --frames N [option]...",
+    .summary = "Asks for frames back to back, lossless, two in flight, and prints the time of each "
+               "stage.",
+    .tables = TABLES_LIST,
+    .examples = "  sheen stream hood.obj --frames 100\n"
+                "  sheen stream hood.obj --frames 100 --light-only --size 1920x1080\n"
+                "  sheen stream hood.obj --frames 360 --server unix:/run/sheen.sock --json\n",
+    .takes_model = true,
+    .check = check,
+    .run = run,
+};

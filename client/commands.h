@@ -1,0 +1,12 @@
+/* The commands, one file each. */
+#ifndef SHEEN_CLIENT_COMMANDS_H
+#define SHEEN_CLIENT_COMMANDS_H
+
+#include "client/options.h"
+
+extern const struct command COMMAND_RENDER;
+extern const struct command COMMAND_STREAM;
+extern const struct command COMMAND_INFO;
+extern const struct command COMMAND_STATS;
+
+#endif

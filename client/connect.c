@@ -1,0 +1,105 @@
+/* Opening and closing a session. */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "client/session.h"
+#include "client/status.h"
+
+static enum sheen_status start_private(struct sheen_session *session,
+                                       const struct sheen_connect_options *options,
+                                       struct sheen_error *error)
+{
+    int peer_fd;
+    enum sheen_status status =
+        connection_pair(&session->connection, &peer_fd, options->timeout_ms, error);
+    if (status)
+        return status;
+    status = private_daemon_start(&session->daemon, peer_fd, options->device, error);
+    close(peer_fd);
+    return status;
+}
+
+static enum sheen_status open_address(struct sheen_session *session,
+                                      const struct sheen_connect_options *options,
+                                      struct sheen_error *error)
+{
+    struct address address;
+    char text[ADDRESS_TEXT_BYTES];
+    if (options->device)
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          "a device is chosen for a private daemon; the one at %s has its own",
+                          options->address);
+    if (!address_parse(&address, options->address, text))
+        return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
+    if (address.kind == ADDRESS_TCP && address.port == 0)
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          "address '%s' has port 0; a server has a port from 1 to 65535",
+                          options->address);
+    return connection_open(&session->connection, &address, options->timeout_ms, error);
+}
+
+static enum sheen_status shake_hands(struct sheen_session *session,
+                                     const uint8_t model_id[static SHEEN_ID_BYTES],
+                                     struct sheen_error *error)
+{
+    const sheen_Hello hello = {.minor = PROTOCOL_MINOR, .client = "libsheen " SHEEN_VERSION};
+    size_t length = 0;
+    session->last_seq = 1;
+    if (!message_hello_encode(session->last_seq, model_id, &hello, session->buffer,
+                              sizeof(session->buffer), &length))
+        return status_set(error, SHEEN_BAD_ARGUMENT, "HELLO does not fit its buffer");
+    enum sheen_status status =
+        connection_write(&session->connection, session->buffer, length, error);
+    if (status)
+        return session_fail(session, status, error);
+    return session_receive(session, session->last_seq, MESSAGE_HELLO_OK, NULL, &session->hello,
+                           error);
+}
+
+enum sheen_status sheen_connect(struct sheen_session **session,
+                                const struct sheen_connect_options *options,
+                                struct sheen_error *error)
+{
+    if (!session || !options)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "session or options is NULL");
+    *session = NULL;
+    struct sheen_session *made = calloc(1, sizeof(*made));
+    if (!made)
+        return status_set(error, SHEEN_NO_MEMORY, "no memory for a session");
+    made->connection.fd = -1;
+    made->daemon.stderr_fd = -1;
+    enum sheen_status status =
+        options->address ? open_address(made, options, error) : start_private(made, options, error);
+    if (!status)
+        status = shake_hands(made, options->model_id, error);
+    if (status) {
+        sheen_close(made);
+        return status;
+    }
+    *session = made;
+    return SHEEN_OK;
+}
+
+void sheen_close(struct sheen_session *session)
+{
+    if (!session)
+        return;
+    connection_finish(&session->connection);
+    private_daemon_finish(&session->daemon);
+    codec_decoder_destroy(session->decoder);
+    free(session);
+}
+
+struct sheen_server sheen_server(const struct sheen_session *session)
+{
+    return (struct sheen_server){
+        .version = session->hello.server,
+        .device = session->hello.device,
+        .driver = session->hello.driver,
+        .software = session->hello.software,
+        .max_width_px = session->hello.max_width_px,
+        .max_height_px = session->hello.max_height_px,
+        .max_upload_bytes = session->hello.max_upload_bytes,
+    };
+}

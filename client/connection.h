@@ -1,0 +1,36 @@
+/* A stream socket to a daemon: the one place of the client that makes socket calls.
+ *
+ * Reads and writes are exact, survive signals and raise no SIGPIPE. The owner of the struct closes
+ * it with connection_finish(). Thread: one at a time. */
+#ifndef SHEEN_CLIENT_CONNECTION_H
+#define SHEEN_CLIENT_CONNECTION_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "client/sheen.h"
+#include "protocol/address.h"
+
+struct connection {
+    int fd;              /* non-blocking, close-on-exec; -1: closed */
+    uint32_t timeout_ms; /* without a byte moved; 0: for ever */
+};
+
+/* Connects. SHEEN_NO_SERVER names the address and the reason; *connection is then closed. */
+enum sheen_status connection_open(struct connection *connection, const struct address *address,
+                                  uint32_t timeout_ms, struct sheen_error *error);
+
+/* Makes a pair of connected sockets: one is *connection, the other goes to the caller, who closes
+ * it. Both are close-on-exec. SHEEN_NO_SERVER on failure. */
+enum sheen_status connection_pair(struct connection *connection, int *peer_fd, uint32_t timeout_ms,
+                                  struct sheen_error *error);
+
+/* SHEEN_LOST_SERVER when the peer is gone, SHEEN_TIMEOUT. */
+enum sheen_status connection_write(struct connection *connection, const void *bytes, size_t n_bytes,
+                                   struct sheen_error *error);
+enum sheen_status connection_read(struct connection *connection, void *bytes, size_t n_bytes,
+                                  struct sheen_error *error);
+
+void connection_finish(struct connection *connection); /* closes; closed is safe */
+
+#endif

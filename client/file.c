@@ -1,0 +1,131 @@
+#include "client/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "client/status.h"
+#include "protocol/limits.h"
+
+#define TEMPORARY_TRIES 100
+
+static enum sheen_status read_open(int fd, const char *path, enum sheen_status status,
+                                   uint8_t **bytes, size_t *n_bytes, struct sheen_error *error)
+{
+    struct stat about;
+    if (fstat(fd, &about) != 0)
+        return status_set(error, status, "%s: %s", path, strerror(errno));
+    if (!S_ISREG(about.st_mode))
+        return status_set(error, status, "%s: is not a plain file", path);
+    if (about.st_size == 0)
+        return status_set(error, status, "%s: is empty", path);
+    if ((uint64_t)about.st_size > PROTOCOL_MAX_UPLOAD_BYTES)
+        return status_set(error, SHEEN_TOO_BIG, "%s: %lld bytes; at most %llu can be uploaded",
+                          path, (long long)about.st_size,
+                          (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
+    size_t size = (size_t)about.st_size;
+    uint8_t *buffer = malloc(size);
+    if (!buffer)
+        return status_set(error, SHEEN_NO_MEMORY, "%s: no memory for %zu bytes", path, size);
+    for (size_t done = 0; done < size;) {
+        ssize_t n = read(fd, buffer + done, size - done);
+        if (n > 0) {
+            done += (size_t)n;
+        } else if (n == 0 || errno != EINTR) {
+            const char *why = n == 0 ? "it became shorter while it was read" : strerror(errno);
+            free(buffer);
+            return status_set(error, status, "%s: %s", path, why);
+        }
+    }
+    *bytes = buffer;
+    *n_bytes = size;
+    return SHEEN_OK;
+}
+
+enum sheen_status file_read(const char *path, enum sheen_status status, uint8_t **bytes,
+                            size_t *n_bytes, struct sheen_error *error)
+{
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a FIFO must not hang */
+    if (fd < 0)
+        return status_set(error, status, "%s: %s", path, strerror(errno));
+    enum sheen_status result = read_open(fd, path, status, bytes, n_bytes, error);
+    close(fd);
+    return result;
+}
+
+enum sheen_status file_check_writable(const char *path, struct sheen_error *error)
+{
+    struct stat about;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
+        return status_set(error, SHEEN_BAD_IMAGE, "%s: is there and is not a plain file", path);
+    const char *slash = strrchr(path, '/');
+    int length = !slash ? 1 : slash == path ? 1 : (int)(slash - path);
+    char *folder = NULL;
+    if (asprintf(&folder, "%.*s", length, slash ? path : ".") < 0)
+        return status_set(error, SHEEN_NO_MEMORY, "no memory for a path");
+    int reason = access(folder, W_OK | X_OK) == 0 ? 0 : errno;
+    free(folder);
+    return reason ? status_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path,
+                               strerror(reason))
+                  : SHEEN_OK;
+}
+
+static bool write_all(int fd, const uint8_t *bytes, size_t n_bytes)
+{
+    while (n_bytes > 0) {
+        ssize_t n = write(fd, bytes, n_bytes);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        bytes += n;
+        n_bytes -= (size_t)n;
+    }
+    return true;
+}
+
+/* Opens a new file beside `path`; its name is the caller's to free(). -1 and errno on failure. */
+static int open_temporary(const char *path, char **name)
+{
+    for (int i = 0; i < TEMPORARY_TRIES; i++) {
+        if (asprintf(name, "%s.%ld-%d.tmp", path, (long)getpid(), i) < 0)
+            break;
+        int fd = open(*name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0)
+            return fd;
+        int reason = errno;
+        free(*name);
+        errno = reason;
+        if (reason != EEXIST)
+            break;
+    }
+    *name = NULL;
+    return -1;
+}
+
+enum sheen_status file_write(const char *path, const uint8_t *bytes, size_t n_bytes,
+                             struct sheen_error *error)
+{
+    char *name = NULL;
+    int fd = open_temporary(path, &name);
+    bool is_written = fd >= 0 && write_all(fd, bytes, n_bytes);
+    int reason = errno;
+    if (fd >= 0 && close(fd) != 0 && is_written) {
+        is_written = false;
+        reason = errno;
+    }
+    if (is_written && rename(name, path) != 0) {
+        is_written = false;
+        reason = errno;
+    }
+    if (!is_written && name)
+        unlink(name);
+    free(name);
+    return is_written ? SHEEN_OK
+                      : status_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path,
+                                   strerror(reason));
+}

@@ -1,0 +1,99 @@
+#include "client/job.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client/file.h"
+#include "client/status.h"
+
+static enum sheen_status upload(struct job *job, enum sheen_file_kind kind, const char *path,
+                                const uint8_t *bytes, size_t n_bytes,
+                                const uint8_t id[SHEEN_ID_BYTES])
+{
+    return sheen_upload(job->session, kind, id, bytes, n_bytes, path, &job->report, &job->error);
+}
+
+static enum sheen_status identify(struct job *job, const uint8_t *bytes, size_t n_bytes,
+                                  uint8_t id[SHEEN_ID_BYTES])
+{
+    if (sheen_file_id(bytes, n_bytes, id))
+        return SHEEN_OK;
+    return status_set(&job->error, SHEEN_NO_MEMORY, "libcrypto cannot compute a SHA-256");
+}
+
+enum sheen_status job_init(struct job *job, const struct options *options)
+{
+    *job = (struct job){0};
+    job->report = progress_init(&job->progress, options->quiet);
+    uint8_t *bytes = NULL;
+    size_t n_bytes = 0;
+    struct sheen_connect_options connect = SHEEN_CONNECT_DEFAULTS;
+    connect.address = options->server;
+    connect.device = options->device;
+    enum sheen_status status = SHEEN_OK;
+    if (options->model) {
+        status = file_read(options->model, SHEEN_BAD_MODEL, &bytes, &n_bytes, &job->error);
+        if (!status)
+            status = identify(job, bytes, n_bytes, job->model_id);
+        memcpy(connect.model_id, job->model_id, SHEEN_ID_BYTES);
+    }
+    if (!status)
+        status = sheen_connect(&job->session, &connect, &job->error);
+    if (!status && options->model)
+        status = upload(job, SHEEN_FILE_MODEL, options->model, bytes, n_bytes, job->model_id);
+    free(bytes);
+    return status;
+}
+
+enum sheen_status job_upload_image(struct job *job, const char *path, uint8_t id[SHEEN_ID_BYTES])
+{
+    uint8_t *bytes = NULL;
+    size_t n_bytes = 0;
+    enum sheen_status status = file_read(path, SHEEN_BAD_IMAGE, &bytes, &n_bytes, &job->error);
+    if (!status)
+        status = identify(job, bytes, n_bytes, id);
+    if (!status)
+        status = upload(job, SHEEN_FILE_IMAGE, path, bytes, n_bytes, id);
+    free(bytes);
+    return status;
+}
+
+int job_finish(struct job *job, enum sheen_status status)
+{
+    progress_clear(&job->progress);
+    if (status)
+        fprintf(stderr, "sheen: %s\n", job->error.text);
+    sheen_close(job->session);
+    job->session = NULL;
+    return sheen_status_exit_code(status);
+}
+
+enum sheen_status job_finish_json(struct job *job, struct json *json)
+{
+    if (json_finish(json))
+        return SHEEN_OK;
+    return status_set(&job->error, SHEEN_BAD_IMAGE, "standard output cannot be written");
+}
+
+void job_print_warnings(struct job *job, const char *model, const char *lines)
+{
+    progress_clear(&job->progress);
+    while (*lines) {
+        int length = (int)strcspn(lines, "\n");
+        if (length > 0)
+            fprintf(stderr, "sheen: warning: %s: %.*s\n", model, length, lines);
+        lines += length + (lines[length] == '\n');
+    }
+}
+
+void job_json_times(struct json *json, const struct sheen_times *times)
+{
+    json_uint(json, "tables_us", times->tables_us);
+    json_uint(json, "visibility_us", times->visibility_us);
+    json_uint(json, "evaluate_us", times->evaluate_us);
+    json_uint(json, "shade_us", times->shade_us);
+    json_uint(json, "readback_us", times->readback_us);
+    json_uint(json, "encode_us", times->encode_us);
+    json_uint(json, "total_us", times->total_us);
+}

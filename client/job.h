@@ -1,0 +1,40 @@
+/* What the commands have in common: read a file, connect, upload, report, give back.
+ *
+ * Thread: one. */
+#ifndef SHEEN_CLIENT_JOB_H
+#define SHEEN_CLIENT_JOB_H
+
+#include "client/json.h"
+#include "client/options.h"
+#include "client/progress.h"
+#include "client/sheen.h"
+
+struct job {
+    struct sheen_session *session;
+    uint8_t model_id[SHEEN_ID_BYTES]; /* zeros for commands without a model */
+    struct progress progress;
+    struct sheen_progress report; /* for libsheen */
+    struct sheen_error error;     /* of the last failure */
+};
+
+/* Reads options->model (if any), connects and uploads it. On failure job->error says why; the job
+ * must be finished all the same. */
+enum sheen_status job_init(struct job *job, const struct options *options);
+
+/* Uploads a light image and writes its id. */
+enum sheen_status job_upload_image(struct job *job, const char *path, uint8_t id[SHEEN_ID_BYTES]);
+
+/* Gives everything back; prints job->error as one line if `status` is a failure. Returns the exit
+ * code. */
+int job_finish(struct job *job, enum sheen_status status);
+
+/* Ends `json` on standard output; SHEEN_BAD_IMAGE when it cannot be written. */
+enum sheen_status job_finish_json(struct job *job, struct json *json);
+
+/* "sheen: warning: MODEL: LINE" for each line. */
+void job_print_warnings(struct job *job, const char *model, const char *lines);
+
+/* Keys tables_us to total_us into the object that is open. */
+void job_json_times(struct json *json, const struct sheen_times *times);
+
+#endif

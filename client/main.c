@@ -1,0 +1,60 @@
+/* sheen: chooses the command. */
+#include <stdio.h>
+#include <string.h>
+
+#include "client/commands.h"
+
+#define EXIT_WRONG_USAGE 2
+
+static const struct command *const COMMANDS[] = {&COMMAND_RENDER, &COMMAND_STREAM, &COMMAND_INFO,
+                                                 &COMMAND_STATS};
+#define N_COMMANDS (sizeof(COMMANDS) / sizeof(*COMMANDS))
+
+static void print_help(FILE *out)
+{
+    fputs("usage: sheen COMMAND [argument]...\n"
+          "Exact reflection lines on Catmull-Clark limit surfaces.\n\n",
+          out);
+    for (size_t i = 0; i < N_COMMANDS; i++)
+        fprintf(out, "  sheen %s %s\n", COMMANDS[i]->name, COMMANDS[i]->arguments);
+    fputs("\n"
+          "  sheen COMMAND --help    options, ranges, defaults and examples\n"
+          "  sheen --version\n\n"
+          "Without --server ADDRESS (or SHEEN_SERVER in the environment) a command starts a\n"
+          "private sheend and ends it with itself.\n",
+          out);
+}
+
+int main(int argc, char **argv)
+{
+    const char *name = argc > 1 ? argv[1] : "";
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
+        print_help(stdout);
+        return 0;
+    }
+    if (strcmp(name, "--version") == 0) {
+        puts("sheen " SHEEN_VERSION);
+        return 0;
+    }
+    for (size_t i = 0; i < N_COMMANDS; i++) {
+        if (strcmp(name, COMMANDS[i]->name) != 0)
+            continue;
+        struct options options;
+        char why[OPTIONS_WHY_BYTES];
+        switch (options_parse(COMMANDS[i], argc - 1, argv + 1, &options, why)) {
+        case OPTIONS_RUN:
+            return COMMANDS[i]->run(&options);
+        case OPTIONS_HELP:
+            options_help(COMMANDS[i], stdout);
+            return 0;
+        case OPTIONS_WRONG:
+            fprintf(stderr, "sheen %s: %s; see sheen %s --help\n", name, why, name);
+            return EXIT_WRONG_USAGE;
+        }
+    }
+    if (*name)
+        fprintf(stderr, "sheen: '%s' is no command; see sheen --help\n", name);
+    else
+        print_help(stderr);
+    return EXIT_WRONG_USAGE;
+}

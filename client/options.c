@@ -1,0 +1,169 @@
+#include "client/options.h"
+
+#include <getopt.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_OPTIONS 64
+#define FIRST_LONG 256 /* getopt's number of row 0; letters are below */
+#define HELP_COLUMN 30
+
+bool options_refuse(char *why, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(why, OPTIONS_WHY_BYTES, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool options_check_scene(struct options *options, char *why)
+{
+    unsigned camera = options->given & (GIVEN_EYE | GIVEN_TARGET);
+    unsigned light = options->given & (GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V);
+    if (camera != 0 && camera != (GIVEN_EYE | GIVEN_TARGET))
+        return options_refuse(why, "--eye and --target come together");
+    if (camera == 0 && options->given & (GIVEN_UP | GIVEN_FOV | GIVEN_ORTHO))
+        return options_refuse(why, "--up, --fov and --ortho need --eye and --target");
+    if (options->given & GIVEN_FOV && options->given & GIVEN_ORTHO)
+        return options_refuse(why, "--fov and --ortho exclude each other");
+    if (light != 0 && light != (GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V))
+        return options_refuse(why, "--light-center, --light-u and --light-v come together");
+    if (camera)
+        options->request.camera.projection = options->given & GIVEN_ORTHO
+                                                 ? SHEEN_PROJECTION_ORTHOGRAPHIC
+                                                 : SHEEN_PROJECTION_PERSPECTIVE;
+    options->request.light.is_set = light != 0;
+    return true;
+}
+
+/* All rows of a command in one list. */
+static size_t collect(const struct command *command, const struct option_row *rows[MAX_OPTIONS])
+{
+    size_t n = 0;
+    for (const struct option_row *const *table = command->tables; *table; table++)
+        for (const struct option_row *row = *table; row->name && n < MAX_OPTIONS; row++)
+            rows[n++] = row;
+    return n;
+}
+
+static const struct option_row *row_of(int chosen, const struct option_row *const *rows, size_t n)
+{
+    if (chosen >= FIRST_LONG)
+        return rows[chosen - FIRST_LONG];
+    for (size_t i = 0; i < n; i++)
+        if (rows[i]->letter == chosen)
+            return rows[i];
+    return NULL;
+}
+
+/* Fills getopt's own tables from ours. */
+static void describe(const struct option_row *const *rows, size_t n, struct option *longs,
+                     char *shorts)
+{
+    *shorts++ = ':'; /* a missing value is told from an unknown option */
+    for (size_t i = 0; i < n; i++) {
+        longs[i] = (struct option){.name = rows[i]->name,
+                                   .has_arg = rows[i]->argument ? required_argument : no_argument,
+                                   .val = FIRST_LONG + (int)i};
+        if (!rows[i]->letter)
+            continue;
+        *shorts++ = rows[i]->letter;
+        if (rows[i]->argument)
+            *shorts++ = ':';
+    }
+    *shorts = 0;
+    longs[n] = (struct option){0};
+}
+
+static enum options_result wrong(char *why, const char *format, const char *what)
+{
+    options_refuse(why, format, what);
+    return OPTIONS_WRONG;
+}
+
+static enum options_result parse_options(int argc, char **argv,
+                                         const struct option_row *const *rows, size_t n,
+                                         struct options *options, char *why)
+{
+    struct option longs[MAX_OPTIONS + 1];
+    char shorts[2 * MAX_OPTIONS + 2];
+    describe(rows, n, longs, shorts);
+    opterr = 0;
+    optind = 0; /* begins anew */
+    for (;;) {
+        int chosen = getopt_long(argc, argv, shorts, longs, NULL);
+        if (chosen == -1)
+            return OPTIONS_RUN;
+        const char *given = argv[optind - 1];
+        if (chosen == ':')
+            return wrong(why, "%s needs a value", given);
+        const struct option_row *row = chosen == '?' ? NULL : row_of(chosen, rows, n);
+        if (!row)
+            return wrong(why, "%s is no option here", given);
+        if (strcmp(row->name, "help") == 0)
+            return OPTIONS_HELP;
+        char reason[OPTIONS_WHY_BYTES];
+        if (!row->apply(options, optarg, reason)) {
+            options_refuse(why, "--%s '%.60s': %.150s", row->name, optarg ? optarg : "", reason);
+            return OPTIONS_WRONG;
+        }
+    }
+}
+
+enum options_result options_parse(const struct command *command, int argc, char **argv,
+                                  struct options *options, char why[static OPTIONS_WHY_BYTES])
+{
+    const struct option_row *rows[MAX_OPTIONS];
+    size_t n = collect(command, rows);
+    *options = (struct options){.request = SHEEN_REQUEST_DEFAULTS, .orbit_deg = 1};
+    enum options_result result = parse_options(argc, argv, rows, n, options, why);
+    if (result != OPTIONS_RUN)
+        return result;
+    if (command->takes_model) {
+        if (optind >= argc)
+            return wrong(why, "%s", "a MODEL file is missing");
+        options->model = argv[optind++];
+    }
+    if (optind < argc)
+        return wrong(why, "'%.150s' is one argument too many", argv[optind]);
+    const char *server = getenv("SHEEN_SERVER");
+    if (!options->server && server && *server)
+        options->server = server;
+    if (options->server && options->device)
+        return wrong(why, "--device is for a private daemon; the one at %.120s has its own",
+                     options->server);
+    return !command->check || command->check(options, why) ? OPTIONS_RUN : OPTIONS_WRONG;
+}
+
+static void help_row(const struct option_row *row, FILE *out)
+{
+    int column = row->letter ? fprintf(out, "  -%c, --%s", row->letter, row->name)
+                             : fprintf(out, "      --%s", row->name);
+    if (row->argument)
+        column += fprintf(out, " %s", row->argument);
+    for (const char *line = row->help; *line;) {
+        int length = (int)strcspn(line, "\n");
+        if (column >= HELP_COLUMN) {
+            fputc('\n', out);
+            column = 0;
+        }
+        fprintf(out, "%*s%.*s\n", HELP_COLUMN - column, "", length, line);
+        line += length + (line[length] == '\n');
+        column = 0;
+    }
+}
+
+void options_help(const struct command *command, FILE *out)
+{
+    const struct option_row *rows[MAX_OPTIONS];
+    size_t n = collect(command, rows);
+    fprintf(out, "usage: sheen %s %s\n%s\n\n", command->name, command->arguments, command->summary);
+    for (size_t i = 0; i < n; i++)
+        help_row(rows[i], out);
+    fprintf(out,
+            "\nexamples:\n%s\nExit codes: 0 done, 1 the answer is \"no\", 2 wrong usage, "
+            "3 bad model or image,\n4 no or lost server, 5 device failed.\n",
+            command->examples);
+}

@@ -1,0 +1,83 @@
+/* The command line: one table per command that drives parsing and --help alike.
+ *
+ * Strings in struct options point into argv. Thread: one (getopt_long() has global state). */
+#ifndef SHEEN_CLIENT_OPTIONS_H
+#define SHEEN_CLIENT_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "client/sheen.h"
+
+#define OPTIONS_WHY_BYTES 240
+
+/* Which options were on the command line, where the commands must know. */
+enum options_given {
+    GIVEN_EYE = 1 << 0,
+    GIVEN_TARGET = 1 << 1,
+    GIVEN_UP = 1 << 2,
+    GIVEN_FOV = 1 << 3,
+    GIVEN_ORTHO = 1 << 4,
+    GIVEN_LIGHT_CENTER = 1 << 5,
+    GIVEN_LIGHT_U = 1 << 6,
+    GIVEN_LIGHT_V = 1 << 7,
+    GIVEN_FRAMES = 1 << 8,
+};
+
+struct options {
+    const char *model;  /* the file, NULL for commands without */
+    const char *server; /* --server, else SHEEN_SERVER, else NULL: a private daemon */
+    const char *device; /* NULL: auto */
+    bool json, quiet;
+    unsigned given; /* enum options_given */
+    struct sheen_request request;
+    const char *image_path; /* --pattern image:FILE, else NULL */
+    const char *output;     /* render: where the picture goes */
+    uint32_t aov_planes;    /* render: planes beside colour */
+    uint32_t frames;        /* stream: 1 to 1000000 */
+    double orbit_deg;       /* stream: per frame */
+    bool light_only;        /* stream: the light moves, not the camera */
+};
+
+/* One option. `apply` takes the value (NULL for a flag) and returns false with the reason in `why`.
+ * Tables end with a row without a name. */
+struct option_row {
+    const char *name;
+    char letter;          /* short form, 0: none */
+    const char *argument; /* what --help calls the value; NULL: a flag */
+    const char *help;     /* meaning, range, unit, default; '\n' begins a new line */
+    bool (*apply)(struct options *options, const char *value, char *why);
+};
+
+struct command {
+    const char *name;
+    const char *arguments; /* for the usage line */
+    const char *summary;
+    const struct option_row *const *tables; /* ends with NULL */
+    const char *examples;
+    bool takes_model;
+    /* What no single option can know; false with the reason in `why`. NULL: nothing. */
+    bool (*check)(struct options *options, char *why);
+    int (*run)(const struct options *options); /* returns the exit code */
+};
+
+enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };
+
+extern const struct option_row OPTIONS_COMMON[]; /* server, device, json, quiet, help */
+extern const struct option_row OPTIONS_SCENE[];  /* size, camera, light, pattern, colours */
+
+/* Parses argv, whose [0] is the command's name. OPTIONS_WRONG leaves one line in `why` that names
+ * the option, OPTIONS_HELP asks for options_help(). */
+enum options_result options_parse(const struct command *command, int argc, char **argv,
+                                  struct options *options, char why[static OPTIONS_WHY_BYTES]);
+
+void options_help(const struct command *command, FILE *out);
+
+/* The check of commands that take OPTIONS_SCENE: camera and light are given whole or not at all. */
+bool options_check_scene(struct options *options, char *why);
+
+/* Writes one formatted reason and returns false. */
+bool options_refuse(char *why, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+#endif

@@ -1,0 +1,177 @@
+/* The options that several commands share. */
+#include <string.h>
+
+#include "client/options.h"
+#include "client/values.h"
+
+static bool apply_vec3(struct options *options, const char *value, double *target, unsigned given,
+                       char *why)
+{
+    options->given |= given;
+    return value_vec3(value, target) || options_refuse(why, "must be three numbers X,Y,Z");
+}
+
+static bool apply_server(struct options *options, const char *value, char *why)
+{
+    (void)why;
+    options->server = value;
+    return true;
+}
+
+static bool apply_device(struct options *options, const char *value, char *why)
+{
+    uint32_t number;
+    options->device = value;
+    return strcmp(value, "auto") == 0 || strcmp(value, "software") == 0 ||
+           value_uint32(value, &number) ||
+           options_refuse(why, "must be auto, software or a device's number");
+}
+
+static bool apply_json(struct options *options, const char *value, char *why)
+{
+    (void)value;
+    (void)why;
+    return options->json = true;
+}
+
+static bool apply_quiet(struct options *options, const char *value, char *why)
+{
+    (void)value;
+    (void)why;
+    return options->quiet = true;
+}
+
+static bool apply_size(struct options *options, const char *value, char *why)
+{
+    return value_size(value, &options->request.width_px, &options->request.height_px) ||
+           options_refuse(why, "must be WIDTHxHEIGHT in whole pixels, 1 or more");
+}
+
+static bool apply_eye(struct options *options, const char *value, char *why)
+{
+    return apply_vec3(options, value, options->request.camera.eye, GIVEN_EYE, why);
+}
+
+static bool apply_target(struct options *options, const char *value, char *why)
+{
+    return apply_vec3(options, value, options->request.camera.target, GIVEN_TARGET, why);
+}
+
+static bool apply_up(struct options *options, const char *value, char *why)
+{
+    return apply_vec3(options, value, options->request.camera.up, GIVEN_UP, why);
+}
+
+static bool apply_fov(struct options *options, const char *value, char *why)
+{
+    double *fov = &options->request.camera.fov_deg;
+    options->given |= GIVEN_FOV;
+    return (value_double(value, fov) && *fov > 0 && *fov < 180) ||
+           options_refuse(why, "must be a number of degrees above 0 and below 180");
+}
+
+static bool apply_ortho(struct options *options, const char *value, char *why)
+{
+    double *height = &options->request.camera.ortho_height;
+    options->given |= GIVEN_ORTHO;
+    return (value_double(value, height) && *height > 0) ||
+           options_refuse(why, "must be a number above 0 in the model's units");
+}
+
+static bool apply_light_center(struct options *options, const char *value, char *why)
+{
+    return apply_vec3(options, value, options->request.light.centre, GIVEN_LIGHT_CENTER, why);
+}
+
+static bool apply_light_u(struct options *options, const char *value, char *why)
+{
+    return apply_vec3(options, value, options->request.light.u, GIVEN_LIGHT_U, why);
+}
+
+static bool apply_light_v(struct options *options, const char *value, char *why)
+{
+    return apply_vec3(options, value, options->request.light.v, GIVEN_LIGHT_V, why);
+}
+
+static bool apply_pattern(struct options *options, const char *value, char *why)
+{
+    char reason[VALUES_WHY_BYTES];
+    return value_pattern(value, &options->request.pattern, &options->image_path, reason) ||
+           options_refuse(why, "%s", reason);
+}
+
+static bool apply_miss(struct options *options, const char *value, char *why)
+{
+    options->request.has_miss = true;
+    return value_colour(value, options->request.miss) ||
+           options_refuse(why, "must be #rrggbb or #rrggbbaa");
+}
+
+static bool apply_empty(struct options *options, const char *value, char *why)
+{
+    options->request.has_empty = true;
+    return value_colour(value, options->request.empty) ||
+           options_refuse(why, "must be #rrggbb or #rrggbbaa");
+}
+
+static bool apply_lines(struct options *options, const char *value, char *why)
+{
+    (void)options;
+    return strcmp(value, "reflection") == 0 ||
+           options_refuse(why, "must be reflection; highlight, isophote, zebra and environment "
+                               "are not available yet");
+}
+
+static bool apply_surface(struct options *options, const char *value, char *why)
+{
+    (void)options;
+    return strcmp(value, "exact") == 0 ||
+           options_refuse(why, "must be exact; polygon:LEVEL and wireframe:LEVEL are not available "
+                               "yet");
+}
+
+const struct option_row OPTIONS_COMMON[] = {
+    {"server", 0, "ADDRESS",
+     "a running daemon: unix:PATH or tcp:HOST:PORT (default: SHEEN_SERVER\n"
+     "from the environment, else a private daemon for this command)",
+     apply_server},
+    {"device", 0, "DEVICE",
+     "of the private daemon: auto, software, or a number from 0 (default: auto,\n"
+     "a GPU when there is one)",
+     apply_device},
+    {"json", 0, NULL, "one JSON object on standard output", apply_json},
+    {"quiet", 'q', NULL, "no progress, summary or warnings on standard error", apply_quiet},
+    {"help", 'h', NULL, "this text", NULL},
+    {0},
+};
+
+const struct option_row OPTIONS_SCENE[] = {
+    {"size", 0, "WxH", "pixels, from 1x1 to the device's limit (default: 1280x720)", apply_size},
+    {"eye", 0, "X,Y,Z",
+     "where the camera stands, in the model's units; with --target\n"
+     "(default: a camera that frames the model)",
+     apply_eye},
+    {"target", 0, "X,Y,Z", "the point it looks at; with --eye", apply_target},
+    {"up", 0, "X,Y,Z", "its upward direction, any length (default: 0,0,1)", apply_up},
+    {"fov", 0, "DEG", "vertical field of view, above 0 and below 180 degrees (default: 35)",
+     apply_fov},
+    {"ortho", 0, "HEIGHT", "orthographic: units from top to bottom of the picture, above 0",
+     apply_ortho},
+    {"light-center", 0, "X,Y,Z",
+     "the middle of the light rectangle; with --light-u and --light-v\n"
+     "(default: a light that hangs over the model)",
+     apply_light_center},
+    {"light-u", 0, "X,Y,Z", "its edge that the stripes are counted along", apply_light_u},
+    {"light-v", 0, "X,Y,Z", "its other edge", apply_light_v},
+    {"pattern", 0, "PATTERN",
+     "stripes, lattice or circles, then :count=40,duty=0.5,fg=#rrggbb,bg=#rrggbb\n"
+     "as far as wanted (count above 0 to 100000, duty 0 to 1), or image:FILE\n"
+     "(default: stripes:count=40,duty=0.5)",
+     apply_pattern},
+    {"miss", 0, "COLOUR", "where the reflected ray misses the light: #rrggbb or #rrggbbaa",
+     apply_miss},
+    {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa", apply_empty},
+    {"lines", 0, "KIND", "reflection (default); the only kind yet", apply_lines},
+    {"surface", 0, "KIND", "exact (default); the only kind yet", apply_surface},
+    {0},
+};

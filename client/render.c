@@ -1,0 +1,330 @@
+/* Requests out, frames in. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "client/session.h"
+#include "client/status.h"
+#include "client/times.h"
+
+_Static_assert((int)SHEEN_MAX_IN_FLIGHT <= (int)PROTOCOL_MAX_IN_FLIGHT, "the daemon's limit");
+_Static_assert((int)SHEEN_FILE_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
+_Static_assert((int)SHEEN_CURVATURE == (int)sheen_Plane_PLANE_CURVATURE, "same bits");
+_Static_assert((int)SHEEN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same order");
+
+/* What a frame owns. */
+struct sheen_frame_memory {
+    uint8_t *data; /* a file's bytes, or what planes are unpacked from */
+    size_t data_capacity;
+    void *plane[SHEEN_PLANES];
+    size_t plane_capacity[SHEEN_PLANES];
+};
+
+static sheen_Vec3 vec3_to_message(const double v[3])
+{
+    return (sheen_Vec3){v[0], v[1], v[2]};
+}
+
+static void vec3_from_message(double v[3], const sheen_Vec3 *message)
+{
+    v[0] = message->x;
+    v[1] = message->y;
+    v[2] = message->z;
+}
+
+static sheen_Colour colour_to_message(const float c[4])
+{
+    return (sheen_Colour){c[0], c[1], c[2], c[3]};
+}
+
+static void fill_camera(sheen_Render *render, const struct sheen_camera *camera)
+{
+    if (camera->projection == SHEEN_PROJECTION_AUTO)
+        return;
+    bool ortho = camera->projection == SHEEN_PROJECTION_ORTHOGRAPHIC;
+    render->has_camera = true;
+    render->camera = (sheen_Camera){
+        .eye = vec3_to_message(camera->eye),
+        .target = vec3_to_message(camera->target),
+        .up = vec3_to_message(camera->up),
+        .has_fov_deg = !ortho,
+        .fov_deg = camera->fov_deg,
+        .has_ortho_height = ortho,
+        .ortho_height = camera->ortho_height,
+    };
+}
+
+static void fill_pattern(sheen_Render *render, const struct sheen_pattern *pattern)
+{
+    render->has_pattern = true;
+    render->pattern = (sheen_Pattern){
+        .kind = (sheen_PatternKind)pattern->kind,
+        .has_count = pattern->kind != SHEEN_IMAGE,
+        .count = pattern->count,
+        .has_duty = pattern->kind != SHEEN_IMAGE,
+        .duty = pattern->duty,
+        .has_foreground = pattern->has_colours,
+        .foreground = colour_to_message(pattern->foreground),
+        .has_background = pattern->has_colours,
+        .background = colour_to_message(pattern->background),
+        .has_image_sha256 = pattern->kind == SHEEN_IMAGE,
+    };
+    memcpy(render->pattern.image_sha256, pattern->image_id, SHEEN_ID_BYTES);
+}
+
+static void fill_render(sheen_Render *render, const struct sheen_request *request)
+{
+    *render = (sheen_Render){
+        .width_px = request->width_px,
+        .height_px = request->height_px,
+        .has_miss = request->has_miss,
+        .miss = colour_to_message(request->miss),
+        .has_empty = request->has_empty,
+        .empty = colour_to_message(request->empty),
+        .planes = request->planes,
+        .encoding = (sheen_Encoding)request->format,
+    };
+    memcpy(render->model_sha256, request->model_id, SHEEN_ID_BYTES);
+    fill_camera(render, &request->camera);
+    fill_pattern(render, &request->pattern);
+    if (request->light.is_set) {
+        render->has_light = true;
+        render->light = (sheen_Light){.centre = vec3_to_message(request->light.centre),
+                                      .u = vec3_to_message(request->light.u),
+                                      .v = vec3_to_message(request->light.v)};
+    }
+}
+
+enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_request *request,
+                             struct sheen_error *error)
+{
+    sheen_Render render;
+    char text[MESSAGE_TEXT_BYTES];
+    enum sheen_status status = session_check(session, error);
+    if (status)
+        return status;
+    if (!request)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "request is NULL");
+    if (session->n_pending == SHEEN_MAX_IN_FLIGHT)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "%d requests are in flight: receive one",
+                          SHEEN_MAX_IN_FLIGHT);
+    fill_render(&render, request);
+    if (!message_check_render(&render, session->hello.max_width_px, session->hello.max_height_px,
+                              text))
+        return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
+    struct session_pending *pending = &session->pending[session->n_pending];
+    *pending = (struct session_pending){
+        .width_px = render.width_px,
+        .height_px = render.height_px,
+        .planes = render.planes,
+        .encoding = render.encoding,
+    };
+    status = session_send(session, MESSAGE_RENDER, &render, &pending->seq, error);
+    if (!status)
+        session->n_pending++;
+    return status;
+}
+
+static enum sheen_status broken(struct sheen_session *session, struct sheen_error *error,
+                                const char *what)
+{
+    status_set(error, SHEEN_BAD_PEER, "the server broke the protocol: %s", what);
+    return session_fail(session, SHEEN_BAD_PEER, error);
+}
+
+static enum sheen_status no_memory(struct sheen_session *session, struct sheen_error *error,
+                                   size_t bytes)
+{
+    status_set(error, SHEEN_NO_MEMORY, "no memory for a frame of %zu bytes", bytes);
+    return session_fail(session, SHEEN_NO_MEMORY, error);
+}
+
+/* Makes a buffer hold `bytes`, keeping what is in it. */
+static bool reserve(uint8_t **buffer, size_t *capacity, size_t bytes)
+{
+    if (bytes <= *capacity)
+        return true;
+    uint8_t *grown = realloc(*buffer, bytes);
+    if (!grown)
+        return false;
+    *buffer = grown;
+    *capacity = bytes;
+    return true;
+}
+
+/* Reads all DATA of a frame. Memory grows with what has arrived, not with what was announced. */
+static enum sheen_status read_data(struct sheen_session *session, uint32_t seq, size_t data_bytes,
+                                   struct sheen_frame_memory *memory, struct sheen_error *error)
+{
+    size_t received = 0;
+    while (received < data_bytes) {
+        struct message_header header;
+        enum sheen_status status = session_expect(session, seq, MESSAGE_DATA, NULL, &header, error);
+        if (status)
+            return status;
+        if (header.length == 0 || header.length > data_bytes - received)
+            return broken(session, error, "DATA is longer or shorter than its FRAME says");
+        bool is_last = header.length == data_bytes - received;
+        if (is_last != ((header.flags & MESSAGE_END) != 0))
+            return broken(session, error, "the end of DATA is not where its FRAME says");
+        size_t wanted = received + header.length;
+        if (wanted > memory->data_capacity && wanted < data_bytes)
+            wanted = 2 * wanted < data_bytes ? 2 * wanted : data_bytes;
+        if (!reserve(&memory->data, &memory->data_capacity, wanted))
+            return no_memory(session, error, data_bytes);
+        status =
+            connection_read(&session->connection, memory->data + received, header.length, error);
+        if (status)
+            return session_fail(session, status, error);
+        received += header.length;
+    }
+    return SHEEN_OK;
+}
+
+static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
+{
+    struct sheen_frame_memory *memory = frame->memory;
+    *frame = (struct sheen_frame){
+        .memory = memory,
+        .width_px = body->width_px,
+        .height_px = body->height_px,
+        .planes = body->planes,
+        .format = (enum sheen_format)body->encoding,
+        .data_bytes = body->data_bytes,
+        .camera = {.projection = body->camera.has_ortho_height ? SHEEN_PROJECTION_ORTHOGRAPHIC
+                                                               : SHEEN_PROJECTION_PERSPECTIVE,
+                   .fov_deg = body->camera.fov_deg,
+                   .ortho_height = body->camera.ortho_height},
+        .light = {.is_set = true},
+        .times = times_from_message(&body->times),
+        .covered_px = body->covered_px,
+        .software = body->software,
+    };
+    vec3_from_message(frame->camera.eye, &body->camera.eye);
+    vec3_from_message(frame->camera.target, &body->camera.target);
+    vec3_from_message(frame->camera.up, &body->camera.up);
+    vec3_from_message(frame->light.centre, &body->light.centre);
+    vec3_from_message(frame->light.u, &body->light.u);
+    vec3_from_message(frame->light.v, &body->light.v);
+    memcpy(frame->device, body->device, sizeof(frame->device));
+    memcpy(frame->driver, body->driver, sizeof(frame->driver));
+    memcpy(frame->server, body->server, sizeof(frame->server));
+}
+
+static enum sheen_status unpack_planes(struct sheen_session *session, struct sheen_frame *frame,
+                                       const struct codec_layout *layout, struct sheen_error *error)
+{
+    struct sheen_frame_memory *memory = frame->memory;
+    for (unsigned plane = 0; plane < SHEEN_PLANES; plane++) {
+        if (!(layout->planes & 1u << plane))
+            continue;
+        size_t bytes = codec_plane_bytes(layout, plane);
+        uint8_t *grown = memory->plane[plane];
+        if (!reserve(&grown, &memory->plane_capacity[plane], bytes))
+            return no_memory(session, error, bytes);
+        memory->plane[plane] = grown;
+        frame->plane[plane] = grown;
+    }
+    const char *wrong = NULL;
+    size_t size = (size_t)frame->data_bytes;
+    if (frame->format == SHEEN_PLANES_RAW) {
+        wrong = codec_raw_decode(layout, memory->data, size, frame->plane);
+    } else {
+        if (!session->decoder)
+            session->decoder = codec_decoder_create();
+        if (!session->decoder)
+            return no_memory(session, error, size);
+        wrong = codec_zstd_decode(session->decoder, layout, memory->data, size, frame->plane);
+    }
+    return wrong ? broken(session, error, wrong) : SHEEN_OK;
+}
+
+/* What a FRAME must be to answer its request; NULL when it is. */
+static const char *frame_mismatch(const sheen_Frame *body, const struct session_pending *pending,
+                                  const struct codec_layout *layout)
+{
+    if (body->width_px != pending->width_px || body->height_px != pending->height_px ||
+        body->planes != pending->planes || body->encoding != pending->encoding)
+        return "FRAME is not of the size, planes and encoding that were asked for";
+    if (body->encoding == sheen_Encoding_ENCODING_RAW && body->data_bytes != layout->raw_bytes)
+        return "FRAME has another number of bytes than its planes";
+    if (body->encoding == sheen_Encoding_ENCODING_ZSTD &&
+        body->data_bytes > codec_zstd_bound(layout))
+        return "FRAME has more bytes than its planes can take";
+    return NULL;
+}
+
+static enum sheen_status receive_frame(struct sheen_session *session,
+                                       const struct session_pending *pending,
+                                       const struct sheen_progress *progress,
+                                       struct sheen_frame *frame, struct sheen_error *error)
+{
+    sheen_Frame body;
+    struct codec_layout layout;
+    enum sheen_status status =
+        session_receive(session, pending->seq, MESSAGE_FRAME, progress, &body, error);
+    if (status == SHEEN_TOO_BIG) /* of a request, not of a file */
+        return error ? error->status = SHEEN_BAD_REQUEST : SHEEN_BAD_REQUEST;
+    if (status)
+        return status;
+    const char *mismatch = "FRAME has no size";
+    if (codec_layout_init(&layout, body.width_px, body.height_px, body.planes))
+        mismatch = frame_mismatch(&body, pending, &layout);
+    if (mismatch)
+        return broken(session, error, mismatch);
+    status = read_data(session, pending->seq, (size_t)body.data_bytes, frame->memory, error);
+    if (status)
+        return status;
+    fill_frame(frame, &body);
+    if (frame->format == SHEEN_PLANES_RAW || frame->format == SHEEN_PLANES_ZSTD)
+        return unpack_planes(session, frame, &layout, error);
+    frame->file = frame->memory->data;
+    frame->file_bytes = (size_t)body.data_bytes;
+    return SHEEN_OK;
+}
+
+enum sheen_status sheen_receive(struct sheen_session *session,
+                                const struct sheen_progress *progress, struct sheen_frame *frame,
+                                struct sheen_error *error)
+{
+    enum sheen_status status = session_check(session, error);
+    if (status)
+        return status;
+    if (!frame || session->n_pending == 0)
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          frame ? "no request is in flight" : "frame is NULL");
+    if (!frame->memory)
+        frame->memory = calloc(1, sizeof(*frame->memory));
+    if (!frame->memory)
+        return no_memory(session, error, sizeof(*frame->memory));
+    const struct session_pending pending = session->pending[0];
+    session->n_pending--;
+    memmove(session->pending, session->pending + 1,
+            session->n_pending * sizeof(session->pending[0]));
+    return receive_frame(session, &pending, progress, frame, error);
+}
+
+enum sheen_status sheen_render(struct sheen_session *session, const struct sheen_request *request,
+                               const struct sheen_progress *progress, struct sheen_frame *frame,
+                               struct sheen_error *error)
+{
+    enum sheen_status status = session_check(session, error);
+    if (!status && (!frame || session->n_pending))
+        status = status_set(error, SHEEN_BAD_ARGUMENT,
+                            "sheen_render() needs a frame, and no request in flight");
+    if (!status)
+        status = sheen_send(session, request, error);
+    return status ? status : sheen_receive(session, progress, frame, error);
+}
+
+void sheen_frame_finish(struct sheen_frame *frame)
+{
+    if (!frame)
+        return;
+    if (frame->memory) {
+        free(frame->memory->data);
+        for (unsigned plane = 0; plane < SHEEN_PLANES; plane++)
+            free(frame->memory->plane[plane]);
+        free(frame->memory);
+    }
+    *frame = (struct sheen_frame){0};
+}

@@ -1,0 +1,60 @@
+/* The inside of a session: one connection and the messages on it.
+ *
+ * Thread: one at a time, as sheen.h says. Only the files of libsheen include this. */
+#ifndef SHEEN_CLIENT_SESSION_H
+#define SHEEN_CLIENT_SESSION_H
+
+#include "client/connection.h"
+#include "client/private_daemon.h"
+#include "client/sheen.h"
+#include "protocol/codec.h"
+#include "protocol/message.h"
+
+/* A request whose frame has not been received. */
+struct session_pending {
+    uint32_t seq;
+    uint32_t width_px, height_px, planes;
+    sheen_Encoding encoding;
+};
+
+struct sheen_session {
+    struct connection connection;
+    struct private_daemon daemon;
+    bool broken; /* after a fatal status; only sheen_close() is left */
+    uint32_t last_seq;
+    size_t n_pending;
+    struct session_pending pending[SHEEN_MAX_IN_FLIGHT]; /* oldest first */
+    sheen_HelloOk hello;
+    struct codec_decoder *decoder; /* NULL until the first zstd frame */
+    uint8_t buffer[MESSAGE_BUFFER_BYTES];
+};
+
+/* Marks the session broken if the status is fatal, lets a dead private daemon explain itself, and
+ * returns the status that is then in *error. */
+enum sheen_status session_fail(struct sheen_session *session, enum sheen_status status,
+                               struct sheen_error *error);
+
+/* SHEEN_LOST_SERVER for a broken session, SHEEN_BAD_ARGUMENT for NULL, else SHEEN_OK. */
+enum sheen_status session_check(const struct sheen_session *session, struct sheen_error *error);
+
+/* Sends a message with the next sequence number, which is written to *seq. */
+enum sheen_status session_send(struct sheen_session *session, uint8_t type, const void *body,
+                               uint32_t *seq, struct sheen_error *error);
+/* Sends raw bytes of a type that has no body struct. */
+enum sheen_status session_send_raw(struct sheen_session *session, uint8_t type, uint32_t seq,
+                                   const uint8_t *bytes, uint32_t n_bytes,
+                                   struct sheen_error *error);
+
+/* Reads the next header that answers request `seq`, passing over PROGRESS (reported to `progress`,
+ * which may be NULL). An ERROR becomes its status; another type or number is SHEEN_BAD_PEER. The
+ * body, header->length bytes, is the caller's to read. */
+enum sheen_status session_expect(struct sheen_session *session, uint32_t seq, uint8_t type,
+                                 const struct sheen_progress *progress,
+                                 struct message_header *header, struct sheen_error *error);
+
+/* session_expect(), then body and its checks into the type's struct. */
+enum sheen_status session_receive(struct sheen_session *session, uint32_t seq, uint8_t type,
+                                  const struct sheen_progress *progress, void *body,
+                                  struct sheen_error *error);
+
+#endif

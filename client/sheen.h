@@ -1,0 +1,288 @@
+/* libsheen: exact reflection lines from a sheend, in C.
+ *
+ *     struct sheen_error error;
+ *     struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS; // a private daemon
+ *     struct sheen_request request = SHEEN_REQUEST_DEFAULTS;         // 1280x720, a PNG
+ *     struct sheen_session *session = NULL;
+ *     struct sheen_frame frame = {0};
+ *
+ *     sheen_file_id(bytes, n_bytes, request.model_id);
+ *     memcpy(options.model_id, request.model_id, SHEEN_ID_BYTES);
+ *     if (sheen_connect(&session, &options, &error) ||
+ *         sheen_upload(session, SHEEN_FILE_MODEL, request.model_id, bytes, n_bytes, "hood.obj",
+ * NULL, &error) || sheen_render(session, &request, NULL, &frame, &error)) fprintf(stderr, "%s\n",
+ * error.text); else fwrite(frame.file, 1, frame.file_bytes, out); sheen_frame_finish(&frame);
+ *     sheen_close(session);
+ *
+ * Every call blocks until it is done, has failed, or nothing has moved for `timeout_ms`.
+ *
+ * Failure: functions return SHEEN_OK (0) or a status, and then fill *error, which may be NULL.
+ * After a status for which sheen_status_is_fatal() is true the session only takes sheen_close();
+ * after any other it goes on working. Arguments are checked: NULL, NaN and values out of range
+ * cost SHEEN_BAD_ARGUMENT and send nothing.
+ *
+ * Thread: a session belongs to one thread at a time; different sessions are independent. No SIGPIPE
+ * is raised, no signal handler installed, no global state kept.
+ *
+ * Units: pixels `_px`, microseconds `_us`, milliseconds `_ms`, degrees `_deg`; coordinates are the
+ * model file's own units, right-handed; pixel (0,0) is top left. */
+#ifndef SHEEN_H
+#define SHEEN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define SHEEN_ID_BYTES 32 /* SHA-256 of a file's bytes */
+#define SHEEN_PLANES 6
+#define SHEEN_MAX_IN_FLIGHT 4 /* requests sent and not yet received, per session */
+
+enum sheen_status {
+    SHEEN_OK,
+    SHEEN_BAD_ARGUMENT,  /* refused here, nothing was sent               exit code 2 */
+    SHEEN_BAD_REQUEST,   /* refused by the daemon: out of its range      exit code 2 */
+    SHEEN_BAD_MODEL,     /* the cage is bad or not supported             exit code 3 */
+    SHEEN_BAD_IMAGE,     /* an image is bad or cannot be written         exit code 3 */
+    SHEEN_TOO_BIG,       /* the file is over the daemon's limit          exit code 3 */
+    SHEEN_UNKNOWN_MODEL, /* the daemon lacks the file: upload it (again) exit code 4 */
+    SHEEN_OVERLOADED,    /* the daemon is full: try later                exit code 4 */
+    SHEEN_SHUTTING_DOWN, /* fatal                                        exit code 4 */
+    SHEEN_NO_SERVER,     /* fatal: cannot connect, or start a daemon     exit code 4 */
+    SHEEN_LOST_SERVER,   /* fatal: the connection broke                  exit code 4 */
+    SHEEN_TIMEOUT,       /* fatal: nothing moved for timeout_ms          exit code 4 */
+    SHEEN_BAD_PEER,      /* fatal: the peer broke the protocol           exit code 4 */
+    SHEEN_BAD_VERSION,   /* fatal: the peer speaks another major version exit code 4 */
+    SHEEN_NO_MEMORY,     /* fatal: memory is short here                  exit code 4 */
+    SHEEN_DEVICE_FAILED, /* EGL or the GPU failed, or there is none      exit code 5 */
+};
+
+struct sheen_error {
+    enum sheen_status status;
+    char text[640]; /* one line, UTF-8, no newline: what, where, what to do */
+};
+
+/* The exit code that the `sheen` command ends with: 0, 2, 3, 4 or 5. */
+int sheen_status_exit_code(enum sheen_status status);
+bool sheen_status_is_fatal(enum sheen_status status);
+
+/* ---- sessions ---- */
+
+struct sheen_session;
+
+struct sheen_connect_options {
+    const char *address; /* unix:PATH or tcp:HOST:PORT; NULL: a private daemon, see below */
+    const char *device;  /* private daemon: "auto", "software" or a number; NULL: auto */
+    uint32_t timeout_ms; /* with no byte moved; 0: for ever */
+    uint8_t model_id[SHEEN_ID_BYTES]; /* a balancer picks a node by it; zeros: any */
+};
+#define SHEEN_CONNECT_DEFAULTS ((struct sheen_connect_options){.timeout_ms = 300000})
+
+/* Connects and shakes hands. On success *session is the caller's, to be given back with
+ * sheen_close(); on failure it is NULL: SHEEN_NO_SERVER, SHEEN_LOST_SERVER (it went away, or the
+ * private daemon ended at once), SHEEN_BAD_PEER, SHEEN_BAD_VERSION, SHEEN_TIMEOUT,
+ * SHEEN_OVERLOADED, SHEEN_DEVICE_FAILED (a private daemon found no device).
+ *
+ * A private daemon is a child process on a socket pair: $SHEEN_DAEMON, else `sheend` beside this
+ * program, else `sheend` on the PATH. It ends with the session. It inherits no file but its socket,
+ * and its standard error is kept to explain its death. */
+enum sheen_status sheen_connect(struct sheen_session **session,
+                                const struct sheen_connect_options *options,
+                                struct sheen_error *error);
+
+/* Ends the session and its private daemon, and reaps it. NULL is safe. */
+void sheen_close(struct sheen_session *session);
+
+/* What the daemon said of itself. Strings live as long as the session. */
+struct sheen_server {
+    const char *version;
+    const char *device, *driver;
+    bool software;
+    uint32_t max_width_px, max_height_px;
+    uint64_t max_upload_bytes;
+};
+struct sheen_server sheen_server(const struct sheen_session *session);
+
+/* Called now and then by the calls that take it: for uploads with stage "upload" and bytes, and
+ * with whatever stage the daemon reports ("tables" and faces). May be called with done == total.
+ * Must not call the session back. */
+struct sheen_progress {
+    void (*report)(void *context, const char *stage, uint64_t done, uint64_t total);
+    void *context;
+};
+
+/* ---- files ---- */
+
+enum sheen_file_kind { SHEEN_FILE_MODEL, SHEEN_FILE_IMAGE };
+
+/* The identity of a file. False only when libcrypto fails. */
+bool sheen_file_id(const void *bytes, size_t n_bytes, uint8_t id[SHEEN_ID_BYTES]);
+
+/* Makes the daemon have a file: bytes travel only if it lacks them, from where a broken upload
+ * ended. `id` is what sheen_file_id() says; the daemon checks it. `name` is the file's name,
+ * folders are dropped; its ending tells the format. progress may be NULL. Not while requests are in
+ * flight (SHEEN_BAD_ARGUMENT). SHEEN_TOO_BIG, SHEEN_BAD_MODEL, SHEEN_BAD_IMAGE when the daemon
+ * refuses it. */
+enum sheen_status sheen_upload(struct sheen_session *session, enum sheen_file_kind kind,
+                               const uint8_t id[SHEEN_ID_BYTES], const void *bytes, size_t n_bytes,
+                               const char *name, const struct sheen_progress *progress,
+                               struct sheen_error *error);
+
+#define SHEEN_MAX_VALENCES 64
+struct sheen_model_info {
+    uint8_t id[SHEEN_ID_BYTES];
+    char name[256];
+    uint64_t file_bytes;
+    uint32_t vertices, faces, triangles, quads, ngons; /* of the cage */
+    uint32_t ptex_faces, boundary_edges;
+    uint32_t n_valences; /* entries below; the last one sums the rest when there are more */
+    struct {
+        uint32_t valence, count;
+    } extraordinary[SHEEN_MAX_VALENCES]; /* interior vertices with other than 4 edges */
+    uint32_t boundary_extraordinary;     /* boundary vertices with other than 2 faces */
+    uint32_t regular_patches, corner_patches, split_nodes, hole_nodes;
+    uint64_t table_bytes;                 /* on the GPU */
+    uint64_t regular_bytes, corner_bytes; /* of one such patch */
+    uint64_t tables_us;                   /* reading, building and uploading took this long */
+    double box_min[3], box_max[3];
+    char warnings[4096]; /* lines; "" when there are none */
+};
+
+/* What an uploaded model is and costs; builds its tables if that has not happened. */
+enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t id[SHEEN_ID_BYTES],
+                                    const struct sheen_progress *progress,
+                                    struct sheen_model_info *info, struct sheen_error *error);
+
+/* ---- frames ---- */
+
+enum sheen_plane {                   /* bits */
+                   SHEEN_COLOUR = 1, /* uint8_t[4] RGBA, straight alpha */
+                   SHEEN_POSITION =
+                       2,            /* float[3], NaN where nothing is hit, as in all that follow */
+                   SHEEN_NORMAL = 4, /* float[3], unit, along the face winding */
+                   SHEEN_PTEX = 8,   /* uint32_t face (0xffffffff: none), float u, float v */
+                   SHEEN_LIGHT =
+                       16, /* float s, t on the light; NaN where the reflected ray misses it too */
+                   SHEEN_CURVATURE =
+                       32, /* float k.min, k.max in 1/unit, signed against the normal */
+};
+
+enum sheen_format {
+    SHEEN_PLANES_RAW,  /* decoded planes; sent as they are */
+    SHEEN_PLANES_ZSTD, /* decoded planes; sent compressed, lossless */
+    SHEEN_FILE_PNG,    /* an encoded file, colour only */
+    SHEEN_FILE_EXR,    /* an encoded file, any planes */
+    SHEEN_FILE_JPEG,
+    SHEEN_FILE_TIFF,
+};
+
+enum sheen_projection {
+    SHEEN_PROJECTION_AUTO, /* frames the model; the rest of the camera is ignored */
+    SHEEN_PROJECTION_PERSPECTIVE,
+    SHEEN_PROJECTION_ORTHOGRAPHIC,
+};
+
+struct sheen_camera {
+    enum sheen_projection projection;
+    double eye[3], target[3]; /* not the same point */
+    double up[3];             /* not along the line of sight; need not be perpendicular */
+    double fov_deg;           /* perspective: vertical, (0, 180) */
+    double ortho_height;      /* orthographic: units from top to bottom, > 0 */
+};
+
+/* The light rectangle: x = centre + (s - 1/2) u + (t - 1/2) v, s and t in [0, 1]. */
+struct sheen_light {
+    bool is_set; /* false: hangs over the model; the rest is ignored */
+    double centre[3], u[3], v[3];
+};
+
+enum sheen_pattern_kind { SHEEN_STRIPES, SHEEN_LATTICE, SHEEN_CIRCLES, SHEEN_IMAGE };
+
+struct sheen_pattern {
+    enum sheen_pattern_kind kind;
+    double count;                       /* periods over the light, (0, 100000] */
+    double duty;                        /* bright part of a period, [0, 1] */
+    bool has_colours;                   /* false: the daemon's (white on black) */
+    float foreground[4], background[4]; /* RGBA in [0, 1], as displayed */
+    uint8_t image_id[SHEEN_ID_BYTES];   /* SHEEN_IMAGE: an uploaded image */
+};
+
+struct sheen_request {
+    uint8_t model_id[SHEEN_ID_BYTES]; /* an uploaded model */
+    uint32_t width_px, height_px;     /* 1 to the daemon's limit */
+    struct sheen_camera camera;
+    struct sheen_light light;
+    struct sheen_pattern pattern;
+    bool has_miss, has_empty; /* false: the daemon's colours */
+    float miss[4];            /* where the reflected ray misses the light, RGBA in [0, 1] */
+    float empty[4];           /* where no surface is hit */
+    uint32_t planes;          /* enum sheen_plane bits */
+    enum sheen_format format;
+};
+#define SHEEN_REQUEST_DEFAULTS                                                                     \
+    ((struct sheen_request){.width_px = 1280,                                                      \
+                            .height_px = 720,                                                      \
+                            .camera = {.up = {0, 0, 1}, .fov_deg = 35},                            \
+                            .pattern = {.count = 40, .duty = 0.5},                                 \
+                            .planes = SHEEN_COLOUR,                                                \
+                            .format = SHEEN_FILE_PNG})
+
+/* What the daemon spent, in microseconds; 0: not done for this frame. */
+struct sheen_times {
+    uint64_t tables_us, visibility_us, evaluate_us, shade_us, readback_us, encode_us, total_us;
+};
+
+/* A frame. Zero it before first use; it may then be given to any number of calls, which reuse its
+ * memory, and at last to sheen_frame_finish(). After a failure its fields are undefined, but it may
+ * still be reused and must still be finished. */
+struct sheen_frame {
+    uint32_t width_px, height_px;
+    uint32_t planes;
+    enum sheen_format format;
+    uint8_t *file; /* SHEEN_FILE_*: the file's bytes; else NULL */
+    size_t file_bytes;
+    void *plane[SHEEN_PLANES];  /* SHEEN_PLANES_*: by bit number; rows top first, tightly packed;
+                                   NULL for planes that were not asked for */
+    uint64_t data_bytes;        /* that travelled */
+    struct sheen_camera camera; /* as used */
+    struct sheen_light light;
+    struct sheen_times times;
+    uint64_t covered_px; /* pixels that hit the surface */
+    char device[128], driver[128], server[32];
+    bool software;
+    struct sheen_frame_memory *memory; /* the library's */
+};
+
+/* Renders one frame: sheen_send() and sheen_receive(). */
+enum sheen_status sheen_render(struct sheen_session *session, const struct sheen_request *request,
+                               const struct sheen_progress *progress, struct sheen_frame *frame,
+                               struct sheen_error *error);
+
+/* Sends a request without waiting, up to SHEEN_MAX_IN_FLIGHT of them (SHEEN_BAD_ARGUMENT beyond),
+ * and receives their answers in the order sent. A request that the daemon refuses fails in its
+ * sheen_receive(). */
+enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_request *request,
+                             struct sheen_error *error);
+enum sheen_status sheen_receive(struct sheen_session *session,
+                                const struct sheen_progress *progress, struct sheen_frame *frame,
+                                struct sheen_error *error);
+
+void sheen_frame_finish(struct sheen_frame *frame); /* frees and zeroes it; a zeroed one is safe */
+
+/* ---- statistics ---- */
+
+struct sheen_stats {
+    uint64_t uptime_us;
+    uint32_t sessions, queued; /* now */
+    uint64_t frames, errors;   /* since the start */
+    uint32_t models, images;   /* held now */
+    uint64_t model_bytes;      /* tables on the GPU */
+    uint64_t uploads_bytes, sent_bytes;
+    struct sheen_times mean; /* over the last 64 frames */
+    char device[128], driver[128], server[32];
+    bool software;
+};
+
+enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_stats *stats,
+                                    struct sheen_error *error);
+
+#endif

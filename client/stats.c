@@ -1,0 +1,41 @@
+#include <string.h>
+
+#include "client/session.h"
+#include "client/status.h"
+#include "client/times.h"
+
+enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_stats *stats,
+                                    struct sheen_error *error)
+{
+    uint32_t seq;
+    sheen_Stats body;
+    enum sheen_status status = session_check(session, error);
+    if (status)
+        return status;
+    if (!stats || session->n_pending)
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          "a statistics query needs a struct, and no request in flight");
+    status = session_send(session, MESSAGE_STATS_QUERY, NULL, &seq, error);
+    if (!status)
+        status = session_receive(session, seq, MESSAGE_STATS, NULL, &body, error);
+    if (status)
+        return status;
+    *stats = (struct sheen_stats){
+        .uptime_us = body.uptime_us,
+        .sessions = body.sessions,
+        .queued = body.queued,
+        .frames = body.frames,
+        .errors = body.errors,
+        .models = body.models,
+        .images = body.images,
+        .model_bytes = body.model_bytes,
+        .uploads_bytes = body.uploads_bytes,
+        .sent_bytes = body.sent_bytes,
+        .mean = times_from_message(&body.mean),
+        .software = body.software,
+    };
+    memcpy(stats->device, body.device, sizeof(stats->device));
+    memcpy(stats->driver, body.driver, sizeof(stats->driver));
+    memcpy(stats->server, body.server, sizeof(stats->server));
+    return SHEEN_OK;
+}

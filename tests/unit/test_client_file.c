@@ -1,0 +1,160 @@
+/* Reading whole files and writing them whole or not at all. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "client/file.h"
+
+static char folder[64];
+
+static int setup(void **state)
+{
+    (void)state;
+    strcpy(folder, "/tmp/sheen-test-XXXXXX");
+    return mkdtemp(folder) ? chdir(folder) : -1;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    return chdir("/") == 0 ? rmdir(folder) : -1;
+}
+
+static int files_in_folder(void)
+{
+    int n = 0;
+    DIR *list = opendir(".");
+    assert_non_null(list);
+    for (struct dirent *entry; (entry = readdir(list));)
+        n += entry->d_name[0] != '.';
+    closedir(list);
+    return n;
+}
+
+static void assert_holds(const char *path, const char *text)
+{
+    struct sheen_error error;
+    uint8_t *bytes = NULL;
+    size_t n_bytes = 0;
+    assert_int_equal(file_read(path, SHEEN_BAD_MODEL, &bytes, &n_bytes, &error), SHEEN_OK);
+    assert_int_equal(n_bytes, strlen(text));
+    assert_memory_equal(bytes, text, n_bytes);
+    free(bytes);
+}
+
+static void written_files_replace_old_ones(void **state)
+{
+    (void)state;
+    struct sheen_error error;
+    struct stat about;
+    mode_t old = umask(027);
+    assert_int_equal(file_check_writable("a.png", &error), SHEEN_OK);
+    assert_int_equal(file_write("a.png", (const uint8_t *)"first", 5, &error), SHEEN_OK);
+    assert_holds("a.png", "first");
+    assert_int_equal(file_check_writable("a.png", &error), SHEEN_OK);
+    assert_int_equal(file_write("a.png", (const uint8_t *)"2nd", 3, &error), SHEEN_OK);
+    assert_holds("a.png", "2nd");
+    assert_int_equal(stat("a.png", &about), 0);
+    assert_int_equal(about.st_mode & 0777, 0640); /* as any program's file */
+    assert_int_equal(files_in_folder(), 1);
+    umask(old);
+    unlink("a.png");
+}
+
+static void a_stale_temporary_is_stepped_over(void **state)
+{
+    (void)state;
+    struct sheen_error error;
+    char stale[64];
+    snprintf(stale, sizeof(stale), "a.png.%ld-0.tmp", (long)getpid());
+    fclose(fopen(stale, "w"));
+    assert_int_equal(file_write("a.png", (const uint8_t *)"x", 1, &error), SHEEN_OK);
+    assert_holds("a.png", "x");
+    assert_int_equal(files_in_folder(), 2);
+    unlink(stale);
+    unlink("a.png");
+}
+
+static void a_full_disk_leaves_what_was_there(void **state)
+{
+    (void)state;
+    struct sheen_error error;
+    struct rlimit limit, small;
+    assert_int_equal(file_write("a.png", (const uint8_t *)"old", 3, &error), SHEEN_OK);
+    uint8_t *large = calloc(1, 100000);
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &limit);
+    small = limit;
+    small.rlim_cur = 1000; /* writing fails in the middle, as on a full disk */
+    setrlimit(RLIMIT_FSIZE, &small);
+    enum sheen_status status = file_write("a.png", large, 100000, &error);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    assert_int_equal(status, SHEEN_BAD_IMAGE);
+    assert_non_null(strstr(error.text, "a.png: cannot be written"));
+    assert_holds("a.png", "old");
+    assert_int_equal(files_in_folder(), 1);
+    free(large);
+    unlink("a.png");
+}
+
+static void places_that_take_no_file(void **state)
+{
+    (void)state;
+    struct sheen_error error;
+    assert_int_equal(file_check_writable("no/such/folder/a.png", &error), SHEEN_BAD_IMAGE);
+    assert_non_null(strstr(error.text, "no/such/folder/a.png"));
+    assert_int_equal(file_write("no/such/folder/a.png", (const uint8_t *)"x", 1, &error),
+                     SHEEN_BAD_IMAGE);
+    assert_int_equal(mkdir("folder.png", 0700), 0);
+    assert_int_equal(file_check_writable("folder.png", &error), SHEEN_BAD_IMAGE);
+    assert_int_equal(file_write("folder.png", (const uint8_t *)"x", 1, &error), SHEEN_BAD_IMAGE);
+    assert_int_equal(files_in_folder(), 1);
+    rmdir("folder.png");
+    assert_int_equal(file_check_writable("/dev/null", &error), SHEEN_BAD_IMAGE);
+}
+
+static void files_that_cannot_be_read(void **state)
+{
+    (void)state;
+    struct sheen_error error;
+    uint8_t *bytes = NULL;
+    size_t n_bytes;
+    assert_int_equal(file_read("none.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+                     SHEEN_BAD_MODEL);
+    assert_non_null(strstr(error.text, "none.obj: No such file"));
+    fclose(fopen("empty.obj", "w"));
+    assert_int_equal(file_read("empty.obj", SHEEN_BAD_IMAGE, &bytes, &n_bytes, &error),
+                     SHEEN_BAD_IMAGE);
+    assert_non_null(strstr(error.text, "empty.obj: is empty"));
+    assert_int_equal(truncate("empty.obj", 1024ll * 1024 * 1024 + 1), 0); /* a hole, no bytes */
+    assert_int_equal(file_read("empty.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+                     SHEEN_TOO_BIG);
+    unlink("empty.obj");
+    assert_int_equal(file_read(".", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error), SHEEN_BAD_MODEL);
+    assert_int_equal(mkfifo("pipe.obj", 0600), 0);
+    assert_int_equal(file_read("pipe.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+                     SHEEN_BAD_MODEL); /* and does not hang */
+    unlink("pipe.obj");
+    assert_null(bytes);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(written_files_replace_old_ones),
+        cmocka_unit_test(a_stale_temporary_is_stepped_over),
+        cmocka_unit_test(a_full_disk_leaves_what_was_there),
+        cmocka_unit_test(places_that_take_no_file),
+        cmocka_unit_test(files_that_cannot_be_read),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}

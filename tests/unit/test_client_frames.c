@@ -1,0 +1,314 @@
+/* libsheen's frames: from servers that serve, that die in the middle, that lie and that refuse. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/unit/fake_server.h"
+
+/* ---- frames ---- */
+
+static void serve_file_in_two(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Progress progress = {.stage = "tables", .done = 1, .total = 2};
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 10);
+    send_message(fd, MESSAGE_PROGRESS, seq, &progress);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    send_data(fd, seq, (const uint8_t *)"0123456", 7, 0);
+    send_data(fd, seq, (const uint8_t *)"789", 3, MESSAGE_END);
+}
+
+static void count_reports(void *context, const char *stage, uint64_t done, uint64_t total)
+{
+    assert_string_equal(stage, "tables");
+    assert_int_equal(done, 1);
+    assert_int_equal(total, 2);
+    ++*(int *)context;
+}
+
+static void a_file_arrives_whole(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_frame frame = {0};
+    struct sheen_request request = small_request(SHEEN_FILE_PNG);
+    int reports = 0;
+    const struct sheen_progress progress = {count_reports, &reports};
+    assert_int_equal(open_session(&fake, serve_file_in_two, &session, &error), SHEEN_OK);
+    assert_string_equal(sheen_server(session).device, "fake device");
+    assert_int_equal(sheen_render(session, &request, &progress, &frame, &error), SHEEN_OK);
+    assert_int_equal(reports, 1);
+    assert_int_equal(frame.file_bytes, 10);
+    assert_memory_equal(frame.file, "0123456789", 10);
+    assert_int_equal(frame.times.total_us, 7);
+    assert_true(frame.camera.eye[0] == 1 && frame.camera.fov_deg == 35);
+    assert_int_equal(frame.camera.projection, SHEEN_PROJECTION_PERSPECTIVE);
+    sheen_frame_finish(&frame);
+    assert_null(frame.file);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+static void serve_gone_mid_frame(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 1000);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    send_header(fd, MESSAGE_DATA, MESSAGE_END, 1000, seq);
+    send_bytes(fd, "half", 4);
+}
+
+static void serve_too_much_data(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    send_data(fd, seq, (const uint8_t *)"01234", 5, MESSAGE_END);
+}
+
+static void serve_no_end(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    send_data(fd, seq, (const uint8_t *)"0123", 4, 0);
+}
+
+static void serve_early_end(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    send_data(fd, seq, (const uint8_t *)"012", 3, MESSAGE_END);
+}
+
+static void serve_empty_data(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    send_data(fd, seq, (const uint8_t *)"", 0, 0);
+}
+
+static void serve_other_size(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
+    frame.width_px = 2 * WIDTH;
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+}
+
+static void serve_raw_of_wrong_length(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_RAW, WIDTH * HEIGHT * 4 + 1);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+}
+
+static void serve_zstd_bomb(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_ZSTD, 4000000000u);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+}
+
+static void lying_frames(void **state)
+{
+    (void)state;
+    render_ends_with(serve_gone_mid_frame, SHEEN_FILE_PNG, SHEEN_LOST_SERVER, "lost server");
+    assert_int_equal(sheen_status_exit_code(SHEEN_LOST_SERVER), 4);
+    render_ends_with(serve_too_much_data, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "DATA");
+    render_ends_with(serve_no_end, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "end of DATA");
+    render_ends_with(serve_early_end, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "end of DATA");
+    render_ends_with(serve_empty_data, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "DATA");
+    render_ends_with(serve_other_size, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "asked for");
+    render_ends_with(serve_raw_of_wrong_length, SHEEN_PLANES_RAW, SHEEN_BAD_PEER, "bytes");
+    render_ends_with(serve_zstd_bomb, SHEEN_PLANES_ZSTD, SHEEN_BAD_PEER, "more bytes");
+}
+
+/* A colour plane packed as the daemon packs it; pixel bytes count up. */
+static uint32_t packed_plane(uint8_t *bytes, size_t capacity)
+{
+    uint8_t plane[WIDTH * HEIGHT * 4];
+    struct codec_layout layout;
+    for (size_t i = 0; i < sizeof(plane); i++)
+        plane[i] = (uint8_t)i;
+    codec_layout_init(&layout, WIDTH, HEIGHT, 1);
+    struct codec_strip strip = codec_strip_at(&layout, 0);
+    struct codec_encoder *encoder = codec_encoder_create(1);
+    uint32_t length = (uint32_t)codec_strip_encode(encoder, &strip, plane, bytes + 4, capacity - 4);
+    codec_table_encode(&layout, &length, bytes);
+    codec_encoder_destroy(encoder);
+    return length + 4;
+}
+
+static void answer_packed(int fd, const uint8_t *bytes, uint32_t size)
+{
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_ZSTD, size);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    send_data(fd, seq, bytes, size, MESSAGE_END);
+}
+
+static void serve_packed(int fd)
+{
+    uint8_t bytes[512];
+    uint32_t size = packed_plane(bytes, sizeof(bytes));
+    greet(fd);
+    for (int i = 0; i < 4; i++)
+        answer_packed(fd, bytes, size);
+}
+
+static void serve_truncated_zstd(int fd)
+{
+    uint8_t bytes[512];
+    uint32_t size = packed_plane(bytes, sizeof(bytes));
+    greet(fd);
+    answer_packed(fd, bytes, size - 10);
+}
+
+static void serve_lying_table(int fd)
+{
+    uint8_t bytes[512];
+    uint32_t size = packed_plane(bytes, sizeof(bytes));
+    bytes[0] = bytes[1] = bytes[2] = bytes[3] = 0xff;
+    greet(fd);
+    answer_packed(fd, bytes, size);
+}
+
+static void packed_planes(void **state)
+{
+    (void)state;
+    render_ends_with(serve_packed, SHEEN_PLANES_ZSTD, SHEEN_OK, "");
+    render_ends_with(serve_truncated_zstd, SHEEN_PLANES_ZSTD, SHEEN_BAD_PEER, "strip");
+    render_ends_with(serve_lying_table, SHEEN_PLANES_ZSTD, SHEEN_BAD_PEER, "strip lengths");
+}
+
+static void requests_in_flight(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_model_info info;
+    struct sheen_frame frame = {0};
+    struct sheen_request request = small_request(SHEEN_PLANES_ZSTD);
+    assert_int_equal(open_session(&fake, serve_packed, &session, &error), SHEEN_OK);
+    assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+    for (int i = 0; i < SHEEN_MAX_IN_FLIGHT; i++)
+        assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
+    assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
+    assert_int_equal(sheen_query_model(session, request.model_id, NULL, &info, &error),
+                     SHEEN_BAD_ARGUMENT);
+    void *memory = NULL;
+    for (int i = 0; i < SHEEN_MAX_IN_FLIGHT; i++) {
+        assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OK);
+        const uint8_t *plane = frame.plane[0];
+        for (int byte = 0; byte < WIDTH * HEIGHT * 4; byte++)
+            assert_int_equal(plane[byte], byte);
+        assert_true(i == 0 || frame.plane[0] == memory); /* no new memory for a second frame */
+        memory = frame.plane[0];
+        assert_null(frame.plane[1]);
+        assert_null(frame.file);
+    }
+    sheen_frame_finish(&frame);
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+/* ---- errors ---- */
+
+static void serve_every_error(int fd)
+{
+    greet(fd);
+    for (int code = sheen_ErrorCode_ERROR_REQUEST; code <= sheen_ErrorCode_ERROR_DEVICE; code++) {
+        if (code == sheen_ErrorCode_ERROR_SHUTTING_DOWN)
+            continue;
+        uint32_t seq = read_message(fd, NULL, 0).seq;
+        send_error(fd, seq, (sheen_ErrorCode)code, "what, where, what to do");
+    }
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    send_error(fd, seq, sheen_ErrorCode_ERROR_SHUTTING_DOWN, "shutting down");
+}
+
+static void every_error_has_its_status(void **state)
+{
+    (void)state;
+    static const struct {
+        enum sheen_status status;
+        int exit_code;
+    } expected[] = {{SHEEN_BAD_REQUEST, 2},   {SHEEN_BAD_MODEL, 3},     {SHEEN_BAD_IMAGE, 3},
+                    {SHEEN_UNKNOWN_MODEL, 4}, {SHEEN_BAD_REQUEST, 2}, /* TOO_BIG of a RENDER */
+                    {SHEEN_OVERLOADED, 4},    {SHEEN_DEVICE_FAILED, 5}, {SHEEN_SHUTTING_DOWN, 4}};
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_frame frame = {0};
+    struct sheen_request request = small_request(SHEEN_FILE_PNG);
+    assert_int_equal(open_session(&fake, serve_every_error, &session, &error), SHEEN_OK);
+    for (size_t i = 0; i < sizeof(expected) / sizeof(*expected); i++) {
+        enum sheen_status status = sheen_render(session, &request, NULL, &frame, &error);
+        assert_int_equal(status, expected[i].status);
+        assert_int_equal(error.status, status);
+        assert_int_equal(sheen_status_exit_code(status), expected[i].exit_code);
+    }
+    assert_string_equal(error.text, "shutting down");
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_LOST_SERVER);
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+static void bad_arguments_send_nothing(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_frame frame = {0};
+    assert_int_equal(open_session(&fake, serve_packed, &session, &error), SHEEN_OK);
+    struct sheen_request request = small_request(SHEEN_PLANES_ZSTD);
+    request.width_px = 0;
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+    request.width_px = 1001; /* this server's limit is 1000 */
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+    assert_non_null(strstr(error.text, "1 to 1000"));
+    request = small_request(SHEEN_PLANES_ZSTD);
+    request.pattern.duty = 2;
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+    request = small_request((enum sheen_format)17);
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+    assert_int_equal(sheen_render(session, NULL, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+    assert_int_equal(sheen_render(NULL, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+    request = small_request(SHEEN_PLANES_ZSTD);
+    assert_int_equal(sheen_render(session, &request, NULL, NULL, &error), SHEEN_BAD_ARGUMENT);
+    /* The session still works. */
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_OK);
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_file_arrives_whole),
+        cmocka_unit_test(lying_frames),
+        cmocka_unit_test(packed_planes),
+        cmocka_unit_test(requests_in_flight),
+        cmocka_unit_test(every_error_has_its_status),
+        cmocka_unit_test(bad_arguments_send_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

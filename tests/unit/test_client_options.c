@@ -1,0 +1,303 @@
+/* The command line: values, tables, what belongs together; and JSON. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client/commands.h"
+#include "client/json.h"
+#include "client/values.h"
+
+static void numbers_are_strict(void **state)
+{
+    (void)state;
+    static const char *const good[] = {"0", "-1.5", "+2", "1e3", ".5", "5.", "1e-300"};
+    static const char *const bad[] = {"",      " 1",  "1 ",  "1x", "nan", "inf", "-inf", "0x10",
+                                      "1e999", "1,5", "--1", "1e", "e5",  ".",   "1.2.3"};
+    double value;
+    for (size_t i = 0; i < sizeof(good) / sizeof(*good); i++)
+        assert_true(value_double(good[i], &value));
+    for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++)
+        assert_false(value_double(bad[i], &value));
+    uint32_t number;
+    assert_true(value_uint32("4294967295", &number));
+    assert_int_equal(number, UINT32_MAX);
+    static const char *const wrong[] = {"", "-1", "+1", "4294967296", "1.0", " 1", "99999999999"};
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++)
+        assert_false(value_uint32(wrong[i], &number));
+}
+
+static void vectors_sizes_colours(void **state)
+{
+    (void)state;
+    double v[3];
+    assert_true(value_vec3("1,-2.5,3e2", v));
+    assert_true(v[0] == 1 && v[1] == -2.5 && v[2] == 300);
+    static const char *const bad_vectors[] = {"",        "1",    "1,2",   "1,2,",    "1,2,3,",
+                                              "1,2,3,4", "1,,3", "1;2;3", "nan,0,0", "1, 2,3"};
+    for (size_t i = 0; i < sizeof(bad_vectors) / sizeof(*bad_vectors); i++)
+        assert_false(value_vec3(bad_vectors[i], v));
+    uint32_t width, height;
+    assert_true(value_size("1x100000", &width, &height));
+    assert_int_equal(width, 1);
+    assert_int_equal(height, 100000);
+    static const char *const bad_sizes[] = {"",   "0x0",   "0x5",  "5x0", "5",           "5x",
+                                            "x5", "5x5x5", "-5x5", "5X5", "4294967296x1"};
+    for (size_t i = 0; i < sizeof(bad_sizes) / sizeof(*bad_sizes); i++)
+        assert_false(value_size(bad_sizes[i], &width, &height));
+    float colour[4];
+    assert_true(value_colour("#ff8000", colour));
+    assert_true(colour[0] == 1 && colour[2] == 0 && colour[3] == 1);
+    assert_true(fabsf(colour[1] - 128 / 255.0f) < 1e-6f);
+    assert_true(value_colour("#00000000", colour));
+    assert_true(colour[3] == 0);
+    static const char *const bad_colours[] = {"",         "#",       "ff8000",     "#ff800",
+                                              "#ff80000", "#gg8000", "#ff8000000", "red"};
+    for (size_t i = 0; i < sizeof(bad_colours) / sizeof(*bad_colours); i++)
+        assert_false(value_colour(bad_colours[i], colour));
+}
+
+static void planes_and_formats(void **state)
+{
+    (void)state;
+    uint32_t planes;
+    assert_true(value_planes("P,N,ptex,light,k", &planes));
+    assert_int_equal(planes, 62);
+    assert_true(value_planes("k", &planes));
+    assert_int_equal(planes, SHEEN_CURVATURE);
+    static const char *const bad[] = {"", "p", "P,", ",P", "P,,N", "P N", "depth"};
+    for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++)
+        assert_false(value_planes(bad[i], &planes));
+    enum sheen_format format;
+    assert_true(value_format("a/b.c/hood.EXR", &format));
+    assert_int_equal(format, SHEEN_FILE_EXR);
+    assert_true(value_format("x.jpeg", &format));
+    assert_int_equal(format, SHEEN_FILE_JPEG);
+    assert_true(value_format("x.tiff", &format));
+    assert_int_equal(format, SHEEN_FILE_TIFF);
+    static const char *const unknown[] = {"", "png", ".png", "a.png/b", "a.bmp", "a.", "a.png "};
+    for (size_t i = 0; i < sizeof(unknown) / sizeof(*unknown); i++)
+        assert_false(value_format(unknown[i], &format));
+}
+
+static void patterns(void **state)
+{
+    (void)state;
+    struct sheen_pattern pattern;
+    const char *image;
+    char why[VALUES_WHY_BYTES];
+    assert_true(value_pattern("stripes", &pattern, &image, why));
+    assert_true(pattern.count == 40 && pattern.duty == 0.5 && !pattern.has_colours);
+    assert_null(image);
+    assert_true(value_pattern("circles:count=7,bg=#000080,duty=0.25", &pattern, &image, why));
+    assert_int_equal(pattern.kind, SHEEN_CIRCLES);
+    assert_true(pattern.count == 7 && pattern.duty == 0.25 && pattern.has_colours);
+    assert_true(pattern.foreground[0] == 1 && pattern.background[3] == 1);
+    assert_true(value_pattern("lattice:count=3", &pattern, &image, why));
+    assert_int_equal(pattern.kind, SHEEN_LATTICE);
+    assert_true(value_pattern("image:a:b,c.png", &pattern, &image, why));
+    assert_int_equal(pattern.kind, SHEEN_IMAGE);
+    assert_string_equal(image, "a:b,c.png");
+    static const char *const bad[][2] = {
+        {"", "patterns are"},         {"dots", "patterns are"},     {"stripes:", "nothing"},
+        {"stripes:count", "'='"},     {"stripes:count=0", "count"}, {"stripes:count=1e6", "count"},
+        {"stripes:duty=1.1", "duty"}, {"stripes:duty=nan", "duty"}, {"stripes:fg=red", "#rrggbb"},
+        {"stripes:n=3", "parts are"}, {"image:", "file"},           {"stripes:count=3,,", "'='"}};
+    for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++) {
+        assert_false(value_pattern(bad[i][0], &pattern, &image, why));
+        assert_non_null(strstr(why, bad[i][1]));
+    }
+}
+
+/* Parses a command line that is written with spaces. */
+static enum options_result parse(const struct command *command, const char *line,
+                                 struct options *options, char *why)
+{
+    static char copy[1000]; /* options point into it */
+    char *argv[32];
+    int argc = 0;
+    snprintf(copy, sizeof(copy), "%s %s", command->name, line);
+    for (char *word = strtok(copy, " "); word; word = strtok(NULL, " "))
+        argv[argc++] = word;
+    argv[argc] = NULL;
+    return options_parse(command, argc, argv, options, why);
+}
+
+static void good_command_lines(void **state)
+{
+    (void)state;
+    struct options options;
+    char why[OPTIONS_WHY_BYTES];
+    assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o out.png", &options, why), OPTIONS_RUN);
+    assert_string_equal(options.model, "m.obj");
+    assert_int_equal(options.request.width_px, 1280);
+    assert_int_equal(options.request.camera.projection, SHEEN_PROJECTION_AUTO);
+    assert_int_equal(options.request.planes, SHEEN_COLOUR);
+    assert_false(options.request.light.is_set);
+    assert_int_equal(parse(&COMMAND_RENDER,
+                           "--json --size 64x32 --eye -1,-2,3 m.glb --target 0,0,0 --ortho 2 "
+                           "--light-center 0,0,4 --light-u 4,0,0 --light-v 0,4,0 --output=o.exr "
+                           "--aov P,N --miss #102030 --lines reflection --surface exact -q",
+                           &options, why),
+                     OPTIONS_RUN);
+    assert_int_equal(options.request.camera.projection, SHEEN_PROJECTION_ORTHOGRAPHIC);
+    assert_true(options.request.camera.eye[0] == -1 && options.request.camera.up[2] == 1);
+    assert_true(options.request.light.is_set && options.json && options.quiet);
+    assert_int_equal(options.request.planes, 7);
+    assert_int_equal(options.request.format, SHEEN_FILE_EXR);
+    assert_true(options.request.has_miss && !options.request.has_empty);
+    assert_int_equal(
+        parse(&COMMAND_STREAM, "m.obj --frames 10 --orbit -3 --light-only", &options, why),
+        OPTIONS_RUN);
+    assert_true(options.frames == 10 && options.orbit_deg == -3 && options.light_only);
+    assert_int_equal(parse(&COMMAND_INFO, "m.obj --server unix:/tmp/s", &options, why),
+                     OPTIONS_RUN);
+    assert_string_equal(options.server, "unix:/tmp/s");
+    assert_int_equal(parse(&COMMAND_STATS, "--device 1", &options, why), OPTIONS_RUN);
+    assert_int_equal(parse(&COMMAND_STATS, "--help --nonsense", &options, why), OPTIONS_HELP);
+}
+
+static void bad_command_lines_name_the_option(void **state)
+{
+    (void)state;
+    static const struct {
+        const struct command *command;
+        const char *line, *word;
+    } bad[] = {
+        {&COMMAND_RENDER, "", "MODEL"},
+        {&COMMAND_RENDER, "m.obj", "-o FILE"},
+        {&COMMAND_RENDER, "m.obj -o", "-o needs a value"},
+        {&COMMAND_RENDER, "m.obj n.obj -o a.png", "n.obj"},
+        {&COMMAND_RENDER, "m.obj -o a.bmp", "--output 'a.bmp'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --aov P", ".exr"},
+        {&COMMAND_RENDER, "m.obj -o a.exr --aov depth", "P,N,ptex,light,k"},
+        {&COMMAND_RENDER, "m.obj -o a.png --size 0x0", "--size '0x0'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --eye 1,2,3", "come together"},
+        {&COMMAND_RENDER, "m.obj -o a.png --target 1,2,3", "come together"},
+        {&COMMAND_RENDER, "m.obj -o a.png --fov 40", "need --eye"},
+        {&COMMAND_RENDER, "m.obj -o a.png --up 0,1,0", "need --eye"},
+        {&COMMAND_RENDER, "m.obj -o a.png --eye 1,1,1 --target 0,0,0 --fov 180", "--fov '180'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --eye 1,1,1 --target 0,0,0 --fov 30 --ortho 2",
+         "exclude"},
+        {&COMMAND_RENDER, "m.obj -o a.png --light-u 1,0,0", "come together"},
+        {&COMMAND_RENDER, "m.obj -o a.png --lines zebra", "not available yet"},
+        {&COMMAND_RENDER, "m.obj -o a.png --surface polygon:3", "not available yet"},
+        {&COMMAND_RENDER, "m.obj -o a.png --pattern dots", "--pattern 'dots'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --empty red", "#rrggbb"},
+        {&COMMAND_RENDER, "m.obj -o a.png --nonsense", "--nonsense"},
+        {&COMMAND_RENDER, "m.obj -o a.png -x", "-x"},
+        {&COMMAND_RENDER, "m.obj -o a.png --device gpu", "--device 'gpu'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --device 0 --server unix:/s", "unix:/s"},
+        {&COMMAND_RENDER, "m.obj -o a.png --json=yes", "--json=yes"},
+        {&COMMAND_STREAM, "m.obj", "--frames"},
+        {&COMMAND_STREAM, "m.obj --frames 0", "--frames '0'"},
+        {&COMMAND_STREAM, "m.obj --frames 1000001", "--frames"},
+        {&COMMAND_STREAM, "m.obj --frames 5 --orbit 361", "--orbit"},
+        {&COMMAND_STREAM, "m.obj --frames 5 -o a.png", "-o"},
+        {&COMMAND_INFO, "m.obj --size 4x4", "--size"},
+        {&COMMAND_STATS, "m.obj", "m.obj"},
+    };
+    struct options options;
+    for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++) {
+        char why[OPTIONS_WHY_BYTES] = "";
+        assert_int_equal(parse(bad[i].command, bad[i].line, &options, why), OPTIONS_WRONG);
+        if (!strstr(why, bad[i].word))
+            fail_msg("'%s': '%s' lacks '%s'", bad[i].line, why, bad[i].word);
+    }
+}
+
+static void the_environment_names_a_server(void **state)
+{
+    (void)state;
+    struct options options;
+    char why[OPTIONS_WHY_BYTES];
+    setenv("SHEEN_SERVER", "unix:/from/environment", 1);
+    assert_int_equal(parse(&COMMAND_STATS, "", &options, why), OPTIONS_RUN);
+    assert_string_equal(options.server, "unix:/from/environment");
+    assert_int_equal(parse(&COMMAND_STATS, "--server tcp:a:1", &options, why), OPTIONS_RUN);
+    assert_string_equal(options.server, "tcp:a:1");
+    setenv("SHEEN_SERVER", "", 1);
+    assert_int_equal(parse(&COMMAND_STATS, "", &options, why), OPTIONS_RUN);
+    assert_null(options.server);
+    unsetenv("SHEEN_SERVER");
+}
+
+static void help_shows_every_option(void **state)
+{
+    (void)state;
+    static const struct command *const commands[] = {&COMMAND_RENDER, &COMMAND_STREAM,
+                                                     &COMMAND_INFO, &COMMAND_STATS};
+    for (size_t i = 0; i < 4; i++) {
+        char *text = NULL;
+        size_t size = 0;
+        FILE *out = open_memstream(&text, &size);
+        options_help(commands[i], out);
+        fclose(out);
+        for (const struct option_row *const *table = commands[i]->tables; *table; table++)
+            for (const struct option_row *row = *table; row->name; row++) {
+                char name[40];
+                snprintf(name, sizeof(name), "--%s", row->name);
+                assert_non_null(strstr(text, name));
+                assert_true(row->help && *row->help);
+            }
+        assert_non_null(strstr(text, "examples:"));
+        free(text);
+    }
+}
+
+static void json_is_json(void **state)
+{
+    (void)state;
+    char *text = NULL;
+    size_t size = 0;
+    struct json json = {.out = open_memstream(&text, &size)};
+    const double v[3] = {0.1, NAN, -INFINITY};
+    json_object_begin(&json, NULL);
+    json_string(&json, "name", "a\"b\\c\nd\x01\x7f\xc3\xbc\xff\xc3");
+    json_uint(&json, "n", UINT64_MAX);
+    json_bool(&json, "yes", true);
+    json_vec3(&json, "v", v);
+    json_hex(&json, "id", (const uint8_t *)"\x00\xff", 2);
+    json_lines(&json, "lines", "one\n\ntwo\n");
+    json_array_begin(&json, "empty");
+    json_array_end(&json);
+    json_object_end(&json);
+    assert_true(json_finish(&json));
+    fclose(json.out);
+    assert_string_equal(text,
+                        "{\n"
+                        "  \"name\": \"a\\\"b\\\\c\\u000ad\\u0001\\u007f\xc3\xbc\\ufffd\\ufffd\",\n"
+                        "  \"n\": 18446744073709551615,\n"
+                        "  \"yes\": true,\n"
+                        "  \"v\": [\n    0.10000000000000001,\n    null,\n    null\n  ],\n"
+                        "  \"id\": \"00ff\",\n"
+                        "  \"lines\": [\n    \"one\",\n    \"two\"\n  ],\n"
+                        "  \"empty\": []\n"
+                        "}\n");
+    free(text);
+    FILE *full = fopen("/dev/full", "w");
+    json = (struct json){.out = full};
+    json_uint(&json, NULL, 1);
+    assert_false(json_finish(&json));
+    fclose(full);
+}
+
+int main(void)
+{
+    unsetenv("SHEEN_SERVER");
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_are_strict),
+        cmocka_unit_test(vectors_sizes_colours),
+        cmocka_unit_test(planes_and_formats),
+        cmocka_unit_test(patterns),
+        cmocka_unit_test(good_command_lines),
+        cmocka_unit_test(bad_command_lines_name_the_option),
+        cmocka_unit_test(the_environment_names_a_server),
+        cmocka_unit_test(help_shows_every_option),
+        cmocka_unit_test(json_is_json),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

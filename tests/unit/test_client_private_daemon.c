@@ -1,0 +1,179 @@
+/* The private daemon's life and death, played by shell scripts. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "client/connection.h"
+#include "client/private_daemon.h"
+#include "client/sheen.h"
+
+static char folder[64], script_path[96], report_path[96];
+
+/* Installs `text` as the daemon. */
+static void play(const char *text)
+{
+    FILE *file = fopen(script_path, "w");
+    assert_non_null(file);
+    fprintf(file, "#!/bin/sh\n%s\n", text);
+    fclose(file);
+    assert_int_equal(chmod(script_path, 0700), 0);
+    setenv("SHEEN_DAEMON", script_path, 1);
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    strcpy(folder, "/tmp/sheen-test-XXXXXX");
+    if (!mkdtemp(folder))
+        return -1;
+    snprintf(script_path, sizeof(script_path), "%s/sheend", folder);
+    snprintf(report_path, sizeof(report_path), "%s/report", folder);
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    unlink(script_path);
+    unlink(report_path);
+    return rmdir(folder);
+}
+
+static void no_child_is_left(void)
+{
+    errno = 0;
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
+    assert_int_equal(errno, ECHILD);
+}
+
+static void connect_ends_with(enum sheen_status status, const char *text)
+{
+    struct sheen_error error = {0};
+    struct sheen_session *session;
+    struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS;
+    assert_int_equal(sheen_connect(&session, &options, &error), status);
+    assert_null(session);
+    assert_ptr_equal(strstr(error.text, text), error.text);
+    assert_null(strchr(error.text, '\n'));
+    no_child_is_left();
+}
+
+static void a_daemon_without_a_device(void **state)
+{
+    (void)state;
+    play("echo 'first line' >&2; echo 'sheend: no EGL device: none was found' >&2; exit 5");
+    connect_ends_with(SHEEN_DEVICE_FAILED, "no EGL device: none was found");
+    assert_int_equal(sheen_status_exit_code(SHEEN_DEVICE_FAILED), 5);
+}
+
+static void a_daemon_that_dies_at_start(void **state)
+{
+    (void)state;
+    play("echo 'sheend: out of luck' >&2; echo >&2; exit 1");
+    connect_ends_with(SHEEN_LOST_SERVER, "out of luck");
+    play("exit 7");
+    connect_ends_with(SHEEN_LOST_SERVER, "the private daemon ended with exit code 7");
+    play("exit 0");
+    connect_ends_with(SHEEN_LOST_SERVER, "the private daemon ended with exit code 0");
+    play("kill -9 $$");
+    connect_ends_with(SHEEN_LOST_SERVER, "the private daemon died of signal 9");
+    play("printf 'control \\033[2J\\n' >&2; exit 1");
+    connect_ends_with(SHEEN_LOST_SERVER, "control ?[2J");
+    /* A flood: only the end is read, and it fits. */
+    play("i=0; while [ $i -lt 300 ]; do echo xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx >&2; "
+         "i=$((i+1)); done; echo 'the last line' >&2; exit 1");
+    connect_ends_with(SHEEN_LOST_SERVER, "the last line");
+}
+
+static void a_daemon_that_cannot_be_started(void **state)
+{
+    (void)state;
+    setenv("SHEEN_DAEMON", "/no/such/sheend", 1);
+    connect_ends_with(SHEEN_NO_SERVER, "cannot start a private daemon (/no/such/sheend)");
+    assert_int_equal(sheen_status_exit_code(SHEEN_NO_SERVER), 4);
+}
+
+static void a_daemon_that_speaks_nonsense(void **state)
+{
+    (void)state;
+    play("echo 'hello, this is no sheend at all' >&3; cat <&3 >/dev/null");
+    connect_ends_with(SHEEN_BAD_PEER, "the server broke the protocol");
+}
+
+/* Reads what the script wrote into the report. */
+static void read_report(char *text, size_t size)
+{
+    FILE *file = fopen(report_path, "r");
+    assert_non_null(file);
+    size_t n = fread(text, 1, size - 1, file);
+    text[n] = 0;
+    fclose(file);
+}
+
+static void arguments_and_files(void **state)
+{
+    (void)state;
+    char script[400], report[400];
+    /* $# $*: the arguments; then the open files (one more is ls's own). */
+    snprintf(script, sizeof(script),
+             "echo \"$*\" > %s; ls /proc/self/fd | tr '\\n' ' ' >> %s; exit 1", report_path,
+             report_path);
+    int leaked = open("/dev/null", O_RDONLY); /* not close-on-exec, as a careless program has it */
+    assert_true(leaked >= 3);
+    int far = fcntl(leaked, F_DUPFD, 200);
+    play(script);
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS;
+    options.device = "software";
+    assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_LOST_SERVER);
+    read_report(report, sizeof(report));
+    assert_string_equal(report, "--session-fd 3 --device software\n0 1 2 3 4 ");
+    options.device = NULL;
+    assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_LOST_SERVER);
+    read_report(report, sizeof(report));
+    assert_string_equal(report, "--session-fd 3\n0 1 2 3 4 ");
+    close(leaked);
+    close(far);
+    no_child_is_left();
+}
+
+static void the_daemon_ends_with_its_socket(void **state)
+{
+    (void)state;
+    struct connection connection;
+    struct private_daemon daemon;
+    struct sheen_error error;
+    int peer_fd;
+    play("cat <&3 >/dev/null"); /* until the end of the stream */
+    assert_int_equal(connection_pair(&connection, &peer_fd, 1000, &error), SHEEN_OK);
+    assert_int_equal(private_daemon_start(&daemon, peer_fd, NULL, &error), SHEEN_OK);
+    close(peer_fd);
+    assert_int_equal(waitpid(daemon.pid, NULL, WNOHANG), 0);
+    connection_finish(&connection);
+    private_daemon_finish(&daemon);
+    no_child_is_left();
+    private_daemon_finish(&daemon); /* twice is safe */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_daemon_without_a_device),
+        cmocka_unit_test(a_daemon_that_dies_at_start),
+        cmocka_unit_test(a_daemon_that_cannot_be_started),
+        cmocka_unit_test(a_daemon_that_speaks_nonsense),
+        cmocka_unit_test(arguments_and_files),
+        cmocka_unit_test(the_daemon_ends_with_its_socket),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
