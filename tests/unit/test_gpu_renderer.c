@@ -1,0 +1,308 @@
+/* The renderer by itself: tables spread over several buffer textures, frames of several tiles, the
+ * planes kept for a light-only change, and requests that cannot be rendered. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "server/gpu/renderer.h"
+
+struct scene {
+    struct cage cage;
+    struct limit_tables tables;
+};
+
+static void scene_read(struct scene *scene, const char *bytes, size_t size)
+{
+    struct error error = {0};
+    if (!cage_read(&scene->cage, bytes, size, "scene.obj", &error))
+        fail_msg("%s", error.text);
+    struct limit_plan *plan = limit_plan_create(&scene->cage, &error);
+    assert_non_null(plan);
+    assert_true(limit_tables_init(&scene->tables, plan, &error));
+    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, &error));
+    limit_plan_destroy(plan);
+}
+
+static void scene_init(struct scene *scene, const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    static char bytes[1 << 20];
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    scene_read(scene, bytes, size);
+}
+
+/* A torus of n x n quads: regular patches only. */
+static void scene_init_torus(struct scene *scene, unsigned n)
+{
+    static char text[1 << 16];
+    size_t used = 0;
+    for (unsigned k = 0; k < n * n; k++) {
+        double a = 6.283185307179586 * (k / n) / n, b = 6.283185307179586 * (k % n) / n;
+        double r = 2 + cos(b);
+        used += (size_t)snprintf(text + used, sizeof text - used, "v %.17g %.17g %.17g\n",
+                                 r * cos(a), r * sin(a), sin(b));
+    }
+    for (unsigned k = 0; k < n * n; k++) {
+        unsigned i = k / n, j = k % n, i2 = (i + 1) % n, j2 = (j + 1) % n;
+        used += (size_t)snprintf(text + used, sizeof text - used, "f %u %u %u %u\n", i * n + j + 1,
+                                 i2 * n + j + 1, i2 * n + j2 + 1, i * n + j2 + 1);
+    }
+    scene_read(scene, text, used);
+}
+
+static void scene_finish(struct scene *scene)
+{
+    limit_tables_finish(&scene->tables);
+    cage_finish(&scene->cage);
+}
+
+static struct renderer *open_renderer(size_t max_texels)
+{
+    struct error error = {0};
+    struct renderer_options options = {.device = "auto", .max_texels = max_texels};
+    struct renderer *renderer = renderer_create(&options, &error);
+    if (!renderer)
+        fail_msg("%s", error.text);
+    return renderer;
+}
+
+static struct frame_request request_for(const struct scene *scene, uint32_t width, uint32_t height)
+{
+    struct frame_request request = {
+        .width_px = width,
+        .height_px = height,
+        .pattern = {.kind = PATTERN_STRIPES,
+                    .count = 40,
+                    .duty = 0.5,
+                    .foreground = {1, 1, 1, 1},
+                    .background = {0, 0, 0, 1}},
+        .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_LIGHT,
+    };
+    const double *low = scene->tables.box_min, *high = scene->tables.box_max;
+    renderer_default_camera(low, high, width, height, &request.camera);
+    renderer_default_light(low, high, &request.camera, &request.light);
+    return request;
+}
+
+static struct frame render(struct renderer *renderer, struct renderer_model *model,
+                           const struct frame_request *request)
+{
+    struct error error = {0};
+    struct frame frame;
+    if (!renderer_render(renderer, model, request, &frame, &error))
+        fail_msg("%s", error.text);
+    return frame;
+}
+
+static struct renderer_model *upload(struct renderer *renderer, const struct scene *scene)
+{
+    struct error error = {0};
+    struct renderer_model *model = renderer_model_create(renderer, &scene->tables, &error);
+    if (!model)
+        fail_msg("%s", error.text);
+    return model;
+}
+
+static void assert_same_frames(const struct frame *a, const struct frame *b)
+{
+    size_t pixels = (size_t)a->width_px * a->height_px;
+    for (int p = 0; p < PLANE_COUNT; p++) {
+        assert_int_equal(a->plane[p] != NULL, b->plane[p] != NULL);
+        size_t bytes = pixels * renderer_plane_bytes((enum renderer_plane)(1 << p));
+        if (a->plane[p] && memcmp(a->plane[p], b->plane[p], bytes) != 0)
+            fail_msg("plane %d differs", p);
+    }
+}
+
+static size_t hits(const struct frame *frame)
+{
+    const uint32_t(*ptex)[3] = frame->plane[3];
+    size_t n = 0;
+    for (size_t k = 0; k < (size_t)frame->width_px * frame->height_px; k++)
+        n += ptex[k][0] != UINT32_MAX;
+    return n;
+}
+
+/* Tables spread over several buffers give the same frame. */
+static void assert_banks_do_not_show(const struct scene *scene, size_t max_texels)
+{
+    struct frame_request request = request_for(scene, 320, 200);
+    struct frame frame[2];
+    for (int k = 0; k < 2; k++) {
+        struct renderer *renderer = open_renderer(k ? max_texels : 0);
+        struct renderer_model *model = upload(renderer, scene);
+        frame[k] = render(renderer, model, &request);
+        renderer_model_destroy(renderer, model);
+        renderer_destroy(renderer);
+    }
+    assert_true(hits(&frame[0]) > 5000);
+    assert_same_frames(&frame[0], &frame[1]);
+    frame_finish(&frame[0]);
+    frame_finish(&frame[1]);
+}
+
+static void test_point_banks(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene, "tests/models/fender.obj");
+    assert_banks_do_not_show(&scene, scene.tables.n_points / 5 + 1);
+    scene_finish(&scene);
+}
+
+/* 144 regular faces: 2304 point texels, 432 node texels. */
+static void test_node_banks(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init_torus(&scene, 12);
+    assert_int_equal(scene.tables.n_regular, 144);
+    assert_banks_do_not_show(&scene, 289);
+    scene_finish(&scene);
+}
+
+static void test_too_few_texels(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene, "tests/models/fender.obj");
+    struct renderer *renderer = open_renderer(100);
+    struct error error = {0};
+    assert_null(renderer_model_create(renderer, &scene.tables, &error));
+    assert_int_equal(error.kind, ERROR_DEVICE);
+    assert_non_null(strstr(error.text, "texels"));
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+}
+
+/* Across the border of two tiles every pixel still shows the point that projects onto it. */
+static void test_tiles(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene, "tests/models/plane.obj");
+    struct renderer *renderer = open_renderer(0);
+    struct renderer_model *model = upload(renderer, &scene);
+    struct frame_request request = request_for(&scene, 4200, 24);
+    request.camera = (struct camera){.kind = CAMERA_ORTHOGRAPHIC,
+                                     .eye = {0.1, 0, 5},
+                                     .target = {0.1, 0, 0},
+                                     .up = {0, 1, 0},
+                                     .ortho_height = 24 * 1.2 / 4200};
+    struct frame frame = render(renderer, model, &request);
+    const float(*position)[3] = frame.plane[1];
+    double unit = 1.2 / 4200;
+    for (uint32_t y = 0; y < 24; y++) {
+        for (uint32_t x = 0; x < 4200; x++) {
+            const float *p = position[(size_t)y * 4200 + x];
+            double off_x = (p[0] - 0.1) / unit + 2100 - (x + 0.5);
+            double off_y = -p[1] / unit + 12 - (y + 0.5);
+            if (!(fabs(off_x) < 0.01 && fabs(off_y) < 0.01))
+                fail_msg("pixel %u,%u shows a point %g,%g px away", x, y, off_x, off_y);
+        }
+    }
+    frame_finish(&frame);
+    renderer_model_destroy(renderer, model);
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+}
+
+/* A light-only change runs no other stage, and gives the frame that a fresh renderer gives. */
+static void test_light_only(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene, "tests/models/body.obj");
+    struct renderer *renderer = open_renderer(0), *fresh = open_renderer(0);
+    struct renderer_model *model = upload(renderer, &scene), *again = upload(fresh, &scene);
+    struct frame_request request = request_for(&scene, 200, 120);
+    struct frame frame = render(renderer, model, &request);
+    assert_true(frame.times.evaluate_us > 0);
+    frame_finish(&frame);
+    request.light.centre[0] += 0.3;
+    request.pattern.kind = PATTERN_LATTICE;
+    frame = render(renderer, model, &request);
+    assert_int_equal(frame.times.visibility_us, 0);
+    assert_int_equal(frame.times.evaluate_us, 0);
+    struct frame expected = render(fresh, again, &request);
+    assert_same_frames(&frame, &expected);
+    frame_finish(&frame);
+    frame_finish(&expected);
+
+    request.camera.eye[0] += 1e-3;
+    frame = render(renderer, model, &request);
+    assert_true(frame.times.evaluate_us > 0);
+    frame_finish(&frame);
+    renderer_model_destroy(renderer, model);
+    renderer_model_destroy(fresh, again);
+    renderer_destroy(renderer);
+    renderer_destroy(fresh);
+    scene_finish(&scene);
+}
+
+static void test_refused_requests(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene, "tests/models/tetra.obj");
+    struct renderer *renderer = open_renderer(0);
+    struct renderer_model *model = upload(renderer, &scene);
+    const struct frame_request good = request_for(&scene, 64, 64);
+    struct frame_request bad[] = {good, good, good, good, good, good, good, good, good};
+    const char *const expected[] = {"size",   "size",  "same point", "up",  "fov",
+                                    "finite", "light", "count",      "duty"};
+    bad[0].width_px = 0;
+    bad[1].height_px = 100000;
+    memcpy(bad[2].camera.target, bad[2].camera.eye, sizeof bad[2].camera.eye);
+    for (int k = 0; k < 3; k++)
+        bad[3].camera.up[k] = bad[3].camera.target[k] - bad[3].camera.eye[k];
+    bad[4].camera.fov_deg = 180;
+    bad[5].camera.eye[1] = NAN;
+    memcpy(bad[6].light.v, bad[6].light.u, sizeof bad[6].light.u);
+    bad[7].pattern.count = 0;
+    bad[8].pattern.duty = 2;
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        struct error error = {0};
+        struct frame frame;
+        assert_false(renderer_render(renderer, model, &bad[k], &frame, &error));
+        assert_int_equal(error.kind, ERROR_REQUEST);
+        if (!strstr(error.text, expected[k]))
+            fail_msg("case %zu: '%s' does not name '%s'", k, error.text, expected[k]);
+    }
+    struct frame frame = render(renderer, model, &good);
+    assert_true(hits(&frame) > 100);
+    frame_finish(&frame);
+    renderer_model_destroy(renderer, model);
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+}
+
+static void test_unknown_devices(void **state)
+{
+    (void)state;
+    struct error error = {0};
+    assert_null(renderer_create(&(struct renderer_options){.device = "999"}, &error));
+    assert_int_equal(error.kind, ERROR_DEVICE);
+    assert_null(renderer_create(&(struct renderer_options){.device = "gpu"}, &error));
+    assert_int_equal(error.kind, ERROR_REQUEST);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_point_banks),     cmocka_unit_test(test_node_banks),
+        cmocka_unit_test(test_too_few_texels),  cmocka_unit_test(test_tiles),
+        cmocka_unit_test(test_light_only),      cmocka_unit_test(test_refused_requests),
+        cmocka_unit_test(test_unknown_devices),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
