@@ -1,0 +1,62 @@
+/* Images in and out through OpenImageIO, behind a C header: the one file that includes OpenImageIO
+ * is image.cpp. Thread: every function may be called from any thread, on different data. */
+#ifndef SHEEN_IMAGE_IMAGE_H
+#define SHEEN_IMAGE_IMAGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/error.h"
+
+/* Of decoded pixels: a small file can hold many. */
+#define IMAGE_MAX_BYTES (1024ull * 1024 * 1024)
+/* Width and height of a file written. */
+#define IMAGE_MAX_PX (1u << 20)
+
+/* A decoded light image: RGBA, top row first, rows contiguous, values as stored in the file (no
+ * colour conversion). Owned by the caller; free with image_finish(). */
+struct image {
+    uint32_t width_px, height_px;
+    bool is_float; /* pixels are float[4] (file held more than 8 bits), else uint8_t[4] */
+    void *pixels;
+};
+
+/* Decodes any format OpenImageIO reads from memory. Grey becomes RGB, missing alpha becomes 1.
+ * Refuses images wider or higher than max_px or over IMAGE_MAX_BYTES (named in the error). `name`
+ * tells the format where the bytes do not, and stands in messages; it opens nothing. NaN becomes 0.
+ * On failure *image is empty: ERROR_IMAGE, or ERROR_SERVER when memory is short. */
+bool image_decode(struct image *image, const void *bytes, size_t size, const char *name,
+                  uint32_t max_px, struct error *error);
+void image_finish(struct image *image);
+
+enum image_type { IMAGE_UINT8, IMAGE_FLOAT, IMAGE_UINT32 };
+
+/* One channel of an image to be written: name as in EXR ("R", "P.X", "ptex.face"), samples at
+ * data + y * row_stride_bytes + x * pixel_stride_bytes, top row first. Not owned. */
+struct image_channel {
+    const char *name;
+    enum image_type type;
+    const void *data;
+    size_t pixel_stride_bytes;
+    size_t row_stride_bytes;
+};
+
+/* A text attribute that goes into PNG text chunks, EXR attributes, TIFF or JPEG description. */
+struct image_attribute {
+    const char *name;
+    const char *value;
+};
+
+enum image_format { IMAGE_PNG, IMAGE_EXR, IMAGE_JPEG, IMAGE_TIFF };
+
+/* Encodes to a malloc'd buffer that the caller frees. PNG and JPEG take the UINT8 channels R G B
+ * (A for PNG) only; TIFF takes R G B A; EXR takes any mix of types, UINT8 colour written as HALF in
+ * [0,1]. The same input gives the same bytes: no clock, host or path is written. A plane that the
+ * format cannot hold is ERROR_REQUEST, except that JPEG drops A. */
+bool image_encode(enum image_format format, uint32_t width_px, uint32_t height_px,
+                  const struct image_channel *channels, size_t n_channels,
+                  const struct image_attribute *attributes, size_t n_attributes, uint8_t **bytes,
+                  size_t *size, struct error *error);
+
+#endif

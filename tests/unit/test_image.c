@@ -1,0 +1,303 @@
+/* server/image: every format there and back, the same bytes at any time, and files that are none.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "server/image/image.h"
+
+enum { WIDTH = 67, HEIGHT = 131 }; /* odd, and more rows than one strip */
+
+struct picture {
+    uint8_t colour[HEIGHT][WIDTH][4];
+    float position[HEIGHT][WIDTH][3];
+    uint32_t face[HEIGHT][WIDTH];
+};
+
+static const struct image_attribute ATTRIBUTES[] = {
+    {"sheen:version", "1.2.3"},
+    {"sheen:camera", "eye=1,2,3 fov=35"},
+};
+
+static struct picture *picture_create(void)
+{
+    struct picture *p = malloc(sizeof *p);
+    assert_non_null(p);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            uint8_t c[4] = {(uint8_t)(3 * x), (uint8_t)y, (uint8_t)(x ^ y), (uint8_t)(255 - y)};
+            memcpy(p->colour[y][x], c, 4);
+            for (int i = 0; i < 3; i++)
+                p->position[y][x][i] = (float)(x * 1e-3 + y * 1e3 + i);
+            p->face[y][x] = x == 0 ? UINT32_MAX : (uint32_t)(y * WIDTH + x);
+        }
+    return p;
+}
+
+static size_t colour_channels(const struct picture *p, struct image_channel channels[4])
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    for (int i = 0; i < 4; i++)
+        channels[i] =
+            (struct image_channel){names[i], IMAGE_UINT8, &p->colour[0][0][i], 4, WIDTH * 4};
+    return 4;
+}
+
+static uint8_t *encode(enum image_format format, const struct image_channel *channels, size_t n,
+                       size_t *size)
+{
+    uint8_t *bytes;
+    struct error error = {0};
+    if (!image_encode(format, WIDTH, HEIGHT, channels, n, ATTRIBUTES, 2, &bytes, size, &error))
+        fail_msg("%s", error.text);
+    return bytes;
+}
+
+static uint8_t *encode_colour(enum image_format format, size_t *size)
+{
+    struct picture *p = picture_create();
+    struct image_channel channels[4];
+    uint8_t *bytes = encode(format, channels, colour_channels(p, channels), size);
+    free(p);
+    return bytes;
+}
+
+static bool contains(const uint8_t *bytes, size_t size, const void *what, size_t n)
+{
+    return memmem(bytes, size, what, n) != NULL;
+}
+
+static void expect_refused(const void *bytes, size_t size, const char *name, enum error_kind kind,
+                           const char *words)
+{
+    struct image image;
+    struct error error = {0};
+    assert_false(image_decode(&image, bytes, size, name, 16384, &error));
+    assert_null(image.pixels);
+    if (error.kind != kind || !strstr(error.text, words) || !strstr(error.text, name))
+        fail_msg("kind %d, '%s' wants '%s'", error.kind, error.text, words);
+    assert_null(strchr(error.text, '\n'));
+}
+
+static void test_lossless_round_trip(void **state)
+{
+    (void)state;
+    static const enum image_format formats[] = {IMAGE_PNG, IMAGE_TIFF};
+    struct picture *p = picture_create();
+    for (size_t f = 0; f < 2; f++) {
+        size_t size;
+        uint8_t *bytes = encode_colour(formats[f], &size);
+        struct image image;
+        struct error error = {0};
+        if (!image_decode(&image, bytes, size, "no-ending", 16384, &error))
+            fail_msg("%s", error.text);
+        assert_int_equal(image.width_px, WIDTH);
+        assert_int_equal(image.height_px, HEIGHT);
+        assert_false(image.is_float);
+        assert_memory_equal(image.pixels, p->colour, sizeof p->colour);
+        assert_true(contains(bytes, size, "1.2.3", 5));
+        assert_true(contains(bytes, size, "sheen:camera", 12));
+        image_finish(&image);
+        free(bytes);
+    }
+    free(p);
+}
+
+static void test_jpeg_round_trip(void **state)
+{
+    (void)state;
+    /* Chroma in single columns: 4:2:0 would average it away. */
+    struct picture *p = picture_create();
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            memcpy(p->colour[y][x], x & 1 ? "\xff\0\0\xff" : "\0\0\xff\xff", 4);
+    struct image_channel channels[4];
+    size_t size;
+    uint8_t *bytes = encode(IMAGE_JPEG, channels, colour_channels(p, channels), &size);
+    struct image image;
+    struct error error = {0};
+    if (!image_decode(&image, bytes, size, "x.jpg", 16384, &error))
+        fail_msg("%s", error.text);
+    int worst = 0;
+    const uint8_t *got = image.pixels, *want = &p->colour[0][0][0];
+    for (size_t i = 0; i < sizeof p->colour; i++)
+        worst = abs(got[i] - want[i]) > worst ? abs(got[i] - want[i]) : worst;
+    assert_true(worst <= 24);
+    assert_true(contains(bytes, size, "sheen:version=1.2.3", 19));
+    image_finish(&image);
+    free(bytes);
+    free(p);
+}
+
+static void test_exr_types(void **state)
+{
+    (void)state;
+    struct picture *p = picture_create();
+    struct image_channel c[8];
+    size_t n = colour_channels(p, c);
+    static const char *const names[] = {"P.X", "P.Y", "P.Z"};
+    for (int i = 0; i < 3; i++)
+        c[n++] =
+            (struct image_channel){names[i], IMAGE_FLOAT, &p->position[0][0][i], 12, WIDTH * 12};
+    c[n++] = (struct image_channel){"ptex.face", IMAGE_UINT32, p->face, 4, WIDTH * 4};
+    size_t size;
+    uint8_t *bytes = encode(IMAGE_EXR, c, n, &size);
+    /* In the channel list a name, its 0, and the type: 0 UINT, 1 HALF, 2 FLOAT. */
+    assert_true(contains(bytes, size, "R\0\1\0\0\0", 6));
+    assert_true(contains(bytes, size, "P.X\0\2\0\0\0", 8));
+    assert_true(contains(bytes, size, "ptex.face\0\0\0\0\0", 14));
+    assert_true(contains(bytes, size, "sheen:version", 13));
+
+    struct image image;
+    struct error error = {0};
+    if (!image_decode(&image, bytes, size, "x.exr", 16384, &error))
+        fail_msg("%s", error.text);
+    assert_true(image.is_float);
+    const float(*pixels)[4] = image.pixels;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            for (int i = 0; i < 4; i++)
+                assert_int_equal((int)(pixels[y * WIDTH + x][i] * 255 + 0.5f), p->colour[y][x][i]);
+    image_finish(&image);
+    free(bytes);
+
+    /* Single precision comes back bit for bit. */
+    struct image_channel position[] = {c[4], c[5], c[6]};
+    position[0].name = "R", position[1].name = "G", position[2].name = "B";
+    bytes = encode(IMAGE_EXR, position, 3, &size);
+    assert_true(image_decode(&image, bytes, size, "x.exr", 16384, &error));
+    const float *got = image.pixels;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        assert_memory_equal(got + 4 * i, &p->position[0][0][0] + 3 * i, 12);
+        assert_true(got[4 * i + 3] == 1.0f);
+    }
+    image_finish(&image);
+    free(bytes);
+    free(p);
+}
+
+static void test_same_bytes_at_any_time(void **state)
+{
+    (void)state;
+    static const enum image_format formats[] = {IMAGE_PNG, IMAGE_EXR, IMAGE_JPEG, IMAGE_TIFF};
+    uint8_t *first[4];
+    size_t first_size[4];
+    for (size_t f = 0; f < 4; f++)
+        first[f] = encode_colour(formats[f], &first_size[f]);
+    for (time_t start = time(NULL); time(NULL) < start + 2;)
+        nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+    char year[8];
+    time_t now = time(NULL);
+    strftime(year, sizeof year, "%Y:", localtime(&now));
+    for (size_t f = 0; f < 4; f++) {
+        size_t size;
+        uint8_t *again = encode_colour(formats[f], &size);
+        assert_int_equal(size, first_size[f]);
+        assert_memory_equal(again, first[f], size);
+        assert_false(contains(again, size, year, strlen(year)));
+        free(again);
+        free(first[f]);
+    }
+}
+
+static void test_grey_and_missing_alpha(void **state)
+{
+    (void)state;
+    static const char grey[] = "P5\n2 1\n255\n\x10\xf0";
+    struct image image;
+    struct error error = {0};
+    if (!image_decode(&image, grey, sizeof grey - 1, "grey.pgm", 16384, &error))
+        fail_msg("%s", error.text);
+    assert_memory_equal(image.pixels, "\x10\x10\x10\xff\xf0\xf0\xf0\xff", 8);
+    image_finish(&image);
+}
+
+static void test_no_image(void **state)
+{
+    (void)state;
+    char text[4096];
+    memset(text, 'v', sizeof text);
+    expect_refused(text, sizeof text, "cage.obj", ERROR_IMAGE, "not an image");
+    expect_refused(text, sizeof text, "lie.png", ERROR_IMAGE, "not a readable png");
+    expect_refused(text, sizeof text, "lie.null", ERROR_IMAGE, "not an image");
+    expect_refused(text, sizeof text, "lie.tga", ERROR_IMAGE, "lie.tga");
+    expect_refused(text, sizeof text, "../../etc/passwd", ERROR_IMAGE, "not an image");
+    expect_refused(text, sizeof text, "film.avi", ERROR_IMAGE, "cannot be read from memory");
+    expect_refused("", 0, "empty.png", ERROR_IMAGE, "empty");
+    static const char huge[] = "P6\n100000 100000\n255\nabc";
+    expect_refused(huge, sizeof huge - 1, "huge.ppm", ERROR_IMAGE, "100000 x 100000");
+    static const char bomb[] = "P6\n16384 16385\n255\nabc";
+    expect_refused(bomb, sizeof bomb - 1, "bomb.ppm", ERROR_IMAGE, "16384 x 16385");
+    static const char bytes[] = "PF\n16384 16384\n-1\nabc";
+    expect_refused(bytes, sizeof bytes - 1, "bytes.pfm", ERROR_IMAGE, "bytes");
+}
+
+/* Cut anywhere, a file is refused or, where the format allows it, decoded: never a crash. The cut
+ * in the middle of the pixels must be refused. */
+static void test_truncated(void **state)
+{
+    (void)state;
+    static const enum image_format formats[] = {IMAGE_PNG, IMAGE_EXR, IMAGE_JPEG, IMAGE_TIFF};
+    static const char *const names[] = {"cut.png", "cut.exr", "cut.jpg", "cut.tif"};
+    for (size_t f = 0; f < 4; f++) {
+        size_t size;
+        uint8_t *bytes = encode_colour(formats[f], &size);
+        for (size_t cut = 1; cut < size; cut += 1 + size / 61) {
+            uint8_t *part = malloc(cut); /* exact, so that a checker sees a read past the end */
+            assert_non_null(part);
+            memcpy(part, bytes, cut);
+            struct image image;
+            struct error error = {0};
+            if (image_decode(&image, part, cut, names[f], 16384, &error))
+                image_finish(&image);
+            else
+                assert_true(strstr(error.text, names[f]) != NULL);
+            free(part);
+        }
+        expect_refused(bytes, size / 2, names[f], ERROR_IMAGE, names[f]);
+        free(bytes);
+    }
+}
+
+static void test_planes_a_format_cannot_hold(void **state)
+{
+    (void)state;
+    struct picture *p = picture_create();
+    struct image_channel c[5];
+    size_t n = colour_channels(p, c);
+    c[n++] = (struct image_channel){"P.X", IMAGE_FLOAT, p->position, 12, WIDTH * 12};
+    static const enum image_format formats[] = {IMAGE_PNG, IMAGE_JPEG, IMAGE_TIFF};
+    for (size_t f = 0; f < 3; f++) {
+        uint8_t *bytes;
+        size_t size;
+        struct error error = {0};
+        assert_false(image_encode(formats[f], WIDTH, HEIGHT, c, n, NULL, 0, &bytes, &size, &error));
+        assert_int_equal(error.kind, ERROR_REQUEST);
+        assert_non_null(strstr(error.text, "P.X"));
+        assert_null(bytes);
+        assert_false(image_encode(formats[f], WIDTH, HEIGHT, c, 2, NULL, 0, &bytes, &size, &error));
+        assert_false(image_encode(formats[f], 0, HEIGHT, c, 4, NULL, 0, &bytes, &size, &error));
+    }
+    free(p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_lossless_round_trip),
+        cmocka_unit_test(test_jpeg_round_trip),
+        cmocka_unit_test(test_exr_types),
+        cmocka_unit_test(test_same_bytes_at_any_time),
+        cmocka_unit_test(test_grey_and_missing_alpha),
+        cmocka_unit_test(test_no_image),
+        cmocka_unit_test(test_truncated),
+        cmocka_unit_test(test_planes_a_format_cannot_hold),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
