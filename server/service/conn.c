@@ -1,0 +1,277 @@
+#include "server/service/conn.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#define MAX_PIECES 64 /* blocks per sendmsg() */
+
+struct conn_block {
+    struct conn_block *next;
+    const uint8_t *bytes;
+    size_t size, sent;
+    void (*release)(void *);
+    void *owner;
+    uint8_t copy[]; /* of conn_send() */
+};
+
+static void update_events(struct conn *conn)
+{
+    bool reads = !conn->peer_ended && (conn->state != CONN_OPEN || !conn->held);
+    bool writes = conn->out_head != NULL;
+    loop_change(conn->loop, &conn->source, (reads ? EPOLLIN : 0u) | (writes ? EPOLLOUT : 0u));
+}
+
+static void drop_block(struct conn *conn)
+{
+    struct conn_block *block = conn->out_head;
+    conn->out_head = block->next;
+    if (!conn->out_head)
+        conn->out_tail = NULL;
+    conn->unsent_bytes -= block->size - block->sent;
+    if (block->release)
+        block->release(block->owner);
+    free(block);
+}
+
+void conn_close(struct conn *conn)
+{
+    if (conn->state == CONN_CLOSED)
+        return;
+    conn->state = CONN_CLOSED;
+    int fd = conn->source.fd;
+    loop_unwatch(conn->loop, &conn->source);
+    close(fd);
+    while (conn->out_head)
+        drop_block(conn);
+    conn->in_used = 0;
+}
+
+void conn_finish(struct conn *conn)
+{
+    conn_close(conn);
+    free(conn->in);
+    conn->in = NULL;
+}
+
+/* The peer must see what was sent before the end: closing a socket with unread input would reset
+ * the connection and lose it. */
+static void linger(struct conn *conn)
+{
+    conn->state = CONN_LINGERING;
+    conn->last_in_us = loop_now_us();
+    shutdown(conn->source.fd, SHUT_WR);
+    if (conn->peer_ended)
+        conn_close(conn);
+}
+
+void conn_close_after_flush(struct conn *conn)
+{
+    if (conn->state != CONN_OPEN)
+        return;
+    conn->state = CONN_FLUSHING;
+    conn->in_used = 0;
+    conn_flush(conn);
+    if (conn->state == CONN_FLUSHING)
+        update_events(conn);
+}
+
+static struct conn_block *append(struct conn *conn, size_t size, size_t copied)
+{
+    struct conn_block *block = conn->state == CONN_OPEN ? malloc(sizeof *block + copied) : NULL;
+    if (!block) {
+        if (conn->state == CONN_OPEN)
+            conn_close(conn);
+        return NULL;
+    }
+    *block = (struct conn_block){.bytes = block->copy, .size = size};
+    if (conn->out_tail)
+        conn->out_tail->next = block;
+    else
+        conn->out_head = block;
+    conn->out_tail = block;
+    if (conn->unsent_bytes == 0)
+        conn->last_out_us = loop_now_us(); /* the stall clock starts with the first byte to send */
+    conn->unsent_bytes += size;
+    return block;
+}
+
+void conn_send(struct conn *conn, const void *bytes, size_t size)
+{
+    struct conn_block *block = append(conn, size, size);
+    if (block)
+        memcpy(block->copy, bytes, size);
+}
+
+void conn_send_block(struct conn *conn, const void *bytes, size_t size, void (*release)(void *),
+                     void *owner)
+{
+    struct conn_block *block = append(conn, size, 0);
+    if (block) {
+        block->bytes = bytes;
+        block->release = release;
+        block->owner = owner;
+    } else if (release) {
+        release(owner);
+    }
+}
+
+static ssize_t write_some(struct conn *conn)
+{
+    struct iovec pieces[MAX_PIECES];
+    struct msghdr message = {.msg_iov = pieces};
+    for (struct conn_block *b = conn->out_head; b && message.msg_iovlen < MAX_PIECES; b = b->next) {
+        struct iovec *piece = &pieces[message.msg_iovlen++];
+        memcpy(&piece->iov_base, &(const void *){b->bytes + b->sent}, sizeof(void *));
+        piece->iov_len = b->size - b->sent;
+    }
+    return sendmsg(conn->source.fd, &message, MSG_NOSIGNAL);
+}
+
+static void count_sent(struct conn *conn, size_t n)
+{
+    *conn->sent_bytes += n;
+    conn->last_out_us = loop_now_us();
+    while (conn->out_head && n >= conn->out_head->size - conn->out_head->sent) {
+        n -= conn->out_head->size - conn->out_head->sent;
+        drop_block(conn);
+    }
+    if (n > 0) {
+        conn->out_head->sent += n;
+        conn->unsent_bytes -= n;
+    }
+}
+
+void conn_flush(struct conn *conn)
+{
+    if (conn->state == CONN_CLOSED)
+        return;
+    while (conn->out_head) {
+        ssize_t n = write_some(conn);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK) {
+            conn_close(conn);
+            return;
+        }
+        if (n < 0)
+            break;
+        count_sent(conn, (size_t)n);
+    }
+    if (!conn->out_head && conn->state == CONN_FLUSHING)
+        linger(conn);
+    if (conn->state != CONN_CLOSED)
+        update_events(conn);
+}
+
+void conn_hold(struct conn *conn, bool held)
+{
+    if (conn->held == held || conn->state == CONN_CLOSED)
+        return;
+    conn->held = held;
+    update_events(conn);
+}
+
+static void refuse_input(struct conn *conn, const struct message_header *header,
+                         enum header_error error)
+{
+    conn->in_used = 0;
+    conn_hold(conn, true);
+    conn->handler->malformed(conn->owner, header, error);
+}
+
+void conn_deliver(struct conn *conn)
+{
+    size_t used = 0;
+    while (conn->state == CONN_OPEN && !conn->held &&
+           conn->in_used - used >= MESSAGE_HEADER_BYTES) {
+        struct message_header header = {0};
+        enum header_error error = message_header_decode(&header, conn->in + used);
+        if (error != HEADER_OK) {
+            refuse_input(conn, &header, error);
+            return;
+        }
+        size_t size = MESSAGE_HEADER_BYTES + (size_t)header.length;
+        if (size > CONN_IN_BYTES) { /* a type that only servers send */
+            refuse_input(conn, &header, HEADER_TOO_LONG);
+            return;
+        }
+        if (conn->in_used - used < size)
+            break;
+        conn->handler->message(conn->owner, &header, conn->in + used + MESSAGE_HEADER_BYTES);
+        used += size;
+    }
+    if (conn->state != CONN_OPEN)
+        return;
+    conn->in_used -= used;
+    if (used > 0)
+        memmove(conn->in, conn->in + used, conn->in_used);
+}
+
+static void read_some(struct conn *conn)
+{
+    bool open = conn->state == CONN_OPEN;
+    size_t room = open ? CONN_IN_BYTES - conn->in_used : CONN_IN_BYTES;
+    ssize_t n = read(conn->source.fd, conn->in + (open ? conn->in_used : 0), room);
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR))
+        return;
+    if (n < 0 || (n == 0 && conn->state == CONN_LINGERING)) {
+        conn_close(conn);
+        return;
+    }
+    if (n == 0) {
+        conn->peer_ended = true;
+        update_events(conn);
+        return;
+    }
+    if (open) {
+        conn->last_in_us = loop_now_us();
+        conn->in_used += (size_t)n;
+        conn_deliver(conn);
+    }
+}
+
+static void conn_ready(struct loop_source *source, uint32_t events)
+{
+    struct conn *conn = source->owner;
+    if (events & EPOLLIN)
+        read_some(conn);
+    if (conn->state != CONN_CLOSED && (events & EPOLLOUT))
+        conn_flush(conn);
+    /* Both directions are gone; what could be read has been, unless it was held. */
+    if (conn->state != CONN_CLOSED && (events & (EPOLLHUP | EPOLLERR)) &&
+        (!(events & EPOLLIN) || conn->peer_ended))
+        conn_close(conn);
+}
+
+bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_handler *handler,
+               void *owner, uint64_t *sent_bytes, struct error *error)
+{
+    *conn = (struct conn){
+        .loop = loop,
+        .source = {fd, conn_ready, conn},
+        .handler = handler,
+        .owner = owner,
+        .sent_bytes = sent_bytes,
+        .last_in_us = loop_now_us(),
+        .last_out_us = loop_now_us(),
+        .in = malloc(CONN_IN_BYTES),
+    };
+    int flags = fcntl(fd, F_GETFL);
+    if (!conn->in)
+        error_set(error, ERROR_SERVER, "no memory for another connection");
+    else if (flags < 0 || fcntl(fd, F_SETFL, flags | O_NONBLOCK) < 0)
+        error_set(error, ERROR_SERVER, "fcntl: %s", strerror(errno));
+    else if (loop_watch(loop, &conn->source, EPOLLIN, error))
+        return true;
+    close(fd);
+    conn->source.fd = -1;
+    conn->state = CONN_CLOSED;
+    free(conn->in);
+    conn->in = NULL;
+    return false;
+}

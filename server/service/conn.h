@@ -1,0 +1,85 @@
+/* One connected socket: messages in, bytes out, both bounded, neither blocking.
+ *
+ * Input lies in one buffer that holds the longest message a client may send twice over; whole
+ * messages are handed to the owner. Output is a list of blocks, some borrowed (pixels), that is
+ * written as the socket takes it. How much may pile up is the owner's business: it asks
+ * conn_unsent_bytes() before it produces more.
+ * Thread: the loop's. Callbacks come from the loop or from conn_deliver(); a callback must not
+ * finish the conn, only close it. */
+#ifndef SHEEN_SERVICE_CONN_H
+#define SHEEN_SERVICE_CONN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "protocol/frame.h"
+#include "protocol/limits.h"
+#include "server/error.h"
+#include "server/service/loop.h"
+
+#define CONN_IN_BYTES (2 * (MESSAGE_HEADER_BYTES + PROTOCOL_MAX_CHUNK_BYTES))
+
+struct conn_handler {
+    void (*message)(void *owner, const struct message_header *header, const uint8_t *body);
+    /* The input is no message. It has been thrown away and the conn is held: the owner closes it.
+     * Of *header only what the error leaves known is set. */
+    void (*malformed)(void *owner, const struct message_header *header, enum header_error error);
+};
+
+enum conn_state {
+    CONN_OPEN,
+    CONN_FLUSHING,  /* what is unsent goes out, input is thrown away */
+    CONN_LINGERING, /* all is sent; input is thrown away until the peer has seen the end */
+    CONN_CLOSED,
+};
+
+struct conn_block; /* a piece of output */
+
+struct conn {
+    enum conn_state state;
+    struct loop *loop;
+    struct loop_source source;
+    const struct conn_handler *handler;
+    void *owner;
+
+    uint8_t *in; /* CONN_IN_BYTES */
+    size_t in_used;
+    bool held;       /* no message is delivered and nothing read */
+    bool peer_ended; /* the peer will send no more */
+
+    struct conn_block *out_head, *out_tail;
+    size_t unsent_bytes;
+    uint64_t *sent_bytes; /* everybody's; counted up here */
+
+    uint64_t last_in_us, last_out_us; /* when bytes last moved; loop_now_us() */
+};
+
+/* Takes the socket over, makes it non-blocking and watches it. On failure the fd is closed.
+ * *sent_bytes is counted up by what is sent. */
+bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_handler *handler,
+               void *owner, uint64_t *sent_bytes, struct error *error);
+/* Closes at once and gives all unsent blocks back. */
+void conn_finish(struct conn *conn);
+
+/* Queue output; it is written by conn_flush() and then as the socket takes it. On a closed conn,
+ * or without memory (which closes it), the bytes are dropped. */
+void conn_send(struct conn *conn, const void *bytes, size_t size); /* copies */
+/* Borrows: `bytes` must stay until release(owner) is called, once, sent or not. release may be
+ * NULL for a piece that another, later block keeps. */
+void conn_send_block(struct conn *conn, const void *bytes, size_t size, void (*release)(void *),
+                     void *owner);
+void conn_flush(struct conn *conn);
+
+/* Stops and resumes input. After resuming, messages already read wait for conn_deliver(). */
+void conn_hold(struct conn *conn, bool held);
+void conn_deliver(struct conn *conn);
+
+void conn_close_after_flush(struct conn *conn);
+void conn_close(struct conn *conn); /* now; unsent output is dropped */
+
+static inline size_t conn_unsent_bytes(const struct conn *conn)
+{
+    return conn->unsent_bytes;
+}
+
+#endif

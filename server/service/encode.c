@@ -1,0 +1,286 @@
+#include "server/service/encode.h"
+
+#include <stdlib.h>
+
+#define ZSTD_LEVEL 1
+#define MAX_CHANNELS 17 /* of all planes together */
+
+struct encode_job;
+
+struct strip_work {
+    struct work work;
+    struct encode_job *job;
+    size_t index;
+    size_t size; /* 0: failed */
+};
+
+struct encode_job {
+    struct encoded *encoded;
+    struct codec_layout layout;
+    sheen_Encoding encoding;
+    const struct image_attribute *attributes;
+    size_t n_attributes;
+    void (*finished)(void *owner, struct encoded *encoded, const struct error *error);
+    void *owner;
+    struct pool *pool;
+
+    struct work file_work;
+    size_t file_size;
+    struct error error; /* of the file's encoder */
+    struct strip_work *strips;
+    size_t n_strips_left;
+};
+
+static bool start_worker(void *owner, void **worker, struct error *error)
+{
+    (void)owner;
+    *worker = codec_encoder_create(ZSTD_LEVEL);
+    return *worker || error_set(error, ERROR_SERVER, "no memory for a zstd encoder");
+}
+
+static void stop_worker(void *worker)
+{
+    codec_encoder_destroy(worker);
+}
+
+const struct pool_worker encode_worker = {start_worker, stop_worker, NULL};
+
+void encoded_destroy(struct encoded *encoded)
+{
+    if (!encoded)
+        return;
+    frame_finish(&encoded->frame);
+    for (size_t i = 0; i < encoded->n_blocks; i++)
+        free(encoded->blocks[i]);
+    free(encoded->blocks);
+    free(encoded->pieces);
+    free(encoded);
+}
+
+static void end_job(struct encode_job *job, const struct error *error)
+{
+    struct encoded *encoded = job->encoded;
+    if (error) {
+        encoded_destroy(encoded);
+        encoded = NULL;
+    }
+    job->finished(job->owner, encoded, error);
+    free(job->strips);
+    free(job);
+}
+
+static void end_job_no_memory(struct encode_job *job)
+{
+    struct error error = {0};
+    error_set(&error, ERROR_SERVER, "no memory to encode %u x %u pixels: try again later",
+              job->layout.width_px, job->layout.height_px);
+    end_job(job, &error);
+}
+
+static void add_piece(struct encoded *encoded, const uint8_t *bytes, size_t size)
+{
+    encoded->pieces[encoded->n_pieces++] = (struct encoded_piece){bytes, size};
+    encoded->size += size;
+}
+
+/* Room for n blocks and as many pieces. */
+static bool allocate(struct encoded *encoded, size_t n)
+{
+    encoded->blocks = calloc(n, sizeof *encoded->blocks);
+    encoded->pieces = calloc(n, sizeof *encoded->pieces);
+    encoded->n_blocks = encoded->blocks ? n : 0;
+    return encoded->blocks && encoded->pieces;
+}
+
+/* --- RAW: the planes are the bytes */
+
+static void start_raw(struct encode_job *job)
+{
+    struct encoded *encoded = job->encoded;
+    if (!allocate(encoded, CODEC_PLANES)) {
+        end_job_no_memory(job);
+        return;
+    }
+    for (unsigned plane = 0; plane < CODEC_PLANES; plane++)
+        if (job->layout.planes & (1u << plane))
+            add_piece(encoded, encoded->frame.plane[plane], codec_plane_bytes(&job->layout, plane));
+    end_job(job, NULL);
+}
+
+/* --- ZSTD: block 0 is the table, block 1 + i is strip i */
+
+static void strip_run(struct work *work, void *worker)
+{
+    struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    struct encoded *encoded = job->encoded;
+    struct codec_strip place = codec_strip_at(&job->layout, strip->index);
+    size_t bound = codec_strip_bound(&place);
+    uint8_t *bytes = malloc(bound);
+    if (bytes)
+        strip->size =
+            codec_strip_encode(worker, &place, encoded->frame.plane[place.plane], bytes, bound);
+    encoded->blocks[1 + strip->index] = bytes;
+}
+
+static bool join_strips(struct encode_job *job)
+{
+    struct encoded *encoded = job->encoded;
+    uint32_t *lengths = calloc(job->layout.n_strips, sizeof *lengths);
+    uint8_t *table = malloc(job->layout.table_bytes);
+    encoded->blocks[0] = table;
+    bool ok = lengths && table;
+    if (ok)
+        add_piece(encoded, table, job->layout.table_bytes);
+    for (size_t i = 0; ok && i < job->layout.n_strips; i++) {
+        lengths[i] = (uint32_t)job->strips[i].size;
+        ok = lengths[i] > 0;
+        add_piece(encoded, encoded->blocks[1 + i], lengths[i]);
+    }
+    if (ok)
+        codec_table_encode(&job->layout, lengths, table);
+    free(lengths);
+    return ok;
+}
+
+static void strip_done(struct work *work)
+{
+    struct encode_job *job = ((struct strip_work *)work->owner)->job;
+    if (--job->n_strips_left > 0)
+        return;
+    frame_finish(&job->encoded->frame);
+    if (join_strips(job))
+        end_job(job, NULL);
+    else
+        end_job_no_memory(job);
+}
+
+static void start_strips(struct encode_job *job)
+{
+    size_t n = job->layout.n_strips;
+    job->strips = calloc(n, sizeof *job->strips);
+    if (!job->strips || !allocate(job->encoded, n + 1)) {
+        end_job_no_memory(job);
+        return;
+    }
+    job->n_strips_left = n;
+    for (size_t i = 0; i < n; i++) {
+        struct strip_work *strip = &job->strips[i];
+        *strip = (struct strip_work){.job = job, .index = i};
+        strip->work = (struct work){strip_run, strip_done, strip, NULL};
+        pool_submit(job->pool, &strip->work, POOL_URGENT);
+    }
+}
+
+/* --- files */
+
+/* The channels of every plane, in the order of the planes' bits. */
+static const struct {
+    const char *name;
+    unsigned plane;
+    enum image_type type;
+    size_t offset_bytes;
+} CHANNELS[MAX_CHANNELS] = {
+    {"R", 0, IMAGE_UINT8, 0},          {"G", 0, IMAGE_UINT8, 1},
+    {"B", 0, IMAGE_UINT8, 2},          {"A", 0, IMAGE_UINT8, 3},
+    {"P.X", 1, IMAGE_FLOAT, 0},        {"P.Y", 1, IMAGE_FLOAT, 4},
+    {"P.Z", 1, IMAGE_FLOAT, 8},        {"N.X", 2, IMAGE_FLOAT, 0},
+    {"N.Y", 2, IMAGE_FLOAT, 4},        {"N.Z", 2, IMAGE_FLOAT, 8},
+    {"ptex.face", 3, IMAGE_UINT32, 0}, {"ptex.u", 3, IMAGE_FLOAT, 4},
+    {"ptex.v", 3, IMAGE_FLOAT, 8},     {"light.s", 4, IMAGE_FLOAT, 0},
+    {"light.t", 4, IMAGE_FLOAT, 4},    {"k.min", 5, IMAGE_FLOAT, 0},
+    {"k.max", 5, IMAGE_FLOAT, 4},
+};
+
+static enum image_format file_format(sheen_Encoding encoding)
+{
+    switch (encoding) {
+    case sheen_Encoding_ENCODING_EXR:
+        return IMAGE_EXR;
+    case sheen_Encoding_ENCODING_JPEG:
+        return IMAGE_JPEG;
+    case sheen_Encoding_ENCODING_TIFF:
+        return IMAGE_TIFF;
+    default:
+        return IMAGE_PNG;
+    }
+}
+
+static void file_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct encode_job *job = work->owner;
+    struct image_channel channels[MAX_CHANNELS];
+    size_t n = 0;
+    for (size_t i = 0; i < MAX_CHANNELS; i++) {
+        unsigned plane = CHANNELS[i].plane;
+        size_t stride = codec_pixel_bytes(plane);
+        if (job->layout.planes & (1u << plane))
+            channels[n++] = (struct image_channel){
+                CHANNELS[i].name, CHANNELS[i].type,
+                (const uint8_t *)job->encoded->frame.plane[plane] + CHANNELS[i].offset_bytes,
+                stride, stride * job->layout.width_px};
+    }
+    image_encode(file_format(job->encoding), job->layout.width_px, job->layout.height_px, channels,
+                 n, job->attributes, job->n_attributes, &job->encoded->blocks[0], &job->file_size,
+                 &job->error);
+}
+
+static void file_done(struct work *work)
+{
+    struct encode_job *job = work->owner;
+    frame_finish(&job->encoded->frame);
+    if (!job->encoded->blocks[0]) {
+        end_job(job, &job->error);
+        return;
+    }
+    add_piece(job->encoded, job->encoded->blocks[0], job->file_size);
+    end_job(job, NULL);
+}
+
+static void start_file(struct encode_job *job)
+{
+    if (!allocate(job->encoded, 1)) {
+        end_job_no_memory(job);
+        return;
+    }
+    job->file_work = (struct work){file_run, file_done, job, NULL};
+    pool_submit(job->pool, &job->file_work, POOL_URGENT);
+}
+
+void encode_start(struct pool *pool, struct frame *frame, const struct codec_layout *layout,
+                  sheen_Encoding encoding, const struct image_attribute *attributes,
+                  size_t n_attributes,
+                  void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
+                  void *owner)
+{
+    struct encode_job *job = calloc(1, sizeof *job);
+    struct encoded *encoded = calloc(1, sizeof *encoded);
+    if (!job || !encoded) {
+        free(job);
+        free(encoded);
+        frame_finish(frame);
+        struct error error = {0};
+        error_set(&error, ERROR_SERVER, "no memory to encode a frame: try again later");
+        finished(owner, NULL, &error);
+        return;
+    }
+    encoded->frame = *frame;
+    *frame = (struct frame){0};
+    *job = (struct encode_job){
+        .encoded = encoded,
+        .layout = *layout,
+        .encoding = encoding,
+        .attributes = attributes,
+        .n_attributes = n_attributes,
+        .finished = finished,
+        .owner = owner,
+        .pool = pool,
+    };
+    if (encoding == sheen_Encoding_ENCODING_RAW)
+        start_raw(job);
+    else if (encoding == sheen_Encoding_ENCODING_ZSTD)
+        start_strips(job);
+    else
+        start_file(job);
+}

@@ -1,0 +1,40 @@
+/* A rendered frame turned into the bytes that the client asked for, on the pool.
+ * Thread: the loop's, for all functions here. */
+#ifndef SHEEN_SERVICE_ENCODE_H
+#define SHEEN_SERVICE_ENCODE_H
+
+#include "protocol/codec.h"
+#include "protocol/message.h"
+#include "server/gpu/renderer.h"
+#include "server/image/image.h"
+#include "server/service/pool.h"
+
+/* The bytes of a frame's DATA messages, in pieces that follow one another. */
+struct encoded_piece {
+    const uint8_t *bytes;
+    size_t size;
+};
+struct encoded {
+    size_t n_pieces;
+    struct encoded_piece *pieces;
+    uint64_t size; /* of all pieces */
+
+    struct frame frame; /* RAW: the planes themselves */
+    uint8_t **blocks;   /* what the pieces lie in, if not in the frame */
+    size_t n_blocks;
+};
+
+/* Worker of the pool's threads: what encoding needs of its own in each. */
+extern const struct pool_worker encode_worker;
+
+/* Takes *frame over in any case and zeroes it. finished() gets the bytes, or NULL and why; it may
+ * be called before this returns. `layout` fits the frame; `attributes` stay until finished(). */
+void encode_start(struct pool *pool, struct frame *frame, const struct codec_layout *layout,
+                  sheen_Encoding encoding, const struct image_attribute *attributes,
+                  size_t n_attributes,
+                  void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
+                  void *owner);
+
+void encoded_destroy(struct encoded *encoded); /* NULL is safe */
+
+#endif

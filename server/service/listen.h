@@ -1,0 +1,34 @@
+/* Listening sockets: Unix (owner only) and TCP on loopback. Thread: the loop's. */
+#ifndef SHEEN_SERVICE_LISTEN_H
+#define SHEEN_SERVICE_LISTEN_H
+
+#include "protocol/address.h"
+#include "server/error.h"
+#include "server/service/loop.h"
+
+#define LISTENER_TEXT_BYTES 320
+
+struct listener;
+
+/* May a daemon listen there? TCP only on loopback addresses: without TLS everybody on the way could
+ * read and change what is sent. ERROR_REQUEST if not; ERROR_SERVER if the name is unknown. */
+bool listener_check(const struct address *address, struct error *error);
+
+/* Opens the socket and calls accepted() with every new connection's fd, which is then the
+ * callee's. A Unix socket is made with mode 0600; one that a dead daemon left behind is replaced,
+ * one that somebody answers on, or a file of another kind, is not. NULL on failure. */
+struct listener *listener_open(struct loop *loop, const struct address *address,
+                               void (*accepted)(void *owner, int fd), void *owner,
+                               struct error *error);
+/* Closes and removes the Unix socket's file, if it is still this one. NULL is safe. */
+void listener_close(struct listener *listener);
+
+/* The address as people write it, with the port that the system chose. */
+const char *listener_text(const struct listener *listener);
+
+/* True while the process is out of descriptors and accepting rests; listener_resume() tries
+ * again. */
+bool listener_is_paused(const struct listener *listener);
+void listener_resume(struct listener *listener);
+
+#endif

@@ -1,0 +1,30 @@
+/* A model: a cage's limit tables in memory and on the GPU, and what `sheen info` says about it.
+ *
+ * Built once: the cage is read and measured in one work, the tables are filled in many works over
+ * the whole pool, and the GL thread uploads them. Thread: the loop's. */
+#ifndef SHEEN_SERVICE_MODEL_H
+#define SHEEN_SERVICE_MODEL_H
+
+#include "server/cage/survey.h"
+#include "server/gpu/renderer.h"
+#include "server/service/build.h"
+
+struct model {
+    struct limit_tables tables; /* stay as long as `gpu` */
+    struct renderer_model *gpu; /* for the GL thread only */
+    struct cage_survey survey;
+    size_t n_vertices, n_faces; /* of the cage */
+    char *warnings;             /* lines, or NULL */
+    size_t reserved_bytes;      /* what order->reserve() was asked for */
+    uint64_t build_us;          /* reading, building and uploading */
+    struct work destroy_work;
+};
+
+/* Starts a build; finished() gets a `struct model *`. False, without finished(), when memory is
+ * short. */
+bool model_build_start(const struct build_order *order, struct error *error);
+
+/* Frees the model once the GL thread has let go of it, after all work submitted before. */
+void model_destroy(struct model *model, struct render_thread *render_thread);
+
+#endif

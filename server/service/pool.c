@@ -1,0 +1,119 @@
+#include "server/service/pool.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct pool {
+    char name[13];
+    struct pool_worker worker;
+    struct completions *completions;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;    /* works, a start, the end */
+    struct work_list lists[2]; /* by enum pool_urgency */
+    bool ending;
+    unsigned n_threads, n_started, n_failed;
+    struct error start_error; /* the first thread's that failed */
+    pthread_t threads[];
+};
+
+static struct work *next_work(struct pool *pool)
+{
+    pthread_mutex_lock(&pool->lock);
+    struct work *work;
+    while (!(work = work_list_pop(&pool->lists[POOL_URGENT])) &&
+           !(work = work_list_pop(&pool->lists[POOL_LATER])) && !pool->ending)
+        pthread_cond_wait(&pool->changed, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
+    return work;
+}
+
+static bool start_worker(struct pool *pool, void **worker)
+{
+    struct error error = {0};
+    bool ok = pool->worker.start(pool->worker.owner, worker, &error);
+    pthread_mutex_lock(&pool->lock);
+    pool->n_started++;
+    if (!ok && pool->n_failed++ == 0)
+        pool->start_error = error;
+    pthread_cond_broadcast(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
+    return ok;
+}
+
+static void *thread_main(void *argument)
+{
+    struct pool *pool = argument;
+    pthread_setname_np(pthread_self(), pool->name);
+    void *worker = NULL;
+    if (!start_worker(pool, &worker))
+        return NULL;
+    for (struct work *work; (work = next_work(pool));) {
+        work->run(work, worker);
+        completions_post(pool->completions, work);
+    }
+    pool->worker.stop(worker);
+    return NULL;
+}
+
+static bool start_threads(struct pool *pool, unsigned n_threads, struct error *error)
+{
+    int code = 0;
+    while (pool->n_threads < n_threads && code == 0) {
+        code = pthread_create(&pool->threads[pool->n_threads], NULL, thread_main, pool);
+        pool->n_threads += code == 0;
+    }
+    pthread_mutex_lock(&pool->lock);
+    while (pool->n_started < pool->n_threads)
+        pthread_cond_wait(&pool->changed, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
+    if (code)
+        return error_set(error, ERROR_SERVER, "cannot start a thread: %s", strerror(code));
+    if (pool->n_failed)
+        return error_set(error, pool->start_error.kind, "%s", pool->start_error.text);
+    return true;
+}
+
+struct pool *pool_create(const char *name, unsigned n_threads, const struct pool_worker *worker,
+                         struct completions *completions, struct error *error)
+{
+    struct pool *pool = calloc(1, sizeof *pool + n_threads * sizeof pool->threads[0]);
+    if (!pool) {
+        error_set(error, ERROR_SERVER, "no memory for %u threads", n_threads);
+        return NULL;
+    }
+    snprintf(pool->name, sizeof pool->name, "%s", name);
+    pool->worker = *worker;
+    pool->completions = completions;
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->changed, NULL);
+    if (!start_threads(pool, n_threads, error)) {
+        pool_destroy(pool);
+        return NULL;
+    }
+    return pool;
+}
+
+void pool_destroy(struct pool *pool)
+{
+    if (!pool)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->ending = true;
+    pthread_cond_broadcast(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
+    for (unsigned i = 0; i < pool->n_threads; i++)
+        pthread_join(pool->threads[i], NULL);
+    pthread_cond_destroy(&pool->changed);
+    pthread_mutex_destroy(&pool->lock);
+    free(pool);
+}
+
+void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency)
+{
+    pthread_mutex_lock(&pool->lock);
+    work_list_push(&pool->lists[urgency], work);
+    pthread_cond_signal(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
+}

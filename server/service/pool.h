@@ -1,0 +1,42 @@
+/* A pool of threads that run works and post them back as completions. With one thread it is the
+ * owner of something that only one thread may touch (render_thread.h).
+ *
+ * Thread: all functions here are for the loop's thread. */
+#ifndef SHEEN_SERVICE_POOL_H
+#define SHEEN_SERVICE_POOL_H
+
+#include <stddef.h>
+
+#include "server/service/work.h"
+
+#define POOL_MAX_THREADS 256u
+
+/* What every worker thread makes for itself before its first work and takes down after its last;
+ * works see it as `worker`. */
+struct pool_worker {
+    bool (*start)(void *owner, void **worker, struct error *error); /* on the worker's thread */
+    void (*stop)(void *worker);                                     /* on the same thread */
+    void *owner;
+};
+
+enum pool_urgency {
+    POOL_URGENT, /* a frame waits for it: before all that is not urgent */
+    POOL_LATER,  /* building tables, decoding images */
+};
+
+struct pool;
+
+/* Starts n_threads (1 to POOL_MAX_THREADS) and waits until each has started its worker. NULL with
+ * the first worker's error, or ERROR_SERVER. `name` shows in ps and debuggers (at most 12 bytes).
+ */
+struct pool *pool_create(const char *name, unsigned n_threads, const struct pool_worker *worker,
+                         struct completions *completions, struct error *error);
+
+/* Finishes every submitted work, then ends the threads. The works' done() calls are still to be
+ * delivered then. NULL is safe. */
+void pool_destroy(struct pool *pool);
+
+/* Takes a work in. Never blocks and never fails: callers bound how much they submit. */
+void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency);
+
+#endif

@@ -1,0 +1,63 @@
+#include "server/service/render_thread.h"
+
+#include <stdlib.h>
+
+#include "server/service/pool.h"
+
+struct render_thread {
+    struct renderer_options options;
+    struct renderer_info info;
+    struct pool *pool; /* of one thread */
+};
+
+static bool open_device(void *owner, void **worker, struct error *error)
+{
+    struct render_thread *thread = owner;
+    struct renderer *renderer = renderer_create(&thread->options, error);
+    if (!renderer)
+        return false;
+    thread->info = *renderer_info(renderer);
+    *worker = renderer;
+    return true;
+}
+
+static void close_device(void *worker)
+{
+    renderer_destroy(worker);
+}
+
+struct render_thread *render_thread_create(const struct renderer_options *options,
+                                           struct completions *completions, struct error *error)
+{
+    struct render_thread *thread = calloc(1, sizeof *thread);
+    if (!thread) {
+        error_set(error, ERROR_SERVER, "no memory for the render thread");
+        return NULL;
+    }
+    thread->options = *options;
+    const struct pool_worker worker = {open_device, close_device, thread};
+    thread->pool = pool_create("sheend-gl", 1, &worker, completions, error);
+    if (!thread->pool) {
+        free(thread);
+        return NULL;
+    }
+    return thread;
+}
+
+void render_thread_destroy(struct render_thread *thread)
+{
+    if (!thread)
+        return;
+    pool_destroy(thread->pool);
+    free(thread);
+}
+
+void render_thread_submit(struct render_thread *thread, struct work *work)
+{
+    pool_submit(thread->pool, work, POOL_URGENT);
+}
+
+const struct renderer_info *render_thread_info(const struct render_thread *thread)
+{
+    return &thread->info;
+}

@@ -1,0 +1,408 @@
+#include "server/service/session.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "server/service/request.h"
+#include "server/service/wire.h"
+
+/* --- answers */
+
+static void after_fill(struct session *session, bool ok)
+{
+    if (ok)
+        answer_send_due(&session->answers, &session->conn);
+    else
+        conn_close(&session->conn);
+}
+
+void session_answer(struct session *session, struct answer *answer, uint8_t type, const void *body)
+{
+    after_fill(session, answer_fill(answer, type, body));
+}
+
+void session_answer_error(struct session *session, struct answer *answer, sheen_ErrorCode code,
+                          const char *text)
+{
+    sheen_Error error = {.code = code};
+    snprintf(error.text, sizeof error.text, "%s", text);
+    wire_make_text(error.text, false);
+    session->host->stats.errors++;
+    session_answer(session, answer, MESSAGE_ERROR, &error);
+}
+
+void session_answer_frame(struct session *session, struct answer *answer, const sheen_Frame *frame,
+                          struct encoded *encoded)
+{
+    after_fill(session, answer_fill_frame(answer, frame, encoded));
+}
+
+void session_report_progress(struct session *session, const struct answer *answer, uint32_t seq,
+                             const sheen_Progress *progress)
+{
+    uint8_t buffer[MESSAGE_HEADER_BYTES + PROTOCOL_MAX_SMALL_BODY_BYTES];
+    size_t length;
+    if (answer != session->answers.head ||
+        !message_encode(MESSAGE_PROGRESS, seq, progress, buffer, sizeof buffer, &length))
+        return;
+    conn_send(&session->conn, buffer, length);
+    conn_flush(&session->conn);
+}
+
+/* NULL without memory; the connection is closed then. */
+static struct answer *expect_answer(struct session *session, uint32_t seq)
+{
+    struct answer *answer = answer_expect(&session->answers, seq);
+    if (!answer)
+        conn_close(&session->conn);
+    return answer;
+}
+
+/* Answers at once what takes no time. */
+static void reply(struct session *session, uint32_t seq, uint8_t type, const void *body)
+{
+    struct answer *answer = expect_answer(session, seq);
+    if (answer)
+        session_answer(session, answer, type, body);
+}
+
+static void reply_error(struct session *session, uint32_t seq, sheen_ErrorCode code,
+                        const char *text)
+{
+    struct answer *answer = expect_answer(session, seq);
+    if (answer)
+        session_answer_error(session, answer, code, text);
+}
+
+/* The connection cannot go on: answers what came before, says why, and closes. */
+static void __attribute__((format(printf, 4, 5)))
+refuse(struct session *session, uint32_t seq, sheen_ErrorCode code, const char *format, ...)
+{
+    char text[sizeof((sheen_Error *)0)->text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    struct answer *answer = session->refused ? NULL : expect_answer(session, seq);
+    session->refused = true;
+    conn_hold(&session->conn, true);
+    if (!answer)
+        return;
+    answer_mark_last(answer);
+    session_answer_error(session, answer, code, text);
+}
+
+/* --- messages */
+
+static void handle_hello(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
+{
+    uint8_t model_id[MODEL_ID_BYTES]; /* for balancers; here any model may be named later */
+    sheen_Hello hello;
+    char text[MESSAGE_TEXT_BYTES];
+    if (!message_hello_decode(body, length, model_id, &hello)) {
+        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO is not well-formed");
+        return;
+    }
+    if (!message_check_hello(&hello, text)) {
+        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
+        return;
+    }
+    const struct renderer_info *info = render_thread_info(session->host->render_thread);
+    sheen_HelloOk ok = {
+        .minor = PROTOCOL_MINOR,
+        .software = info->software,
+        .max_width_px = info->max_width_px,
+        .max_height_px = info->max_height_px,
+        .max_upload_bytes = session->host->max_upload_bytes,
+    };
+    snprintf(ok.server, sizeof ok.server, "%s", SHEEN_VERSION);
+    snprintf(ok.device, sizeof ok.device, "%s", info->device);
+    snprintf(ok.driver, sizeof ok.driver, "%s", info->driver);
+    session->greeted = true;
+    reply(session, seq, MESSAGE_HELLO_OK, &ok);
+}
+
+static void reply_upload_state(struct session *session, uint32_t seq, bool complete,
+                               uint64_t received_bytes)
+{
+    const sheen_UploadState state = {.complete = complete, .received_bytes = received_bytes};
+    reply(session, seq, MESSAGE_UPLOAD_STATE, &state);
+}
+
+static void handle_upload_begin(struct session *session, uint32_t seq,
+                                const sheen_UploadBegin *begin)
+{
+    struct session_host *host = session->host;
+    char text[MESSAGE_TEXT_BYTES];
+    struct error error = {0};
+    session->upload_seq = seq;
+    if (begin->size_bytes > host->max_upload_bytes) {
+        snprintf(text, sizeof text, "a file of %llu bytes; this daemon takes at most %llu",
+                 (unsigned long long)begin->size_bytes, (unsigned long long)host->max_upload_bytes);
+        reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
+        return;
+    }
+    if (!message_check_upload_begin(begin, text)) {
+        reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
+    if (store_find(host->store, kind, begin->sha256)) {
+        session->upload_seq = 0; /* no chunk may follow */
+        reply_upload_state(session, seq, true, begin->size_bytes);
+        return;
+    }
+    session->upload = upload_create(host->store, begin, &error);
+    if (session->upload)
+        reply_upload_state(session, seq, false, 0);
+    else
+        reply_error(session, seq, wire_error_code(error.kind), error.text);
+}
+
+static void handle_upload_chunk(struct session *session, uint32_t seq, const uint8_t *body,
+                                size_t length)
+{
+    if (seq != session->upload_seq || length == 0) {
+        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "UPLOAD_CHUNK %s",
+               length == 0 ? "without a byte" : "of no upload under way");
+        return;
+    }
+    if (!session->upload)
+        return; /* sent before the client read that the upload has failed */
+    struct error error = {0};
+    enum upload_state state = upload_add(session->upload, body, length, &error);
+    session->host->stats.upload_bytes += length;
+    if (state == UPLOAD_MORE)
+        return;
+    uint64_t received = upload_received_bytes(session->upload);
+    upload_destroy(session->upload);
+    session->upload = NULL;
+    if (state == UPLOAD_STORED) {
+        session->upload_seq = 0;
+        reply_upload_state(session, seq, true, received);
+    } else if (state == UPLOAD_TOO_MUCH) {
+        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
+    } else {
+        reply_error(session, seq, wire_error_code(error.kind), error.text);
+    }
+}
+
+static void handle_render(struct session *session, uint32_t seq, const sheen_Render *render)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    const struct renderer_info *info = render_thread_info(session->host->render_thread);
+    if (!message_check_render(render, info->max_width_px, info->max_height_px, text)) {
+        reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    struct answer *answer = expect_answer(session, seq);
+    if (answer)
+        request_render(session, answer, seq, render);
+}
+
+static void handle_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query)
+{
+    struct answer *answer = expect_answer(session, seq);
+    if (answer)
+        request_query(session, answer, seq, query);
+}
+
+static void reply_stats(struct session *session, uint32_t seq)
+{
+    const struct session_host *host = session->host;
+    const struct renderer_info *info = render_thread_info(host->render_thread);
+    struct store_counts counts = store_count(host->store);
+    sheen_Stats stats = {
+        .uptime_us = loop_now_us() - host->stats.start_us,
+        .sessions = host->n_sessions,
+        .frames = host->stats.frames,
+        .errors = host->stats.errors,
+        .models = counts.models,
+        .model_bytes = counts.model_bytes,
+        .images = counts.images,
+        .uploads_bytes = host->stats.upload_bytes,
+        .sent_bytes = host->stats.sent_bytes,
+        .software = info->software,
+        .mean = stats_mean(&host->stats),
+        .queued = host->scheduler.waiting,
+    };
+    snprintf(stats.device, sizeof stats.device, "%s", info->device);
+    snprintf(stats.driver, sizeof stats.driver, "%s", info->driver);
+    snprintf(stats.server, sizeof stats.server, "%s", SHEEN_VERSION);
+    reply(session, seq, MESSAGE_STATS, &stats);
+}
+
+static void handle_body(struct session *session, const struct message_header *header,
+                        const uint8_t *bytes)
+{
+    union {
+        sheen_UploadBegin upload_begin;
+        sheen_ModelQuery model_query;
+        sheen_Render render;
+    } body;
+    if (!message_decode(header->type, bytes, header->length, &body)) {
+        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s is not well-formed",
+               message_type_name(header->type));
+        return;
+    }
+    if (session->host->draining) {
+        refuse(session, header->seq, sheen_ErrorCode_ERROR_SHUTTING_DOWN,
+               "the daemon is shutting down: connect to another or try later");
+        return;
+    }
+    if (header->type == MESSAGE_UPLOAD_BEGIN)
+        handle_upload_begin(session, header->seq, &body.upload_begin);
+    else if (header->type == MESSAGE_MODEL_QUERY)
+        handle_query(session, header->seq, &body.model_query);
+    else
+        handle_render(session, header->seq, &body.render);
+}
+
+/* Reads on only while there is room for another request and for its answer. */
+static void update_hold(struct session *session)
+{
+    bool clogged = conn_unsent_bytes(&session->conn) > SESSION_MAX_UNSENT_BYTES;
+    session->queue.held = clogged;
+    conn_hold(&session->conn,
+              clogged || session->refused || session->answers.n >= PROTOCOL_MAX_IN_FLIGHT);
+}
+
+/* NULL, or what is wrong with a message of this type now. */
+static const char *out_of_order(const struct session *session, const struct message_header *header)
+{
+    if (header->seq == 0)
+        return "its number is 0, which is no request's";
+    if (!session->greeted)
+        return header->type == MESSAGE_HELLO ? NULL : "the first message must be HELLO";
+    if (header->type == MESSAGE_HELLO)
+        return "a second HELLO";
+    if (session->upload && header->type != MESSAGE_UPLOAD_CHUNK)
+        return "an upload is under way and not complete";
+    return NULL;
+}
+
+static void on_message(void *owner, const struct message_header *header, const uint8_t *body)
+{
+    struct session *session = owner;
+    const char *wrong = out_of_order(session, header);
+    if (wrong) {
+        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
+               message_type_name(header->type), wrong);
+        return;
+    }
+    switch (header->type) {
+    case MESSAGE_HELLO:
+        handle_hello(session, header->seq, body, header->length);
+        break;
+    case MESSAGE_UPLOAD_CHUNK:
+        handle_upload_chunk(session, header->seq, body, header->length);
+        break;
+    case MESSAGE_STATS_QUERY:
+        reply_stats(session, header->seq);
+        break;
+    case MESSAGE_UPLOAD_BEGIN:
+    case MESSAGE_MODEL_QUERY:
+    case MESSAGE_RENDER:
+        handle_body(session, header, body);
+        break;
+    default:
+        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+               "%s is a message that only servers send", message_type_name(header->type));
+    }
+    update_hold(session);
+}
+
+static void on_malformed(void *owner, const struct message_header *header, enum header_error error)
+{
+    struct session *session = owner;
+    if (error == HEADER_TOO_LONG)
+        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+               "%s of %u bytes is longer than its type allows (%u)",
+               message_type_name(header->type), header->length, message_max_length(header->type));
+    else
+        refuse(session, header->seq,
+               error == HEADER_BAD_MAJOR ? sheen_ErrorCode_ERROR_VERSION
+                                         : sheen_ErrorCode_ERROR_PROTOCOL,
+               "%s", header_error_text(error));
+}
+
+/* --- its life */
+
+struct session *session_create(struct session_host *host, int fd, struct error *error)
+{
+    static const struct conn_handler handler = {on_message, on_malformed};
+    struct session *session = calloc(1, sizeof *session);
+    if (!session) {
+        close(fd);
+        error_set(error, ERROR_SERVER, "no memory for another session");
+        return NULL;
+    }
+    if (!conn_init(&session->conn, host->loop, fd, &handler, session, &host->stats.sent_bytes,
+                   error)) {
+        free(session);
+        return NULL;
+    }
+    session->host = host;
+    session->start_us = loop_now_us();
+    scheduler_add_queue(&host->scheduler, &session->queue);
+    host->n_sessions++;
+    return session;
+}
+
+void session_destroy(struct session *session)
+{
+    struct session_host *host = session->host;
+    request_abandon_all(session);
+    answer_list_finish(&session->answers);
+    upload_destroy(session->upload);
+    conn_finish(&session->conn);
+    host->n_sessions--;
+    free(session);
+}
+
+bool session_settle(struct session *session)
+{
+    struct conn *conn = &session->conn;
+    update_hold(session);
+    if (conn->state == CONN_OPEN && !conn->held)
+        conn_deliver(conn);
+    bool over = conn->peer_ended || session->host->draining;
+    if (conn->state == CONN_OPEN && over && session->answers.n == 0 && conn_unsent_bytes(conn) == 0)
+        conn_close_after_flush(conn);
+    return conn->state != CONN_CLOSED;
+}
+
+static void check_deadlines(struct session *session, uint64_t now)
+{
+    struct conn *conn = &session->conn;
+    const uint64_t stall = PROTOCOL_STALL_TIMEOUT_MS * 1000ull;
+    uint64_t idle = session->host->idle_timeout_us;
+    uint64_t since_in = now - conn->last_in_us, since_out = now - conn->last_out_us;
+    bool sending = conn_unsent_bytes(conn) > 0;
+    bool receiving = !conn->held && (conn->in_used > 0 || session->upload);
+    if (conn->state == CONN_LINGERING && since_in > SESSION_LINGER_US)
+        conn_close(conn);
+    else if (sending && since_out > stall)
+        conn_close(conn); /* it does not read: there is no telling it */
+    else if (conn->state != CONN_OPEN)
+        return;
+    else if (!session->greeted && now - session->start_us > PROTOCOL_HELLO_TIMEOUT_MS * 1000ull)
+        refuse(session, 0, sheen_ErrorCode_ERROR_PROTOCOL, "no HELLO within %u ms",
+               PROTOCOL_HELLO_TIMEOUT_MS);
+    else if (receiving && since_in > stall)
+        refuse(session, 0, sheen_ErrorCode_ERROR_PROTOCOL,
+               "a message or an upload stopped in the middle for %u ms", PROTOCOL_STALL_TIMEOUT_MS);
+    else if (idle > 0 && !sending && session->answers.n == 0 && since_in > idle && since_out > idle)
+        refuse(session, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN,
+               "no request for %llu s: connect again when there is one",
+               (unsigned long long)(idle / 1000000));
+}
+
+void session_tick(struct session *session, uint64_t now_us)
+{
+    check_deadlines(session, now_us);
+    if (session->conn.state == CONN_OPEN)
+        request_report_progress(session);
+}

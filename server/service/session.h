@@ -1,0 +1,76 @@
+/* One client: its handshake, its upload, its requests, its limits.
+ *
+ * The protocol's rules for the order of messages are held here and nowhere else. A client that
+ * breaks the protocol is told so and disconnected; every other failure is an ERROR answer to one
+ * request. Thread: the loop's. */
+#ifndef SHEEN_SERVICE_SESSION_H
+#define SHEEN_SERVICE_SESSION_H
+
+#include "protocol/message.h"
+#include "server/service/answer.h"
+#include "server/service/conn.h"
+#include "server/service/scheduler.h"
+#include "server/service/stats.h"
+#include "server/service/store.h"
+#include "server/service/upload.h"
+
+/* While more than this is unsent, nothing is read from the client and no render is started for it:
+ * with two renders in flight it bounds what a client that stops reading can cost. */
+#define SESSION_MAX_UNSENT_BYTES (4u * 1024 * 1024)
+/* The end of a connection: from shutdown() until the peer has closed too. */
+#define SESSION_LINGER_US 2000000u
+
+/* What all sessions share; outlives them. */
+struct session_host {
+    struct loop *loop;
+    struct pool *pool;
+    struct render_thread *render_thread;
+    struct store *store;
+    struct scheduler scheduler;
+    struct stats stats;
+    uint32_t n_sessions;
+    uint64_t max_upload_bytes;
+    uint64_t idle_timeout_us; /* 0: never */
+    bool draining;            /* no new request is taken */
+};
+
+struct request;
+
+struct session {
+    struct session_host *host;
+    struct conn conn;
+    struct schedule_queue queue;
+    struct answer_list answers;
+    uint64_t start_us;
+    bool greeted;          /* HELLO has been answered */
+    bool refused;          /* the last answer is on its way: nothing is read any more */
+    struct upload *upload; /* NULL: none under way */
+    uint32_t upload_seq;   /* of the upload, or of the last one that failed */
+    struct request *requests;
+    struct session *next; /* the service's list */
+};
+
+/* Takes the socket over (closes it on failure). */
+struct session *session_create(struct session_host *host, int fd, struct error *error);
+/* Closes at once; requests in flight end unseen. */
+void session_destroy(struct session *session);
+
+/* After every batch of events: delivers what was held back, closes what is over. False when the
+ * session is closed and may be destroyed. */
+bool session_settle(struct session *session);
+/* Deadlines and progress. */
+void session_tick(struct session *session, uint64_t now_us);
+
+/* --- for requests: `answer` is the one they owe */
+
+void session_answer(struct session *session, struct answer *answer, uint8_t type, const void *body);
+void session_answer_error(struct session *session, struct answer *answer, sheen_ErrorCode code,
+                          const char *text);
+/* FRAME and its DATA. Takes `encoded` over. */
+void session_answer_frame(struct session *session, struct answer *answer, const sheen_Frame *frame,
+                          struct encoded *encoded);
+/* Before its answer, if it is the next one that is due. */
+void session_report_progress(struct session *session, const struct answer *answer, uint32_t seq,
+                             const sheen_Progress *progress);
+
+#endif

@@ -1,0 +1,313 @@
+#include "server/service/store.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define N_BUCKETS 1024
+
+struct store {
+    struct pool *pool;
+    struct render_thread *render_thread;
+    size_t budget_bytes, used_bytes;
+    size_t n_assets;
+    unsigned n_building;
+    atomic_bool cancelled;
+    struct asset *build_head, *build_tail; /* wait for a turn */
+    struct asset *newest, *oldest;
+    struct asset *buckets[N_BUCKETS];
+};
+
+/* SHA-256 is its own hash. */
+static struct asset **bucket_of(struct store *store, const uint8_t *sha256)
+{
+    return &store->buckets[(sha256[0] | (size_t)sha256[1] << 8) % N_BUCKETS];
+}
+
+struct store *store_create(struct pool *pool, struct render_thread *render_thread,
+                           size_t budget_bytes, struct error *error)
+{
+    struct store *store = calloc(1, sizeof *store);
+    if (!store) {
+        error_set(error, ERROR_SERVER, "no memory for the model store");
+        return NULL;
+    }
+    atomic_init(&store->cancelled, false);
+    store->pool = pool;
+    store->render_thread = render_thread;
+    store->budget_bytes = budget_bytes;
+    return store;
+}
+
+static void unlink_by_use(struct store *store, struct asset *asset)
+{
+    *(asset->newer ? &asset->newer->older : &store->newest) = asset->older;
+    *(asset->older ? &asset->older->newer : &store->oldest) = asset->newer;
+}
+
+static void link_newest(struct store *store, struct asset *asset)
+{
+    asset->newer = NULL;
+    asset->older = store->newest;
+    *(store->newest ? &store->newest->newer : &store->oldest) = asset;
+    store->newest = asset;
+}
+
+static void drop_file(struct asset *asset)
+{
+    if (!asset->file)
+        return;
+    free(asset->file);
+    asset->file = NULL;
+    asset->charged_bytes -= asset->file_bytes;
+    store_release(asset->store, asset->file_bytes);
+}
+
+static void asset_destroy(struct asset *asset)
+{
+    struct store *store = asset->store;
+    struct asset **link = bucket_of(store, asset->sha256);
+    while (*link != asset)
+        link = &(*link)->bucket_next;
+    *link = asset->bucket_next;
+    unlink_by_use(store, asset);
+    store->n_assets--;
+    drop_file(asset);
+    store_release(store, asset->charged_bytes);
+    if (asset->model)
+        model_destroy(asset->model, store->render_thread);
+    if (asset->image)
+        light_image_destroy(asset->image, store->render_thread);
+    free(asset);
+}
+
+void store_destroy(struct store *store)
+{
+    if (!store)
+        return;
+    while (store->newest)
+        asset_destroy(store->newest);
+    free(store);
+}
+
+static bool evict_one(struct store *store)
+{
+    for (struct asset *asset = store->oldest; asset; asset = asset->newer) {
+        if (asset->users > 0 || asset->state == ASSET_BUILDING)
+            continue;
+        asset_destroy(asset);
+        return true;
+    }
+    return false;
+}
+
+struct asset *store_find(struct store *store, enum asset_kind kind,
+                         const uint8_t sha256[static MODEL_ID_BYTES])
+{
+    struct asset *asset = *bucket_of(store, sha256);
+    while (asset && (asset->kind != kind || memcmp(asset->sha256, sha256, MODEL_ID_BYTES) != 0))
+        asset = asset->bucket_next;
+    return asset;
+}
+
+bool store_reserve(struct store *store, size_t bytes, const char *what, enum error_kind permanent,
+                   struct error *error)
+{
+    if (bytes > store->budget_bytes)
+        return error_set(error, permanent,
+                         "%s needs %zu bytes and the daemon's memory budget is %zu: start sheend "
+                         "with a larger --memory-budget",
+                         what, bytes, store->budget_bytes);
+    while (bytes > store->budget_bytes - store->used_bytes && evict_one(store))
+        ;
+    if (bytes > store->budget_bytes - store->used_bytes)
+        return error_set(error, ERROR_SERVER,
+                         "%s needs %zu bytes; of the daemon's memory budget of %zu, %zu are in use "
+                         "now: try again later",
+                         what, bytes, store->budget_bytes, store->used_bytes);
+    store->used_bytes += bytes;
+    return true;
+}
+
+void store_release(struct store *store, size_t bytes)
+{
+    store->used_bytes -= bytes;
+}
+
+bool store_add(struct store *store, enum asset_kind kind,
+               const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
+               size_t file_bytes, struct error *error)
+{
+    struct asset *asset = NULL;
+    bool known = store_find(store, kind, sha256) != NULL;
+    if (!known && (store->n_assets < STORE_MAX_ASSETS || evict_one(store)))
+        asset = calloc(1, sizeof *asset);
+    if (!asset) {
+        free(file);
+        store_release(store, file_bytes);
+        return known || error_set(error, ERROR_SERVER,
+                                  "%s: no room for another model or image: try again later", name);
+    }
+    asset->kind = kind;
+    asset->store = store;
+    memcpy(asset->sha256, sha256, MODEL_ID_BYTES);
+    snprintf(asset->name, sizeof asset->name, "%s", name);
+    asset->file = file;
+    asset->file_bytes = file_bytes;
+    asset->charged_bytes = file_bytes;
+    asset->bucket_next = *bucket_of(store, sha256);
+    *bucket_of(store, sha256) = asset;
+    link_newest(store, asset);
+    store->n_assets++;
+    return true;
+}
+
+/* --- building */
+
+static void start_builds(struct store *store);
+
+static void wake_waiters(struct asset *asset, const struct error *failure)
+{
+    struct asset_waiter *waiter = asset->waiters;
+    asset->waiters = NULL;
+    while (waiter) {
+        struct asset_waiter *next = waiter->next;
+        if (failure)
+            asset->users--;
+        waiter->ready(waiter, failure);
+        waiter = next;
+    }
+}
+
+static void build_ended(struct asset *asset, const struct error *failure)
+{
+    if (!failure) {
+        asset->state = ASSET_READY;
+        drop_file(asset);
+    } else {
+        /* What the file causes stays so; what the moment causes may pass. */
+        bool bad_file = failure->kind == ERROR_MODEL || failure->kind == ERROR_IMAGE;
+        store_release(asset->store, asset->charged_bytes - asset->file_bytes);
+        asset->charged_bytes = asset->file_bytes;
+        asset->state = bad_file ? ASSET_FAILED : ASSET_STORED;
+        asset->failure = *failure;
+        if (bad_file)
+            drop_file(asset);
+    }
+    wake_waiters(asset, failure);
+}
+
+static void build_finished(void *owner, void *result, const struct error *failure)
+{
+    struct asset *asset = owner;
+    struct store *store = asset->store;
+    if (asset->kind == ASSET_MODEL) {
+        asset->model = result;
+        asset->unreported_us = result ? asset->model->build_us : 0;
+    } else {
+        asset->image = result;
+    }
+    store->n_building--;
+    asset->users++; /* nobody woken may see it evicted */
+    build_ended(asset, failure);
+    asset->users--;
+    start_builds(store);
+}
+
+static bool build_reserve(void *owner, size_t bytes, struct error *error)
+{
+    struct asset *asset = owner;
+    enum error_kind permanent = asset->kind == ASSET_MODEL ? ERROR_MODEL : ERROR_IMAGE;
+    if (!store_reserve(asset->store, bytes, asset->name, permanent, error))
+        return false;
+    asset->charged_bytes += bytes;
+    return true;
+}
+
+static void start_builds(struct store *store)
+{
+    while (store->n_building < STORE_MAX_BUILDS && store->build_head) {
+        struct asset *asset = store->build_head;
+        store->build_head = asset->next_build;
+        const struct build_order order = {
+            .pool = store->pool,
+            .render_thread = store->render_thread,
+            .file = asset->file,
+            .file_bytes = asset->file_bytes,
+            .name = asset->name,
+            .progress = &asset->progress,
+            .cancelled = &store->cancelled,
+            .reserve = build_reserve,
+            .finished = build_finished,
+            .owner = asset,
+        };
+        struct error error = {0};
+        store->n_building++;
+        if (!(asset->kind == ASSET_MODEL ? model_build_start(&order, &error)
+                                         : light_image_build_start(&order, &error)))
+            build_finished(asset, NULL, &error);
+    }
+}
+
+static void queue_build(struct asset *asset)
+{
+    struct store *store = asset->store;
+    asset->state = ASSET_BUILDING;
+    asset->progress.stage = "waiting";
+    asset->progress.total = 0;
+    atomic_store(&asset->progress.done, 0);
+    asset->next_build = NULL;
+    if (store->build_head)
+        store->build_tail->next_build = asset;
+    else
+        store->build_head = asset;
+    store->build_tail = asset;
+    start_builds(store);
+}
+
+enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *waiter,
+                                  struct error *error)
+{
+    unlink_by_use(asset->store, asset);
+    link_newest(asset->store, asset);
+    if (asset->state == ASSET_FAILED) {
+        *error = asset->failure;
+        return ACQUIRE_FAILED;
+    }
+    asset->users++;
+    if (asset->state == ASSET_READY)
+        return ACQUIRE_READY;
+    waiter->next = asset->waiters;
+    asset->waiters = waiter;
+    if (asset->state == ASSET_STORED)
+        queue_build(asset);
+    return ACQUIRE_WAIT;
+}
+
+void store_unuse(struct asset *asset)
+{
+    asset->users--;
+}
+
+void store_cancel_builds(struct store *store)
+{
+    atomic_store(&store->cancelled, true);
+}
+
+bool store_is_building(const struct store *store)
+{
+    return store->n_building > 0 || store->build_head;
+}
+
+struct store_counts store_count(const struct store *store)
+{
+    struct store_counts counts = {0};
+    for (const struct asset *asset = store->newest; asset; asset = asset->older) {
+        if (asset->state != ASSET_READY)
+            continue;
+        counts.models += asset->kind == ASSET_MODEL;
+        counts.images += asset->kind == ASSET_IMAGE;
+        counts.model_bytes += asset->model ? asset->model->reserved_bytes : 0;
+    }
+    return counts;
+}

@@ -1,0 +1,104 @@
+/* Everything that clients have uploaded, by kind and SHA-256: files that wait to be used, models
+ * and light images that are ready on the GPU, and the memory they take.
+ *
+ * An asset is built on first use, once, however many requests wait for it, and a few at a time.
+ * What no request uses is evicted, least recently used first, when room is needed; the client is
+ * then told that the model is unknown and uploads it again. Nothing in use is ever evicted.
+ * Thread: the loop's. */
+#ifndef SHEEN_SERVICE_STORE_H
+#define SHEEN_SERVICE_STORE_H
+
+#include "protocol/frame.h"
+#include "server/service/build.h"
+#include "server/service/light_image.h"
+#include "server/service/model.h"
+
+#define STORE_MAX_ASSETS 4096
+#define STORE_MAX_BUILDS 2 /* at once; bounds the queues of the pool and the GL thread */
+#define STORE_NAME_BYTES 256
+
+enum asset_kind { ASSET_MODEL, ASSET_IMAGE };
+
+enum asset_state {
+    ASSET_STORED,   /* the file is here; also after a build that may work another time */
+    ASSET_BUILDING, /* or waiting for its turn */
+    ASSET_READY,    /* `model` or `image` is set, the file is gone */
+    ASSET_FAILED,   /* the file is bad and gone; `failure` says why */
+};
+
+struct asset_waiter;
+struct store;
+
+struct asset {
+    enum asset_kind kind;
+    enum asset_state state;
+    uint8_t sha256[MODEL_ID_BYTES];
+    char name[STORE_NAME_BYTES];
+    uint8_t *file; /* malloc'd, or NULL */
+    size_t file_bytes;
+    struct model *model;
+    struct light_image *image;
+    struct error failure;
+    struct build_progress progress; /* while BUILDING */
+    uint64_t unreported_us;         /* time of the build until a frame has reported it */
+
+    /* The store's own. */
+    struct store *store;
+    unsigned users; /* requests that wait for it or use it */
+    size_t charged_bytes;
+    struct asset_waiter *waiters;
+    struct asset *next_build;    /* in the queue for a turn */
+    struct asset *newer, *older; /* by last use */
+    struct asset *bucket_next;
+};
+
+/* A request that waits for a build. ready() is called once, with why it failed or NULL. */
+struct asset_waiter {
+    void (*ready)(struct asset_waiter *waiter, const struct error *failure);
+    void *owner;
+    struct asset_waiter *next;
+};
+
+struct store_counts {
+    uint32_t models, images; /* ready */
+    uint64_t model_bytes;    /* tables on the GPU */
+};
+
+/* budget_bytes: the most that files, tables and texels may take together. */
+struct store *store_create(struct pool *pool, struct render_thread *render_thread,
+                           size_t budget_bytes, struct error *error);
+/* No build may be running. The GL thread must run on until it has freed what it holds. */
+void store_destroy(struct store *store); /* NULL is safe */
+
+/* NULL when there is none. The asset stays at least until the loop's next turn. */
+struct asset *store_find(struct store *store, enum asset_kind kind,
+                         const uint8_t sha256[static MODEL_ID_BYTES]);
+
+/* Charges bytes that are about to be allocated for `what` (a file's name), evicting if need be.
+ * The error names the need and the budget: `permanent` kind if it can never fit, else
+ * ERROR_SERVER. */
+bool store_reserve(struct store *store, size_t bytes, const char *what, enum error_kind permanent,
+                   struct error *error);
+void store_release(struct store *store, size_t bytes);
+
+/* Takes over a malloc'd file whose bytes have been charged, and whose hash has been checked. A file
+ * that is here already is freed. ERROR_SERVER when there is no room for another entry; the file
+ * is freed then too. */
+bool store_add(struct store *store, enum asset_kind kind,
+               const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
+               size_t file_bytes, struct error *error);
+
+enum acquire_result { ACQUIRE_READY, ACQUIRE_WAIT, ACQUIRE_FAILED };
+
+/* Wants to use an asset. READY: it is, until store_unuse(). WAIT: waiter->ready() will be called;
+ * without a failure that is as READY. FAILED: *error says why. */
+enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *waiter,
+                                  struct error *error);
+void store_unuse(struct asset *asset);
+
+/* From now on every build fails soon: nobody waits for it any more. */
+void store_cancel_builds(struct store *store);
+bool store_is_building(const struct store *store);
+struct store_counts store_count(const struct store *store);
+
+#endif

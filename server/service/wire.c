@@ -1,0 +1,173 @@
+#include "server/service/wire.h"
+
+#include <string.h>
+
+_Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
+                   (int)PLANE_POSITION == (int)sheen_Plane_PLANE_POSITION &&
+                   (int)PLANE_NORMAL == (int)sheen_Plane_PLANE_NORMAL &&
+                   (int)PLANE_PTEX == (int)sheen_Plane_PLANE_PTEX &&
+                   (int)PLANE_LIGHT == (int)sheen_Plane_PLANE_LIGHT &&
+                   (int)PLANE_CURVATURE == (int)sheen_Plane_PLANE_CURVATURE,
+               "planes have the same bits on the wire");
+_Static_assert((int)PATTERN_STRIPES == (int)sheen_PatternKind_PATTERN_STRIPES &&
+                   (int)PATTERN_LATTICE == (int)sheen_PatternKind_PATTERN_LATTICE &&
+                   (int)PATTERN_CIRCLES == (int)sheen_PatternKind_PATTERN_CIRCLES &&
+                   (int)PATTERN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE,
+               "patterns have the same numbers on the wire");
+
+/* What is left out of a request. Rays that miss the light see its background. */
+static const sheen_Colour DEFAULT_FOREGROUND = {1, 1, 1, 1};
+static const sheen_Colour DEFAULT_BACKGROUND = {0, 0, 0, 1};
+static const sheen_Colour DEFAULT_EMPTY = {0.5f, 0.5f, 0.5f, 1};
+
+static void to_vec3(const sheen_Vec3 *from, double to[3])
+{
+    to[0] = from->x;
+    to[1] = from->y;
+    to[2] = from->z;
+}
+
+sheen_Vec3 wire_from_vec3(const double v[3])
+{
+    return (sheen_Vec3){v[0], v[1], v[2]};
+}
+
+static void to_colour(const sheen_Colour *from, float to[4])
+{
+    to[0] = from->r;
+    to[1] = from->g;
+    to[2] = from->b;
+    to[3] = from->a;
+}
+
+static sheen_Colour from_colour(const float c[4])
+{
+    return (sheen_Colour){c[0], c[1], c[2], c[3]};
+}
+
+static void to_camera(const sheen_Camera *from, struct camera *to)
+{
+    *to = (struct camera){
+        .kind = from->has_ortho_height ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE,
+        .fov_deg = from->fov_deg,
+        .ortho_height = from->ortho_height,
+    };
+    to_vec3(&from->eye, to->eye);
+    to_vec3(&from->target, to->target);
+    to_vec3(&from->up, to->up);
+}
+
+sheen_Camera wire_from_camera(const struct camera *camera)
+{
+    bool ortho = camera->kind == CAMERA_ORTHOGRAPHIC;
+    return (sheen_Camera){
+        .eye = wire_from_vec3(camera->eye),
+        .target = wire_from_vec3(camera->target),
+        .up = wire_from_vec3(camera->up),
+        .has_fov_deg = !ortho,
+        .fov_deg = camera->fov_deg,
+        .has_ortho_height = ortho,
+        .ortho_height = camera->ortho_height,
+    };
+}
+
+sheen_Light wire_from_light(const struct light *light)
+{
+    return (sheen_Light){wire_from_vec3(light->centre), wire_from_vec3(light->u),
+                         wire_from_vec3(light->v)};
+}
+
+static void to_pattern(const sheen_Pattern *from, struct pattern *to)
+{
+    static const sheen_Pattern defaults = sheen_Pattern_init_default;
+    *to = (struct pattern){
+        .kind = (enum pattern_kind)from->kind,
+        .count = from->has_count ? from->count : defaults.count,
+        .duty = from->has_duty ? from->duty : defaults.duty,
+    };
+    to_colour(from->has_foreground ? &from->foreground : &DEFAULT_FOREGROUND, to->foreground);
+    to_colour(from->has_background ? &from->background : &DEFAULT_BACKGROUND, to->background);
+}
+
+sheen_Pattern wire_from_pattern(const struct pattern *pattern, const sheen_Pattern *asked)
+{
+    sheen_Pattern wire = {
+        .kind = (sheen_PatternKind)pattern->kind,
+        .has_count = true,
+        .count = pattern->count,
+        .has_duty = true,
+        .duty = pattern->duty,
+        .has_foreground = true,
+        .foreground = from_colour(pattern->foreground),
+        .has_background = true,
+        .background = from_colour(pattern->background),
+        .has_image_sha256 = asked->has_image_sha256,
+    };
+    memcpy(wire.image_sha256, asked->image_sha256, sizeof wire.image_sha256);
+    return wire;
+}
+
+void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
+                           const double box_max[3], struct frame_request *request)
+{
+    static const sheen_Pattern default_pattern = sheen_Pattern_init_default;
+    *request = (struct frame_request){
+        .width_px = render->width_px,
+        .height_px = render->height_px,
+        .planes = render->planes,
+    };
+    if (render->has_camera)
+        to_camera(&render->camera, &request->camera);
+    else
+        renderer_default_camera(box_min, box_max, render->width_px, render->height_px,
+                                &request->camera);
+    if (render->has_light) {
+        to_vec3(&render->light.centre, request->light.centre);
+        to_vec3(&render->light.u, request->light.u);
+        to_vec3(&render->light.v, request->light.v);
+    } else {
+        renderer_default_light(box_min, box_max, &request->camera, &request->light);
+    }
+    to_pattern(render->has_pattern ? &render->pattern : &default_pattern, &request->pattern);
+    if (render->has_miss)
+        to_colour(&render->miss, request->miss);
+    else
+        memcpy(request->miss, request->pattern.background, sizeof request->miss);
+    to_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
+}
+
+sheen_ErrorCode wire_error_code(enum error_kind kind)
+{
+    switch (kind) {
+    case ERROR_REQUEST:
+        return sheen_ErrorCode_ERROR_REQUEST;
+    case ERROR_MODEL:
+        return sheen_ErrorCode_ERROR_MODEL;
+    case ERROR_IMAGE:
+        return sheen_ErrorCode_ERROR_IMAGE;
+    case ERROR_DEVICE:
+        return sheen_ErrorCode_ERROR_DEVICE;
+    case ERROR_NONE:
+    case ERROR_SERVER:
+        break;
+    }
+    return sheen_ErrorCode_ERROR_OVERLOADED;
+}
+
+void wire_make_text(char *text, bool lines)
+{
+    if (message_is_text(text, lines))
+        return;
+    for (char *c = text; *c; c++)
+        if ((*c < 0x20 && !(lines && *c == '\n')) || *c > 0x7e)
+            *c = '?';
+}
+
+void wire_hex(const uint8_t sha256[static MODEL_ID_BYTES], char hex[static 2 * MODEL_ID_BYTES + 1])
+{
+    for (size_t i = 0; i < MODEL_ID_BYTES; i++) {
+        hex[2 * i] = "0123456789abcdef"[sha256[i] >> 4];
+        hex[2 * i + 1] = "0123456789abcdef"[sha256[i] & 15];
+    }
+    hex[2 * MODEL_ID_BYTES] = 0;
+}

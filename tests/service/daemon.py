@@ -1,0 +1,139 @@
+"""Starting and ending the daemon under test."""
+import atexit
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import wire
+
+BUILD = os.environ["SHEEN_BUILD"]
+SHEEND = os.path.join(BUILD, "sheend")
+SHEEN = os.path.join(BUILD, "sheen")
+MODELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "models")
+
+with open(SHEEND, "rb") as _file:
+    SANITIZED = b"__asan_init" in _file.read()  # freed memory is kept for a while then
+
+# A closed cube: small, and with extraordinary vertices.
+CUBE = (b"v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+        b"f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
+
+
+def grid(n):
+    """An open sheet of n by n faces."""
+    lines = [f"v {x} {y} {(x * y) % 7}" for y in range(n + 1) for x in range(n + 1)]
+    for y in range(n):
+        for x in range(n):
+            a = y * (n + 1) + x + 1
+            lines.append(f"f {a} {a + 1} {a + n + 2} {a + n + 1}")
+    return ("\n".join(lines) + "\n").encode()
+
+
+def run(*arguments, env=None, timeout=60):
+    return subprocess.run([SHEEND, *arguments], capture_output=True, text=True, timeout=timeout,
+                          env={**os.environ, **(env or {})})
+
+
+def resident_kb(pid):
+    """Memory in use; nothing under a sanitizer, which hoards it."""
+    with open(f"/proc/{pid}/status", encoding="ascii") as status:
+        kb = int(next(line for line in status if line.startswith("VmRSS")).split()[1])
+    return 0 if SANITIZED else kb
+
+
+class Daemon:
+    """A real sheend on a Unix socket and a TCP port of its own."""
+
+    def __init__(self, *arguments, folder=None, path=None, tcp=True):
+        self.folder = folder or tempfile.mkdtemp(prefix="sheen-test-")
+        self.owns_folder = folder is None
+        self.path = path or os.path.join(self.folder, "sheen.sock")
+        self.unix = "unix:" + self.path
+        listen = ["--listen", self.unix] + (["--listen", "tcp:127.0.0.1:0"] if tcp else [])
+        self.stderr = tempfile.TemporaryFile("w+")
+        self.process = subprocess.Popen([SHEEND, *listen, "--device", "software", *arguments],
+                                        stdout=subprocess.DEVNULL, stderr=self.stderr)
+        atexit.register(self.process.kill)  # where a test fails before it stops its daemon
+        banner = self.wait_for_banner()
+        found = re.search(r"tcp:127\.0\.0\.1:\d+", banner)
+        self.tcp = found.group() if found else None
+
+    def errors(self):
+        self.stderr.seek(0)
+        return self.stderr.read()
+
+    def wait_for_banner(self):
+        for _ in range(600):
+            text = self.errors()
+            if "listening on" in text:
+                return text
+            if self.process.poll() is not None:
+                break
+            time.sleep(0.05)
+        raise AssertionError(f"the daemon did not start: {self.errors()}")
+
+    def terminate(self):
+        self.process.send_signal(signal.SIGTERM)
+
+    def wait(self, timeout=60):
+        return self.process.wait(timeout)
+
+    def stop(self):
+        """Ends it and returns its exit code."""
+        if self.process.poll() is None:
+            self.terminate()
+        try:
+            return self.wait()
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+            raise
+        finally:
+            atexit.unregister(self.process.kill)
+            self.stderr.close()
+            if self.owns_folder:
+                shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class DaemonCase(unittest.TestCase):
+    """Tests that share one daemon; after each it must still serve, and at the end leave well."""
+    arguments = ()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Daemon(*cls.arguments)
+
+    @classmethod
+    def tearDownClass(cls):
+        code = cls.daemon.stop()
+        if code != 0:
+            raise AssertionError(f"the daemon ended with exit code {code}")
+
+    def addresses(self):
+        return (self.daemon.unix, self.daemon.tcp)
+
+    def assert_serves(self):
+        self.assertIsNone(self.daemon.process.poll(), self.daemon.errors()
+                          if self.daemon.process.poll() is not None else "")
+        for address in self.addresses():
+            with wire.Client(address) as client:
+                frame = client.render(client.upload(CUBE, "cube.obj"))
+                self.assertEqual(len(frame.data), 64 * 48 * 4)
+
+    def tearDown(self):
+        self.assert_serves()
+
+    def assert_refused(self, client, code, words="", seq=None):
+        """The next answer is this ERROR, in one line."""
+        with self.assertRaises(wire.Refused) as caught:
+            client.receive()
+        self.assertEqual(caught.exception.code, code, caught.exception)
+        self.assertIn(words, caught.exception.text)
+        self.assertNotIn("\n", caught.exception.text)
+        if seq is not None:
+            self.assertEqual(caught.exception.seq, seq)

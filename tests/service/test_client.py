@@ -1,0 +1,144 @@
+"""The real client against the real daemon, over every way to reach it."""
+import json
+import os
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+from daemon import CUBE, MODELS, SHEEN, SHEEND, Daemon
+
+FENDER = os.path.join(MODELS, "fender.obj")
+
+
+def sheen(*arguments, timeout=120, **options):
+    return subprocess.run([SHEEN, *arguments], capture_output=True, text=True, timeout=timeout,
+                          **options)
+
+
+@unittest.skipUnless(os.path.exists(SHEEN), "no client in this build")
+class Client(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Daemon()
+
+    @classmethod
+    def tearDownClass(cls):
+        if cls.daemon.stop() != 0:
+            raise AssertionError("the daemon did not end well")
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def render(self, name, *arguments, model=FENDER):
+        done = sheen("render", model, "-o", self.path(name), "--size", "320x240", "--json",
+                     *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.path(name), "rb") as file:
+            return json.loads(done.stdout), file.read()
+
+    def test_the_same_file_by_every_way(self):
+        for name, *planes in (("a.png",), ("a.exr", "--aov", "P,N,ptex,light,k"), ("a.jpg",),
+                              ("a.tif",)):
+            files = {self.render(name, "--device", "software", *planes)[1]}
+            for address in (self.daemon.unix, self.daemon.tcp):
+                files.add(self.render(name, "--server", address, *planes)[1])
+            with self.subTest(name=name):
+                self.assertEqual(len(files), 1)
+
+    def test_second_frame_builds_nothing(self):
+        model = self.path("new.obj")
+        with open(model, "wb") as file:
+            file.write(CUBE + b"# of this test\n")
+        first, _ = self.render("a.png", "--server", self.daemon.unix, model=model)
+        second, _ = self.render("b.png", "--server", self.daemon.tcp, model=model)
+        self.assertGreater(first["tables_us"], 0)
+        self.assertEqual(second["tables_us"], 0)
+
+    def assert_fails(self, code, words, *arguments):
+        for address in (self.daemon.unix, self.daemon.tcp):
+            done = sheen(*arguments, "--server", address)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_bad_files(self):
+        for name, data in (("empty.obj", b""), ("words.obj", b"not a model\n"),
+                           ("cut.glb", b"glTF\2\0\0\0\xff\0\0\0"),
+                           ("range.obj", CUBE + b"f 1 2 99\n"), ("two.obj", CUBE + b"f 1 2\n"),
+                           ("twice.obj", CUBE + b"f 1 2 2 3\n"), ("none.obj", b"v 0 0 0\n"),
+                           ("nan.obj", CUBE.replace(b"-1", b"nan", 1)),
+                           ("huge.obj", CUBE.replace(b"-1", b"1e308", 1))):
+            with open(self.path(name), "wb") as file:
+                file.write(data)
+            with self.subTest(name=name):
+                self.assert_fails(3, name, "render", self.path(name), "-o", self.path("x.png"))
+                self.assertFalse(os.path.exists(self.path("x.png")))
+        with open(self.path("light.png"), "wb") as file:
+            file.write(b"no image at all")
+        self.assert_fails(3, "light.png", "render", FENDER, "-o", self.path("x.png"), "--pattern",
+                          "image:" + self.path("light.png"))
+
+    def test_bad_sizes(self):
+        for size in ("0x0", "0x10", "100000x100000"):
+            with self.subTest(size=size):
+                self.assert_fails(2, "", "render", FENDER, "-o", self.path("x.png"), "--size", size)
+
+    def test_no_device(self):
+        done = sheen("render", FENDER, "-o", self.path("x.png"),
+                     env={**os.environ, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"})
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn("EGL", done.stderr)
+
+    def test_server_gone_in_the_middle_of_a_frame(self):
+        for kind in ("unix", "tcp"):
+            daemon = Daemon()
+            address = daemon.unix if kind == "unix" else daemon.tcp
+            with subprocess.Popen([SHEEN, "render", FENDER, "-o", self.path("x.png"), "--size",
+                                   "6000x6000", "--server", address], stderr=subprocess.PIPE,
+                                  text=True) as client:
+                time.sleep(0.5)
+                daemon.process.kill()
+                _, errors = client.communicate(timeout=30)
+            self.assertEqual(client.returncode, 4, errors)
+            self.assertEqual(len(errors.splitlines()), 1, errors)
+            self.assertFalse(os.path.exists(self.path("x.png")))
+            daemon.stop()
+
+    def test_server_that_hangs_up_within_a_frame(self):
+        """A relay that passes the daemon's answers on and cuts them at some byte."""
+        for cut in (10, 60, 400, 2000):
+            with socket.create_server(("127.0.0.1", 0)) as server:
+                address = f"tcp:127.0.0.1:{server.getsockname()[1]}"
+                with subprocess.Popen([SHEEN, "render", FENDER, "-o", self.path("x.png"),
+                                       "--server", address], stderr=subprocess.PIPE,
+                                      text=True) as client:
+                    relay(server, self.daemon.tcp, cut)
+                    _, errors = client.communicate(timeout=30)
+            self.assertEqual(client.returncode, 4, errors)
+            self.assertFalse(os.path.exists(self.path("x.png")))
+
+
+def relay(server, address, cut):
+    """Passes bytes both ways until `cut` bytes of answers have passed, then closes."""
+    ours, _ = server.accept()
+    host, port = address[4:].rsplit(":", 1)
+    with ours, socket.create_connection((host, int(port))) as theirs:
+        ours.settimeout(0.05)
+        theirs.settimeout(0.05)
+        while cut > 0:
+            for source, target in ((ours, theirs), (theirs, ours)):
+                try:
+                    data = source.recv(65536 if source is ours else cut)
+                except TimeoutError:
+                    continue
+                if not data:
+                    return
+                target.sendall(data)
+                cut -= len(data) if source is theirs else 0

@@ -1,0 +1,361 @@
+"""Start, end and options of the daemon."""
+import os
+import re
+import signal
+import socket
+import stat
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+import wire
+from daemon import CUBE, SHEEND, Daemon, grid, run
+from wire import Client
+
+
+class Options(unittest.TestCase):
+    def assert_fails(self, code, words, *arguments, env=None):
+        done = run(*arguments, env=env)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn(words, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_help_and_version(self):
+        text = run("--help").stdout
+        for name in ("--listen", "--device", "--memory-budget", "--config", "--check-config",
+                     "--session-fd", "--threads", "--version"):
+            self.assertIn(name, text)
+        self.assertIn("examples", text)
+        self.assertRegex(run("--version").stdout, r"^sheend \d+\.\d+\.\d+\n$")
+
+    def test_wrong_usage(self):
+        for words, *arguments in (("--nothing", "--nothing"), ("stray", "stray"),
+                                  ("--device", "--device"), ("device", "--device", "fast"),
+                                  ("memory-budget", "--memory-budget", "much"),
+                                  ("memory-budget", "--memory-budget", "0"),
+                                  ("memory-budget", "--memory-budget", "-1"),
+                                  ("memory-budget", "--memory-budget", "99999999999999T"),
+                                  ("memory-budget", "--memory-budget", "4GB"),
+                                  ("threads", "--threads", "0"), ("threads", "--threads", "257"),
+                                  ("unix:PATH", "--listen", "sheen.sock"),
+                                  ("unix:PATH", "--listen", "tcp:localhost"),
+                                  ("session-fd", "--session-fd", "77"),
+                                  ("session-fd", "--session-fd", "1")):
+            with self.subTest(arguments=arguments):
+                self.assert_fails(2, words, *arguments)
+
+    def test_not_loopback(self):
+        for address in ("tcp:0.0.0.0:0", "tcp:[::]:0", "tcp:192.0.2.1:7410", "tcp:[2001:db8::1]:1",
+                        "tcp:[::ffff:192.0.2.1]:1"):
+            with self.subTest(address=address):
+                self.assert_fails(2, "loopback", "--listen", address)
+                self.assert_fails(2, "loopback", "--listen", address, "--check-config")
+
+    def test_config(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "sheend.conf")
+
+            def write(text):
+                with open(path, "w", encoding="ascii") as file:
+                    file.write(text)
+
+            write(f"# ours\n[sheend]\nlisten = unix:{folder}/a.sock\nlisten = tcp:127.0.0.1:0\n"
+                  "device = software\nmemory-budget = 1G\nthreads = 2\nidle-timeout = 60\n")
+            done = run("--config", path, "--check-config")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            for line, words in (("nothing = 1", "nothing"), ("threads = many", "threads"),
+                                ("just words", "name = value"), ("[other]\nthreads = 1", "other"),
+                                ("config = x", "config"), ("session-fd = 0", "session-fd")):
+                write("[sheend]\nthreads = 1\n" + line + "\n")
+                self.assert_fails(2, words, "--config", path)
+                self.assert_fails(2, f"{path}:{4 if line[0] == '[' else 3}:", "--config", path)
+            write("listen = tcp:0.0.0.0:1\n")
+            self.assert_fails(2, "loopback", "--config", path, "--check-config")
+            # What the command line says goes first.
+            done = run("--config", path, "--listen", f"unix:{folder}/b.sock", "--check-config")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assert_fails(2, "cannot read", "--config", folder + "/none")
+
+    def test_no_device(self):
+        hidden = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "s")
+            self.assert_fails(5, "EGL", "--listen", "unix:" + path, env=hidden)
+            self.assertFalse(os.path.exists(path))
+            self.assert_fails(5, "99", "--listen", "unix:" + path, "--device", "99")
+
+
+class Sockets(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = os.path.join(self.folder.name, "sheen.sock")
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def start(self, *arguments):
+        return Daemon(*arguments, folder=self.folder.name, tcp=False)
+
+    def test_owner_only_and_removed(self):
+        old = os.umask(0)
+        try:
+            daemon = self.start()
+        finally:
+            os.umask(old)
+        mode = os.stat(self.path).st_mode
+        self.assertTrue(stat.S_ISSOCK(mode))
+        self.assertEqual(stat.S_IMODE(mode), 0o600)
+        self.assertEqual(daemon.stop(), 0)
+        self.assertFalse(os.path.exists(self.path))
+
+    def test_stale_socket_is_replaced(self):
+        with socket.socket(socket.AF_UNIX) as dead:
+            dead.bind(self.path)
+        self.assertTrue(os.path.exists(self.path))
+        daemon = self.start()
+        with Client(daemon.unix) as client:
+            client.stats()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_living_socket_is_not(self):
+        daemon = self.start()
+        done = run("--listen", daemon.unix, "--device", "software")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("another daemon", done.stderr)
+        with Client(daemon.unix) as client:
+            client.stats()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_other_files_are_not(self):
+        with open(self.path, "w", encoding="ascii") as file:
+            file.write("precious")
+        done = run("--listen", "unix:" + self.path, "--device", "software")
+        self.assertEqual(done.returncode, 4)
+        with open(self.path, encoding="ascii") as file:
+            self.assertEqual(file.read(), "precious")
+
+    def test_somebody_elses_socket_is_not_removed(self):
+        daemon = self.start()
+        os.unlink(self.path)
+        with socket.socket(socket.AF_UNIX) as other:
+            other.bind(self.path)
+            self.assertEqual(daemon.stop(), 0)
+            self.assertTrue(os.path.exists(self.path))
+
+    def test_no_such_folder(self):
+        done = run("--listen", "unix:/no/such/folder/s", "--device", "software")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("/no/such/folder/s", done.stderr)
+
+    def test_port_in_use(self):
+        with socket.socket() as other:
+            other.bind(("127.0.0.1", 0))
+            other.listen()
+            port = other.getsockname()[1]
+            done = run("--listen", f"tcp:127.0.0.1:{port}", "--device", "software")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(str(port), done.stderr)
+
+    def test_default_address(self):
+        env = {**os.environ, "XDG_RUNTIME_DIR": self.folder.name}
+        process = subprocess.Popen([SHEEND, "--device", "software"], env=env,
+                                   stderr=subprocess.PIPE, text=True)
+        try:
+            self.assertIn(self.path, process.stderr.readline())
+            with Client("unix:" + self.path) as client:
+                client.stats()
+        finally:
+            process.terminate()
+            process.wait(30)
+            process.stderr.close()
+
+    def test_banner(self):
+        daemon = Daemon()
+        self.assertRegex(daemon.errors(), r"^sheend \d+\.\d+\.\d+ on .+, listening on unix:.+, "
+                                          r"tcp:127\.0\.0\.1:\d+\n$")
+        self.assertEqual(daemon.stop(), 0)
+
+
+class Shutdown(unittest.TestCase):
+    def test_finishes_what_is_in_flight(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            daemon = Daemon()
+            with Client(daemon.unix, timeout=60) as client, Client(daemon.tcp) as idle:
+                model = client.upload(CUBE, "cube.obj")
+                client.send(b"".join(wire.render(5 + i, model, width=1200, height=1200)
+                                     for i in range(3)))
+                time.sleep(0.2)
+                daemon.process.send_signal(number)
+                for i in range(3):
+                    client.read_frame(5 + i)
+                self.assertTrue(client.at_end())
+                self.assertTrue(idle.at_end())
+                self.assertEqual(daemon.wait(), 0)
+            self.assertEqual(daemon.stop(), 0)
+
+    def test_new_requests_are_refused(self):
+        daemon = Daemon()
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.send(wire.render(5, model, width=3000, height=3000))
+            time.sleep(0.2)
+            daemon.terminate()
+            time.sleep(0.2)
+            client.send(wire.render(6, model))
+            with self.assertRaises(OSError):
+                Client(daemon.unix)
+            client.read_frame(5)
+            with self.assertRaises(wire.Refused) as caught:
+                client.receive()
+            self.assertEqual((caught.exception.code, caught.exception.seq),
+                             (wire.ERROR_SHUTTING_DOWN, 6))
+            self.assertTrue(client.at_end())
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_during_a_build_that_nobody_waits_for(self):
+        daemon = Daemon()
+        with Client(daemon.unix) as client:
+            client.send(wire.render(5, client.upload(grid(300), "big.obj")))
+        daemon.terminate()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_second_signal_ends_at_once(self):
+        daemon = Daemon()
+        with Client(daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.send(b"".join(wire.render(5 + i, model, width=4000, height=4000)
+                                 for i in range(4)))
+            time.sleep(0.3)
+            daemon.terminate()
+            time.sleep(0.2)
+            start = time.monotonic()
+            daemon.terminate()
+            self.assertEqual(daemon.wait(), 0)
+            self.assertLess(time.monotonic() - start, 2)
+            self.assertFalse(os.path.exists(daemon.path))
+        daemon.stop()
+
+
+class Timeouts(unittest.TestCase):
+    def test_idle(self):
+        daemon = Daemon("--idle-timeout", "1")
+        with Client(daemon.unix) as idle, Client(daemon.tcp) as busy:
+            model = busy.upload(CUBE, "cube.obj")
+            for _ in range(8):
+                busy.render(model)
+                time.sleep(0.3)
+            with self.assertRaises(wire.Refused) as caught:
+                idle.receive()
+            self.assertIn("1 s", caught.exception.text)
+            self.assertTrue(idle.at_end())
+            busy.render(model)
+        self.assertEqual(daemon.stop(), 0)
+
+
+class Budget(unittest.TestCase):
+    def test_need_and_budget_are_named(self):
+        daemon = Daemon("--memory-budget", "100K")
+        with Client(daemon.unix) as client:
+            model = client.upload(grid(30), "sheet.obj")
+            client.send(wire.render(5, model))
+            with self.assertRaises(wire.Refused) as caught:
+                client.receive()
+            self.assertEqual(caught.exception.code, wire.ERROR_MODEL)
+            self.assertIn("sheet.obj needs ", caught.exception.text)
+            self.assertIn("102400", caught.exception.text)
+            client.stats()
+            seq = client.next_seq()
+            client.send(wire.upload_begin(seq, bytes(32), 102401, "long.obj"))
+            with self.assertRaises(wire.Refused) as caught:
+                client.receive()
+            self.assertEqual(caught.exception.code, wire.ERROR_TOO_BIG)
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_least_recently_used_goes_first(self):
+        """Room for two sheets of about 128 kB of tables, not for three."""
+        sheets = [grid(20) + f"# {i}\n".encode() for i in range(3)]
+        daemon = Daemon("--memory-budget", "400K")
+        with Client(daemon.unix) as client:
+            ids = [client.upload(data, f"{i}.obj") for i, data in enumerate(sheets[:2])]
+            for model in ids:
+                client.render(model)
+            self.assertEqual(client.stats()[5], [2])
+            client.render(ids[0])  # now the second is the oldest
+            client.render(client.upload(sheets[2], "2.obj"))
+            self.assertEqual(client.stats()[5], [2])
+            self.assertEqual(client.render(ids[0]).tables_us, 0)
+            client.send(wire.render(77, ids[1]))
+            with self.assertRaises(wire.Refused) as caught:
+                client.receive()
+            self.assertEqual(caught.exception.code, wire.ERROR_UNKNOWN_MODEL)
+            client.render(client.upload(sheets[1], "1.obj"))
+        self.assertEqual(daemon.stop(), 0)
+
+
+class SessionFd(unittest.TestCase):
+    def start(self):
+        ours, theirs = socket.socketpair()
+        process = subprocess.Popen(
+            [SHEEND, "--device", "software", "--session-fd", str(theirs.fileno())],
+            pass_fds=[theirs.fileno()], stderr=subprocess.PIPE, text=True)
+        theirs.close()
+        ours.settimeout(30)
+        return ours, process
+
+    def client(self, ours):
+        client = Client.__new__(Client)
+        client.socket, client.seq = ours, 1
+        client.send(wire.hello())
+        client.expect(wire.HELLO_OK, 1)
+        return client
+
+    def test_serves_one_and_ends(self):
+        ours, process = self.start()
+        with self.client(ours) as client:
+            client.render(client.upload(CUBE, "cube.obj"))
+        self.assertEqual(process.wait(10), 0)
+        self.assertEqual(process.stderr.read(), "")
+        process.stderr.close()
+
+    def test_ends_when_its_client_dies_in_the_middle(self):
+        ours, process = self.start()
+        with self.client(ours) as client:
+            client.send(wire.render(5, client.upload(grid(200), "big.obj"), 1000, 1000))
+        self.assertEqual(process.wait(20), 0)
+        process.stderr.close()
+
+
+class Load(unittest.TestCase):
+    def test_clients_in_parallel(self):
+        """Eight clients that come, ask and go: every frame is right, nothing is left behind."""
+        daemon = Daemon()
+        with Client(daemon.unix) as client:
+            want = client.render(client.upload(CUBE, "cube.obj")).data
+        wrong = []
+
+        def work(number):
+            for i in range(6):
+                with Client(daemon.unix if (number + i) % 2 else daemon.tcp) as client:
+                    model = client.upload(CUBE, "cube.obj")
+                    for _ in range(4):
+                        if client.render(model).data != want:
+                            wrong.append((number, i))
+
+        threads = [threading.Thread(target=work, args=(n,)) for n in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
+        with Client(daemon.unix) as client:
+            stats = client.stats()
+            self.assertEqual(stats[3], [8 * 6 * 4 + 1])
+            self.assertEqual((stats[5], stats[15]), ([1], [0]))
+            time.sleep(0.3)
+            self.assertEqual(client.stats()[2], [1])
+            descriptors = len(os.listdir(f"/proc/{daemon.process.pid}/fd"))
+            self.assertLess(descriptors, 40)
+        self.assertEqual(daemon.stop(), 0)

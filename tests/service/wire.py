@@ -1,0 +1,205 @@
+"""A client of sheen's protocol in plain Python: enough to be right, and to be wrong on purpose.
+
+Written from protocol/README.md, not from the C code, so that the two check each other."""
+import hashlib
+import socket
+import struct
+
+MAGIC = b"SHEN"
+(HELLO, HELLO_OK, UPLOAD_BEGIN, UPLOAD_CHUNK, UPLOAD_STATE, MODEL_QUERY, MODEL_INFO, RENDER, FRAME,
+ DATA, PROGRESS, STATS_QUERY, STATS, ERROR) = range(1, 15)
+(ERROR_PROTOCOL, ERROR_VERSION, ERROR_REQUEST, ERROR_MODEL, ERROR_IMAGE, ERROR_UNKNOWN_MODEL,
+ ERROR_TOO_BIG, ERROR_OVERLOADED, ERROR_SHUTTING_DOWN, ERROR_DEVICE) = range(1, 11)
+RAW, ZSTD, PNG, EXR, JPEG, TIFF = range(6)
+MODEL, IMAGE = 0, 1
+ONE_STRIPES = 0
+PATTERN_IMAGE = 3
+
+
+def varint(value):
+    out = bytearray()
+    while value > 127:
+        out.append(value & 127 | 128)
+        value >>= 7
+    out.append(value)
+    return bytes(out)
+
+
+def field(number, value):
+    """One field: int, float (double), bytes, str, or a nested list of fields as bytes."""
+    if isinstance(value, float):
+        return varint(number << 3 | 1) + struct.pack("<d", value)
+    if isinstance(value, int):
+        return varint(number << 3) + varint(value)
+    if isinstance(value, str):
+        value = value.encode()
+    return varint(number << 3 | 2) + varint(len(value)) + value
+
+
+def decode(body):
+    """Fields by number: lists of int, bytes (length-delimited, double and float as raw bytes)."""
+    fields, at = {}, 0
+
+    def take_varint():
+        nonlocal at
+        value = shift = 0
+        while True:
+            byte = body[at]
+            at += 1
+            value |= (byte & 127) << shift
+            shift += 7
+            if byte < 128:
+                return value
+
+    while at < len(body):
+        key = take_varint()
+        kind = key & 7
+        if kind == 0:
+            value = take_varint()
+        else:
+            size = {1: 8, 5: 4}.get(kind) or take_varint()
+            value = body[at:at + size]
+            at += size
+        fields.setdefault(key >> 3, []).append(value)
+    return fields
+
+
+def message(kind, seq, body=b"", flags=0, magic=MAGIC, major=1, length=None):
+    length = len(body) if length is None else length
+    return magic + struct.pack("<BBHII", major, kind, flags, length, seq) + body
+
+
+def hello(seq=1, model=bytes(32)):
+    return message(HELLO, seq, model + field(1, 0) + field(2, "test 1"))
+
+
+def render(seq, model, width=64, height=48, encoding=RAW, planes=1, extra=b""):
+    return message(RENDER, seq, field(1, model) + field(2, width) + field(3, height) + extra +
+                   field(9, planes) + field(10, encoding))
+
+
+def upload_begin(seq, sha256, size, name, kind=MODEL):
+    return message(UPLOAD_BEGIN, seq,
+                   field(1, kind) + field(2, sha256) + field(3, size) + field(4, name))
+
+
+class Refused(Exception):
+    """The daemon's ERROR message."""
+
+    def __init__(self, seq, code, text):
+        super().__init__(f"ERROR {code} to {seq}: {text}")
+        self.seq, self.code, self.text = seq, code, text
+
+
+class Frame:
+    def __init__(self, fields, data):
+        self.width, self.height = fields[1][0], fields[2][0]
+        self.encoding = fields[4][0]
+        self.size = fields[5][0]
+        times = decode(fields[6][0])
+        self.tables_us, self.total_us = times[1][0], times[7][0]
+        self.data = data
+
+
+class Client:
+    def __init__(self, address, greet=True, timeout=30):
+        if address.startswith("unix:"):
+            self.socket = socket.socket(socket.AF_UNIX)
+            target = address[5:]
+        else:
+            self.socket = socket.socket()
+            host, port = address[4:].rsplit(":", 1)
+            target = (host, int(port))
+        self.socket.settimeout(timeout)
+        self.socket.connect(target)
+        self.seq = 1
+        if greet:
+            self.send(hello())
+            self.expect(HELLO_OK, 1)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.socket.close()
+
+    def send(self, data):
+        self.socket.sendall(data)
+
+    def next_seq(self):
+        self.seq += 1
+        return self.seq
+
+    def read(self, size):
+        out = bytearray()
+        while len(out) < size:
+            part = self.socket.recv(min(size - len(out), 1 << 20))
+            if not part:
+                raise EOFError(f"the daemon closed {size - len(out)} bytes early")
+            out += part
+        return bytes(out)
+
+    def receive(self):
+        """(type, flags, seq, body) of the next message but PROGRESS."""
+        while True:
+            header = self.read(16)
+            assert header[:4] == MAGIC, header
+            major, kind, flags, length, seq = struct.unpack("<BBHII", header[4:])
+            assert major == 1
+            body = self.read(length)
+            if kind == ERROR:
+                fields = decode(body)
+                raise Refused(seq, fields[1][0], fields[2][0].decode())
+            if kind != PROGRESS:
+                return kind, flags, seq, body
+
+    def expect(self, kind, seq):
+        got, _, got_seq, body = self.receive()
+        assert (got, got_seq) == (kind, seq), (got, got_seq, kind, seq)
+        return decode(body)
+
+    def at_end(self):
+        """True when the daemon has closed and nothing is left to read."""
+        try:
+            return self.socket.recv(1) == b""
+        except ConnectionResetError:
+            return True
+
+    def upload(self, data, name, kind=MODEL):
+        sha256 = hashlib.sha256(data).digest()
+        seq = self.next_seq()
+        self.send(upload_begin(seq, sha256, len(data), name, kind))
+        state = self.expect(UPLOAD_STATE, seq)
+        if not state[1][0]:
+            for at in range(0, len(data), 262144):
+                self.send(message(UPLOAD_CHUNK, seq, data[at:at + 262144]))
+            state = self.expect(UPLOAD_STATE, seq)
+            assert state[1][0] == 1, state
+        return sha256
+
+    def query(self, model):
+        seq = self.next_seq()
+        self.send(message(MODEL_QUERY, seq, field(1, model)))
+        return self.expect(MODEL_INFO, seq)
+
+    def stats(self):
+        seq = self.next_seq()
+        self.send(message(STATS_QUERY, seq))
+        return self.expect(STATS, seq)
+
+    def read_frame(self, seq):
+        fields = self.expect(FRAME, seq)
+        data, end = bytearray(), False
+        while not end:
+            kind, flags, got_seq, body = self.receive()
+            assert (kind, got_seq) == (DATA, seq) and 0 < len(body) <= 1 << 20
+            data += body
+            end = flags & 1
+        frame = Frame(fields, bytes(data))
+        assert frame.size == len(data)
+        return frame
+
+    def render(self, model, *args, **named):
+        seq = self.next_seq()
+        self.send(render(seq, model, *args, **named))
+        return self.read_frame(seq)

@@ -1,0 +1,276 @@
+/* Frames on their way out: encoded on a pool, answered in the order of requests, cut into DATA. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "server/service/answer.h"
+
+enum { WIDTH = 811, HEIGHT = 523 }; /* odd, several strips a plane, several DATA a frame */
+
+struct fixture {
+    struct loop *loop;
+    struct completions *completions;
+    struct pool *pool;
+    struct conn conn;
+    struct answer_list answers;
+    int peer; /* the client's end */
+    uint64_t sent_bytes;
+    struct encoded *encoded; /* of the last encode() */
+};
+
+static void nothing(void *owner)
+{
+    (void)owner;
+}
+
+static int setup(void **state)
+{
+    static const struct conn_handler handler = {0};
+    struct fixture *f = calloc(1, sizeof *f);
+    const struct loop_hooks hooks = {nothing, nothing, NULL};
+    int ends[2];
+    struct error error = {0};
+    assert_non_null(f);
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+    f->loop = loop_create(&hooks, &error);
+    f->completions = completions_create(f->loop, &error);
+    f->pool = pool_create("test", 3, &encode_worker, f->completions, &error);
+    assert_non_null(f->pool);
+    assert_true(conn_init(&f->conn, f->loop, ends[0], &handler, NULL, &f->sent_bytes, &error));
+    f->peer = ends[1];
+    *state = f;
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    struct fixture *f = *state;
+    answer_list_finish(&f->answers);
+    conn_finish(&f->conn);
+    close(f->peer);
+    pool_destroy(f->pool);
+    completions_destroy(f->completions);
+    loop_destroy(f->loop);
+    free(f);
+    return 0;
+}
+
+static struct frame make_frame(uint32_t planes)
+{
+    struct frame frame = {.width_px = WIDTH, .height_px = HEIGHT};
+    for (unsigned plane = 0; plane < PLANE_COUNT; plane++) {
+        size_t size = (size_t)WIDTH * HEIGHT * codec_pixel_bytes(plane);
+        if (!(planes & (1u << plane)))
+            continue;
+        uint8_t *bytes = malloc(size);
+        assert_non_null(bytes);
+        for (size_t i = 0; i < size; i++)
+            bytes[i] = (uint8_t)((i * i + plane) >> 7);
+        frame.plane[plane] = bytes;
+    }
+    return frame;
+}
+
+static void encode_finished(void *owner, struct encoded *encoded, const struct error *error)
+{
+    struct fixture *f = owner;
+    if (error)
+        fail_msg("%s", error->text);
+    f->encoded = encoded;
+    loop_stop(f->loop);
+}
+
+static struct encoded *encode(struct fixture *f, uint32_t planes, sheen_Encoding encoding)
+{
+    struct frame frame = make_frame(planes);
+    struct codec_layout layout;
+    assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, planes));
+    f->encoded = NULL;
+    encode_start(f->pool, &frame, &layout, encoding, NULL, 0, encode_finished, f);
+    assert_null(frame.plane[0]);
+    while (!f->encoded)
+        completions_deliver(f->completions);
+    return f->encoded;
+}
+
+static void test_zstd_round_trip(void **state)
+{
+    struct fixture *f = *state;
+    struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_ZSTD);
+    uint8_t *bytes = malloc(encoded->size), *end = bytes;
+    assert_non_null(bytes);
+    for (size_t i = 0; i < encoded->n_pieces; i++) {
+        memcpy(end, encoded->pieces[i].bytes, encoded->pieces[i].size);
+        end += encoded->pieces[i].size;
+    }
+    assert_int_equal(end - bytes, encoded->size);
+
+    struct codec_layout layout;
+    assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, CODEC_ALL_PLANES));
+    struct frame want = make_frame(CODEC_ALL_PLANES), got = make_frame(CODEC_ALL_PLANES);
+    for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
+        memset(got.plane[plane], 0, codec_plane_bytes(&layout, plane));
+    struct codec_decoder *decoder = codec_decoder_create();
+    assert_null(codec_zstd_decode(decoder, &layout, bytes, encoded->size, got.plane));
+    for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
+        assert_memory_equal(got.plane[plane], want.plane[plane], codec_plane_bytes(&layout, plane));
+    codec_decoder_destroy(decoder);
+    frame_finish(&want);
+    frame_finish(&got);
+    free(bytes);
+    encoded_destroy(encoded);
+}
+
+/* Reads exactly n bytes, letting the connection write what it holds back. */
+static void read_exactly(struct fixture *f, void *bytes, size_t n)
+{
+    for (uint8_t *to = bytes; n > 0;) {
+        ssize_t got = recv(f->peer, to, n, MSG_DONTWAIT);
+        if (got > 0) {
+            to += got;
+            n -= (size_t)got;
+        } else {
+            size_t unsent = conn_unsent_bytes(&f->conn);
+            conn_flush(&f->conn);
+            assert_true(conn_unsent_bytes(&f->conn) < unsent);
+        }
+    }
+}
+
+static struct message_header read_header(struct fixture *f, void *body, size_t capacity)
+{
+    uint8_t bytes[MESSAGE_HEADER_BYTES];
+    struct message_header header;
+    read_exactly(f, bytes, sizeof bytes);
+    assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
+    assert_true(header.length <= capacity);
+    read_exactly(f, body, header.length);
+    return header;
+}
+
+static void expect_silence(struct fixture *f)
+{
+    uint8_t byte;
+    assert_int_equal(recv(f->peer, &byte, 1, MSG_DONTWAIT), -1);
+}
+
+static sheen_Frame frame_message(const struct encoded *encoded)
+{
+    return (sheen_Frame){.width_px = WIDTH,
+                         .height_px = HEIGHT,
+                         .planes = CODEC_ALL_PLANES,
+                         .data_bytes = encoded->size};
+}
+
+static void test_frame_is_cut_into_data(void **state)
+{
+    struct fixture *f = *state;
+    struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_RAW);
+    uint64_t size = encoded->size, seen = 0;
+    assert_true(size > 5ull * PROTOCOL_MAX_DATA_BYTES);
+    struct answer *answer = answer_expect(&f->answers, 7);
+    sheen_Frame message = frame_message(encoded);
+    assert_true(answer_fill_frame(answer, &message, encoded));
+    answer_send_due(&f->answers, &f->conn);
+
+    uint8_t *data = malloc(size + PROTOCOL_MAX_DATA_BYTES);
+    assert_non_null(data);
+    assert_int_equal(read_header(f, data, PROTOCOL_MAX_SMALL_BODY_BYTES).type, MESSAGE_FRAME);
+    for (bool end = false; !end;) {
+        struct message_header header = read_header(f, data + seen, PROTOCOL_MAX_DATA_BYTES);
+        assert_int_equal(header.type, MESSAGE_DATA);
+        assert_int_equal(header.seq, 7);
+        seen += header.length;
+        end = header.flags & MESSAGE_END;
+        assert_true(end == (seen == size));
+        assert_true(end || header.length == PROTOCOL_MAX_DATA_BYTES);
+    }
+    struct frame want = make_frame(CODEC_ALL_PLANES);
+    const uint8_t *at = data;
+    for (unsigned plane = 0; plane < PLANE_COUNT; plane++) {
+        size_t plane_bytes = (size_t)WIDTH * HEIGHT * codec_pixel_bytes(plane);
+        assert_memory_equal(at, want.plane[plane], plane_bytes);
+        at += plane_bytes;
+    }
+    frame_finish(&want);
+    free(data);
+    assert_int_equal(conn_unsent_bytes(&f->conn), 0);
+}
+
+static void test_order_of_requests(void **state)
+{
+    struct fixture *f = *state;
+    uint8_t body[PROTOCOL_MAX_SMALL_BODY_BYTES];
+    struct answer *a[3];
+    const sheen_UploadState done = {true, 1};
+    for (uint32_t i = 0; i < 3; i++)
+        a[i] = answer_expect(&f->answers, 10 + i);
+    assert_int_equal(f->answers.n, 3);
+    for (int i = 2; i > 0; i--) {
+        assert_true(answer_fill(a[i], MESSAGE_UPLOAD_STATE, &done));
+        answer_send_due(&f->answers, &f->conn);
+        expect_silence(f);
+    }
+    assert_true(answer_fill(a[0], MESSAGE_UPLOAD_STATE, &done));
+    answer_send_due(&f->answers, &f->conn);
+    for (uint32_t i = 0; i < 3; i++)
+        assert_int_equal(read_header(f, body, sizeof body).seq, 10 + i);
+    assert_int_equal(f->answers.n, 0);
+}
+
+static void test_nothing_after_the_last(void **state)
+{
+    struct fixture *f = *state;
+    uint8_t body[PROTOCOL_MAX_SMALL_BODY_BYTES];
+    const sheen_UploadState done = {true, 1};
+    struct answer *first = answer_expect(&f->answers, 1), *last = answer_expect(&f->answers, 2),
+                  *late = answer_expect(&f->answers, 3);
+    answer_mark_last(last);
+    assert_true(answer_fill(last, MESSAGE_UPLOAD_STATE, &done));
+    assert_true(answer_fill(late, MESSAGE_UPLOAD_STATE, &done));
+    answer_send_due(&f->answers, &f->conn);
+    expect_silence(f);
+    assert_int_equal(f->conn.state, CONN_OPEN);
+    assert_true(answer_fill(first, MESSAGE_UPLOAD_STATE, &done));
+    answer_send_due(&f->answers, &f->conn);
+    assert_int_equal(read_header(f, body, sizeof body).seq, 1);
+    assert_int_equal(read_header(f, body, sizeof body).seq, 2);
+    assert_int_equal(recv(f->peer, body, 1, 0), 0);
+    assert_int_equal(f->conn.state, CONN_LINGERING);
+}
+
+/* Nobody reads: what is unsent is given back when the connection closes (a leak checker sees). */
+static void test_closed_with_a_frame_unsent(void **state)
+{
+    struct fixture *f = *state;
+    struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_RAW);
+    sheen_Frame message = frame_message(encoded);
+    assert_true(answer_fill_frame(answer_expect(&f->answers, 1), &message, encoded));
+    answer_send_due(&f->answers, &f->conn);
+    assert_true(conn_unsent_bytes(&f->conn) > 0);
+    conn_close(&f->conn);
+    assert_int_equal(conn_unsent_bytes(&f->conn), 0);
+    encoded = encode(f, 1, sheen_Encoding_ENCODING_PNG);
+    message = frame_message(encoded);
+    assert_true(answer_fill_frame(answer_expect(&f->answers, 2), &message, encoded));
+    answer_send_due(&f->answers, &f->conn);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_zstd_round_trip, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_frame_is_cut_into_data, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_order_of_requests, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_nothing_after_the_last, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_closed_with_a_frame_unsent, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,137 @@
+/* What requests leave out, what files say about themselves, and texts that must not reach the
+ * wire. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "server/service/label.h"
+#include "server/service/stats.h"
+#include "server/service/wire.h"
+
+static const double BOX_MIN[3] = {0, 0, 0}, BOX_MAX[3] = {4, 2, 1};
+
+static void test_defaults_are_valid(void **state)
+{
+    (void)state;
+    sheen_Render render = sheen_Render_init_default;
+    render.width_px = 640;
+    render.height_px = 480;
+    render.planes = sheen_Plane_PLANE_COLOUR;
+    struct frame_request request;
+    wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &request);
+    const sheen_Pattern pattern = sheen_Pattern_init_default;
+    assert_true(request.pattern.count == pattern.count);
+    assert_true(request.pattern.duty == pattern.duty);
+    assert_true(request.pattern.foreground[0] == 1 && request.pattern.background[0] == 0);
+    assert_memory_equal(request.miss, request.pattern.background, sizeof request.miss);
+
+    /* Sent back as a request it is the same frame. */
+    render.has_camera = render.has_light = render.has_pattern = true;
+    render.camera = wire_from_camera(&request.camera);
+    render.light = wire_from_light(&request.light);
+    render.pattern = wire_from_pattern(&request.pattern, &render.pattern);
+    char text[MESSAGE_TEXT_BYTES] = "";
+    if (!message_check_render(&render, 1000, 1000, text))
+        fail_msg("%s", text);
+    struct frame_request again;
+    wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &again);
+    assert_memory_equal(&again.camera.eye, &request.camera.eye, sizeof again.camera.eye);
+    assert_memory_equal(&again.light, &request.light, sizeof again.light);
+    assert_memory_equal(again.pattern.foreground, request.pattern.foreground, 4 * sizeof(float));
+}
+
+static void test_what_is_given_is_kept(void **state)
+{
+    (void)state;
+    sheen_Render render = sheen_Render_init_default;
+    render.has_camera = true;
+    render.camera = (sheen_Camera){{1, 2, 3}, {4, 5, 6}, {0, 1, 0}, false, 0, true, 7};
+    render.has_pattern = true;
+    render.pattern.kind = sheen_PatternKind_PATTERN_CIRCLES;
+    render.pattern.has_count = true;
+    render.pattern.count = 3;
+    render.has_miss = true;
+    render.miss = (sheen_Colour){0.25f, 0.5f, 0.75f, 1};
+    struct frame_request request;
+    wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &request);
+    assert_int_equal(request.camera.kind, CAMERA_ORTHOGRAPHIC);
+    assert_true(request.camera.ortho_height == 7 && request.camera.target[2] == 6);
+    assert_int_equal(request.pattern.kind, PATTERN_CIRCLES);
+    assert_true(request.pattern.count == 3 && request.pattern.duty == 0.5);
+    assert_true(request.miss[2] == 0.75f);
+    sheen_Camera back = wire_from_camera(&request.camera);
+    assert_true(back.has_ortho_height && !back.has_fov_deg && back.eye.y == 2);
+}
+
+static void test_label_holds_every_digit(void **state)
+{
+    (void)state;
+    struct frame_request request = {0};
+    request.camera.eye[0] = 0.1;
+    request.camera.fov_deg = 1.0 / 3;
+    for (int i = 0; i < 3; i++)
+        request.light.u[i] = -1.7976931348623157e308; /* the longest numbers fit */
+    request.pattern.kind = PATTERN_IMAGE;
+    const struct renderer_info info = {.device = "a device", .driver = "4.5", .software = true};
+    struct label label;
+    label_init(&label, &request, &info, "0123", "abcd");
+    const char *all = "";
+    for (int i = 0; i < LABEL_ATTRIBUTES; i++) {
+        const struct image_attribute *attribute = &label.attributes[i];
+        assert_ptr_equal(strstr(attribute->name, "sheen:"), attribute->name);
+        assert_true(strlen(attribute->value) < LABEL_VALUE_BYTES - 1);
+        if (strcmp(attribute->name, "sheen:camera") == 0)
+            all = attribute->value;
+    }
+    assert_non_null(strstr(all, "eye=0.10000000000000001,0,0"));
+    assert_non_null(strstr(all, "fov_deg=0.33333333333333331"));
+    assert_non_null(strstr(label.values[6], "u=-1.7976931348623157e+308,"));
+    assert_non_null(strstr(label.values[7], "image=abcd"));
+}
+
+static void test_texts(void **state)
+{
+    (void)state;
+    char good[] = "Kotfl\xc3\xbcgel", cut[] = "Kotfl\xc3", lines[] = "a\nb\x1b[2J";
+    wire_make_text(good, false);
+    assert_string_equal(good, "Kotfl\xc3\xbcgel");
+    wire_make_text(cut, false);
+    assert_string_equal(cut, "Kotfl?");
+    wire_make_text(lines, true);
+    assert_string_equal(lines, "a\nb?[2J");
+    wire_make_text(lines, false);
+    assert_string_equal(lines, "a?b?[2J");
+}
+
+static void test_mean_of_the_last(void **state)
+{
+    (void)state;
+    struct stats stats;
+    stats_init(&stats);
+    assert_int_equal(stats_mean(&stats).total_us, 0);
+    const sheen_Times slow = {.total_us = 1000000}, fast = {.total_us = 10, .encode_us = 4};
+    stats_frame(&stats, &slow);
+    stats_frame(&stats, &fast);
+    assert_int_equal(stats_mean(&stats).total_us, 500005);
+    for (int i = 0; i < STATS_FRAMES; i++)
+        stats_frame(&stats, &fast);
+    assert_int_equal(stats_mean(&stats).total_us, 10);
+    assert_int_equal(stats_mean(&stats).encode_us, 4);
+    assert_int_equal(stats.frames, STATS_FRAMES + 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_defaults_are_valid),
+        cmocka_unit_test(test_what_is_given_is_kept),
+        cmocka_unit_test(test_label_holds_every_digit),
+        cmocka_unit_test(test_texts),
+        cmocka_unit_test(test_mean_of_the_last),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
