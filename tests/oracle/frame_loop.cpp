@@ -1,0 +1,68 @@
+#include "tests/oracle/frame_loop.h"
+
+#include <cstdio>
+#include <stdexcept>
+
+namespace
+{
+
+const int width_px = 640, height_px = 480;
+const int exit_bad_model = 3;
+
+} // namespace
+
+std::string render_view(const std::string &sheen, const std::string &model_path, view *view,
+                        const std::string &aov, const std::vector<std::string> &more_options,
+                        planes *planes, int *exit_code)
+{
+    temporary_folder folder;
+    std::string file = folder.file("frame.exr");
+    std::vector<std::string> command = {sheen, "render", model_path, "-o",
+                                        file,  "--aov",  aov,        "--json"};
+    for (const std::vector<std::string> &options : {view_options(*view), more_options})
+        command.insert(command.end(), options.begin(), options.end());
+    program_result result = run_program(command, folder);
+    *exit_code = result.exit_code;
+    std::string what = model_path + " " + view->name + ": ";
+    if (result.exit_code != 0)
+        return what + "sheen render ended with " + std::to_string(result.exit_code) + ": " +
+               result.errors;
+    try {
+        *planes = read_planes(file, aov);
+    } catch (const std::exception &failure) {
+        return what + failure.what();
+    }
+    if (planes->width_px != view->width_px || planes->height_px != view->height_px)
+        return what + "the picture has another size than asked for";
+    if (view->chosen_by_sheen && !read_camera(result.output, view))
+        return what + "no camera in the JSON: " + result.output;
+    return "";
+}
+
+void for_each_frame(const std::string &sheen, const std::vector<std::string> &models,
+                    const view_list &views, verdict *verdict, const frame_judge &judge)
+{
+    for (const std::string &path : models) {
+        model model;
+        try {
+            model = read_model(path);
+        } catch (const std::exception &failure) {
+            verdict->check(false, failure.what());
+            continue;
+        }
+        for (view &view : views(model, width_px, height_px)) {
+            planes planes;
+            int exit_code;
+            std::string wrong =
+                render_view(sheen, path, &view, "P,N,ptex", {}, &planes, &exit_code);
+            if (exit_code == exit_bad_model && !model.may_refuse.empty()) {
+                std::printf("%-28s refused, as it may be: %s\n", model.name.c_str(),
+                            model.may_refuse.c_str());
+                break;
+            }
+            if (verdict->check(wrong.empty(), wrong))
+                judge(model, view, planes);
+        }
+        std::fflush(stdout);
+    }
+}

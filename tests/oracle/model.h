@@ -1,0 +1,41 @@
+/* A cage file, its oracle, and how large its limit surface is. */
+#ifndef SHEEN_TESTS_ORACLE_MODEL_H
+#define SHEEN_TESTS_ORACLE_MODEL_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/oracle/osd_oracle.h"
+
+struct model {
+    std::string path, name; /* name: the file without its folder */
+    std::shared_ptr<const struct cage> cage;
+    std::unique_ptr<osd_oracle> oracle;
+    vec3 box_min, box_max; /* of limit positions, sampled 9 x 9 on every Ptex face */
+    /* Why `sheen` may answer exit code 3 instead of drawing it today; empty: it must draw it. */
+    std::string may_refuse;
+
+    vec3 middle() const
+    {
+        return 0.5 * (box_min + box_max);
+    }
+    double diagonal() const
+    {
+        return length(box_max - box_min);
+    }
+};
+
+/* Throws std::runtime_error, with the path in it, when the file cannot be read or evaluated. */
+model read_model(const std::string &path);
+
+/* The same cage under another boundary mode. Throws when that leaves no surface. */
+model with_boundary(const model &model, cage_boundary boundary);
+
+/* The model files that a test was given: those that exist. A folder stands for its Catmull-Clark
+ * cages, sorted: every .obj, .gltf and .glb but those whose names say that they are of another
+ * scheme (loop_*, bilinear_*) or not manifold (*nonman*), which are counted and passed over. What
+ * is missing is named on standard output and passed over too. */
+std::vector<std::string> list_models(const std::vector<std::string> &arguments);
+
+#endif

@@ -1,0 +1,65 @@
+/* Runs `sheen render` and reads back the planes of its EXR file. */
+#ifndef SHEEN_TESTS_ORACLE_RENDER_H
+#define SHEEN_TESTS_ORACLE_RENDER_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/oracle/vec.h"
+
+const uint32_t no_face = 0xffffffffu;
+
+/* What a frame's file says, rows top first. Planes that were not asked for are empty. */
+struct planes {
+    int width_px = 0, height_px = 0;
+    std::vector<float> green; /* of the colour; with the light plane only */
+    std::vector<float> px, py, pz, nx, ny, nz, u, v, s, t;
+    std::vector<uint32_t> face;
+
+    bool hit(size_t i) const
+    {
+        return face[i] != no_face;
+    }
+    vec3 position(size_t i) const
+    {
+        return {px[i], py[i], pz[i]};
+    }
+    vec3 normal(size_t i) const
+    {
+        return {nx[i], ny[i], nz[i]};
+    }
+};
+
+/* Throws std::runtime_error when the file is
+ * no EXR of one part, or a plane of `aov` (comma-separated, as in --aov) is missing or of another
+ * type than promised. */
+planes read_planes(const std::string &path, const std::string &aov);
+
+/* A folder of its own under TMPDIR that is removed with everything in it. */
+class temporary_folder
+{
+  public:
+    temporary_folder();
+    ~temporary_folder();
+    temporary_folder(const temporary_folder &) = delete;
+    temporary_folder &operator=(const temporary_folder &) = delete;
+    std::string file(const std::string &name) const
+    {
+        return path + "/" + name;
+    }
+
+  private:
+    std::string path;
+};
+
+struct program_result {
+    int exit_code = -1; /* -1: it could not be run, was killed or took too long */
+    std::string output, errors;
+};
+
+/* Runs a program without a shell and waits for it, two minutes at most. */
+program_result run_program(const std::vector<std::string> &arguments,
+                           const temporary_folder &folder);
+
+#endif

@@ -1,0 +1,99 @@
+#!/bin/sh
+# self_test.sh FOLDER: the oracles in FOLDER, run on frames made by FOLDER/fake_sheen, must pass what
+# is right and find each fault that is put in. Ends with "N passed, N failed".
+set -u
+folder=$1
+fake=$folder/fake_sheen
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+passed=0
+failed=0
+
+# A body with eight vertices of valence 3.
+cat >"$work/cube.obj" <<END
+v -1 -1 1
+v 1 -1 1
+v -1 1 1
+v 1 1 1
+v -1 1 -1
+v 1 1 -1
+v -1 -1 -1
+v 1 -1 -1
+f 1 2 4 3
+f 3 4 6 5
+f 5 6 8 7
+f 7 8 2 1
+f 2 8 6 4
+f 7 1 3 5
+END
+sed -e '$a t crease 2/1/0 0 1 3.0' "$work/cube.obj" >"$work/creased.obj"
+
+verdict() { # name, whether it holds
+    if [ "$2" = 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $1"
+        tail -n 12 "$work/log"
+    fi
+}
+
+# run PROGRAM MODEL-or-nothing FAULTS: output into $work/log, exit code into $code
+run() {
+    case $1 in
+    test_limit) FAKE_FAULTS=$3 "$folder/$1" "$2" >"$work/log" 2>&1 ;;
+    *) FAKE_FAULTS=$3 "$folder/$1" "$fake" ${2:+"$2"} >"$work/log" 2>&1 ;;
+    esac
+    code=$?
+}
+
+clean() { # program, model
+    run "$1" "$2" ""
+    verdict "$1 passes a right frame" "$code"
+}
+
+# finds PROGRAM MODEL FAULTS MESSAGE...: exit code 1, and every message in a FAILED line
+finds() {
+    program=$1 model=$2 faults=$3
+    shift 3
+    run "$program" "$model" "$faults"
+    [ "$code" = 1 ]
+    verdict "$program fails on: $faults" $?
+    for message; do
+        grep -q -F -- "$message" "$work/log"
+        verdict "$program says: $message" $?
+    done
+}
+
+clean test_limit "$work/cube.obj"
+finds test_limit "$work/cube.obj" point,deep,hole,neighbour \
+    "normal p99.9" "position p99.9" "gap at ring seams" "normals across ring seams" \
+    "only one has a surface" "wrong neighbours"
+finds test_limit "$work/cube.obj" frame "normal p99.9"
+
+clean test_exact "$work/cube.obj"
+finds test_exact "$work/cube.obj" normal,unit,position,residual,winding,range,nan \
+    "normal p99.9" "position p99.9" "residual p99.9" "residual max" "| |N| - 1 |" \
+    "normals against the winding" "no surface at (face,u,v)" "hit, P and N disagree"
+finds test_exact "$work/cube.obj" silent "no camera in the JSON"
+finds test_exact "$work/cube.obj" types "channel N.X is of type"
+finds test_exact "$work/cube.obj" refuse "sheen render ended with 3"
+run test_exact "$work/creased.obj" refuse
+grep -q "refused, as it may be: creases" "$work/log"
+verdict "a feature that may be refused is named" $?
+finds test_exact "$work/missing.obj" "" "MISSING: $work/missing.obj"
+fake=/nonexistent
+finds test_exact "$work/cube.obj" "" "sheen render ended with -1"
+fake=$folder/fake_sheen
+
+clean test_coverage "$work/cube.obj"
+finds test_coverage "$work/cube.obj" hole,stray,face,layer \
+    "holes" "hit outside the surface" "a face that is not visible" "before or behind"
+
+clean test_mirror ""
+finds test_mirror "" normal,position,bend,miss,colour \
+    "normal (rad)" "|z|" "light s, t" "bend of a stripe edge" "wrong side of the light" \
+    "wrong colour"
+
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]

@@ -1,0 +1,116 @@
+/* test_exact SHEEN MODEL...: every pixel of every view against libosd in double at the pixel's own
+ * (face, u, v), and against the camera alone: the point must lie on its pixel's ray. */
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tests/oracle/frame_loop.h"
+
+namespace
+{
+
+/* The bounds of the project's definition of exact. */
+const double max_normal_p999_rad = 2e-6;
+const double max_position_p999 = 1e-6; /* of the bounding diagonal */
+const double max_residual_p999_px = 0.01;
+const double max_residual_px = 0.2;
+const double max_length_error = 5e-7; /* of a unit normal in single precision */
+const size_t min_hit_px = 1000;
+
+struct figures {
+    size_t hit = 0, near_corner = 0;
+    size_t bad_ptex = 0;  /* no such face, (u,v) outside it, or a hole there */
+    size_t bad_value = 0; /* P or N not finite where something is hit, or finite where not */
+    size_t backwards = 0; /* N against the face winding */
+    std::vector<double> normal_rad, position, residual_px, length_error;
+};
+
+void measure_against_oracle(const model &model, const planes &planes, size_t i, figures *figures)
+{
+    osd_sample truth;
+    if (!model.oracle->evaluate(planes.face[i], planes.u[i], planes.v[i], &truth)) {
+        figures->bad_ptex++;
+        return;
+    }
+    if (!osd_oracle_is_exact(planes.u[i], planes.v[i])) {
+        figures->near_corner++;
+        return;
+    }
+    figures->position.push_back(length(planes.position(i) - truth.p) / model.diagonal());
+    if (!truth.has_normal())
+        return;
+    vec3 normal = truth.normal();
+    figures->normal_rad.push_back(angle(planes.normal(i), normal));
+    figures->backwards += dot(planes.normal(i), normal) <= 0;
+}
+
+figures measure(const model &model, const view &view, const planes &planes)
+{
+    figures figures;
+    projector camera(view);
+    for (int y = 0; y < view.height_px; y++)
+        for (int x = 0; x < view.width_px; x++) {
+            size_t i = (size_t)y * (size_t)view.width_px + (size_t)x;
+            bool valued = finite(planes.position(i)) && finite(planes.normal(i));
+            figures.bad_value += valued != planes.hit(i);
+            if (!planes.hit(i) || !valued)
+                continue;
+            figures.hit++;
+            projected q = camera.project(planes.position(i));
+            figures.residual_px.push_back(std::hypot(q.x - (x + 0.5), q.y - (y + 0.5)));
+            figures.length_error.push_back(std::fabs(length(planes.normal(i)) - 1));
+            measure_against_oracle(model, planes, i, &figures);
+        }
+    return figures;
+}
+
+void judge(const model &model, const view &view, const planes &planes, verdict *verdict)
+{
+    figures f = measure(model, view, planes);
+    double n999 = quantile(f.normal_rad, 0.999), p999 = quantile(f.position, 0.999);
+    double r999 = quantile(f.residual_px, 0.999), r_max = quantile(f.residual_px, 1);
+    double unit = quantile(f.length_error, 1);
+    std::printf(
+        "%-28s %-8s %7zu %5zu | %7.1e %7.1e %7.1e %7.1e | %7.1e %7.1e | %7.1e %7.1e | %7.1e\n",
+        model.name.c_str(), view.name.c_str(), f.hit, f.near_corner, quantile(f.normal_rad, 0.5),
+        quantile(f.normal_rad, 0.99), n999, quantile(f.normal_rad, 1), p999,
+        quantile(f.position, 1), r999, r_max, unit);
+    std::string what = model.name + " " + view.name + ": ";
+    verdict->check(f.hit >= min_hit_px, what + "only " + std::to_string(f.hit) + " pixels hit");
+    verdict->check(2 * f.normal_rad.size() >= f.hit,
+                   what + "fewer than half the pixels could be compared");
+    verdict->check(f.bad_ptex == 0,
+                   what + std::to_string(f.bad_ptex) + " pixels with no surface at (face,u,v)");
+    verdict->check(f.bad_value == 0,
+                   what + std::to_string(f.bad_value) + " pixels where hit, P and N disagree");
+    verdict->check(f.backwards == 0,
+                   what + std::to_string(f.backwards) + " normals against the winding");
+    verdict->at_most(n999, max_normal_p999_rad, what + "normal p99.9 (rad)");
+    verdict->at_most(p999, max_position_p999, what + "position p99.9 (diagonals)");
+    verdict->at_most(r999, max_residual_p999_px, what + "residual p99.9 (px)");
+    verdict->at_most(r_max, max_residual_px, what + "residual max (px)");
+    verdict->at_most(unit, max_length_error, what + "| |N| - 1 |");
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc < 3) {
+        std::fprintf(stderr, "usage: test_exact SHEEN MODEL...\n");
+        return 2;
+    }
+    verdict verdict;
+    std::printf("%-28s %-8s %7s %5s | %31s | %15s | %15s | %7s\n", "", "", "", "near",
+                "angle of N to libosd's, rad", "|P-P'|/diagonal", "P off pixel, px", "||N|-1|");
+    std::printf("%-28s %-8s %7s %5s | %7s %7s %7s %7s | %7s %7s | %7s %7s | %7s\n", "model", "view",
+                "hit px", "EV px", "p50", "p99", "p99.9", "max", "p99.9", "max", "p99.9", "max",
+                "max");
+    for_each_frame(argv[1], list_models(std::vector<std::string>(argv + 2, argv + argc)),
+                   model_views, &verdict,
+                   [&](const model &model, const view &view, const planes &planes) {
+                       judge(model, view, planes, &verdict);
+                   });
+    return verdict.finish();
+}

@@ -1,0 +1,421 @@
+/* test_limit MODEL...: the tables of server/limit, evaluated on the CPU as server/limit/tables.h
+ * describes them, against libosd in double at random (face, u, v): no GPU, no service. Then what
+ * libosd cannot tell: that the rings of an extraordinary vertex meet, down to the deepest. */
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/oracle/fault.h"
+#include "tests/oracle/model.h"
+#include "tests/oracle/verdict.h"
+
+extern "C" {
+#include "server/limit/tables.h"
+}
+
+namespace
+{
+
+const double max_normal_p999_rad = 2e-6, max_position_p999 = 1e-6; /* as test_exact */
+const double max_seam_rad = 5e-6; /* both sides are single precision */
+const double max_seam = 2e-6;     /* of the ring's size */
+const size_t n_samples = 40000, min_samples = 2000;
+
+struct surface_point {
+    vec3 p, du, dv; /* derivatives up to a positive factor */
+};
+
+/* Values and derivatives of the four uniform cubic B-splines at t. */
+void cubic(double t, double b[4], double d[4])
+{
+    double s = 1 - t;
+    b[0] = s * s * s / 6;
+    b[1] = (3 * t * t * t - 6 * t * t + 4) / 6;
+    b[2] = (3 * s * s * s - 6 * s * s + 4) / 6;
+    b[3] = t * t * t / 6;
+    d[0] = -s * s / 2;
+    d[1] = (3 * t * t - 4 * t) / 2;
+    d[2] = -(3 * s * s - 4 * s) / 2;
+    d[3] = t * t / 2;
+}
+
+/* The patch of the 16 texels index(i, j), i along s and j along t in 0..3, times scale. */
+template <typename Index>
+surface_point evaluate_patch(const float (*texels)[4], double scale, double s, double t,
+                             Index index)
+{
+    double bs[4], ds[4], bt[4], dt[4];
+    cubic(s, bs, ds);
+    cubic(t, bt, dt);
+    surface_point out;
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++) {
+            const float *texel = texels[index(i, j)];
+            vec3 p = scale * vec3{texel[0], texel[1], texel[2]};
+            out.p = out.p + (bs[i] * bt[j]) * p;
+            out.du = out.du + (ds[i] * bt[j]) * p;
+            out.dv = out.dv + (bs[i] * dt[j]) * p;
+        }
+    return out;
+}
+
+/* Ring level n (1 first) of a corner table at local (a, b), where 1 <= 2^n max(a,b) <= 2. */
+surface_point evaluate_ring(const float (*texels)[4], int n, double a, double b)
+{
+    const float(*level)[4] = texels + (n - 1) * LIMIT_LEVEL_POINTS;
+    double s = std::ldexp(a, n), t = std::ldexp(b, n);
+    int i0 = s >= 1, j0 = t >= 1; /* first column and row of the 5x5 grid */
+    return evaluate_patch(level, level[0][3], s - i0, t - j0,
+                          [&](int i, int j) { return 5 * (j + j0) + (i + i0) - 1; });
+}
+
+vec3 rotate(const float q[4], vec3 p)
+{
+    vec3 axis = {q[0], q[1], q[2]};
+    vec3 twice = 2.0 * cross(axis, p);
+    return p + (double)q[3] * twice + cross(axis, twice);
+}
+
+/* In the vertex's frame. False inside the last ring, where only the vertex itself is known. */
+bool evaluate_corner(const float (*texels)[4], double a, double b, surface_point *out)
+{
+    int exponent;
+    std::frexp(std::fmax(a, b), &exponent); /* max(a,b) in [2^(exponent-1), 2^exponent) */
+    int n = std::max(1, 1 - exponent);
+    if (!(std::fmax(a, b) > 0) || n > LIMIT_LEVELS)
+        return false;
+    *out = evaluate_ring(texels, n, a, b);
+    return true;
+}
+
+/* (u,v) of a cell to the local (a,b) of a node rotated by corners 0..3. */
+void to_local(int rotation, double u, double v, double *a, double *b)
+{
+    const double as[4] = {u, v, 1 - u, 1 - v}, bs[4] = {v, 1 - u, 1 - v, u};
+    *a = as[rotation];
+    *b = bs[rotation];
+}
+
+class table_evaluator
+{
+  public:
+    explicit table_evaluator(const cage &cage)
+    {
+        error error;
+        limit_plan *plan = limit_plan_create(&cage, &error);
+        if (!plan)
+            throw std::runtime_error(error.text);
+        bool built = limit_tables_init(&tables, plan, &error) &&
+                     limit_build_faces(&tables, plan, 0, tables.n_faces, &error);
+        limit_plan_destroy(plan);
+        if (!built)
+            throw std::runtime_error(error.text);
+    }
+    ~table_evaluator()
+    {
+        limit_tables_finish(&tables);
+    }
+    table_evaluator(const table_evaluator &) = delete;
+    table_evaluator &operator=(const table_evaluator &) = delete;
+
+    bool evaluate(uint32_t face, double u, double v, surface_point *out) const
+    {
+        const limit_node *node = &tables.nodes[face];
+        uint32_t x = 0, y = 0;
+        for (; node->kind == LIMIT_SPLIT; u = 2 * u - (x & 1), v = 2 * v - (y & 1)) {
+            static const uint32_t child[2][2] = {{0, 1}, {3, 2}}; /* [v half][u half] */
+            uint32_t right = u >= 0.5, upper = v >= 0.5;
+            node = &tables.nodes[node->first + child[upper][right]];
+            x = 2 * x + right;
+            y = 2 * y + upper;
+        }
+        if (node->face != face || node->cell != (x | y << 16))
+            throw std::runtime_error("a node's face or cell is not where the descent led");
+        return node->kind != LIMIT_HOLE && evaluate_node(*node, u, v, out);
+    }
+
+    limit_tables tables = {};
+
+  private:
+    bool evaluate_node(const limit_node &node, double u, double v, surface_point *out) const
+    {
+        double a, b;
+        to_local(node.rotation, u, v, &a, &b);
+        const float(*texels)[4] = tables.points + node.first;
+        if (node.kind == LIMIT_REGULAR)
+            *out =
+                evaluate_patch(texels, texels[0][3], a, b, [](int i, int j) { return 4 * j + i; });
+        else if (!evaluate_corner(texels, a, b, out))
+            return false;
+        if (node.kind == LIMIT_CORNER) {
+            const float *q = texels[LIMIT_CORNER_TEXELS - 1];
+            out->p = rotate(q, out->p);
+            out->du = rotate(q, out->du);
+            out->dv = rotate(q, out->dv);
+        }
+        out->p = out->p + vec3{node.origin[0], node.origin[1], node.origin[2]};
+        return true;
+    }
+};
+
+/* A random point of a random face: half of them uniform, half at distances from a corner that are
+ * uniform in the logarithm, so that every ring is met; some on an edge. */
+void draw_place(std::mt19937_64 *random, uint32_t n_faces, uint32_t *face, double *u, double *v)
+{
+    std::uniform_real_distribution<double> unit(0, 1);
+    *face = (uint32_t)(unit(*random) * n_faces);
+    *u = unit(*random);
+    *v = unit(*random);
+    if (unit(*random) < 0.5) {
+        double reach = std::pow(2.0, -9 * unit(*random));
+        *u *= reach;
+        *v *= reach;
+        (*u > *v ? *u : *v) = reach;
+        *u = unit(*random) < 0.5 ? *u : 1 - *u;
+        *v = unit(*random) < 0.5 ? *v : 1 - *v;
+    }
+    if (unit(*random) < 0.05)
+        (unit(*random) < 0.5 ? *u : *v) = unit(*random) < 0.5 ? 0 : 1;
+}
+
+struct figures {
+    std::vector<double> normal_rad, position, seam_rad, seam;
+    size_t presence = 0; /* places where one has a surface and the other has none */
+    size_t adjacency = 0;
+};
+
+void compare_samples(const model &model, const table_evaluator &tables, figures *f)
+{
+    std::mt19937_64 random(20040617);
+    for (size_t i = 0; i < n_samples; i++) {
+        uint32_t face;
+        double u, v;
+        draw_place(&random, (uint32_t)tables.tables.n_faces, &face, &u, &v);
+        if (!osd_oracle_is_exact(u, v))
+            continue;
+        osd_sample truth;
+        surface_point ours;
+        bool has_truth = model.oracle->evaluate(face, u, v, &truth);
+        bool has_ours = tables.evaluate(face, u, v, &ours);
+        f->presence += has_truth != has_ours;
+        if (!has_truth || !has_ours)
+            continue;
+        f->position.push_back(length(ours.p - truth.p) / model.diagonal());
+        if (truth.has_normal())
+            f->normal_rad.push_back(angle(cross(ours.du, ours.dv), truth.normal()));
+    }
+}
+
+/* On the seam max(a,b) = 2^-n, ring n from outside and ring n + 1 from inside are one surface. */
+void compare_seams(const table_evaluator &tables, figures *f)
+{
+    for (size_t k = 0; k < tables.tables.n_nodes; k++) {
+        const limit_node &node = tables.tables.nodes[k];
+        if (node.kind != LIMIT_CORNER)
+            continue;
+        const float(*texels)[4] = tables.tables.points + node.first;
+        for (int n = 1; n < LIMIT_LEVELS; n++)
+            for (int side = 0; side < 6; side++) {
+                double reach = std::ldexp(1.0, -n), other = reach * (side % 3) / 2.0;
+                double a = side < 3 ? reach : other, b = side < 3 ? other : reach;
+                /* The inner ring has its outer border at s = 2: the top of its last patch. */
+                surface_point outer = evaluate_ring(texels, n, a, b);
+                surface_point inner = evaluate_ring(texels, n + 1, a, b);
+                double size = length(outer.du) + length(outer.dv);
+                f->seam.push_back(length(outer.p - inner.p) / size);
+                vec3 normal = cross(outer.du, outer.dv);
+                if (length(normal) > 1e-6 * size * size) /* else a fold, see has_normal() */
+                    f->seam_rad.push_back(angle(normal, cross(inner.du, inner.dv)));
+            }
+    }
+}
+
+/* Edges (of Ptex faces) that no other face lies across: by the cage alone. */
+size_t count_open_edges(const cage &cage)
+{
+    std::map<std::pair<uint32_t, uint32_t>, std::pair<int, int>> uses; /* forward, backward */
+    auto each_edge = [&](auto action) {
+        for (size_t f = 0; f < cage.n_faces; f++) {
+            uint32_t first = cage.face_start[f], end = cage.face_start[f + 1];
+            for (uint32_t c = first; c < end; c++) {
+                uint32_t a = cage.face_vertex[c];
+                uint32_t b = cage.face_vertex[c + 1 == end ? first : c + 1];
+                action(std::make_pair(std::min(a, b), std::max(a, b)), a < b, end - first);
+            }
+        }
+    };
+    each_edge([&](std::pair<uint32_t, uint32_t> edge, bool forward, uint32_t) {
+        forward ? uses[edge].first++ : uses[edge].second++;
+    });
+    size_t open = 0;
+    each_edge([&](std::pair<uint32_t, uint32_t> edge, bool, uint32_t sides) {
+        if (uses[edge] != std::make_pair(1, 1))
+            open += sides == 4 ? 1 : 2;
+    });
+    return open;
+}
+
+/* The point at `along` (0 to 1) of edge e of a face, walking from corner e to corner e + 1. */
+bool edge_point(const osd_oracle &oracle, uint32_t face, uint32_t e, double along, vec3 *p)
+{
+    const double us[4] = {along, 1, 1 - along, 0}, vs[4] = {0, along, 1, 1 - along};
+    return oracle.evaluate(face, us[e], vs[e], p);
+}
+
+/* Which Ptex faces are whole quads of the cage, the others being parts of n-gons. */
+std::vector<bool> find_quads(const cage &cage)
+{
+    std::vector<bool> quads;
+    for (size_t f = 0; f < cage.n_faces; f++) {
+        size_t sides = cage.face_start[f + 1] - cage.face_start[f];
+        quads.insert(quads.end(), sides == 4 ? 1 : sides, sides == 4);
+    }
+    return quads;
+}
+
+/* Neighbours point at each other and share the points of their edge. A quad beside an n-gon has two
+ * Ptex faces across and may name either. */
+bool is_neighbour(const model &model, const limit_tables &t, const std::vector<bool> &quads,
+                  uint32_t face, uint32_t e)
+{
+    uint32_t across = t.adjacency[face].across[e], other = across >> 2;
+    if (other >= t.n_faces)
+        return false;
+    bool mutual = t.adjacency[other].across[across & 3] == (face << 2 | e);
+    if (quads[face] && !quads[other])
+        return mutual; /* places are compared from the n-gon's side */
+    bool whole = quads[face] == quads[other];
+    if (whole && !mutual)
+        return false;
+    double from_end = whole ? 0.3 : e == 0 ? 0.15 : 0.65;
+    vec3 here, there;
+    if (!edge_point(*model.oracle, face, e, 0.3, &here) ||
+        !edge_point(*model.oracle, other, across & 3, 1 - from_end, &there))
+        return true; /* no surface on one side, so nothing to compare */
+    return length(here - there) <= 1e-9 * model.diagonal();
+}
+
+void compare_adjacency(const model &model, const table_evaluator &tables, figures *f)
+{
+    size_t open = 0, expected = count_open_edges(*model.cage);
+    std::vector<bool> quads = find_quads(*model.cage);
+    const limit_tables &t = tables.tables;
+    for (uint32_t face = 0; face < t.n_faces; face++)
+        for (uint32_t e = 0; e < 4; e++) {
+            if (t.adjacency[face].across[e] == LIMIT_NO_FACE)
+                open++;
+            else
+                f->adjacency += !is_neighbour(model, t, quads, face, e);
+        }
+    f->adjacency += open > expected ? open - expected : expected - open;
+}
+
+/* Puts in the faults that FAKE_FAULTS names, for self_test.sh. */
+void break_tables(limit_tables *t)
+{
+    bool opened = false;
+    for (size_t k = 0; k < t->n_nodes; k++) {
+        limit_node *node = &t->nodes[k];
+        if (node->kind == LIMIT_SPLIT)
+            continue;
+        float(*texels)[4] = t->points + node->first;
+        if (has_fault("point"))
+            texels[5][0] += 1e-4f;
+        if (has_fault("frame") && node->kind == LIMIT_CORNER)
+            texels[LIMIT_CORNER_TEXELS - 1][0] += 1e-4f;
+        if (has_fault("deep") && node->kind == LIMIT_CORNER)
+            texels[25 * LIMIT_LEVEL_POINTS][3] *= 1.001f;
+        if (has_fault("hole") && !opened)
+            node->kind = LIMIT_HOLE;
+        opened = true;
+    }
+    if (has_fault("neighbour"))
+        std::swap(t->adjacency[0].across[0], t->adjacency[0].across[1]);
+}
+
+void judge(const model &model, verdict *verdict)
+{
+    std::string what = model.name + ": ";
+    figures f;
+    try {
+        table_evaluator tables(*model.cage);
+        if (!verdict->check(tables.tables.n_faces == model.oracle->n_ptex_faces(),
+                            what + "the number of Ptex faces is not libosd's"))
+            return;
+        break_tables(&tables.tables);
+        compare_samples(model, tables, &f);
+        compare_seams(tables, &f);
+        if (!model.oracle->non_manifold())
+            compare_adjacency(model, tables, &f);
+    } catch (const std::exception &failure) {
+        if (model.may_refuse.empty())
+            verdict->check(false, what + failure.what());
+        else
+            std::printf("%-28s refused, as it may be (%s): %s\n", model.name.c_str(),
+                        model.may_refuse.c_str(), failure.what());
+        return;
+    }
+    double n999 = quantile(f.normal_rad, 0.999), p999 = quantile(f.position, 0.999);
+    double seam_rad = quantile(f.seam_rad, 0.999), seam = quantile(f.seam, 0.999);
+    std::printf("%-28s %6zu | %7.1e %7.1e %7.1e | %7.1e %7.1e | %8zu %7.1e %7.1e\n",
+                model.name.c_str(), f.normal_rad.size(), quantile(f.normal_rad, 0.5), n999,
+                quantile(f.normal_rad, 1), p999, quantile(f.position, 1), f.seam.size(), seam,
+                seam_rad);
+    verdict->check(f.normal_rad.size() > min_samples, what + "too few places compared");
+    verdict->check(f.presence == 0,
+                   what + std::to_string(f.presence) + " places where only one has a surface");
+    verdict->check(f.adjacency == 0, what + std::to_string(f.adjacency) + " wrong neighbours");
+    verdict->at_most(n999, max_normal_p999_rad, what + "normal p99.9 (rad)");
+    verdict->at_most(p999, max_position_p999, what + "position p99.9 (diagonals)");
+    verdict->at_most(seam_rad, max_seam_rad, what + "normals across ring seams p99.9 (rad)");
+    verdict->at_most(seam, max_seam, what + "gap at ring seams p99.9 (rings)");
+}
+
+/* As the file says, and an open cage in the other boundary modes as well. */
+void judge_file(const std::string &path, verdict *verdict)
+{
+    model as_read = read_model(path);
+    judge(as_read, verdict);
+    if (count_open_edges(*as_read.cage) == 0)
+        return;
+    static const char *const suffix[3] = {" edge only", " edge+corner", " none"};
+    for (cage_boundary boundary :
+         {CAGE_BOUNDARY_EDGE_ONLY, CAGE_BOUNDARY_EDGE_AND_CORNER, CAGE_BOUNDARY_NONE}) {
+        if (boundary == as_read.cage->boundary)
+            continue;
+        try {
+            model other = with_boundary(as_read, boundary);
+            other.name = other.name.substr(0, 15) + suffix[boundary];
+            judge(other, verdict);
+        } catch (const std::exception &no_surface) {
+            std::printf("%s\n", no_surface.what());
+        }
+    }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        std::fprintf(stderr, "usage: test_limit MODEL...\n");
+        return 2;
+    }
+    verdict verdict;
+    std::printf("%-28s %6s | %7s %7s %7s | %7s %7s | %8s %7s %7s\n", "model", "places", "N p50",
+                "N p99.9", "N max", "P p99.9", "P max", "seams", "gap", "kink");
+    for (const std::string &path : list_models(std::vector<std::string>(argv + 1, argv + argc))) {
+        try {
+            judge_file(path, &verdict);
+        } catch (const std::exception &failure) {
+            verdict.check(false, failure.what());
+        }
+        std::fflush(stdout);
+    }
+    return verdict.finish();
+}
