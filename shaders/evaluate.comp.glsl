@@ -37,7 +37,7 @@ void main()
     uvec2 guess = texelFetch(seen, p, 0).xy;
     bool is_seen = guess.x != NONE;
     Node node = node_load(is_seen ? guess.x : 0u);
-    SubPatch own = sub_patch_at(node, guess_xy(guess.y));
+    SubPatch own = sub_patch_at(node, guess_xy(node, guess.y));
     mat3 frame = frame_of(node);
     vec3 points16[16];
     vec2 net[16];
@@ -56,7 +56,7 @@ void main()
     float front = nearest_around(p);
     bool doubtful = is_seen ? front < s.s.z - 4.0 * pixel_units(s.s.z) : front < 1e30;
     if (solved && !doubtful) {
-        vec2 xy = ldexp(own.origin + own.st, ivec2(-own.level));
+        vec2 xy = ldexp(own.origin + own.st, -own.scale);
         store_hit(p, s, node.face, ptex_uv(node, xy));
     } else if (is_seen || doubtful) {
         list_unsolved(p);

@@ -72,8 +72,8 @@ float solve_patch(vec2 net[16], float px_per_scale, inout vec2 st)
 }
 
 // The visibility buffer's guess as local coordinates of its node.
-vec2 guess_xy(uint packed_guess)
+vec2 guess_xy(Node node, uint packed_guess)
 {
     vec2 st = vec2(packed_guess >> 6 & 8191u, packed_guess >> 19) * (2.0 / 8191.0);
-    return clamp(ldexp(st, ivec2(-int(packed_guess & 63u))), 0.0, 1.0);
+    return clamp(ldexp(st, -level_scale(node, int(packed_guess & 63u))), 0.0, 1.0);
 }

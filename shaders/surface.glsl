@@ -34,29 +34,41 @@ mat3 frame_of(Node node)
                          xz + wy, yz - wx, 1.0 - (xx + yy));
 }
 
-// The sub-patch of a node that holds a place (limit-surface 4.3).
+// How much faster than the node's x,y the parameters of its level n run: 2^this.
+ivec2 level_scale(Node node, int level)
+{
+    return ivec2(node.kind == STRIP ? 0 : level, level);
+}
+
+// The sub-patch of a node that holds a place (limit-surface 4.3, 4.5).
 struct SubPatch {
-    int level;    // n: 0 for REGULAR; its parameters run 2^n times faster than the node's x,y
+    ivec2 scale;  // its parameters run 2^scale times faster than the node's x,y
     vec2 origin;  // where it begins, in those parameters
     vec2 st;      // the place, in [0,1]
     uint first;   // its 16 points: rows of 4, `stride` texels apart
     uint stride;
-    bool limit;   // beyond the last level: the extraordinary vertex itself
+    bool limit;   // beyond the last level of a CORNER: the extraordinary vertex itself
 };
 
 SubPatch sub_patch_at(Node node, vec2 xy)
 {
-    bool corner = node.kind == CORNER;
+    bool corner = node.kind == CORNER, strip = node.kind == STRIP;
+    float nearest = strip ? xy.y : max(xy.x, xy.y);
     int e;
-    frexp(max(xy.x, xy.y), e);
-    int level = corner ? max(1, 1 - e) : 0;
-    bool limit = corner && (level > LEVELS || max(xy.x, xy.y) <= 0.0);
-    level = min(level, LEVELS);
-    vec2 st = ldexp(xy, ivec2(level));
-    bvec2 far = corner ? greaterThanEqual(st, vec2(1.0)) : bvec2(false);
-    uint first = node.first + (corner ? uint(LEVEL_POINTS * (level - 1)) : 0u);
-    first += far.y ? (far.x ? 5u : 4u) : 0u;
-    return SubPatch(level, vec2(far), st - vec2(far), first, corner ? 5u : 4u, limit);
+    frexp(nearest, e);
+    int level = nearest > 0.0 ? max(1, 1 - e) : 1000;
+    bool limit = corner && level > LEVELS;
+    level = corner ? min(level, LEVELS) : strip ? min(level, node.levels + 1) : 0;
+    // The last patch of a strip begins at the crease and is as wide as the one before.
+    bool last = strip && level > node.levels;
+    ivec2 scale = level_scale(node, last ? level - 1 : level);
+    vec2 st = ldexp(xy, scale);
+    bvec2 far = bvec2(corner && st.x >= 1.0, (corner && st.y >= 1.0) || (strip && !last));
+    uint first = node.first + (corner  ? uint(LEVEL_POINTS * (level - 1))
+                               : strip ? uint(16 * (level - 1))
+                                       : 0u);
+    first += corner && far.y ? (far.x ? 5u : 4u) : 0u;
+    return SubPatch(scale, vec2(far), st - vec2(far), first, corner ? 5u : 4u, limit);
 }
 
 void fetch_points(SubPatch patch_, out vec3 p[16], out float scale)
@@ -91,8 +103,11 @@ Surface patch_at(Node node, mat3 frame, vec3 p[16], float scale, vec2 st)
                    frame * suv, frame * svv, scale);
 }
 
-// The extraordinary vertex itself, where all levels end: the origin and axes of its frame.
+// The extraordinary vertex itself, where all levels end: the origin and axes of its frame. A
+// cone's tip has no tangents.
 Surface limit_of(Node node, mat3 frame, float scale)
 {
-    return Surface(node.origin, frame[0], frame[1], vec3(0.0), vec3(0.0), vec3(0.0), scale);
+    float some = float(node.levels);
+    return Surface(node.origin, some * frame[0], some * frame[1], vec3(0.0), vec3(0.0), vec3(0.0),
+                   scale);
 }

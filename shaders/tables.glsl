@@ -5,7 +5,7 @@
 // NODE_BANK_TEXELS, which keeps the three texels of a node together.
 
 const uint NONE = 0xffffffffu;
-const uint REGULAR = 0u, CORNER = 1u, SPLIT = 2u, HOLE = 3u;
+const uint REGULAR = 0u, CORNER = 1u, SPLIT = 2u, HOLE = 3u, STRIP = 4u;
 const int LEVELS = 32;
 const int LEVEL_POINTS = 24;
 
@@ -91,6 +91,7 @@ struct Node {
     uint kind;
     uint depth;
     uint rotation;
+    int levels;  // STRIP: patches but one; CORNER: 0 at a cone's tip
     uint ngon_size, ngon_corner;
     vec3 origin;  // relative to the eye, in camera space
 };
@@ -108,6 +109,7 @@ Node node_load(uint i)
     node.kind = c.y & 0xffu;
     node.depth = (c.y >> 8) & 0xffu;
     node.rotation = (c.y >> 16) & 0xffu;
+    node.levels = int(c.y >> 24);
     node.ngon_size = c.z;
     node.ngon_corner = c.w;
     return node;

@@ -30,7 +30,7 @@ Solution solve(uvec2 guess, Ray r)
     result.found = false;
     uint index = guess.x;
     Node node = node_load(index);
-    vec2 xy = guess_xy(guess.y);
+    vec2 xy = guess_xy(node, guess.y);
     for (int i = 0; i < STEPS; i++) {
         vec2 step_st, net[16];
         vec3 points16[16];
@@ -51,7 +51,7 @@ Solution solve(uvec2 guess, Ray r)
             result.hit = Hit(node, xy, s);
             break;
         }
-        xy += ldexp(step_st, ivec2(-own.level));
+        xy += ldexp(step_st, -own.scale);
         if (any(lessThan(xy, vec2(0.0))) || any(greaterThan(xy, vec2(1.0)))) {
             Place place = place_of(node, xy);
             settle(place);

@@ -25,12 +25,13 @@ void main()
     uint k = (piece.y >> 6) & 3u;
     float size = ldexp(1.0, -int(piece.y >> 8));
     vec2 cell = vec2(gl_VertexID % (grid + 1), gl_VertexID / (grid + 1)) / float(grid);
-    // k = 1,2,3: the three unit squares of a level's ring; 0: the square at the origin.
+    // k = 1,2,3: the three unit squares of a level's ring (a strip has only the third); 0: the
+    // square at the origin.
     vec2 square = vec2(k == 1u || k == 2u, k >= 2u);
     st = square + (vec2(piece.zw) + cell) * size;
 
     Node node = node_load(piece.x);
-    vec3 s = position_at(node, ldexp(st, ivec2(-level)));
+    vec3 s = position_at(node, ldexp(st, -level_scale(node, level)));
     where = uvec2(piece.x, uint(level));
     float w = is_perspective() ? s.z : 1.0;
     float z = is_perspective() ? depth.x : depth.y + s.z * depth.z;

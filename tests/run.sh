@@ -29,11 +29,10 @@ run() { # name, command...
     [ "$bad" = 0 ] || { tail -n 40 "$log"; }
 }
 
-# Cages that this version evaluates: smooth ones and boundaries.
+# Catmull-Clark cages.
 evaluated_shapes() {
     [ -d "$shapes" ] || return 0
     for shape in "$shapes"/*.obj; do
-        grep -qE '^t (crease|corner|hole|creasemethod|smoothtriangles)' "$shape" && continue
         case $shape in
         # Faces that repeat a vertex: refused by name.
         */catmark_nonman_edges.obj | */loop_nonman_edges.obj | */catmark_nonman_quadpole8.obj) continue ;;

@@ -136,6 +136,8 @@ static void patch_points(const struct limit_tables *tables, const struct piece *
     if (node->kind == LIMIT_CORNER) {
         first += (level - 1) * LIMIT_LEVEL_POINTS + (square == 2 ? 5 : square == 3 ? 4 : 0);
         stride = 5;
+    } else if (node->kind == LIMIT_STRIP) {
+        first += (square ? level - 1 : level) * LIMIT_REGULAR_POINTS;
     }
     for (size_t k = 0; k < 16; k++) {
         const float *p = tables->points[first + k / 4 * stride + k % 4];
@@ -220,6 +222,21 @@ static void choose_regular(struct chooser *c, uint32_t node)
     choose_square(c, (struct piece){node, 0, 0, 0}, &extent);
 }
 
+/* One piece for each patch across the crease. */
+static void choose_strip(struct chooser *c, uint32_t node)
+{
+    const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
+    uint32_t levels = c->tables->nodes[node].levels;
+    struct extent extent;
+    view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
+    for (uint32_t n = 1; n <= levels + 1; n++) {
+        extent.radius = bounds[n - 1].radius;
+        extent.bend = bounds[n - 1].bend;
+        uint32_t where = n <= levels ? n | 3u << 6 : levels;
+        choose_square(c, (struct piece){node, where, 0, 0}, &extent);
+    }
+}
+
 /* Rings from the outside in, until what is left is smaller than the tolerance. */
 static void choose_corner(struct chooser *c, uint32_t node)
 {
@@ -268,6 +285,8 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
             choose_regular(&c, node);
         else if (tables->nodes[node].kind == LIMIT_CORNER)
             choose_corner(&c, node);
+        else if (tables->nodes[node].kind == LIMIT_STRIP)
+            choose_strip(&c, node);
     }
     set_area(&c, tile);
     return !c.failed;

@@ -1,8 +1,9 @@
 /* Which pieces of the surface are drawn, and how finely, so that no triangle strays more than
  * half a pixel from the surface (limit-surface 3.2). Pure: no GL here.
  *
- * A piece is a square of a node's local coordinates: a part of a REGULAR node, of one unit square
- * of a CORNER's level ring, or all that is left of a CORNER below one level. */
+ * A piece is a square of a node's local coordinates: a part of a REGULAR node, of one patch of a
+ * STRIP, of one unit square of a CORNER's level ring, or all that is left of a CORNER below one
+ * level. */
 #ifndef SHEEN_GPU_PIECES_H
 #define SHEEN_GPU_PIECES_H
 

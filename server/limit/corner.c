@@ -3,6 +3,8 @@
 #include <math.h>
 
 #include "server/limit/bound.h"
+#include "server/limit/crease.h"
+#include "server/limit/dart.h"
 #include "server/limit/texels.h"
 
 /* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the vertex's ring. */
@@ -11,15 +13,27 @@ struct net {
     struct ring ring;
 };
 
-size_t corner_points(const struct quad *quad)
+static struct vec limit_position(const struct ring *ring, const struct dart_masks *dart)
 {
-    return 2 * (2 * (size_t)quad->corner[0].n_faces + 1);
+    return ring_is_dart(ring) ? dart_apply(dart->position, ring) : ring_limit(ring);
 }
 
 static struct vec to_frame(struct vec p, struct vec origin, const struct vec axis[3])
 {
     struct vec d = vec_sub(p, origin);
     return (struct vec){vec_dot(d, axis[0]), vec_dot(d, axis[1]), vec_dot(d, axis[2])};
+}
+
+/* Where the sector ends at the quad's own edges, phantoms continue it. */
+static void phantom_points(const struct ring *ring, struct vec grid[5][5])
+{
+    bool first = crease_ends_at(ring, 0), second = crease_ends_at(ring, 1);
+    for (int k = 1; k < 5; k++) {
+        if (second)
+            grid[k][0] = vec_sub(vec_scale(grid[k][1], 2), grid[k][2]);
+        if (first)
+            grid[0][k] = vec_sub(vec_scale(grid[1][k], 2), grid[2][k]);
+    }
 }
 
 /* The net of level 0 in the vertex's frame: only i,j <= 2 are set. */
@@ -33,12 +47,15 @@ static void first_net(const struct quad *quad, struct vec origin, const struct v
             net->grid[j][i] = to_frame(grid[j][i], origin, axis);
     const struct ring *ring = &quad->corner[0];
     net->ring.at = ring->at;
-    net->ring.sharp = ring->sharp;
+    net->ring.sharpness = ring->sharpness;
+    for (uint32_t k = 0; ring->creases.edge && k < ring_edges(ring); k++)
+        net->ring.creases.edge[k] = net->ring.creases.far[k] = ring->creases.edge[k];
     net->ring.centre = to_frame(ring->centre, origin, axis);
     for (uint32_t k = 0; k < ring_edges(ring); k++)
         net->ring.edge[k] = to_frame(ring->edge[k], origin, axis);
     for (uint32_t k = 0; k < ring->n_faces; k++)
         net->ring.face[k] = to_frame(ring->face[k], origin, axis);
+    phantom_points(&net->ring, net->grid);
 }
 
 /* Catmull-Clark at grid point (i,j) of the finer net, by the parity of i and j (limit-surface 4.2).
@@ -46,22 +63,20 @@ static void first_net(const struct quad *quad, struct vec origin, const struct v
 static struct vec refine_point(struct vec grid[5][5], int i, int j)
 {
     int a = (i + 2) / 2 - 1, b = (j + 2) / 2 - 1; /* floor(i/2), floor(j/2) for i,j >= -2 */
-    struct vec(*g)[5] = (struct vec(*)[5]) & grid[b + 1][a + 1];
+    enum { UP = 5 };                              /* from a row to the next */
+    const struct vec *g = &grid[0][0] + (b + 1) * UP + a + 1;
     if (i & 1 && j & 1)
-        return vec_scale(vec_add(vec_add(g[0][0], g[0][1]), vec_add(g[1][0], g[1][1])), 0.25);
-    if (i & 1) {
-        struct vec ends = vec_add(g[0][0], g[0][1]);
-        struct vec wings = vec_add(vec_add(g[-1][0], g[-1][1]), vec_add(g[1][0], g[1][1]));
+        return vec_scale(vec_add(vec_add(g[0], g[1]), vec_add(g[UP], g[UP + 1])), 0.25);
+    if (i & 1 || j & 1) {
+        int along = i & 1 ? 1 : UP, across = i & 1 ? UP : 1;
+        struct vec ends = vec_add(g[0], g[along]);
+        struct vec wings =
+            vec_add(vec_add(g[-across], g[along - across]), vec_add(g[across], g[along + across]));
         return vec_mad(vec_scale(ends, 0.375), 0.0625, wings);
     }
-    if (j & 1) {
-        struct vec ends = vec_add(g[0][0], g[1][0]);
-        struct vec wings = vec_add(vec_add(g[0][-1], g[1][-1]), vec_add(g[0][1], g[1][1]));
-        return vec_mad(vec_scale(ends, 0.375), 0.0625, wings);
-    }
-    struct vec edges = vec_add(vec_add(g[0][-1], g[0][1]), vec_add(g[-1][0], g[1][0]));
-    struct vec faces = vec_add(vec_add(g[-1][-1], g[-1][1]), vec_add(g[1][-1], g[1][1]));
-    return vec_mad(vec_mad(vec_scale(g[0][0], 0.5625), 0.09375, edges), 0.015625, faces);
+    struct vec edges = vec_add(vec_add(g[-1], g[1]), vec_add(g[-UP], g[UP]));
+    struct vec faces = vec_add(vec_add(g[-UP - 1], g[-UP + 1]), vec_add(g[UP - 1], g[UP + 1]));
+    return vec_mad(vec_mad(vec_scale(g[0], 0.5625), 0.09375, edges), 0.015625, faces);
 }
 
 /* The points around the vertex come from its refined ring; beyond a sector's end, phantoms. */
@@ -81,18 +96,8 @@ static void ring_points(const struct ring *ring, struct vec grid[5][5])
     }
 }
 
-static void phantom_points(const struct ring *ring, struct vec grid[5][5])
-{
-    for (int k = 1; k < 5; k++) {
-        if (!ring_has_face(ring, 1))
-            grid[k][0] = vec_sub(vec_scale(grid[k][1], 2), grid[k][2]);
-        if (!ring_has_face(ring, -1))
-            grid[0][k] = vec_sub(vec_scale(grid[1][k], 2), grid[2][k]);
-    }
-}
-
 /* One level further: refine, then move the limit position back to zero. */
-static void next_net(const struct net *in, struct net *out)
+static void next_net(const struct net *in, const struct dart_masks *dart, struct net *out)
 {
     struct vec coarse[5][5];
     for (int j = 0; j < 5; j++)
@@ -106,7 +111,7 @@ static void next_net(const struct net *in, struct net *out)
     ring_points(&out->ring, out->grid);
     phantom_points(&out->ring, out->grid);
 
-    struct vec limit = ring_limit(&out->ring);
+    struct vec limit = limit_position(&out->ring, dart);
     for (int j = 0; j < 5; j++)
         for (int i = 0; i < 5; i++)
             out->grid[j][i] = vec_sub(out->grid[j][i], limit);
@@ -143,19 +148,29 @@ static void write_quaternion(const struct vec axis[3], float q[4])
         q[n] = (float)(r[n] / length);
 }
 
-void corner_table(const struct quad *quad, struct arena *arena, float (*texels)[4],
+bool corner_table(const struct quad *quad, struct arena *arena, float (*texels)[4],
                   struct limit_bound bounds[LIMIT_LEVELS], double origin[3])
 {
     const struct ring *ring = &quad->corner[0];
-    struct vec axis[3], limit = ring_limit(ring);
-    ring_frame(ring, axis);
+    struct dart_masks dart;
+    struct vec axis[3], t1, t2;
+    bool has_normal = true;
+    if (ring_is_dart(ring)) {
+        dart_masks_init(&dart, ring, arena);
+        t1 = dart_apply(dart.tangent[0], ring);
+        t2 = dart_apply(dart.tangent[1], ring);
+    } else {
+        has_normal = ring_tangents(ring, &t1, &t2);
+    }
+    has_normal &= ring_frame(ring, t1, t2, axis);
+    struct vec limit = limit_position(ring, &dart);
     struct net net[2] = {0};
     for (int k = 0; k < 2; k++)
-        net[k].ring = ring_take(arena, ring->n_faces, ring->closed);
+        net[k].ring = ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
     first_net(quad, limit, axis, &net[0]);
     for (int n = 0; n < LIMIT_LEVELS; n++) {
         struct net *fine = &net[(n + 1) & 1];
-        next_net(&net[n & 1], fine);
+        next_net(&net[n & 1], &dart, fine);
         texels_write(&fine->grid[0][1], LIMIT_LEVEL_POINTS, texels + n * LIMIT_LEVEL_POINTS);
         bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true);
     }
@@ -163,4 +178,5 @@ void corner_table(const struct quad *quad, struct arena *arena, float (*texels)[
     origin[0] = limit.x;
     origin[1] = limit.y;
     origin[2] = limit.z;
+    return has_normal;
 }

@@ -14,9 +14,9 @@
 
 /* Writes LIMIT_CORNER_TEXELS texels (the last is the frame as a quaternion x y z w that turns
  * frame coordinates into world directions), the bounds of every level and the origin (the limit
- * position, world). The extraordinary vertex is corner 0. Takes corner_points() vecs of arena. */
-void corner_table(const struct quad *quad, struct arena *arena, float (*texels)[4],
+ * position, world). The extraordinary vertex is corner 0; nothing is semi-sharp. Returns whether
+ * the vertex has a limit normal. */
+bool corner_table(const struct quad *quad, struct arena *arena, float (*texels)[4],
                   struct limit_bound bounds[LIMIT_LEVELS], double origin[3]);
-size_t corner_points(const struct quad *quad);
 
 #endif

@@ -2,52 +2,95 @@
 
 #include <stdlib.h>
 
+#include "server/limit/crease.h"
+
 static struct vec position(const struct topology *t, uint32_t corner)
 {
     const double *p = t->cage->position[corner_vertex(t, corner)];
     return (struct vec){p[0], p[1], p[2]};
 }
 
-static bool is_sharp(const struct topology *t, uint32_t corner)
-{
-    return t->vertex_flags[corner_vertex(t, corner)] & VERTEX_SHARP;
-}
-
-/* The ring of corner c's vertex with room for its points; fills all but positions. */
-static struct ring empty_ring(const struct topology *t, uint32_t c, struct sector *sector,
-                              struct arena *arena)
+/* The ring of corner c's vertex in the cage. Quads around it or not: ring.face is only set when
+ * they all are. */
+static struct ring cage_ring(const struct topology *t, uint32_t c, bool quads,
+                             struct sector *sector, struct arena *arena)
 {
     *sector = topology_sector(t, c);
-    struct ring ring = ring_take(arena, sector->n_faces, sector->closed);
+    bool creased = t->vertex_flags[corner_vertex(t, c)] & VERTEX_CREASED;
+    struct ring ring = ring_take(arena, sector->n_faces, sector->closed, creased);
     ring.at = sector->at;
-    ring.sharp = is_sharp(t, c);
-    return ring;
-}
-
-static struct ring vertex_ring(const struct topology *t, uint32_t c, struct arena *arena)
-{
-    struct sector sector;
-    struct ring ring = empty_ring(t, c, &sector, arena);
+    ring.sharpness = vertex_sharpness(t, c);
+    ring.creases.chaikin = t->cage->chaikin;
     ring.centre = position(t, c);
-    for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at)) {
-        ring.edge[k] = position(t, corner_next(t, at));
-        ring.face[k] = position(t, corner_next(t, corner_next(t, at)));
-        if (!sector.closed && k + 1 == sector.n_faces)
+    for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at)) {
+        uint32_t next = corner_next(t, at);
+        ring.edge[k] = position(t, next);
+        if (quads)
+            ring.face[k] = position(t, corner_next(t, next));
+        if (creased)
+            ring.creases.edge[k] = edge_sharpness(t, at);
+        if (!sector->closed && k + 1 == sector->n_faces)
             ring.edge[k + 1] = position(t, corner_prev(t, at));
     }
     return ring;
 }
 
+/* What the half of half-edge c at its start will have after one step. */
+static float child_sharpness(const struct topology *t, uint32_t c, struct arena *arena)
+{
+    float sharpness = edge_sharpness(t, c);
+    if (!t->cage->chaikin || sharpness <= 0)
+        return crease_child_vertex(sharpness);
+    size_t mark = arena->used;
+    struct sector sector;
+    struct ring ring = cage_ring(t, c, false, &sector, arena);
+    float child = crease_child(&ring, ring.at);
+    arena->used = mark;
+    return child;
+}
+
+static void set_far_sharpness(const struct topology *t, const struct sector *sector,
+                              struct ring *ring, struct arena *arena)
+{
+    if (!ring->creases.edge)
+        return;
+    for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at)) {
+        uint32_t twin = t->twin[at];
+        ring->creases.far[k] =
+            twin == CORNER_NONE ? CAGE_SHARPNESS_INFINITE : child_sharpness(t, twin, arena);
+    }
+}
+
+static struct ring vertex_ring(const struct topology *t, uint32_t c, struct arena *arena)
+{
+    struct sector sector;
+    struct ring ring = cage_ring(t, c, true, &sector, arena);
+    set_far_sharpness(t, &sector, &ring, arena);
+    return crease_settle(&ring, arena);
+}
+
+/* The refined ring of corner c's vertex, by the face points of its faces. */
+static struct ring refine_cage_ring(const struct topology *t, const struct vec *face_points,
+                                    uint32_t c, struct sector *sector, struct arena *arena)
+{
+    struct ring ring = cage_ring(t, c, false, sector, arena);
+    set_far_sharpness(t, sector, &ring, arena);
+    struct ring out = ring_take(arena, ring.n_faces, ring.closed, ring.creases.edge);
+    for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at))
+        out.face[k] = face_points[t->face[at]];
+    ring_refine_around(&ring, &out);
+    return out;
+}
+
+/* The same with the points that all share: a smooth triangle's edges are not its ring's. */
 static struct ring refined_vertex_ring(const struct topology *t,
                                        const struct refined_points *points, uint32_t c,
                                        struct arena *arena)
 {
     struct sector sector;
-    struct ring ring = empty_ring(t, c, &sector, arena);
-    ring.centre = points->vertex[corner_vertex(t, c)];
+    struct ring ring = refine_cage_ring(t, points->face, c, &sector, arena);
     for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at)) {
         ring.edge[k] = points->edge[at];
-        ring.face[k] = points->face[t->face[at]];
         if (!sector.closed && k + 1 == sector.n_faces)
             ring.edge[k + 1] = points->edge[corner_prev(t, at)];
     }
@@ -56,11 +99,14 @@ static struct ring refined_vertex_ring(const struct topology *t,
 
 /* Around the edge point of half-edge c, listed from its far end: end, face, start, face across. */
 static struct ring refined_edge_ring(const struct topology *t, const struct refined_points *points,
-                                     uint32_t c, struct arena *arena)
+                                     uint32_t c, uint32_t at, struct arena *arena)
 {
     uint32_t twin = t->twin[c];
     bool closed = twin != CORNER_NONE;
-    struct ring ring = ring_take(arena, closed ? 4 : 2, closed);
+    bool creased = closed && edge_sharpness(t, c) > 0;
+    struct ring ring = ring_take(arena, closed ? 4 : 2, closed, creased);
+    ring.at = at;
+    ring.creases.chaikin = t->cage->chaikin;
     ring.centre = points->edge[c];
     ring.edge[0] = points->vertex[corner_vertex(t, corner_next(t, c))];
     ring.edge[1] = points->face[t->face[c]];
@@ -72,7 +118,15 @@ static struct ring refined_edge_ring(const struct topology *t, const struct refi
         ring.face[2] = points->edge[corner_next(t, twin)];
         ring.face[3] = points->edge[corner_prev(t, twin)];
     }
-    return ring;
+    if (creased) {
+        struct ring end = refined_vertex_ring(t, points, twin, arena);
+        struct ring start = refined_vertex_ring(t, points, c, arena);
+        ring.creases.edge[0] = crease_edge(&end, end.at);
+        ring.creases.far[0] = crease_child(&end, end.at);
+        ring.creases.edge[2] = crease_edge(&start, start.at);
+        ring.creases.far[2] = crease_child(&start, start.at);
+    }
+    return crease_settle(&ring, arena);
 }
 
 /* Around the face point, listed from half-edge c; quad k lies beyond corner next(c) + k. */
@@ -80,7 +134,7 @@ static struct ring refined_face_ring(const struct topology *t, const struct refi
                                      uint32_t c, struct arena *arena)
 {
     uint32_t n = face_size(t, t->face[c]);
-    struct ring ring = ring_take(arena, n, true);
+    struct ring ring = ring_take(arena, n, true, false);
     ring.centre = points->face[t->face[c]];
     for (uint32_t k = 0, at = c; k < n; k++, at = corner_next(t, at)) {
         ring.edge[k] = points->edge[at];
@@ -102,11 +156,11 @@ struct quad extract_refined_quad(const struct topology *t, const struct refined_
 {
     struct quad quad;
     uint32_t before = corner_prev(t, c);
-    quad.corner[0] = refined_vertex_ring(t, points, c, arena);
-    quad.corner[1] = refined_edge_ring(t, points, c, arena);
-    quad.corner[1].at = 1;
+    struct ring vertex = refined_vertex_ring(t, points, c, arena);
+    quad.corner[0] = crease_settle(&vertex, arena);
+    quad.corner[1] = refined_edge_ring(t, points, c, 1, arena);
     quad.corner[2] = refined_face_ring(t, points, before, arena);
-    quad.corner[3] = refined_edge_ring(t, points, before, arena);
+    quad.corner[3] = refined_edge_ring(t, points, before, 0, arena);
     return quad;
 }
 
@@ -121,48 +175,53 @@ static void refine_face_points(const struct topology *t, struct refined_points *
     }
 }
 
-static void refine_edge_points(const struct topology *t, struct refined_points *points)
+/* One sector's share, once for all its corners: its vertex, and the edge points of its outgoing
+ * half-edges, each written from one end only so that twins hold the same bits. */
+static void refine_sector(const struct topology *t, struct refined_points *points, uint32_t c,
+                          uint8_t *done, struct arena *arena)
+{
+    size_t mark = arena->used;
+    struct sector sector;
+    struct ring ring = refine_cage_ring(t, points->face, c, &sector, arena);
+    points->vertex[corner_vertex(t, c)] = ring.centre;
+    for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at)) {
+        uint32_t twin = t->twin[at];
+        done[at] = 1;
+        if (twin == CORNER_NONE || at < twin)
+            points->edge[at] = ring.edge[k];
+        if (twin != CORNER_NONE && at < twin)
+            points->edge[twin] = ring.edge[k];
+    }
+    arena->used = mark;
+}
+
+/* The weight of the two face points, OpenSubdiv's constant for triangles (sdc/catmarkScheme.h). */
+static double smooth_triangle_weight(const struct topology *t, uint32_t corner)
+{
+    return face_size(t, t->face[corner]) == 3 ? (double)0.470f : 0.25;
+}
+
+/* TRI_SUB_SMOOTH: edges beside triangles lean on the face points, in the first step only. */
+static void refine_smooth_triangle_edges(const struct topology *t, struct refined_points *points)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
     for (uint32_t c = 0; c < n_corners; c++) {
-        struct vec ends = vec_add(position(t, c), position(t, corner_next(t, c)));
         uint32_t twin = t->twin[c];
-        if (twin == CORNER_NONE) {
-            points->edge[c] = vec_scale(ends, 0.5);
+        float sharpness = edge_sharpness(t, c);
+        if (twin == CORNER_NONE || c > twin || sharpness >= 1)
             continue;
-        }
-        /* In the same order from both sides, so that twins hold the same bits. */
-        uint32_t low = c < twin ? c : twin, high = c < twin ? twin : c;
-        struct vec faces = vec_add(points->face[t->face[low]], points->face[t->face[high]]);
-        points->edge[c] = vec_scale(vec_add(ends, faces), 0.25);
+        double face = 0.5 * (smooth_triangle_weight(t, c) + smooth_triangle_weight(t, twin));
+        struct vec ends = vec_add(position(t, c), position(t, corner_next(t, c)));
+        struct vec faces = vec_add(points->face[t->face[c]], points->face[t->face[twin]]);
+        struct vec smooth = vec_mad(vec_scale(ends, 0.5 - face), face, faces);
+        points->edge[c] =
+            vec_mad(vec_scale(smooth, 1 - (double)sharpness), 0.5 * (double)sharpness, ends);
+        points->edge[twin] = points->edge[c];
     }
-}
-
-/* The vertex rule with face points, for faces of any size: (n-2)/n V + (sum e + sum F) / n^2. */
-static struct vec refine_vertex(const struct topology *t, const struct refined_points *points,
-                                uint32_t c)
-{
-    struct sector sector = topology_sector(t, c);
-    struct vec at = position(t, c), sum = {0, 0, 0};
-    if (is_sharp(t, c))
-        return at;
-    uint32_t last = sector.first;
-    for (uint32_t k = 0, walk = last; k < sector.n_faces; k++, walk = corner_ccw(t, walk)) {
-        sum = vec_add(sum, position(t, corner_next(t, walk)));
-        sum = vec_add(sum, points->face[t->face[walk]]);
-        last = walk;
-    }
-    if (!sector.closed) {
-        struct vec ends =
-            vec_add(position(t, corner_next(t, sector.first)), position(t, corner_prev(t, last)));
-        return vec_mad(vec_scale(at, 0.75), 0.125, ends);
-    }
-    double n = sector.n_faces;
-    return vec_mad(vec_scale(at, (n - 2) / n), 1 / (n * n), sum);
 }
 
 bool refined_points_init(struct refined_points *points, const struct topology *t,
-                         struct error *error)
+                         struct arena *arena, struct error *error)
 {
     const struct cage *cage = t->cage;
     uint32_t n_corners = cage->face_start[cage->n_faces];
@@ -171,7 +230,7 @@ bool refined_points_init(struct refined_points *points, const struct topology *t
         .edge = malloc(n_corners * sizeof(struct vec)),
         .face = malloc(cage->n_faces * sizeof(struct vec)),
     };
-    uint8_t *done = calloc(cage->n_vertices, 1);
+    uint8_t *done = calloc(n_corners, 1);
     if (!points->vertex || !points->edge || !points->face || !done) {
         free(done);
         refined_points_finish(points);
@@ -179,14 +238,12 @@ bool refined_points_init(struct refined_points *points, const struct topology *t
                          cage->n_faces);
     }
     refine_face_points(t, points);
-    refine_edge_points(t, points);
-    for (uint32_t c = 0; c < n_corners; c++) {
-        uint32_t v = corner_vertex(t, c);
-        if (!done[v])
-            points->vertex[v] = refine_vertex(t, points, c);
-        done[v] = 1;
-    }
+    for (uint32_t c = 0; c < n_corners; c++)
+        if (!done[c])
+            refine_sector(t, points, c, done, arena);
     free(done);
+    if (cage->smooth_triangles)
+        refine_smooth_triangle_edges(t, points);
     return true;
 }
 
@@ -198,7 +255,7 @@ void refined_points_finish(struct refined_points *points)
     *points = (struct refined_points){0};
 }
 
-size_t extract_points(const struct topology *t)
+size_t extract_largest_ring(const struct topology *t)
 {
     const struct cage *cage = t->cage;
     size_t n_corners = cage->face_start[cage->n_faces], largest = 4;
@@ -212,5 +269,5 @@ size_t extract_points(const struct topology *t)
     /* Without the counts, the one bound that always holds. */
     largest = valence ? largest : n_corners;
     free(valence);
-    return 4 * (2 * largest + 1);
+    return largest;
 }

@@ -15,10 +15,10 @@ struct refined_points {
 };
 
 bool refined_points_init(struct refined_points *points, const struct topology *topology,
-                         struct error *error);
+                         struct arena *arena, struct error *error);
 void refined_points_finish(struct refined_points *points);
 
-/* The quad whose corner 0 is the cage corner c, at level 0. */
+/* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (crease.h). */
 struct quad extract_quad(const struct topology *topology, uint32_t c, struct arena *arena);
 
 /* The level-1 quad between cage corner c (its corner 0), the edge points beside it and the face
@@ -27,7 +27,7 @@ struct quad extract_refined_quad(const struct topology *topology,
                                  const struct refined_points *points, uint32_t c,
                                  struct arena *arena);
 
-/* How many vecs of arena those take at most, for any corner of the cage. */
-size_t extract_points(const struct topology *topology);
+/* The most faces around any vertex, or corners of any face, of the cage. */
+size_t extract_largest_ring(const struct topology *topology);
 
 #endif

@@ -2,87 +2,68 @@
 
 #include <stdlib.h>
 
-static bool vertex_is_extraordinary(const struct topology *t, uint32_t corner)
-{
-    struct sector sector = topology_sector(t, corner);
-    bool sharp = t->vertex_flags[corner_vertex(t, corner)] & VERTEX_SHARP;
-    struct ring ring = {.n_faces = sector.n_faces, .closed = sector.closed, .sharp = sharp};
-    return !ring_is_regular(&ring);
-}
+#include "server/limit/dart.h"
+#include "server/limit/face.h"
 
-/* Boundary mode NONE: faces at a boundary are support only. */
-static bool face_is_hole(const struct topology *t, uint32_t face)
+/* Boundary mode NONE: faces at a boundary are support only, unless all boundary edges at their
+ * vertices are sharp by themselves (OpenSubdiv sdc/options.h). */
+static bool lacks_boundary(const struct topology *t, uint32_t face)
 {
-    if (t->cage->boundary != CAGE_BOUNDARY_NONE)
-        return false;
     for (uint32_t c = t->cage->face_start[face]; c < t->cage->face_start[face + 1]; c++)
-        if (t->vertex_flags[corner_vertex(t, c)] & VERTEX_BOUNDARY)
+        if (t->vertex_flags[corner_vertex(t, c)] & VERTEX_UNBOUND)
             return true;
     return false;
 }
 
-static unsigned bit_count(unsigned bits)
+static bool mark_holes(struct limit_plan *plan)
 {
-    return (unsigned)__builtin_popcount(bits);
+    const struct cage *cage = plan->cage;
+    if (!cage->n_holes && cage->boundary != CAGE_BOUNDARY_NONE)
+        return true;
+    plan->hole = calloc(cage->n_faces, 1);
+    if (!plan->hole)
+        return false;
+    for (size_t i = 0; i < cage->n_holes; i++)
+        plan->hole[cage->hole[i]] = 1;
+    for (uint32_t f = 0; f < cage->n_faces && cage->boundary == CAGE_BOUNDARY_NONE; f++)
+        plan->hole[f] |= lacks_boundary(&plan->topology, f);
+    return true;
 }
 
-struct plan_shape plan_shape_of(const struct limit_plan *plan, uint32_t ptex)
-{
-    const struct topology *t = &plan->topology;
-    uint32_t c = plan->corner[ptex], face = t->face[c];
-    struct plan_shape shape = {LIMIT_HOLE, 0, false};
-    if (face_is_hole(t, face))
-        return shape;
-    bool quad = face_size(t, face) == 4;
-    shape.refined = !quad;
-    for (unsigned i = 0; i < (quad ? 4 : 1); i++, c = corner_next(t, c)) {
-        shape.extraordinary |= (unsigned)vertex_is_extraordinary(t, c) << i;
-        shape.refined |= t->vertex_flags[corner_vertex(t, c)] & VERTEX_BY_NGON ? true : false;
-    }
-    if (!quad)
-        shape.extraordinary |= 1u << 2; /* the face point */
-    unsigned n = bit_count(shape.extraordinary);
-    shape.root = n == 0 ? LIMIT_REGULAR : n == 1 ? LIMIT_CORNER : LIMIT_SPLIT;
-    if (quad && shape.refined)
-        shape.root = LIMIT_SPLIT;
-    return shape;
-}
-
-/* How much a Ptex face adds to each array. */
-static struct plan_offsets shape_size(struct plan_shape shape)
-{
-    unsigned corners = bit_count(shape.extraordinary), regular = 0;
-    struct plan_offsets size = {0, 0, 0};
-    if (shape.root == LIMIT_HOLE)
-        return size;
-    if (shape.root == LIMIT_SPLIT) {
-        size.node = 4;
-        regular = 4 - corners;
-    } else {
-        regular = 1 - corners;
-    }
-    size.point = corners * LIMIT_CORNER_TEXELS + regular * LIMIT_REGULAR_POINTS;
-    size.bound = corners * LIMIT_LEVELS + regular;
-    return size;
-}
-
+/* Measures every face in turn: where its share begins is what came before. */
 static bool lay_out(struct limit_plan *plan, struct error *error)
 {
+    struct face_builder measure = {.plan = plan};
+    if (!arena_init(&measure.arena, plan->arena_bytes))
+        return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
     uint64_t node = plan->n_ptex, point = 0, bound = 0;
-    for (uint32_t p = 0; p <= plan->n_ptex; p++) {
-        if (node > INT32_MAX || point > UINT32_MAX)
-            return error_set(error, ERROR_MODEL,
-                             "the cage needs more than %u table points: split it in parts",
-                             UINT32_MAX);
+    bool ok = true;
+    for (uint32_t p = 0; p < plan->n_ptex && ok; p++) {
         plan->offsets[p] = (struct plan_offsets){(uint32_t)node, (uint32_t)point, (uint32_t)bound};
-        if (p == plan->n_ptex)
-            break;
-        struct plan_offsets size = shape_size(plan_shape_of(plan, p));
-        node += size.node;
-        point += size.point;
-        bound += size.bound;
+        measure.next = (struct plan_offsets){0, 0, 0};
+        face_build(&measure, p);
+        node += measure.next.node;
+        point += measure.next.point;
+        bound += measure.next.bound;
+        if (measure.dart_valence)
+            ok = error_set(error, ERROR_MODEL,
+                           "a crease ends at a vertex of %u faces, more than the %d that sheen "
+                           "evaluates",
+                           measure.dart_valence, DART_MAX_VALENCE);
+        else if (node > INT32_MAX || point > UINT32_MAX)
+            ok = error_set(error, ERROR_MODEL,
+                           "the cage needs more than %u table points: split it in parts",
+                           UINT32_MAX);
     }
-    return true;
+    plan->offsets[plan->n_ptex] =
+        (struct plan_offsets){(uint32_t)node, (uint32_t)point, (uint32_t)bound};
+    plan->n_regular = measure.n_regular;
+    plan->n_corner = measure.n_corner;
+    plan->n_strip = measure.n_strip;
+    plan->n_split = measure.n_split;
+    plan->n_hole = measure.n_hole;
+    arena_finish(&measure.arena);
+    return ok;
 }
 
 static bool number_ptex_faces(struct limit_plan *plan)
@@ -110,34 +91,37 @@ static bool number_ptex_faces(struct limit_plan *plan)
 /* What sheen does not evaluate yet is refused by name, never drawn wrong. */
 static bool check_supported(const struct cage *cage, struct error *error)
 {
-    const char *what = NULL;
-    if (cage->scheme == CAGE_SCHEME_LOOP)
-        what = "the Loop scheme";
-    else if (cage->scheme == CAGE_SCHEME_BILINEAR)
-        what = "the bilinear scheme";
-    else if (cage->n_creases)
-        what = "creases";
-    else if (cage->n_corners)
-        what = "sharp corners (t corner)";
-    else if (cage->n_holes)
-        what = "holes";
-    else if (cage->smooth_triangles)
-        what = "smoothtriangles smooth";
-    if (what)
-        return error_set(error, ERROR_MODEL, "the cage uses %s, which sheen does not evaluate yet",
-                         what);
-    return true;
+    const char *what = cage->scheme == CAGE_SCHEME_LOOP       ? "the Loop scheme"
+                       : cage->scheme == CAGE_SCHEME_BILINEAR ? "the bilinear scheme"
+                                                              : NULL;
+    return !what || error_set(error, ERROR_MODEL,
+                              "the cage uses %s, which sheen does not evaluate yet", what);
 }
 
-static bool check_valence(const struct limit_plan *plan, struct error *error)
+static bool check_valence(struct limit_plan *plan, struct error *error)
 {
-    size_t largest = (extract_points(&plan->topology) / 4 - 1) / 2;
+    size_t largest = extract_largest_ring(&plan->topology);
     if (largest > LIMIT_MAX_VALENCE)
         return error_set(error, ERROR_MODEL,
                          "a vertex or face of the cage has %zu neighbours, more than the %d that "
                          "sheen evaluates",
                          largest, LIMIT_MAX_VALENCE);
+    /* A face's rings, two more of each extraction, and at each of at most 12 depths the refined
+     * rings, the settled ones and the two nets' of a table: only one of a depth is large. */
+    plan->arena_bytes = 48 * ring_bytes(largest, true) + 12 * 32 * ring_bytes(4, true);
     return true;
+}
+
+static bool refine_if_needed(struct limit_plan *plan, struct error *error)
+{
+    if (plan->topology.quads_only)
+        return true;
+    struct arena arena;
+    if (!arena_init(&arena, plan->arena_bytes))
+        return error_set(error, ERROR_SERVER, "out of memory for the refined cage");
+    bool ok = refined_points_init(&plan->refined, &plan->topology, &arena, error);
+    arena_finish(&arena);
+    return ok;
 }
 
 struct limit_plan *limit_plan_create(const struct cage *cage, struct error *error)
@@ -150,21 +134,15 @@ struct limit_plan *limit_plan_create(const struct cage *cage, struct error *erro
         return NULL;
     }
     plan->cage = cage;
-    if (!topology_init(&plan->topology, cage, error))
+    if (!topology_init(&plan->topology, cage, error) || !check_valence(plan, error))
         goto fail;
-    if (!check_valence(plan, error))
-        goto fail;
-    if (!number_ptex_faces(plan)) {
+    if (!number_ptex_faces(plan) || !mark_holes(plan)) {
         error_set(error, ERROR_SERVER, "out of memory for the Ptex faces of %zu faces",
                   cage->n_faces);
         goto fail;
     }
-    if (!plan->topology.quads_only && !refined_points_init(&plan->refined, &plan->topology, error))
+    if (!refine_if_needed(plan, error) || !lay_out(plan, error))
         goto fail;
-    if (!lay_out(plan, error))
-        goto fail;
-    /* A quad's rings, those of its children, and the two nets' rings of each corner table. */
-    plan->arena_points = 8 * extract_points(&plan->topology) + 128;
     return plan;
 
 fail:
@@ -180,6 +158,7 @@ void limit_plan_destroy(struct limit_plan *plan)
     refined_points_finish(&plan->refined);
     free(plan->first_ptex);
     free(plan->corner);
+    free(plan->hole);
     free(plan->offsets);
     free(plan);
 }

@@ -14,20 +14,14 @@ struct plan_offsets {
 struct limit_plan {
     const struct cage *cage;
     struct topology topology;
-    struct refined_points refined; /* empty when the cage has quads only */
+    struct refined_points refined; /* empty when no face is at level 1 */
     uint32_t *first_ptex;          /* [cage faces]: its first Ptex face */
     uint32_t *corner;              /* [Ptex faces]: the cage corner at its (0,0) */
+    uint8_t *hole;                 /* [cage faces]: no surface; NULL when there is none */
     struct plan_offsets *offsets;  /* [Ptex faces + 1] */
     size_t n_ptex;
-    size_t arena_points; /* what building any one face takes */
+    size_t n_regular, n_corner, n_strip, n_split, n_hole;
+    size_t arena_bytes; /* what building any one face takes */
 };
-
-/* What a Ptex face becomes. */
-struct plan_shape {
-    enum limit_kind root;   /* REGULAR, CORNER, SPLIT or HOLE */
-    unsigned extraordinary; /* bit i: Ptex corner i */
-    bool refined;           /* its quads come from level 1 of the cage */
-};
-struct plan_shape plan_shape_of(const struct limit_plan *plan, uint32_t ptex);
 
 #endif

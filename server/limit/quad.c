@@ -1,10 +1,12 @@
 #include "server/limit/quad.h"
 
+#include "server/limit/crease.h"
+
 unsigned quad_extraordinary(const struct quad *quad)
 {
     unsigned bits = 0;
     for (unsigned i = 0; i < 4; i++)
-        bits |= (unsigned)!ring_is_regular(&quad->corner[i]) << i;
+        bits |= (unsigned)!crease_is_regular(&quad->corner[i]) << i;
     return bits;
 }
 
@@ -16,12 +18,12 @@ struct quad quad_rotated(const struct quad *quad, unsigned by)
     return out;
 }
 
-size_t quad_refine_points(const struct quad *quad)
+bool quad_is_semisharp(const struct quad *quad)
 {
-    size_t points = 4 * 8 + 8; /* the rings of four edge points and of the face point */
-    for (int i = 0; i < 4; i++)
-        points += 2 * (size_t)quad->corner[i].n_faces + 1;
-    return points;
+    for (unsigned i = 0; i < 4; i++)
+        if (crease_is_semisharp(&quad->corner[i]))
+            return true;
+    return false;
 }
 
 /* The ring of the new vertex on edge i (corner i to i + 1), listed from corner i + 1. `fine` are
@@ -29,9 +31,11 @@ size_t quad_refine_points(const struct quad *quad)
 static struct ring edge_ring(const struct ring fine[4], unsigned i, struct arena *arena)
 {
     const struct ring *from = &fine[i], *to = &fine[(i + 1) & 3];
-    bool closed = ring_has_face(from, -1);
-    struct ring ring = ring_take(arena, closed ? 4 : 2, closed);
-    ring.centre = ring_edge(from, 0);
+    uint32_t from_edge = ring_edge_index(from, 0), to_edge = ring_edge_index(to, 1);
+    bool closed = ring_has_face(from, -1) && ring_has_face(to, 1);
+    bool creased = closed && crease_edge(from, from_edge) + crease_edge(to, to_edge) > 0;
+    struct ring ring = ring_take(arena, closed ? 4 : 2, closed, creased);
+    ring.centre = from->edge[from_edge];
     ring.edge[0] = to->centre;
     ring.edge[1] = ring_face(from, 0);
     ring.edge[2] = from->centre;
@@ -42,12 +46,19 @@ static struct ring edge_ring(const struct ring fine[4], unsigned i, struct arena
         ring.face[2] = ring_edge(from, -1);
         ring.face[3] = ring_edge(to, 2);
     }
+    if (creased) {
+        ring.creases.chaikin = from->creases.chaikin || to->creases.chaikin;
+        ring.creases.edge[0] = crease_edge(to, to_edge);
+        ring.creases.far[0] = crease_child(to, to_edge);
+        ring.creases.edge[2] = crease_edge(from, from_edge);
+        ring.creases.far[2] = crease_child(from, from_edge);
+    }
     return ring;
 }
 
 static struct ring face_ring(const struct ring fine[4], struct arena *arena)
 {
-    struct ring ring = ring_take(arena, 4, true);
+    struct ring ring = ring_take(arena, 4, true, false);
     ring.centre = ring_face(&fine[0], 0);
     for (unsigned k = 0; k < 4; k++) {
         ring.edge[k] = ring_edge(&fine[k], 0);
@@ -56,27 +67,29 @@ static struct ring face_ring(const struct ring fine[4], struct arena *arena)
     return ring;
 }
 
-static struct ring seen_from(struct ring ring, uint32_t at)
+static struct ring seen_from(struct ring ring, uint32_t at, struct arena *arena)
 {
     ring.at = at;
-    return ring;
+    return crease_settle(&ring, arena);
 }
 
 void quad_refine(const struct quad *quad, struct arena *arena, struct quad child[4])
 {
     struct ring fine[4], edge[4], face;
     for (unsigned i = 0; i < 4; i++) {
-        fine[i] = ring_take(arena, quad->corner[i].n_faces, quad->corner[i].closed);
-        ring_refine(&quad->corner[i], &fine[i]);
+        const struct ring *ring = &quad->corner[i];
+        fine[i] = ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
+        ring_refine(ring, &fine[i]);
     }
     for (unsigned i = 0; i < 4; i++)
         edge[i] = edge_ring(fine, i, arena);
     face = face_ring(fine, arena);
     for (unsigned i = 0; i < 4; i++) {
-        child[i].corner[i] = fine[i];
-        child[i].corner[(i + 1) & 3] = seen_from(edge[i], 1);
-        child[i].corner[(i + 2) & 3] = seen_from(face, (i + 3) & 3);
-        child[i].corner[(i + 3) & 3] = seen_from(edge[(i + 3) & 3], 0);
+        unsigned before = (i + 3) & 3;
+        child[i].corner[i] = crease_settle(&fine[i], arena);
+        child[i].corner[(i + 1) & 3] = seen_from(edge[i], 1, arena);
+        child[i].corner[(i + 2) & 3] = seen_from(face, before, arena);
+        child[i].corner[before] = seen_from(edge[before], 0, arena);
     }
 }
 

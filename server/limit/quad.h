@@ -16,13 +16,15 @@ struct quad {
 /* Bit i set: corner i is extraordinary (its ring is not regular). */
 unsigned quad_extraordinary(const struct quad *quad);
 
+/* Whether a corner has semi-sharp tags, so that its rules will still change. */
+bool quad_is_semisharp(const struct quad *quad);
+
 /* The same quad with (0,0) at corner `by`. */
 struct quad quad_rotated(const struct quad *quad, unsigned by);
 
-/* One Catmull-Clark step: child[i] covers the quarter at corner i, in the parent's orientation.
- * Rings come from the arena; they need at most quad_refine_points() vecs. */
+/* One Catmull-Clark step: child[i] covers the quarter at corner i, in the parent's orientation, its
+ * rings settled (crease.h). */
 void quad_refine(const struct quad *quad, struct arena *arena, struct quad child[4]);
-size_t quad_refine_points(const struct quad *quad);
 
 /* The 4x4 B-spline control points grid[j + 1][i + 1], i along u and j along v in -1..2, with
  * phantom points beyond boundaries (limit-surface 4.5). The point diagonally beyond a corner is

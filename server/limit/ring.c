@@ -1,36 +1,29 @@
 #include "server/limit/ring.h"
 
-#include <assert.h>
-#include <stdlib.h>
+#include <string.h>
+
+#include "server/limit/crease.h"
 
 static const double PI = 3.14159265358979323846;
 
-bool arena_init(struct arena *arena, size_t capacity)
-{
-    *arena = (struct arena){malloc(capacity * sizeof(struct vec)), 0, capacity};
-    return arena->memory;
-}
-
-void arena_finish(struct arena *arena)
-{
-    free(arena->memory);
-    *arena = (struct arena){0};
-}
-
-struct vec *arena_take(struct arena *arena, size_t n)
-{
-    assert(n <= arena->capacity - arena->used);
-    struct vec *taken = arena->memory + arena->used;
-    arena->used += n;
-    return taken;
-}
-
-struct ring ring_take(struct arena *arena, uint32_t n_faces, bool closed)
+struct ring ring_take(struct arena *arena, uint32_t n_faces, bool closed, bool with_creases)
 {
     struct ring ring = {.n_faces = n_faces, .closed = closed};
-    ring.edge = arena_take(arena, ring_edges(&ring));
-    ring.face = arena_take(arena, n_faces);
+    uint32_t n_edges = ring_edges(&ring);
+    ring.edge = arena_take(arena, n_edges * sizeof(struct vec));
+    ring.face = arena_take(arena, n_faces * sizeof(struct vec));
+    if (with_creases) {
+        ring.creases.edge = arena_take(arena, 2 * n_edges * sizeof(float));
+        ring.creases.far = ring.creases.edge + n_edges;
+        memset(ring.creases.edge, 0, 2 * n_edges * sizeof(float));
+    }
     return ring;
+}
+
+size_t ring_bytes(size_t n_faces, bool with_creases)
+{
+    size_t points = (2 * n_faces + 1) * sizeof(struct vec);
+    return points + (with_creases ? 2 * (n_faces + 1) * sizeof(float) : 0) + 48;
 }
 
 static void refine_faces(const struct ring *in, struct ring *out)
@@ -43,26 +36,41 @@ static void refine_faces(const struct ring *in, struct ring *out)
     }
 }
 
+/* How much of the crease rule an edge point takes: all of it from sharpness 1 on, and where both
+ * halves stay sharp (Chaikin). */
+static double crease_weight(const struct ring *in, uint32_t k)
+{
+    float sharpness = crease_edge(in, k);
+    if (sharpness <= 0)
+        return 0;
+    if (sharpness >= 1 || (crease_child(in, k) > 0 && in->creases.far[k] > 0))
+        return 1;
+    return sharpness;
+}
+
 static void refine_edges(const struct ring *in, struct ring *out)
 {
-    uint32_t n = ring_edges(in);
-    for (uint32_t k = 0; k < n; k++) {
+    for (uint32_t k = 0; k < ring_edges(in); k++) {
         struct vec ends = vec_add(in->centre, in->edge[k]);
-        if (!in->closed && (k == 0 || k == in->n_faces)) {
+        double crease = crease_weight(in, k);
+        if (crease == 1) {
             out->edge[k] = vec_scale(ends, 0.5);
             continue;
         }
         struct vec sides = vec_add(out->face[k ? k - 1 : in->n_faces - 1], out->face[k]);
-        out->edge[k] = vec_scale(vec_add(ends, sides), 0.25);
+        struct vec smooth = vec_scale(vec_add(ends, sides), 0.25);
+        out->edge[k] = vec_mad(vec_scale(smooth, 1 - crease), 0.5 * crease, ends);
     }
 }
 
-static struct vec refine_centre(const struct ring *in, const struct ring *out)
+/* One rule's new vertex. */
+static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
+                                 enum crease_rule rule, const uint32_t end[2])
 {
-    if (in->sharp)
+    if (rule == RULE_CORNER)
         return in->centre;
-    if (!in->closed) {
-        struct vec ends = vec_add(in->edge[0], in->edge[in->n_faces]);
+    if (rule == RULE_CREASE) {
+        struct vec ends = vec_add(in->edge[end[0]], in->edge[end[1]]);
         return vec_mad(vec_scale(in->centre, 0.75), 0.125, ends);
     }
     double n = in->n_faces;
@@ -72,20 +80,56 @@ static struct vec refine_centre(const struct ring *in, const struct ring *out)
     return vec_mad(vec_scale(in->centre, (n - 2) / n), 1 / (n * n), sum);
 }
 
+/* How much of the parent's rule remains as sharpness runs out: the mean of what runs out now. */
+static double rule_weight(const struct ring *in, const struct ring *out)
+{
+    double sum = 0;
+    uint32_t n = 0;
+    if (in->sharpness > 0 && out->sharpness <= 0) {
+        sum += in->sharpness;
+        n++;
+    }
+    for (uint32_t k = 0; in->creases.edge && k < ring_edges(in); k++) {
+        if (crease_edge(in, k) > 0 && crease_edge(out, k) <= 0) {
+            sum += crease_edge(in, k);
+            n++;
+        }
+    }
+    return n ? fmin(sum / n, 1) : 0;
+}
+
+static struct vec refine_centre(const struct ring *in, const struct ring *out)
+{
+    uint32_t end[2], child_end[2];
+    enum crease_rule rule = crease_vertex_rule(in, end);
+    struct vec centre = centre_by_rule(in, out, rule, end);
+    if (rule == RULE_SMOOTH || rule == RULE_DART)
+        return centre;
+    enum crease_rule child = crease_vertex_rule(out, child_end);
+    if (child == rule)
+        return centre;
+    double weight = rule_weight(in, out);
+    struct vec other = centre_by_rule(in, out, child, child_end);
+    return vec_mad(vec_scale(centre, weight), 1 - weight, other);
+}
+
+void ring_refine_around(const struct ring *in, struct ring *out)
+{
+    out->at = in->at;
+    crease_refine(in, out);
+    refine_edges(in, out);
+    out->centre = refine_centre(in, out);
+}
+
 void ring_refine(const struct ring *in, struct ring *out)
 {
     refine_faces(in, out);
-    refine_edges(in, out);
-    out->centre = refine_centre(in, out);
-    out->n_faces = in->n_faces;
-    out->at = in->at;
-    out->closed = in->closed;
-    out->sharp = in->sharp;
+    ring_refine_around(in, out);
 }
 
 struct vec ring_limit(const struct ring *ring)
 {
-    if (ring->sharp)
+    if (ring->sharpness > 0)
         return ring->centre;
     if (!ring->closed) {
         struct vec ends = vec_add(ring->edge[0], ring->edge[ring->n_faces]);
@@ -165,23 +209,51 @@ static struct vec any_perpendicular(struct vec n)
     return vec_unit(vec_cross(n, other));
 }
 
-void ring_frame(const struct ring *ring, struct vec axis[3])
+/* Two quads that share two edges: both edges' and both quads' differences shrink by 1/4. */
+static void lens_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
 {
-    struct vec t1 = {0, 0, 0}, t2 = {0, 0, 0};
-    if (ring->closed && ring->n_faces > 2)
-        smooth_tangents(ring, &t1, &t2);
-    else if (!ring->closed && !ring->sharp && ring->n_faces > 1)
-        crease_tangents(ring, &t1, &t2);
-    else if (!ring->closed && !ring->sharp)
-        corner_tangents(ring, &t1, &t2);
+    *t1 = vec_sub(ring->edge[0], ring->edge[1]);
+    *t2 = vec_sub(ring->face[0], ring->face[1]);
+}
+
+static bool has_one_normal(const struct ring *ring)
+{
+    return !(ring->sharpness > 0) || (!ring->closed && ring->n_faces == 1);
+}
+
+bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
+{
+    *t2 = (struct vec){0, 0, 0};
+    if (ring->sharpness > 0) {
+        uint32_t last = ring_edges(ring) - 1;
+        *t1 = vec_sub(ring->edge[0], ring->centre);
+        *t2 = vec_sub(ring->edge[last], ring->centre);
+    } else if (ring->closed && ring->n_faces > 2) {
+        smooth_tangents(ring, t1, t2);
+    } else if (ring->closed) {
+        lens_tangents(ring, t1, t2);
+    } else if (ring->n_faces > 1) {
+        crease_tangents(ring, t1, t2);
+    } else {
+        corner_tangents(ring, t1, t2);
+    }
+    return has_one_normal(ring);
+}
+
+bool ring_frame(const struct ring *ring, struct vec t1, struct vec t2, struct vec axis[3])
+{
+    bool has_normal = true;
     /* Unit first: the product of two lengths may leave the range of double. */
     axis[2] = vec_unit(vec_cross(vec_unit(t1), vec_unit(t2)));
     if (vec_length(axis[2]) == 0)
         axis[2] = vec_unit(mean_normal(ring));
-    if (vec_length(axis[2]) == 0)
+    if (vec_length(axis[2]) == 0) {
         axis[2] = (struct vec){0, 0, 1};
+        has_normal = false;
+    }
     axis[0] = vec_unit(vec_mad(t1, -vec_dot(t1, axis[2]), axis[2]));
     if (vec_length(axis[0]) == 0)
         axis[0] = any_perpendicular(axis[2]);
     axis[1] = vec_cross(axis[2], axis[0]);
+    return has_normal;
 }

@@ -13,29 +13,31 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "server/limit/arena.h"
 #include "server/limit/vec.h"
+
+/* Crease sharpness of the edges around a vertex (server/limit/crease.h). */
+struct ring_creases {
+    float *edge; /* [edges]: of each edge */
+    float *far;  /* [edges]: what the half at the edge's other end will have after one step */
+    bool chaikin;
+};
 
 struct ring {
     uint32_t n_faces; /* valence of a closed ring */
     uint32_t at;      /* which quad of the ring is the one that it is looked at from */
     bool closed;
-    bool sharp; /* the vertex is interpolated */
+    float sharpness;             /* of the vertex; CAGE_SHARPNESS_INFINITE: interpolated */
+    struct ring_creases creases; /* edge is NULL: smooth, but for the ends of an open ring */
     struct vec centre;
     struct vec *edge; /* [n_faces + !closed] */
     struct vec *face; /* [n_faces] */
 };
 
-/* A bump allocator, reset between faces: rings live only while one face is built. */
-struct arena {
-    struct vec *memory;
-    size_t used, capacity; /* in vecs */
-};
-bool arena_init(struct arena *arena, size_t capacity);
-void arena_finish(struct arena *arena);
-/* Never fails: plans size the arena beforehand (see quad.h). */
-struct vec *arena_take(struct arena *arena, size_t n);
-/* An empty ring with room for its points. */
-struct ring ring_take(struct arena *arena, uint32_t n_faces, bool closed);
+/* A smooth ring with room for its points; with_creases: and for sharpness, all zero. */
+struct ring ring_take(struct arena *arena, uint32_t n_faces, bool closed, bool with_creases);
+/* Bytes of arena that such a ring takes at most. */
+size_t ring_bytes(size_t n_faces, bool with_creases);
 
 static inline uint32_t ring_edges(const struct ring *ring)
 {
@@ -44,10 +46,15 @@ static inline uint32_t ring_edges(const struct ring *ring)
 
 /* Edge and face by steps from the quad at ring->at: edge(0) is the quad's next corner, edge(1) its
  * previous one. For open rings the step must stay inside the sector. */
-static inline struct vec ring_edge(const struct ring *ring, int step)
+static inline uint32_t ring_edge_index(const struct ring *ring, int step)
 {
     int64_t k = (int64_t)ring->at + step, n = ring_edges(ring);
-    return ring->edge[((k % n) + n) % n];
+    return (uint32_t)(((k % n) + n) % n);
+}
+
+static inline struct vec ring_edge(const struct ring *ring, int step)
+{
+    return ring->edge[ring_edge_index(ring, step)];
 }
 
 static inline struct vec ring_face(const struct ring *ring, int step)
@@ -63,23 +70,24 @@ static inline bool ring_has_face(const struct ring *ring, int step)
     return ring->closed || (k >= 0 && k < ring->n_faces);
 }
 
-/* Regular: its quads are plain B-spline patches (with phantom points beyond a sector's end). */
-static inline bool ring_is_regular(const struct ring *ring)
-{
-    uint32_t regular = ring->closed ? 4 : ring->sharp ? 1 : 2;
-    return ring->n_faces == regular && !(ring->closed && ring->sharp);
-}
-
-/* One Catmull-Clark step: `out` has room for as many points and gets the rest of `in`'s fields.
- * in and out may not share memory. */
+/* One Catmull-Clark step: `out` was taken for as many faces and with_creases as `in`, and gets the
+ * rest of its fields. in and out may not share memory. */
 void ring_refine(const struct ring *in, struct ring *out);
 
-/* Where the vertex lies on the limit surface. */
+/* The same where the faces around the vertex are no quads: out->face holds their face points
+ * already, and in->face is not read. */
+void ring_refine_around(const struct ring *in, struct ring *out);
+
+/* Where the vertex of a settled ring (crease.h) lies on the limit surface. */
 struct vec ring_limit(const struct ring *ring);
 
-/* A right-handed orthonormal frame at the limit position: axis[2] is the limit normal along the
- * winding. A sharp ring of several quads has no one normal; the frame then only is some frame, as
- * it is when the points coincide. */
-void ring_frame(const struct ring *ring, struct vec axis[3]);
+/* Two tangents at the limit position of a settled ring that is no dart, such that their product is
+ * the limit normal along the winding. Returns false when the surface has no one normal there (a
+ * cone's tip); the tangents then are some directions. */
+bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2);
+
+/* The right-handed orthonormal frame of two tangents: axis[0] along t1, axis[2] along t1 x t2.
+ * Where that vanishes, the mean of the quads' normals stands in; false when that vanishes too. */
+bool ring_frame(const struct ring *ring, struct vec t1, struct vec t2, struct vec axis[3]);
 
 #endif

@@ -7,8 +7,9 @@
  *   CORNER   one extraordinary vertex at local (0,0): 32 levels of 24 points in the vertex's own
  *            orthonormal frame, re-centred on its limit position each level (corner.h); one texel
  *            more holds the frame as a quaternion;
+ *   STRIP    a semi-sharp crease along local v = 0: `levels` + 1 patches across it (strip.h);
  *   SPLIT    four children at (0,0) (1,0) (1,1) (0,1) of the half-size cells;
- *   HOLE     no surface (boundary mode NONE).
+ *   HOLE     no surface (a hole, or boundary mode NONE).
  * Points are relative to the node's origin and divided by a power of two, their w (texels.h).
  *
  * Built in two steps so that callers may use threads (this module knows none): limit_plan() reads
@@ -32,18 +33,19 @@
 /* The cost of a corner grows with its valence, and a vertex has as many corners. */
 #define LIMIT_MAX_VALENCE 4096
 
-enum limit_kind { LIMIT_REGULAR, LIMIT_CORNER, LIMIT_SPLIT, LIMIT_HOLE };
+enum limit_kind { LIMIT_REGULAR, LIMIT_CORNER, LIMIT_SPLIT, LIMIT_HOLE, LIMIT_STRIP };
 
 /* 48 bytes, three RGBA32UI texels on the GPU. */
 struct limit_node {
     double origin[3]; /* world; the points are relative to it */
-    uint32_t first;   /* REGULAR, CORNER: first texel in `points`; SPLIT: first of 4 children */
+    uint32_t first;   /* all with points: first texel in `points`; SPLIT: first of 4 children */
     uint32_t face;    /* Ptex face */
     uint32_t cell;    /* x | y << 16: which cell of the 2^depth by 2^depth grid over the face */
     uint8_t kind;     /* enum limit_kind */
     uint8_t depth;    /* the node spans 2^-depth of its Ptex face */
     uint8_t rotation; /* local (0,0) is this corner 0..3 of the cell */
-    uint8_t unused;
+    uint8_t levels;   /* STRIP: patches but one; CORNER: 1 if the vertex itself has a limit normal,
+                         0 at a cone's tip */
     uint32_t ngon_size;   /* of a root: corners of its n-gon, 0 for a quad */
     uint32_t ngon_corner; /* and which of them is this Ptex face's corner 0 */
 };
@@ -71,7 +73,7 @@ struct limit_tables {
     float (*points)[4];
 
     /* Bounds for the CPU's choice of grids; not on the GPU. bound_first[node] indexes bounds: one
-     * for REGULAR, LIMIT_LEVELS for CORNER. */
+     * for REGULAR, LIMIT_LEVELS for CORNER, one for each patch of a STRIP. */
     uint32_t *bound_first; /* [n_nodes] */
     struct limit_bound *bounds;
     size_t n_bounds;
@@ -79,7 +81,7 @@ struct limit_tables {
     double box_min[3], box_max[3]; /* of the control vertices that the surface uses */
 
     /* Counts for `sheen info`. */
-    size_t n_regular, n_corner, n_split, n_hole;
+    size_t n_regular, n_corner, n_strip, n_split, n_hole;
 };
 
 struct limit_plan; /* topology of the cage and the layout of its tables */

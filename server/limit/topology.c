@@ -46,6 +46,12 @@ static void pair_bucket(struct topology *t, struct half_edge *bucket, size_t n, 
             t->twin[bucket[first + 1].corner] = bucket[first].corner;
         }
         bool boundary = last - first == 1;
+        uint32_t c = bucket[first].corner;
+        float sharpness = t->edge_sharpness ? t->edge_sharpness[c] : 0;
+        if (boundary && sharpness < CAGE_SHARPNESS_INFINITE) {
+            t->vertex_flags[low] |= VERTEX_UNBOUND;
+            t->vertex_flags[bucket[first].high] |= VERTEX_UNBOUND;
+        }
         count_edge(count, low, bucket[first].high, boundary, !paired && !boundary);
     }
 }
@@ -109,12 +115,103 @@ static void flag_vertices(struct topology *t, struct vertex_count *count)
             *flags |= VERTEX_BY_NGON;
         if (count[v].faces == 0)
             continue; /* done already at an earlier corner */
-        if (count[v].boundary)
-            *flags |= VERTEX_BOUNDARY;
         if (vertex_is_sharp(t, c, &count[v]))
             *flags |= VERTEX_SHARP;
         count[v].faces = 0;
     }
+}
+
+/* Half-edges from each vertex, to find the edge that a crease names. */
+struct outgoing {
+    uint32_t *first; /* [vertices + 1] */
+    uint32_t *corner;
+};
+
+static bool outgoing_init(struct outgoing *out, const struct topology *t)
+{
+    const struct cage *cage = t->cage;
+    uint32_t n_corners = cage->face_start[cage->n_faces];
+    out->first = calloc(cage->n_vertices + 2, sizeof *out->first);
+    out->corner = malloc(n_corners * sizeof *out->corner);
+    if (!out->first || !out->corner) {
+        free(out->first);
+        free(out->corner);
+        return false;
+    }
+    for (uint32_t c = 0; c < n_corners; c++)
+        out->first[corner_vertex(t, c) + 2]++;
+    for (size_t v = 2; v < cage->n_vertices + 2; v++)
+        out->first[v] += out->first[v - 1];
+    for (uint32_t c = 0; c < n_corners; c++)
+        out->corner[out->first[corner_vertex(t, c) + 1]++] = c;
+    return true;
+}
+
+/* Gives the half-edges from a to b the sharpness; how many there are. */
+static size_t sharpen_from(struct topology *t, const struct outgoing *out, uint32_t a, uint32_t b,
+                           float sharpness)
+{
+    size_t n = 0;
+    for (uint32_t k = out->first[a]; k < out->first[a + 1]; k++) {
+        uint32_t c = out->corner[k];
+        if (corner_vertex(t, corner_next(t, c)) != b)
+            continue;
+        t->edge_sharpness[c] = sharpness;
+        n++;
+    }
+    return n;
+}
+
+static bool sharpen_edges(struct topology *t, struct error *error)
+{
+    const struct cage *cage = t->cage;
+    if (!cage->n_creases)
+        return true;
+    struct outgoing out;
+    t->edge_sharpness = calloc(cage->face_start[cage->n_faces], sizeof *t->edge_sharpness);
+    if (!t->edge_sharpness || !outgoing_init(&out, t))
+        return error_set(error, ERROR_SERVER, "out of memory for %zu creases", cage->n_creases);
+    bool ok = true;
+    for (size_t i = 0; i < cage->n_creases && ok; i++) {
+        const struct cage_crease *crease = &cage->crease[i];
+        uint32_t a = crease->vertex[0], b = crease->vertex[1];
+        size_t n = sharpen_from(t, &out, a, b, crease->sharpness);
+        n += sharpen_from(t, &out, b, a, crease->sharpness);
+        if (!n)
+            ok = error_set(error, ERROR_MODEL, "crease %zu: vertices %u and %u share no edge", i, a,
+                           b);
+    }
+    free(out.first);
+    free(out.corner);
+    return ok;
+}
+
+static void flag_creased_vertices(struct topology *t)
+{
+    uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
+    for (uint32_t c = 0; c < n_corners && t->edge_sharpness; c++) {
+        if (t->twin[c] == CORNER_NONE || t->edge_sharpness[c] <= 0)
+            continue;
+        t->vertex_flags[corner_vertex(t, c)] |= VERTEX_CREASED;
+        t->vertex_flags[corner_vertex(t, corner_next(t, c))] |= VERTEX_CREASED;
+    }
+}
+
+static bool sharpen_vertices(struct topology *t, struct error *error)
+{
+    const struct cage *cage = t->cage;
+    if (!cage->n_corners)
+        return true;
+    t->vertex_sharpness = calloc(cage->n_vertices, sizeof *t->vertex_sharpness);
+    if (!t->vertex_sharpness)
+        return error_set(error, ERROR_SERVER, "out of memory for %zu sharp vertices",
+                         cage->n_corners);
+    for (size_t i = 0; i < cage->n_corners; i++) {
+        t->vertex_sharpness[cage->corner[i].vertex] = cage->corner[i].sharpness;
+        if (cage->corner[i].sharpness > 0)
+            t->vertex_flags[cage->corner[i].vertex] |= VERTEX_TAGGED;
+    }
+    return true;
 }
 
 bool topology_init(struct topology *t, const struct cage *cage, struct error *error)
@@ -136,17 +233,21 @@ bool topology_init(struct topology *t, const struct cage *cage, struct error *er
             t->face[c] = f;
         t->quads_only &= face_size(t, f) == 4;
     }
+    if (!sharpen_edges(t, error) || !sharpen_vertices(t, error))
+        goto fail;
     if (!pair_half_edges(t, count))
         goto no_memory;
     flag_vertices(t, count);
+    flag_creased_vertices(t);
     free(count);
     return true;
 
 no_memory:
+    error_set(error, ERROR_SERVER, "out of memory for the topology of %zu faces", cage->n_faces);
+fail:
     free(count);
     topology_finish(t);
-    return error_set(error, ERROR_SERVER, "out of memory for the topology of %zu faces",
-                     cage->n_faces);
+    return false;
 }
 
 void topology_finish(struct topology *t)
@@ -154,6 +255,8 @@ void topology_finish(struct topology *t)
     free(t->twin);
     free(t->face);
     free(t->vertex_flags);
+    free(t->edge_sharpness);
+    free(t->vertex_sharpness);
     *t = (struct topology){0};
 }
 

@@ -17,19 +17,23 @@
 
 struct topology {
     const struct cage *cage;
-    uint32_t *twin;        /* [corners]: the half-edge the other way, or CORNER_NONE */
-    uint32_t *face;        /* [corners]: the face it belongs to */
-    uint8_t *vertex_flags; /* [vertices] */
+    uint32_t *twin;          /* [corners]: the half-edge the other way, or CORNER_NONE */
+    uint32_t *face;          /* [corners]: the face it belongs to */
+    uint8_t *vertex_flags;   /* [vertices] */
+    float *edge_sharpness;   /* [corners], twins alike; NULL: no creases in the cage */
+    float *vertex_sharpness; /* [vertices]; NULL: no sharp vertices in the cage */
     bool quads_only;
 };
 
 enum {
     VERTEX_SHARP = 1, /* interpolated: a one-face corner in mode EDGE_AND_CORNER, or non-manifold */
-    VERTEX_BOUNDARY = 2, /* an edge of only one face ends here */
-    VERTEX_BY_NGON = 4,  /* a face that is no quad touches it */
+    VERTEX_UNBOUND = 2, /* an edge of only one face ends here, not infinitely sharp by a crease */
+    VERTEX_BY_NGON = 4, /* a face that is no quad touches it */
+    VERTEX_CREASED = 8, /* an inner edge with sharpness ends here */
+    VERTEX_TAGGED = 16, /* it has sharpness of its own */
 };
 
-/* ERROR_SERVER when memory is short. */
+/* ERROR_SERVER when memory is short; ERROR_MODEL for a crease where no edge is. */
 bool topology_init(struct topology *topology, const struct cage *cage, struct error *error);
 void topology_finish(struct topology *topology);
 
@@ -66,6 +70,23 @@ static inline uint32_t corner_cw(const struct topology *t, uint32_t c)
 {
     uint32_t twin = t->twin[c];
     return twin == CORNER_NONE ? CORNER_NONE : corner_next(t, twin);
+}
+
+/* Sharpness of the edge of half-edge c; ends of sectors are infinitely sharp. */
+static inline float edge_sharpness(const struct topology *t, uint32_t c)
+{
+    if (t->twin[c] == CORNER_NONE)
+        return CAGE_SHARPNESS_INFINITE;
+    return t->edge_sharpness ? t->edge_sharpness[c] : 0;
+}
+
+/* Sharpness of the vertex at corner c. */
+static inline float vertex_sharpness(const struct topology *t, uint32_t c)
+{
+    uint32_t v = t->cage->face_vertex[c];
+    if (t->vertex_flags[v] & VERTEX_SHARP)
+        return CAGE_SHARPNESS_INFINITE;
+    return t->vertex_sharpness ? t->vertex_sharpness[v] : 0;
 }
 
 /* The faces around a corner's vertex that its sector holds. */

@@ -23,8 +23,7 @@ std::string render_view(const std::string &sheen, const std::string &model_path,
 
 using view_list = std::function<std::vector<view>(const model &, int width_px, int height_px)>;
 
-/* For every model and each of its views at 640 x 480. A model that sheen refuses with exit code 3
- * for a feature that may be refused is named and passed over; every other failure counts. */
+/* For every model and each of its views at 640 x 480. Every failure counts. */
 void for_each_frame(const std::string &sheen, const std::vector<std::string> &models,
                     const view_list &views, verdict *verdict, const frame_judge &judge);
 

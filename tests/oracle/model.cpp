@@ -12,25 +12,6 @@ namespace fs = std::filesystem;
 namespace
 {
 
-/* The features that `sheen` may still refuse by name. */
-std::string unsupported_features(const cage &cage, const osd_oracle &oracle)
-{
-    std::string text;
-    if (cage.n_creases)
-        text += " creases";
-    if (cage.n_corners)
-        text += " corners";
-    if (cage.n_holes)
-        text += " holes";
-    if (cage.chaikin)
-        text += " chaikin";
-    if (cage.smooth_triangles)
-        text += " smoothtriangles";
-    if (oracle.non_manifold())
-        text += " non-manifold";
-    return text.empty() ? text : text.substr(1);
-}
-
 void measure_box(model *model)
 {
     const int n = 8;
@@ -61,7 +42,6 @@ model make_model(const std::string &path, std::shared_ptr<const cage> cage)
     model.cage = cage;
     try {
         model.oracle.reset(new osd_oracle(*cage));
-        model.may_refuse = unsupported_features(*cage, *model.oracle);
         measure_box(&model);
     } catch (const std::exception &failure) {
         throw std::runtime_error(path + ": " + failure.what());

@@ -13,8 +13,6 @@ struct model {
     std::shared_ptr<const struct cage> cage;
     std::unique_ptr<osd_oracle> oracle;
     vec3 box_min, box_max; /* of limit positions, sampled 9 x 9 on every Ptex face */
-    /* Why `sheen` may answer exit code 3 instead of drawing it today; empty: it must draw it. */
-    std::string may_refuse;
 
     vec3 middle() const
     {

@@ -26,7 +26,6 @@ f 7 8 2 1
 f 2 8 6 4
 f 7 1 3 5
 END
-sed -e '$a t crease 2/1/0 0 1 3.0' "$work/cube.obj" >"$work/creased.obj"
 
 verdict() { # name, whether it holds
     if [ "$2" = 0 ]; then
@@ -78,9 +77,6 @@ finds test_exact "$work/cube.obj" normal,unit,position,residual,winding,range,na
 finds test_exact "$work/cube.obj" silent "no camera in the JSON"
 finds test_exact "$work/cube.obj" types "channel N.X is of type"
 finds test_exact "$work/cube.obj" refuse "sheen render ended with 3"
-run test_exact "$work/creased.obj" refuse
-grep -q "refused, as it may be: creases" "$work/log"
-verdict "a feature that may be refused is named" $?
 finds test_exact "$work/missing.obj" "" "MISSING: $work/missing.obj"
 fake=/nonexistent
 finds test_exact "$work/cube.obj" "" "sheen render ended with -1"

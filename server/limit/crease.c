@@ -1,0 +1,149 @@
+#include "server/limit/crease.h"
+
+#include <string.h>
+
+#include "server/cage/cage.h"
+
+static bool is_infinite(float sharpness)
+{
+    return sharpness >= CAGE_SHARPNESS_INFINITE;
+}
+
+static bool is_semisharp(float sharpness)
+{
+    return sharpness > 0 && !is_infinite(sharpness);
+}
+
+float crease_edge(const struct ring *ring, uint32_t k)
+{
+    if (!ring->closed && (k == 0 || k == ring->n_faces))
+        return CAGE_SHARPNESS_INFINITE;
+    return ring->creases.edge ? ring->creases.edge[k] : 0;
+}
+
+float crease_child_vertex(float sharpness)
+{
+    return is_infinite(sharpness) ? sharpness : sharpness > 1 ? sharpness - 1 : 0;
+}
+
+float crease_child(const struct ring *ring, uint32_t k)
+{
+    float sharpness = crease_edge(ring, k), sum = 0;
+    if (!is_semisharp(sharpness) || !ring->creases.chaikin)
+        return crease_child_vertex(sharpness);
+    uint32_t n = 0;
+    for (uint32_t j = 0; j < ring_edges(ring); j++) {
+        float other = crease_edge(ring, j);
+        sum += is_semisharp(other) ? other : 0;
+        n += is_semisharp(other);
+    }
+    if (n > 1)
+        sharpness = 0.75f * sharpness + 0.25f * ((sum - sharpness) / (float)(n - 1));
+    return sharpness > 1 ? sharpness - 1 : 0;
+}
+
+/* At the new vertex on an edge only its two halves are sharp: what half `own` becomes there. */
+static float child_at_edge_point(float own, float other, bool chaikin)
+{
+    if (chaikin && is_semisharp(own) && is_semisharp(other))
+        own = 0.75f * own + 0.25f * other;
+    return crease_child_vertex(own);
+}
+
+void crease_refine(const struct ring *in, struct ring *out)
+{
+    out->sharpness = crease_child_vertex(in->sharpness);
+    out->creases.chaikin = in->creases.chaikin;
+    if (!in->creases.edge)
+        return;
+    for (uint32_t k = 0; k < ring_edges(in); k++) {
+        out->creases.edge[k] = crease_child(in, k);
+        out->creases.far[k] =
+            child_at_edge_point(out->creases.edge[k], in->creases.far[k], in->creases.chaikin);
+    }
+}
+
+bool crease_is_semisharp(const struct ring *ring)
+{
+    if (is_semisharp(ring->sharpness))
+        return true;
+    for (uint32_t k = 0; ring->creases.edge && k < ring_edges(ring); k++)
+        if (is_semisharp(crease_edge(ring, k)))
+            return true;
+    return false;
+}
+
+enum crease_rule crease_vertex_rule(const struct ring *ring, uint32_t end[2])
+{
+    uint32_t n = 0;
+    end[0] = end[1] = 0;
+    if (!ring->creases.edge) {
+        end[1] = ring->n_faces;
+        n = ring->closed ? 0 : 2;
+    }
+    for (uint32_t k = 0; ring->creases.edge && k < ring_edges(ring); k++) {
+        if (crease_edge(ring, k) <= 0)
+            continue;
+        if (n < 2)
+            end[n] = k;
+        n++;
+    }
+    if (ring->sharpness > 0 || n > 2)
+        return RULE_CORNER;
+    return n == 2 ? RULE_CREASE : n == 1 ? RULE_DART : RULE_SMOOTH;
+}
+
+/* Edges [first, first + n_faces] of a ring as an open ring of their own. */
+static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t n_faces, bool sharp,
+                              struct arena *arena)
+{
+    struct ring out = ring_take(arena, n_faces, false, false);
+    uint32_t n = ring_edges(ring);
+    out.centre = ring->centre;
+    out.sharpness = sharp ? CAGE_SHARPNESS_INFINITE : 0;
+    out.at = (ring->at + n - first) % n;
+    for (uint32_t k = 0; k <= n_faces; k++)
+        out.edge[k] = ring->edge[(first + k) % n];
+    for (uint32_t k = 0; k < n_faces; k++)
+        out.face[k] = ring->face[(first + k) % n];
+    return out;
+}
+
+struct ring crease_settle(const struct ring *ring, struct arena *arena)
+{
+    if (!ring->creases.edge || crease_is_semisharp(ring))
+        return *ring;
+    struct ring out = *ring;
+    uint32_t end[2], n = ring_edges(ring), n_sharp = 0;
+    for (uint32_t k = 0; k < n; k++)
+        n_sharp += crease_edge(ring, k) > 0;
+    if (n_sharp < 2) {
+        if (n_sharp == 0)
+            out.creases.edge = out.creases.far = NULL;
+        return out;
+    }
+    enum crease_rule rule = crease_vertex_rule(ring, end);
+    uint32_t first = ring->at, last = (ring->at + 1) % n;
+    while (crease_edge(ring, first) <= 0)
+        first = (first + n - 1) % n;
+    while (crease_edge(ring, last) <= 0)
+        last = (last + 1) % n;
+    uint32_t n_faces = (last + n - first) % n;
+    return cut_sector(ring, first, n_faces ? n_faces : n, rule == RULE_CORNER, arena);
+}
+
+bool crease_is_regular(const struct ring *settled)
+{
+    if (settled->creases.edge)
+        return false;
+    bool sharp = settled->sharpness > 0;
+    if (settled->closed)
+        return settled->n_faces == 4 && !sharp;
+    return settled->n_faces == (sharp ? 1 : 2);
+}
+
+bool crease_ends_at(const struct ring *settled, int edge)
+{
+    return !ring_has_face(settled, edge ? 1 : -1) ||
+           crease_edge(settled, ring_edge_index(settled, edge)) > 0;
+}

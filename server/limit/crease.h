@@ -1,0 +1,41 @@
+/* Crease sharpness: which rule a vertex follows, how rules blend as sharpness decays, and what is
+ * left of a ring once only infinite sharpness remains. The rules are OpenSubdiv's
+ * (sdc/crease.h, sdc/scheme.h; DeRose, Kass and Truong 1998). */
+#ifndef SHEEN_LIMIT_CREASE_H
+#define SHEEN_LIMIT_CREASE_H
+
+#include "server/limit/ring.h"
+
+enum crease_rule { RULE_SMOOTH, RULE_DART, RULE_CREASE, RULE_CORNER };
+
+/* Sharpness of edge k; the ends of an open ring are infinitely sharp. */
+float crease_edge(const struct ring *ring, uint32_t k);
+
+/* What the half of edge k at this vertex has after one step: one less, or Chaikin's mean with the
+ * other edges less one. Never below 0; infinite stays. */
+float crease_child(const struct ring *ring, uint32_t k);
+
+/* Sharpness of a vertex after one step. */
+float crease_child_vertex(float sharpness);
+
+/* Fills out's sharpness from in's: one step further. */
+void crease_refine(const struct ring *in, struct ring *out);
+
+/* Whether an edge or the vertex is sharp but not infinitely so: rules will still change. */
+bool crease_is_semisharp(const struct ring *ring);
+
+/* The vertex rule and the two ends of a crease (RULE_CREASE), or the edge of a dart in end[0]. */
+enum crease_rule crease_vertex_rule(const struct ring *ring, uint32_t end[2]);
+
+/* A ring without semi-sharp tags, cut to the sector that holds the quad at ring->at: beyond an
+ * infinitely sharp edge nothing matters. What stays is open, or closed and smooth, or closed with
+ * one sharp edge (a dart), or closed with a sharp vertex. Rings with semi-sharp tags stay whole. */
+struct ring crease_settle(const struct ring *ring, struct arena *arena);
+
+/* Settled, and with its quads plain B-spline patches (phantom points beyond a sector's end). */
+bool crease_is_regular(const struct ring *settled);
+
+/* Whether the surface ends, as a sector, at the quad's first (0) or second (1) edge. */
+bool crease_ends_at(const struct ring *settled, int edge);
+
+#endif

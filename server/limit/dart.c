@@ -1,0 +1,135 @@
+#include "server/limit/dart.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MAX_SIZE = 2 * DART_MAX_VALENCE + 1 };
+/* The slowest ratio of eigenvalues at DART_MAX_VALENCE is about 0.99. */
+static const int ITERATIONS = 4000;
+
+/* The ring's points as one array: the vertex, its edges, its faces. */
+static struct vec *ring_point(const struct ring *ring, uint32_t i)
+{
+    return i <= ring->n_faces ? &ring->edge[i - 1] : &ring->face[i - 1 - ring->n_faces];
+}
+
+static struct vec point(const struct ring *ring, uint32_t i)
+{
+    return i == 0 ? ring->centre : *ring_point(ring, i);
+}
+
+/* matrix[i][j]: what new point i takes of old point j. */
+static void subdivision_matrix(const struct ring *ring, double matrix[MAX_SIZE][MAX_SIZE],
+                               struct arena *arena)
+{
+    uint32_t n = 2 * ring->n_faces + 1;
+    struct ring in = ring_take(arena, ring->n_faces, true, true), out = in;
+    out = ring_take(arena, ring->n_faces, true, true);
+    memcpy(in.creases.edge, ring->creases.edge, ring->n_faces * sizeof(float));
+    memcpy(in.creases.far, ring->creases.far, ring->n_faces * sizeof(float));
+    for (uint32_t j = 0; j < n; j++) {
+        in.centre = (struct vec){j == 0, 0, 0};
+        for (uint32_t i = 1; i < n; i++)
+            *ring_point(&in, i) = (struct vec){i == j, 0, 0};
+        ring_refine(&in, &out);
+        for (uint32_t i = 0; i < n; i++)
+            matrix[i][j] = point(&out, i).x;
+    }
+}
+
+static void multiply_left(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, double *x)
+{
+    double y[MAX_SIZE] = {0};
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t j = 0; j < n; j++)
+            y[j] += x[i] * matrix[i][j];
+    memcpy(x, y, n * sizeof *x);
+}
+
+static double dot(const double *a, const double *b, uint32_t n)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+static void scale(double *a, uint32_t n, double by)
+{
+    for (uint32_t i = 0; i < n; i++)
+        a[i] *= by;
+}
+
+/* A flat star: where the ring's points would lie around a regular vertex of that valence. */
+static void flat_ring(struct ring *ring)
+{
+    double step = 2 * 3.14159265358979323846 / ring->n_faces;
+    ring->centre = (struct vec){0, 0, 0};
+    for (uint32_t k = 0; k < ring->n_faces; k++) {
+        ring->edge[k] = (struct vec){cos(k * step), sin(k * step), 0};
+        ring->face[k] = (struct vec){cos((k + 0.5) * step), sin((k + 0.5) * step), 0};
+    }
+}
+
+/* Exchanges the tangents if they run against the winding. */
+static void orient(struct dart_masks *masks, const struct ring *ring, struct arena *arena)
+{
+    struct ring flat = ring_take(arena, ring->n_faces, true, false);
+    flat_ring(&flat);
+    struct vec t1 = dart_apply(masks->tangent[0], &flat);
+    struct vec t2 = dart_apply(masks->tangent[1], &flat);
+    if (vec_cross(t1, t2).z < 0)
+        scale(masks->tangent[1], 2 * ring->n_faces + 1, -1);
+}
+
+void dart_masks_init(struct dart_masks *masks, const struct ring *ring, struct arena *arena)
+{
+    uint32_t n = 2 * ring->n_faces + 1;
+    double matrix[MAX_SIZE][MAX_SIZE];
+    size_t mark = arena->used;
+    subdivision_matrix(ring, matrix, arena);
+    double *a = masks->tangent[0], *b = masks->tangent[1];
+    for (uint32_t i = 0; i < n; i++) {
+        /* Any start will do; the tangents' weights sum to 0 and stay so, as the matrix keeps
+         * constants. */
+        masks->position[i] = i == 0;
+        a[i] = sin(1.0 + 7 * i);
+        b[i] = cos(2.0 + 5 * i);
+    }
+    const double ones = 1.0 / n;
+    double sum_a = 0, sum_b = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        sum_a += a[i];
+        sum_b += b[i];
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        a[i] -= sum_a * ones;
+        b[i] -= sum_b * ones;
+    }
+    for (int k = 0; k < ITERATIONS; k++) {
+        multiply_left(matrix, n, masks->position);
+        multiply_left(matrix, n, a);
+        multiply_left(matrix, n, b);
+        scale(a, n, 1 / sqrt(dot(a, a, n)));
+        double along = dot(a, b, n);
+        for (uint32_t i = 0; i < n; i++)
+            b[i] -= along * a[i];
+        scale(b, n, 1 / sqrt(dot(b, b, n)));
+        if (k >= 200 && ring->n_faces <= 8)
+            break; /* long converged */
+    }
+    double sum = 0;
+    for (uint32_t i = 0; i < n; i++)
+        sum += masks->position[i];
+    scale(masks->position, n, 1 / sum);
+    orient(masks, ring, arena);
+    arena->used = mark;
+}
+
+struct vec dart_apply(const double *mask, const struct ring *ring)
+{
+    struct vec sum = {0, 0, 0};
+    for (uint32_t i = 0; i < 2 * ring->n_faces + 1; i++)
+        sum = vec_mad(sum, mask[i], point(ring, i));
+    return sum;
+}

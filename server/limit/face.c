@@ -1,0 +1,168 @@
+#include "server/limit/face.h"
+
+#include "server/limit/adjacency.h"
+#include "server/limit/bound.h"
+#include "server/limit/corner.h"
+#include "server/limit/crease.h"
+#include "server/limit/dart.h"
+#include "server/limit/strip.h"
+#include "server/limit/texels.h"
+
+static void build_regular(struct face_builder *b, uint32_t node, const struct quad *quad)
+{
+    if (b->tables) {
+        struct limit_node *out = &b->tables->nodes[node];
+        struct vec grid[4][4], centre = {0, 0, 0};
+        quad_grid(quad, grid);
+        for (int k = 0; k < 16; k++)
+            centre = vec_mad(centre, 1.0 / 16, grid[k / 4][k % 4]);
+        for (int k = 0; k < 16; k++)
+            grid[k / 4][k % 4] = vec_sub(grid[k / 4][k % 4], centre);
+        out->kind = LIMIT_REGULAR;
+        out->origin[0] = centre.x;
+        out->origin[1] = centre.y;
+        out->origin[2] = centre.z;
+        out->first = b->next.point;
+        texels_write(&grid[0][0], 16, b->tables->points + b->next.point);
+        b->tables->bounds[b->next.bound] = bound_of_grid(&grid[0][0], 4, false);
+    }
+    b->next.point += LIMIT_REGULAR_POINTS;
+    b->next.bound += 1;
+    b->n_regular++;
+}
+
+static void build_corner(struct face_builder *b, uint32_t node, const struct quad *quad,
+                         unsigned corner)
+{
+    const struct ring *ring = &quad->corner[corner];
+    if (ring_is_dart(ring) && ring->n_faces > DART_MAX_VALENCE) {
+        b->dart_valence = ring->n_faces;
+    } else if (b->tables) {
+        struct limit_node *out = &b->tables->nodes[node];
+        struct quad turned = quad_rotated(quad, corner);
+        out->kind = LIMIT_CORNER;
+        out->rotation = (uint8_t)corner;
+        out->first = b->next.point;
+        out->levels = corner_table(&turned, &b->arena, b->tables->points + b->next.point,
+                                   b->tables->bounds + b->next.bound, out->origin);
+    }
+    b->next.point += LIMIT_CORNER_TEXELS;
+    b->next.bound += LIMIT_LEVELS;
+    b->n_corner++;
+}
+
+static void build_strip(struct face_builder *b, uint32_t node, const struct quad *quad,
+                        unsigned edge, unsigned levels)
+{
+    if (b->tables) {
+        struct limit_node *out = &b->tables->nodes[node];
+        struct quad turned = quad_rotated(quad, edge);
+        out->kind = LIMIT_STRIP;
+        out->rotation = (uint8_t)edge;
+        out->levels = (uint8_t)levels;
+        out->first = b->next.point;
+        strip_table(&turned, levels, b->tables->points + b->next.point,
+                    b->tables->bounds + b->next.bound, out->origin);
+    }
+    b->next.point += (levels + 1) * LIMIT_REGULAR_POINTS;
+    b->next.bound += levels + 1;
+    b->n_strip++;
+}
+
+static void build_node(struct face_builder *b, uint32_t node, const struct quad *quad);
+
+/* Four children, whose quads are given in the parent's orientation. */
+static void build_split(struct face_builder *b, uint32_t node, const struct quad child[4])
+{
+    uint32_t first = b->next.node;
+    b->next.node += 4;
+    b->n_split++;
+    if (b->tables) {
+        struct limit_node *parent = &b->tables->nodes[node], *nodes = b->tables->nodes;
+        parent->kind = LIMIT_SPLIT;
+        parent->first = first;
+        for (uint32_t i = 0; i < 4; i++) {
+            uint32_t x = 2 * (parent->cell & 0xffff) + (i == 1 || i == 2);
+            uint32_t y = 2 * (parent->cell >> 16) + (i >= 2);
+            nodes[first + i].face = parent->face;
+            nodes[first + i].depth = (uint8_t)(parent->depth + 1);
+            nodes[first + i].cell = x | y << 16;
+        }
+    }
+    for (uint32_t i = 0; i < 4; i++)
+        build_node(b, first + i, &child[i]);
+}
+
+/* A quad becomes a table when all its rules have come to rest and at most one corner is
+ * extraordinary, or when it lies along a plain crease; else its four quarters do. Sharpness below
+ * 10 is gone after 10 steps and one more parts the corners, so the depth is bounded. */
+static void build_node(struct face_builder *b, uint32_t node, const struct quad *quad)
+{
+    size_t mark = b->arena.used;
+    unsigned extraordinary = quad_extraordinary(quad), edge = 0;
+    bool semisharp = quad_is_semisharp(quad);
+    unsigned levels = semisharp ? strip_levels(quad, &edge) : 0;
+    if (b->tables)
+        b->tables->bound_first[node] = b->next.bound;
+    if (levels > 0 && levels <= STRIP_MAX_LEVELS) {
+        build_strip(b, node, quad, edge, levels);
+    } else if (semisharp || extraordinary & (extraordinary - 1)) {
+        struct quad child[4];
+        quad_refine(quad, &b->arena, child);
+        build_split(b, node, child);
+    } else if (extraordinary) {
+        build_corner(b, node, quad, (unsigned)__builtin_ctz(extraordinary));
+    } else {
+        build_regular(b, node, quad);
+    }
+    b->arena.used = mark;
+}
+
+static bool touches_ngon(const struct topology *t, uint32_t c)
+{
+    for (unsigned i = 0; i < 4; i++, c = corner_next(t, c))
+        if (t->vertex_flags[corner_vertex(t, c)] & VERTEX_BY_NGON)
+            return true;
+    return false;
+}
+
+static void start_root(struct face_builder *b, uint32_t ptex)
+{
+    const struct topology *t = &b->plan->topology;
+    uint32_t c = b->plan->corner[ptex], size = face_size(t, t->face[c]);
+    struct limit_node *root = &b->tables->nodes[ptex];
+    root->face = ptex;
+    root->kind = LIMIT_HOLE;
+    root->ngon_size = size == 4 ? 0 : size;
+    root->ngon_corner = size == 4 ? 0 : c - t->cage->face_start[t->face[c]];
+    b->tables->bound_first[ptex] = b->next.bound;
+    b->tables->adjacency[ptex] = adjacency_of(b->plan, ptex);
+}
+
+void face_build(struct face_builder *b, uint32_t ptex)
+{
+    const struct limit_plan *plan = b->plan;
+    const struct topology *t = &plan->topology;
+    uint32_t c = plan->corner[ptex], face = t->face[c];
+    b->arena.used = 0;
+    if (b->tables)
+        start_root(b, ptex);
+    if (plan->hole && plan->hole[face]) {
+        b->n_hole++;
+        return;
+    }
+    struct quad quad, child[4];
+    if (face_size(t, face) != 4) {
+        quad = extract_refined_quad(t, &plan->refined, c, &b->arena);
+        build_node(b, ptex, &quad);
+    } else if (plan->refined.face && touches_ngon(t, c)) {
+        for (unsigned i = 0; i < 4; i++, c = corner_next(t, c)) {
+            quad = extract_refined_quad(t, &plan->refined, c, &b->arena);
+            child[i] = quad_rotated(&quad, (4 - i) & 3);
+        }
+        build_split(b, ptex, child);
+    } else {
+        quad = extract_quad(t, c, &b->arena);
+        build_node(b, ptex, &quad);
+    }
+}
