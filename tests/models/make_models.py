@@ -33,13 +33,15 @@ class Cage:
         self.faces = [tuple(order[vertex] for vertex in face) for face in faces]
 
 
-def write_obj(path, cage, comment):
+def write_obj(path, cage, tags=(), comment=""):
     with open(path, "w", newline="\n") as out:
         out.write("# %s\n# made by tests/models/make_models.py\n" % comment)
         for p in cage.positions:
             out.write("v %r %r %r\n" % p)
         for face in cage.faces:
             out.write("f %s\n" % " ".join(str(v + 1) for v in face))
+        for tag in tags:
+            out.write(tag + "\n")
 
 
 def fan(faces):
@@ -415,6 +417,59 @@ def tetra():
     return Cage(points, [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)])
 
 
+def creases():
+    """The blob with every kind of tag: sharpness that varies along a crease and runs out on the way,
+    darts, three and more creases at a vertex, sharp vertices, a hole."""
+    cage = body()
+    edges = sorted({tuple(sorted((f[k], f[k - 1]))) for f in cage.faces for k in range(len(f))})
+    tags, state = [], 1
+
+    def random(n):
+        nonlocal state
+        state = state * 1103515245 + 12345 & 0x7fffffff
+        return state // 65536 % n
+
+    sharpness = [0.4, 0.9, 1.0, 1.7, 2.5, 3.3, 5.6, 10.0]
+    for a, b in edges:
+        if random(4) == 0:
+            tags.append("t crease 2/1/0 %d %d %g" % (a, b, sharpness[random(8)]))
+    # A plain crease, for strips: a ring of edges round the blob, all alike.
+    ring = [e for e in edges if all(abs(cage.positions[v][0]) < 1e-9 for v in e)]
+    tags += ["t crease 2/1/0 %d %d 4.5" % e for e in ring]
+    for vertex, value in ((3, 0.6), (17, 1.8), (40, 10.0), (55, 3.0)):
+        tags.append("t corner 1/1/0 %d %g" % (vertex, value))
+    tags.append("t hole 2/0/0 5 60")
+    return cage, tags
+
+
+def nonmanifold():
+    """A fin on a sheet, two sheets that touch in a vertex, and two quads wound against each other."""
+    points, faces = [], []
+
+    def strip(origin, flip=False):
+        first = len(points)
+        for j in range(4):
+            for i in range(4):
+                points.append((origin[0] + i, origin[1] + j, origin[2] + 0.2 * (i - 1.5) ** 2))
+        for j in range(3):
+            for i in range(3):
+                at = first + 4 * j + i
+                face = (at, at + 1, at + 5, at + 4)
+                faces.append(face[::-1] if flip and i == 1 and j == 1 else face)
+        return first
+
+    sheet_at = strip((0, 0, 0))
+    fin = len(points)
+    for j in range(4):
+        points.append((1.2, j, 1.0))
+    for j in range(3):
+        faces.append((sheet_at + 4 * j + 1, sheet_at + 4 * j + 5, fin + j + 1, fin + j))
+    left, right = strip((5, 0, 0)), strip((8, 3, 0))
+    faces[:] = [tuple(left + 15 if v == right else v for v in face) for face in faces]
+    strip((0, 5, 0), flip=True)
+    return Cage(points, faces)
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
 
@@ -422,14 +477,16 @@ def main():
         return os.path.join(folder, name)
 
     panel = fender()
-    write_obj(path("fender.obj"), panel, "A car's front fender with its wheel arch, millimetres")
+    write_obj(path("fender.obj"), panel, comment="A car's front fender with its wheel arch, millimetres")
     write_gltf(path("fender.gltf"), panel, 2, "fender")
-    write_obj(path("body.obj"), body(), "A closed car-like body, metres")
-    write_obj(path("sheet.obj"), sheet(), "An open wavy sheet")
-    write_obj(path("plane.obj"), plane(), "A flat sheet in z = 0, its inner vertices moved in it")
-    write_obj(path("pole.obj"), pole(), "A dome with a pole of valence 24")
-    write_obj(path("ngons.obj"), ngons(), "A closed body of triangles, quads, pentagons, hexagons")
-    write_obj(path("tetra.obj"), tetra(), "A tetrahedron")
+    write_obj(path("body.obj"), body(), comment="A closed car-like body, metres")
+    write_obj(path("sheet.obj"), sheet(), comment="An open wavy sheet")
+    write_obj(path("plane.obj"), plane(), comment="A flat sheet in z = 0, its inner vertices moved in it")
+    write_obj(path("pole.obj"), pole(), comment="A dome with a pole of valence 24")
+    write_obj(path("ngons.obj"), ngons(), comment="A closed body of triangles, quads, pentagons, hexagons")
+    write_obj(path("tetra.obj"), tetra(), comment="A tetrahedron")
+    write_obj(path("creases.obj"), *creases(), comment="A closed body with every kind of tag")
+    write_obj(path("nonmanifold.obj"), nonmanifold(), comment="A fin, a shared vertex, a turned quad")
 
 
 if __name__ == "__main__":
