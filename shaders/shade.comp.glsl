@@ -80,13 +80,30 @@ float circles(vec2 st, mat2 jacobian)
     return stripe(rho * (pattern.x / nearer), g, pattern.y);
 }
 
+// The image over the pixel's parallelogram: samples along its longer side, each as wide as the
+// shorter. Not textureGrad: software devices take one footprint for neighbouring pixels together.
+vec4 image_colour(vec2 st, mat2 jacobian)
+{
+    const float most = 16.0;
+    vec2 texels = vec2(textureSize(picture, 0));
+    float a = length(jacobian[0] * texels), b = length(jacobian[1] * texels);
+    vec2 along = a > b ? jacobian[0] : jacobian[1];
+    float n = clamp(ceil(max(a, b) / max(min(a, b), 1.0)), 1.0, most);
+    float lod = log2(max(max(a, b) / n, 1.0));
+    vec4 sum = vec4(0.0);
+    for (float i = 0.5; i < n; i += 1.0) {
+        vec2 at = st + along * (i / n - 0.5);
+        sum += textureLod(picture, vec2(at.x, 1.0 - at.y), lod);
+    }
+    return sum / n;
+}
+
 vec4 pattern_colour(vec2 st, mat2 jacobian)
 {
     vec2 gs = vec2(jacobian[0].x, jacobian[1].x), gt = vec2(jacobian[0].y, jacobian[1].y);
     float bright;
     if (kind.x == IMAGE)
-        return textureGrad(picture, vec2(st.x, 1.0 - st.y), jacobian[0] * vec2(1, -1),
-                           jacobian[1] * vec2(1, -1));
+        return image_colour(st, jacobian);
     if (kind.x == STRIPES) {
         bright = stripe(st.x * pattern.x, gs * pattern.x, pattern.y);
     } else if (kind.x == LATTICE) {
@@ -101,10 +118,15 @@ vec4 pattern_colour(vec2 st, mat2 jacobian)
     return mix(background, foreground, bright);
 }
 
-// How much of the pixel falls on the light rectangle.
+// How much of the pixel falls on the light rectangle. Where the footprint spans all of the light it is
+// no longer linear (the ray runs along the light's plane): the pixel's centre decides.
 float on_light(vec2 st, mat2 jacobian)
 {
     vec2 gs = vec2(jacobian[0].x, jacobian[1].x), gt = vec2(jacobian[0].y, jacobian[1].y);
+    vec2 reach = vec2(abs(gs.x) + abs(gs.y), abs(gt.x) + abs(gt.y));
+    vec2 outside = max(-st, st - 1.0);
+    if (max(reach.x, reach.y) > 1.0)
+        return max(outside.x, outside.y) <= 0.0 ? 1.0 : 0.0;
     return half_plane(st.x, gs) * half_plane(1.0 - st.x, gs) * half_plane(st.y, gt) *
            half_plane(1.0 - st.y, gt);
 }

@@ -1,9 +1,12 @@
 // Stage 1, visibility: grids over the pieces of the surface that the CPU chose
-// (server/gpu/pieces.h). One instance is one piece; the grid has GRID x GRID cells.
+// (server/gpu/pieces.h), each of grid x grid cells. One instance draws several pieces, since some
+// devices take longer to start an instance than to draw a small grid.
 
-layout(location = 0) in uvec4 piece;  // node, level | k << 6 | depth << 8, x, y
+layout(binding = TEXTURES_FREE) uniform usamplerBuffer pieces;  // node, level | k << 6 | depth << 8, x, y
 
 uniform int grid;
+uniform int n_pieces;
+uniform int pieces_per_instance;
 
 flat out uvec2 where;  // node, level
 out vec2 st;           // in [0,2]: local coordinates times 2^level
@@ -21,10 +24,14 @@ vec3 position_at(Node node, vec2 xy)
 
 void main()
 {
+    int vertices = (grid + 1) * (grid + 1);
+    int index = gl_InstanceID * pieces_per_instance + gl_VertexID / vertices;
+    int vertex = gl_VertexID % vertices;
+    uvec4 piece = texelFetch(pieces, min(index, n_pieces - 1));
     int level = int(piece.y & 63u);
     uint k = (piece.y >> 6) & 3u;
     float size = ldexp(1.0, -int(piece.y >> 8));
-    vec2 cell = vec2(gl_VertexID % (grid + 1), gl_VertexID / (grid + 1)) / float(grid);
+    vec2 cell = vec2(vertex % (grid + 1), vertex / (grid + 1)) / float(grid);
     // k = 1,2,3: the three unit squares of a level's ring (a strip has only the third); 0: the
     // square at the origin.
     vec2 square = vec2(k == 1u || k == 2u, k >= 2u);
@@ -35,5 +42,6 @@ void main()
     where = uvec2(piece.x, uint(level));
     float w = is_perspective() ? s.z : 1.0;
     float z = is_perspective() ? depth.x : depth.y + s.z * depth.z;
-    gl_Position = vec4(s.xy * clip.xy + w * clip.zw, z, w);
+    // The last instance may have pieces too many: all their vertices fall in one point.
+    gl_Position = index < n_pieces ? vec4(s.xy * clip.xy + w * clip.zw, z, w) : vec4(0, 0, 0, 1);
 }

@@ -68,6 +68,7 @@ struct renderer {
     int n_programs;
     GLuint shade;
     GLuint view_buffer, light_buffer, piece_buffer;
+    GLuint piece_texture; /* of piece_buffer */
     GLuint vertex_array;
     GLuint grid_buffer[PIECE_BUCKETS]; /* element indices of each bucket's grid */
     GLuint blank_texture;              /* stands in where a pattern has no image */

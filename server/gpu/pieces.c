@@ -237,7 +237,9 @@ static void choose_strip(struct chooser *c, uint32_t node)
     }
 }
 
-/* Rings from the outside in, until what is left is smaller than the tolerance. */
+/* Rings from the outside in, until one quad stands for all that is left: it is as small as the
+ * tolerance, or bends so little. (The ring's net spans two units each way, so its bend counts four
+ * times; the rings inside it add their own, a geometric series.) */
 static void choose_corner(struct chooser *c, uint32_t node)
 {
     const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
@@ -249,7 +251,8 @@ static void choose_corner(struct chooser *c, uint32_t node)
         extent.bend = bounds[level].bend;
         if (is_outside(c, &extent))
             return;
-        if (in_px(c, &extent, extent.radius) < TOLERANCE_PX)
+        if (in_px(c, &extent, extent.radius) < TOLERANCE_PX ||
+            in_px(c, &extent, extent.bend) < TOLERANCE_PX)
             break;
         for (uint32_t square = 1; square <= 3; square++)
             choose_square(c, (struct piece){node, (level + 1) | square << 6, 0, 0}, &extent);

@@ -98,7 +98,7 @@ bool renderer_render(struct renderer *r, struct renderer_model *model,
         goto fail;
     struct view view;
     view_init(&view, &request->camera, request->width_px, request->height_px,
-              model->tables->box_min, model->tables->box_max);
+              model->tables->hull_min, model->tables->hull_max);
     for (uint32_t y = 0; y < request->height_px; y += TILE_MAX_PX) {
         for (uint32_t x = 0; x < request->width_px; x += TILE_MAX_PX) {
             struct tile tile = {x, y, request->width_px - x, request->height_px - y};

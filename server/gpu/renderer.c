@@ -146,7 +146,6 @@ struct renderer_image *renderer_image_create(struct renderer *r, const struct im
     glTextureParameteri(out->texture, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glTextureParameteri(out->texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(out->texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    glTextureParameterf(out->texture, GL_TEXTURE_MAX_ANISOTROPY, 16);
     if (!gpu_check("a light image", error)) {
         renderer_image_destroy(r, out);
         return NULL;

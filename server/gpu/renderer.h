@@ -88,7 +88,6 @@ struct frame_times {
 struct frame {
     uint32_t width_px, height_px;
     void *plane[PLANE_COUNT]; /* indexed by bit number */
-    uint64_t covered_px;
     struct frame_times times;
 };
 

@@ -3,53 +3,66 @@
 
 #include <stdlib.h>
 
-/* Two triangles for each cell of a grid of vertices. */
-static void fill_indices(uint32_t *index, uint32_t cells)
+/* Pieces drawn by one instance of a bucket: about as many vertices in each. */
+static int pieces_per_instance(int bucket)
+{
+    return bucket < 4 ? 256 >> (2 * bucket) : 1;
+}
+
+/* Two triangles for each cell of a grid of vertices that start at `first`. */
+static uint32_t *fill_indices(uint32_t *index, uint32_t cells, uint32_t first)
 {
     for (uint32_t y = 0; y < cells; y++) {
         for (uint32_t x = 0; x < cells; x++) {
-            uint32_t a = y * (cells + 1) + x, b = a + cells + 1;
+            uint32_t a = first + y * (cells + 1) + x, b = a + cells + 1;
             const uint32_t corners[6] = {a, a + 1, b, b, a + 1, b + 1};
             for (int k = 0; k < 6; k++)
                 *index++ = corners[k];
         }
     }
+    return index;
+}
+
+static bool make_grid(struct renderer *r, int bucket, struct error *error)
+{
+    uint32_t cells = 1u << bucket, pieces = (uint32_t)pieces_per_instance(bucket);
+    size_t bytes = (size_t)cells * cells * 6 * pieces * sizeof(uint32_t);
+    uint32_t *index = malloc(bytes);
+    if (!index)
+        return error_set(error, ERROR_SERVER, "out of memory");
+    uint32_t *at = index;
+    for (uint32_t k = 0; k < pieces; k++)
+        at = fill_indices(at, cells, k * (cells + 1) * (cells + 1));
+    glNamedBufferStorage(r->grid_buffer[bucket], (GLsizeiptr)bytes, index, 0);
+    free(index);
+    return true;
 }
 
 bool stage_visibility_init(struct renderer *r, struct error *error)
 {
-    glCreateBuffers(1, &r->piece_buffer);
     glCreateBuffers(PIECE_BUCKETS, r->grid_buffer);
-    for (int b = 0; b < PIECE_BUCKETS; b++) {
-        uint32_t cells = 1u << b;
-        size_t bytes = (size_t)cells * cells * 6 * sizeof(uint32_t);
-        uint32_t *index = malloc(bytes);
-        if (!index)
-            return error_set(error, ERROR_SERVER, "out of memory");
-        fill_indices(index, cells);
-        glNamedBufferStorage(r->grid_buffer[b], (GLsizeiptr)bytes, index, 0);
-        free(index);
-    }
+    for (int b = 0; b < PIECE_BUCKETS; b++)
+        if (!make_grid(r, b, error))
+            return false;
     glCreateVertexArrays(1, &r->vertex_array);
-    glEnableVertexArrayAttrib(r->vertex_array, 0);
-    glVertexArrayAttribIFormat(r->vertex_array, 0, 4, GL_UNSIGNED_INT, 0);
-    glVertexArrayAttribBinding(r->vertex_array, 0, 0);
-    glVertexArrayBindingDivisor(r->vertex_array, 0, 1);
+    glCreateBuffers(1, &r->piece_buffer);
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &r->piece_texture);
     return gpu_check("the grids", error);
 }
 
-static void draw_bucket(struct renderer *r, GLint grid, int bucket)
+/* Pieces [first, first + n) of a bucket, at most as many as a buffer texture holds. */
+static void draw_pieces(struct renderer *r, GLuint program, int bucket, size_t first, size_t n)
 {
-    const struct piece_list *list = &r->pieces.bucket[bucket];
-    if (!list->n)
-        return;
-    GLsizeiptr bytes = (GLsizeiptr)(list->n * sizeof(struct piece));
-    glNamedBufferData(r->piece_buffer, bytes, list->piece, GL_STREAM_DRAW);
-    glVertexArrayVertexBuffer(r->vertex_array, 0, r->piece_buffer, 0, sizeof(struct piece));
+    int per_instance = pieces_per_instance(bucket);
+    const struct piece *pieces = r->pieces.bucket[bucket].piece + first;
+    glNamedBufferData(r->piece_buffer, (GLsizeiptr)(n * sizeof *pieces), pieces, GL_STREAM_DRAW);
+    glTextureBuffer(r->piece_texture, GL_RGBA32UI, r->piece_buffer);
     glVertexArrayElementBuffer(r->vertex_array, r->grid_buffer[bucket]);
-    glUniform1i(grid, 1 << bucket);
-    glDrawElementsInstanced(GL_TRIANGLES, 6 << (2 * bucket), GL_UNSIGNED_INT, NULL,
-                            (GLsizei)list->n);
+    glUniform1i(glGetUniformLocation(program, "grid"), 1 << bucket);
+    glUniform1i(glGetUniformLocation(program, "n_pieces"), (GLint)n);
+    glUniform1i(glGetUniformLocation(program, "pieces_per_instance"), per_instance);
+    glDrawElementsInstanced(GL_TRIANGLES, (6 << (2 * bucket)) * per_instance, GL_UNSIGNED_INT, NULL,
+                            (GLsizei)((n + (size_t)per_instance - 1) / (size_t)per_instance));
 }
 
 void stage_visibility(struct renderer *r, const struct renderer_model *model,
@@ -71,8 +84,13 @@ void stage_visibility(struct renderer *r, const struct renderer_model *model,
     GLuint program = model->programs->visibility;
     glUseProgram(program);
     banks_bind(&model->nodes, banks_bind(&model->points, 0));
+    const struct table_programs *banks = model->programs;
+    glBindTextureUnit((GLuint)(banks->point_banks + banks->node_banks + banks->adjacency_banks),
+                      r->piece_texture);
     glBindVertexArray(r->vertex_array);
-    GLint grid = glGetUniformLocation(program, "grid");
-    for (int b = 0; b < PIECE_BUCKETS; b++)
-        draw_bucket(r, grid, b);
+    for (int b = 0; b < PIECE_BUCKETS; b++) {
+        size_t n = r->pieces.bucket[b].n, most = r->info.max_texels;
+        for (size_t first = 0; first < n; first += most)
+            draw_pieces(r, program, b, first, n - first < most ? n - first : most);
+    }
 }

@@ -93,6 +93,34 @@ static void build_split(struct face_builder *b, uint32_t node, const struct quad
         build_node(b, first + i, &child[i]);
 }
 
+static void extend_box(struct face_builder *b, struct vec p)
+{
+    const double at[3] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; k++) {
+        b->box_min[k] = fmin(b->box_min[k], at[k]);
+        b->box_max[k] = fmax(b->box_max[k], at[k]);
+    }
+}
+
+/* While measuring: the limit positions of a leaf's corners, and its middle as the regular patch has
+ * it, which bulges most on coarse cages. */
+static void measure_extent(struct face_builder *b, const struct quad *quad)
+{
+    if (b->tables)
+        return;
+    struct vec grid[4][4], middle = {0, 0, 0};
+    for (unsigned i = 0; i < 4; i++)
+        if (!ring_is_dart(&quad->corner[i]))
+            extend_box(b, ring_limit(&quad->corner[i]));
+    if (quad_extraordinary(quad))
+        return;
+    static const double weight[4] = {1.0 / 48, 23.0 / 48, 23.0 / 48, 1.0 / 48};
+    quad_grid(quad, grid);
+    for (int k = 0; k < 16; k++)
+        middle = vec_mad(middle, weight[k / 4] * weight[k % 4], grid[k / 4][k % 4]);
+    extend_box(b, middle);
+}
+
 /* A quad becomes a table when all its rules have come to rest and at most one corner is
  * extraordinary, or when it lies along a plain crease; else its four quarters do. Sharpness below
  * 10 is gone after 10 steps and one more parts the corners, so the depth is bounded. */
@@ -104,9 +132,13 @@ static void build_node(struct face_builder *b, uint32_t node, const struct quad 
     unsigned levels = semisharp ? strip_levels(quad, &edge) : 0;
     if (b->tables)
         b->tables->bound_first[node] = b->next.bound;
-    if (levels > 0 && levels <= STRIP_MAX_LEVELS) {
+    bool is_strip = levels > 0 && levels <= STRIP_MAX_LEVELS;
+    bool is_split = !is_strip && (semisharp || extraordinary & (extraordinary - 1));
+    if (!is_split && !semisharp)
+        measure_extent(b, quad);
+    if (is_strip) {
         build_strip(b, node, quad, edge, levels);
-    } else if (semisharp || extraordinary & (extraordinary - 1)) {
+    } else if (is_split) {
         struct quad child[4];
         quad_refine(quad, &b->arena, child);
         build_split(b, node, child);

@@ -11,7 +11,8 @@ struct face_builder {
     struct arena arena;
     struct plan_offsets next;
     size_t n_regular, n_corner, n_strip, n_split, n_hole;
-    uint32_t dart_valence; /* of a dart that is too large to build, else 0 */
+    double box_min[3], box_max[3]; /* of the limit positions met while measuring */
+    uint32_t dart_valence;         /* of a dart that is too large to build, else 0 */
 };
 
 /* Adds a Ptex face's share from next on. Measuring and filling go the same way. */

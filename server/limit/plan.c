@@ -1,5 +1,6 @@
 #include "server/limit/plan.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "server/limit/dart.h"
@@ -33,7 +34,9 @@ static bool mark_holes(struct limit_plan *plan)
 /* Measures every face in turn: where its share begins is what came before. */
 static bool lay_out(struct limit_plan *plan, struct error *error)
 {
-    struct face_builder measure = {.plan = plan};
+    struct face_builder measure = {.plan = plan,
+                                   .box_min = {INFINITY, INFINITY, INFINITY},
+                                   .box_max = {-INFINITY, -INFINITY, -INFINITY}};
     if (!arena_init(&measure.arena, plan->arena_bytes))
         return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
     uint64_t node = plan->n_ptex, point = 0, bound = 0;
@@ -62,6 +65,11 @@ static bool lay_out(struct limit_plan *plan, struct error *error)
     plan->n_strip = measure.n_strip;
     plan->n_split = measure.n_split;
     plan->n_hole = measure.n_hole;
+    for (int k = 0; k < 3; k++) {
+        /* A cage without any surface still has a place. */
+        plan->box_min[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_min[k] : 0;
+        plan->box_max[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_max[k] : 0;
+    }
     arena_finish(&measure.arena);
     return ok;
 }

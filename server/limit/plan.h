@@ -21,7 +21,8 @@ struct limit_plan {
     struct plan_offsets *offsets;  /* [Ptex faces + 1] */
     size_t n_ptex;
     size_t n_regular, n_corner, n_strip, n_split, n_hole;
-    size_t arena_bytes; /* what building any one face takes */
+    double box_min[3], box_max[3]; /* of limit positions, all over the surface */
+    size_t arena_bytes;            /* what building any one face takes */
 };
 
 #endif

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "server/limit/face.h"
 
@@ -43,7 +44,9 @@ bool limit_tables_init(struct limit_tables *tables, const struct limit_plan *pla
         limit_tables_finish(tables);
         return error_set(error, ERROR_SERVER, "out of memory: the tables need %zu bytes", bytes);
     }
-    bounding_box(plan->cage, tables->box_min, tables->box_max);
+    bounding_box(plan->cage, tables->hull_min, tables->hull_max);
+    memcpy(tables->box_min, plan->box_min, sizeof tables->box_min);
+    memcpy(tables->box_max, plan->box_max, sizeof tables->box_max);
     tables->n_regular = plan->n_regular;
     tables->n_corner = plan->n_corner;
     tables->n_strip = plan->n_strip;

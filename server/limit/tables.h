@@ -78,7 +78,9 @@ struct limit_tables {
     struct limit_bound *bounds;
     size_t n_bounds;
 
-    double box_min[3], box_max[3]; /* of the control vertices that the surface uses */
+    double box_min[3],
+        box_max[3]; /* of the surface, by its limit positions: what a camera frames */
+    double hull_min[3], hull_max[3]; /* of the control vertices: nothing lies outside */
 
     /* Counts for `sheen info`. */
     size_t n_regular, n_corner, n_strip, n_split, n_hole;

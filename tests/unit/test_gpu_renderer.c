@@ -1,5 +1,6 @@
-/* The renderer by itself: tables spread over several buffer textures, frames of several tiles, the
- * planes kept for a light-only change, and requests that cannot be rendered. */
+/* The renderer by itself: the pattern's colours, tables spread over several buffer textures, frames
+ * of several tiles, the planes kept for a light-only change, and requests that cannot be rendered.
+ */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -249,6 +250,91 @@ static void test_light_only(void **state)
     scene_finish(&scene);
 }
 
+/* A plane mirror under an image of two colours in squares: away from a square's border its colour
+ * is exactly that square's, and no other colour appears. */
+static void test_image_pattern(void **state)
+{
+    (void)state;
+    enum { SQUARES = 16, SIZE = 512 };
+    static uint8_t texels[SIZE][SIZE][4];
+    for (int y = 0; y < SIZE; y++)
+        for (int x = 0; x < SIZE; x++) {
+            bool red = (x / (SIZE / SQUARES) + y / (SIZE / SQUARES)) & 1;
+            memcpy(texels[y][x], red ? "\377\0\0\377" : "\0\0\377\377", 4);
+        }
+    struct image image = {SIZE, SIZE, false, texels};
+    struct error error = {0};
+    struct scene scene;
+    scene_init(&scene, "tests/models/sheet.obj");
+    struct renderer *renderer = open_renderer(0);
+    struct renderer_model *model = upload(renderer, &scene);
+    struct renderer_image *light = renderer_image_create(renderer, &image, &error);
+    assert_non_null(light);
+    struct frame_request request = request_for(&scene, 400, 300);
+    request.pattern.kind = PATTERN_IMAGE;
+    request.pattern.image = light;
+    struct frame frame = render(renderer, model, &request);
+    const uint8_t(*colour)[4] = frame.plane[0];
+    const float(*st)[2] = frame.plane[4];
+    size_t judged = 0;
+    for (size_t k = 0; k < (size_t)400 * 300; k++) {
+        if (!(st[k][0] > 0.05f && st[k][0] < 0.95f && st[k][1] > 0.05f && st[k][1] < 0.95f))
+            continue;
+        assert_true(colour[k][1] == 0 && abs(colour[k][0] + colour[k][2] - 255) <= 2);
+        double x = st[k][0] * SQUARES, y = (1 - st[k][1]) * SQUARES;
+        double border = fmax(fabs(x - floor(x) - 0.5), fabs(y - floor(y) - 0.5));
+        if (border > 0.2)
+            continue;
+        bool red = ((int)x + (int)y) & 1;
+        if (abs(colour[k][0] - (red ? 255 : 0)) > 2)
+            fail_msg("pixel %zu is %d in a square of %d", k, colour[k][0], red ? 255 : 0);
+        judged++;
+    }
+    assert_true(judged > 1000);
+    frame_finish(&frame);
+    renderer_image_destroy(renderer, light);
+    renderer_model_destroy(renderer, model);
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+}
+
+/* Where the reflected ray runs along the light's plane the footprint explodes: what misses the
+ * light by more than a few pixels shows the colour of a miss and nothing else. */
+static void test_no_ghost_of_the_light(void **state)
+{
+    (void)state;
+    enum { WIDTH = 480, HEIGHT = 360, NEAR = 3 };
+    struct scene scene;
+    scene_init(&scene, "tests/models/body.obj");
+    struct renderer *renderer = open_renderer(0);
+    struct renderer_model *model = upload(renderer, &scene);
+    struct frame_request request = request_for(&scene, WIDTH, HEIGHT);
+    struct frame frame = render(renderer, model, &request);
+    const uint8_t(*colour)[4] = frame.plane[0];
+    const float(*st)[2] = frame.plane[4];
+    const uint32_t(*ptex)[3] = frame.plane[3];
+    size_t judged = 0;
+    for (int y = NEAR; y < HEIGHT - NEAR; y++) {
+        for (int x = NEAR; x < WIDTH - NEAR; x++) {
+            bool lit = false;
+            for (int dy = -NEAR; dy <= NEAR; dy++)
+                for (int dx = -NEAR; dx <= NEAR; dx++)
+                    lit |= !isnan(st[(y + dy) * WIDTH + x + dx][0]);
+            size_t k = (size_t)y * WIDTH + (size_t)x;
+            if (lit || ptex[k][0] == UINT32_MAX)
+                continue;
+            if (colour[k][0] || colour[k][1] || colour[k][2])
+                fail_msg("pixel %d,%d far from the light is not black", x, y);
+            judged++;
+        }
+    }
+    assert_true(judged > 5000);
+    frame_finish(&frame);
+    renderer_model_destroy(renderer, model);
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+}
+
 static void test_refused_requests(void **state)
 {
     (void)state;
@@ -299,9 +385,14 @@ static void test_unknown_devices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_point_banks),     cmocka_unit_test(test_node_banks),
-        cmocka_unit_test(test_too_few_texels),  cmocka_unit_test(test_tiles),
-        cmocka_unit_test(test_light_only),      cmocka_unit_test(test_refused_requests),
+        cmocka_unit_test(test_point_banks),
+        cmocka_unit_test(test_node_banks),
+        cmocka_unit_test(test_too_few_texels),
+        cmocka_unit_test(test_tiles),
+        cmocka_unit_test(test_light_only),
+        cmocka_unit_test(test_image_pattern),
+        cmocka_unit_test(test_no_ghost_of_the_light),
+        cmocka_unit_test(test_refused_requests),
         cmocka_unit_test(test_unknown_devices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
