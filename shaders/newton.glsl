@@ -51,7 +51,7 @@ vec2 newton_step(vec2 net[16], vec2 st, out vec2 step_st)
 // much larger than a pixel that single precision cannot tell.
 float close_enough(float px_per_scale)
 {
-    return max(0.0005, 5e-7 * px_per_scale);
+    return max(0.0005, 1.5e-7 * px_per_scale);
 }
 
 // Newton's method inside one sub-patch, whose polynomials also hold a little beyond it. Returns

@@ -44,6 +44,22 @@ vec3 shape_operator(Surface s, vec3 n, vec3 n_world)
     return vec3(dot(a, second * a), dot(a, second * b), dot(b, second * b)) / s.scale;
 }
 
+// The normal at st. Where a derivative vanishes or both are parallel (a collapsed edge, a pole, a
+// smooth corner of one quad) its limit from inside the patch, by the second derivatives; zero where
+// there is none.
+vec3 limit_normal(Surface s, vec2 st)
+{
+    vec3 n = cross(s.su, s.sv);
+    float u2 = dot(s.su, s.su), v2 = dot(s.sv, s.sv);
+    bool vanishes = !(dot(n, n) > 1e-8 * u2 * v2) || min(u2, v2) < 1e-8 * max(u2, v2);
+    vec2 inward = (0.5 - st) * 0.01;
+    vec3 su = s.su + inward.x * s.suu + inward.y * s.suv;
+    vec3 sv = s.sv + inward.x * s.suv + inward.y * s.svv;
+    n = vanishes ? cross(su, sv) : n;
+    float length2 = dot(n, n);
+    return length2 > 0.0 ? n * inversesqrt(length2) : vec3(0.0);
+}
+
 void store_miss(ivec2 p)
 {
     imageStore(position, p, vec4(0.0));
@@ -51,10 +67,10 @@ void store_miss(ivec2 p)
         imageStore(ptex, p, uvec4(NONE, floatBitsToUint(vec2(0.0)), 0u));
 }
 
-void store_hit(ivec2 p, Surface s, uint face, vec2 uv)
+void store_hit(ivec2 p, Surface s, vec2 st, uint face, vec2 uv)
 {
-    vec3 n = normalize(cross(s.su, s.sv));
-    vec3 n_world = normalize(to_world(n));
+    vec3 n = limit_normal(s, st);
+    vec3 n_world = dot(n, n) > 0.0 ? normalize(to_world(n)) : vec3(0.0);
     vec3 h = shape_operator(s, n, n_world);
     imageStore(position, p, vec4(to_world(s.s), s.s.z));
     imageStore(normal, p, vec4(n_world, h.z));

@@ -24,12 +24,17 @@ layout(std140, binding = 1) uniform Light {
     vec4 size;        // |u|, |v|
     vec4 foreground, background, miss, empty;
     vec4 pattern;     // count, duty
-    ivec4 kind;       // pattern kind; whether to write light_st, curvature
+    ivec4 want;           // whether to write light_st, curvature
 };
 
 uniform ivec4 area;  // x0, y0, width, height: the part of the tile that may be covered
 
-const int STRIPES = 0, LATTICE = 1, CIRCLES = 2, IMAGE = 3;
+// PATTERN is defined before this file: a program for each kind, since some devices walk through
+// every branch.
+#define STRIPES 0
+#define LATTICE 1
+#define CIRCLES 2
+#define IMAGE 3
 
 
 // -dN along a tangent vector, by the shape operator.
@@ -100,22 +105,23 @@ vec4 image_colour(vec2 st, mat2 jacobian)
 
 vec4 pattern_colour(vec2 st, mat2 jacobian)
 {
+#if PATTERN == IMAGE
+    return image_colour(st, jacobian);
+#else
     vec2 gs = vec2(jacobian[0].x, jacobian[1].x), gt = vec2(jacobian[0].y, jacobian[1].y);
-    float bright;
-    if (kind.x == IMAGE)
-        return image_colour(st, jacobian);
-    if (kind.x == STRIPES) {
-        bright = stripe(st.x * pattern.x, gs * pattern.x, pattern.y);
-    } else if (kind.x == LATTICE) {
-        // The same period in world units both ways.
-        float rows = pattern.x * size.y / size.x;
-        float across = stripe(st.x * pattern.x, gs * pattern.x, pattern.y);
-        float along = stripe(st.y * rows, gt * rows, pattern.y);
-        bright = 1.0 - (1.0 - across) * (1.0 - along);
-    } else {
-        bright = circles(st, jacobian);
-    }
+#if PATTERN == CIRCLES
+    float bright = circles(st, jacobian);
+#else
+    float bright = stripe(st.x * pattern.x, gs * pattern.x, pattern.y);
+#endif
+#if PATTERN == LATTICE
+    // The same period in world units both ways.
+    float rows = pattern.x * size.y / size.x;
+    float along = stripe(st.y * rows, gt * rows, pattern.y);
+    bright = 1.0 - (1.0 - bright) * (1.0 - along);
+#endif
     return mix(background, foreground, bright);
+#endif
 }
 
 // How much of the pixel falls on the light rectangle. Where the footprint spans all of the light it is
@@ -135,9 +141,9 @@ void store_miss(ivec2 p, vec4 rgba)
 {
     const vec4 none = vec4(uintBitsToFloat(0x7fc00000u));
     imageStore(colour, p, rgba);
-    if (kind.y != 0)
+    if (want.x != 0)
         imageStore(light_st, p, none);
-    if (kind.z != 0)
+    if (want.y != 0)
         imageStore(curvature, p, none);
 }
 
@@ -181,8 +187,8 @@ void main()
     if (met)
         rgba = mix(miss, pattern_colour(st, jacobian), on_light(st, jacobian));
     imageStore(colour, p, rgba);
-    if (kind.y != 0)
+    if (want.x != 0)
         imageStore(light_st, p, vec4(inside ? st : vec2(uintBitsToFloat(0x7fc00000u)), 0.0, 0.0));
-    if (kind.z != 0)
+    if (want.y != 0)
         imageStore(curvature, p, vec4(principal_curvatures(h), 0.0, 0.0));
 }

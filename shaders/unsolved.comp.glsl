@@ -12,6 +12,7 @@ const int STEPS = 12;
 struct Hit {
     Node node;
     vec2 xy;
+    vec2 st;  // in the sub-patch
     Surface surface;
 };
 
@@ -48,7 +49,7 @@ Solution solve(uvec2 guess, Ray r)
         bool last = i == STEPS - 1 || own.limit || step_st == vec2(0.0);
         if (residual < enough || last || !(s.s.z > 0.0)) {
             result.found = residual < 4.0 * enough && s.s.z > 0.0;
-            result.hit = Hit(node, xy, s);
+            result.hit = Hit(node, xy, own.st, s);
             break;
         }
         xy += ldexp(step_st, -own.scale);
@@ -82,7 +83,7 @@ void main()
             best = other;
     }
     if (best.found)
-        store_hit(p, best.hit.surface, best.hit.node.face, ptex_uv(best.hit.node, best.hit.xy));
+        store_hit(p, best.hit.surface, best.hit.st, best.hit.node.face, ptex_uv(best.hit.node, best.hit.xy));
     else
         store_miss(p);
 }

@@ -66,7 +66,7 @@ struct renderer {
     struct pieces pieces;
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
-    GLuint shade;
+    GLuint shade[PATTERN_IMAGE + 1]; /* by enum pattern_kind, 0 until first asked for */
     GLuint view_buffer, light_buffer, piece_buffer;
     GLuint piece_texture; /* of piece_buffer */
     GLuint vertex_array;
@@ -93,8 +93,9 @@ void stage_visibility(struct renderer *renderer, const struct renderer_model *mo
 void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
                     const struct tile *tile, bool want_ptex);
 bool stage_shade_init(struct renderer *renderer, struct error *error);
-void stage_shade(struct renderer *renderer, const struct frame_request *request,
-                 const struct tile *tile);
+/* Compiles the pattern's program when it is asked for first. */
+bool stage_shade(struct renderer *renderer, const struct frame_request *request,
+                 const struct tile *tile, struct error *error);
 
 /* Copies the planes asked for from the target into the frame. */
 bool readback(struct renderer *renderer, const struct frame_request *request,

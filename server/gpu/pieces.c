@@ -10,6 +10,9 @@
 static const double TOLERANCE_PX = 0.5;
 /* Pieces are cut in four at most this often: 2^20 squares across a face. */
 enum { MAX_DEPTH = 20 };
+/* Grid vertices of a tile: what a software device draws in a few seconds, and many times what a
+ * million faces need. */
+static const uint64_t MAX_VERTICES = 24000000;
 
 /* What choosing needs at every turn. */
 struct chooser {
@@ -19,7 +22,8 @@ struct chooser {
     double side[4][3];      /* unit inward normals of the tile's sides, camera space */
     double offset[4];       /* signed distance = side . p + offset */
     double low[2], high[2]; /* covered so far, px of the picture */
-    bool failed;
+    uint64_t n_vertices;
+    bool no_memory;
 };
 
 /* The part of the surface under consideration: a sphere in camera space and how much it bends. */
@@ -90,13 +94,17 @@ static void cover(struct chooser *c, const struct extent *e)
 static void emit(struct chooser *c, unsigned bucket, struct piece piece,
                  const struct extent *extent)
 {
+    uint64_t side = (1u << bucket) + 1;
+    c->n_vertices += side * side;
+    if (c->n_vertices > MAX_VERTICES)
+        return;
     cover(c, extent);
     struct piece_list *list = &c->out->bucket[bucket];
     if (list->n == list->capacity) {
         size_t capacity = list->capacity ? 2 * list->capacity : 1024;
         struct piece *grown = realloc(list->piece, capacity * sizeof *grown);
         if (!grown) {
-            c->failed = true;
+            c->no_memory = true;
             return;
         }
         list->piece = grown;
@@ -175,8 +183,17 @@ static struct extent square_extent(const struct chooser *c, const struct piece *
         middle = vec_mad(middle, 1.0 / 16, grid[k]);
     for (int k = 0; k < 16; k++)
         grid[k] = vec_sub(grid[k], middle);
-    struct limit_bound bound = bound_of_grid(grid, 4, false);
     const struct limit_node *node = &c->tables->nodes[piece->node];
+    struct limit_bound bound = bound_of_grid(grid, 4, false);
+    if (!c->view->perspective) {
+        /* What runs along the view does not show. */
+        struct vec forward = {c->view->axis[2][0], c->view->axis[2][1], c->view->axis[2][2]};
+        for (int k = 0; k < 16; k++) {
+            struct vec p = frame_to_world(c->tables, node, grid[k]);
+            grid[k] = vec_mad(p, -vec_dot(p, forward), forward);
+        }
+        bound.bend = bound_of_grid(grid, 4, false).bend;
+    }
     struct vec at = frame_to_world(c->tables, node, middle);
     const double world[3] = {node->origin[0] + at.x, node->origin[1] + at.y,
                              node->origin[2] + at.z};
@@ -202,7 +219,7 @@ static void choose_quarters(struct chooser *c, struct piece piece)
 
 static void choose_square(struct chooser *c, struct piece piece, const struct extent *extent)
 {
-    if (is_outside(c, extent))
+    if (is_outside(c, extent) || c->n_vertices > MAX_VERTICES)
         return;
     double cells = sqrt(in_px(c, extent, extent->bend) / (8 * TOLERANCE_PX));
     unsigned bucket = 0;
@@ -273,7 +290,7 @@ static void set_area(const struct chooser *c, const struct tile *tile)
 }
 
 bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
-                   const struct view *view, const struct tile *tile)
+                   const struct view *view, const struct tile *tile, struct error *error)
 {
     struct chooser c = {.out = pieces,
                         .tables = tables,
@@ -292,7 +309,14 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
             choose_strip(&c, node);
     }
     set_area(&c, tile);
-    return !c.failed;
+    if (c.no_memory)
+        return error_set(error, ERROR_SERVER, "out of memory for the pieces of a frame");
+    if (c.n_vertices > MAX_VERTICES)
+        return error_set(error, ERROR_REQUEST,
+                         "camera: the view would take more than %llu grid vertices: move it away "
+                         "from the model, or make the picture smaller",
+                         (unsigned long long)MAX_VERTICES);
+    return true;
 }
 
 void pieces_finish(struct pieces *pieces)

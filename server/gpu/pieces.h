@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "server/error.h"
 #include "server/gpu/view.h"
 #include "server/limit/tables.h"
 
@@ -35,9 +36,11 @@ struct pieces {
 };
 
 /* Chooses the pieces that the tile may show. Lists keep their memory from call to call; zero them
- * before the first. False when memory is short. */
+ * before the first. ERROR_REQUEST when the view would need more grid vertices than a frame may
+ * take (a surface that is millions of times larger than the picture and runs along the view),
+ * ERROR_SERVER when memory is short. */
 bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
-                   const struct view *view, const struct tile *tile);
+                   const struct view *view, const struct tile *tile, struct error *error);
 void pieces_finish(struct pieces *pieces);
 
 #endif

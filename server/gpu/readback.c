@@ -48,6 +48,12 @@ static void pack_position(const float (*texels)[4], const double eye[3], const s
     }
 }
 
+/* Zero stands for a place without a normal (a cone's tip). */
+static bool has_normal(const float n[4])
+{
+    return n[0] != 0 || n[1] != 0 || n[2] != 0;
+}
+
 static void pack_normal(const float (*texels)[4], const float (*position)[4],
                         const struct rows *rows, const struct tile *tile)
 {
@@ -55,7 +61,7 @@ static void pack_normal(const float (*texels)[4], const float (*position)[4],
         float(*out)[3] = (float(*)[3])(void *)(rows->first + y * rows->stride);
         for (uint32_t x = 0; x < tile->width; x++, texels++, position++)
             for (int k = 0; k < 3; k++)
-                out[x][k] = (*position)[3] > 0 ? (*texels)[k] : NAN;
+                out[x][k] = (*position)[3] > 0 && has_normal(*texels) ? (*texels)[k] : NAN;
     }
 }
 

@@ -70,14 +70,15 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
     uint64_t since = now_us();
     if (!is_kept(&r->kept, model, request)) {
-        if (!pieces_choose(&r->pieces, model->tables, view, tile))
-            return error_set(error, ERROR_SERVER, "out of memory for the pieces of a frame");
+        if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
+            return false;
         stage_visibility(r, model, tile);
         end_stage(&frame->times.visibility_us, &since);
         stage_evaluate(r, model, tile, request->planes & PLANE_PTEX);
         end_stage(&frame->times.evaluate_us, &since);
     }
-    stage_shade(r, request, tile);
+    if (!stage_shade(r, request, tile, error))
+        return false;
     end_stage(&frame->times.shade_us, &since);
     bool ok = readback(r, request, tile, frame, error);
     end_stage(&frame->times.readback_us, &since);

@@ -2,6 +2,7 @@
 #include "server/gpu/gpu.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "server/gpu/program.h"
 #include "server/limit/vec.h"
@@ -11,16 +12,25 @@ struct light_block {
     float centre[4], normal_uv[4], dual_u[4], dual_v[4], size[4];
     float foreground[4], background[4], miss[4], empty[4];
     float pattern[4];
-    int32_t kind[4];
+    int32_t want[4];
 };
 
-bool stage_shade_init(struct renderer *r, struct error *error)
+static GLuint shade_program(struct renderer *r, enum pattern_kind kind, struct error *error)
 {
     static const char *const files[] = {"view.glsl", "basis.glsl", "coverage.glsl",
                                         "shade.comp.glsl", NULL};
+    if (!r->shade[kind]) {
+        char defines[32];
+        snprintf(defines, sizeof defines, "#define PATTERN %d\n", kind);
+        r->shade[kind] = program_compute(defines, files, error);
+    }
+    return r->shade[kind];
+}
+
+bool stage_shade_init(struct renderer *r, struct error *error)
+{
     static const uint8_t white[4] = {255, 255, 255, 255};
-    r->shade = program_compute("", files, error);
-    if (!r->shade)
+    if (!shade_program(r, PATTERN_STRIPES, error))
         return false;
     glCreateBuffers(1, &r->light_buffer);
     glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
@@ -63,9 +73,8 @@ static void fill_light(struct light_block *block, const struct frame_request *re
     }
     block->pattern[0] = (float)request->pattern.count;
     block->pattern[1] = (float)request->pattern.duty;
-    block->kind[0] = (int32_t)request->pattern.kind;
-    block->kind[1] = (request->planes & PLANE_LIGHT) != 0;
-    block->kind[2] = (request->planes & PLANE_CURVATURE) != 0;
+    block->want[0] = (request->planes & PLANE_LIGHT) != 0;
+    block->want[1] = (request->planes & PLANE_CURVATURE) != 0;
 }
 
 /* What lies outside the covered area shows no surface. */
@@ -79,13 +88,17 @@ static void clear_planes(const struct renderer *r, const struct frame_request *r
         glClearTexImage(r->target.curvature, 0, GL_RG, GL_FLOAT, none);
 }
 
-void stage_shade(struct renderer *r, const struct frame_request *request, const struct tile *tile)
+bool stage_shade(struct renderer *r, const struct frame_request *request, const struct tile *tile,
+                 struct error *error)
 {
+    GLuint program = shade_program(r, request->pattern.kind, error);
+    if (!program)
+        return false;
     struct light_block block;
     fill_light(&block, request);
     glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    glUseProgram(r->shade);
+    glUseProgram(program);
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
     const struct renderer_image *image = request->pattern.image;
     glBindTextureUnit(0, image ? image->texture : r->blank_texture);
@@ -98,7 +111,8 @@ void stage_shade(struct renderer *r, const struct frame_request *request, const 
     const struct tile *area = &r->pieces.area;
     if (area->width < tile->width || area->height < tile->height)
         clear_planes(r, request);
-    glUniform4i(glGetUniformLocation(r->shade, "area"), (GLint)area->x, (GLint)area->y,
+    glUniform4i(glGetUniformLocation(program, "area"), (GLint)area->x, (GLint)area->y,
                 (GLint)area->width, (GLint)area->height);
     glDispatchCompute((area->width + 7) / 8, (area->height + 7) / 8, 1);
+    return true;
 }

@@ -11,7 +11,41 @@
 struct net {
     struct vec grid[5][5];
     struct ring ring;
+    /* Of a large closed ring only a window is kept, and the sums that its vertex's rule takes. */
+    double window_of; /* the whole ring's valence, or 0 */
+    struct vec edges, faces;
 };
+
+/* Each level spoils one more edge at either end of a window; what the grid takes stays whole. */
+enum { WINDOW_SIDE = LIMIT_LEVELS + 3, WINDOW = 2 * WINDOW_SIDE };
+
+static bool needs_window(const struct ring *ring)
+{
+    return ring->closed && ring->n_faces > WINDOW + 2 && !ring->creases.edge &&
+           !(ring->sharpness > 0);
+}
+
+/* ring_limit(), by the sums. */
+static struct vec window_limit(const struct net *net)
+{
+    double n = net->window_of;
+    struct vec limit = vec_scale(net->ring.centre, n / (n + 5));
+    limit = vec_mad(limit, 4 / (n * (n + 5)), net->edges);
+    return vec_mad(limit, 1 / (n * (n + 5)), net->faces);
+}
+
+/* The rules of ring_refine() for the vertex, and for the sums over all edges and faces. */
+static void refine_window_sums(const struct net *in, struct net *out)
+{
+    double n = in->window_of;
+    struct vec whole = vec_scale(in->ring.centre, n);
+    struct vec both = vec_mad(in->faces, 2, in->edges);
+    out->window_of = n;
+    out->faces = vec_scale(vec_add(whole, both), 0.25);
+    out->edges = vec_scale(vec_mad(vec_add(whole, in->edges), 2, out->faces), 0.25);
+    struct vec sum = vec_add(in->edges, out->faces);
+    out->ring.centre = vec_mad(vec_scale(in->ring.centre, (n - 2) / n), 1 / (n * n), sum);
+}
 
 static struct vec limit_position(const struct ring *ring, const struct dart_masks *dart)
 {
@@ -46,15 +80,22 @@ static void first_net(const struct quad *quad, struct vec origin, const struct v
         for (int i = 0; i < 4; i++)
             net->grid[j][i] = to_frame(grid[j][i], origin, axis);
     const struct ring *ring = &quad->corner[0];
-    net->ring.at = ring->at;
+    bool window = needs_window(ring);
+    uint32_t n = ring_edges(ring), shift = window ? ring->at + n - WINDOW_SIDE : 0;
+    net->ring.at = window ? WINDOW_SIDE : ring->at;
     net->ring.sharpness = ring->sharpness;
-    for (uint32_t k = 0; ring->creases.edge && k < ring_edges(ring); k++)
-        net->ring.creases.edge[k] = net->ring.creases.far[k] = ring->creases.edge[k];
     net->ring.centre = to_frame(ring->centre, origin, axis);
-    for (uint32_t k = 0; k < ring_edges(ring); k++)
-        net->ring.edge[k] = to_frame(ring->edge[k], origin, axis);
-    for (uint32_t k = 0; k < ring->n_faces; k++)
-        net->ring.face[k] = to_frame(ring->face[k], origin, axis);
+    for (uint32_t k = 0; k < ring_edges(&net->ring); k++)
+        net->ring.edge[k] = to_frame(ring->edge[(k + shift) % n], origin, axis);
+    for (uint32_t k = 0; k < net->ring.n_faces; k++)
+        net->ring.face[k] = to_frame(ring->face[(k + shift) % n], origin, axis);
+    for (uint32_t k = 0; ring->creases.edge && k < n; k++)
+        net->ring.creases.edge[k] = net->ring.creases.far[k] = ring->creases.edge[k];
+    net->window_of = window ? ring->n_faces : 0;
+    for (uint32_t k = 0; window && k < n; k++) {
+        net->edges = vec_add(net->edges, to_frame(ring->edge[k], origin, axis));
+        net->faces = vec_add(net->faces, to_frame(ring->face[k], origin, axis));
+    }
     phantom_points(&net->ring, net->grid);
 }
 
@@ -108,10 +149,14 @@ static void next_net(const struct net *in, const struct dart_masks *dart, struct
             if (i > 1 || j > 1)
                 out->grid[j + 1][i + 1] = refine_point(coarse, i, j);
     ring_refine(&in->ring, &out->ring);
+    if (in->window_of > 0)
+        refine_window_sums(in, out);
     ring_points(&out->ring, out->grid);
     phantom_points(&out->ring, out->grid);
 
-    struct vec limit = limit_position(&out->ring, dart);
+    struct vec limit = in->window_of > 0 ? window_limit(out) : limit_position(&out->ring, dart);
+    out->edges = vec_mad(out->edges, -in->window_of, limit);
+    out->faces = vec_mad(out->faces, -in->window_of, limit);
     for (int j = 0; j < 5; j++)
         for (int i = 0; i < 5; i++)
             out->grid[j][i] = vec_sub(out->grid[j][i], limit);
@@ -166,7 +211,9 @@ bool corner_table(const struct quad *quad, struct arena *arena, float (*texels)[
     struct vec limit = limit_position(ring, &dart);
     struct net net[2] = {0};
     for (int k = 0; k < 2; k++)
-        net[k].ring = ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
+        net[k].ring = needs_window(ring)
+                          ? ring_take(arena, WINDOW, false, false)
+                          : ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
     first_net(quad, limit, axis, &net[0]);
     for (int n = 0; n < LIMIT_LEVELS; n++) {
         struct net *fine = &net[(n + 1) & 1];

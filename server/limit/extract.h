@@ -21,6 +21,10 @@ void refined_points_finish(struct refined_points *points);
 /* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (crease.h). */
 struct quad extract_quad(const struct topology *topology, uint32_t c, struct arena *arena);
 
+/* The 4x4 control points of a plain quad (topology.h), as quad_grid() gives them, without its
+ * rings. */
+void extract_plain_grid(const struct topology *topology, uint32_t c, struct vec grid[4][4]);
+
 /* The level-1 quad between cage corner c (its corner 0), the edge points beside it and the face
  * point (its corner 2). */
 struct quad extract_refined_quad(const struct topology *topology,

@@ -8,12 +8,12 @@
 #include "server/limit/strip.h"
 #include "server/limit/texels.h"
 
-static void build_regular(struct face_builder *b, uint32_t node, const struct quad *quad)
+/* A bicubic patch of 16 control points, or room for one. */
+static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4][4])
 {
     if (b->tables) {
         struct limit_node *out = &b->tables->nodes[node];
-        struct vec grid[4][4], centre = {0, 0, 0};
-        quad_grid(quad, grid);
+        struct vec centre = {0, 0, 0};
         for (int k = 0; k < 16; k++)
             centre = vec_mad(centre, 1.0 / 16, grid[k / 4][k % 4]);
         for (int k = 0; k < 16; k++)
@@ -29,6 +29,14 @@ static void build_regular(struct face_builder *b, uint32_t node, const struct qu
     b->next.point += LIMIT_REGULAR_POINTS;
     b->next.bound += 1;
     b->n_regular++;
+}
+
+static void build_regular(struct face_builder *b, uint32_t node, const struct quad *quad)
+{
+    struct vec grid[4][4];
+    if (b->tables)
+        quad_grid(quad, grid);
+    build_patch(b, node, grid);
 }
 
 static void build_corner(struct face_builder *b, uint32_t node, const struct quad *quad,
@@ -150,6 +158,23 @@ static void build_node(struct face_builder *b, uint32_t node, const struct quad 
     b->arena.used = mark;
 }
 
+/* Most faces of most cages: no ring is needed. */
+static void build_plain(struct face_builder *b, uint32_t ptex, uint32_t c)
+{
+    struct vec grid[4][4];
+    if (b->tables) {
+        extract_plain_grid(&b->plan->topology, c, grid);
+    } else {
+        /* Only for the extent that a camera frames: the cage's corners are near enough. */
+        const struct cage *cage = b->plan->cage;
+        for (unsigned i = 0; i < 4; i++) {
+            const double *p = cage->position[cage->face_vertex[c + i]];
+            extend_box(b, (struct vec){p[0], p[1], p[2]});
+        }
+    }
+    build_patch(b, ptex, grid);
+}
+
 static bool touches_ngon(const struct topology *t, uint32_t c)
 {
     for (unsigned i = 0; i < 4; i++, c = corner_next(t, c))
@@ -181,6 +206,10 @@ void face_build(struct face_builder *b, uint32_t ptex)
         start_root(b, ptex);
     if (plan->hole && plan->hole[face]) {
         b->n_hole++;
+        return;
+    }
+    if (face_size(t, face) == 4 && quad_is_plain(t, c)) {
+        build_plain(b, ptex, c);
         return;
     }
     struct quad quad, child[4];

@@ -153,12 +153,16 @@ static void smooth_tangents(const struct ring *ring, struct vec *t1, struct vec 
     double c = cos(2 * PI / n);
     double a = 1 + c + cos(PI / n) * sqrt(2 * (9 + c));
     *t1 = *t2 = (struct vec){0, 0, 0};
+    /* Around the circle by rotation: sines and cosines would be most of a large ring's cost. */
+    double step_x = cos(2 * PI / n), step_y = sin(2 * PI / n), x = 1, y = 0;
     for (uint32_t k = 0; k < n; k++) {
-        double p = 2 * PI * k / n, q = 2 * PI * (k + 1) / n;
-        *t1 = vec_mad(*t1, a * cos(p), ring->edge[k]);
-        *t1 = vec_mad(*t1, cos(p) + cos(q), ring->face[k]);
-        *t2 = vec_mad(*t2, a * sin(p), ring->edge[k]);
-        *t2 = vec_mad(*t2, sin(p) + sin(q), ring->face[k]);
+        double next_x = x * step_x - y * step_y, next_y = x * step_y + y * step_x;
+        *t1 = vec_mad(*t1, a * x, ring->edge[k]);
+        *t1 = vec_mad(*t1, x + next_x, ring->face[k]);
+        *t2 = vec_mad(*t2, a * y, ring->edge[k]);
+        *t2 = vec_mad(*t2, y + next_y, ring->face[k]);
+        x = next_x;
+        y = next_y;
     }
 }
 

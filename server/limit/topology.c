@@ -117,6 +117,9 @@ static void flag_vertices(struct topology *t, struct vertex_count *count)
             continue; /* done already at an earlier corner */
         if (vertex_is_sharp(t, c, &count[v]))
             *flags |= VERTEX_SHARP;
+        if (count[v].faces == 4 && count[v].edges == 4 && !count[v].boundary &&
+            !count[v].nonmanifold)
+            *flags |= VERTEX_PLAIN;
         count[v].faces = 0;
     }
 }

@@ -31,6 +31,7 @@ enum {
     VERTEX_BY_NGON = 4, /* a face that is no quad touches it */
     VERTEX_CREASED = 8, /* an inner edge with sharpness ends here */
     VERTEX_TAGGED = 16, /* it has sharpness of its own */
+    VERTEX_PLAIN = 32,  /* four faces, four edges, all manifold: alone, a regular vertex of quads */
 };
 
 /* ERROR_SERVER when memory is short; ERROR_MODEL for a crease where no edge is. */
@@ -87,6 +88,15 @@ static inline float vertex_sharpness(const struct topology *t, uint32_t c)
     if (t->vertex_flags[v] & VERTEX_SHARP)
         return CAGE_SHARPNESS_INFINITE;
     return t->vertex_sharpness ? t->vertex_sharpness[v] : 0;
+}
+
+/* Whether all four vertices of a quad, given by a corner, are interior and regular. */
+static inline bool quad_is_plain(const struct topology *t, uint32_t c)
+{
+    for (int i = 0; i < 4; i++, c = corner_next(t, c))
+        if (t->vertex_flags[corner_vertex(t, c)] != VERTEX_PLAIN)
+            return false;
+    return true;
 }
 
 /* The faces around a corner's vertex that its sector holds. */
