@@ -52,6 +52,8 @@ CORE_OBJ := $(call obj,$(CAGE_SRC) $(LIMIT_SRC) server/error.c)
 RENDER_OBJ := $(call obj,$(GPU_SRC)) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,server/main.c $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC)) $(PROTOCOL_OBJ)
+# With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
+SERVER_OBJ += $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
 CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 
 SERVER_LIBS := -lepoxy -lOpenImageIO -lOpenImageIO_Util -ltinygltf -lprotobuf-nanopb -lzstd -lcrypto -linih -lm

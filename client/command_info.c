@@ -20,8 +20,15 @@ static void print_json(struct json *json, const struct sheen_model_info *info)
         {"ptex_faces", info->ptex_faces},
         {"boundary_edges", info->boundary_edges},
         {"boundary_extraordinary", info->boundary_extraordinary},
+        {"sharp_edges", info->sharp_edges},
+        {"semisharp_edges", info->semisharp_edges},
+        {"sharp_vertices", info->sharp_vertices},
+        {"holes", info->holes},
+        {"nonmanifold_edges", info->nonmanifold_edges},
+        {"nonmanifold_vertices", info->nonmanifold_vertices},
         {"regular_patches", info->regular_patches},
         {"corner_patches", info->corner_patches},
+        {"strip_patches", info->strip_patches},
         {"split_nodes", info->split_nodes},
         {"hole_nodes", info->hole_nodes},
         {"table_bytes", info->table_bytes},
@@ -65,9 +72,15 @@ static void print_table(const struct sheen_model_info *info)
         printf("%s %u of valence %u", i ? "," : "", info->extraordinary[i].count,
                info->extraordinary[i].valence);
     printf("%s\n", info->n_valences ? "" : " none inside");
-    printf("%-16s %u faces: %u regular, %u corner patches, %u split, %u without surface\n", "ptex",
-           info->ptex_faces, info->regular_patches, info->corner_patches, info->split_nodes,
-           info->hole_nodes);
+    printf("%-16s %u sharp and %u semi-sharp edges, %u vertices, %u holes\n", "sharpness",
+           info->sharp_edges, info->semisharp_edges, info->sharp_vertices, info->holes);
+    if (info->nonmanifold_edges || info->nonmanifold_vertices)
+        printf("%-16s %u edges, %u vertices\n", "non-manifold", info->nonmanifold_edges,
+               info->nonmanifold_vertices);
+    printf("%-16s %u faces: %u regular, %u corner and %u strip patches, %u split, %u without "
+           "surface\n",
+           "ptex", info->ptex_faces, info->regular_patches, info->corner_patches,
+           info->strip_patches, info->split_nodes, info->hole_nodes);
     printf("%-16s %" PRIu64 " bytes on the GPU: %" PRIu64 " a regular patch, %" PRIu64
            " a corner patch\n",
            "tables", info->table_bytes, info->regular_bytes, info->corner_bytes);

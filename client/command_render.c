@@ -44,8 +44,8 @@ static void print_json(struct json *json, const struct options *options, const s
     json_string(json, "server", frame->server);
     json_string(json, "model", options->model);
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
-    json_uint(json, "faces", info->faces);
-    json_uint(json, "covered_px", frame->covered_px);
+    if (info->faces)
+        json_uint(json, "faces", info->faces);
     job_json_times(json, &frame->times);
     json_object_begin(json, "camera");
     json_vec3(json, "eye", frame->camera.eye);
@@ -70,9 +70,22 @@ static void print_summary(struct job *job, const struct options *options,
 {
     progress_clear(&job->progress);
     job_print_warnings(job, options->model, info->warnings);
-    fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %" PRIu32 " faces, %s, %.0f ms\n",
-            options->output, frame->width_px, frame->height_px, info->faces, frame->device,
-            (double)frame->times.total_us / 1e3);
+    fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", ", options->output, frame->width_px,
+            frame->height_px);
+    if (info->faces)
+        fprintf(stderr, "%" PRIu32 " faces, ", info->faces);
+    fprintf(stderr, "%s, %.0f ms\n", frame->device, (double)frame->times.total_us / 1e3);
+}
+
+/* What there is to say about the model. The frame is here by then and outlives a daemon that is
+ * not: the info says that the rest is unknown, its counts are 0. */
+static void ask_about_model(struct job *job, struct sheen_model_info *info)
+{
+    struct sheen_error error;
+    if (sheen_query_model(job->session, job->model_id, &job->report, info, &error) == SHEEN_OK)
+        return;
+    *info = (struct sheen_model_info){0};
+    snprintf(info->warnings, sizeof(info->warnings), "its warnings are unknown: %s", error.text);
 }
 
 static int run(const struct options *options)
@@ -91,11 +104,11 @@ static int run(const struct options *options)
         request.model_id[i] = job.model_id[i];
     if (!status)
         status = sheen_render(job.session, &request, &job.report, &frame, &job.error);
-    /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
-    if (!status)
-        status = sheen_query_model(job.session, job.model_id, &job.report, &info, &job.error);
     if (!status)
         status = file_write(options->output, frame.file, frame.file_bytes, &job.error);
+    /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
+    if (!status)
+        ask_about_model(&job, &info);
     if (!status && !options->quiet)
         print_summary(&job, options, &frame, &info);
     if (!status && options->json) {

@@ -24,16 +24,16 @@ bool options_check_scene(struct options *options, char *why)
     unsigned light = options->given & (GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V);
     if (camera != 0 && camera != (GIVEN_EYE | GIVEN_TARGET))
         return options_refuse(why, "--eye and --target come together");
-    if (camera == 0 && options->given & (GIVEN_UP | GIVEN_FOV | GIVEN_ORTHO))
-        return options_refuse(why, "--up, --fov and --ortho need --eye and --target");
     if (options->given & GIVEN_FOV && options->given & GIVEN_ORTHO)
         return options_refuse(why, "--fov and --ortho exclude each other");
     if (light != 0 && light != (GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V))
         return options_refuse(why, "--light-center, --light-u and --light-v come together");
-    if (camera)
+    if (camera || options->given & (GIVEN_UP | GIVEN_FOV | GIVEN_ORTHO))
         options->request.camera.projection = options->given & GIVEN_ORTHO
                                                  ? SHEEN_PROJECTION_ORTHOGRAPHIC
                                                  : SHEEN_PROJECTION_PERSPECTIVE;
+    options->request.camera.auto_view = camera == 0;
+    options->request.camera.auto_up = camera == 0 && !(options->given & GIVEN_UP);
     options->request.light.is_set = light != 0;
     return true;
 }

@@ -152,14 +152,22 @@ const struct option_row OPTIONS_SCENE[] = {
      "(default: a camera that frames the model)",
      apply_eye},
     {"target", 0, "X,Y,Z", "the point it looks at; with --eye", apply_target},
-    {"up", 0, "X,Y,Z", "its upward direction, any length (default: 0,0,1)", apply_up},
-    {"fov", 0, "DEG", "vertical field of view, above 0 and below 180 degrees (default: 35)",
+    {"up", 0, "X,Y,Z",
+     "its upward direction, any length (default: 0,0,1 with --eye and --target;\n"
+     "alone it turns the camera that frames the model, whose own is y or z)",
+     apply_up},
+    {"fov", 0, "DEG",
+     "vertical field of view, above 0 and below 180 degrees (default: 35);\n"
+     "without --eye and --target it zooms from where the default camera stands",
      apply_fov},
-    {"ortho", 0, "HEIGHT", "orthographic: units from top to bottom of the picture, above 0",
+    {"ortho", 0, "HEIGHT",
+     "orthographic: units from top to bottom of the picture, above 0; without\n"
+     "--eye and --target it looks at the model as the default camera does",
      apply_ortho},
     {"light-center", 0, "X,Y,Z",
      "the middle of the light rectangle; with --light-u and --light-v\n"
-     "(default: a light that hangs over the model)",
+     "(default: a light that hangs over the model: above it in the direction of\n"
+     "the camera's up, and turned with the camera)",
      apply_light_center},
     {"light-u", 0, "X,Y,Z", "its edge that the stripes are counted along", apply_light_u},
     {"light-v", 0, "X,Y,Z", "its other edge", apply_light_v},
@@ -168,9 +176,12 @@ const struct option_row OPTIONS_SCENE[] = {
      "as far as wanted (count above 0 to 100000, duty 0 to 1), or image:FILE\n"
      "(default: stripes:count=40,duty=0.5)",
      apply_pattern},
-    {"miss", 0, "COLOUR", "where the reflected ray misses the light: #rrggbb or #rrggbbaa",
+    {"miss", 0, "COLOUR",
+     "where the reflected ray misses the light: #rrggbb or #rrggbbaa\n"
+     "(default: #29303b, a dark blue-grey)",
      apply_miss},
-    {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa", apply_empty},
+    {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa (default: #808080, grey)",
+     apply_empty},
     {"lines", 0, "KIND", "reflection (default); the only kind yet", apply_lines},
     {"surface", 0, "KIND", "exact (default); the only kind yet", apply_surface},
     {0},

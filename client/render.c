@@ -43,8 +43,11 @@ static void fill_camera(sheen_Render *render, const struct sheen_camera *camera)
     bool ortho = camera->projection == SHEEN_PROJECTION_ORTHOGRAPHIC;
     render->has_camera = true;
     render->camera = (sheen_Camera){
+        .has_eye = !camera->auto_view,
         .eye = vec3_to_message(camera->eye),
+        .has_target = !camera->auto_view,
         .target = vec3_to_message(camera->target),
+        .has_up = !camera->auto_up,
         .up = vec3_to_message(camera->up),
         .has_fov_deg = !ortho,
         .fov_deg = camera->fov_deg,
@@ -196,7 +199,6 @@ static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
                    .ortho_height = body->camera.ortho_height},
         .light = {.is_set = true},
         .times = times_from_message(&body->times),
-        .covered_px = body->covered_px,
         .software = body->software,
     };
     vec3_from_message(frame->camera.eye, &body->camera.eye);

@@ -137,9 +137,14 @@ struct sheen_model_info {
     uint32_t n_valences; /* entries below; the last one sums the rest when there are more */
     struct {
         uint32_t valence, count;
-    } extraordinary[SHEEN_MAX_VALENCES]; /* interior vertices with other than 4 edges */
-    uint32_t boundary_extraordinary;     /* boundary vertices with other than 2 faces */
-    uint32_t regular_patches, corner_patches, split_nodes, hole_nodes;
+    } extraordinary[SHEEN_MAX_VALENCES];   /* interior vertices with other than 4 edges */
+    uint32_t boundary_extraordinary;       /* boundary vertices with other than 2 faces */
+    uint32_t sharp_edges, semisharp_edges; /* creases: infinitely sharp, and others */
+    uint32_t sharp_vertices;               /* with sharpness of their own, infinite or not */
+    uint32_t holes;                        /* faces */
+    uint32_t nonmanifold_edges;            /* in 3 faces and more, or run in one direction by 2 */
+    uint32_t nonmanifold_vertices;         /* whose faces are not one fan */
+    uint32_t regular_patches, corner_patches, strip_patches, split_nodes, hole_nodes;
     uint64_t table_bytes;                 /* on the GPU */
     uint64_t regular_bytes, corner_bytes; /* of one such patch */
     uint64_t tables_us;                   /* reading, building and uploading took this long */
@@ -176,13 +181,14 @@ enum sheen_format {
 };
 
 enum sheen_projection {
-    SHEEN_PROJECTION_AUTO, /* frames the model; the rest of the camera is ignored */
+    SHEEN_PROJECTION_AUTO, /* all as the daemon frames the model; the rest is ignored */
     SHEEN_PROJECTION_PERSPECTIVE,
     SHEEN_PROJECTION_ORTHOGRAPHIC,
 };
 
 struct sheen_camera {
     enum sheen_projection projection;
+    bool auto_view, auto_up;  /* eye and target, or up, are as the daemon frames the model */
     double eye[3], target[3]; /* not the same point */
     double up[3];             /* not along the line of sight; need not be perpendicular */
     double fov_deg;           /* perspective: vertical, (0, 180) */
@@ -246,7 +252,6 @@ struct sheen_frame {
     struct sheen_camera camera; /* as used */
     struct sheen_light light;
     struct sheen_times times;
-    uint64_t covered_px; /* pixels that hit the surface */
     char device[128], driver[128], server[32];
     bool software;
     struct sheen_frame_memory *memory; /* the library's */

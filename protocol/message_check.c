@@ -108,25 +108,49 @@ static bool is_parallel(const sheen_Vec3 *a, const sheen_Vec3 *b)
     return c[0] * c[0] + c[1] * c[1] + c[2] * c[2] <= 1e-24;
 }
 
-static bool check_camera(const sheen_Camera *camera, char *text)
+/* Eye, target and up, as far as they are there. */
+static bool check_view(const sheen_Camera *camera, char *text)
 {
-    if (!check_vec3(&camera->eye, "camera.eye", text) ||
-        !check_vec3(&camera->target, "camera.target", text) ||
-        !check_vec3(&camera->up, "camera.up", text))
+    if ((camera->has_eye && !check_vec3(&camera->eye, "camera.eye", text)) ||
+        (camera->has_target && !check_vec3(&camera->target, "camera.target", text)) ||
+        (camera->has_up && !check_vec3(&camera->up, "camera.up", text)))
         return false;
+    if (camera->has_eye != camera->has_target)
+        return refuse(text, "camera.eye and camera.target come together");
     const sheen_Vec3 view = {camera->target.x - camera->eye.x, camera->target.y - camera->eye.y,
                              camera->target.z - camera->eye.z};
-    if (view.x == 0 && view.y == 0 && view.z == 0)
+    if (camera->has_eye && view.x == 0 && view.y == 0 && view.z == 0)
         return refuse(text, "camera.eye and camera.target are the same point");
-    if (is_parallel(&view, &camera->up))
-        return refuse(text, "camera.up is zero or along the line of sight");
-    if (camera->has_fov_deg == camera->has_ortho_height)
-        return refuse(text, "camera needs one of fov_deg and ortho_height");
+    static const sheen_Vec3 y_axis = {0, 1, 0};
+    bool zero_up = camera->up.x == 0 && camera->up.y == 0 && camera->up.z == 0;
+    if (camera->has_up && (zero_up || (camera->has_eye && is_parallel(&view, &camera->up))))
+        return refuse(text,
+                      "camera.up (--up) is zero or along the line of sight: give another, as --up "
+                      "%s",
+                      is_parallel(&view, &y_axis) ? "0,0,1" : "0,1,0");
+    return true;
+}
+
+static bool check_camera(const sheen_Camera *camera, char *text)
+{
+    if (!check_view(camera, text))
+        return false;
+    if (camera->has_fov_deg && camera->has_ortho_height)
+        return refuse(text, "camera.fov_deg and camera.ortho_height exclude each other");
     if (camera->has_ortho_height)
         return check_positive(camera->ortho_height, PROTOCOL_MAX_COORDINATE, "camera.ortho_height",
                               text);
-    return (camera->fov_deg > 0 && camera->fov_deg < 180) ||
+    return !camera->has_fov_deg || (camera->fov_deg > 0 && camera->fov_deg < 180) ||
            refuse(text, "camera.fov_deg is %g; it must be above 0 and below 180", camera->fov_deg);
+}
+
+/* A frame says all of the camera that made it. */
+static bool check_whole_camera(const sheen_Camera *camera, char *text)
+{
+    if (!camera->has_eye || !camera->has_target || !camera->has_up ||
+        (!camera->has_fov_deg && !camera->has_ortho_height))
+        return refuse(text, "camera lacks a field; a frame has them all");
+    return check_camera(camera, text);
 }
 
 static bool check_light(const sheen_Light *light, char *text)
@@ -228,7 +252,7 @@ static bool check_frame(const sheen_Frame *frame, char *text)
         return refuse(text, "data_bytes is %llu; it must be from 1 to %llu",
                       (unsigned long long)frame->data_bytes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
-    return check_camera(&frame->camera, text) && check_light(&frame->light, text) &&
+    return check_whole_camera(&frame->camera, text) && check_light(&frame->light, text) &&
            check_pattern(&frame->pattern, text) && check_text(frame->device, "device", text) &&
            check_text(frame->driver, "driver", text) && check_text(frame->server, "server", text);
 }

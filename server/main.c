@@ -103,6 +103,14 @@ static bool set_idle_timeout(struct settings *settings, const char *value, struc
     return ok;
 }
 
+static bool set_drain_timeout(struct settings *settings, const char *value, struct error *error)
+{
+    uint64_t n = 0;
+    bool ok = set_number("drain-timeout", value, 0, 10000000, &n, error);
+    settings->service.drain_timeout_s = (unsigned)n;
+    return ok;
+}
+
 static bool set_session_fd(struct settings *settings, const char *value, struct error *error)
 {
     uint64_t fd = 0;
@@ -152,6 +160,9 @@ static const struct option_row OPTIONS[] = {
      true},
     {"idle-timeout", "SECONDS", "disconnect a client without a request; 0: never (default: 900)",
      set_idle_timeout, true},
+    {"drain-timeout", "SECONDS",
+     "after SIGTERM, how long a client may take to read its frames (default: 30)",
+     set_drain_timeout, true},
     {"config", "FILE", "lines 'name = value' with the names above; options given here go first",
      set_config, false},
     {"check-config", NULL, "check the options and the file, then exit", set_check_config, false},
@@ -320,7 +331,8 @@ int main(int argc, char **argv)
         .service = {.session_fd = -1,
                     .memory_budget_bytes = (size_t)4 << 30,
                     .n_threads = count_processors(),
-                    .idle_timeout_s = 900},
+                    .idle_timeout_s = 900,
+                    .drain_timeout_s = 30},
     };
     struct service_options *options = &settings.service;
     if (!read_settings(argc, argv, &settings, &error))

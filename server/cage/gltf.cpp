@@ -30,6 +30,11 @@ void Reader::refuse(const char *format, ...)
 namespace
 {
 
+bool starts_with(const std::string &text, const char *start)
+{
+    return text.compare(0, strlen(start), start) == 0;
+}
+
 /* File access and images: refused and skipped. */
 
 bool no_file(const std::string &, void *)
@@ -58,8 +63,28 @@ bool skip_image(tinygltf::Image *, const int, std::string *, std::string *, int,
     return true;
 }
 
+/* Text that is no JSON object at all gets a plain word instead of a parser's. */
+bool looks_like_json(const char *text, size_t size)
+{
+    size_t at = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+    while (at < size && memchr(" \t\r\n", text[at], 4))
+        at++;
+    return at < size && text[at] == '{';
+}
+
+/* What the library says without the names of its parts: "[json.exception.parse_error.101] ...". */
+std::string plain_problem(const std::string &problem)
+{
+    std::string line = problem.substr(0, problem.find('\n'));
+    size_t end = starts_with(line, "[json.exception.") ? line.find("] ") : std::string::npos;
+    return end == std::string::npos ? line : "its JSON is broken: " + line.substr(end + 2);
+}
+
 void parse(Reader &reader, const gltf_container &container, const void *bytes)
 {
+    if (!container.binary && !looks_like_json(static_cast<const char *>(bytes), container.length))
+        reader.refuse("not a glTF file: it begins neither with '{' (JSON) nor with 'glTF' (GLB); "
+                      "an OBJ file needs a name that ends in .obj");
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks({no_file, same_path, no_reading, no_writing, nullptr});
     loader.SetImageLoader(skip_image, nullptr);
@@ -75,17 +100,12 @@ void parse(Reader &reader, const gltf_container &container, const void *bytes)
     if (done && problem.empty())
         return;
     static const std::string absent = "File not found : ";
-    problem = problem.substr(0, problem.find('\n'));
+    problem = plain_problem(problem);
     if (problem.compare(0, absent.size(), absent) == 0)
         reader.refuse("it refers to the file '%.100s', but nothing outside the given file is read: "
                       "export as GLB or with embedded buffers",
                       problem.c_str() + absent.size());
     reader.refuse("not a glTF file that can be read: %.200s", problem.c_str());
-}
-
-bool starts_with(const std::string &text, const char *start)
-{
-    return text.compare(0, strlen(start), start) == 0;
 }
 
 /* An extension that the file requires changes how it is read. Those about looks do not matter. */

@@ -2,20 +2,31 @@
 
 #include <stdlib.h>
 
-/* Edges by their lower vertex: ends[start[v] .. start[v + 1]) are the upper ends, once per face. */
+/* One side of an edge: the face corner where it leaves, and the face's next one. */
+struct side {
+    uint32_t high, corner, next;
+};
+
+enum { ON_BOUNDARY = 1, NON_MANIFOLD = 2, HAS_FAN = 4 };
+
+/* Sides by their lower vertex: side[start[v] .. start[v + 1]), sorted by the higher one. */
 struct edges {
-    uint32_t *start;   /* [n_vertices + 2] */
-    uint32_t *ends;    /* [corners] */
-    uint32_t *valence; /* [n_vertices]: faces around it */
-    bool *on_boundary; /* [n_vertices] */
+    uint32_t *start;    /* [n_vertices + 2] */
+    struct side *side;  /* [corners] */
+    float *sharpness;   /* [corners]: of an edge, at its first side; NULL: no creases */
+    uint32_t *valence;  /* [n_vertices]: faces around it */
+    uint8_t *flags;     /* [n_vertices] */
+    uint32_t *fan_link; /* [corners]: union-find of the corners that edges join around a vertex */
 };
 
 static void edges_finish(struct edges *edges)
 {
     free(edges->start);
-    free(edges->ends);
+    free(edges->side);
+    free(edges->sharpness);
     free(edges->valence);
-    free(edges->on_boundary);
+    free(edges->flags);
+    free(edges->fan_link);
 }
 
 static bool edges_init(struct edges *edges, const struct cage *cage, struct error *error)
@@ -23,11 +34,14 @@ static bool edges_init(struct edges *edges, const struct cage *cage, struct erro
     size_t n_corners = cage->face_start[cage->n_faces];
     *edges = (struct edges){
         .start = calloc(cage->n_vertices + 2, sizeof *edges->start),
-        .ends = calloc(n_corners + 1, sizeof *edges->ends),
+        .side = calloc(n_corners + 1, sizeof *edges->side),
+        .sharpness = cage->n_creases ? calloc(n_corners + 1, sizeof *edges->sharpness) : NULL,
         .valence = calloc(cage->n_vertices + 1, sizeof *edges->valence),
-        .on_boundary = calloc(cage->n_vertices + 1, sizeof *edges->on_boundary),
+        .flags = calloc(cage->n_vertices + 1, 1),
+        .fan_link = calloc(n_corners + 1, sizeof *edges->fan_link),
     };
-    if (edges->start && edges->ends && edges->valence && edges->on_boundary)
+    if (edges->start && edges->side && edges->valence && edges->flags && edges->fan_link &&
+        (edges->sharpness || !cage->n_creases))
         return true;
     edges_finish(edges);
     return error_set(error, ERROR_SERVER, "no memory to count the edges of %zu faces",
@@ -35,54 +49,156 @@ static bool edges_init(struct edges *edges, const struct cage *cage, struct erro
 }
 
 /* Calls visit for the edge that leaves every corner of the cage. */
-static void each_edge(const struct cage *cage, struct edges *edges,
-                      void (*visit)(struct edges *edges, uint32_t low, uint32_t high))
+static void each_side(const struct cage *cage, struct edges *edges,
+                      void (*visit)(struct edges *edges, uint32_t low, struct side side))
 {
     for (size_t face = 0; face < cage->n_faces; face++) {
         uint32_t first = cage->face_start[face], last = cage->face_start[face + 1];
         for (uint32_t i = first; i < last; i++) {
-            uint32_t a = cage->face_vertex[i];
-            uint32_t b = cage->face_vertex[i + 1 < last ? i + 1 : first];
-            visit(edges, a < b ? a : b, a < b ? b : a);
+            uint32_t next = i + 1 < last ? i + 1 : first;
+            uint32_t a = cage->face_vertex[i], b = cage->face_vertex[next];
+            visit(edges, a < b ? a : b, (struct side){a < b ? b : a, i, next});
         }
     }
 }
 
-/* Counts two places ahead, so that filling leaves start[v] where v's ends begin. */
-static void count_edge(struct edges *edges, uint32_t low, uint32_t high)
+/* Counts two places ahead, so that filling leaves start[v] where v's sides begin. */
+static void count_side(struct edges *edges, uint32_t low, struct side side)
 {
-    (void)high;
+    (void)side;
     edges->start[low + 2]++;
 }
 
-static void fill_edge(struct edges *edges, uint32_t low, uint32_t high)
+static void fill_side(struct edges *edges, uint32_t low, struct side side)
 {
-    edges->ends[edges->start[low + 1]++] = high;
+    edges->side[edges->start[low + 1]++] = side;
 }
 
-static int compare_u32(const void *a, const void *b)
+static int compare_sides(const void *a, const void *b)
 {
-    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
+    const struct side *p = a, *q = b;
+    if (p->high != q->high)
+        return p->high < q->high ? -1 : 1;
+    return p->corner < q->corner ? -1 : p->corner > q->corner;
 }
 
-static uint32_t mark_boundary(const struct cage *cage, struct edges *edges)
+static void edges_sort(struct edges *edges, const struct cage *cage)
 {
-    uint32_t n_boundary = 0;
-    for (size_t v = 0; v < cage->n_vertices; v++) {
-        uint32_t *end = edges->ends + edges->start[v];
-        size_t n = edges->start[v + 1] - edges->start[v];
-        if (n > 1)
-            qsort(end, n, sizeof *end, compare_u32);
-        for (size_t i = 0; i < n; i++) {
-            if ((i > 0 && end[i] == end[i - 1]) || (i + 1 < n && end[i] == end[i + 1]))
-                continue;
-            n_boundary++;
-            edges->on_boundary[v] = edges->on_boundary[end[i]] = true;
-        }
+    each_side(cage, edges, count_side);
+    for (size_t v = 0; v <= cage->n_vertices; v++)
+        edges->start[v + 1] += edges->start[v];
+    each_side(cage, edges, fill_side);
+    for (size_t v = 0; v < cage->n_vertices; v++)
+        if (edges->start[v + 1] - edges->start[v] > 1)
+            qsort(edges->side + edges->start[v], edges->start[v + 1] - edges->start[v],
+                  sizeof *edges->side, compare_sides);
+}
+
+/* --- which faces hang together */
+
+static uint32_t fan_of(struct edges *edges, uint32_t corner)
+{
+    uint32_t *link = edges->fan_link;
+    while (link[corner] != corner)
+        corner = link[corner] = link[link[corner]]; /* halves the path */
+    return corner;
+}
+
+/* Two faces that run along an edge in opposite directions hang together at both of its ends. */
+static void join_faces(struct edges *edges, const struct side *a, const struct side *b)
+{
+    edges->fan_link[fan_of(edges, a->corner)] = fan_of(edges, b->next);
+    edges->fan_link[fan_of(edges, a->next)] = fan_of(edges, b->corner);
+}
+
+static void survey_edge(const struct cage *cage, struct edges *edges, uint32_t low,
+                        const struct side *side, size_t n, struct cage_survey *survey)
+{
+    uint8_t flag = 0;
+    if (n == 1) {
+        survey->n_boundary_edges++;
+        flag = ON_BOUNDARY;
+    } else if (n == 2 && cage->face_vertex[side[0].corner] != cage->face_vertex[side[1].corner]) {
+        join_faces(edges, &side[0], &side[1]);
+    } else {
+        survey->n_nonmanifold_edges++;
+        flag = NON_MANIFOLD;
     }
-    return n_boundary;
+    edges->flags[low] |= flag;
+    edges->flags[side->high] |= flag;
 }
+
+static void survey_edges(const struct cage *cage, struct edges *edges, struct cage_survey *survey)
+{
+    size_t n_corners = cage->face_start[cage->n_faces];
+    for (uint32_t c = 0; c < n_corners; c++)
+        edges->fan_link[c] = c;
+    for (uint32_t v = 0; v < cage->n_vertices; v++)
+        for (uint32_t first = edges->start[v], last; first < edges->start[v + 1]; first = last) {
+            const struct side *side = edges->side;
+            for (last = first + 1;
+                 last < edges->start[v + 1] && side[last].high == side[first].high; last++)
+                ;
+            survey_edge(cage, edges, v, side + first, last - first, survey);
+        }
+    for (uint32_t c = 0; c < n_corners; c++) {
+        uint8_t *flags = &edges->flags[cage->face_vertex[c]];
+        if (fan_of(edges, c) == c)
+            *flags |= *flags & HAS_FAN ? NON_MANIFOLD : HAS_FAN;
+    }
+    for (size_t v = 0; v < cage->n_vertices; v++)
+        survey->n_nonmanifold_vertices += (edges->flags[v] & NON_MANIFOLD) != 0;
+}
+
+/* --- tags; of two for the same thing the later one holds */
+
+/* The first side of an edge of the cage. */
+static size_t find_edge(const struct edges *edges, uint32_t a, uint32_t b)
+{
+    uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    size_t begin = edges->start[low], end = edges->start[low + 1];
+    while (begin < end) {
+        size_t middle = begin + (end - begin) / 2;
+        if (edges->side[middle].high < high)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin;
+}
+
+static void survey_creases(const struct cage *cage, struct edges *edges, struct cage_survey *survey)
+{
+    size_t n_corners = cage->face_start[cage->n_faces];
+    for (size_t i = 0; i < cage->n_creases; i++)
+        edges->sharpness[find_edge(edges, cage->crease[i].vertex[0], cage->crease[i].vertex[1])] =
+            cage->crease[i].sharpness;
+    for (size_t i = 0; i < n_corners && edges->sharpness; i++) {
+        bool sharp = edges->sharpness[i] >= CAGE_SHARPNESS_INFINITE;
+        survey->n_sharp_edges += sharp;
+        survey->n_semisharp_edges += edges->sharpness[i] > 0 && !sharp;
+    }
+}
+
+static bool survey_tags(const struct cage *cage, struct cage_survey *survey, struct error *error)
+{
+    uint8_t *sharp = calloc(cage->n_vertices + 1, 1), *hole = calloc(cage->n_faces + 1, 1);
+    bool ok = sharp && hole;
+    for (size_t i = 0; ok && i < cage->n_corners; i++)
+        sharp[cage->corner[i].vertex] = cage->corner[i].sharpness > 0;
+    for (size_t i = 0; ok && i < cage->n_holes; i++)
+        hole[cage->hole[i]] = 1;
+    for (size_t v = 0; ok && v < cage->n_vertices; v++)
+        survey->n_sharp_vertices += sharp[v];
+    for (size_t f = 0; ok && f < cage->n_faces; f++)
+        survey->n_holes += hole[f];
+    free(sharp);
+    free(hole);
+    return ok || error_set(error, ERROR_SERVER, "no memory to count the tags of %zu faces",
+                           cage->n_faces);
+}
+
+/* --- valences */
 
 /* One count per valence; the table's end takes what does not fit. */
 static void count_valences(struct cage_survey *survey, uint32_t *by_valence, uint32_t max_valence)
@@ -110,7 +226,7 @@ static bool survey_vertices(const struct cage *cage, const struct edges *edges,
     if (!by_valence)
         return error_set(error, ERROR_SERVER, "no memory to count %u valences", max_valence);
     for (size_t v = 0; v < cage->n_vertices; v++) {
-        if (edges->on_boundary[v])
+        if (edges->flags[v] & ON_BOUNDARY)
             survey->n_boundary_extraordinary += edges->valence[v] != 2;
         else
             by_valence[edges->valence[v]]++;
@@ -134,12 +250,10 @@ bool cage_survey(const struct cage *cage, struct cage_survey *survey, struct err
     }
     for (size_t i = 0; i < cage->face_start[cage->n_faces]; i++)
         edges.valence[cage->face_vertex[i]]++;
-    each_edge(cage, &edges, count_edge);
-    for (size_t v = 0; v <= cage->n_vertices; v++)
-        edges.start[v + 1] += edges.start[v];
-    each_edge(cage, &edges, fill_edge);
-    survey->n_boundary_edges = mark_boundary(cage, &edges);
-    bool ok = survey_vertices(cage, &edges, survey, error);
+    edges_sort(&edges, cage);
+    survey_edges(cage, &edges, survey);
+    survey_creases(cage, &edges, survey);
+    bool ok = survey_vertices(cage, &edges, survey, error) && survey_tags(cage, survey, error);
     edges_finish(&edges);
     return ok;
 }

@@ -11,6 +11,12 @@ struct cage_survey {
     uint32_t n_triangles, n_quads, n_ngons; /* faces of 3, 4, and 5 or more corners */
     uint32_t n_boundary_edges;              /* edges of one face */
     uint32_t n_boundary_extraordinary;      /* vertices on such edges in other than 2 faces */
+    uint32_t n_nonmanifold_edges;    /* of 3 faces and more, or run in one direction by 2 faces */
+    uint32_t n_nonmanifold_vertices; /* on such an edge, or with faces that are not one fan */
+
+    uint32_t n_sharp_edges, n_semisharp_edges; /* tagged: infinitely sharp, and other creases */
+    uint32_t n_sharp_vertices;                 /* tagged, infinitely sharp or not */
+    uint32_t n_holes;                          /* faces tagged */
 
     /* Vertices off the boundary in other than 4 faces, by number of faces, ascending. When there
      * are more numbers than entries the last entry counts the rest under the smallest of them. */

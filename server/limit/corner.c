@@ -4,7 +4,7 @@
 
 #include "server/limit/bound.h"
 #include "server/limit/crease.h"
-#include "server/limit/dart.h"
+#include "server/limit/modes.h"
 #include "server/limit/texels.h"
 
 /* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the vertex's ring. */
@@ -47,9 +47,9 @@ static void refine_window_sums(const struct net *in, struct net *out)
     out->ring.centre = vec_mad(vec_scale(in->ring.centre, (n - 2) / n), 1 / (n * n), sum);
 }
 
-static struct vec limit_position(const struct ring *ring, const struct dart_masks *dart)
+static struct vec limit_position(const struct ring *ring, const struct ring_modes *modes)
 {
-    return ring_is_dart(ring) ? dart_apply(dart->position, ring) : ring_limit(ring);
+    return ring_is_dart(ring) ? ring_mode_apply(modes->position, ring) : ring_limit(ring);
 }
 
 static struct vec to_frame(struct vec p, struct vec origin, const struct vec axis[3])
@@ -138,7 +138,7 @@ static void ring_points(const struct ring *ring, struct vec grid[5][5])
 }
 
 /* One level further: refine, then move the limit position back to zero. */
-static void next_net(const struct net *in, const struct dart_masks *dart, struct net *out)
+static void next_net(const struct net *in, const struct ring_modes *modes, struct net *out)
 {
     struct vec coarse[5][5];
     for (int j = 0; j < 5; j++)
@@ -154,7 +154,7 @@ static void next_net(const struct net *in, const struct dart_masks *dart, struct
     ring_points(&out->ring, out->grid);
     phantom_points(&out->ring, out->grid);
 
-    struct vec limit = in->window_of > 0 ? window_limit(out) : limit_position(&out->ring, dart);
+    struct vec limit = in->window_of > 0 ? window_limit(out) : limit_position(&out->ring, modes);
     out->edges = vec_mad(out->edges, -in->window_of, limit);
     out->faces = vec_mad(out->faces, -in->window_of, limit);
     for (int j = 0; j < 5; j++)
@@ -193,22 +193,30 @@ static void write_quaternion(const struct vec axis[3], float q[4])
         q[n] = (float)(r[n] / length);
 }
 
+/* The frame in which single precision keeps everything: axis[2] is the normal where there is one. A
+ * cone's tip becomes a needle (its axis shrinks more slowly than what lies across), so axis[0] then
+ * lies along it, or the digits of the other coordinates would drown. */
+static bool vertex_frame(const struct ring *ring, struct ring_modes *modes, struct vec axis[3],
+                         struct arena *arena)
+{
+    struct vec t1, t2;
+    bool has_normal = ring_tangents(ring, &t1, &t2);
+    if (ring_is_dart(ring) || (!has_normal && ring->n_faces <= MODES_MAX_VALENCE)) {
+        ring_modes_init(modes, ring, arena);
+        t1 = ring_mode_apply(modes->tangent[0], ring);
+        t2 = ring_mode_apply(modes->tangent[1], ring);
+    }
+    return ring_frame(ring, t1, t2, axis) && has_normal;
+}
+
 bool corner_table(const struct quad *quad, struct arena *arena, float (*texels)[4],
                   struct limit_bound bounds[LIMIT_LEVELS], double origin[3])
 {
     const struct ring *ring = &quad->corner[0];
-    struct dart_masks dart;
-    struct vec axis[3], t1, t2;
-    bool has_normal = true;
-    if (ring_is_dart(ring)) {
-        dart_masks_init(&dart, ring, arena);
-        t1 = dart_apply(dart.tangent[0], ring);
-        t2 = dart_apply(dart.tangent[1], ring);
-    } else {
-        has_normal = ring_tangents(ring, &t1, &t2);
-    }
-    has_normal &= ring_frame(ring, t1, t2, axis);
-    struct vec limit = limit_position(ring, &dart);
+    struct ring_modes modes;
+    struct vec axis[3];
+    bool has_normal = vertex_frame(ring, &modes, axis, arena);
+    struct vec limit = limit_position(ring, &modes);
     struct net net[2] = {0};
     for (int k = 0; k < 2; k++)
         net[k].ring = needs_window(ring)
@@ -217,7 +225,7 @@ bool corner_table(const struct quad *quad, struct arena *arena, float (*texels)[
     first_net(quad, limit, axis, &net[0]);
     for (int n = 0; n < LIMIT_LEVELS; n++) {
         struct net *fine = &net[(n + 1) & 1];
-        next_net(&net[n & 1], &dart, fine);
+        next_net(&net[n & 1], &modes, fine);
         texels_write(&fine->grid[0][1], LIMIT_LEVEL_POINTS, texels + n * LIMIT_LEVEL_POINTS);
         bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true);
     }

@@ -4,7 +4,7 @@
 #include "server/limit/bound.h"
 #include "server/limit/corner.h"
 #include "server/limit/crease.h"
-#include "server/limit/dart.h"
+#include "server/limit/modes.h"
 #include "server/limit/strip.h"
 #include "server/limit/texels.h"
 
@@ -43,7 +43,7 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
                          unsigned corner)
 {
     const struct ring *ring = &quad->corner[corner];
-    if (ring_is_dart(ring) && ring->n_faces > DART_MAX_VALENCE) {
+    if (ring_is_dart(ring) && ring->n_faces > MODES_MAX_VALENCE) {
         b->dart_valence = ring->n_faces;
     } else if (b->tables) {
         struct limit_node *out = &b->tables->nodes[node];

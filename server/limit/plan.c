@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "server/limit/dart.h"
+#include "server/limit/modes.h"
 #include "server/limit/face.h"
 
 /* Boundary mode NONE: faces at a boundary are support only, unless all boundary edges at their
@@ -52,7 +52,7 @@ static bool lay_out(struct limit_plan *plan, struct error *error)
             ok = error_set(error, ERROR_MODEL,
                            "a crease ends at a vertex of %u faces, more than the %d that sheen "
                            "evaluates",
-                           measure.dart_valence, DART_MAX_VALENCE);
+                           measure.dart_valence, MODES_MAX_VALENCE);
         else if (node > INT32_MAX || point > UINT32_MAX)
             ok = error_set(error, ERROR_MODEL,
                            "the cage needs more than %u table points: split it in parts",

@@ -80,10 +80,11 @@ static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
     return vec_mad(vec_scale(in->centre, (n - 2) / n), 1 / (n * n), sum);
 }
 
-/* How much of the parent's rule remains as sharpness runs out: the mean of what runs out now. */
+/* How much of the parent's rule remains as sharpness runs out: the mean of what runs out now, in
+ * single precision as sharpness is everywhere. */
 static double rule_weight(const struct ring *in, const struct ring *out)
 {
-    double sum = 0;
+    float sum = 0;
     uint32_t n = 0;
     if (in->sharpness > 0 && out->sharpness <= 0) {
         sum += in->sharpness;
@@ -95,7 +96,7 @@ static double rule_weight(const struct ring *in, const struct ring *out)
             n++;
         }
     }
-    return n ? fmin(sum / n, 1) : 0;
+    return n ? fmin((double)(sum / (float)n), 1) : 0;
 }
 
 static struct vec refine_centre(const struct ring *in, const struct ring *out)

@@ -45,6 +45,13 @@ static void drop_cage(struct model_build *build)
     cage_finish(&build->cage);
 }
 
+/* Puts the file's name before an error of a part that knows no files. Returns false. */
+static bool fail_named(struct model_build *build, const struct error *found)
+{
+    const struct error copy = *found;
+    return error_set(&build->error, copy.kind, "%s: %s", build->order.name, copy.text);
+}
+
 /* Ends the build on the loop's thread: with its model, or with build->error. */
 static void end_build(struct model_build *build, bool ok)
 {
@@ -72,7 +79,7 @@ static void upload_run(struct work *work, void *worker)
 static void upload_done(struct work *work)
 {
     struct model_build *build = work->owner;
-    end_build(build, build->model->gpu != NULL);
+    end_build(build, build->model->gpu || fail_named(build, &build->error));
 }
 
 static void start_upload(struct model_build *build)
@@ -89,7 +96,7 @@ static void start_upload(struct model_build *build)
 static bool check_not_cancelled(const struct build_order *order, struct error *error)
 {
     return !atomic_load(order->cancelled) ||
-           error_set(error, ERROR_SERVER, "%s: the daemon is shutting down", order->name);
+           error_set(error, ERROR_SERVER, "the daemon is shutting down");
 }
 
 static void range_run(struct work *work, void *worker)
@@ -111,8 +118,7 @@ static void range_done(struct work *work)
     for (size_t i = 0; i < build->n_ranges; i++) {
         if (build->ranges[i].ok)
             continue;
-        build->error = build->ranges[i].error;
-        end_build(build, false);
+        end_build(build, fail_named(build, &build->ranges[i].error));
         return;
     }
     start_upload(build);
@@ -145,16 +151,18 @@ static bool read_cage(struct model_build *build)
 {
     const struct build_order *order = &build->order;
     struct model *model = build->model;
-    if (!check_not_cancelled(order, &build->error) ||
-        !cage_read(&build->cage, order->file, order->file_bytes, order->name, &build->error) ||
-        !cage_survey(&build->cage, &model->survey, &build->error))
+    struct error error = {0};
+    if (!cage_read(&build->cage, order->file, order->file_bytes, order->name, &build->error))
         return false;
     model->n_vertices = build->cage.n_vertices;
     model->n_faces = build->cage.n_faces;
     if (build->cage.warnings && !(model->warnings = strdup(build->cage.warnings)))
         return error_set(&build->error, ERROR_SERVER, "%s: no memory", order->name);
-    build->plan = limit_plan_create(&build->cage, &build->error);
-    return build->plan && limit_tables_init(&model->tables, build->plan, &build->error);
+    if (check_not_cancelled(order, &error) && cage_survey(&build->cage, &model->survey, &error) &&
+        (build->plan = limit_plan_create(&build->cage, &error)) &&
+        limit_tables_init(&model->tables, build->plan, &error))
+        return true;
+    return fail_named(build, &error);
 }
 
 static void read_run(struct work *work, void *worker)

@@ -30,7 +30,7 @@ struct request {
     bool rendered;
     struct frame frame;
     sheen_Times times;
-    uint64_t covered_px, encode_start_us;
+    uint64_t encode_start_us;
     struct label label;
 };
 
@@ -151,6 +151,12 @@ static void fill_survey(sheen_ModelInfo *info, const struct cage_survey *survey)
     info->ngons = survey->n_ngons;
     info->boundary_edges = survey->n_boundary_edges;
     info->boundary_extraordinary = survey->n_boundary_extraordinary;
+    info->sharp_edges = survey->n_sharp_edges;
+    info->semisharp_edges = survey->n_semisharp_edges;
+    info->sharp_vertices = survey->n_sharp_vertices;
+    info->holes = survey->n_holes;
+    info->nonmanifold_edges = survey->n_nonmanifold_edges;
+    info->nonmanifold_vertices = survey->n_nonmanifold_vertices;
     info->extraordinary_count = (pb_size_t)survey->n_valences;
     for (uint32_t i = 0; i < survey->n_valences; i++)
         info->extraordinary[i] =
@@ -170,6 +176,7 @@ static void answer_query(struct request *request)
         .ptex_faces = (uint32_t)tables->n_faces,
         .regular_patches = (uint32_t)tables->n_regular,
         .corner_patches = (uint32_t)tables->n_corner,
+        .strip_patches = (uint32_t)tables->n_strip,
         .split_nodes = (uint32_t)tables->n_split,
         .hole_nodes = (uint32_t)tables->n_hole,
         .table_bytes = model->reserved_bytes,
@@ -270,7 +277,6 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .light = wire_from_light(&asked->light),
         .pattern = wire_from_pattern(&asked->pattern, &request->render.pattern),
         .software = info->software,
-        .covered_px = request->covered_px,
     };
     snprintf(frame->device, sizeof frame->device, "%s", info->device);
     snprintf(frame->driver, sizeof frame->driver, "%s", info->driver);
@@ -312,7 +318,6 @@ static void start_encoding(struct request *request)
     request->times.evaluate_us = times->evaluate_us;
     request->times.shade_us = times->shade_us;
     request->times.readback_us = times->readback_us;
-    request->covered_px = request->frame.covered_px;
     request->encode_start_us = loop_now_us();
 
     char model_hex[2 * MODEL_ID_BYTES + 1], image_hex[2 * MODEL_ID_BYTES + 1];

@@ -91,6 +91,8 @@ static void after_batch(void *owner)
     store_cancel_builds(service->host.store);
     if (!store_is_building(service->host.store) && service->host.scheduler.in_flight == 0)
         loop_stop(service->host.loop);
+    else if (service->single)
+        _exit(0); /* a render cannot be stopped, and this one may take long: nobody wants it */
 }
 
 static void tick(void *owner)
@@ -122,6 +124,7 @@ static void signal_ready(struct loop_source *source, uint32_t events)
     if (service->host.draining)
         _exit(0); /* asked twice: at once, with the listeners gone already */
     service->host.draining = true;
+    service->host.drain_start_us = loop_now_us();
     close_listeners(service);
 }
 
@@ -181,6 +184,7 @@ static bool start(struct service *service, const struct service_options *options
                                  ? options->memory_budget_bytes
                                  : PROTOCOL_MAX_UPLOAD_BYTES;
     host->idle_timeout_us = options->idle_timeout_s * 1000000ull;
+    host->drain_timeout_us = options->drain_timeout_s * 1000000ull;
     stats_init(&host->stats);
     if (options->session_fd >= 0)
         return open_session(service, options->session_fd, error);

@@ -20,6 +20,7 @@ struct service_options {
     size_t memory_budget_bytes; /* as store_create() */
     unsigned n_threads;         /* of the pool, 1 to POOL_MAX_THREADS */
     unsigned idle_timeout_s;    /* 0: never */
+    unsigned drain_timeout_s;   /* to read what is in flight when the daemon shuts down */
 };
 
 struct service;
@@ -30,8 +31,8 @@ struct service;
 struct service *service_create(const struct service_options *options, struct error *error);
 void service_destroy(struct service *service); /* NULL is safe */
 
-/* Serves until SIGTERM or SIGINT (what is in flight is finished; a second signal ends at once), or
- * until the one session has closed. */
+/* Serves until SIGTERM or SIGINT (what is in flight is finished and sent; a second signal ends at
+ * once), or until the one session has closed: then the process ends, if need be here and now. */
 void service_run(struct service *service);
 
 /* For the line at start-up: the device's name, and the listeners' addresses joined by ", ". */

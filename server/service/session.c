@@ -8,6 +8,8 @@
 #include "server/service/request.h"
 #include "server/service/wire.h"
 
+#define SHUTTING_DOWN "the daemon is shutting down: connect to another or try later"
+
 /* --- answers */
 
 static void after_fill(struct session *session, bool ok)
@@ -248,8 +250,7 @@ static void handle_body(struct session *session, const struct message_header *he
         return;
     }
     if (session->host->draining) {
-        refuse(session, header->seq, sheen_ErrorCode_ERROR_SHUTTING_DOWN,
-               "the daemon is shutting down: connect to another or try later");
+        refuse(session, header->seq, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
         return;
     }
     if (header->type == MESSAGE_UPLOAD_BEGIN)
@@ -368,10 +369,22 @@ bool session_settle(struct session *session)
     update_hold(session);
     if (conn->state == CONN_OPEN && !conn->held)
         conn_deliver(conn);
-    bool over = conn->peer_ended || session->host->draining;
-    if (conn->state == CONN_OPEN && over && session->answers.n == 0 && conn_unsent_bytes(conn) == 0)
-        conn_close_after_flush(conn);
+    if (conn->state == CONN_OPEN && session->answers.n == 0 && conn_unsent_bytes(conn) == 0) {
+        if (conn->peer_ended)
+            conn_close_after_flush(conn);
+        else if (session->host->draining)
+            refuse(session, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
+    }
     return conn->state != CONN_CLOSED;
+}
+
+/* Is the daemon shutting down, and has the client had its time to read the answers in flight? */
+static bool drains_too_long(const struct session *session, uint64_t now)
+{
+    const struct session_host *host = session->host;
+    uint64_t since = session->conn.sending_since_us;
+    since = since > host->drain_start_us ? since : host->drain_start_us;
+    return host->draining && now - since > host->drain_timeout_us;
 }
 
 static void check_deadlines(struct session *session, uint64_t now)
@@ -384,7 +397,7 @@ static void check_deadlines(struct session *session, uint64_t now)
     bool receiving = !conn->held && (conn->in_used > 0 || session->upload);
     if (conn->state == CONN_LINGERING && since_in > SESSION_LINGER_US)
         conn_close(conn);
-    else if (sending && since_out > stall)
+    else if (sending && (since_out > stall || drains_too_long(session, now)))
         conn_close(conn); /* it does not read: there is no telling it */
     else if (conn->state != CONN_OPEN)
         return;

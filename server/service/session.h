@@ -31,7 +31,9 @@ struct session_host {
     uint32_t n_sessions;
     uint64_t max_upload_bytes;
     uint64_t idle_timeout_us; /* 0: never */
-    bool draining;            /* no new request is taken */
+    bool draining;            /* no new request is taken, and answers must be read soon */
+    uint64_t drain_start_us;
+    uint64_t drain_timeout_us; /* how long clients may take to read what is in flight */
 };
 
 struct request;

@@ -1,5 +1,6 @@
 #include "server/service/wire.h"
 
+#include <math.h>
 #include <string.h>
 
 _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
@@ -15,9 +16,11 @@ _Static_assert((int)PATTERN_STRIPES == (int)sheen_PatternKind_PATTERN_STRIPES &&
                    (int)PATTERN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE,
                "patterns have the same numbers on the wire");
 
-/* What is left out of a request. Rays that miss the light see its background. */
+/* What is left out of a request. Where the reflected ray misses the light is no dark stripe: it has
+ * a colour of its own. */
 static const sheen_Colour DEFAULT_FOREGROUND = {1, 1, 1, 1};
 static const sheen_Colour DEFAULT_BACKGROUND = {0, 0, 0, 1};
+static const sheen_Colour DEFAULT_MISS = {0.16f, 0.19f, 0.23f, 1};
 static const sheen_Colour DEFAULT_EMPTY = {0.5f, 0.5f, 0.5f, 1};
 
 static void to_vec3(const sheen_Vec3 *from, double to[3])
@@ -45,24 +48,43 @@ static sheen_Colour from_colour(const float c[4])
     return (sheen_Colour){c[0], c[1], c[2], c[3]};
 }
 
-static void to_camera(const sheen_Camera *from, struct camera *to)
+/* Puts what a request says of the camera over the one that frames the model. */
+static void to_camera(const sheen_Camera *from, const double box_min[3], const double box_max[3],
+                      struct camera *to)
 {
-    *to = (struct camera){
-        .kind = from->has_ortho_height ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE,
-        .fov_deg = from->fov_deg,
-        .ortho_height = from->ortho_height,
-    };
-    to_vec3(&from->eye, to->eye);
-    to_vec3(&from->target, to->target);
-    to_vec3(&from->up, to->up);
+    if (from->has_eye)
+        to_vec3(&from->eye, to->eye);
+    if (from->has_target)
+        to_vec3(&from->target, to->target);
+    if (from->has_up)
+        to_vec3(&from->up, to->up);
+    if (from->has_fov_deg)
+        to->fov_deg = from->fov_deg;
+    if (!from->has_ortho_height)
+        return;
+    to->kind = CAMERA_ORTHOGRAPHIC;
+    to->ortho_height = from->ortho_height;
+    if (from->has_eye)
+        return;
+    /* Its height is not known to fit the model: stand outside of the box, however it is seen. */
+    double diagonal = 0, distance = 0;
+    for (int i = 0; i < 3; i++) {
+        diagonal = hypot(diagonal, box_max[i] - box_min[i]);
+        distance = hypot(distance, to->eye[i] - to->target[i]);
+    }
+    for (int i = 0; i < 3; i++)
+        to->eye[i] += (to->eye[i] - to->target[i]) * (diagonal / distance);
 }
 
 sheen_Camera wire_from_camera(const struct camera *camera)
 {
     bool ortho = camera->kind == CAMERA_ORTHOGRAPHIC;
     return (sheen_Camera){
+        .has_eye = true,
         .eye = wire_from_vec3(camera->eye),
+        .has_target = true,
         .target = wire_from_vec3(camera->target),
+        .has_up = true,
         .up = wire_from_vec3(camera->up),
         .has_fov_deg = !ortho,
         .fov_deg = camera->fov_deg,
@@ -116,11 +138,10 @@ void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
         .height_px = render->height_px,
         .planes = render->planes,
     };
+    renderer_default_camera(box_min, box_max, render->width_px, render->height_px,
+                            &request->camera);
     if (render->has_camera)
-        to_camera(&render->camera, &request->camera);
-    else
-        renderer_default_camera(box_min, box_max, render->width_px, render->height_px,
-                                &request->camera);
+        to_camera(&render->camera, box_min, box_max, &request->camera);
     if (render->has_light) {
         to_vec3(&render->light.centre, request->light.centre);
         to_vec3(&render->light.u, request->light.u);
@@ -129,10 +150,7 @@ void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
         renderer_default_light(box_min, box_max, &request->camera, &request->light);
     }
     to_pattern(render->has_pattern ? &render->pattern : &default_pattern, &request->pattern);
-    if (render->has_miss)
-        to_colour(&render->miss, request->miss);
-    else
-        memcpy(request->miss, request->pattern.background, sizeof request->miss);
+    to_colour(render->has_miss ? &render->miss : &DEFAULT_MISS, request->miss);
     to_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
 }
 

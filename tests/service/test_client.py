@@ -7,6 +7,7 @@ import tempfile
 import time
 import unittest
 
+import wire
 from daemon import CUBE, MODELS, SHEEN, SHEEND, Daemon
 
 FENDER = os.path.join(MODELS, "fender.obj")
@@ -84,6 +85,60 @@ class Client(unittest.TestCase):
             file.write(b"no image at all")
         self.assert_fails(3, "light.png", "render", FENDER, "-o", self.path("x.png"), "--pattern",
                           "image:" + self.path("light.png"))
+
+    def test_an_obj_that_is_called_gltf(self):
+        for name, data, words in (("obj.gltf", CUBE, ".obj"), ("cut.gltf", b'{"asset":', "JSON")):
+            with open(self.path(name), "wb") as file:
+                file.write(data)
+            done = sheen("info", self.path(name), "--server", self.daemon.unix)
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertRegex(done.stderr, name + ": not a glTF file.*" + words)
+            self.assertNotIn("exception", done.stderr)
+
+    def test_cameras_in_part(self):
+        """--fov, --ortho and --up alone change the camera that frames the model."""
+        whole = self.render("a.png", "--server", self.daemon.unix)
+        views = {whole[1]}
+        for option, value, key, want in (("--fov", "20", "fov_deg", 20),
+                                         ("--ortho", "900", "ortho_height", 900),
+                                         ("--up", "1,0,0", "up", [1, 0, 0])):
+            answer, picture = self.render("b.png", "--server", self.daemon.unix, option, value)
+            self.assertEqual(answer["camera"][key], want)
+            self.assertEqual(answer["camera"]["target"], whole[0]["camera"]["target"])
+            self.assertNotIn(picture, views)
+            views.add(picture)
+        self.assert_fails(2, "--up 0,0,1", "render", FENDER, "-o", self.path("x.png"), "--eye",
+                          "0,5,0", "--target", "0,0,0", "--up", "0,1,0")
+
+    def test_info_counts_tags(self):
+        with open(self.path("tagged.obj"), "wb") as file:
+            file.write(CUBE + b"t crease 2/1/0 0 1 10\nt crease 2/1/0 1 2 2.5\n"
+                              b"t corner 1/1/0 6 3\nt hole 1/0/0 1\n")
+        done = sheen("info", self.path("tagged.obj"), "--server", self.daemon.unix, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        info = json.loads(done.stdout)
+        self.assertEqual([info[key] for key in ("sharp_edges", "semisharp_edges", "sharp_vertices",
+                                                "holes", "nonmanifold_edges",
+                                                "nonmanifold_vertices")], [1, 1, 1, 1, 0, 0])
+        self.assertGreater(info["strip_patches"], 0)
+
+    def test_frames_in_flight_outlive_the_daemon(self):
+        for ending in ("png", "exr", "jpg", "tif"):
+            daemon = Daemon(tcp=False)
+            with subprocess.Popen([SHEEN, "render", FENDER, "-o", self.path("x." + ending),
+                                   "--size", "2000x2000", "--server", daemon.unix, "--json"],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  text=True) as client:
+                with wire.Client(daemon.unix) as watcher:
+                    while watcher.stats()[5] == [0] and client.poll() is None:
+                        time.sleep(0.01)  # until the model that it has asked for is there
+                daemon.terminate()
+                answer, errors = client.communicate(timeout=60)
+            with self.subTest(ending=ending):
+                self.assertEqual(client.returncode, 0, errors)
+                self.assertEqual(json.loads(answer)["width"], 2000)
+                self.assertGreater(os.path.getsize(self.path("x." + ending)), 10000)
+            self.assertEqual(daemon.stop(), 0)
 
     def test_bad_sizes(self):
         for size in ("0x0", "0x10", "100000x100000"):

@@ -26,7 +26,7 @@ class Options(unittest.TestCase):
     def test_help_and_version(self):
         text = run("--help").stdout
         for name in ("--listen", "--device", "--memory-budget", "--config", "--check-config",
-                     "--session-fd", "--threads", "--version"):
+                     "--session-fd", "--threads", "--drain-timeout", "--version"):
             self.assertIn(name, text)
         self.assertIn("examples", text)
         self.assertRegex(run("--version").stdout, r"^sheend \d+\.\d+\.\d+\n$")
@@ -39,6 +39,7 @@ class Options(unittest.TestCase):
                                   ("memory-budget", "--memory-budget", "-1"),
                                   ("memory-budget", "--memory-budget", "99999999999999T"),
                                   ("memory-budget", "--memory-budget", "4GB"),
+                                  ("drain-timeout", "--drain-timeout", "-1"),
                                   ("threads", "--threads", "0"), ("threads", "--threads", "257"),
                                   ("unix:PATH", "--listen", "sheen.sock"),
                                   ("unix:PATH", "--listen", "tcp:localhost"),
@@ -180,6 +181,14 @@ class Sockets(unittest.TestCase):
 
 
 class Shutdown(unittest.TestCase):
+    def assert_told(self, client):
+        """A client without a request in flight hears why its connection ends."""
+        with self.assertRaises(wire.Refused) as caught:
+            client.receive()
+        self.assertEqual((caught.exception.code, caught.exception.seq),
+                         (wire.ERROR_SHUTTING_DOWN, 0))
+        self.assertTrue(client.at_end())
+
     def test_finishes_what_is_in_flight(self):
         for number in (signal.SIGTERM, signal.SIGINT):
             daemon = Daemon()
@@ -191,8 +200,8 @@ class Shutdown(unittest.TestCase):
                 daemon.process.send_signal(number)
                 for i in range(3):
                     client.read_frame(5 + i)
-                self.assertTrue(client.at_end())
-                self.assertTrue(idle.at_end())
+                self.assert_told(client)
+                self.assert_told(idle)
                 self.assertEqual(daemon.wait(), 0)
             self.assertEqual(daemon.stop(), 0)
 
@@ -213,6 +222,44 @@ class Shutdown(unittest.TestCase):
             self.assertEqual((caught.exception.code, caught.exception.seq),
                              (wire.ERROR_SHUTTING_DOWN, 6))
             self.assertTrue(client.at_end())
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_slow_readers_get_whole_frames(self):
+        """More than any socket's buffer, read slowly, while the daemon would like to end."""
+        daemon = Daemon()
+        size = 2000 * 2000 * 4
+        with Client(daemon.unix, timeout=60) as one, Client(daemon.tcp, timeout=60) as two:
+            model = one.upload(CUBE, "cube.obj")
+            for client in (one, two):
+                client.send(wire.render(5, model, width=2000, height=2000))
+            time.sleep(0.3)
+            daemon.terminate()
+            time.sleep(2)
+            left = {one: size, two: size}
+            for client in left:
+                client.expect(wire.FRAME, 5)
+            while any(left.values()):
+                time.sleep(0.1)
+                for client in left:
+                    if left[client]:
+                        left[client] -= len(client.receive()[3])
+            self.assert_told(one)
+            self.assert_told(two)
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_readers_that_are_too_slow_are_left(self):
+        daemon = Daemon("--drain-timeout", "2")
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.send(wire.render(5, model, width=2000, height=2000))
+            client.expect(wire.FRAME, 5)
+            daemon.terminate()
+            start = time.monotonic()
+            while daemon.process.poll() is None and time.monotonic() - start < 10:
+                client.read(1)  # never a stall
+                time.sleep(0.05)
+            self.assertGreater(time.monotonic() - start, 1.5)
+            self.assertLess(time.monotonic() - start, 5)
         self.assertEqual(daemon.stop(), 0)
 
     def test_during_a_build_that_nobody_waits_for(self):
@@ -325,6 +372,20 @@ class SessionFd(unittest.TestCase):
         with self.client(ours) as client:
             client.send(wire.render(5, client.upload(grid(200), "big.obj"), 1000, 1000))
         self.assertEqual(process.wait(20), 0)
+        process.stderr.close()
+
+
+    def test_ends_soon_when_its_client_dies_in_a_large_frame(self):
+        ours, process = self.start()
+        with self.client(ours) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.render(model)
+            client.send(b"".join(wire.render(5 + i, model, 6000, 6000, encoding=wire.PNG)
+                                 for i in range(3)))
+            time.sleep(0.5)
+        start = time.monotonic()
+        self.assertEqual(process.wait(60), 0)
+        self.assertLess(time.monotonic() - start, 1.5)
         process.stderr.close()
 
 

@@ -266,6 +266,18 @@ class Uploads(DaemonCase):
                 self.assert_refused(client, wire.ERROR_MODEL, words, 51)
                 client.stats()
 
+    def test_refused_by_the_limit_surface(self):
+        """A part that knows no files finds this; the words name the file all the same."""
+        fan = b"v 0 0 0\n" + b"".join(b"v %d 1 %d\n" % (i, i * i % 97) for i in range(5000))
+        fan += b"".join(b"f 1 %d %d\n" % (i + 2, i + 3) for i in range(4999))
+        with Client(self.daemon.unix) as client:
+            model = client.upload(fan, "part.obj")
+            for _ in range(2):
+                client.send(wire.render(50, model))
+                self.assert_refused(client, wire.ERROR_MODEL, "part.obj: a vertex", 50)
+            client.send(message(wire.MODEL_QUERY, 51, field(1, model)))
+            self.assert_refused(client, wire.ERROR_MODEL, "part.obj: a vertex", 51)
+
     def test_no_image(self):
         pattern = lambda image: field(6, field(1, wire.PATTERN_IMAGE) + field(6, image))
         with Client(self.daemon.unix) as client:

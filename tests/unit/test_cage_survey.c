@@ -84,12 +84,68 @@ static void test_more_valences_than_entries(void **state)
     assert_int_equal(s.extraordinary[SURVEY_MAX_VALENCES - 1].count, 10 - 3 + 1);
 }
 
+#define CUBE                                                                                       \
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"                     \
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+
+static void test_tags(void **state)
+{
+    (void)state;
+    /* The edge 1-2 is tagged twice, the other way round: the later tag holds. 5-6-7 semi-sharp. */
+    struct cage_survey s = survey_of(CUBE "t crease 2/1/0 0 1 10\n"
+                                          "t crease 2/1/0 1 0 2.5\n"
+                                          "t crease 2/1/0 4 5 1\n"
+                                          "t crease 2/1/0 5 6 0.5\n"
+                                          "t crease 2/1/0 2 3 10\n"
+                                          "t crease 2/1/0 6 7 0\n"
+                                          "t corner 1/1/0 7 10\n"
+                                          "t corner 1/1/0 7 3\n"
+                                          "t corner 1/1/0 6 1.5\n"
+                                          "t corner 1/1/0 5 0\n"
+                                          "t hole 1/0/0 2\n"
+                                          "t hole 1/0/0 2\n");
+    assert_int_equal(s.n_sharp_edges, 1);
+    assert_int_equal(s.n_semisharp_edges, 3);
+    assert_int_equal(s.n_sharp_vertices, 2);
+    assert_int_equal(s.n_holes, 1);
+    assert_int_equal(s.n_nonmanifold_edges, 0);
+    assert_int_equal(s.n_nonmanifold_vertices, 0);
+}
+
+static void test_non_manifold(void **state)
+{
+    (void)state;
+    /* A fin on the edge 1-2 of a cube. */
+    struct cage_survey s = survey_of(CUBE "v 0 -1 -1\nv 1 -1 -1\nf 1 2 10 9\n");
+    assert_int_equal(s.n_nonmanifold_edges, 1);
+    assert_int_equal(s.n_nonmanifold_vertices, 2);
+    assert_int_equal(s.n_boundary_edges, 3);
+    /* Two sheets that touch in a vertex: every edge is manifold, the vertex is not. */
+    s = survey_of("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0 0\nv -1 -1 0\nv 0 -1 0\n"
+                  "f 1 2 3 4\nf 1 5 6 7\n");
+    assert_int_equal(s.n_nonmanifold_edges, 0);
+    assert_int_equal(s.n_nonmanifold_vertices, 1);
+    /* Two closed tetrahedra that touch in vertex 1. */
+    s = survey_of("v 0 0 0\nv 1 0 1\nv 0 1 1\nv -1 -1 1\nv 1 0 -1\nv 0 1 -1\nv -1 -1 -1\n"
+                  "f 1 2 3\nf 1 3 4\nf 1 4 2\nf 4 3 2\nf 1 6 5\nf 1 7 6\nf 1 5 7\nf 5 6 7\n");
+    assert_int_equal(s.n_nonmanifold_edges, 0);
+    assert_int_equal(s.n_boundary_edges, 0);
+    assert_int_equal(s.n_nonmanifold_vertices, 1);
+    /* Two faces that run along 1-2 in the same direction. */
+    s = survey_of("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 -1 0\nv 0 -1 0\n"
+                  "f 1 2 3 4\nf 1 2 5 6\n");
+    assert_int_equal(s.n_nonmanifold_edges, 1);
+    assert_int_equal(s.n_nonmanifold_vertices, 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cube),
         cmocka_unit_test(test_sheet),
         cmocka_unit_test(test_more_valences_than_entries),
+        cmocka_unit_test(test_tags),
+        cmocka_unit_test(test_non_manifold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -145,6 +145,7 @@ static void good_command_lines(void **state)
                      OPTIONS_RUN);
     assert_int_equal(options.request.camera.projection, SHEEN_PROJECTION_ORTHOGRAPHIC);
     assert_true(options.request.camera.eye[0] == -1 && options.request.camera.up[2] == 1);
+    assert_false(options.request.camera.auto_view || options.request.camera.auto_up);
     assert_true(options.request.light.is_set && options.json && options.quiet);
     assert_int_equal(options.request.planes, 7);
     assert_int_equal(options.request.format, SHEEN_FILE_EXR);
@@ -158,6 +159,26 @@ static void good_command_lines(void **state)
     assert_string_equal(options.server, "unix:/tmp/s");
     assert_int_equal(parse(&COMMAND_STATS, "--device 1", &options, why), OPTIONS_RUN);
     assert_int_equal(parse(&COMMAND_STATS, "--help --nonsense", &options, why), OPTIONS_HELP);
+}
+
+/* --up, --fov and --ortho change the camera that frames the model. */
+static void cameras_in_part(void **state)
+{
+    (void)state;
+    struct options options;
+    char why[OPTIONS_WHY_BYTES];
+    const struct sheen_camera *camera = &options.request.camera;
+    assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --fov 20", &options, why), OPTIONS_RUN);
+    assert_int_equal(camera->projection, SHEEN_PROJECTION_PERSPECTIVE);
+    assert_true(camera->auto_view && camera->auto_up && camera->fov_deg == 20);
+    assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --ortho 3", &options, why),
+                     OPTIONS_RUN);
+    assert_int_equal(camera->projection, SHEEN_PROJECTION_ORTHOGRAPHIC);
+    assert_true(camera->auto_view && camera->auto_up && camera->ortho_height == 3);
+    assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --up 0,1,0", &options, why),
+                     OPTIONS_RUN);
+    assert_int_equal(camera->projection, SHEEN_PROJECTION_PERSPECTIVE);
+    assert_true(camera->auto_view && !camera->auto_up && camera->up[1] == 1);
 }
 
 static void bad_command_lines_name_the_option(void **state)
@@ -177,8 +198,7 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png --size 0x0", "--size '0x0'"},
         {&COMMAND_RENDER, "m.obj -o a.png --eye 1,2,3", "come together"},
         {&COMMAND_RENDER, "m.obj -o a.png --target 1,2,3", "come together"},
-        {&COMMAND_RENDER, "m.obj -o a.png --fov 40", "need --eye"},
-        {&COMMAND_RENDER, "m.obj -o a.png --up 0,1,0", "need --eye"},
+        {&COMMAND_RENDER, "m.obj -o a.png --fov 40 --ortho 2", "exclude"},
         {&COMMAND_RENDER, "m.obj -o a.png --eye 1,1,1 --target 0,0,0 --fov 180", "--fov '180'"},
         {&COMMAND_RENDER, "m.obj -o a.png --eye 1,1,1 --target 0,0,0 --fov 30 --ortho 2",
          "exclude"},
@@ -294,6 +314,7 @@ int main(void)
         cmocka_unit_test(planes_and_formats),
         cmocka_unit_test(patterns),
         cmocka_unit_test(good_command_lines),
+        cmocka_unit_test(cameras_in_part),
         cmocka_unit_test(bad_command_lines_name_the_option),
         cmocka_unit_test(the_environment_names_a_server),
         cmocka_unit_test(help_shows_every_option),

@@ -12,7 +12,13 @@ static const sheen_Render GOOD = {
     .width_px = 640,
     .height_px = 480,
     .has_camera = true,
-    .camera = {{3, -4, 2}, {0, 0, 0}, {0, 0, 1}, .has_fov_deg = true, .fov_deg = 35},
+    .camera = {.has_eye = true,
+               .eye = {3, -4, 2},
+               .has_target = true,
+               .has_up = true,
+               .up = {0, 0, 1},
+               .has_fov_deg = true,
+               .fov_deg = 35},
     .has_light = true,
     .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
     .has_pattern = true,
@@ -108,10 +114,19 @@ static void render_geometry(void **state)
     REFUSED(camera.eye, GOOD.camera.target, "same point");
     REFUSED(camera.up, along, "line of sight");
     REFUSED(camera.up, zero, "line of sight");
+    REFUSED(camera.up, along, "--up 0,1,0");
+    REFUSED(camera.has_eye, false, "come together");
+    REFUSED(camera.has_target, false, "come together");
     REFUSED(light.u, zero, "rectangle");
     REFUSED(light.v, GOOD.light.u, "rectangle");
-    REFUSED(camera.has_fov_deg, false, "fov_deg and ortho_height");
-    REFUSED(camera.has_ortho_height, true, "fov_deg and ortho_height");
+    REFUSED(camera.has_ortho_height, true, "exclude");
+    /* Another up is suggested than the one that does not do. */
+    sheen_Render along_y = GOOD;
+    along_y.camera.eye = (sheen_Vec3){0, 5, 0};
+    along_y.camera.up = (sheen_Vec3){0, 1, 0};
+    char why_y[MESSAGE_TEXT_BYTES];
+    assert_false(check(&along_y, why_y));
+    assert_non_null(strstr(why_y, "--up 0,0,1"));
     sheen_Render ortho = GOOD;
     char text[MESSAGE_TEXT_BYTES];
     ortho.camera.has_fov_deg = false;
@@ -124,6 +139,32 @@ static void render_geometry(void **state)
     sheen_Vec3 tiny = {0, 1e-200, 0}, huge = {1e30, 0, 0};
     ACCEPTED(light.v, tiny);
     ACCEPTED(light.u, huge);
+}
+
+/* The rest of such a camera is the daemon's. */
+static void cameras_in_part(void **state)
+{
+    (void)state;
+    char text[MESSAGE_TEXT_BYTES];
+    sheen_Render render = GOOD;
+    render.camera = (sheen_Camera){0};
+    assert_true(check(&render, text));
+    render.camera = (sheen_Camera){.has_up = true, .up = {0, 1, 0}};
+    assert_true(check(&render, text));
+    render.camera.up.y = 0;
+    assert_false(check(&render, text));
+    assert_non_null(strstr(text, "--up"));
+    render.camera = (sheen_Camera){.has_fov_deg = true, .fov_deg = 10};
+    assert_true(check(&render, text));
+    render.camera.fov_deg = NAN;
+    assert_false(check(&render, text));
+    render.camera = (sheen_Camera){.has_ortho_height = true, .ortho_height = 10};
+    assert_true(check(&render, text));
+    render.camera.ortho_height = -1;
+    assert_false(check(&render, text));
+    render.camera = GOOD.camera;
+    render.camera.has_up = render.camera.has_fov_deg = false;
+    assert_true(check(&render, text));
 }
 
 static void render_kinds(void **state)
@@ -244,6 +285,13 @@ static void answers_are_checked(void **state)
                          .light = GOOD.light,
                          .pattern = GOOD.pattern};
     assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.camera.has_up = false; /* a request may leave it out, an answer may not */
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    assert_non_null(strstr(text, "camera"));
+    frame.camera = GOOD.camera;
+    frame.camera.has_fov_deg = false;
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.camera = GOOD.camera;
     frame.data_bytes = 0;
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     frame.data_bytes = UINT64_MAX;
@@ -324,6 +372,7 @@ int main(void)
         cmocka_unit_test(render_sizes),
         cmocka_unit_test(render_floats),
         cmocka_unit_test(render_geometry),
+        cmocka_unit_test(cameras_in_part),
         cmocka_unit_test(render_kinds),
         cmocka_unit_test(left_out_fields_are_not_looked_at),
         cmocka_unit_test(text_is_utf8_without_controls),

@@ -147,6 +147,12 @@ static void check_model_info(const uint8_t *bytes, size_t size)
     same_message(MESSAGE_MODEL_INFO, 3, &info, bytes, size);
 }
 
+#define CAMERA                                                                                     \
+    {                                                                                              \
+        .has_eye = true, .eye = {3, -4, 2}, .has_target = true, .target = {0, 0, 0.5},             \
+        .has_up = true, .up = {0, 0, 1}, .has_fov_deg = true, .fov_deg = 35                        \
+    }
+
 static void check_render_least(const uint8_t *bytes, size_t size)
 {
     sheen_Render render = {.width_px = 1280,
@@ -159,58 +165,55 @@ static void check_render_least(const uint8_t *bytes, size_t size)
 
 static void check_render_full(const uint8_t *bytes, size_t size)
 {
-    sheen_Render render = {
-        .width_px = 2,
-        .height_px = 1,
-        .has_camera = true,
-        .camera = {{3, -4, 2}, {0, 0, 0.5}, {0, 0, 1}, .has_fov_deg = true, .fov_deg = 35},
-        .has_light = true,
-        .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
-        .has_pattern = true,
-        .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
-                    .has_count = true,
-                    .count = 20,
-                    .has_duty = true,
-                    .duty = 0.5,
-                    .has_foreground = true,
-                    .foreground = {1, 1, 1, 1},
-                    .has_background = true,
-                    .background = {0, 0, 0, 1}},
-        .has_miss = true,
-        .miss = {0.125f, 0.125f, 0.125f, 1},
-        .has_empty = true,
-        .empty = {0, 0, 0, 0},
-        .planes = sheen_Plane_PLANE_COLOUR | sheen_Plane_PLANE_PTEX,
-        .encoding = sheen_Encoding_ENCODING_ZSTD};
+    sheen_Render render = {.width_px = 2,
+                           .height_px = 1,
+                           .has_camera = true,
+                           .camera = CAMERA,
+                           .has_light = true,
+                           .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
+                           .has_pattern = true,
+                           .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                                       .has_count = true,
+                                       .count = 20,
+                                       .has_duty = true,
+                                       .duty = 0.5,
+                                       .has_foreground = true,
+                                       .foreground = {1, 1, 1, 1},
+                                       .has_background = true,
+                                       .background = {0, 0, 0, 1}},
+                           .has_miss = true,
+                           .miss = {0.125f, 0.125f, 0.125f, 1},
+                           .has_empty = true,
+                           .empty = {0, 0, 0, 0},
+                           .planes = sheen_Plane_PLANE_COLOUR | sheen_Plane_PLANE_PTEX,
+                           .encoding = sheen_Encoding_ENCODING_ZSTD};
     count_id(render.model_sha256);
     same_message(MESSAGE_RENDER, 5, &render, bytes, size);
 }
 
 static void check_frame(const uint8_t *bytes, size_t size)
 {
-    const sheen_Frame frame = {
-        .width_px = 2,
-        .height_px = 1,
-        .planes = sheen_Plane_PLANE_COLOUR,
-        .encoding = sheen_Encoding_ENCODING_RAW,
-        .data_bytes = 8,
-        .times = {.visibility_us = 12000,
-                  .evaluate_us = 20000,
-                  .shade_us = 3000,
-                  .readback_us = 500,
-                  .total_us = 36000},
-        .camera = {{3, -4, 2}, {0, 0, 0.5}, {0, 0, 1}, .has_fov_deg = true, .fov_deg = 35},
-        .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
-        .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
-                    .has_count = true,
-                    .count = 20,
-                    .has_duty = true,
-                    .duty = 0.5},
-        .device = "llvmpipe",
-        .driver = "Mesa",
-        .software = true,
-        .covered_px = 1,
-        .server = "0.1.0"};
+    const sheen_Frame frame = {.width_px = 2,
+                               .height_px = 1,
+                               .planes = sheen_Plane_PLANE_COLOUR,
+                               .encoding = sheen_Encoding_ENCODING_RAW,
+                               .data_bytes = 8,
+                               .times = {.visibility_us = 12000,
+                                         .evaluate_us = 20000,
+                                         .shade_us = 3000,
+                                         .readback_us = 500,
+                                         .total_us = 36000},
+                               .camera = CAMERA,
+                               .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
+                               .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                                           .has_count = true,
+                                           .count = 20,
+                                           .has_duty = true,
+                                           .duty = 0.5},
+                               .device = "llvmpipe",
+                               .driver = "Mesa",
+                               .software = true,
+                               .server = "0.1.0"};
     same_message(MESSAGE_FRAME, 5, &frame, bytes, size);
 }
 

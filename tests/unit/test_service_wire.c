@@ -3,6 +3,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -27,7 +28,9 @@ static void test_defaults_are_valid(void **state)
     assert_true(request.pattern.count == pattern.count);
     assert_true(request.pattern.duty == pattern.duty);
     assert_true(request.pattern.foreground[0] == 1 && request.pattern.background[0] == 0);
-    assert_memory_equal(request.miss, request.pattern.background, sizeof request.miss);
+    /* What misses the light is told from the dark stripes. */
+    const float miss[4] = {0.16f, 0.19f, 0.23f, 1};
+    assert_memory_equal(request.miss, miss, sizeof miss);
 
     /* Sent back as a request it is the same frame. */
     render.has_camera = render.has_light = render.has_pattern = true;
@@ -49,7 +52,14 @@ static void test_what_is_given_is_kept(void **state)
     (void)state;
     sheen_Render render = sheen_Render_init_default;
     render.has_camera = true;
-    render.camera = (sheen_Camera){{1, 2, 3}, {4, 5, 6}, {0, 1, 0}, false, 0, true, 7};
+    render.camera = (sheen_Camera){.has_eye = true,
+                                   .eye = {1, 2, 3},
+                                   .has_target = true,
+                                   .target = {4, 5, 6},
+                                   .has_up = true,
+                                   .up = {0, 1, 0},
+                                   .has_ortho_height = true,
+                                   .ortho_height = 7};
     render.has_pattern = true;
     render.pattern.kind = sheen_PatternKind_PATTERN_CIRCLES;
     render.pattern.has_count = true;
@@ -60,11 +70,69 @@ static void test_what_is_given_is_kept(void **state)
     wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &request);
     assert_int_equal(request.camera.kind, CAMERA_ORTHOGRAPHIC);
     assert_true(request.camera.ortho_height == 7 && request.camera.target[2] == 6);
+    assert_true(request.camera.eye[0] == 1 && request.camera.up[1] == 1);
     assert_int_equal(request.pattern.kind, PATTERN_CIRCLES);
     assert_true(request.pattern.count == 3 && request.pattern.duty == 0.5);
     assert_true(request.miss[2] == 0.75f);
     sheen_Camera back = wire_from_camera(&request.camera);
     assert_true(back.has_ortho_height && !back.has_fov_deg && back.eye.y == 2);
+}
+
+static struct camera camera_for(const sheen_Camera *asked)
+{
+    sheen_Render render = sheen_Render_init_default;
+    render.width_px = 640;
+    render.height_px = 480;
+    render.has_camera = asked != NULL;
+    if (asked)
+        render.camera = *asked;
+    struct frame_request request;
+    wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &request);
+    return request.camera;
+}
+
+/* What a request leaves out of its camera is that of the camera that frames the model. */
+static void test_cameras_in_part(void **state)
+{
+    (void)state;
+    const struct camera whole = camera_for(NULL);
+    const sheen_Camera turned = {.has_up = true, .up = {1, 0, 0}};
+    struct camera camera = camera_for(&turned);
+    assert_memory_equal(camera.eye, whole.eye, sizeof camera.eye);
+    assert_memory_equal(camera.target, whole.target, sizeof camera.target);
+    assert_true(camera.up[0] == 1 && camera.fov_deg == whole.fov_deg);
+
+    const sheen_Camera zoomed = {.has_fov_deg = true, .fov_deg = 10};
+    camera = camera_for(&zoomed);
+    assert_true(camera.fov_deg == 10 && camera.kind == CAMERA_PERSPECTIVE);
+    assert_memory_equal(camera.eye, whole.eye, sizeof camera.eye);
+    assert_memory_equal(camera.up, whole.up, sizeof camera.up);
+
+    const sheen_Camera placed = {.has_eye = true, .eye = {9, 9, 9}, .has_target = true};
+    camera = camera_for(&placed);
+    assert_true(camera.eye[1] == 9 && camera.target[1] == 0);
+    assert_memory_equal(camera.up, whole.up, sizeof camera.up);
+
+    /* Orthographic: the same direction, with all of the box before the eye. */
+    const sheen_Camera flat = {.has_ortho_height = true, .ortho_height = 3};
+    camera = camera_for(&flat);
+    assert_int_equal(camera.kind, CAMERA_ORTHOGRAPHIC);
+    assert_true(camera.ortho_height == 3);
+    double forward[3], before[3], scale = 0;
+    for (int i = 0; i < 3; i++) {
+        forward[i] = camera.target[i] - camera.eye[i];
+        before[i] = whole.target[i] - whole.eye[i];
+        scale = fmax(scale, forward[i] / before[i]);
+    }
+    assert_true(scale > 1);
+    for (int i = 0; i < 3; i++)
+        assert_true(fabs(forward[i] - scale * before[i]) < 1e-12);
+    for (int corner = 0; corner < 8; corner++) {
+        double depth = 0;
+        for (int i = 0; i < 3; i++)
+            depth += forward[i] * ((corner >> i & 1 ? BOX_MAX : BOX_MIN)[i] - camera.eye[i]);
+        assert_true(depth > 0);
+    }
 }
 
 static void test_label_holds_every_digit(void **state)
@@ -129,6 +197,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_defaults_are_valid),
         cmocka_unit_test(test_what_is_given_is_kept),
+        cmocka_unit_test(test_cameras_in_part),
         cmocka_unit_test(test_label_holds_every_digit),
         cmocka_unit_test(test_texts),
         cmocka_unit_test(test_mean_of_the_last),

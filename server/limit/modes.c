@@ -1,16 +1,22 @@
-#include "server/limit/dart.h"
+#include "server/limit/modes.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { MAX_SIZE = 2 * DART_MAX_VALENCE + 1 };
-/* The slowest ratio of eigenvalues at DART_MAX_VALENCE is about 0.99. */
+enum { MAX_SIZE = 2 * MODES_MAX_VALENCE + 2 };
+/* The slowest ratio of eigenvalues at MODES_MAX_VALENCE is about 0.99. */
 static const int ITERATIONS = 4000;
 
 /* The ring's points as one array: the vertex, its edges, its faces. */
 static struct vec *ring_point(const struct ring *ring, uint32_t i)
 {
-    return i <= ring->n_faces ? &ring->edge[i - 1] : &ring->face[i - 1 - ring->n_faces];
+    uint32_t n = ring_edges(ring);
+    return i <= n ? &ring->edge[i - 1] : &ring->face[i - 1 - n];
+}
+
+static uint32_t ring_size(const struct ring *ring)
+{
+    return 1 + ring_edges(ring) + ring->n_faces;
 }
 
 static struct vec point(const struct ring *ring, uint32_t i)
@@ -22,11 +28,13 @@ static struct vec point(const struct ring *ring, uint32_t i)
 static void subdivision_matrix(const struct ring *ring, double matrix[MAX_SIZE][MAX_SIZE],
                                struct arena *arena)
 {
-    uint32_t n = 2 * ring->n_faces + 1;
-    struct ring in = ring_take(arena, ring->n_faces, true, true), out = in;
-    out = ring_take(arena, ring->n_faces, true, true);
-    memcpy(in.creases.edge, ring->creases.edge, ring->n_faces * sizeof(float));
-    memcpy(in.creases.far, ring->creases.far, ring->n_faces * sizeof(float));
+    uint32_t n = ring_size(ring);
+    bool creased = ring->creases.edge;
+    struct ring in = ring_take(arena, ring->n_faces, ring->closed, creased);
+    struct ring out = ring_take(arena, ring->n_faces, ring->closed, creased);
+    in.sharpness = ring->sharpness;
+    for (uint32_t k = 0; creased && k < ring_edges(ring); k++)
+        in.creases.edge[k] = in.creases.far[k] = ring->creases.edge[k];
     for (uint32_t j = 0; j < n; j++) {
         in.centre = (struct vec){j == 0, 0, 0};
         for (uint32_t i = 1; i < n; i++)
@@ -72,27 +80,27 @@ static void flat_ring(struct ring *ring)
 }
 
 /* Exchanges the tangents if they run against the winding. */
-static void orient(struct dart_masks *masks, const struct ring *ring, struct arena *arena)
+static void orient(struct ring_modes *modes, const struct ring *ring, struct arena *arena)
 {
     struct ring flat = ring_take(arena, ring->n_faces, true, false);
     flat_ring(&flat);
-    struct vec t1 = dart_apply(masks->tangent[0], &flat);
-    struct vec t2 = dart_apply(masks->tangent[1], &flat);
+    struct vec t1 = ring_mode_apply(modes->tangent[0], &flat);
+    struct vec t2 = ring_mode_apply(modes->tangent[1], &flat);
     if (vec_cross(t1, t2).z < 0)
-        scale(masks->tangent[1], 2 * ring->n_faces + 1, -1);
+        scale(modes->tangent[1], ring_size(ring), -1);
 }
 
-void dart_masks_init(struct dart_masks *masks, const struct ring *ring, struct arena *arena)
+void ring_modes_init(struct ring_modes *modes, const struct ring *ring, struct arena *arena)
 {
-    uint32_t n = 2 * ring->n_faces + 1;
+    uint32_t n = ring_size(ring);
     double matrix[MAX_SIZE][MAX_SIZE];
     size_t mark = arena->used;
     subdivision_matrix(ring, matrix, arena);
-    double *a = masks->tangent[0], *b = masks->tangent[1];
+    double *a = modes->tangent[0], *b = modes->tangent[1];
     for (uint32_t i = 0; i < n; i++) {
         /* Any start will do; the tangents' weights sum to 0 and stay so, as the matrix keeps
          * constants. */
-        masks->position[i] = i == 0;
+        modes->position[i] = i == 0;
         a[i] = sin(1.0 + 7 * i);
         b[i] = cos(2.0 + 5 * i);
     }
@@ -107,7 +115,7 @@ void dart_masks_init(struct dart_masks *masks, const struct ring *ring, struct a
         b[i] -= sum_b * ones;
     }
     for (int k = 0; k < ITERATIONS; k++) {
-        multiply_left(matrix, n, masks->position);
+        multiply_left(matrix, n, modes->position);
         multiply_left(matrix, n, a);
         multiply_left(matrix, n, b);
         scale(a, n, 1 / sqrt(dot(a, a, n)));
@@ -120,16 +128,17 @@ void dart_masks_init(struct dart_masks *masks, const struct ring *ring, struct a
     }
     double sum = 0;
     for (uint32_t i = 0; i < n; i++)
-        sum += masks->position[i];
-    scale(masks->position, n, 1 / sum);
-    orient(masks, ring, arena);
+        sum += modes->position[i];
+    scale(modes->position, n, 1 / sum);
+    if (ring_is_dart(ring))
+        orient(modes, ring, arena);
     arena->used = mark;
 }
 
-struct vec dart_apply(const double *mask, const struct ring *ring)
+struct vec ring_mode_apply(const double *mask, const struct ring *ring)
 {
     struct vec sum = {0, 0, 0};
-    for (uint32_t i = 0; i < 2 * ring->n_faces + 1; i++)
+    for (uint32_t i = 0; i < ring_size(ring); i++)
         sum = vec_mad(sum, mask[i], point(ring, i));
     return sum;
 }
