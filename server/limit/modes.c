@@ -90,46 +90,61 @@ static void orient(struct ring_modes *modes, const struct ring *ring, struct are
         scale(modes->tangent[1], ring_size(ring), -1);
 }
 
-void ring_modes_init(struct ring_modes *modes, const struct ring *ring, struct arena *arena)
+/* The left eigenvector of eigenvalue 1: what the vertex tends to. */
+static void find_position(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int iterations,
+                          double *position)
 {
-    uint32_t n = ring_size(ring);
-    double matrix[MAX_SIZE][MAX_SIZE];
-    size_t mark = arena->used;
-    subdivision_matrix(ring, matrix, arena);
-    double *a = modes->tangent[0], *b = modes->tangent[1];
-    for (uint32_t i = 0; i < n; i++) {
-        /* Any start will do; the tangents' weights sum to 0 and stay so, as the matrix keeps
-         * constants. */
-        modes->position[i] = i == 0;
+    double sum = 0;
+    memset(position, 0, n * sizeof *position);
+    position[0] = 1;
+    for (int k = 0; k < iterations; k++)
+        multiply_left(matrix, n, position);
+    for (uint32_t i = 0; i < n; i++)
+        sum += position[i];
+    scale(position, n, 1 / sum);
+}
+
+/* Removes what rounding brings in of the position: its eigenvalue is larger, so it would take over.
+ */
+static void without_position(double *x, uint32_t n, const double *position)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < n; i++)
+        sum += x[i];
+    for (uint32_t i = 0; i < n; i++)
+        x[i] -= sum * position[i];
+}
+
+/* The two next left eigenvectors: a the slower one, b orthogonal to it. */
+static void find_tangents(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int iterations,
+                          const double *position, double *a, double *b)
+{
+    for (uint32_t i = 0; i < n; i++) { /* any start will do */
         a[i] = sin(1.0 + 7 * i);
         b[i] = cos(2.0 + 5 * i);
     }
-    const double ones = 1.0 / n;
-    double sum_a = 0, sum_b = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        sum_a += a[i];
-        sum_b += b[i];
-    }
-    for (uint32_t i = 0; i < n; i++) {
-        a[i] -= sum_a * ones;
-        b[i] -= sum_b * ones;
-    }
-    for (int k = 0; k < ITERATIONS; k++) {
-        multiply_left(matrix, n, modes->position);
+    for (int k = 0; k < iterations; k++) {
         multiply_left(matrix, n, a);
         multiply_left(matrix, n, b);
+        without_position(a, n, position);
+        without_position(b, n, position);
         scale(a, n, 1 / sqrt(dot(a, a, n)));
         double along = dot(a, b, n);
         for (uint32_t i = 0; i < n; i++)
             b[i] -= along * a[i];
         scale(b, n, 1 / sqrt(dot(b, b, n)));
-        if (k >= 200 && ring->n_faces <= 8)
-            break; /* long converged */
     }
-    double sum = 0;
-    for (uint32_t i = 0; i < n; i++)
-        sum += modes->position[i];
-    scale(modes->position, n, 1 / sum);
+}
+
+void ring_modes_init(struct ring_modes *modes, const struct ring *ring, struct arena *arena)
+{
+    uint32_t n = ring_size(ring);
+    double matrix[MAX_SIZE][MAX_SIZE];
+    size_t mark = arena->used;
+    int iterations = ring->n_faces <= 8 ? 400 : ITERATIONS;
+    subdivision_matrix(ring, matrix, arena);
+    find_position(matrix, n, iterations, modes->position);
+    find_tangents(matrix, n, iterations, modes->position, modes->tangent[0], modes->tangent[1]);
     if (ring_is_dart(ring))
         orient(modes, ring, arena);
     arena->used = mark;

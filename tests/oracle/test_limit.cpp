@@ -79,10 +79,7 @@ void compare_seams(const table_evaluator &tables, figures *f)
         if (node.kind != LIMIT_CORNER)
             continue;
         const float(*texels)[4] = tables.tables.points + node.first;
-        /* At a cone's tip one direction shrinks more slowly than the others: what single precision
-         * still knows of those is lost where the ring is 2^-13 of the face. */
-        int last = node.levels ? LIMIT_LEVELS : 20;
-        for (int n = 1; n < last; n++)
+        for (int n = 1; n < LIMIT_LEVELS; n++)
             for (int side = 0; side < 6; side++) {
                 double reach = std::ldexp(1.0, -n), other = reach * (side % 3) / 2.0;
                 double a = side < 3 ? reach : other, b = side < 3 ? other : reach;
