@@ -27,12 +27,14 @@ void list_unsolved(ivec2 p)
     unsolved[slot] = uint(p.x) | uint(p.y) << 16;
 }
 
-uniform ivec4 area;  // x0, y0, width, height: the part of the tile that may be covered
+uniform uint n_blocks;
 
 void main()
 {
-    ivec2 p = ivec2(gl_GlobalInvocationID.xy) + area.xy;
-    if (any(greaterThanEqual(p, area.xy + area.zw)))
+    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= n_blocks)
+        return;
+    ivec2 p = block_pixel(gl_WorkGroupID, gl_LocalInvocationID, gl_NumWorkGroups);
+    if (any(greaterThanEqual(p, tile.zw)))
         return;
     uvec2 guess = texelFetch(seen, p, 0).xy;
     bool is_seen = guess.x != NONE;
@@ -57,7 +59,7 @@ void main()
     bool doubtful = is_seen ? front < s.s.z - 4.0 * pixel_units(s.s.z) : front < 1e30;
     if (solved && !doubtful) {
         vec2 xy = ldexp(own.origin + own.st, -own.scale);
-        store_hit(p, s, own.st, node.face, ptex_uv(node, xy));
+        store_hit(p, s, node.face, ptex_uv(node, xy));
     } else if (is_seen || doubtful) {
         list_unsolved(p);
     } else {

@@ -27,7 +27,7 @@ layout(std140, binding = 1) uniform Light {
     ivec4 want;           // whether to write light_st, curvature
 };
 
-uniform ivec4 area;  // x0, y0, width, height: the part of the tile that may be covered
+uniform uint n_blocks;
 
 // PATTERN is defined before this file: a program for each kind, since some devices walk through
 // every branch.
@@ -155,8 +155,10 @@ vec2 principal_curvatures(vec3 h)
 
 void main()
 {
-    ivec2 p = ivec2(gl_GlobalInvocationID.xy) + area.xy;
-    if (any(greaterThanEqual(p, area.xy + area.zw)))
+    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= n_blocks)
+        return;
+    ivec2 p = block_pixel(gl_WorkGroupID, gl_LocalInvocationID, gl_NumWorkGroups);
+    if (any(greaterThanEqual(p, tile.zw)))
         return;
     vec4 place = imageLoad(position, p);
     if (place.w <= 0.0) {

@@ -7,6 +7,8 @@ struct Surface {
     vec3 s;               // position relative to the eye, camera space, world units
     vec3 su, sv;          // derivatives by the sub-patch's own parameters, divided by scale
     vec3 suu, suv, svv;   // second derivatives, alike
+    vec3 n;               // unit normal, zero where there is none
+    float area2;          // |su x sv|^2
     float scale;          // power of two
 };
 
@@ -80,6 +82,24 @@ void fetch_points(SubPatch patch_, out vec3 p[16], out float scale)
     }
 }
 
+// The normal of derivatives at st, and |su x sv|^2. Where a derivative vanishes or both are parallel
+// (a collapsed edge, a pole, a smooth corner of one quad) it is the limit from inside the patch, by
+// the second derivatives; zero where there is none. To be taken in the node's own frame: there each
+// coordinate keeps its digits where su and sv become parallel, and any rotation would mix them.
+vec3 limit_normal(vec3 su, vec3 sv, vec3 suu, vec3 suv, vec3 svv, vec2 st, out float area2)
+{
+    vec3 n = cross(su, sv);
+    area2 = dot(n, n);
+    float u2 = dot(su, su), v2 = dot(sv, sv);
+    bool vanishes = min(u2, v2) < 1e-8 * max(u2, v2) || !(area2 > 1e-16 * u2 * v2);
+    vec2 inward = (0.5 - st) * 0.01;
+    su += inward.x * suu + inward.y * suv;
+    sv += inward.x * suv + inward.y * svv;
+    n = vanishes ? cross(su, sv) : n;
+    float largest = max(max(abs(n.x), abs(n.y)), abs(n.z));
+    return largest > 0.0 ? normalize(n / largest) : vec3(0.0);
+}
+
 // The patch of 16 points at st, with first and second derivatives.
 Surface patch_at(Node node, mat3 frame, vec3 p[16], float scale, vec2 st)
 {
@@ -99,15 +119,16 @@ Surface patch_at(Node node, mat3 frame, vec3 p[16], float scale, vec2 st)
         suv += dv[j] * d;
         svv += ddv[j] * c;
     }
+    float area2;
+    vec3 n = limit_normal(su, sv, suu, suv, svv, st, area2);
     return Surface(node.origin + frame * (s * scale), frame * su, frame * sv, frame * suu,
-                   frame * suv, frame * svv, scale);
+                   frame * suv, frame * svv, frame * n, area2, scale);
 }
 
 // The extraordinary vertex itself, where all levels end: the origin and axes of its frame. A
 // cone's tip has no tangents.
 Surface limit_of(Node node, mat3 frame, float scale)
 {
-    float some = float(node.levels);
-    return Surface(node.origin, some * frame[0], some * frame[1], vec3(0.0), vec3(0.0), vec3(0.0),
-                   scale);
+    return Surface(node.origin, frame[0], frame[1], vec3(0.0), vec3(0.0), vec3(0.0),
+                   float(node.levels) * frame[2], 1.0, scale);
 }

@@ -12,7 +12,6 @@ const int STEPS = 12;
 struct Hit {
     Node node;
     vec2 xy;
-    vec2 st;  // in the sub-patch
     Surface surface;
 };
 
@@ -23,6 +22,17 @@ struct Solution {
 
 const ivec2 AROUND[5] =
     ivec2[5](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+
+// Inside the last ring of an extraordinary vertex (2^-32 of the node) the surface is its tangent
+// plane there; at a cone's tip, a plane across the view.
+bool meet_limit(Node node, Ray r, inout Surface s)
+{
+    vec3 o = vec3(r.start, 0.0), d = vec3(r.slope, 1.0);
+    vec3 n = dot(s.n, s.n) > 0.0 ? s.n : vec3(0.0, 0.0, 1.0);
+    float z = dot(n, node.origin - o) / dot(n, d);
+    s.s = o + z * d;
+    return z > 0.0 && distance(s.s, node.origin) < 2.0 * s.scale;
+}
 
 // From a guess to the place on the ray; not found when there is none near.
 Solution solve(uvec2 guess, Ray r)
@@ -44,12 +54,17 @@ Solution solve(uvec2 guess, Ray r)
         project(node, frame, points16, scale, r, net);
         vec2 f = s.s.xy - r.start - r.slope * s.s.z;
         newton_step(net, own.st, step_st);
+        if (own.limit) {
+            result.found = meet_limit(node, r, s);
+            result.hit = Hit(node, xy, s);
+            break;
+        }
         float residual = length(f) / pixel_units(s.s.z);
         float enough = close_enough(scale / pixel_units(s.s.z));
-        bool last = i == STEPS - 1 || own.limit || step_st == vec2(0.0);
+        bool last = i == STEPS - 1 || step_st == vec2(0.0);
         if (residual < enough || last || !(s.s.z > 0.0)) {
             result.found = residual < 4.0 * enough && s.s.z > 0.0;
-            result.hit = Hit(node, xy, own.st, s);
+            result.hit = Hit(node, xy, s);
             break;
         }
         xy += ldexp(step_st, -own.scale);
@@ -83,7 +98,7 @@ void main()
             best = other;
     }
     if (best.found)
-        store_hit(p, best.hit.surface, best.hit.st, best.hit.node.face, ptex_uv(best.hit.node, best.hit.xy));
+        store_hit(p, best.hit.surface, best.hit.node.face, ptex_uv(best.hit.node, best.hit.xy));
     else
         store_miss(p);
 }

@@ -1,12 +1,10 @@
 /* Stage 2: the pixel's ray against the limit surface, in two passes. */
 #include "server/gpu/gpu.h"
 
-static void set_uniforms(GLuint program, const struct tile *area, bool want_ptex)
+static void set_uniforms(GLuint program, bool want_ptex)
 {
     glUseProgram(program);
     glUniform1i(glGetUniformLocation(program, "want_ptex"), want_ptex);
-    glUniform4i(glGetUniformLocation(program, "area"), (GLint)area->x, (GLint)area->y,
-                (GLint)area->width, (GLint)area->height);
 }
 
 static void bind_planes(const struct renderer *r, const struct renderer_model *model)
@@ -32,22 +30,42 @@ static void clear_planes(const struct renderer *r, bool want_ptex)
         glClearTexImage(r->target.ptex, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, no_face);
 }
 
+/* Groups in one dimension are limited (to 65,535 at least), so blocks go in rows. */
+void dispatch_blocks(struct renderer *r, GLuint program)
+{
+    enum { ROW = 32768 };
+    size_t n = r->pieces.n_blocks;
+    glUniform1ui(glGetUniformLocation(program, "n_blocks"), (GLuint)n);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->block_buffer);
+    if (n)
+        glDispatchCompute((GLuint)(n < ROW ? n : ROW), (GLuint)((n + ROW - 1) / ROW), 1);
+}
+
+bool blocks_leave_gaps(const struct renderer *r, const struct tile *tile)
+{
+    size_t across = (tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    size_t down = (tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    return r->pieces.n_blocks < across * down;
+}
+
 void stage_evaluate(struct renderer *r, const struct renderer_model *model, const struct tile *tile,
                     bool want_ptex)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
-    const struct tile *area = &r->pieces.area;
-    if (area->width < tile->width || area->height < tile->height)
+    if (blocks_leave_gaps(r, tile))
         clear_planes(r, want_ptex);
+    size_t n = r->pieces.n_blocks;
+    glNamedBufferData(r->block_buffer, (GLsizeiptr)((n ? n : 1) * sizeof(uint32_t)),
+                      n ? r->pieces.block : NULL, GL_STREAM_DRAW);
     glNamedBufferSubData(r->target.unsolved, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, r->target.unsolved);
     bind_planes(r, model);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    set_uniforms(model->programs->evaluate, area, want_ptex);
-    glDispatchCompute((area->width + 7) / 8, (area->height + 7) / 8, 1);
+    set_uniforms(model->programs->evaluate, want_ptex);
+    dispatch_blocks(r, model->programs->evaluate);
 
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    set_uniforms(model->programs->unsolved, area, want_ptex);
+    set_uniforms(model->programs->unsolved, want_ptex);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->target.unsolved);
     glDispatchComputeIndirect(0);
 }

@@ -68,6 +68,7 @@ struct renderer {
     int n_programs;
     GLuint shade[PATTERN_IMAGE + 1]; /* by enum pattern_kind, 0 until first asked for */
     GLuint view_buffer, light_buffer, piece_buffer;
+    GLuint block_buffer;  /* pieces.block of the tile whose planes the target holds */
     GLuint piece_texture; /* of piece_buffer */
     GLuint vertex_array;
     GLuint grid_buffer[PIECE_BUCKETS]; /* element indices of each bucket's grid */
@@ -96,6 +97,12 @@ bool stage_shade_init(struct renderer *renderer, struct error *error);
 /* Compiles the pattern's program when it is asked for first. */
 bool stage_shade(struct renderer *renderer, const struct frame_request *request,
                  const struct tile *tile, struct error *error);
+
+/* One workgroup for each covered block, for the program in use. */
+void dispatch_blocks(struct renderer *renderer, GLuint program);
+
+/* Whether blocks of the tile stay out of the dispatch, so that its planes must be cleared. */
+bool blocks_leave_gaps(const struct renderer *renderer, const struct tile *tile);
 
 /* Copies the planes asked for from the target into the frame. */
 bool readback(struct renderer *renderer, const struct frame_request *request,

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "server/limit/bound.h"
 #include "server/limit/vec.h"
@@ -19,9 +20,10 @@ struct chooser {
     struct pieces *out;
     const struct limit_tables *tables;
     const struct view *view;
-    double side[4][3];      /* unit inward normals of the tile's sides, camera space */
-    double offset[4];       /* signed distance = side . p + offset */
-    double low[2], high[2]; /* covered so far, px of the picture */
+    double side[4][3]; /* unit inward normals of the tile's sides, camera space */
+    double offset[4];  /* signed distance = side . p + offset */
+    const struct tile *tile;
+    uint32_t blocks[2]; /* of the tile: across and down */
     uint64_t n_vertices;
     bool no_memory;
 };
@@ -72,11 +74,20 @@ static double in_px(const struct chooser *c, const struct extent *e, double leng
     return length / (c->view->perspective ? z * c->view->units_per_px : c->view->units_per_px);
 }
 
-/* Widens the covered rectangle by a sphere's outline. */
+/* A coordinate of the picture as a block of the tile, cut to it. */
+static uint32_t block_at(const struct chooser *c, int k, double px)
+{
+    double origin = k ? c->tile->y : c->tile->x;
+    double block = floor((px - origin) / COVER_BLOCK_PX);
+    return (uint32_t)fmin(fmax(block, 0), c->blocks[k] - 1);
+}
+
+/* Marks the blocks under a sphere's outline. */
 static void cover(struct chooser *c, const struct extent *e)
 {
     double nearest = e->centre[2] - e->radius, farthest = e->centre[2] + e->radius;
-    bool whole = c->view->perspective && nearest < c->view->near;
+    bool whole = c->view->perspective && nearest <= 0;
+    uint32_t first[2], last[2];
     for (int k = 0; k < 2; k++) {
         double low = e->centre[k] - e->radius, high = e->centre[k] + e->radius;
         if (c->view->perspective) {
@@ -86,9 +97,11 @@ static void cover(struct chooser *c, const struct extent *e)
         /* A pixel more on either side: stage 2 looks at neighbours. */
         low = low / c->view->units_per_px + c->view->centre_px[k] - 2;
         high = high / c->view->units_per_px + c->view->centre_px[k] + 2;
-        c->low[k] = whole ? -INFINITY : fmin(c->low[k], low);
-        c->high[k] = whole ? INFINITY : fmax(c->high[k], high);
+        first[k] = whole ? 0 : block_at(c, k, low);
+        last[k] = whole ? c->blocks[k] - 1 : block_at(c, k, high);
     }
+    for (uint32_t y = first[1]; y <= last[1]; y++)
+        memset(c->out->is_covered + (size_t)y * c->blocks[0] + first[0], 1, last[0] - first[0] + 1);
 }
 
 static void emit(struct chooser *c, unsigned bucket, struct piece piece,
@@ -277,26 +290,41 @@ static void choose_corner(struct chooser *c, uint32_t node)
     emit(c, 0, (struct piece){node, level, 0, 0}, &extent);
 }
 
-/* The covered rectangle cut to the tile, on whole pixels. */
-static void set_area(const struct chooser *c, const struct tile *tile)
+static bool reserve_blocks(struct chooser *c)
 {
-    double origin[2] = {tile->x, tile->y}, size[2] = {tile->width, tile->height};
-    uint32_t low[2], high[2];
-    for (int k = 0; k < 2; k++) {
-        low[k] = (uint32_t)fmin(fmax(floor(c->low[k] - origin[k]), 0), size[k]);
-        high[k] = (uint32_t)fmin(fmax(ceil(c->high[k] - origin[k]), low[k]), size[k]);
+    struct pieces *out = c->out;
+    size_t n = (size_t)c->blocks[0] * c->blocks[1];
+    if (n > out->capacity) {
+        free(out->block);
+        free(out->is_covered);
+        out->block = malloc(n * sizeof *out->block);
+        out->is_covered = malloc(n);
+        out->capacity = out->block && out->is_covered ? n : 0;
+        if (!out->capacity)
+            return false;
     }
-    c->out->area = (struct tile){low[0], low[1], high[0] - low[0], high[1] - low[1]};
+    memset(out->is_covered, 0, n);
+    return true;
+}
+
+static void list_blocks(struct chooser *c)
+{
+    const uint8_t *covered = c->out->is_covered;
+    c->out->n_blocks = 0;
+    for (uint32_t y = 0; y < c->blocks[1]; y++)
+        for (uint32_t x = 0; x < c->blocks[0]; x++)
+            if (*covered++)
+                c->out->block[c->out->n_blocks++] = x | y << 16;
 }
 
 bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
                    const struct view *view, const struct tile *tile, struct error *error)
 {
-    struct chooser c = {.out = pieces,
-                        .tables = tables,
-                        .view = view,
-                        .low = {INFINITY, INFINITY},
-                        .high = {-INFINITY, -INFINITY}};
+    struct chooser c = {.out = pieces, .tables = tables, .view = view, .tile = tile};
+    c.blocks[0] = (tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    c.blocks[1] = (tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    if (!reserve_blocks(&c))
+        return error_set(error, ERROR_SERVER, "out of memory for the blocks of a frame");
     set_sides(&c, tile);
     for (int b = 0; b < PIECE_BUCKETS; b++)
         pieces->bucket[b].n = 0;
@@ -308,7 +336,7 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
         else if (tables->nodes[node].kind == LIMIT_STRIP)
             choose_strip(&c, node);
     }
-    set_area(&c, tile);
+    list_blocks(&c);
     if (c.no_memory)
         return error_set(error, ERROR_SERVER, "out of memory for the pieces of a frame");
     if (c.n_vertices > MAX_VERTICES)
@@ -323,5 +351,7 @@ void pieces_finish(struct pieces *pieces)
 {
     for (int b = 0; b < PIECE_BUCKETS; b++)
         free(pieces->bucket[b].piece);
+    free(pieces->block);
+    free(pieces->is_covered);
     *pieces = (struct pieces){0};
 }

@@ -16,6 +16,7 @@
 
 /* Pieces come in buckets by their grid: bucket b is drawn with 2^b x 2^b cells. */
 enum { PIECE_BUCKETS = 7 };
+enum { COVER_BLOCK_PX = 8 };
 
 /* As shaders/visibility.vert.glsl reads it. */
 struct piece {
@@ -31,8 +32,12 @@ struct piece_list {
 
 struct pieces {
     struct piece_list bucket[PIECE_BUCKETS];
-    /* The rectangle, px from the tile's corner, outside which the pieces cover nothing. */
-    struct tile area;
+    /* Blocks of COVER_BLOCK_PX x COVER_BLOCK_PX pixels of the tile that the pieces may cover, x |
+     * y << 16 in blocks; outside them nothing is seen. */
+    uint32_t *block;
+    size_t n_blocks;
+    uint8_t *is_covered; /* scratch: one byte a block of the tile */
+    size_t capacity;     /* blocks that both have room for */
 };
 
 /* Chooses the pieces that the tile may show. Lists keep their memory from call to call; zero them

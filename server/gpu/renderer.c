@@ -53,6 +53,7 @@ struct renderer *renderer_create(const struct renderer_options *options, struct 
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glCreateBuffers(1, &r->view_buffer);
+    glCreateBuffers(1, &r->block_buffer);
     glNamedBufferData(r->view_buffer, sizeof(struct view_block), NULL, GL_STREAM_DRAW);
     if (!stage_visibility_init(r, error) || !stage_shade_init(r, error)) {
         renderer_destroy(r);
@@ -85,7 +86,7 @@ const struct table_programs *programs_for(struct renderer *r, int point_banks, i
 #define STAGE_2                                                                                    \
     "view.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "planes.glsl", "newton.glsl",        \
         "neighbours.glsl"
-    static const char *const evaluate[] = {STAGE_2, "evaluate.comp.glsl", NULL};
+    static const char *const evaluate[] = {STAGE_2, "blocks.glsl", "evaluate.comp.glsl", NULL};
     static const char *const unsolved[] = {STAGE_2, "unsolved.comp.glsl", NULL};
 #undef STAGE_2
     for (int i = 0; i < r->n_programs; i++) {
@@ -101,7 +102,8 @@ const struct table_programs *programs_for(struct renderer *r, int point_banks, i
     char defines[256];
     snprintf(defines, sizeof defines,
              "#define POINT_BANKS %d\n#define NODE_BANKS %d\n#define ADJACENCY_BANKS %d\n"
-             "#define BANK_TEXELS %zu\n#define NODE_BANK_TEXELS %zu\n#define TEXTURES_FREE %d\n",
+             "#define BANK_TEXELS %zu\n#define NODE_BANK_TEXELS %zu\n#define "
+             "TEXTURES_FREE %d\n",
              point_banks, node_banks, adjacency_banks, r->info.max_texels,
              r->info.max_texels / 3 * 3, point_banks + node_banks + adjacency_banks);
     struct table_programs *p = &r->programs[r->n_programs];

@@ -17,8 +17,8 @@ struct light_block {
 
 static GLuint shade_program(struct renderer *r, enum pattern_kind kind, struct error *error)
 {
-    static const char *const files[] = {"view.glsl", "basis.glsl", "coverage.glsl",
-                                        "shade.comp.glsl", NULL};
+    static const char *const files[] = {"view.glsl",     "blocks.glsl",     "basis.glsl",
+                                        "coverage.glsl", "shade.comp.glsl", NULL};
     if (!r->shade[kind]) {
         char defines[32];
         snprintf(defines, sizeof defines, "#define PATTERN %d\n", kind);
@@ -108,11 +108,8 @@ bool stage_shade(struct renderer *r, const struct frame_request *request, const 
     glBindImageTexture(3, r->target.colour, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
     glBindImageTexture(4, r->target.light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
     glBindImageTexture(5, r->target.curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-    const struct tile *area = &r->pieces.area;
-    if (area->width < tile->width || area->height < tile->height)
+    if (blocks_leave_gaps(r, tile))
         clear_planes(r, request);
-    glUniform4i(glGetUniformLocation(program, "area"), (GLint)area->x, (GLint)area->y,
-                (GLint)area->width, (GLint)area->height);
-    glDispatchCompute((area->width + 7) / 8, (area->height + 7) / 8, 1);
+    dispatch_blocks(r, program);
     return true;
 }
