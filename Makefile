@@ -4,7 +4,6 @@
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
 #   make bench      programs that print ratios against peers
-#   make fuzz       replay the fuzz corpora
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
 #   make deps       install Debian packages (needs root or sudo)
@@ -53,7 +52,8 @@ RENDER_OBJ := $(call obj,$(GPU_SRC)) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,server/main.c $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
-SERVER_OBJ += $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
+KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
+SERVER_OBJ += $(KEEP_MODULES)
 CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 
 SERVER_LIBS := -lepoxy -lOpenImageIO -lOpenImageIO_Util -ltinygltf -lprotobuf-nanopb -lzstd -lcrypto -linih -lm
@@ -91,7 +91,7 @@ $(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
 
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything but the two mains.
-LIB_OBJ := $(filter-out %/server/main.c.o,$(SERVER_OBJ)) \
+LIB_OBJ := $(filter-out %/server/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
            $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
 TEST_LIB := $(BUILD)/libtests.a
 $(TEST_LIB): $(LIB_OBJ)
@@ -101,10 +101,10 @@ UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/t
 ORACLE_SHARED := $(call obj,$(filter-out tests/oracle/test_%.cpp tests/oracle/fake_sheen.cpp,$(wildcard tests/oracle/*.cpp)))
 ORACLE_TESTS := $(patsubst tests/oracle/%.cpp,$(BUILD)/tests/%,$(wildcard tests/oracle/test_*.cpp) tests/oracle/fake_sheen.cpp)
 
-$(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(TEST_LIB)
+$(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(TEST_LIB) -lcmocka $(SERVER_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(SERVER_LIBS)
 $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)

@@ -335,6 +335,46 @@ static void test_no_ghost_of_the_light(void **state)
     scene_finish(&scene);
 }
 
+/* A fan of quads whose inner edges are collapsed into one point: S_u vanishes there, and each quad
+ * still has a limit normal. */
+static void test_collapsed_edges(void **state)
+{
+    (void)state;
+    enum { SPOKES = 12, RINGS = 4 };
+    static char text[1 << 14];
+    size_t used = 0;
+    for (int r = 0; r < RINGS; r++)
+        for (int k = 0; k < SPOKES; k++) {
+            double a = 6.283185307179586 * k / SPOKES;
+            used += (size_t)snprintf(text + used, sizeof text - used, "v %.17g %.17g %.17g\n",
+                                     r * cos(a), r * sin(a), -0.2 * r * r);
+        }
+    for (int r = 0; r + 1 < RINGS; r++)
+        for (int k = 0; k < SPOKES; k++) {
+            int a = r * SPOKES + k + 1, b = r * SPOKES + (k + 1) % SPOKES + 1;
+            used += (size_t)snprintf(text + used, sizeof text - used, "f %d %d %d %d\n", a,
+                                     a + SPOKES, b + SPOKES, b);
+        }
+    struct scene scene;
+    scene_read(&scene, text, used);
+    struct renderer *renderer = open_renderer(0);
+    struct renderer_model *model = upload(renderer, &scene);
+    struct frame_request request = request_for(&scene, 301, 301);
+    /* The middle of a pixel looks straight at the point. */
+    request.camera = (struct camera){
+        .kind = CAMERA_ORTHOGRAPHIC, .eye = {0, 0, 5}, .up = {0, 1, 0}, .ortho_height = 0.02};
+    struct frame frame = render(renderer, model, &request);
+    assert_int_equal(hits(&frame), 301 * 301);
+    const float(*normal)[3] = frame.plane[2];
+    for (size_t k = 0; k < 301 * 301; k++)
+        if (!(normal[k][2] > 0.9f && normal[k][2] < 1.0001f))
+            fail_msg("pixel %zu has normal z %g", k, normal[k][2]);
+    frame_finish(&frame);
+    renderer_model_destroy(renderer, model);
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+}
+
 static void test_refused_requests(void **state)
 {
     (void)state;
@@ -392,6 +432,7 @@ int main(void)
         cmocka_unit_test(test_light_only),
         cmocka_unit_test(test_image_pattern),
         cmocka_unit_test(test_no_ghost_of_the_light),
+        cmocka_unit_test(test_collapsed_edges),
         cmocka_unit_test(test_refused_requests),
         cmocka_unit_test(test_unknown_devices),
     };
