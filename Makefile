@@ -3,7 +3,7 @@
 #   make demo       install what is missing, build, render the demo model to a PNG
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
-#   make bench      programs that print ratios against peers
+#   make bench      what grows with the size of a cage
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
 #   make deps       install Debian packages (needs root or sudo)
@@ -110,7 +110,13 @@ $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SH
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(SERVER_LIBS)
 
-.PHONY: tests unit service oracle check lint format demo deps install clean
+BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/*.cpp))
+$(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(SERVER_LIBS)
+
+.PHONY: tests unit service oracle check bench lint format demo deps install clean
 tests: all $(UNIT_TESTS) $(ORACLE_TESTS)
 unit: $(UNIT_TESTS)
 	sh tests/run.sh unit $(BUILD)
@@ -123,6 +129,9 @@ check:
 	$(MAKE) lint
 	$(MAKE) tests
 	sh tests/run.sh all $(BUILD)
+
+bench: all $(BENCH)
+	$(BUILD)/tests/bench_size $(BUILD)/sheen
 
 lint:
 	sh tests/lint.sh

@@ -55,11 +55,11 @@ edge_key key(int a, int b)
 
 struct mesh {
     std::vector<point> p;
-    std::vector<double> sharpness;         /* of vertices */
-    std::vector<std::vector<int>> faces;   /* those at vertex 0 begin with it */
-    std::vector<uint32_t> corner;          /* of faces at vertex 0: the cage's corner */
-    std::map<edge_key, double> creases;    /* sharpness of edges that have any */
-    point origin;                          /* the points are relative to it */
+    std::vector<double> sharpness;       /* of vertices */
+    std::vector<std::vector<int>> faces; /* those at vertex 0 begin with it */
+    std::vector<uint32_t> corner;        /* of faces at vertex 0: the cage's corner */
+    std::map<edge_key, double> creases;  /* sharpness of edges that have any */
+    point origin;                        /* the points are relative to it */
 
     double crease(edge_key e) const
     {
@@ -350,7 +350,7 @@ struct level {
 /* The 16 points about a quad. Returns whether it is a B-spline patch: its corners are regular. */
 bool find_net(const level &l, turned_quad q, point net[4][4])
 {
-    static const int at[4][2] = {{1, 1}, {2, 1}, {2, 2}, {1, 2}}; /* x, y of the corners */
+    static const int at[4][2] = {{1, 1}, {2, 1}, {2, 2}, {1, 2}};     /* x, y of the corners */
     static const int step[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}}; /* out across edge k */
     bool semisharp = false;
     turned_quad beside[4];
@@ -375,9 +375,9 @@ bool find_net(const level &l, turned_quad q, point net[4][4])
             diagonal = l.across(beside[k], before, &semisharp);
         bool by_row = beside[k].face != nowhere || beside[before].face == nowhere;
         int rx = by_row ? step[before][0] : step[k][0], ry = by_row ? step[before][1] : step[k][1];
-        point edge = node(x + dx - rx, y + dy - ry), behind = node(x + dx - 2 * rx, y + dy - 2 * ry);
-        node(x + dx, y + dy) =
-            diagonal.face == nowhere ? 2.0L * edge - behind : l.at(diagonal, k);
+        point edge = node(x + dx - rx, y + dy - ry),
+              behind = node(x + dx - 2 * rx, y + dy - 2 * ry);
+        node(x + dx, y + dy) = diagonal.face == nowhere ? 2.0L * edge - behind : l.at(diagonal, k);
     }
     for (int k = 0; k < 4; k++) {
         int v = l.vertex(q, k);
@@ -396,11 +396,11 @@ bool find_net(const level &l, turned_quad q, point net[4][4])
 void cubic(long double t, long double b[3][4])
 {
     long double s = 1 - t;
-    const long double value[3][4] = {{s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6,
-                                      (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6},
-                                     {-s * s / 2, (3 * t * t - 4 * t) / 2, (4 * s - 3 * s * s) / 2,
-                                      t * t / 2},
-                                     {s, 3 * t - 2, 3 * s - 2, t}};
+    const long double value[3][4] = {
+        {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
+         t * t * t / 6},
+        {-s * s / 2, (3 * t * t - 4 * t) / 2, (4 * s - 3 * s * s) / 2, t * t / 2},
+        {s, 3 * t - 2, 3 * s - 2, t}};
     for (int d = 0; d < 3; d++)
         std::copy_n(value[d], 4, b[d]);
 }
@@ -419,10 +419,13 @@ local_sample evaluate_net(const point net[4][4], long double s, long double t, p
     point du = d[1][0], dv = d[0][1], n = outer(du, dv);
     long double e = inner(du, du), f = inner(du, dv), g = inner(dv, dv), area = norm(n);
     n = (1 / area) * n;
-    long double w = area * area, l = inner(d[2][0], n), m = inner(d[1][1], n), k = inner(d[0][2], n);
+    long double w = area * area, l = inner(d[2][0], n), m = inner(d[1][1], n),
+                k = inner(d[0][2], n);
     long double mean = (e * k - 2 * f * m + g * l) / (2 * w), gauss = (l * k - m * m) / w;
     long double half = std::sqrt(std::max(mean * mean - gauss, 0.0L));
-    return {rounded(origin + d[0][0]), rounded(n), {(double)(mean - half), (double)(mean + half)},
+    return {rounded(origin + d[0][0]),
+            rounded(n),
+            {(double)(mean - half), (double)(mean + half)},
             (double)(area / std::sqrt(e * g))};
 }
 

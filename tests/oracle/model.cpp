@@ -79,7 +79,7 @@ std::vector<std::string> list_folder(const std::string &folder)
 
 } // namespace
 
-model read_model(const std::string &path)
+std::shared_ptr<const cage> read_cage_file(const std::string &path)
 {
     std::ifstream file(path, std::ios::binary);
     if (!file)
@@ -92,7 +92,12 @@ model read_model(const std::string &path)
     });
     if (!cage_read(cage.get(), bytes.data(), bytes.size(), path.c_str(), &error))
         throw std::runtime_error(path + ": " + error.text);
-    return make_model(path, cage);
+    return cage;
+}
+
+model read_model(const std::string &path)
+{
+    return make_model(path, read_cage_file(path));
 }
 
 model with_boundary(const model &original, cage_boundary boundary)

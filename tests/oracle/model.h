@@ -24,7 +24,10 @@ struct model {
     }
 };
 
-/* Throws std::runtime_error, with the path in it, when the file cannot be read or evaluated. */
+/* Throws std::runtime_error, with the path in it, when the file cannot be read. */
+std::shared_ptr<const struct cage> read_cage_file(const std::string &path);
+
+/* Throws as read_cage_file(), and when the cage cannot be evaluated. */
 model read_model(const std::string &path);
 
 /* The same cage under another boundary mode. Throws when that leaves no surface. */

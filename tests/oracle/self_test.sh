@@ -40,7 +40,7 @@ verdict() { # name, whether it holds
 # run PROGRAM MODEL-or-nothing FAULTS: output into $work/log, exit code into $code
 run() {
     case $1 in
-    test_limit) FAKE_FAULTS=$3 "$folder/$1" "$2" >"$work/log" 2>&1 ;;
+    test_limit | test_twin | test_refine) FAKE_FAULTS=$3 "$folder/$1" "$2" >"$work/log" 2>&1 ;;
     *) FAKE_FAULTS=$3 "$folder/$1" "$fake" ${2:+"$2"} >"$work/log" 2>&1 ;;
     esac
     code=$?
@@ -69,6 +69,13 @@ finds test_limit "$work/cube.obj" point,deep,hole,neighbour \
     "normal p99.9" "position p99.9" "gap at ring seams" "normals across ring seams" \
     "only one has a surface" "wrong neighbours"
 finds test_limit "$work/cube.obj" frame "normal p99.9"
+
+clean test_twin "$work/cube.obj"
+finds test_twin "$work/cube.obj" point,frame "its twin: gap" "its rewound twin: gap" \
+    "its twin: normal p99.9" "at edges: gap" "at edges: normal p99.9" "between leaves: normal p99.9"
+finds test_twin "$work/cube.obj" hole "only one has a surface"
+
+clean test_refine "$work/cube.obj"
 
 clean test_exact "$work/cube.obj"
 finds test_exact "$work/cube.obj" normal,unit,position,residual,winding,range,nan \

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+
+#include "tests/oracle/fault.h"
 
 namespace
 {
@@ -125,6 +128,29 @@ bool descend(const limit_tables &tables, const limit_node *node, unsigned corner
     return evaluate_leaf(tables, *node, corner, a, b, out);
 }
 
+/* Puts in the faults that FAKE_FAULTS names, for self_test.sh. */
+void break_tables(limit_tables *t)
+{
+    bool opened = false;
+    for (size_t k = 0; k < t->n_nodes; k++) {
+        limit_node *node = &t->nodes[k];
+        if (node->kind == LIMIT_SPLIT)
+            continue;
+        float(*texels)[4] = t->points + node->first;
+        if (has_fault("point"))
+            texels[5][0] += 1e-4f;
+        if (has_fault("frame") && node->kind == LIMIT_CORNER)
+            texels[LIMIT_CORNER_TEXELS - 1][0] += 1e-4f;
+        if (has_fault("deep") && node->kind == LIMIT_CORNER)
+            texels[25 * LIMIT_LEVEL_POINTS][3] *= 1.001f;
+        if (has_fault("hole") && !opened)
+            node->kind = LIMIT_HOLE;
+        opened = true;
+    }
+    if (has_fault("neighbour"))
+        std::swap(t->adjacency[0].across[0], t->adjacency[0].across[1]);
+}
+
 } // namespace
 
 surface_point evaluate_ring(const float (*texels)[4], int n, double a, double b)
@@ -157,6 +183,7 @@ table_evaluator::table_evaluator(const cage &cage)
     limit_plan_destroy(plan);
     if (!built)
         throw std::runtime_error(error.text);
+    break_tables(&tables);
 }
 
 table_evaluator::~table_evaluator()

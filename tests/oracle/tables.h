@@ -1,5 +1,5 @@
-/* The tables of server/limit evaluated on the CPU as server/limit/tables.h describes them, in double
- * from the single precision points: what the shaders do, without their arithmetic. */
+/* The tables of server/limit evaluated on the CPU as server/limit/tables.h describes them, in
+ * double from the single precision points: what the shaders do, without their arithmetic. */
 #ifndef SHEEN_TESTS_ORACLE_TABLES_H
 #define SHEEN_TESTS_ORACLE_TABLES_H
 
@@ -31,8 +31,8 @@ struct curvatures {
 };
 curvatures principal_curvatures(const surface_point &s);
 
-/* Where on a Ptex face: (a, b) as seen from one of its corners, whose next corner is at (1, 0). Near
- * that corner doubles tell places apart that (u, v) would not. */
+/* Where on a Ptex face: (a, b) as seen from one of its corners, whose next corner is at (1, 0).
+ * Near that corner doubles tell places apart that (u, v) would not. */
 struct place {
     uint32_t face;
     unsigned corner;

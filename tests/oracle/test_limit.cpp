@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "tests/oracle/fault.h"
 #include "tests/oracle/model.h"
 #include "tests/oracle/tables.h"
 #include "tests/oracle/verdict.h"
@@ -175,29 +174,6 @@ void compare_adjacency(const model &model, const table_evaluator &tables, figure
     f->adjacency += open > expected ? open - expected : expected - open;
 }
 
-/* Puts in the faults that FAKE_FAULTS names, for self_test.sh. */
-void break_tables(limit_tables *t)
-{
-    bool opened = false;
-    for (size_t k = 0; k < t->n_nodes; k++) {
-        limit_node *node = &t->nodes[k];
-        if (node->kind == LIMIT_SPLIT)
-            continue;
-        float(*texels)[4] = t->points + node->first;
-        if (has_fault("point"))
-            texels[5][0] += 1e-4f;
-        if (has_fault("frame") && node->kind == LIMIT_CORNER)
-            texels[LIMIT_CORNER_TEXELS - 1][0] += 1e-4f;
-        if (has_fault("deep") && node->kind == LIMIT_CORNER)
-            texels[25 * LIMIT_LEVEL_POINTS][3] *= 1.001f;
-        if (has_fault("hole") && !opened)
-            node->kind = LIMIT_HOLE;
-        opened = true;
-    }
-    if (has_fault("neighbour"))
-        std::swap(t->adjacency[0].across[0], t->adjacency[0].across[1]);
-}
-
 void judge(const model &model, verdict *verdict)
 {
     std::string what = model.name + ": ";
@@ -207,7 +183,6 @@ void judge(const model &model, verdict *verdict)
         if (!verdict->check(tables.tables.n_faces == model.oracle->n_ptex_faces(),
                             what + "the number of Ptex faces is not libosd's"))
             return;
-        break_tables(&tables.tables);
         compare_samples(model, tables, &f);
         compare_seams(tables, &f);
         if (!model.oracle->non_manifold())
