@@ -1,22 +1,8 @@
 #include "server/gpu/renderer.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "server/gpu/gpu.h"
-#include "server/gpu/program.h"
-
-bool gpu_check(const char *doing, struct error *error)
-{
-    GLenum code = glGetError();
-    if (code == GL_NO_ERROR)
-        return true;
-    while (glGetError() != GL_NO_ERROR)
-        ;
-    if (code == GL_OUT_OF_MEMORY)
-        return error_set(error, ERROR_DEVICE, "the device is out of memory for %s", doing);
-    return error_set(error, ERROR_DEVICE, "OpenGL error 0x%04x in %s", code, doing);
-}
 
 static void query_info(struct renderer *r, size_t max_texels)
 {
@@ -75,51 +61,6 @@ void renderer_destroy(struct renderer *r)
 const struct renderer_info *renderer_info(const struct renderer *r)
 {
     return &r->info;
-}
-
-const struct table_programs *programs_for(struct renderer *r, int point_banks, int node_banks,
-                                          int adjacency_banks, struct error *error)
-{
-    static const char *const vertex[] = {"view.glsl", "tables.glsl", "surface.glsl",
-                                         "visibility.vert.glsl", NULL};
-    static const char *const fragment[] = {"visibility.frag.glsl", NULL};
-#define STAGE_2                                                                                    \
-    "view.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "planes.glsl", "newton.glsl",        \
-        "neighbours.glsl"
-    static const char *const evaluate[] = {STAGE_2, "blocks.glsl", "evaluate.comp.glsl", NULL};
-    static const char *const unsolved[] = {STAGE_2, "unsolved.comp.glsl", NULL};
-#undef STAGE_2
-    for (int i = 0; i < r->n_programs; i++) {
-        const struct table_programs *p = &r->programs[i];
-        if (p->point_banks == point_banks && p->node_banks == node_banks &&
-            p->adjacency_banks == adjacency_banks)
-            return p;
-    }
-    if (r->n_programs == MAX_PROGRAM_SETS) {
-        error_set(error, ERROR_DEVICE, "models of too many different sizes at once");
-        return NULL;
-    }
-    char defines[256];
-    snprintf(defines, sizeof defines,
-             "#define POINT_BANKS %d\n#define NODE_BANKS %d\n#define ADJACENCY_BANKS %d\n"
-             "#define BANK_TEXELS %zu\n#define NODE_BANK_TEXELS %zu\n#define "
-             "TEXTURES_FREE %d\n",
-             point_banks, node_banks, adjacency_banks, r->info.max_texels,
-             r->info.max_texels / 3 * 3, point_banks + node_banks + adjacency_banks);
-    struct table_programs *p = &r->programs[r->n_programs];
-    p->visibility = program_raster(defines, vertex, fragment, error);
-    p->evaluate = p->visibility ? program_compute(defines, evaluate, error) : 0;
-    p->unsolved = p->evaluate ? program_compute(defines, unsolved, error) : 0;
-    if (!p->unsolved) {
-        glDeleteProgram(p->visibility);
-        glDeleteProgram(p->evaluate);
-        return NULL;
-    }
-    p->point_banks = point_banks;
-    p->node_banks = node_banks;
-    p->adjacency_banks = adjacency_banks;
-    r->n_programs++;
-    return p;
 }
 
 struct renderer_image *renderer_image_create(struct renderer *r, const struct image *image,

@@ -1,0 +1,20 @@
+/* The covered blocks of a tile, one workgroup each (shaders/blocks.glsl). */
+#include "server/gpu/gpu.h"
+
+/* Groups in one dimension are limited (to 65,535 at least), so blocks go in rows. */
+void dispatch_blocks(struct renderer *r, GLuint program)
+{
+    enum { ROW = 32768 };
+    size_t n = r->pieces.n_blocks;
+    glUniform1ui(glGetUniformLocation(program, "n_blocks"), (GLuint)n);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->block_buffer);
+    if (n)
+        glDispatchCompute((GLuint)(n < ROW ? n : ROW), (GLuint)((n + ROW - 1) / ROW), 1);
+}
+
+bool blocks_leave_gaps(const struct renderer *r, const struct tile *tile)
+{
+    size_t across = (tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    size_t down = (tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    return r->pieces.n_blocks < across * down;
+}
