@@ -252,16 +252,23 @@ static void choose_regular(struct chooser *c, uint32_t node)
     choose_square(c, (struct piece){node, 0, 0, 0}, &extent);
 }
 
-/* One piece for each patch across the crease. */
+/* One quad for the whole where that is flat enough, else a piece for each patch across the crease.
+ */
 static void choose_strip(struct chooser *c, uint32_t node)
 {
     const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
     uint32_t levels = c->tables->nodes[node].levels;
-    struct extent extent;
+    struct extent extent = {.radius = bounds->radius, .bend = bounds->bend};
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
+    if (is_outside(c, &extent))
+        return;
+    if (in_px(c, &extent, extent.bend) <= 8 * TOLERANCE_PX) {
+        emit(c, 0, (struct piece){node, 0, 0, 0}, &extent);
+        return;
+    }
     for (uint32_t n = 1; n <= levels + 1; n++) {
-        extent.radius = bounds[n - 1].radius;
-        extent.bend = bounds[n - 1].bend;
+        extent.radius = bounds[n].radius;
+        extent.bend = bounds[n].bend;
         uint32_t where = n <= levels ? n | 3u << 6 : levels;
         choose_square(c, (struct piece){node, where, 0, 0}, &extent);
     }

@@ -73,7 +73,7 @@ static void build_strip(struct face_builder *b, uint32_t node, const struct quad
                     b->tables->bounds + b->next.bound, out->origin);
     }
     b->next.point += (levels + 1) * LIMIT_REGULAR_POINTS;
-    b->next.bound += levels + 1;
+    b->next.bound += levels + 2;
     b->n_strip++;
 }
 

@@ -67,6 +67,7 @@ void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
         centre = vec_mad(centre, 1.0 / 16, rows[k / 4][k % 4]);
     for (int k = 0; k < 16; k++)
         rows[k / 4][k % 4] = vec_sub(rows[k / 4][k % 4], centre);
+    *bounds++ = bound_of_grid(&rows[0][0], 4, false);
     float sharpness = straight_crease(&quad->corner[0], 0);
     for (unsigned n = 0; n < levels; n++) {
         refine_rows(rows, sharpness < 1 ? (double)sharpness : 1, fine);

@@ -73,7 +73,7 @@ struct limit_tables {
     float (*points)[4];
 
     /* Bounds for the CPU's choice of grids; not on the GPU. bound_first[node] indexes bounds: one
-     * for REGULAR, LIMIT_LEVELS for CORNER, one for each patch of a STRIP. */
+     * for REGULAR, LIMIT_LEVELS for CORNER, one for a STRIP and one for each of its patches. */
     uint32_t *bound_first; /* [n_nodes] */
     struct limit_bound *bounds;
     size_t n_bounds;
