@@ -2,10 +2,13 @@
  * (face, u, v), and against the camera alone: the point must lie on its pixel's ray. */
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "tests/oracle/frame_loop.h"
+#include "tests/oracle/tables.h"
 
 namespace
 {
@@ -24,7 +27,18 @@ struct figures {
     size_t bad_value = 0; /* P or N not finite where something is hit, or finite where not */
     size_t backwards = 0; /* N against the face winding */
     std::vector<double> normal_rad, position, residual_px, length_error;
+    std::vector<double> tables_rad; /* N to that of the tables' own CPU evaluator at (face,u,v) */
 };
+
+/* The shaders' descent and evaluation against the same in double on the CPU. */
+void measure_against_tables(const table_evaluator &tables, const planes &planes, size_t i,
+                            figures *figures)
+{
+    surface_point point;
+    bool found = tables.evaluate(planes.face[i], planes.u[i], planes.v[i], &point);
+    if (found && point.has_normal() && osd_oracle_is_exact(planes.u[i], planes.v[i]))
+        figures->tables_rad.push_back(angle(planes.normal(i), point.normal()));
+}
 
 void measure_against_oracle(const model &model, const planes &planes, size_t i, figures *figures)
 {
@@ -59,7 +73,8 @@ double rounding_px(const projector &camera, vec3 p, projected q)
     return sum;
 }
 
-figures measure(const model &model, const view &view, const planes &planes)
+figures measure(const model &model, const table_evaluator &tables, const view &view,
+                const planes &planes)
 {
     figures figures;
     projector camera(view);
@@ -77,21 +92,25 @@ figures measure(const model &model, const view &view, const planes &planes)
                 std::fmax(0, off_px - rounding_px(camera, planes.position(i), q)));
             figures.length_error.push_back(std::fabs(length(planes.normal(i)) - 1));
             measure_against_oracle(model, planes, i, &figures);
+            measure_against_tables(tables, planes, i, &figures);
         }
     return figures;
 }
 
-void judge(const model &model, const view &view, const planes &planes, verdict *verdict)
+void judge(const model &model, const table_evaluator &tables, const view &view,
+           const planes &planes, verdict *verdict)
 {
-    figures f = measure(model, view, planes);
+    figures f = measure(model, tables, view, planes);
+    double tables999 = quantile(f.tables_rad, 0.999);
     double n999 = quantile(f.normal_rad, 0.999), p999 = quantile(f.position, 0.999);
     double r999 = quantile(f.residual_px, 0.999), r_max = quantile(f.residual_px, 1);
     double unit = quantile(f.length_error, 1);
-    std::printf(
-        "%-28s %-8s %7zu %5zu | %7.1e %7.1e %7.1e %7.1e | %7.1e %7.1e | %7.1e %7.1e | %7.1e\n",
-        model.name.c_str(), view.name.c_str(), f.hit, f.near_corner, quantile(f.normal_rad, 0.5),
-        quantile(f.normal_rad, 0.99), n999, quantile(f.normal_rad, 1), p999,
-        quantile(f.position, 1), r999, r_max, unit);
+    std::printf("%-28s %-8s %7zu %5zu | %7.1e %7.1e %7.1e %7.1e | %7.1e %7.1e | %7.1e %7.1e | "
+                "%7.1e | %7.1e\n",
+                model.name.c_str(), view.name.c_str(), f.hit, f.near_corner,
+                quantile(f.normal_rad, 0.5), quantile(f.normal_rad, 0.99), n999,
+                quantile(f.normal_rad, 1), p999, quantile(f.position, 1), r999, r_max, unit,
+                tables999);
     std::string what = model.name + " " + view.name + ": ";
     verdict->check(f.hit >= min_hit_px, what + "only " + std::to_string(f.hit) + " pixels hit");
     verdict->check(2 * f.normal_rad.size() >= f.hit,
@@ -103,6 +122,7 @@ void judge(const model &model, const view &view, const planes &planes, verdict *
     verdict->check(f.backwards == 0,
                    what + std::to_string(f.backwards) + " normals against the winding");
     verdict->at_most(n999, max_normal_p999_rad, what + "normal p99.9 (rad)");
+    verdict->at_most(tables999, max_normal_p999_rad, what + "normal to the tables' p99.9 (rad)");
     verdict->at_most(p999, max_position_p999, what + "position p99.9 (diagonals)");
     verdict->at_most(r999, max_residual_p999_px, what + "residual p99.9 (px)");
     verdict->at_most(r_max, max_residual_px, what + "residual max (px)");
@@ -118,15 +138,20 @@ int main(int argc, char **argv)
         return 2;
     }
     verdict verdict;
-    std::printf("%-28s %-8s %7s %5s | %31s | %15s | %15s | %7s\n", "", "", "", "near",
-                "angle of N to libosd's, rad", "|P-P'|/diagonal", "P off pixel, px", "||N|-1|");
-    std::printf("%-28s %-8s %7s %5s | %7s %7s %7s %7s | %7s %7s | %7s %7s | %7s\n", "model", "view",
-                "hit px", "EV px", "p50", "p99", "p99.9", "max", "p99.9", "max", "p99.9", "max",
-                "max");
+    std::printf("%-28s %-8s %7s %5s | %31s | %15s | %15s | %7s | %7s\n", "", "", "", "near",
+                "angle of N to libosd's, rad", "|P-P'|/diagonal", "P off pixel, px", "||N|-1|",
+                "N, CPU");
+    std::printf("%-28s %-8s %7s %5s | %7s %7s %7s %7s | %7s %7s | %7s %7s | %7s | %7s\n", "model",
+                "view", "hit px", "EV px", "p50", "p99", "p99.9", "max", "p99.9", "max", "p99.9",
+                "max", "max", "p99.9");
+    std::map<std::string, std::unique_ptr<table_evaluator>> tables;
     for_each_frame(argv[1], list_models(std::vector<std::string>(argv + 2, argv + argc)),
                    model_views, &verdict,
                    [&](const model &model, const view &view, const planes &planes) {
-                       judge(model, view, planes, &verdict);
+                       auto &of_model = tables[model.path];
+                       if (!of_model)
+                           of_model.reset(new table_evaluator(*model.cage));
+                       judge(model, *of_model, view, planes, &verdict);
                    });
     return verdict.finish();
 }
