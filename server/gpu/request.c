@@ -25,7 +25,8 @@ static bool check_camera(const struct camera *camera, struct error *error)
     struct vec side = vec_cross(vec_unit(forward), vec_unit(get(camera->up)));
     if (!(vec_length(side) > 1e-9))
         return error_set(error, ERROR_REQUEST,
-                         "camera: up is zero or parallel to the line from eye to target");
+                         "camera: up is zero or parallel to the line from eye to target: choose "
+                         "another (--up 0,1,0)");
     if (camera->kind == CAMERA_PERSPECTIVE && !(camera->fov_deg >= 1e-6 && camera->fov_deg <= 179))
         return error_set(error, ERROR_REQUEST, "camera: fov %g is not in 1e-6 to 179 degrees",
                          camera->fov_deg);

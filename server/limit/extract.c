@@ -153,11 +153,10 @@ struct quad extract_quad(const struct topology *t, uint32_t c, struct arena *are
 
 void extract_plain_grid(const struct topology *t, uint32_t c, struct vec grid[4][4])
 {
-    /* Corner i sits at grid[y][x]; its first edge runs along (ax,ay), its second along (bx,by). */
-    static const int at[4][6] = {
-        {1, 1, 1, 0, 0, 1}, {2, 1, 0, 1, -1, 0}, {2, 2, -1, 0, 0, -1}, {1, 2, 0, -1, 1, 0}};
     for (unsigned i = 0; i < 4; i++, c = corner_next(t, c)) {
-        int x = at[i][0], y = at[i][1], ax = at[i][2], ay = at[i][3], bx = at[i][4], by = at[i][5];
+        const struct quad_corner *at = &quad_corners[i];
+        int x = at->x, y = at->y, ax = at->first_x, ay = at->first_y, bx = at->second_x,
+            by = at->second_y;
         uint32_t before = corner_cw(t, c), beyond = corner_cw(t, before), after = corner_ccw(t, c);
         grid[y][x] = position(t, c);
         grid[y - by][x - bx] = position(t, corner_next(t, before));

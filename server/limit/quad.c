@@ -120,14 +120,16 @@ static struct beyond beyond_second_edge(const struct ring *ring)
                            mirrored(ring_edge(ring, 1), ring_face(ring, 0))};
 }
 
+const struct quad_corner quad_corners[4] = {
+    {1, 1, 1, 0, 0, 1}, {2, 1, 0, 1, -1, 0}, {2, 2, -1, 0, 0, -1}, {1, 2, 0, -1, 1, 0}};
+
 void quad_grid(const struct quad *quad, struct vec grid[4][4])
 {
-    /* Corner i sits at grid[y][x]; its first edge runs along (ax,ay), its second along (bx,by). */
-    static const int at[4][6] = {
-        {1, 1, 1, 0, 0, 1}, {2, 1, 0, 1, -1, 0}, {2, 2, -1, 0, 0, -1}, {1, 2, 0, -1, 1, 0}};
     for (unsigned i = 0; i < 4; i++) {
         const struct ring *ring = &quad->corner[i];
-        int x = at[i][0], y = at[i][1], ax = at[i][2], ay = at[i][3], bx = at[i][4], by = at[i][5];
+        const struct quad_corner *at = &quad_corners[i];
+        int x = at->x, y = at->y, ax = at->first_x, ay = at->first_y, bx = at->second_x,
+            by = at->second_y;
         struct beyond first = beyond_first_edge(ring), second = beyond_second_edge(ring);
         grid[y][x] = ring->centre;
         grid[y - by][x - bx] = first.near;

@@ -13,6 +13,13 @@ struct quad {
     struct ring corner[4];
 };
 
+/* Where corner i sits in a 4x4 grid of control points, grid[y][x], and the steps along its first
+ * edge (to corner i + 1) and its second (to corner i + 3). */
+struct quad_corner {
+    int x, y, first_x, first_y, second_x, second_y;
+};
+extern const struct quad_corner quad_corners[4];
+
 /* Bit i set: corner i is extraordinary (its ring is not regular). */
 unsigned quad_extraordinary(const struct quad *quad);
 

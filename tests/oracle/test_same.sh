@@ -102,6 +102,19 @@ through_daemon() { # name; the daemon is up at $address
     done
 }
 
+# The client stays small: what it links is not the daemon's.
+heavy=$(ldd "$sheen" | grep -iE 'OpenImageIO|libE?GL|libepoxy|tinygltf')
+[ -z "$heavy" ]
+check $? "the client links $heavy"
+
+# What a patch may take on the GPU, all told.
+"$sheen" info "$1" --json >"$work/info.json"
+regular=$(number regular_bytes "$work/info.json") corner=$(number corner_bytes "$work/info.json")
+[ "${regular:-0}" -gt 0 ] && [ "${regular:-0}" -le 320 ]
+check $? "a regular patch takes $regular bytes, more than 320"
+[ "${corner:-0}" -gt 0 ] && [ "${corner:-0}" -le 12400 ]
+check $? "a corner patch takes $corner bytes, more than 12400"
+
 for model; do
     render "$model" "$work/$(basename "$model").png"
     render "$model" "$work/$(basename "$model").exr"
