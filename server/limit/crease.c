@@ -42,6 +42,16 @@ float crease_child(const struct ring *ring, uint32_t k)
     return sharpness > 1 ? sharpness - 1 : 0;
 }
 
+double crease_edge_weight(const struct ring *in, uint32_t k)
+{
+    float sharpness = crease_edge(in, k);
+    if (sharpness <= 0)
+        return 0;
+    if (is_infinite(sharpness))
+        return 1;
+    return crease_child(in, k) > 0 && in->creases.far[k] > 0 ? 1 : sharpness;
+}
+
 /* At the new vertex on an edge only its two halves are sharp: what half `own` becomes there. */
 static float child_at_edge_point(float own, float other, bool chaikin)
 {

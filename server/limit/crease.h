@@ -15,6 +15,12 @@ float crease_edge(const struct ring *ring, uint32_t k);
  * other edges less one. Never below 0; infinite stays. */
 float crease_child(const struct ring *ring, uint32_t k);
 
+/* How much of the crease rule the new vertex on edge k takes: all of it where both halves stay
+ * sharp, else the sharpness. That is at most 1 but where Chaikin's mean wipes out a sharper edge;
+ * OpenSubdiv then takes more than all (sdc/scheme.h, ComputeEdgeVertexMask given the child's rule),
+ * and so do we. Needs creases.far where creases.edge is set. */
+double crease_edge_weight(const struct ring *ring, uint32_t k);
+
 /* Sharpness of a vertex after one step. */
 float crease_child_vertex(float sharpness);
 

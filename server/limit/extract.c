@@ -212,24 +212,35 @@ static void refine_sector(const struct topology *t, struct refined_points *point
 /* The weight of the two face points, OpenSubdiv's constant for triangles (sdc/catmarkScheme.h). */
 static double smooth_triangle_weight(const struct topology *t, uint32_t corner)
 {
-    return face_size(t, t->face[corner]) == 3 ? (double)0.470f : 0.25;
+    return face_size(t, t->face[corner]) == 3 ? 0.470 : 0.25;
+}
+
+static double crease_weight(const struct topology *t, uint32_t c, struct arena *arena)
+{
+    size_t mark = arena->used;
+    struct sector sector;
+    struct ring ring = cage_ring(t, c, false, &sector, arena);
+    set_far_sharpness(t, &sector, &ring, arena);
+    double weight = crease_edge_weight(&ring, ring.at);
+    arena->used = mark;
+    return weight;
 }
 
 /* TRI_SUB_SMOOTH: edges beside triangles lean on the face points, in the first step only. */
-static void refine_smooth_triangle_edges(const struct topology *t, struct refined_points *points)
+static void refine_smooth_triangle_edges(const struct topology *t, struct refined_points *points,
+                                         struct arena *arena)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
     for (uint32_t c = 0; c < n_corners; c++) {
         uint32_t twin = t->twin[c];
-        float sharpness = edge_sharpness(t, c);
-        if (twin == CORNER_NONE || c > twin || sharpness >= 1)
+        if (twin == CORNER_NONE || c > twin)
             continue;
+        double crease = crease_weight(t, c, arena);
         double face = 0.5 * (smooth_triangle_weight(t, c) + smooth_triangle_weight(t, twin));
         struct vec ends = vec_add(position(t, c), position(t, corner_next(t, c)));
         struct vec faces = vec_add(points->face[t->face[c]], points->face[t->face[twin]]);
         struct vec smooth = vec_mad(vec_scale(ends, 0.5 - face), face, faces);
-        points->edge[c] =
-            vec_mad(vec_scale(smooth, 1 - (double)sharpness), 0.5 * (double)sharpness, ends);
+        points->edge[c] = vec_mad(vec_scale(smooth, 1 - crease), 0.5 * crease, ends);
         points->edge[twin] = points->edge[c];
     }
 }
@@ -257,7 +268,7 @@ bool refined_points_init(struct refined_points *points, const struct topology *t
             refine_sector(t, points, c, done, arena);
     free(done);
     if (cage->smooth_triangles)
-        refine_smooth_triangle_edges(t, points);
+        refine_smooth_triangle_edges(t, points, arena);
     return true;
 }
 

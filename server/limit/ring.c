@@ -36,23 +36,11 @@ static void refine_faces(const struct ring *in, struct ring *out)
     }
 }
 
-/* How much of the crease rule an edge point takes: all of it from sharpness 1 on, and where both
- * halves stay sharp (Chaikin). */
-static double crease_weight(const struct ring *in, uint32_t k)
-{
-    float sharpness = crease_edge(in, k);
-    if (sharpness <= 0)
-        return 0;
-    if (sharpness >= 1 || (crease_child(in, k) > 0 && in->creases.far[k] > 0))
-        return 1;
-    return sharpness;
-}
-
 static void refine_edges(const struct ring *in, struct ring *out)
 {
     for (uint32_t k = 0; k < ring_edges(in); k++) {
         struct vec ends = vec_add(in->centre, in->edge[k]);
-        double crease = crease_weight(in, k);
+        double crease = crease_edge_weight(in, k);
         if (crease == 1) {
             out->edge[k] = vec_scale(ends, 0.5);
             continue;

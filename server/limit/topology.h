@@ -99,9 +99,10 @@ static inline bool quad_is_plain(const struct topology *t, uint32_t c)
     return true;
 }
 
-/* The faces around a corner's vertex that its sector holds. */
+/* The faces around a corner's vertex that its sector holds, in one order from all of its corners:
+ * sums over it come out the same to the last bit. */
 struct sector {
-    uint32_t first;   /* the clockwise-most corner, or the given one when closed */
+    uint32_t first;   /* the clockwise-most corner; when closed, the one of lowest index */
     uint32_t n_faces; /* >= 1 */
     uint32_t at;      /* how many ccw steps from first to the given corner */
     bool closed;

@@ -442,6 +442,16 @@ def creases():
     return cage, tags
 
 
+def smooth_triangles():
+    """The drum of ngons() with OpenSubdiv's smooth triangles, some of their edges sharp."""
+    cage = ngons()
+    edges = sorted({tuple(sorted((f[k], f[k - 1]))) for f in cage.faces if len(f) == 3 for k in range(3)})
+    tags = ["t smoothtriangles 0/0/1 smooth", "t creasemethod 0/0/1 chaikin"]
+    tags += ["t crease 2/1/0 %d %d %g" % (*edge, sharpness)
+             for edge, sharpness in zip(edges, (0.3, 0.8, 1.2))]
+    return cage, tags
+
+
 def nonmanifold():
     """A fin on a sheet, two sheets that touch in a vertex, and two quads wound against each other."""
     points, faces = [], []
@@ -486,6 +496,10 @@ def main():
     write_obj(path("ngons.obj"), ngons(), comment="A closed body of triangles, quads, pentagons, hexagons")
     write_obj(path("tetra.obj"), tetra(), comment="A tetrahedron")
     write_obj(path("creases.obj"), *creases(), comment="A closed body with every kind of tag")
+    cage, tags = creases()
+    write_obj(path("chaikin.obj"), cage, tags + ["t creasemethod 0/0/1 chaikin"],
+              comment="The same body and tags, creases by Chaikin's rule")
+    write_obj(path("smoothtriangles.obj"), *smooth_triangles(), comment="The drum with smooth triangles")
     write_obj(path("nonmanifold.obj"), nonmanifold(), comment="A fin, a shared vertex, a turned quad")
 
 
