@@ -82,7 +82,7 @@ static void print_table(const struct sheen_model_info *info)
            "ptex", info->ptex_faces, info->regular_patches, info->corner_patches,
            info->strip_patches, info->split_nodes, info->hole_nodes);
     printf("%-16s %" PRIu64 " bytes on the GPU: %" PRIu64 " a regular patch, %" PRIu64
-           " a corner patch\n",
+           " a corner patch at most\n",
            "tables", info->table_bytes, info->regular_bytes, info->corner_bytes);
     printf("%-16s %.1f ms\n", "built in", (double)info->tables_us / 1e3);
 }

@@ -27,7 +27,7 @@ mat3 frame_of(Node node)
     mat3 camera = transpose(mat3(axis[0].xyz, axis[1].xyz, axis[2].xyz));
     if (node.kind != CORNER)
         return camera;
-    vec4 q = point_at(node.first + uint(LEVELS * LEVEL_POINTS));
+    vec4 q = vec4(point_at(node.first), point_at(node.first + 1u).x);
     vec3 d = 2.0 * q.xyz;
     float xx = q.x * d.x, yy = q.y * d.y, zz = q.z * d.z;
     float xy = q.x * d.y, xz = q.x * d.z, yz = q.y * d.z;
@@ -47,6 +47,7 @@ struct SubPatch {
     ivec2 scale;  // its parameters run 2^scale times faster than the node's x,y
     vec2 origin;  // where it begins, in those parameters
     vec2 st;      // the place, in [0,1]
+    uint texels;  // the scale
     uint first;   // its 16 points: rows of 4, `stride` texels apart
     uint stride;
     bool limit;   // beyond the last level of a CORNER: the extraordinary vertex itself
@@ -59,27 +60,25 @@ SubPatch sub_patch_at(Node node, vec2 xy)
     int e;
     frexp(nearest, e);
     int level = nearest > 0.0 ? max(1, 1 - e) : 1000;
-    bool limit = corner && level > LEVELS;
-    level = corner ? min(level, LEVELS) : strip ? min(level, node.levels + 1) : 0;
+    bool limit = corner && level > node.levels;
+    level = corner ? min(level, node.levels) : strip ? min(level, node.levels + 1) : 0;
     // The last patch of a strip begins at the crease and is as wide as the one before.
     bool last = strip && level > node.levels;
     ivec2 scale = level_scale(node, last ? level - 1 : level);
     vec2 st = ldexp(xy, scale);
     bvec2 far = bvec2(corner && st.x >= 1.0, (corner && st.y >= 1.0) || (strip && !last));
-    uint first = node.first + (corner  ? uint(LEVEL_POINTS * (level - 1))
-                               : strip ? uint(16 * (level - 1))
-                                       : 0u);
-    first += corner && far.y ? (far.x ? 5u : 4u) : 0u;
-    return SubPatch(scale, vec2(far), st - vec2(far), first, corner ? 5u : 4u, limit);
+    uint texels = node.first + (corner  ? CORNER_HEAD + LEVEL_TEXELS * uint(level - 1)
+                                : strip ? PATCH_TEXELS * uint(level - 1)
+                                        : 0u);
+    uint first = texels + (corner ? uint(far.x) + 5u * uint(far.y) : 1u);
+    return SubPatch(scale, vec2(far), st - vec2(far), texels, first, corner ? 5u : 4u, limit);
 }
 
 void fetch_points(SubPatch patch_, out vec3 p[16], out float scale)
 {
-    for (uint k = 0u; k < 16u; k++) {
-        vec4 texel = point_at(patch_.first + (k >> 2) * patch_.stride + (k & 3u));
-        p[k] = texel.xyz;
-        scale = texel.w;
-    }
+    scale = point_at(patch_.texels).x;
+    for (uint k = 0u; k < 16u; k++)
+        p[k] = point_at(patch_.first + (k >> 2) * patch_.stride + (k & 3u));
 }
 
 // The normal of derivatives at st, and |su x sv|^2. Where a derivative vanishes or both are parallel
@@ -130,5 +129,5 @@ Surface patch_at(Node node, mat3 frame, vec3 p[16], float scale, vec2 st)
 Surface limit_of(Node node, mat3 frame, float scale)
 {
     return Surface(node.origin, frame[0], frame[1], vec3(0.0), vec3(0.0), vec3(0.0),
-                   float(node.levels) * frame[2], 1.0, scale);
+                   float(node.has_normal) * frame[2], 1.0, scale);
 }

@@ -6,8 +6,8 @@
 
 const uint NONE = 0xffffffffu;
 const uint REGULAR = 0u, CORNER = 1u, SPLIT = 2u, HOLE = 3u, STRIP = 4u;
-const int LEVELS = 32;
-const int LEVEL_POINTS = 24;
+const uint PATCH_TEXELS = 17u, CORNER_HEAD = 2u, LEVEL_TEXELS = 25u;
+const uint NO_NORMAL = 0x80u;
 
 layout(binding = 0) uniform samplerBuffer points[POINT_BANKS];
 layout(binding = POINT_BANKS) uniform usamplerBuffer nodes[NODE_BANKS];
@@ -18,37 +18,37 @@ layout(binding = POINT_BANKS + NODE_BANKS) uniform usamplerBuffer adjacency[ADJA
     uint bank = (i) / uint(size);                                                                  \
     int at = int((i) - bank * uint(size));
 
-vec4 point_at(uint i)
+vec3 point_at(uint i)
 {
 #if POINT_BANKS == 1
-    return texelFetch(points[0], int(i));
+    return texelFetch(points[0], int(i)).xyz;
 #else
     LADDER(i, BANK_TEXELS)
     if (bank == 0u)
-        return texelFetch(points[0], at);
+        return texelFetch(points[0], at).xyz;
     if (bank == 1u)
-        return texelFetch(points[1], at);
+        return texelFetch(points[1], at).xyz;
 #if POINT_BANKS > 2
     if (bank == 2u)
-        return texelFetch(points[2], at);
+        return texelFetch(points[2], at).xyz;
 #endif
 #if POINT_BANKS > 3
     if (bank == 3u)
-        return texelFetch(points[3], at);
+        return texelFetch(points[3], at).xyz;
 #endif
 #if POINT_BANKS > 4
     if (bank == 4u)
-        return texelFetch(points[4], at);
+        return texelFetch(points[4], at).xyz;
 #endif
 #if POINT_BANKS > 5
     if (bank == 5u)
-        return texelFetch(points[5], at);
+        return texelFetch(points[5], at).xyz;
 #endif
 #if POINT_BANKS > 6
     if (bank == 6u)
-        return texelFetch(points[6], at);
+        return texelFetch(points[6], at).xyz;
 #endif
-    return texelFetch(points[POINT_BANKS - 1], at);
+    return texelFetch(points[POINT_BANKS - 1], at).xyz;
 #endif
 }
 
@@ -91,7 +91,8 @@ struct Node {
     uint kind;
     uint depth;
     uint rotation;
-    int levels;  // STRIP: patches but one; CORNER: 0 at a cone's tip
+    int levels;       // STRIP: patches but one; CORNER: rings towards the vertex
+    bool has_normal;  // CORNER: at the vertex itself
     uint ngon_size, ngon_corner;
     vec3 origin;  // relative to the eye, in camera space
 };
@@ -109,7 +110,8 @@ Node node_load(uint i)
     node.kind = c.y & 0xffu;
     node.depth = (c.y >> 8) & 0xffu;
     node.rotation = (c.y >> 16) & 0xffu;
-    node.levels = int(c.y >> 24);
+    node.levels = int((c.y >> 24) & ~NO_NORMAL);
+    node.has_normal = ((c.y >> 24) & NO_NORMAL) == 0u;
     node.ngon_size = c.z;
     node.ngon_corner = c.w;
     return node;

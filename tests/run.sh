@@ -83,7 +83,7 @@ oracle() {
     [ -f "$car" ] || car=tests/models/creases.obj
     run far "$build/tests/test_far" "$build/sheen" tests/models/fender.obj "$car"
     run zoom "$build/tests/test_zoom" "$build/sheen" tests/models/body.obj tests/models/fender.obj \
-        tests/models/creases.obj "$car"
+        tests/models/creases.obj tests/models/pole.obj "$car"
     run mirror "$build/tests/test_mirror" "$build/sheen"
 }
 

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 
 static bool upload(struct bank_set *set, int max_banks, GLenum format, const void *data,
-                   size_t n_texels, size_t max_texels, const char *what, struct error *error)
+                   size_t n_texels, size_t texel_bytes, size_t max_texels, const char *what,
+                   struct error *error)
 {
     size_t n_banks = n_texels ? (n_texels + max_texels - 1) / max_texels : 1;
     if (n_banks > (size_t)max_banks)
@@ -18,8 +19,9 @@ static bool upload(struct bank_set *set, int max_banks, GLenum format, const voi
     for (size_t b = 0; b < n_banks; b++) {
         size_t first = b * max_texels;
         size_t n = n_texels - first < max_texels ? n_texels - first : max_texels;
-        const char *from = (const char *)data + first * 16;
-        glNamedBufferStorage(set->buffer[b], (GLsizeiptr)((n ? n : 1) * 16), n ? from : NULL, 0);
+        const char *from = (const char *)data + first * texel_bytes;
+        glNamedBufferStorage(set->buffer[b], (GLsizeiptr)((n ? n : 1) * texel_bytes),
+                             n ? from : NULL, 0);
         glTextureBuffer(set->texture[b], format, set->buffer[b]);
     }
     return gpu_check(what, error);
@@ -52,12 +54,12 @@ struct renderer_model *renderer_model_create(struct renderer *renderer,
     size_t max = renderer->info.max_texels;
     /* A node's three texels stay in one bank. */
     size_t node_max = max / 3 * 3;
-    if (upload(&model->points, MAX_POINT_BANKS, GL_RGBA32F, tables->points, tables->n_points, max,
-               "points", error) &&
-        upload(&model->nodes, MAX_NODE_BANKS, GL_RGBA32UI, tables->nodes, 3 * tables->n_nodes,
+    if (upload(&model->points, MAX_POINT_BANKS, GL_RGB32F, tables->points, tables->n_points,
+               sizeof *tables->points, max, "points", error) &&
+        upload(&model->nodes, MAX_NODE_BANKS, GL_RGBA32UI, tables->nodes, 3 * tables->n_nodes, 16,
                node_max, "nodes", error) &&
         upload(&model->adjacency, MAX_ADJACENCY_BANKS, GL_RGBA32UI, tables->adjacency,
-               tables->n_faces, max, "adjacency", error))
+               tables->n_faces, 16, max, "adjacency", error))
         model->programs =
             programs_for(renderer, model->points.n, model->nodes.n, model->adjacency.n, error);
     if (!model->programs) {

@@ -153,16 +153,19 @@ static void patch_points(const struct limit_tables *tables, const struct piece *
 {
     const struct limit_node *node = &tables->nodes[piece->node];
     unsigned level = piece->where & 63, square = piece->where >> 6 & 3;
-    size_t first = node->first, stride = 4;
+    const float(*texels)[3] = tables->points + node->first;
+    size_t first = 1, stride = 4;
     if (node->kind == LIMIT_CORNER) {
-        first += (level - 1) * LIMIT_LEVEL_POINTS + (square == 2 ? 5 : square == 3 ? 4 : 0);
+        texels += LIMIT_CORNER_HEAD + (level - 1) * LIMIT_LEVEL_TEXELS;
+        first = (square <= 2) + (square >= 2 ? 5 : 0);
         stride = 5;
     } else if (node->kind == LIMIT_STRIP) {
-        first += (square ? level - 1 : level) * LIMIT_REGULAR_POINTS;
+        texels += (square ? level - 1 : level) * LIMIT_PATCH_TEXELS;
     }
+    double scale = texels[0][0];
     for (size_t k = 0; k < 16; k++) {
-        const float *p = tables->points[first + k / 4 * stride + k % 4];
-        grid[k] = (struct vec){(double)p[0] * p[3], (double)p[1] * p[3], (double)p[2] * p[3]};
+        const float *p = texels[first + k / 4 * stride + k % 4];
+        grid[k] = (struct vec){p[0] * scale, p[1] * scale, p[2] * scale};
     }
 }
 
@@ -172,10 +175,10 @@ static struct vec frame_to_world(const struct limit_tables *tables, const struct
 {
     if (node->kind != LIMIT_CORNER)
         return v;
-    const float *q = tables->points[node->first + LIMIT_CORNER_TEXELS - 1];
-    struct vec axis = {q[0], q[1], q[2]};
+    const float(*head)[3] = tables->points + node->first;
+    struct vec axis = {head[0][0], head[0][1], head[0][2]};
     struct vec t = vec_scale(vec_cross(axis, v), 2);
-    return vec_add(vec_mad(v, q[3], t), vec_cross(axis, t));
+    return vec_add(vec_mad(v, head[1][0], t), vec_cross(axis, t));
 }
 
 static struct extent square_extent(const struct chooser *c, const struct piece *piece,
@@ -282,8 +285,8 @@ static void choose_corner(struct chooser *c, uint32_t node)
     const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
     struct extent extent;
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
-    uint32_t level = 0;
-    for (; level < LIMIT_LEVELS; level++) {
+    uint32_t level = 0, levels = c->tables->nodes[node].levels & ~LIMIT_NO_NORMAL;
+    for (; level < levels; level++) {
         extent.radius = bounds[level].radius;
         extent.bend = bounds[level].bend;
         if (is_outside(c, &extent))

@@ -17,7 +17,7 @@ struct net {
 };
 
 /* Each level spoils one more edge at either end of a window; what the grid takes stays whole. */
-enum { WINDOW_SIDE = LIMIT_LEVELS + 3, WINDOW = 2 * WINDOW_SIDE };
+enum { WINDOW_SIDE = LIMIT_MAX_LEVELS + 3, WINDOW = 2 * WINDOW_SIDE };
 
 static bool needs_window(const struct ring *ring)
 {
@@ -168,7 +168,7 @@ static void next_net(const struct net *in, const struct ring_modes *modes, struc
 }
 
 /* The rotation whose columns are the axes, as a unit quaternion (Shepperd 1978). */
-static void write_quaternion(const struct vec axis[3], float q[4])
+static void write_frame(const struct vec axis[3], float (*texels)[3])
 {
     const double m[3][3] = {{axis[0].x, axis[1].x, axis[2].x},
                             {axis[0].y, axis[1].y, axis[2].y},
@@ -189,8 +189,8 @@ static void write_quaternion(const struct vec axis[3], float q[4])
         r[3] = m[k][j] - m[j][k];
     }
     double length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
-    for (int n = 0; n < 4; n++)
-        q[n] = (float)(r[n] / length);
+    for (int n = 0; n < 6; n++)
+        texels[n / 3][n % 3] = n < 4 ? (float)(r[n] / length) : 0;
 }
 
 /* The frame in which single precision keeps everything: axis[2] is the normal where there is one. A
@@ -209,8 +209,19 @@ static bool vertex_frame(const struct ring *ring, struct ring_modes *modes, stru
     return ring_frame(ring, t1, t2, axis) && has_normal;
 }
 
-bool corner_table(const struct quad *quad, struct arena *arena, float (*texels)[4],
-                  struct limit_bound bounds[LIMIT_LEVELS], double origin[3])
+unsigned corner_levels(const struct ring *ring)
+{
+    const double pixel = 0x1p-24, pi = 3.14159265358979323846;
+    /* What lies round a dart's crease counts as a sector that is closed by it. */
+    bool is_whole = ring->closed && !ring->creases.edge;
+    double c = cos((is_whole ? 2 : 1) * pi / ring->n_faces);
+    double eigenvalue = fmax((5 + c + sqrt((c + 9) * (c + 1))) / 16, 0.5);
+    double levels = ceil(log(pixel) / log(eigenvalue)) + 2;
+    return (unsigned)fmin(fmax(levels, LIMIT_MIN_LEVELS), LIMIT_MAX_LEVELS);
+}
+
+bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[3],
+                  struct limit_bound *bounds, double origin[3])
 {
     const struct ring *ring = &quad->corner[0];
     struct ring_modes modes;
@@ -223,13 +234,14 @@ bool corner_table(const struct quad *quad, struct arena *arena, float (*texels)[
                           ? ring_take(arena, WINDOW, false, false)
                           : ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
     first_net(quad, limit, axis, &net[0]);
-    for (int n = 0; n < LIMIT_LEVELS; n++) {
+    write_frame(axis, texels);
+    texels += LIMIT_CORNER_HEAD;
+    for (unsigned n = 0; n < levels; n++) {
         struct net *fine = &net[(n + 1) & 1];
         next_net(&net[n & 1], &modes, fine);
-        texels_write(&fine->grid[0][1], LIMIT_LEVEL_POINTS, texels + n * LIMIT_LEVEL_POINTS);
+        texels_write(&fine->grid[0][1], LIMIT_LEVEL_TEXELS - 1, texels + n * LIMIT_LEVEL_TEXELS);
         bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true);
     }
-    write_quaternion(axis, texels[LIMIT_CORNER_TEXELS - 1]);
     origin[0] = limit.x;
     origin[1] = limit.y;
     origin[2] = limit.z;

@@ -5,18 +5,23 @@
  * 2^-n <= max(u,v) <= 2^(1-n) needs: the 5x5 grid (i,j) in -1..3 without (-1,-1), point (i,j) at
  * 5 (j + 1) + (i + 1) - 1. Coordinates are in the vertex's orthonormal frame, relative to its limit
  * position (re-centred in double at every level, or the refinement itself would lose it), divided
- * by a power of two that is their w (limit-surface 4.4 to 4.6). */
+ * by the level's scale, which has the place of (-1,-1) (limit-surface 4.4 to 4.6). */
 #ifndef SHEEN_LIMIT_CORNER_H
 #define SHEEN_LIMIT_CORNER_H
 
 #include "server/limit/quad.h"
 #include "server/limit/tables.h"
 
-/* Writes LIMIT_CORNER_TEXELS texels (the last is the frame as a quaternion x y z w that turns
- * frame coordinates into world directions), the bounds of every level and the origin (the limit
- * position, world). The extraordinary vertex is corner 0; nothing is semi-sharp. Returns whether
- * the vertex has a limit normal. */
-bool corner_table(const struct quad *quad, struct arena *arena, float (*texels)[4],
-                  struct limit_bound bounds[LIMIT_LEVELS], double origin[3]);
+/* How many levels a settled extraordinary ring takes: rings shrink by the larger of its subdominant
+ * eigenvalues (Stam 1998, appendix A), and what they leave out shall be less than a pixel that is
+ * 2^-24 of the face. LIMIT_MIN_LEVELS to LIMIT_MAX_LEVELS. */
+unsigned corner_levels(const struct ring *ring);
+
+/* Writes LIMIT_CORNER_TEXELS(levels) texels (the first two are the frame as a quaternion x y z w
+ * that turns frame coordinates into world directions), the bounds of every level and the origin
+ * (the limit position, world). The extraordinary vertex is corner 0; nothing is semi-sharp. Returns
+ * whether the vertex has a limit normal. */
+bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[3],
+                  struct limit_bound *bounds, double origin[3]);
 
 #endif

@@ -110,6 +110,7 @@ static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t 
     struct ring out = ring_take(arena, n_faces, false, false);
     uint32_t n = ring_edges(ring);
     out.centre = ring->centre;
+    out.cut_extraordinary = ring->cut_extraordinary || ring->n_faces != (ring->closed ? 4 : 2);
     out.sharpness = sharp ? CAGE_SHARPNESS_INFINITE : 0;
     out.at = (ring->at + n - first) % n;
     for (uint32_t k = 0; k <= n_faces; k++)
@@ -144,7 +145,7 @@ struct ring crease_settle(const struct ring *ring, struct arena *arena)
 
 bool crease_is_regular(const struct ring *settled)
 {
-    if (settled->creases.edge)
+    if (settled->creases.edge || settled->cut_extraordinary)
         return false;
     bool sharp = settled->sharpness > 0;
     if (settled->closed)

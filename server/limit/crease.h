@@ -38,7 +38,9 @@ enum crease_rule crease_vertex_rule(const struct ring *ring, uint32_t end[2]);
  * one sharp edge (a dart), or closed with a sharp vertex. Rings with semi-sharp tags stay whole. */
 struct ring crease_settle(const struct ring *ring, struct arena *arena);
 
-/* Settled, and with its quads plain B-spline patches (phantom points beyond a sector's end). */
+/* Settled, and with its quads plain B-spline patches (phantom points beyond a sector's end). Not so
+ * the plain sectors of an extraordinary vertex: one patch carries 2^-24 of itself, and a camera
+ * that looks at the whole vertex from nearby wants more. */
 bool crease_is_regular(const struct ring *settled);
 
 /* Whether the surface ends, as a sector, at the quad's first (0) or second (1) edge. */

@@ -26,7 +26,7 @@ static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4
         texels_write(&grid[0][0], 16, b->tables->points + b->next.point);
         b->tables->bounds[b->next.bound] = bound_of_grid(&grid[0][0], 4, false);
     }
-    b->next.point += LIMIT_REGULAR_POINTS;
+    b->next.point += LIMIT_PATCH_TEXELS;
     b->next.bound += 1;
     b->n_regular++;
 }
@@ -43,6 +43,7 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
                          unsigned corner)
 {
     const struct ring *ring = &quad->corner[corner];
+    unsigned levels = corner_levels(ring);
     if (ring_is_dart(ring) && ring->n_faces > MODES_MAX_VALENCE) {
         b->dart_valence = ring->n_faces;
     } else if (b->tables) {
@@ -51,11 +52,13 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
         out->kind = LIMIT_CORNER;
         out->rotation = (uint8_t)corner;
         out->first = b->next.point;
-        out->levels = corner_table(&turned, &b->arena, b->tables->points + b->next.point,
-                                   b->tables->bounds + b->next.bound, out->origin);
+        bool has_normal =
+            corner_table(&turned, levels, &b->arena, b->tables->points + b->next.point,
+                         b->tables->bounds + b->next.bound, out->origin);
+        out->levels = (uint8_t)(has_normal ? levels : levels | LIMIT_NO_NORMAL);
     }
-    b->next.point += LIMIT_CORNER_TEXELS;
-    b->next.bound += LIMIT_LEVELS;
+    b->next.point += LIMIT_CORNER_TEXELS(levels);
+    b->next.bound += levels;
     b->n_corner++;
 }
 
@@ -72,7 +75,7 @@ static void build_strip(struct face_builder *b, uint32_t node, const struct quad
         strip_table(&turned, levels, b->tables->points + b->next.point,
                     b->tables->bounds + b->next.bound, out->origin);
     }
-    b->next.point += (levels + 1) * LIMIT_REGULAR_POINTS;
+    b->next.point += (levels + 1) * LIMIT_PATCH_TEXELS;
     b->next.bound += levels + 2;
     b->n_strip++;
 }

@@ -105,6 +105,7 @@ static struct vec refine_centre(const struct ring *in, const struct ring *out)
 void ring_refine_around(const struct ring *in, struct ring *out)
 {
     out->at = in->at;
+    out->cut_extraordinary = in->cut_extraordinary;
     crease_refine(in, out);
     refine_edges(in, out);
     out->centre = refine_centre(in, out);

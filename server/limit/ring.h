@@ -27,6 +27,7 @@ struct ring {
     uint32_t n_faces; /* valence of a closed ring */
     uint32_t at;      /* which quad of the ring is the one that it is looked at from */
     bool closed;
+    bool cut_extraordinary;      /* a sector of a vertex that is extraordinary as a whole */
     float sharpness;             /* of the vertex; CAGE_SHARPNESS_INFINITE: interpolated */
     struct ring_creases creases; /* edge is NULL: smooth, but for the ends of an open ring */
     struct vec centre;

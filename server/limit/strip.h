@@ -20,7 +20,7 @@ unsigned strip_levels(const struct quad *quad, unsigned *edge);
 
 /* Writes (levels + 1) * 16 texels and as many bounds as patches, for a quad turned so that the
  * crease is its edge 0, and the origin (world). */
-void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
+void strip_table(const struct quad *quad, unsigned levels, float (*texels)[3],
                  struct limit_bound *bounds, double origin[3]);
 
 #endif

@@ -4,13 +4,14 @@
  * The surface is a list of nodes. The first n_faces nodes are the Ptex faces' roots (OpenSubdiv's
  * numbering: a quad is one Ptex face, an n-gon is n). A node is
  *   REGULAR  one bicubic B-spline patch: 16 points, 4 (j + 1) + (i + 1) for i,j = -1..2;
- *   CORNER   one extraordinary vertex at local (0,0): 32 levels of 24 points in the vertex's own
- *            orthonormal frame, re-centred on its limit position each level (corner.h); one texel
- *            more holds the frame as a quaternion;
+ *   CORNER   one extraordinary vertex at local (0,0): two texels for the vertex's own orthonormal
+ *            frame, a quaternion, then levels of 24 points in it, each re-centred on the vertex's
+ *            limit position (corner.h);
  *   STRIP    a semi-sharp crease along local v = 0: `levels` + 1 patches across it (strip.h);
  *   SPLIT    four children at (0,0) (1,0) (1,1) (0,1) of the half-size cells;
  *   HOLE     no surface (a hole, or boundary mode NONE).
- * Points are relative to the node's origin and divided by a power of two, their w (texels.h).
+ * Points are relative to the node's origin. The points of a patch or level are divided by a power
+ * of two, which is the x of one more texel before them (texels.h).
  *
  * Built in two steps so that callers may use threads (this module knows none): limit_plan() reads
  * the cage and sizes everything; limit_build_faces() fills any range of faces, ranges in parallel
@@ -25,10 +26,15 @@
 #include "server/cage/cage.h"
 #include "server/error.h"
 
-#define LIMIT_LEVELS 32       /* dyadic rings towards an extraordinary vertex */
-#define LIMIT_LEVEL_POINTS 24 /* the 5x5 grid i,j = -1..3 without (-1,-1) */
-#define LIMIT_REGULAR_POINTS 16
-#define LIMIT_CORNER_TEXELS (LIMIT_LEVELS * LIMIT_LEVEL_POINTS + 1)
+/* Dyadic rings towards an extraordinary vertex: as many as leave out less than a pixel where pixels
+ * are 2^-24 of the face, and never fewer than the least (corner.h). */
+#define LIMIT_MIN_LEVELS 32
+#define LIMIT_MAX_LEVELS 41
+#define LIMIT_PATCH_TEXELS 17 /* the scale, 16 points */
+#define LIMIT_CORNER_HEAD 2   /* the frame: x y z, w 0 0 of its quaternion */
+#define LIMIT_LEVEL_TEXELS 25 /* the scale, the 5x5 grid i,j = -1..3 without (-1,-1) */
+#define LIMIT_CORNER_TEXELS(levels) (LIMIT_CORNER_HEAD + (levels)*LIMIT_LEVEL_TEXELS)
+#define LIMIT_NO_NORMAL 0x80u /* added to a CORNER's levels */
 #define LIMIT_NO_FACE UINT32_MAX
 /* The cost of a corner grows with its valence, and a vertex has as many corners. */
 #define LIMIT_MAX_VALENCE 4096
@@ -37,15 +43,15 @@ enum limit_kind { LIMIT_REGULAR, LIMIT_CORNER, LIMIT_SPLIT, LIMIT_HOLE, LIMIT_ST
 
 /* 48 bytes, three RGBA32UI texels on the GPU. */
 struct limit_node {
-    double origin[3]; /* world; the points are relative to it */
-    uint32_t first;   /* all with points: first texel in `points`; SPLIT: first of 4 children */
-    uint32_t face;    /* Ptex face */
-    uint32_t cell;    /* x | y << 16: which cell of the 2^depth by 2^depth grid over the face */
-    uint8_t kind;     /* enum limit_kind */
-    uint8_t depth;    /* the node spans 2^-depth of its Ptex face */
-    uint8_t rotation; /* local (0,0) is this corner 0..3 of the cell */
-    uint8_t levels;   /* STRIP: patches but one; CORNER: 1 if the vertex itself has a limit normal,
-                         0 at a cone's tip */
+    double origin[3];     /* world; the points are relative to it */
+    uint32_t first;       /* all with points: first texel in `points`; SPLIT: first of 4 children */
+    uint32_t face;        /* Ptex face */
+    uint32_t cell;        /* x | y << 16: which cell of the 2^depth by 2^depth grid over the face */
+    uint8_t kind;         /* enum limit_kind */
+    uint8_t depth;        /* the node spans 2^-depth of its Ptex face */
+    uint8_t rotation;     /* local (0,0) is this corner 0..3 of the cell */
+    uint8_t levels;       /* STRIP: patches but one; CORNER: its levels, plus LIMIT_NO_NORMAL at a
+                             cone's tip */
     uint32_t ngon_size;   /* of a root: corners of its n-gon, 0 for a quad */
     uint32_t ngon_corner; /* and which of them is this Ptex face's corner 0 */
 };
@@ -70,10 +76,11 @@ struct limit_tables {
     struct limit_node *nodes;
     struct limit_adjacency *adjacency; /* [n_faces] */
     size_t n_points;
-    float (*points)[4];
+    float (*points)[3];
 
     /* Bounds for the CPU's choice of grids; not on the GPU. bound_first[node] indexes bounds: one
-     * for REGULAR, LIMIT_LEVELS for CORNER, one for a STRIP and one for each of its patches. */
+     * for REGULAR, one for each level of a CORNER, one for a STRIP and one for each of its patches.
+     */
     uint32_t *bound_first; /* [n_nodes] */
     struct limit_bound *bounds;
     size_t n_bounds;

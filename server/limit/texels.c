@@ -4,7 +4,7 @@
  * of products. */
 enum { EXPONENT_MIN = -120, EXPONENT_MAX = 120 };
 
-void texels_write(const struct vec *points, size_t n, float (*texels)[4])
+void texels_write(const struct vec *points, size_t n, float (*texels)[3])
 {
     double largest = 0;
     for (size_t k = 0; k < n; k++) {
@@ -16,10 +16,12 @@ void texels_write(const struct vec *points, size_t n, float (*texels)[4])
     exponent = exponent < EXPONENT_MIN ? EXPONENT_MIN : exponent;
     exponent = exponent > EXPONENT_MAX ? EXPONENT_MAX : exponent;
     double inverse = ldexp(1, -exponent);
+    (*texels)[0] = (float)ldexp(1, exponent);
+    (*texels)[1] = (*texels)[2] = 0;
+    texels++;
     for (size_t k = 0; k < n; k++) {
         texels[k][0] = (float)(points[k].x * inverse);
         texels[k][1] = (float)(points[k].y * inverse);
         texels[k][2] = (float)(points[k].z * inverse);
-        texels[k][3] = (float)ldexp(1, exponent);
     }
 }

@@ -6,9 +6,9 @@
 
 #include "server/limit/vec.h"
 
-/* Writes n points divided by the power of two that brings the largest coordinate into [1/2, 1);
- * that power is the w of every texel. Single precision then never under- or overflows in the
- * products of derivatives that the GPU forms, and no fetch is spent on the scale alone. */
-void texels_write(const struct vec *points, size_t n, float (*texels)[4]);
+/* Writes n + 1 texels: a power of two, then n points divided by it, so that the largest coordinate
+ * comes to lie in [1/2, 1). Single precision then never under- or overflows in the products of
+ * derivatives that the GPU forms. */
+void texels_write(const struct vec *points, size_t n, float (*texels)[3]);
 
 #endif

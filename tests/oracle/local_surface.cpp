@@ -432,12 +432,16 @@ local_sample evaluate_net(const point net[4][4], long double s, long double t, p
 } // namespace
 
 struct local_surface::implementation {
-    std::vector<level> levels; /* 1 first */
+    std::vector<level> levels;  /* 1 first */
+    std::set<uint32_t> of_ngon; /* corners whose Ptex face is one of level 1 */
 };
 
 local_surface::local_surface(const cage &cage, uint32_t vertex, int levels) : m(new implementation)
 {
     mesh at = trimmed(read_cage(cage, vertex));
+    for (size_t f = 0; f < at.faces.size(); f++)
+        if (at.faces[f].size() != 4)
+            m->of_ngon.insert(at.corner[f]);
     for (int n = 0; n < levels; n++) {
         at = trimmed(refinement(at).fine);
         m->levels.emplace_back(at);
@@ -448,6 +452,10 @@ local_surface::~local_surface() = default;
 
 bool local_surface::evaluate(uint32_t corner, double a, double b, local_sample *out) const
 {
+    if (m->of_ngon.count(corner)) {
+        a *= 0.5;
+        b *= 0.5;
+    }
     double most = std::fmax(a, b);
     if (!(most > 0 && most <= 1 && a >= 0 && b >= 0))
         return false;

@@ -28,12 +28,13 @@ struct cubic {
     }
 };
 
-/* The patch of the 16 texels index(i, j), i along s and j along t in 0..3, times scale. */
+/* The patch of the 16 texels index(i, j), i along s and j along t in 0..3, times the first texel.
+ */
 template <typename Index>
-surface_point evaluate_patch(const float (*texels)[4], double scale, double s, double t,
-                             Index index)
+surface_point evaluate_patch(const float (*texels)[3], double s, double t, Index index)
 {
     cubic x(s), y(t);
+    double scale = texels[0][0];
     surface_point out;
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 4; i++) {
@@ -49,37 +50,36 @@ surface_point evaluate_patch(const float (*texels)[4], double scale, double s, d
     return out;
 }
 
-vec3 rotate(const float q[4], vec3 p)
+vec3 rotate(const float (*head)[3], vec3 p)
 {
-    vec3 axis = {q[0], q[1], q[2]};
+    vec3 axis = {head[0][0], head[0][1], head[0][2]};
     vec3 twice = 2.0 * cross(axis, p);
-    return p + (double)q[3] * twice + cross(axis, twice);
+    return p + (double)head[1][0] * twice + cross(axis, twice);
 }
 
 /* Inside the last ring only the vertex itself is known. */
-bool evaluate_corner(const float (*texels)[4], double a, double b, surface_point *out)
+bool evaluate_corner(const float (*texels)[3], int levels, double a, double b, surface_point *out)
 {
     int exponent;
     std::frexp(std::fmax(a, b), &exponent); /* max(a,b) in [2^(exponent-1), 2^exponent) */
     int n = std::max(1, 1 - exponent);
-    if (!(std::fmax(a, b) > 0) || n > LIMIT_LEVELS)
+    if (!(std::fmax(a, b) > 0) || n > levels)
         return false;
     *out = evaluate_ring(texels, n, a, b);
-    const float *q = texels[LIMIT_CORNER_TEXELS - 1];
     for (vec3 *v : {&out->p, &out->du, &out->dv, &out->duu, &out->duv, &out->dvv})
-        *v = rotate(q, *v);
+        *v = rotate(texels, *v);
     return true;
 }
 
 /* Patch n = 1..levels covers 2^-n <= b <= 2^(1-n), patch levels + 1 the rest. */
-surface_point evaluate_strip(const float (*texels)[4], int levels, double a, double b)
+surface_point evaluate_strip(const float (*texels)[3], int levels, double a, double b)
 {
     int n = 1;
     while (n <= levels && std::ldexp(b, n) < 1)
         n++;
     double t = n <= levels ? std::ldexp(b, n) - 1 : std::ldexp(b, levels);
-    const float(*patch)[4] = texels + 16 * (n - 1);
-    return evaluate_patch(patch, patch[0][3], a, t, [](int i, int j) { return 4 * j + i; });
+    const float(*patch)[3] = texels + LIMIT_PATCH_TEXELS * (n - 1);
+    return evaluate_patch(patch, a, t, [](int i, int j) { return 1 + 4 * j + i; });
 }
 
 /* (u,v) to the local (a,b) of the corner that many steps on. */
@@ -96,14 +96,14 @@ bool evaluate_leaf(const limit_tables &tables, const limit_node &node, unsigned 
 {
     double a, b;
     turn(node.rotation - corner, u, v, &a, &b);
-    const float(*texels)[4] = tables.points + node.first;
+    const float(*texels)[3] = tables.points + node.first;
     if (node.kind == LIMIT_HOLE)
         return false;
     if (node.kind == LIMIT_REGULAR)
-        *out = evaluate_patch(texels, texels[0][3], a, b, [](int i, int j) { return 4 * j + i; });
+        *out = evaluate_patch(texels, a, b, [](int i, int j) { return 1 + 4 * j + i; });
     else if (node.kind == LIMIT_STRIP)
         *out = evaluate_strip(texels, node.levels, a, b);
-    else if (!evaluate_corner(texels, a, b, out))
+    else if (!evaluate_corner(texels, node.levels & ~LIMIT_NO_NORMAL, a, b, out))
         return false;
     out->p = out->p + vec3{node.origin[0], node.origin[1], node.origin[2]};
     return true;
@@ -136,13 +136,13 @@ void break_tables(limit_tables *t)
         limit_node *node = &t->nodes[k];
         if (node->kind == LIMIT_SPLIT)
             continue;
-        float(*texels)[4] = t->points + node->first;
+        float(*texels)[3] = t->points + node->first;
         if (has_fault("point"))
-            texels[5][0] += 1e-4f;
+            texels[6][0] += 1e-4f;
         if (has_fault("frame") && node->kind == LIMIT_CORNER)
-            texels[LIMIT_CORNER_TEXELS - 1][0] += 1e-4f;
+            texels[0][0] += 1e-4f;
         if (has_fault("deep") && node->kind == LIMIT_CORNER)
-            texels[25 * LIMIT_LEVEL_POINTS][3] *= 1.001f;
+            texels[LIMIT_CORNER_TEXELS(25)][0] *= 1.001f;
         if (has_fault("hole") && !opened)
             node->kind = LIMIT_HOLE;
         opened = true;
@@ -153,13 +153,13 @@ void break_tables(limit_tables *t)
 
 } // namespace
 
-surface_point evaluate_ring(const float (*texels)[4], int n, double a, double b)
+surface_point evaluate_ring(const float (*texels)[3], int n, double a, double b)
 {
-    const float(*level)[4] = texels + (n - 1) * LIMIT_LEVEL_POINTS;
+    const float(*level)[3] = texels + LIMIT_CORNER_TEXELS(n - 1);
     double s = std::ldexp(a, n), t = std::ldexp(b, n);
     int i0 = s >= 1, j0 = t >= 1; /* first column and row of the 5x5 grid */
-    return evaluate_patch(level, level[0][3], s - i0, t - j0,
-                          [&](int i, int j) { return 5 * (j + j0) + (i + i0) - 1; });
+    return evaluate_patch(level, s - i0, t - j0,
+                          [&](int i, int j) { return 5 * (j + j0) + (i + i0); });
 }
 
 curvatures principal_curvatures(const surface_point &s)

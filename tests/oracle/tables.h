@@ -60,6 +60,6 @@ class table_evaluator
 
 /* Ring level n (1 first) of a corner table at local (a, b), where 1 <= 2^n max(a,b) <= 2, in the
  * vertex's frame. */
-surface_point evaluate_ring(const float (*texels)[4], int n, double a, double b);
+surface_point evaluate_ring(const float (*texels)[3], int n, double a, double b);
 
 #endif

@@ -77,8 +77,8 @@ void compare_seams(const table_evaluator &tables, figures *f)
         const limit_node &node = tables.tables.nodes[k];
         if (node.kind != LIMIT_CORNER)
             continue;
-        const float(*texels)[4] = tables.tables.points + node.first;
-        for (int n = 1; n < LIMIT_LEVELS; n++)
+        const float(*texels)[3] = tables.tables.points + node.first;
+        for (int n = 1; n < int(node.levels & ~LIMIT_NO_NORMAL); n++)
             for (int side = 0; side < 6; side++) {
                 double reach = std::ldexp(1.0, -n), other = reach * (side % 3) / 2.0;
                 double a = side < 3 ? reach : other, b = side < 3 ? other : reach;
