@@ -138,7 +138,7 @@ void break_tables(limit_tables *t)
             continue;
         float(*texels)[3] = t->points + node->first;
         if (has_fault("point"))
-            texels[6][0] += 1e-4f;
+            texels[node->kind == LIMIT_CORNER ? LIMIT_CORNER_HEAD + 6 : 6][0] += 1e-4f;
         if (has_fault("frame") && node->kind == LIMIT_CORNER)
             texels[0][0] += 1e-4f;
         if (has_fault("deep") && node->kind == LIMIT_CORNER)
