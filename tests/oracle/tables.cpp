@@ -137,10 +137,11 @@ void break_tables(limit_tables *t)
         if (node->kind == LIMIT_SPLIT)
             continue;
         float(*texels)[3] = t->points + node->first;
+        float off = k % 2 ? 1e-4f : -1e-4f; /* else neighbours would agree in their fault */
         if (has_fault("point"))
-            texels[node->kind == LIMIT_CORNER ? LIMIT_CORNER_HEAD + 6 : 6][0] += 1e-4f;
+            texels[node->kind == LIMIT_CORNER ? LIMIT_CORNER_HEAD + 6 : 6][0] += off;
         if (has_fault("frame") && node->kind == LIMIT_CORNER)
-            texels[0][0] += 1e-4f;
+            texels[0][0] += off;
         if (has_fault("deep") && node->kind == LIMIT_CORNER)
             texels[LIMIT_CORNER_TEXELS(25)][0] *= 1.001f;
         if (has_fault("hole") && !opened)
