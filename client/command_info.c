@@ -107,7 +107,7 @@ static int run(const struct options *options)
     return job_finish(&job, status);
 }
 
-static const struct option_row *const TABLES[] = {OPTIONS_COMMON, NULL};
+static const struct option_row *const TABLES[] = {OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_INFO = {
     .name = "info",

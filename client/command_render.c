@@ -17,7 +17,7 @@ static bool apply_output(struct options *options, const char *value, char *why)
 static bool apply_aov(struct options *options, const char *value, char *why)
 {
     return value_planes(value, &options->aov_planes) ||
-           options_refuse(why, "must be some of P,N,ptex,light,k");
+           options_refuse(why, "must be some of P,N,ptex,light,k,dlight");
 }
 
 static bool check(struct options *options, char *why)
@@ -56,11 +56,7 @@ static void print_json(struct json *json, const struct options *options, const s
     else
         json_double(json, "fov_deg", frame->camera.fov_deg);
     json_object_end(json);
-    json_object_begin(json, "light");
-    json_vec3(json, "center", frame->light.centre);
-    json_vec3(json, "u", frame->light.u);
-    json_vec3(json, "v", frame->light.v);
-    json_object_end(json);
+    job_json_lights(json, frame);
     json_lines(json, "warnings", info->warnings);
     json_object_end(json);
 }
@@ -98,8 +94,8 @@ static int run(const struct options *options)
     if (status)
         return job_finish(&job, status);
     status = job_init(&job, options);
-    if (!status && options->image_path)
-        status = job_upload_image(&job, options->image_path, request.pattern.image_id);
+    if (!status)
+        status = job_upload_images(&job, options, &request);
     for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
         request.model_id[i] = job.model_id[i];
     if (!status)
@@ -125,12 +121,14 @@ static const struct option_row ROWS[] = {
      "the picture; its ending tells the format: .png .exr .jpg .jpeg .tif .tiff", apply_output},
     {"aov", 0, "LIST",
      "planes beside colour, EXR only: some of P (position), N (normal), ptex,\n"
-     "light (s, t on the light), k (principal curvatures), with commas between",
+     "light (s, t on the light), k (principal curvatures), dlight (change of s, t\n"
+     "by a pixel right and down), with commas between",
      apply_aov},
     {0},
 };
 
-static const struct option_row *const TABLES[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON, NULL};
+static const struct option_row *const TABLES[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON,
+                                                  OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_RENDER = {
     .name = "render",

@@ -28,7 +28,7 @@ struct record {
 struct stream {
     struct sheen_request request; /* its camera and light move */
     struct sheen_camera camera;   /* of the first frame */
-    struct sheen_light light;
+    struct sheen_light light;     /* the first: the one that moves */
     struct sheen_frame frame;
     struct record *records;                /* [frames] */
     uint64_t sent_us[SHEEN_MAX_IN_FLIGHT]; /* by frame number modulo its size */
@@ -67,13 +67,13 @@ static void move(struct stream *stream, const struct options *options, uint32_t 
     const double degree = 3.14159265358979323846 / 180;
     double angle = number * options->orbit_deg * degree;
     stream->request.camera = stream->camera;
-    stream->request.light = stream->light;
+    stream->request.lights[0] = stream->light;
     if (!options->light_only) {
         orbit(&stream->request.camera, &stream->camera, angle);
         return;
     }
     for (int i = 0; i < 3; i++)
-        stream->request.light.centre[i] += LIGHT_SWING * sin(angle) * stream->light.u[i];
+        stream->request.lights[0].centre[i] += LIGHT_SWING * sin(angle) * stream->light.u[i];
 }
 
 static enum sheen_status send_one(struct job *job, struct stream *stream, uint32_t number)
@@ -109,7 +109,7 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
         return status;
     progress_clear(&job->progress);
     stream->camera = stream->frame.camera;
-    stream->light = stream->frame.light;
+    stream->light = stream->frame.lights[0];
     uint64_t start_us = now_us();
     uint32_t n_sent = 1, n_received = 1;
     while (!status && n_received < options->frames) {
@@ -189,8 +189,8 @@ static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_
 {
     enum sheen_status status = job_init(job, options);
     memcpy(stream->request.model_id, job->model_id, SHEEN_ID_BYTES);
-    if (!status && options->image_path)
-        status = job_upload_image(job, options->image_path, stream->request.pattern.image_id);
+    if (!status)
+        status = job_upload_images(job, options, &stream->request);
     if (!status)
         status = run_frames(job, stream, options);
     progress_clear(&job->progress);
@@ -263,7 +263,8 @@ static const struct option_row ROWS[] = {
     {0},
 };
 
-static const struct option_row *const TABLES_LIST[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON, NULL};
+static const struct option_row *const TABLES_LIST[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON,
+                                                       OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_STREAM = {
     .name = "stream",

@@ -8,5 +8,7 @@ extern const struct command COMMAND_RENDER;
 extern const struct command COMMAND_STREAM;
 extern const struct command COMMAND_INFO;
 extern const struct command COMMAND_STATS;
+extern const struct command COMMAND_LIGHTS;
+extern const struct command COMMAND_PATTERNS;
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "client/file.h"
+#include "client/lights_text.h"
 #include "client/status.h"
 
 static enum sheen_status upload(struct job *job, enum sheen_file_kind kind, const char *path,
@@ -46,7 +47,7 @@ enum sheen_status job_init(struct job *job, const struct options *options)
     return status;
 }
 
-enum sheen_status job_upload_image(struct job *job, const char *path, uint8_t id[SHEEN_ID_BYTES])
+static enum sheen_status upload_image(struct job *job, const char *path, uint8_t id[SHEEN_ID_BYTES])
 {
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
@@ -56,6 +57,16 @@ enum sheen_status job_upload_image(struct job *job, const char *path, uint8_t id
     if (!status)
         status = upload(job, SHEEN_FILE_IMAGE, path, bytes, n_bytes, id);
     free(bytes);
+    return status;
+}
+
+enum sheen_status job_upload_images(struct job *job, const struct options *options,
+                                    struct sheen_request *request)
+{
+    enum sheen_status status = SHEEN_OK;
+    for (uint32_t i = 0; !status && i < request->n_lights; i++)
+        if (options->image_path[i])
+            status = upload_image(job, options->image_path[i], request->lights[i].pattern.image_id);
     return status;
 }
 
@@ -96,4 +107,41 @@ void job_json_times(struct json *json, const struct sheen_times *times)
     json_uint(json, "readback_us", times->readback_us);
     json_uint(json, "encode_us", times->encode_us);
     json_uint(json, "total_us", times->total_us);
+}
+
+static void json_pattern(struct json *json, const struct sheen_pattern *pattern)
+{
+    json_object_begin(json, "pattern");
+    json_string(json, "kind", text_pattern_kind(pattern->kind));
+    json_double(json, "count", pattern->count);
+    if (pattern->period > 0)
+        json_double(json, "period", pattern->period);
+    json_double(json, "duty", pattern->duty);
+    json_double(json, "rotation_deg", pattern->rotation_deg);
+    json_double(json, "offset", pattern->offset);
+    json_double(json, "soft", pattern->soft);
+    json_double(json, "opacity", pattern->opacity);
+    json_object_end(json);
+}
+
+static void json_light(struct json *json, const char *name, const struct sheen_light *light)
+{
+    json_object_begin(json, name);
+    json_string(json, "kind", text_light_kind(light->kind));
+    json_bool(json, "one_sided", light->one_sided);
+    json_vec3(json, "center", light->centre);
+    json_vec3(json, "u", light->u);
+    json_vec3(json, "v", light->v);
+    json_pattern(json, &light->pattern);
+    json_object_end(json);
+}
+
+void job_json_lights(struct json *json, const struct sheen_frame *frame)
+{
+    json_string(json, "lines", text_line_family(frame->lines.family));
+    json_light(json, "light", &frame->lights[0]);
+    json_array_begin(json, "lights");
+    for (uint32_t i = 0; i < frame->n_lights; i++)
+        json_light(json, NULL, &frame->lights[i]);
+    json_array_end(json);
 }

@@ -21,8 +21,12 @@ struct job {
  * must be finished all the same. */
 enum sheen_status job_init(struct job *job, const struct options *options);
 
-/* Uploads a light image and writes its id. */
-enum sheen_status job_upload_image(struct job *job, const char *path, uint8_t id[SHEEN_ID_BYTES]);
+/* Uploads the images of a command's lights and writes their ids into the request. */
+enum sheen_status job_upload_images(struct job *job, const struct options *options,
+                                    struct sheen_request *request);
+
+/* The frame's line family and lights as JSON; "light" is the first one. */
+void job_json_lights(struct json *json, const struct sheen_frame *frame);
 
 /* Gives everything back; prints job->error as one line if `status` is a failure. Returns the exit
  * code. */

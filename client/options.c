@@ -18,24 +18,30 @@ bool options_refuse(char *why, const char *format, ...)
     return false;
 }
 
+bool options_check_light(struct options *options, char *why)
+{
+    unsigned whole = GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V;
+    unsigned light = options->given & whole;
+    if (light != 0 && light != whole)
+        return options_refuse(why, "--light-center, --light-u and --light-v come together");
+    options->request.lights[options->request.n_lights - 1].is_placed = light != 0;
+    return true;
+}
+
 bool options_check_scene(struct options *options, char *why)
 {
     unsigned camera = options->given & (GIVEN_EYE | GIVEN_TARGET);
-    unsigned light = options->given & (GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V);
     if (camera != 0 && camera != (GIVEN_EYE | GIVEN_TARGET))
         return options_refuse(why, "--eye and --target come together");
     if (options->given & GIVEN_FOV && options->given & GIVEN_ORTHO)
         return options_refuse(why, "--fov and --ortho exclude each other");
-    if (light != 0 && light != (GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V))
-        return options_refuse(why, "--light-center, --light-u and --light-v come together");
     if (camera || options->given & (GIVEN_UP | GIVEN_FOV | GIVEN_ORTHO))
         options->request.camera.projection = options->given & GIVEN_ORTHO
                                                  ? SHEEN_PROJECTION_ORTHOGRAPHIC
                                                  : SHEEN_PROJECTION_PERSPECTIVE;
     options->request.camera.auto_view = camera == 0;
     options->request.camera.auto_up = camera == 0 && !(options->given & GIVEN_UP);
-    options->request.light.is_set = light != 0;
-    return true;
+    return options_check_light(options, why);
 }
 
 /* All rows of a command in one list. */

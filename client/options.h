@@ -23,6 +23,7 @@ enum options_given {
     GIVEN_LIGHT_U = 1 << 6,
     GIVEN_LIGHT_V = 1 << 7,
     GIVEN_FRAMES = 1 << 8,
+    GIVEN_LIGHT = 1 << 9,
 };
 
 struct options {
@@ -32,12 +33,12 @@ struct options {
     bool json, quiet;
     unsigned given; /* enum options_given */
     struct sheen_request request;
-    const char *image_path; /* --pattern image:FILE, else NULL */
-    const char *output;     /* render: where the picture goes */
-    uint32_t aov_planes;    /* render: planes beside colour */
-    uint32_t frames;        /* stream: 1 to 1000000 */
-    double orbit_deg;       /* stream: per frame */
-    bool light_only;        /* stream: the light moves, not the camera */
+    const char *image_path[SHEEN_MAX_LIGHTS]; /* --pattern image:FILE of a light, else NULL */
+    const char *output;                       /* render: where the picture goes */
+    uint32_t aov_planes;                      /* render: planes beside colour */
+    uint32_t frames;                          /* stream: 1 to 1000000 */
+    double orbit_deg;                         /* stream: per frame */
+    bool light_only;                          /* stream: the light moves, not the camera */
 };
 
 /* One option. `apply` takes the value (NULL for a flag) and returns false with the reason in `why`.
@@ -64,7 +65,8 @@ struct command {
 
 enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };
 
-extern const struct option_row OPTIONS_COMMON[]; /* server, device, json, quiet, help */
+extern const struct option_row OPTIONS_COMMON[]; /* server, device, quiet */
+extern const struct option_row OPTIONS_OUTPUT[]; /* json, help: of every command */
 extern const struct option_row OPTIONS_SCENE[];  /* size, camera, light, pattern, colours */
 
 /* Parses argv, whose [0] is the command's name. OPTIONS_WRONG leaves one line in `why` that names
@@ -76,6 +78,9 @@ void options_help(const struct command *command, FILE *out);
 
 /* The check of commands that take OPTIONS_SCENE: camera and light are given whole or not at all. */
 bool options_check_scene(struct options *options, char *why);
+
+/* Ends the options of one light: its place is given whole or not at all. */
+bool options_check_light(struct options *options, char *why);
 
 /* Writes one formatted reason and returns false. */
 bool options_refuse(char *why, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -1,6 +1,7 @@
 /* The options that several commands share. */
 #include <string.h>
 
+#include "client/lights_text.h"
 #include "client/options.h"
 #include "client/values.h"
 
@@ -78,26 +79,76 @@ static bool apply_ortho(struct options *options, const char *value, char *why)
            options_refuse(why, "must be a number above 0 in the model's units");
 }
 
+/* The light that options speak of: the latest. */
+static struct sheen_light *latest(struct options *options)
+{
+    return &options->request.lights[options->request.n_lights - 1];
+}
+
+static bool apply_light(struct options *options, const char *value, char *why)
+{
+    if (options->given & GIVEN_LIGHT) {
+        if (options->request.n_lights == SHEEN_MAX_LIGHTS)
+            return options_refuse(why, "there may be %d lights", SHEEN_MAX_LIGHTS);
+        if (!options_check_light(options, why))
+            return false;
+        options->request.n_lights++;
+        *latest(options) = (struct sheen_light){.pattern = SHEEN_PATTERN_DEFAULTS};
+        options->given &= ~(unsigned)(GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V);
+    }
+    options->given |= GIVEN_LIGHT;
+    char reason[LIGHTS_WHY_BYTES];
+    return text_light(value, latest(options), reason) || options_refuse(why, "%s", reason);
+}
+
 static bool apply_light_center(struct options *options, const char *value, char *why)
 {
-    return apply_vec3(options, value, options->request.light.centre, GIVEN_LIGHT_CENTER, why);
+    return apply_vec3(options, value, latest(options)->centre, GIVEN_LIGHT_CENTER, why);
 }
 
 static bool apply_light_u(struct options *options, const char *value, char *why)
 {
-    return apply_vec3(options, value, options->request.light.u, GIVEN_LIGHT_U, why);
+    return apply_vec3(options, value, latest(options)->u, GIVEN_LIGHT_U, why);
 }
 
 static bool apply_light_v(struct options *options, const char *value, char *why)
 {
-    return apply_vec3(options, value, options->request.light.v, GIVEN_LIGHT_V, why);
+    return apply_vec3(options, value, latest(options)->v, GIVEN_LIGHT_V, why);
 }
 
 static bool apply_pattern(struct options *options, const char *value, char *why)
 {
-    char reason[VALUES_WHY_BYTES];
-    return value_pattern(value, &options->request.pattern, &options->image_path, reason) ||
+    char reason[LIGHTS_WHY_BYTES];
+    return text_pattern(value, &latest(options)->pattern,
+                        &options->image_path[options->request.n_lights - 1], reason) ||
            options_refuse(why, "%s", reason);
+}
+
+static bool apply_lines(struct options *options, const char *value, char *why)
+{
+    char reason[LIGHTS_WHY_BYTES];
+    return text_lines(value, &options->request.lines, reason) || options_refuse(why, "%s", reason);
+}
+
+static bool apply_line_eye(struct options *options, const char *value, char *why)
+{
+    char reason[LIGHTS_WHY_BYTES];
+    return text_line_eye(value, &options->request.lines, reason) ||
+           options_refuse(why, "%s", reason);
+}
+
+static bool apply_base(struct options *options, const char *value, char *why)
+{
+    options->request.has_base = true;
+    return value_colour(value, options->request.base) ||
+           options_refuse(why, "must be #rrggbb or #rrggbbaa");
+}
+
+static bool apply_filter(struct options *options, const char *value, char *why)
+{
+    options->request.unfiltered = strcmp(value, "off") == 0;
+    return options->request.unfiltered || strcmp(value, "exact") == 0 ||
+           options_refuse(why, "must be exact or off");
 }
 
 static bool apply_miss(struct options *options, const char *value, char *why)
@@ -112,14 +163,6 @@ static bool apply_empty(struct options *options, const char *value, char *why)
     options->request.has_empty = true;
     return value_colour(value, options->request.empty) ||
            options_refuse(why, "must be #rrggbb or #rrggbbaa");
-}
-
-static bool apply_lines(struct options *options, const char *value, char *why)
-{
-    (void)options;
-    return strcmp(value, "reflection") == 0 ||
-           options_refuse(why, "must be reflection; highlight, isophote, zebra and environment "
-                               "are not available yet");
 }
 
 static bool apply_surface(struct options *options, const char *value, char *why)
@@ -139,8 +182,12 @@ const struct option_row OPTIONS_COMMON[] = {
      "of the private daemon: auto, software, or a number from 0 (default: auto,\n"
      "a GPU when there is one)",
      apply_device},
-    {"json", 0, NULL, "one JSON object on standard output", apply_json},
     {"quiet", 'q', NULL, "no progress, summary or warnings on standard error", apply_quiet},
+    {0},
+};
+
+const struct option_row OPTIONS_OUTPUT[] = {
+    {"json", 0, NULL, "one JSON object on standard output", apply_json},
     {"help", 'h', NULL, "this text", NULL},
     {0},
 };
@@ -164,25 +211,45 @@ const struct option_row OPTIONS_SCENE[] = {
      "orthographic: units from top to bottom of the picture, above 0; without\n"
      "--eye and --target it looks at the model as the default camera does",
      apply_ortho},
+    {"lines", 0, "FAMILY",
+     "reflection, highlight, isophote, zebra or environment, the last three with\n"
+     ":X,Y,Z as wanted; sheen lights explains them (default: reflection)",
+     apply_lines},
+    {"light", 0, "KIND",
+     "rectangle, plane, tunnel or sphere, the first two with :one-sided as wanted;\n"
+     "each --light after the first begins another, over which the earlier lie\n"
+     "(default: rectangle)",
+     apply_light},
     {"light-center", 0, "X,Y,Z",
-     "the middle of the light rectangle; with --light-u and --light-v\n"
-     "(default: a light that hangs over the model: above it in the direction of\n"
-     "the camera's up, and turned with the camera)",
+     "the middle of the latest light; with --light-u and --light-v (default: over\n"
+     "or round the model, above it in the direction of the camera's up, and\n"
+     "turned with the camera)",
      apply_light_center},
-    {"light-u", 0, "X,Y,Z", "its edge that the stripes are counted along", apply_light_u},
-    {"light-v", 0, "X,Y,Z", "its other edge", apply_light_v},
+    {"light-u", 0, "X,Y,Z", "its edge that stripes are counted along; a tunnel's radius",
+     apply_light_u},
+    {"light-v", 0, "X,Y,Z", "its other edge; the axis of a tunnel or sphere", apply_light_v},
     {"pattern", 0, "PATTERN",
-     "stripes, lattice or circles, then :count=40,duty=0.5,fg=#rrggbb,bg=#rrggbb\n"
-     "as far as wanted (count above 0 to 100000, duty 0 to 1), or image:FILE\n"
-     "(default: stripes:count=40,duty=0.5)",
+     "of the latest light: stripes, lattice, circles, lines, rainbow or distance,\n"
+     "then :count=40,duty=0.5,... as far as wanted, or image:FILE; sheen patterns\n"
+     "lists all parts (default: stripes:count=40,duty=0.5)",
      apply_pattern},
+    {"line-eye", 0, "EYE",
+     "whose view the lines are computed for: camera, a point X,Y,Z, or dir:X,Y,Z\n"
+     "for an eye at infinity that looks that way; holds the lines while the\n"
+     "camera moves (default: camera)",
+     apply_line_eye},
+    {"base", 0, "COLOUR", "the surface, shaded, where patterns are transparent (default: #b3b8bf)",
+     apply_base},
+    {"filter", 0, "KIND",
+     "exact: lines averaged over each pixel's footprint, or off: one sample a\n"
+     "pixel (default: exact)",
+     apply_filter},
     {"miss", 0, "COLOUR",
-     "where the reflected ray misses the light: #rrggbb or #rrggbbaa\n"
+     "where no light is met: #rrggbb or #rrggbbaa\n"
      "(default: #29303b, a dark blue-grey)",
      apply_miss},
     {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa (default: #808080, grey)",
      apply_empty},
-    {"lines", 0, "KIND", "reflection (default); the only kind yet", apply_lines},
     {"surface", 0, "KIND", "exact (default); the only kind yet", apply_surface},
     {0},
 };

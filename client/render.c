@@ -2,14 +2,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "client/lights.h"
 #include "client/session.h"
 #include "client/status.h"
 #include "client/times.h"
 
 _Static_assert((int)SHEEN_MAX_IN_FLIGHT <= (int)PROTOCOL_MAX_IN_FLIGHT, "the daemon's limit");
 _Static_assert((int)SHEEN_FILE_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
-_Static_assert((int)SHEEN_CURVATURE == (int)sheen_Plane_PLANE_CURVATURE, "same bits");
-_Static_assert((int)SHEEN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same order");
+_Static_assert((int)SHEEN_LIGHT_CHANGE == (int)sheen_Plane_PLANE_LIGHT_CHANGE, "same bits");
 
 /* What a frame owns. */
 struct sheen_frame_memory {
@@ -19,23 +19,6 @@ struct sheen_frame_memory {
     size_t plane_capacity[SHEEN_PLANES];
 };
 
-static sheen_Vec3 vec3_to_message(const double v[3])
-{
-    return (sheen_Vec3){v[0], v[1], v[2]};
-}
-
-static void vec3_from_message(double v[3], const sheen_Vec3 *message)
-{
-    v[0] = message->x;
-    v[1] = message->y;
-    v[2] = message->z;
-}
-
-static sheen_Colour colour_to_message(const float c[4])
-{
-    return (sheen_Colour){c[0], c[1], c[2], c[3]};
-}
-
 static void fill_camera(sheen_Render *render, const struct sheen_camera *camera)
 {
     if (camera->projection == SHEEN_PROJECTION_AUTO)
@@ -44,34 +27,16 @@ static void fill_camera(sheen_Render *render, const struct sheen_camera *camera)
     render->has_camera = true;
     render->camera = (sheen_Camera){
         .has_eye = !camera->auto_view,
-        .eye = vec3_to_message(camera->eye),
+        .eye = message_vec3(camera->eye),
         .has_target = !camera->auto_view,
-        .target = vec3_to_message(camera->target),
+        .target = message_vec3(camera->target),
         .has_up = !camera->auto_up,
-        .up = vec3_to_message(camera->up),
+        .up = message_vec3(camera->up),
         .has_fov_deg = !ortho,
         .fov_deg = camera->fov_deg,
         .has_ortho_height = ortho,
         .ortho_height = camera->ortho_height,
     };
-}
-
-static void fill_pattern(sheen_Render *render, const struct sheen_pattern *pattern)
-{
-    render->has_pattern = true;
-    render->pattern = (sheen_Pattern){
-        .kind = (sheen_PatternKind)pattern->kind,
-        .has_count = pattern->kind != SHEEN_IMAGE,
-        .count = pattern->count,
-        .has_duty = pattern->kind != SHEEN_IMAGE,
-        .duty = pattern->duty,
-        .has_foreground = pattern->has_colours,
-        .foreground = colour_to_message(pattern->foreground),
-        .has_background = pattern->has_colours,
-        .background = colour_to_message(pattern->background),
-        .has_image_sha256 = pattern->kind == SHEEN_IMAGE,
-    };
-    memcpy(render->pattern.image_sha256, pattern->image_id, SHEEN_ID_BYTES);
 }
 
 static void fill_render(sheen_Render *render, const struct sheen_request *request)
@@ -80,21 +45,19 @@ static void fill_render(sheen_Render *render, const struct sheen_request *reques
         .width_px = request->width_px,
         .height_px = request->height_px,
         .has_miss = request->has_miss,
-        .miss = colour_to_message(request->miss),
+        .miss = message_colour(request->miss),
         .has_empty = request->has_empty,
-        .empty = colour_to_message(request->empty),
+        .empty = message_colour(request->empty),
+        .has_base = request->has_base,
+        .base = message_colour(request->base),
+        .has_unfiltered = request->unfiltered,
+        .unfiltered = request->unfiltered,
         .planes = request->planes,
         .encoding = (sheen_Encoding)request->format,
     };
     memcpy(render->model_sha256, request->model_id, SHEEN_ID_BYTES);
     fill_camera(render, &request->camera);
-    fill_pattern(render, &request->pattern);
-    if (request->light.is_set) {
-        render->has_light = true;
-        render->light = (sheen_Light){.centre = vec3_to_message(request->light.centre),
-                                      .u = vec3_to_message(request->light.u),
-                                      .v = vec3_to_message(request->light.v)};
-    }
+    lights_to_message(render, request);
 }
 
 enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_request *request,
@@ -110,6 +73,9 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
     if (session->n_pending == SHEEN_MAX_IN_FLIGHT)
         return status_set(error, SHEEN_BAD_ARGUMENT, "%d requests are in flight: receive one",
                           SHEEN_MAX_IN_FLIGHT);
+    if (request->n_lights < 1 || request->n_lights > SHEEN_MAX_LIGHTS)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "%u lights; there must be 1 to %d",
+                          request->n_lights, SHEEN_MAX_LIGHTS);
     fill_render(&render, request);
     if (!message_check_render(&render, session->hello.max_width_px, session->hello.max_height_px,
                               text))
@@ -197,16 +163,13 @@ static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
                                                                : SHEEN_PROJECTION_PERSPECTIVE,
                    .fov_deg = body->camera.fov_deg,
                    .ortho_height = body->camera.ortho_height},
-        .light = {.is_set = true},
         .times = times_from_message(&body->times),
         .software = body->software,
     };
-    vec3_from_message(frame->camera.eye, &body->camera.eye);
-    vec3_from_message(frame->camera.target, &body->camera.target);
-    vec3_from_message(frame->camera.up, &body->camera.up);
-    vec3_from_message(frame->light.centre, &body->light.centre);
-    vec3_from_message(frame->light.u, &body->light.u);
-    vec3_from_message(frame->light.v, &body->light.v);
+    message_get_vec3(frame->camera.eye, &body->camera.eye);
+    message_get_vec3(frame->camera.target, &body->camera.target);
+    message_get_vec3(frame->camera.up, &body->camera.up);
+    lights_from_message(frame, body);
     memcpy(frame->device, body->device, sizeof(frame->device));
     memcpy(frame->driver, body->driver, sizeof(frame->driver));
     memcpy(frame->server, body->server, sizeof(frame->server));

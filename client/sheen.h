@@ -34,7 +34,7 @@
 #include <stdint.h>
 
 #define SHEEN_ID_BYTES 32 /* SHA-256 of a file's bytes */
-#define SHEEN_PLANES 6
+#define SHEEN_PLANES 7
 #define SHEEN_MAX_IN_FLIGHT 4 /* requests sent and not yet received, per session */
 
 enum sheen_status {
@@ -159,16 +159,15 @@ enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t
 
 /* ---- frames ---- */
 
-enum sheen_plane {                   /* bits */
-                   SHEEN_COLOUR = 1, /* uint8_t[4] RGBA, straight alpha */
-                   SHEEN_POSITION =
-                       2,            /* float[3], NaN where nothing is hit, as in all that follow */
-                   SHEEN_NORMAL = 4, /* float[3], unit, along the face winding */
-                   SHEEN_PTEX = 8,   /* uint32_t face (0xffffffff: none), float u, float v */
-                   SHEEN_LIGHT =
-                       16, /* float s, t on the light; NaN where the reflected ray misses it too */
-                   SHEEN_CURVATURE =
-                       32, /* float k.min, k.max in 1/unit, signed against the normal */
+/* Bits. Floats are NaN where nothing is hit. */
+enum sheen_plane {
+    SHEEN_COLOUR = 1,        /* uint8_t[4] RGBA, straight alpha */
+    SHEEN_POSITION = 2,      /* float[3] */
+    SHEEN_NORMAL = 4,        /* float[3], unit, along the face winding */
+    SHEEN_PTEX = 8,          /* uint32_t face (0xffffffff: none), float u, float v */
+    SHEEN_LIGHT = 16,        /* float s, t on the first light; NaN where it is not met, too */
+    SHEEN_CURVATURE = 32,    /* float k.min, k.max in 1/unit, signed against the normal */
+    SHEEN_LIGHT_CHANGE = 64, /* float ds/dx ds/dy dt/dx dt/dy by a pixel right and down; as LIGHT */
 };
 
 enum sheen_format {
@@ -195,40 +194,88 @@ struct sheen_camera {
     double ortho_height;      /* orthographic: units from top to bottom, > 0 */
 };
 
-/* The light rectangle: x = centre + (s - 1/2) u + (t - 1/2) v, s and t in [0, 1]. */
-struct sheen_light {
-    bool is_set; /* false: hangs over the model; the rest is ignored */
-    double centre[3], u[3], v[3];
+#define SHEEN_MAX_LIGHTS 8
+#define SHEEN_MAX_LINES 16
+
+enum sheen_pattern_kind {
+    SHEEN_STRIPES,
+    SHEEN_LATTICE,
+    SHEEN_CIRCLES,
+    SHEEN_IMAGE,
+    SHEEN_LINES,    /* single lines */
+    SHEEN_RAINBOW,  /* hue */
+    SHEEN_DISTANCE, /* bands by the length of the ray; not for lights at infinity */
 };
 
-enum sheen_pattern_kind { SHEEN_STRIPES, SHEEN_LATTICE, SHEEN_CIRCLES, SHEEN_IMAGE };
-
+/* What a light shows; formulas in shaders/README.md of the sources. */
 struct sheen_pattern {
     enum sheen_pattern_kind kind;
-    double count;                       /* periods over the light, (0, 100000] */
+    double count;                       /* periods over the light's width, (0, 100000] */
+    double period;                      /* in the light's units, > 0; 0: by count */
     double duty;                        /* bright part of a period, [0, 1] */
+    double rotation_deg, offset;        /* offset in periods */
+    double soft;                        /* share of a period that each edge takes, [0, 1] */
+    double opacity;                     /* over the shaded base, [0, 1] */
+    uint32_t n_at;                      /* SHEEN_LINES: 1 to SHEEN_MAX_LINES, else 0 */
+    double at[SHEEN_MAX_LINES], width;  /* places and width, in widths of the light */
     bool has_colours;                   /* false: the daemon's (white on black) */
     float foreground[4], background[4]; /* RGBA in [0, 1], as displayed */
     uint8_t image_id[SHEEN_ID_BYTES];   /* SHEEN_IMAGE: an uploaded image */
+};
+#define SHEEN_PATTERN_DEFAULTS                                                                     \
+    ((struct sheen_pattern){.count = 40, .duty = 0.5, .opacity = 1, .width = 0.01})
+
+enum sheen_light_kind { SHEEN_RECTANGLE, SHEEN_PLANE, SHEEN_TUNNEL, SHEEN_SPHERE };
+
+/* Rectangle and plane: x = centre + (s - 1/2) u + (t - 1/2) v, for the rectangle s and t in [0, 1].
+ * Tunnel: u is the radius, v along the axis through centre. Sphere at infinity: v is its axis. */
+struct sheen_light {
+    enum sheen_light_kind kind;
+    bool is_placed; /* false: as the daemon places it over the model; centre, u, v are ignored */
+    bool one_sided; /* rectangle and plane: seen only against u x v */
+    double centre[3], u[3], v[3];
+    struct sheen_pattern pattern;
+};
+
+enum sheen_line_family {
+    SHEEN_REFLECTION,
+    SHEEN_HIGHLIGHT,
+    SHEEN_ISOPHOTE,
+    SHEEN_ZEBRA,
+    SHEEN_ENVIRONMENT,
+};
+
+enum sheen_line_eye { SHEEN_EYE_CAMERA, SHEEN_EYE_POINT, SHEEN_EYE_DIRECTION };
+
+struct sheen_lines {
+    enum sheen_line_family family;
+    bool has_direction; /* ISOPHOTE: compared with N, else the view; ZEBRA, ENVIRONMENT: the axis */
+    double direction[3];          /* not zero */
+    enum sheen_line_eye eye_kind; /* whose view the lines are computed for */
+    double eye[3];                /* a place, or a direction of view that is not zero */
 };
 
 struct sheen_request {
     uint8_t model_id[SHEEN_ID_BYTES]; /* an uploaded model */
     uint32_t width_px, height_px;     /* 1 to the daemon's limit */
     struct sheen_camera camera;
-    struct sheen_light light;
-    struct sheen_pattern pattern;
-    bool has_miss, has_empty; /* false: the daemon's colours */
-    float miss[4];            /* where the reflected ray misses the light, RGBA in [0, 1] */
-    float empty[4];           /* where no surface is hit */
-    uint32_t planes;          /* enum sheen_plane bits */
+    struct sheen_lines lines;
+    uint32_t n_lights; /* 1 to SHEEN_MAX_LIGHTS; the first lies over the second */
+    struct sheen_light lights[SHEEN_MAX_LIGHTS];
+    bool has_miss, has_empty, has_base; /* false: the daemon's colours */
+    float miss[4];                      /* where no light is met, RGBA in [0, 1] */
+    float empty[4];                     /* where no surface is hit */
+    float base[4];                      /* of the surface, where patterns are transparent */
+    bool unfiltered;                    /* one sample a pixel, for comparison */
+    uint32_t planes;                    /* enum sheen_plane bits */
     enum sheen_format format;
 };
 #define SHEEN_REQUEST_DEFAULTS                                                                     \
     ((struct sheen_request){.width_px = 1280,                                                      \
                             .height_px = 720,                                                      \
                             .camera = {.up = {0, 0, 1}, .fov_deg = 35},                            \
-                            .pattern = {.count = 40, .duty = 0.5},                                 \
+                            .n_lights = 1,                                                         \
+                            .lights = {{.pattern = SHEEN_PATTERN_DEFAULTS}},                       \
                             .planes = SHEEN_COLOUR,                                                \
                             .format = SHEEN_FILE_PNG})
 
@@ -250,7 +297,9 @@ struct sheen_frame {
                                    NULL for planes that were not asked for */
     uint64_t data_bytes;        /* that travelled */
     struct sheen_camera camera; /* as used */
-    struct sheen_light light;
+    struct sheen_lines lines;
+    uint32_t n_lights;
+    struct sheen_light lights[SHEEN_MAX_LIGHTS];
     struct sheen_times times;
     char device[128], driver[128], server[32];
     bool software;

@@ -84,11 +84,8 @@ bool value_planes(const char *text, uint32_t *planes)
     static const struct {
         const char *name;
         uint32_t plane;
-    } names[] = {{"P", SHEEN_POSITION},
-                 {"N", SHEEN_NORMAL},
-                 {"ptex", SHEEN_PTEX},
-                 {"light", SHEEN_LIGHT},
-                 {"k", SHEEN_CURVATURE}};
+    } names[] = {{"P", SHEEN_POSITION},  {"N", SHEEN_NORMAL},    {"ptex", SHEEN_PTEX},
+                 {"light", SHEEN_LIGHT}, {"k", SHEEN_CURVATURE}, {"dlight", SHEEN_LIGHT_CHANGE}};
     char part[16];
     *planes = 0;
     size_t length = strlen(text);
@@ -103,71 +100,6 @@ bool value_planes(const char *text, uint32_t *planes)
         if (i == sizeof(names) / sizeof(*names))
             return false;
         *planes |= names[i].plane;
-    }
-    return true;
-}
-
-static bool refuse(char *why, const char *text)
-{
-    snprintf(why, VALUES_WHY_BYTES, "%s", text);
-    return false;
-}
-
-static bool pattern_part(char *part, struct sheen_pattern *pattern, char *why)
-{
-    char *equals = strchr(part, '=');
-    if (!equals)
-        return refuse(why, "a part has no '='; parts are count= duty= fg= bg=");
-    *equals = 0;
-    const char *value = equals + 1;
-    if (strcmp(part, "count") == 0)
-        return (value_double(value, &pattern->count) && pattern->count > 0 &&
-                pattern->count <= 100000) ||
-               refuse(why, "count must be a number above 0 and at most 100000");
-    if (strcmp(part, "duty") == 0)
-        return (value_double(value, &pattern->duty) && pattern->duty >= 0 && pattern->duty <= 1) ||
-               refuse(why, "duty must be a number from 0 to 1");
-    bool is_foreground = strcmp(part, "fg") == 0;
-    if (!is_foreground && strcmp(part, "bg") != 0)
-        return refuse(why, "the parts are count= duty= fg= bg=");
-    pattern->has_colours = true;
-    return value_colour(value, is_foreground ? pattern->foreground : pattern->background) ||
-           refuse(why, "fg and bg must be #rrggbb or #rrggbbaa");
-}
-
-bool value_pattern(const char *text, struct sheen_pattern *pattern, const char **image_path,
-                   char why[static VALUES_WHY_BYTES])
-{
-    static const char *const kinds[] = {
-        [SHEEN_STRIPES] = "stripes",
-        [SHEEN_LATTICE] = "lattice",
-        [SHEEN_CIRCLES] = "circles",
-    };
-    *image_path = NULL;
-    *pattern = (struct sheen_pattern){
-        .count = 40, .duty = 0.5, .foreground = {1, 1, 1, 1}, .background = {0, 0, 0, 1}};
-    if (strncmp(text, "image:", 6) == 0) {
-        pattern->kind = SHEEN_IMAGE;
-        *image_path = text + 6;
-        return **image_path || refuse(why, "image: needs the name of a file");
-    }
-    char part[64];
-    bool has_parts = strchr(text, ':') != NULL;
-    size_t kind = 0;
-    if (!next_part(&text, ':', part, sizeof(part)))
-        return refuse(why, "the patterns are stripes, lattice, circles and image:FILE");
-    while (kind <= SHEEN_CIRCLES && strcmp(kinds[kind], part) != 0)
-        kind++;
-    if (kind > SHEEN_CIRCLES)
-        return refuse(why, "the patterns are stripes, lattice, circles and image:FILE");
-    pattern->kind = (enum sheen_pattern_kind)kind;
-    if (has_parts && !*text)
-        return refuse(why, "nothing follows the ':'; parts are count= duty= fg= bg=");
-    while (*text) {
-        if (!next_part(&text, ',', part, sizeof(part)))
-            return refuse(why, "a part is too long; parts are count= duty= fg= bg=");
-        if (!pattern_part(part, pattern, why))
-            return false;
     }
     return true;
 }

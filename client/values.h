@@ -10,20 +10,12 @@
 
 #include "client/sheen.h"
 
-#define VALUES_WHY_BYTES 200
-
 bool value_double(const char *text, double *value);                   /* 1, -0.5, 1e3 */
 bool value_uint32(const char *text, uint32_t *value);                 /* decimal digits */
 bool value_vec3(const char *text, double value[static 3]);            /* X,Y,Z */
 bool value_size(const char *text, uint32_t *width, uint32_t *height); /* 1280x720, not 0 */
 bool value_colour(const char *text, float value[static 4]);           /* #rrggbb or #rrggbbaa */
-bool value_planes(const char *text, uint32_t *planes);                /* P,N,ptex,light,k */
-
-/* stripes|lattice|circles with :count=40,duty=0.5,fg=#rrggbb,bg=#rrggbb as far as wanted, or
- * image:FILE, for which *image_path then points into `text`, else NULL. On failure `why` says which
- * part is wrong and its range. */
-bool value_pattern(const char *text, struct sheen_pattern *pattern, const char **image_path,
-                   char why[static VALUES_WHY_BYTES]);
+bool value_planes(const char *text, uint32_t *planes);                /* P,N,ptex,light,k,dlight */
 
 /* The format of a file by its ending, in any case: .png .exr .jpg .jpeg .tif .tiff. */
 bool value_format(const char *path, enum sheen_format *format);

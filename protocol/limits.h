@@ -10,7 +10,7 @@
 /* Largest bodies, in bytes, by message type. Larger than what version 1.0 sends where a later minor
  * version may add fields; message.c holds at compile time that 1.0 fits. */
 #define PROTOCOL_MAX_SMALL_BODY_BYTES 2048u    /* every type that is not named below */
-#define PROTOCOL_MAX_MODEL_INFO_BYTES 8192u    /* MODEL_INFO carries warnings */
+#define PROTOCOL_MAX_LARGE_BODY_BYTES 8192u    /* MODEL_INFO: warnings; RENDER, FRAME: lights */
 #define PROTOCOL_MAX_CHUNK_BYTES (256u * 1024) /* UPLOAD_CHUNK */
 #define PROTOCOL_MAX_DATA_BYTES (1024u * 1024) /* DATA */
 
@@ -25,6 +25,7 @@
 /* Ranges of numbers in requests. */
 #define PROTOCOL_MAX_COORDINATE 1e30 /* absolute; squares stay finite in double */
 #define PROTOCOL_MAX_PATTERN_COUNT 100000.0
+#define PROTOCOL_MAX_PATTERN_TURNS 1e6 /* absolute: degrees of rotation, periods of offset */
 
 /* Strips of an ENCODING_ZSTD frame hold this many bytes of a plane, or one row if that is more. */
 #define PROTOCOL_STRIP_BYTES (512u * 1024)

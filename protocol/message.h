@@ -15,7 +15,7 @@
 #include "sheen.pb.h"
 
 /* Holds any encoded message with its header, but for UPLOAD_CHUNK and DATA. */
-#define MESSAGE_BUFFER_BYTES (MESSAGE_HEADER_BYTES + PROTOCOL_MAX_MODEL_INFO_BYTES)
+#define MESSAGE_BUFFER_BYTES (MESSAGE_HEADER_BYTES + PROTOCOL_MAX_LARGE_BODY_BYTES)
 #define MESSAGE_TEXT_BYTES 240 /* of a check's text, with its 0 */
 
 /* Writes header and body of a message to `buffer` and its whole length to *length. `body` points

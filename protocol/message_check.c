@@ -153,23 +153,39 @@ static bool check_whole_camera(const sheen_Camera *camera, char *text)
     return check_camera(camera, text);
 }
 
-static bool check_light(const sheen_Light *light, char *text)
+static bool check_period(const sheen_Pattern *pattern, char *text)
 {
-    if (!check_vec3(&light->centre, "light.centre", text) ||
-        !check_vec3(&light->u, "light.u", text) || !check_vec3(&light->v, "light.v", text))
-        return false;
-    return !is_parallel(&light->u, &light->v) ||
-           refuse(text, "light.u and light.v span no rectangle: one is zero or both are parallel");
+    const double turns = PROTOCOL_MAX_PATTERN_TURNS;
+    return (!pattern->has_count ||
+            check_positive(pattern->count, PROTOCOL_MAX_PATTERN_COUNT, "pattern.count", text)) &&
+           (!pattern->has_period ||
+            check_positive(pattern->period, PROTOCOL_MAX_COORDINATE, "pattern.period", text)) &&
+           (!pattern->has_duty || check_range(pattern->duty, 0, 1, "pattern.duty", text)) &&
+           (!pattern->has_rotation_deg ||
+            check_range(pattern->rotation_deg, -turns, turns, "pattern.rotation_deg", text)) &&
+           (!pattern->has_offset ||
+            check_range(pattern->offset, -turns, turns, "pattern.offset", text)) &&
+           (!pattern->has_soft || check_range(pattern->soft, 0, 1, "pattern.soft", text)) &&
+           (!pattern->has_opacity || check_range(pattern->opacity, 0, 1, "pattern.opacity", text));
+}
+
+static bool check_single_lines(const sheen_Pattern *pattern, char *text)
+{
+    bool is_lines = pattern->kind == sheen_PatternKind_PATTERN_LINES;
+    if (is_lines != (pattern->at_count > 0))
+        return refuse(text, "pattern.at: the places of 1 to 16 lines belong to a lines pattern and "
+                            "to no other");
+    for (size_t i = 0; i < pattern->at_count; i++)
+        if (!check_range(pattern->at[i], -PROTOCOL_MAX_PATTERN_TURNS, PROTOCOL_MAX_PATTERN_TURNS,
+                         "pattern.at", text))
+            return false;
+    return !pattern->has_width || check_positive(pattern->width, 1, "pattern.width", text);
 }
 
 static bool check_pattern(const sheen_Pattern *pattern, char *text)
 {
-    if (!check_enum(pattern->kind, sheen_PatternKind_PATTERN_IMAGE, "pattern.kind", text))
-        return false;
-    if (pattern->has_count &&
-        !check_positive(pattern->count, PROTOCOL_MAX_PATTERN_COUNT, "pattern.count", text))
-        return false;
-    if (pattern->has_duty && !check_range(pattern->duty, 0, 1, "pattern.duty", text))
+    if (!check_enum(pattern->kind, sheen_PatternKind_PATTERN_DISTANCE, "pattern.kind", text) ||
+        !check_period(pattern, text) || !check_single_lines(pattern, text))
         return false;
     if (pattern->has_foreground && !check_colour(&pattern->foreground, "pattern.foreground", text))
         return false;
@@ -180,13 +196,83 @@ static bool check_pattern(const sheen_Pattern *pattern, char *text)
     return true;
 }
 
+static bool check_light(const sheen_Light *light, char *text)
+{
+    if (!check_enum(light->kind, sheen_LightKind_LIGHT_SPHERE, "light.kind", text) ||
+        (light->has_pattern && !check_pattern(&light->pattern, text)))
+        return false;
+    bool has_sides = light->kind == sheen_LightKind_LIGHT_RECTANGLE ||
+                     light->kind == sheen_LightKind_LIGHT_PLANE;
+    if (light->one_sided && !has_sides)
+        return refuse(text,
+                      "light.one_sided is for rectangles and planes; a tunnel and a sphere are "
+                      "seen from inside");
+    if (light->has_centre != light->has_u || light->has_u != light->has_v)
+        return refuse(text, "light.centre, light.u and light.v come together");
+    if (!light->has_centre)
+        return true;
+    if (!check_vec3(&light->centre, "light.centre", text) ||
+        !check_vec3(&light->u, "light.u", text) || !check_vec3(&light->v, "light.v", text))
+        return false;
+    return !is_parallel(&light->u, &light->v) ||
+           refuse(text, "light.u and light.v span no light: one is zero or both are parallel");
+}
+
+static bool check_direction(const sheen_Vec3 *v, const char *field, char *text)
+{
+    if (!check_vec3(v, field, text))
+        return false;
+    return v->x != 0 || v->y != 0 || v->z != 0 || refuse(text, "%s is 0,0,0, no direction", field);
+}
+
+/* What families say of themselves and of their lights. */
+static bool check_lines(const sheen_Lines *lines, char *text)
+{
+    if (!check_enum(lines->family, sheen_LineFamily_LINES_ENVIRONMENT, "lines.family", text))
+        return false;
+    bool takes_direction = lines->family == sheen_LineFamily_LINES_ISOPHOTE ||
+                           lines->family == sheen_LineFamily_LINES_ZEBRA ||
+                           lines->family == sheen_LineFamily_LINES_ENVIRONMENT;
+    if (lines->has_direction && !takes_direction)
+        return refuse(text, "lines.direction belongs to isophote, zebra and environment");
+    if (lines->has_eye && lines->has_eye_direction)
+        return refuse(text, "lines.eye and lines.eye_direction exclude each other");
+    return (!lines->has_direction || check_direction(&lines->direction, "lines.direction", text)) &&
+           (!lines->has_eye || check_vec3(&lines->eye, "lines.eye", text)) &&
+           (!lines->has_eye_direction ||
+            check_direction(&lines->eye_direction, "lines.eye_direction", text));
+}
+
+/* The length of a ray has a meaning only where the light is somewhere. */
+static bool check_distances(const sheen_Lines *lines, const sheen_Light *light, char *text)
+{
+    if (!light->has_pattern || light->pattern.kind != sheen_PatternKind_PATTERN_DISTANCE)
+        return true;
+    bool near = lines->family == sheen_LineFamily_LINES_REFLECTION ||
+                lines->family == sheen_LineFamily_LINES_HIGHLIGHT;
+    return (near && light->kind != sheen_LightKind_LIGHT_SPHERE) ||
+           refuse(text,
+                  "pattern distance needs a light that is not at infinity: rectangle, plane or "
+                  "tunnel, with reflection or highlight lines");
+}
+
+static bool check_lights(const sheen_Lines *lines, const sheen_Light *lights, size_t n, char *text)
+{
+    if (!check_lines(lines, text))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (!check_light(&lights[i], text) || !check_distances(lines, &lights[i], text))
+            return false;
+    return true;
+}
+
 /* "" when the planes suit the encoding, else what they must be. */
 static const char *planes_wanted(uint32_t planes, unsigned encoding)
 {
     if (planes == 0)
         return "at least one";
     if (planes & ~CODEC_ALL_PLANES)
-        return "bits 0 to 5";
+        return "bits 0 to 6";
     bool picture = encoding == sheen_Encoding_ENCODING_PNG ||
                    encoding == sheen_Encoding_ENCODING_JPEG ||
                    encoding == sheen_Encoding_ENCODING_TIFF;
@@ -235,8 +321,8 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
                       render->width_px, render->height_px, render->planes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
     return (!render->has_camera || check_camera(&render->camera, text)) &&
-           (!render->has_light || check_light(&render->light, text)) &&
-           (!render->has_pattern || check_pattern(&render->pattern, text)) &&
+           check_lights(&render->lines, render->lights, render->lights_count, text) &&
+           (!render->has_base || check_colour(&render->base, "base", text)) &&
            (!render->has_miss || check_colour(&render->miss, "miss", text)) &&
            (!render->has_empty || check_colour(&render->empty, "empty", text));
 }
@@ -252,9 +338,15 @@ static bool check_frame(const sheen_Frame *frame, char *text)
         return refuse(text, "data_bytes is %llu; it must be from 1 to %llu",
                       (unsigned long long)frame->data_bytes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
-    return check_whole_camera(&frame->camera, text) && check_light(&frame->light, text) &&
-           check_pattern(&frame->pattern, text) && check_text(frame->device, "device", text) &&
-           check_text(frame->driver, "driver", text) && check_text(frame->server, "server", text);
+    if (frame->lights_count == 0)
+        return refuse(text, "a frame has a light");
+    for (size_t i = 0; i < frame->lights_count; i++)
+        if (!frame->lights[i].has_centre || !frame->lights[i].has_pattern)
+            return refuse(text, "a light lacks a field; a frame has them all");
+    return check_whole_camera(&frame->camera, text) &&
+           check_lights(&frame->lines, frame->lights, frame->lights_count, text) &&
+           check_text(frame->device, "device", text) && check_text(frame->driver, "driver", text) &&
+           check_text(frame->server, "server", text);
 }
 
 static bool check_model_info(const sheen_ModelInfo *info, char *text)

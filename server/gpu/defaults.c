@@ -80,7 +80,21 @@ void renderer_default_light(const double box_min[3], const double box_max[3],
     struct vec up = vec_unit(get(camera->up));
     struct vec view = vec_unit(vec_sub(get(camera->target), get(camera->eye)));
     struct vec away = vec_unit(vec_mad(view, -vec_dot(view, up), up));
-    put(vec_mad(box_middle(box_min, box_max), height, up), light->centre);
-    put(vec_scale(vec_cross(away, up), size), light->u);
-    put(vec_scale(away, size), light->v);
+    struct vec middle = box_middle(box_min, box_max);
+    put(vec_scale(away, light->kind == LIGHT_SPHERE ? 1 : size), light->v);
+    switch (light->kind) {
+    case LIGHT_RECTANGLE:
+    case LIGHT_PLANE:
+        put(vec_mad(middle, height, up), light->centre);
+        put(vec_scale(vec_cross(away, up), size), light->u);
+        break;
+    case LIGHT_TUNNEL:
+        put(middle, light->centre);
+        put(vec_scale(up, 1.5 * height), light->u);
+        break;
+    case LIGHT_SPHERE:
+        put(middle, light->centre);
+        put(up, light->u);
+        break;
+    }
 }

@@ -34,6 +34,7 @@ struct renderer_model {
 
 struct renderer_image {
     GLuint texture;
+    bool is_linear;
 };
 
 /* The images of one tile, grown to the largest tile asked for. */
@@ -45,6 +46,7 @@ struct target {
     GLuint ptex;                    /* RGBA32UI */
     GLuint colour;                  /* RGBA8 */
     GLuint light, curvature;        /* RG32F */
+    GLuint light_change;            /* RGBA32F */
     GLuint unsolved;                /* buffer: shaders/planes.glsl */
 };
 
@@ -66,7 +68,8 @@ struct renderer {
     struct pieces pieces;
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
-    GLuint shade[PATTERN_IMAGE + 1]; /* by enum pattern_kind, 0 until first asked for */
+    /* By line family, light, pattern, soft edges, one sample a pixel; 0 until first asked for. */
+    GLuint shade[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2][2];
     GLuint view_buffer, light_buffer, piece_buffer;
     GLuint block_buffer;  /* pieces.block of the tile whose planes the target holds */
     GLuint piece_texture; /* of piece_buffer */

@@ -118,6 +118,7 @@ bool readback(struct renderer *r, const struct frame_request *request, const str
         {0, r->target.colour, GL_RGBA, GL_UNSIGNED_BYTE},
         {4, r->target.light, GL_RG, GL_FLOAT},
         {5, r->target.curvature, GL_RG, GL_FLOAT},
+        {6, r->target.light_change, GL_RGBA, GL_FLOAT},
     };
     for (size_t i = 0; i < sizeof direct / sizeof direct[0]; i++) {
         if (!(request->planes & 1u << direct[i].plane))
@@ -141,6 +142,8 @@ size_t renderer_plane_bytes(enum renderer_plane plane)
     case PLANE_LIGHT:
     case PLANE_CURVATURE:
         return 8;
+    case PLANE_LIGHT_CHANGE:
+        return 16;
     }
     return 0;
 }

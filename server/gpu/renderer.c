@@ -77,6 +77,7 @@ struct renderer_image *renderer_image_create(struct renderer *r, const struct im
         free(out);
         return NULL;
     }
+    out->is_linear = image->is_linear;
     uint32_t larger = image->width_px > image->height_px ? image->width_px : image->height_px;
     GLsizei levels = 32 - __builtin_clz(larger);
     glCreateTextures(GL_TEXTURE_2D, 1, &out->texture);

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "server/error.h"
+#include "server/gpu/scene.h"
 #include "server/image/image.h"
 #include "server/limit/tables.h"
 
@@ -19,14 +20,15 @@ struct renderer_image; /* one light image on the GPU */
 
 /* Planes a frame can carry, one bit each. */
 enum renderer_plane {
-    PLANE_COLOUR = 1 << 0,    /* uint8_t[4] RGBA, straight alpha */
-    PLANE_POSITION = 1 << 1,  /* float[3] world, NaN where nothing is hit */
-    PLANE_NORMAL = 1 << 2,    /* float[3] unit, world, along the face winding; NaN where none */
-    PLANE_PTEX = 1 << 3,      /* uint32 face (0xffffffff: none), float u, float v: 12 bytes */
-    PLANE_LIGHT = 1 << 4,     /* float s, t on the light rectangle; NaN where the ray misses it */
-    PLANE_CURVATURE = 1 << 5, /* float k.min, k.max, 1/unit, signed against N; NaN where none */
+    PLANE_COLOUR = 1 << 0,       /* uint8_t[4] RGBA, straight alpha */
+    PLANE_POSITION = 1 << 1,     /* float[3] world, NaN where nothing is hit */
+    PLANE_NORMAL = 1 << 2,       /* float[3] unit, world, along the face winding; NaN where none */
+    PLANE_PTEX = 1 << 3,         /* uint32 face (0xffffffff: none), float u, float v: 12 bytes */
+    PLANE_LIGHT = 1 << 4,        /* float s, t on the first light; NaN where it is not met */
+    PLANE_CURVATURE = 1 << 5,    /* float k.min, k.max, 1/unit, signed against N; NaN where none */
+    PLANE_LIGHT_CHANGE = 1 << 6, /* float ds/dx ds/dy dt/dx dt/dy, a pixel; NaN as PLANE_LIGHT */
 };
-#define PLANE_COUNT 6
+#define PLANE_COUNT 7
 
 struct renderer_options {
     const char *device; /* "auto", "software" or a number: the n-th EGL device */
@@ -42,41 +44,17 @@ struct renderer_info {
     size_t max_texels; /* per buffer texture */
 };
 
-enum camera_kind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC };
-/* World units; right-handed. up need not be perpendicular, but not parallel to target - eye. */
-struct camera {
-    enum camera_kind kind;
-    double eye[3], target[3], up[3];
-    double fov_deg;      /* perspective: vertical field of view, (0, 180) */
-    double ortho_height; /* orthographic: world units from top to bottom of the picture */
-};
-
-/* x = centre + (s - 1/2) u + (t - 1/2) v, s and t in [0,1]; seen from both sides. */
-struct light {
-    double centre[3], u[3], v[3];
-};
-
-enum pattern_kind { PATTERN_STRIPES, PATTERN_LATTICE, PATTERN_CIRCLES, PATTERN_IMAGE };
-/* What the light shows. Stripes: `count` periods along s, bright for the first `duty` of each.
- * Lattice: stripes along s or along t. Circles: `count` rings about the centre, to the nearer
- * edge. Image: s to the right, t upwards. Colours are RGBA in [0,1], as displayed. */
-struct pattern {
-    enum pattern_kind kind;
-    double count;                       /* (0, 100000] */
-    double duty;                        /* [0, 1] */
-    float foreground[4];                /* bright part */
-    float background[4];                /* dark part */
-    const struct renderer_image *image; /* PATTERN_IMAGE */
-};
-
 struct frame_request {
     uint32_t width_px, height_px;
     struct camera camera;
-    struct light light;
-    struct pattern pattern;
-    float miss[4];   /* colour where the reflected ray misses the light */
-    float empty[4];  /* colour where no surface is hit */
-    uint32_t planes; /* enum renderer_plane bits to read back */
+    struct lines lines;
+    struct light lights[MAX_LIGHTS]; /* the first lies over the second, and so on */
+    uint32_t n_lights;               /* 1 to MAX_LIGHTS */
+    float miss[4];                   /* colour where no light is met */
+    float empty[4];                  /* colour where no surface is hit */
+    float base[4];                   /* of the surface, where patterns are transparent */
+    bool unfiltered;                 /* one sample a pixel, for comparison */
+    uint32_t planes;                 /* enum renderer_plane bits to read back */
 };
 
 struct frame_times {
@@ -122,6 +100,7 @@ size_t renderer_plane_bytes(enum renderer_plane plane);
  * 35 degrees), and a light that hangs over it, larger than the model. */
 void renderer_default_camera(const double box_min[3], const double box_max[3], uint32_t width_px,
                              uint32_t height_px, struct camera *camera);
+/* Sets centre, u and v for the light's kind. */
 void renderer_default_light(const double box_min[3], const double box_max[3],
                             const struct camera *camera, struct light *light);
 

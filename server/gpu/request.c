@@ -44,7 +44,11 @@ static bool check_light(const struct light *light, struct error *error)
     struct vec m = vec_cross(vec_unit(get(light->u)), vec_unit(get(light->v)));
     if (!(vec_length(m) > 1e-9))
         return error_set(error, ERROR_REQUEST,
-                         "light: u and v are zero or parallel, the rectangle has no area");
+                         "light: u and v are zero or parallel, the light has no area");
+    if (light->one_sided && light->kind != LIGHT_RECTANGLE && light->kind != LIGHT_PLANE)
+        return error_set(error, ERROR_REQUEST,
+                         "light: one-sided is for rectangles and planes; tunnel and sphere are "
+                         "seen from inside");
     return true;
 }
 
@@ -53,11 +57,55 @@ static bool check_pattern(const struct pattern *pattern, struct error *error)
     if (!(pattern->count > 0 && pattern->count <= 100000))
         return error_set(error, ERROR_REQUEST, "pattern: count %g is not in (0, 100000]",
                          pattern->count);
-    if (!(pattern->duty >= 0 && pattern->duty <= 1))
-        return error_set(error, ERROR_REQUEST, "pattern: duty %g is not in [0, 1]", pattern->duty);
+    const struct {
+        const char *name;
+        double value;
+    } shares[] = {{"duty", pattern->duty}, {"soft", pattern->soft}, {"opacity", pattern->opacity}};
+    for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++)
+        if (!(shares[i].value >= 0 && shares[i].value <= 1))
+            return error_set(error, ERROR_REQUEST, "pattern: %s %g is not in [0, 1]",
+                             shares[i].name, shares[i].value);
+    if (!isfinite(pattern->period) || !isfinite(pattern->rotation_deg) ||
+        !isfinite(pattern->offset) || pattern->period < 0)
+        return error_set(error, ERROR_REQUEST,
+                         "pattern: period, rotation and offset must be finite numbers");
     if (pattern->kind == PATTERN_IMAGE && !pattern->image)
         return error_set(error, ERROR_REQUEST, "pattern: kind image without an image");
+    if (pattern->kind == PATTERN_LINES &&
+        !(pattern->n_at > 0 && pattern->n_at <= MAX_LINES && pattern->width > 0))
+        return error_set(error, ERROR_REQUEST,
+                         "pattern: lines needs 1 to %d places and a width above 0", MAX_LINES);
     return true;
+}
+
+static bool check_lines(const struct lines *lines, struct error *error)
+{
+    if (!finite3(lines->direction) || !finite3(lines->eye))
+        return error_set(error, ERROR_REQUEST, "lines: direction and eye must be finite numbers");
+    if (lines->has_direction && !(vec_length(get(lines->direction)) > 0))
+        return error_set(error, ERROR_REQUEST, "lines: direction is 0,0,0");
+    if (lines->eye_kind == LINE_EYE_DIRECTION && !(vec_length(get(lines->eye)) > 0))
+        return error_set(error, ERROR_REQUEST, "lines: the direction of view is 0,0,0");
+    return true;
+}
+
+/* Seen from its own plane a flat light is a line, and so is its picture in a flat mirror. */
+static bool check_eye_off_light(const struct frame_request *request, const struct light *light,
+                                struct error *error)
+{
+    bool is_flat = light->kind == LIGHT_RECTANGLE || light->kind == LIGHT_PLANE;
+    bool is_far =
+        request->lines.eye_kind == LINE_EYE_DIRECTION ||
+        (request->lines.eye_kind == LINE_EYE_CAMERA && request->camera.kind == CAMERA_ORTHOGRAPHIC);
+    if (!is_flat || is_far || request->lines.family != LINES_REFLECTION)
+        return true;
+    bool own = request->lines.eye_kind == LINE_EYE_POINT;
+    struct vec eye = get(own ? request->lines.eye : request->camera.eye);
+    struct vec u = get(light->u), v = get(light->v), to_eye = vec_sub(eye, get(light->centre));
+    double off = vec_dot(vec_unit(vec_cross(vec_unit(u), vec_unit(v))), to_eye);
+    return fabs(off) > 1e-9 * (vec_length(u) + vec_length(to_eye)) ||
+           error_set(error, ERROR_REQUEST,
+                     "light: the eye lies in the light's plane: move the eye or the light");
 }
 
 bool request_check(const struct renderer_info *info, const struct frame_request *request,
@@ -68,6 +116,15 @@ bool request_check(const struct renderer_info *info, const struct frame_request 
         return error_set(
             error, ERROR_REQUEST, "size %ux%u is not in 1x1 to %ux%u, the limit of this device",
             request->width_px, request->height_px, info->max_width_px, info->max_height_px);
-    return check_camera(&request->camera, error) && check_light(&request->light, error) &&
-           check_pattern(&request->pattern, error);
+    if (request->n_lights < 1 || request->n_lights > MAX_LIGHTS)
+        return error_set(error, ERROR_REQUEST, "%u lights; there must be 1 to %d",
+                         request->n_lights, MAX_LIGHTS);
+    if (!check_camera(&request->camera, error) || !check_lines(&request->lines, error))
+        return false;
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        if (!check_light(&request->lights[i], error) ||
+            !check_pattern(&request->lights[i].pattern, error) ||
+            !check_eye_off_light(request, &request->lights[i], error))
+            return false;
+    return true;
 }

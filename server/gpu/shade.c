@@ -1,4 +1,4 @@
-/* Stage 3: the light in the mirror. */
+/* Stage 3: the lights in the mirror. */
 #include "server/gpu/gpu.h"
 
 #include <math.h>
@@ -7,30 +7,52 @@
 #include "server/gpu/program.h"
 #include "server/limit/vec.h"
 
-/* std140 block `Light` of shaders/shade.comp.glsl. */
+static const double PI = 3.14159265358979323846;
+
+/* std140 block `Light` of shaders/lines.glsl. */
 struct light_block {
-    float centre[4], normal_uv[4], dual_u[4], dual_v[4], size[4];
-    float foreground[4], background[4], miss[4], empty[4];
-    float pattern[4];
+    float line_eye[4], centre[4];
+    float axis_n[4], axis_u[4], axis_v[4];
+    float size[4];
+    float foreground[4], background[4], miss[4], empty[4], base[4];
+    float turn[4], wave[4];
+    float single[MAX_LINES];
+    float opacity, half_width;
+    int32_t n_single, is_hindmost, is_one_sided, has_direction, is_linear, unused;
     int32_t want[4];
 };
 
-static GLuint shade_program(struct renderer *r, enum pattern_kind kind, struct error *error)
+static bool is_at_infinity(enum line_family family)
 {
-    static const char *const files[] = {"view.glsl",     "blocks.glsl",     "basis.glsl",
-                                        "coverage.glsl", "shade.comp.glsl", NULL};
-    if (!r->shade[kind]) {
-        char defines[32];
-        snprintf(defines, sizeof defines, "#define PATTERN %d\n", kind);
-        r->shade[kind] = program_compute(defines, files, error);
+    return family == LINES_ISOPHOTE || family == LINES_ZEBRA || family == LINES_ENVIRONMENT;
+}
+
+static GLuint shade_program(struct renderer *r, const struct frame_request *request,
+                            const struct light *light, struct error *error)
+{
+    static const char *const files[] = {"view.glsl",       "blocks.glsl", "basis.glsl",
+                                        "coverage.glsl",   "lines.glsl",  "patterns.glsl",
+                                        "shade.comp.glsl", NULL};
+    int family = request->lines.family, pattern = light->pattern.kind;
+    int kind = is_at_infinity(request->lines.family) ? 0 : (int)light->kind;
+    bool soft = light->pattern.soft > 0;
+    GLuint *program = &r->shade[family][kind][pattern][soft][request->unfiltered];
+    if (!*program) {
+        char defines[160];
+        snprintf(defines, sizeof defines,
+                 "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n%s%s", family, kind,
+                 pattern, soft ? "#define SOFT\n" : "",
+                 request->unfiltered ? "#define UNFILTERED\n" : "");
+        *program = program_compute(defines, files, error);
     }
-    return r->shade[kind];
+    return *program;
 }
 
 bool stage_shade_init(struct renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
-    if (!shade_program(r, PATTERN_STRIPES, error))
+    static const struct frame_request usual;
+    if (!shade_program(r, &usual, &usual.lights[0], error))
         return false;
     glCreateBuffers(1, &r->light_buffer);
     glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
@@ -47,69 +69,207 @@ static void put(struct vec v, float out[4])
     out[2] = (float)v.z;
 }
 
+static void put4(const float in[4], float out[4])
+{
+    for (int k = 0; k < 4; k++)
+        out[k] = in[k];
+}
+
 static struct vec get(const double a[3])
 {
     return (struct vec){a[0], a[1], a[2]};
 }
 
-static void fill_light(struct light_block *block, const struct frame_request *request)
+static void fill_eye(struct light_block *block, const struct frame_request *request)
 {
-    *block = (struct light_block){0};
-    struct vec u = get(request->light.u), v = get(request->light.v);
+    const struct camera *camera = &request->camera;
+    struct vec eye = get(request->lines.eye), view = vec_sub(get(camera->target), get(camera->eye));
+    switch (request->lines.eye_kind) {
+    case LINE_EYE_CAMERA:
+        if (camera->kind == CAMERA_PERSPECTIVE)
+            block->line_eye[3] = 1; /* and no distance from the camera's */
+        else
+            put(vec_unit(view), block->line_eye);
+        break;
+    case LINE_EYE_POINT:
+        put(vec_sub(eye, get(camera->eye)), block->line_eye);
+        block->line_eye[3] = 1;
+        break;
+    case LINE_EYE_DIRECTION:
+        put(vec_unit(eye), block->line_eye);
+        break;
+    }
+}
+
+static void fill_plane(struct light_block *block, struct vec u, struct vec v)
+{
     struct vec m = vec_cross(u, v);
     double area2 = vec_dot(m, m);
-    put(vec_sub(get(request->light.centre), get(request->camera.eye)), block->centre);
-    put(vec_unit(m), block->normal_uv);
+    put(vec_unit(m), block->axis_n);
     /* The dual basis in the plane: dual_u . u = 1, dual_u . v = 0. */
-    put(vec_scale(vec_cross(v, m), 1 / area2), block->dual_u);
-    put(vec_scale(vec_cross(m, u), 1 / area2), block->dual_v);
+    put(vec_scale(vec_cross(v, m), 1 / area2), block->axis_u);
+    put(vec_scale(vec_cross(m, u), 1 / area2), block->axis_v);
     block->size[0] = (float)vec_length(u);
     block->size[1] = (float)vec_length(v);
-    for (int k = 0; k < 4; k++) {
-        block->foreground[k] = request->pattern.foreground[k];
-        block->background[k] = request->pattern.background[k];
-        block->miss[k] = request->miss[k];
-        block->empty[k] = request->empty[k];
+}
+
+/* Azimuth about the axis begins along `start`, whose part along the axis is taken away. */
+static void fill_axis(struct light_block *block, struct vec axis, struct vec start)
+{
+    struct vec n = vec_unit(axis), u = vec_unit(vec_mad(start, -vec_dot(start, n), n));
+    put(n, block->axis_n);
+    put(u, block->axis_u);
+    put(vec_cross(n, u), block->axis_v);
+}
+
+static void fill_light(struct light_block *block, const struct light *light)
+{
+    struct vec u = get(light->u), v = get(light->v);
+    block->is_one_sided = light->one_sided;
+    if (light->kind == LIGHT_RECTANGLE || light->kind == LIGHT_PLANE) {
+        fill_plane(block, u, v);
+        return;
     }
-    block->pattern[0] = (float)request->pattern.count;
-    block->pattern[1] = (float)request->pattern.duty;
-    block->want[0] = (request->planes & PLANE_LIGHT) != 0;
-    block->want[1] = (request->planes & PLANE_CURVATURE) != 0;
+    fill_axis(block, v, u);
+    if (light->kind == LIGHT_TUNNEL) {
+        struct vec n = vec_unit(v);
+        double radius = vec_length(vec_mad(u, -vec_dot(u, n), n));
+        block->axis_n[3] = (float)radius;
+        block->size[0] = (float)(2 * PI * radius);
+        block->size[1] = (float)vec_length(v);
+    } else {
+        block->size[0] = 360;
+        block->size[1] = 180;
+    }
+}
+
+/* The axis of families that need no light: the one given, or up in the picture, or up. */
+static void fill_family(struct light_block *block, const struct frame_request *request)
+{
+    const struct lines *lines = &request->lines;
+    const struct camera *camera = &request->camera;
+    struct vec up = vec_unit(get(camera->up));
+    struct vec view = vec_unit(vec_sub(get(camera->target), get(camera->eye)));
+    struct vec axis = lines->has_direction ? get(lines->direction)
+                      : lines->family == LINES_ZEBRA
+                          ? vec_mad(up, -vec_dot(up, view), view) /* in the picture */
+                          : up;
+    struct vec x = {1, 0, 0}, y = {0, 1, 0};
+    axis = vec_unit(axis);
+    fill_axis(block, axis, fabs(axis.x) < 0.999 ? x : y);
+    block->has_direction = lines->has_direction;
+    bool wide = lines->family == LINES_ENVIRONMENT;
+    block->size[0] = wide ? 360 : 180;
+    block->size[1] = wide ? 180 : 360;
+}
+
+/* Phases count from the light's centre, and only their fractions matter. */
+static void fill_pattern(struct light_block *block, const struct pattern *pattern)
+{
+    double w = (double)block->size[0], h = (double)block->size[1];
+    double period = pattern->period > 0                ? pattern->period
+                    : pattern->kind == PATTERN_CIRCLES ? 0.5 * fmin(w, h) / pattern->count
+                                                       : w / pattern->count;
+    double a = 0.5 * w / period + pattern->offset, b = 0.5 * h / period + pattern->offset;
+    double angle = fmod(pattern->rotation_deg, 360) * PI / 180;
+    block->turn[0] = (float)cos(angle);
+    block->turn[1] = (float)sin(angle);
+    block->turn[2] = (float)(1 / period);
+    block->turn[3] = (float)(pattern->offset - floor(pattern->offset));
+    block->wave[0] = (float)(a - floor(a));
+    block->wave[1] = (float)(b - floor(b));
+    block->wave[2] = (float)pattern->duty;
+    block->wave[3] = (float)pattern->soft;
+    for (uint32_t i = 0; i < pattern->n_at; i++)
+        block->single[i] = (float)((pattern->at[i] - 0.5) * w);
+    block->n_single = (int32_t)pattern->n_at;
+    block->half_width = (float)(0.5 * pattern->width * w);
+    block->opacity = (float)pattern->opacity;
+    block->is_linear = pattern->image && pattern->image->is_linear;
+    put4(pattern->foreground, block->foreground);
+    put4(pattern->background, block->background);
+}
+
+static void fill_block(struct light_block *block, const struct frame_request *request, uint32_t i)
+{
+    const struct light *light = &request->lights[i];
+    *block = (struct light_block){.is_hindmost = i + 1 == request->n_lights};
+    fill_eye(block, request);
+    put(vec_sub(get(light->centre), get(request->camera.eye)), block->centre);
+    if (is_at_infinity(request->lines.family))
+        fill_family(block, request);
+    else
+        fill_light(block, light);
+    fill_pattern(block, &light->pattern);
+    put4(request->miss, block->miss);
+    put4(request->empty, block->empty);
+    put4(request->base, block->base);
+    block->want[0] = i == 0 && request->planes & PLANE_LIGHT;
+    block->want[1] = i == 0 && request->planes & PLANE_CURVATURE;
+    block->want[2] = i == 0 && request->planes & PLANE_LIGHT_CHANGE;
 }
 
 /* What lies outside the covered area shows no surface. */
 static void clear_planes(const struct renderer *r, const struct frame_request *request)
 {
-    static const GLfloat none[2] = {NAN, NAN};
+    static const GLfloat none[4] = {NAN, NAN, NAN, NAN};
     glClearTexImage(r->target.colour, 0, GL_RGBA, GL_FLOAT, request->empty);
     if (request->planes & PLANE_LIGHT)
         glClearTexImage(r->target.light, 0, GL_RG, GL_FLOAT, none);
     if (request->planes & PLANE_CURVATURE)
         glClearTexImage(r->target.curvature, 0, GL_RG, GL_FLOAT, none);
+    if (request->planes & PLANE_LIGHT_CHANGE)
+        glClearTexImage(r->target.light_change, 0, GL_RGBA, GL_FLOAT, none);
+}
+
+/* Images end at the light's border, or go round with it. */
+static void bind_picture(const struct renderer *r, const struct frame_request *request,
+                         const struct light *light)
+{
+    const struct renderer_image *image = light->pattern.image;
+    glBindTextureUnit(0, image ? image->texture : r->blank_texture);
+    if (!image)
+        return;
+    bool sphere = is_at_infinity(request->lines.family) || light->kind == LIGHT_SPHERE;
+    bool rectangle = !sphere && light->kind == LIGHT_RECTANGLE;
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S,
+                        rectangle ? GL_CLAMP_TO_EDGE : GL_REPEAT);
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T,
+                        rectangle || sphere ? GL_CLAMP_TO_EDGE : GL_REPEAT);
+}
+
+static bool shade_light(struct renderer *r, const struct frame_request *request, uint32_t i,
+                        struct error *error)
+{
+    GLuint program = shade_program(r, request, &request->lights[i], error);
+    if (!program)
+        return false;
+    struct light_block block;
+    fill_block(&block, request, i);
+    glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
+    bind_picture(r, request, &request->lights[i]);
+    glUseProgram(program);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    dispatch_blocks(r, program);
+    return true;
 }
 
 bool stage_shade(struct renderer *r, const struct frame_request *request, const struct tile *tile,
                  struct error *error)
 {
-    GLuint program = shade_program(r, request->pattern.kind, error);
-    if (!program)
-        return false;
-    struct light_block block;
-    fill_light(&block, request);
-    glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    glUseProgram(program);
+    const struct target *target = &r->target;
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
-    const struct renderer_image *image = request->pattern.image;
-    glBindTextureUnit(0, image ? image->texture : r->blank_texture);
-    glBindImageTexture(0, r->target.position, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
-    glBindImageTexture(1, r->target.normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
-    glBindImageTexture(2, r->target.shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
-    glBindImageTexture(3, r->target.colour, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-    glBindImageTexture(4, r->target.light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-    glBindImageTexture(5, r->target.curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+    glBindImageTexture(0, target->position, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
+    glBindImageTexture(3, target->colour, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
+    glBindImageTexture(4, target->light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+    glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+    glBindImageTexture(6, target->light_change, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
     if (blocks_leave_gaps(r, tile))
         clear_planes(r, request);
-    dispatch_blocks(r, program);
+    for (uint32_t i = request->n_lights; i-- > 0;)
+        if (!shade_light(r, request, i, error))
+            return false;
     return true;
 }

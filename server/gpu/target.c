@@ -16,6 +16,7 @@ static const struct {
     {offsetof(struct target, colour), GL_RGBA8},
     {offsetof(struct target, light), GL_RG32F},
     {offsetof(struct target, curvature), GL_RG32F},
+    {offsetof(struct target, light_change), GL_RGBA32F},
 };
 
 static GLuint *image_name(struct target *target, size_t i)

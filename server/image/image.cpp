@@ -187,7 +187,7 @@ bool read_pixels(struct image *image, OIIO::ImageInput &reader, const OIIO::Imag
         spread<uint8_t>(static_cast<uint8_t *>(pixels.get()), n, channels, has_alpha, 255);
     }
     *image = {static_cast<uint32_t>(spec.width), static_cast<uint32_t>(spec.height), is_float,
-              pixels.release()};
+              spec.format.is_floating_point(), pixels.release()};
     return true;
 }
 

@@ -18,7 +18,8 @@
  * colour conversion). Owned by the caller; free with image_finish(). */
 struct image {
     uint32_t width_px, height_px;
-    bool is_float; /* pixels are float[4] (file held more than 8 bits), else uint8_t[4] */
+    bool is_float;  /* pixels are float[4] (file held more than 8 bits), else uint8_t[4] */
+    bool is_linear; /* linear light, to be shown through the sRGB curve: the file held floats */
     void *pixels;
 };
 

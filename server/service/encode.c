@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #define ZSTD_LEVEL 1
-#define MAX_CHANNELS 17 /* of all planes together */
+#define MAX_CHANNELS 21 /* of all planes together */
 
 struct encode_job;
 
@@ -181,15 +181,17 @@ static const struct {
     enum image_type type;
     size_t offset_bytes;
 } CHANNELS[MAX_CHANNELS] = {
-    {"R", 0, IMAGE_UINT8, 0},          {"G", 0, IMAGE_UINT8, 1},
-    {"B", 0, IMAGE_UINT8, 2},          {"A", 0, IMAGE_UINT8, 3},
-    {"P.X", 1, IMAGE_FLOAT, 0},        {"P.Y", 1, IMAGE_FLOAT, 4},
-    {"P.Z", 1, IMAGE_FLOAT, 8},        {"N.X", 2, IMAGE_FLOAT, 0},
-    {"N.Y", 2, IMAGE_FLOAT, 4},        {"N.Z", 2, IMAGE_FLOAT, 8},
-    {"ptex.face", 3, IMAGE_UINT32, 0}, {"ptex.u", 3, IMAGE_FLOAT, 4},
-    {"ptex.v", 3, IMAGE_FLOAT, 8},     {"light.s", 4, IMAGE_FLOAT, 0},
-    {"light.t", 4, IMAGE_FLOAT, 4},    {"k.min", 5, IMAGE_FLOAT, 0},
-    {"k.max", 5, IMAGE_FLOAT, 4},
+    {"R", 0, IMAGE_UINT8, 0},           {"G", 0, IMAGE_UINT8, 1},
+    {"B", 0, IMAGE_UINT8, 2},           {"A", 0, IMAGE_UINT8, 3},
+    {"P.X", 1, IMAGE_FLOAT, 0},         {"P.Y", 1, IMAGE_FLOAT, 4},
+    {"P.Z", 1, IMAGE_FLOAT, 8},         {"N.X", 2, IMAGE_FLOAT, 0},
+    {"N.Y", 2, IMAGE_FLOAT, 4},         {"N.Z", 2, IMAGE_FLOAT, 8},
+    {"ptex.face", 3, IMAGE_UINT32, 0},  {"ptex.u", 3, IMAGE_FLOAT, 4},
+    {"ptex.v", 3, IMAGE_FLOAT, 8},      {"light.s", 4, IMAGE_FLOAT, 0},
+    {"light.t", 4, IMAGE_FLOAT, 4},     {"k.min", 5, IMAGE_FLOAT, 0},
+    {"k.max", 5, IMAGE_FLOAT, 4},       {"light.dsdx", 6, IMAGE_FLOAT, 0},
+    {"light.dsdy", 6, IMAGE_FLOAT, 4},  {"light.dtdx", 6, IMAGE_FLOAT, 8},
+    {"light.dtdy", 6, IMAGE_FLOAT, 12},
 };
 
 static enum image_format file_format(sheen_Encoding encoding)

@@ -3,11 +3,12 @@
 #ifndef SHEEN_SERVICE_LABEL_H
 #define SHEEN_SERVICE_LABEL_H
 
+#include "protocol/message.h"
 #include "server/gpu/renderer.h"
 #include "server/image/image.h"
 
-#define LABEL_ATTRIBUTES 8
-#define LABEL_VALUE_BYTES 640
+#define LABEL_ATTRIBUTES 9
+#define LABEL_VALUE_BYTES 8192
 
 /* Attributes point into the struct itself: it must not be moved once filled in. */
 struct label {
@@ -15,8 +16,8 @@ struct label {
     char values[LABEL_ATTRIBUTES][LABEL_VALUE_BYTES];
 };
 
-/* model_hex and image_hex (NULL without an image pattern) are SHA-256 in hexadecimal. */
-void label_init(struct label *label, const struct frame_request *request,
-                const struct renderer_info *info, const char *model_hex, const char *image_hex);
+/* `asked` is the message that the request was made from. */
+void label_init(struct label *label, const struct frame_request *request, const sheen_Render *asked,
+                const struct renderer_info *info);
 
 #endif

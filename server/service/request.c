@@ -7,6 +7,13 @@
 #include "server/service/label.h"
 #include "server/service/wire.h"
 
+/* Something from the store that a request works with. */
+struct needed {
+    struct request *request;
+    struct asset *asset; /* in use, or waited for; NULL: not */
+    struct asset_waiter waiter;
+};
+
 struct request {
     struct session_host *host;
     struct session *session;         /* NULL once it has gone */
@@ -16,8 +23,7 @@ struct request {
     bool is_query;
     uint64_t start_us;
 
-    struct asset *model, *image; /* in use, or waited for; NULL: not */
-    struct asset_waiter model_waiter, image_waiter;
+    struct needed model, images[MAX_LIGHTS];
     unsigned n_awaited;
     struct error failure; /* kind ERROR_NONE: none yet */
 
@@ -69,10 +75,11 @@ static void leave_session(struct request *request)
 static void request_end(struct request *request)
 {
     leave_session(request);
-    if (request->model)
-        store_unuse(request->model);
-    if (request->image)
-        store_unuse(request->image);
+    if (request->model.asset)
+        store_unuse(request->model.asset);
+    for (int i = 0; i < MAX_LIGHTS; i++)
+        if (request->images[i].asset)
+            store_unuse(request->images[i].asset);
     free(request);
 }
 
@@ -96,28 +103,26 @@ static void let_go(struct request *request)
 
 static void asset_ready(struct asset_waiter *waiter, const struct error *failure)
 {
-    struct request *request = waiter->owner;
+    struct needed *needed = waiter->owner;
     if (failure) {
-        *(waiter == &request->model_waiter ? &request->model : &request->image) = NULL;
-        request->failure = *failure;
+        needed->asset = NULL;
+        needed->request->failure = *failure;
     }
-    let_go(request);
+    let_go(needed->request);
 }
 
-static void acquire(struct request *request, enum asset_kind kind, const uint8_t *sha256)
+static void acquire(struct request *request, struct needed *needed, enum asset_kind kind,
+                    const uint8_t *sha256)
 {
-    struct asset *asset = store_find(request->host->store, kind, sha256);
-    struct asset **held = kind == ASSET_MODEL ? &request->model : &request->image;
-    struct asset_waiter *waiter =
-        kind == ASSET_MODEL ? &request->model_waiter : &request->image_waiter;
-    *waiter = (struct asset_waiter){asset_ready, request, NULL};
-    *held = asset;
+    needed->request = request;
+    needed->waiter = (struct asset_waiter){asset_ready, needed, NULL};
+    needed->asset = store_find(request->host->store, kind, sha256);
     request->n_awaited++;
-    switch (store_acquire(asset, waiter, &request->failure)) {
+    switch (store_acquire(needed->asset, &needed->waiter, &request->failure)) {
     case ACQUIRE_WAIT:
         return;
     case ACQUIRE_FAILED:
-        *held = NULL;
+        needed->asset = NULL;
         break;
     case ACQUIRE_READY:
         break;
@@ -165,7 +170,7 @@ static void fill_survey(sheen_ModelInfo *info, const struct cage_survey *survey)
 
 static void answer_query(struct request *request)
 {
-    const struct asset *asset = request->model;
+    const struct asset *asset = request->model.asset;
     const struct model *model = asset->model;
     const struct limit_tables *tables = &model->tables;
     const uint64_t node_bytes = sizeof *tables->nodes + sizeof *tables->adjacency;
@@ -203,7 +208,7 @@ void request_query(struct session *session, struct answer *answer, uint32_t seq,
         return;
     request->is_query = true;
     request->n_awaited = 1; /* until all is asked for */
-    acquire(request, ASSET_MODEL, query->sha256);
+    acquire(request, &request->model, ASSET_MODEL, query->sha256);
     let_go(request);
 }
 
@@ -215,17 +220,19 @@ void request_render(struct session *session, struct answer *answer, uint32_t seq
     struct request *request = request_create(session, answer, seq);
     if (!request)
         return;
-    const uint8_t *image = render->has_pattern && render->pattern.has_image_sha256
-                               ? render->pattern.image_sha256
-                               : NULL;
-    if (!is_known(request, ASSET_MODEL, render->model_sha256) ||
-        (image && !is_known(request, ASSET_IMAGE, image)))
+    if (!is_known(request, ASSET_MODEL, render->model_sha256))
         return;
+    for (pb_size_t i = 0; i < render->lights_count; i++)
+        if (render->lights[i].pattern.has_image_sha256 &&
+            !is_known(request, ASSET_IMAGE, render->lights[i].pattern.image_sha256))
+            return;
     request->render = *render;
     request->n_awaited = 1; /* until all is asked for */
-    acquire(request, ASSET_MODEL, render->model_sha256);
-    if (image)
-        acquire(request, ASSET_IMAGE, image);
+    acquire(request, &request->model, ASSET_MODEL, render->model_sha256);
+    for (pb_size_t i = 0; i < render->lights_count; i++)
+        if (render->lights[i].pattern.has_image_sha256)
+            acquire(request, &request->images[i], ASSET_IMAGE,
+                    render->lights[i].pattern.image_sha256);
     let_go(request);
 }
 
@@ -243,11 +250,12 @@ static void assets_ready(struct request *request)
         answer_query(request);
         return;
     }
-    const struct limit_tables *tables = &request->model->model->tables;
+    const struct limit_tables *tables = &request->model.asset->model->tables;
     wire_to_frame_request(&request->render, tables->box_min, tables->box_max,
                           &request->frame_request);
-    if (request->image)
-        request->frame_request.pattern.image = request->image->image->gpu;
+    for (int i = 0; i < MAX_LIGHTS; i++)
+        if (request->images[i].asset)
+            request->frame_request.lights[i].pattern.image = request->images[i].asset->image->gpu;
     request->entry.owner = request;
     scheduler_push(&request->host->scheduler, &request->session->queue, &request->entry);
 }
@@ -257,7 +265,7 @@ static void render_run(struct work *work, void *worker)
     struct request *request = work->owner;
     if (!atomic_load(&request->abandoned))
         request->rendered =
-            renderer_render(worker, request->model->model->gpu, &request->frame_request,
+            renderer_render(worker, request->model.asset->model->gpu, &request->frame_request,
                             &request->frame, &request->failure);
 }
 
@@ -274,10 +282,14 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .data_bytes = encoded->size,
         .times = request->times,
         .camera = wire_from_camera(&asked->camera),
-        .light = wire_from_light(&asked->light),
-        .pattern = wire_from_pattern(&asked->pattern, &request->render.pattern),
+        .lights_count = (pb_size_t)asked->n_lights,
+        .lines = wire_from_lines(&asked->lines),
         .software = info->software,
     };
+    for (uint32_t i = 0; i < asked->n_lights; i++)
+        frame->lights[i] =
+            wire_from_light(&asked->lights[i],
+                            i < request->render.lights_count ? &request->render.lights[i] : NULL);
     snprintf(frame->device, sizeof frame->device, "%s", info->device);
     snprintf(frame->driver, sizeof frame->driver, "%s", info->driver);
     snprintf(frame->server, sizeof frame->server, "%s", SHEEN_VERSION);
@@ -287,9 +299,9 @@ static void answer_frame(struct request *request, struct encoded *encoded)
 {
     uint64_t now = loop_now_us();
     request->times.encode_us = now - request->encode_start_us;
-    request->times.tables_us = request->model->unreported_us;
+    request->times.tables_us = request->model.asset->unreported_us;
     request->times.total_us = now - request->start_us;
-    request->model->unreported_us = 0;
+    request->model.asset->unreported_us = 0;
     stats_frame(&request->host->stats, &request->times);
     sheen_Frame frame;
     fill_frame(request, encoded, &frame);
@@ -320,13 +332,8 @@ static void start_encoding(struct request *request)
     request->times.readback_us = times->readback_us;
     request->encode_start_us = loop_now_us();
 
-    char model_hex[2 * MODEL_ID_BYTES + 1], image_hex[2 * MODEL_ID_BYTES + 1];
-    wire_hex(request->model->sha256, model_hex);
-    if (request->image)
-        wire_hex(request->image->sha256, image_hex);
-    label_init(&request->label, &request->frame_request,
-               render_thread_info(request->host->render_thread), model_hex,
-               request->image ? image_hex : NULL);
+    label_init(&request->label, &request->frame_request, &request->render,
+               render_thread_info(request->host->render_thread));
     encode_start(request->host->pool, &request->frame, &request->layout, request->render.encoding,
                  request->label.attributes, LABEL_ATTRIBUTES, encode_finished, request);
 }
@@ -376,7 +383,7 @@ void request_abandon_all(struct session *session)
 void request_report_progress(struct session *session)
 {
     for (struct request *request = session->requests; request; request = request->next) {
-        const struct asset *asset = request->model;
+        const struct asset *asset = request->model.asset;
         if (!asset || asset->state != ASSET_BUILDING)
             continue;
         sheen_Progress progress = {.done = atomic_load(&asset->progress.done),

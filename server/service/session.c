@@ -44,7 +44,7 @@ void session_answer_frame(struct session *session, struct answer *answer, const 
 void session_report_progress(struct session *session, const struct answer *answer, uint32_t seq,
                              const sheen_Progress *progress)
 {
-    uint8_t buffer[MESSAGE_HEADER_BYTES + PROTOCOL_MAX_SMALL_BODY_BYTES];
+    uint8_t buffer[MESSAGE_HEADER_BYTES + PROTOCOL_MAX_LARGE_BODY_BYTES];
     size_t length;
     if (answer != session->answers.head ||
         !message_encode(MESSAGE_PROGRESS, seq, progress, buffer, sizeof buffer, &length))

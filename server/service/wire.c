@@ -8,22 +8,16 @@ _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
                    (int)PLANE_NORMAL == (int)sheen_Plane_PLANE_NORMAL &&
                    (int)PLANE_PTEX == (int)sheen_Plane_PLANE_PTEX &&
                    (int)PLANE_LIGHT == (int)sheen_Plane_PLANE_LIGHT &&
-                   (int)PLANE_CURVATURE == (int)sheen_Plane_PLANE_CURVATURE,
+                   (int)PLANE_CURVATURE == (int)sheen_Plane_PLANE_CURVATURE &&
+                   (int)PLANE_LIGHT_CHANGE == (int)sheen_Plane_PLANE_LIGHT_CHANGE,
                "planes have the same bits on the wire");
-_Static_assert((int)PATTERN_STRIPES == (int)sheen_PatternKind_PATTERN_STRIPES &&
-                   (int)PATTERN_LATTICE == (int)sheen_PatternKind_PATTERN_LATTICE &&
-                   (int)PATTERN_CIRCLES == (int)sheen_PatternKind_PATTERN_CIRCLES &&
-                   (int)PATTERN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE,
-               "patterns have the same numbers on the wire");
-
 /* What is left out of a request. Where the reflected ray misses the light is no dark stripe: it has
  * a colour of its own. */
-static const sheen_Colour DEFAULT_FOREGROUND = {1, 1, 1, 1};
-static const sheen_Colour DEFAULT_BACKGROUND = {0, 0, 0, 1};
 static const sheen_Colour DEFAULT_MISS = {0.16f, 0.19f, 0.23f, 1};
 static const sheen_Colour DEFAULT_EMPTY = {0.5f, 0.5f, 0.5f, 1};
+static const sheen_Colour DEFAULT_BASE = {0.7f, 0.72f, 0.75f, 1};
 
-static void to_vec3(const sheen_Vec3 *from, double to[3])
+void wire_to_vec3(const sheen_Vec3 *from, double to[3])
 {
     to[0] = from->x;
     to[1] = from->y;
@@ -35,7 +29,7 @@ sheen_Vec3 wire_from_vec3(const double v[3])
     return (sheen_Vec3){v[0], v[1], v[2]};
 }
 
-static void to_colour(const sheen_Colour *from, float to[4])
+void wire_to_colour(const sheen_Colour *from, float to[4])
 {
     to[0] = from->r;
     to[1] = from->g;
@@ -43,7 +37,7 @@ static void to_colour(const sheen_Colour *from, float to[4])
     to[3] = from->a;
 }
 
-static sheen_Colour from_colour(const float c[4])
+sheen_Colour wire_from_colour(const float c[4])
 {
     return (sheen_Colour){c[0], c[1], c[2], c[3]};
 }
@@ -53,11 +47,11 @@ static void to_camera(const sheen_Camera *from, const double box_min[3], const d
                       struct camera *to)
 {
     if (from->has_eye)
-        to_vec3(&from->eye, to->eye);
+        wire_to_vec3(&from->eye, to->eye);
     if (from->has_target)
-        to_vec3(&from->target, to->target);
+        wire_to_vec3(&from->target, to->target);
     if (from->has_up)
-        to_vec3(&from->up, to->up);
+        wire_to_vec3(&from->up, to->up);
     if (from->has_fov_deg)
         to->fov_deg = from->fov_deg;
     if (!from->has_ortho_height)
@@ -93,65 +87,28 @@ sheen_Camera wire_from_camera(const struct camera *camera)
     };
 }
 
-sheen_Light wire_from_light(const struct light *light)
-{
-    return (sheen_Light){wire_from_vec3(light->centre), wire_from_vec3(light->u),
-                         wire_from_vec3(light->v)};
-}
-
-static void to_pattern(const sheen_Pattern *from, struct pattern *to)
-{
-    static const sheen_Pattern defaults = sheen_Pattern_init_default;
-    *to = (struct pattern){
-        .kind = (enum pattern_kind)from->kind,
-        .count = from->has_count ? from->count : defaults.count,
-        .duty = from->has_duty ? from->duty : defaults.duty,
-    };
-    to_colour(from->has_foreground ? &from->foreground : &DEFAULT_FOREGROUND, to->foreground);
-    to_colour(from->has_background ? &from->background : &DEFAULT_BACKGROUND, to->background);
-}
-
-sheen_Pattern wire_from_pattern(const struct pattern *pattern, const sheen_Pattern *asked)
-{
-    sheen_Pattern wire = {
-        .kind = (sheen_PatternKind)pattern->kind,
-        .has_count = true,
-        .count = pattern->count,
-        .has_duty = true,
-        .duty = pattern->duty,
-        .has_foreground = true,
-        .foreground = from_colour(pattern->foreground),
-        .has_background = true,
-        .background = from_colour(pattern->background),
-        .has_image_sha256 = asked->has_image_sha256,
-    };
-    memcpy(wire.image_sha256, asked->image_sha256, sizeof wire.image_sha256);
-    return wire;
-}
-
 void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
                            const double box_max[3], struct frame_request *request)
 {
-    static const sheen_Pattern default_pattern = sheen_Pattern_init_default;
+    static const sheen_Light default_light = sheen_Light_init_default;
     *request = (struct frame_request){
         .width_px = render->width_px,
         .height_px = render->height_px,
         .planes = render->planes,
+        .unfiltered = render->unfiltered,
+        .n_lights = render->lights_count ? render->lights_count : 1,
     };
     renderer_default_camera(box_min, box_max, render->width_px, render->height_px,
                             &request->camera);
     if (render->has_camera)
         to_camera(&render->camera, box_min, box_max, &request->camera);
-    if (render->has_light) {
-        to_vec3(&render->light.centre, request->light.centre);
-        to_vec3(&render->light.u, request->light.u);
-        to_vec3(&render->light.v, request->light.v);
-    } else {
-        renderer_default_light(box_min, box_max, &request->camera, &request->light);
-    }
-    to_pattern(render->has_pattern ? &render->pattern : &default_pattern, &request->pattern);
-    to_colour(render->has_miss ? &render->miss : &DEFAULT_MISS, request->miss);
-    to_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
+    wire_to_lines(&render->lines, &request->lines);
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        wire_to_light(render->lights_count ? &render->lights[i] : &default_light, box_min, box_max,
+                      &request->camera, &request->lights[i]);
+    wire_to_colour(render->has_miss ? &render->miss : &DEFAULT_MISS, request->miss);
+    wire_to_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
+    wire_to_colour(render->has_base ? &render->base : &DEFAULT_BASE, request->base);
 }
 
 sheen_ErrorCode wire_error_code(enum error_kind kind)

@@ -279,7 +279,7 @@ class Uploads(DaemonCase):
             self.assert_refused(client, wire.ERROR_MODEL, "part.obj: a vertex", 51)
 
     def test_no_image(self):
-        pattern = lambda image: field(6, field(1, wire.PATTERN_IMAGE) + field(6, image))
+        pattern = lambda image: field(5, field(6, field(1, wire.PATTERN_IMAGE) + field(6, image)))
         with Client(self.daemon.unix) as client:
             model = client.upload(CUBE, "cube.obj")
             client.send(wire.render(40, model, extra=pattern(bytes(32))))
@@ -311,7 +311,7 @@ class Renders(DaemonCase):
             for named, words in (({"width": 0}, "width"), ({"height": 0}, "height"),
                                  ({"width": 100000, "height": 100000}, "width"),
                                  ({"height": 0xffffffff}, "height"), ({"planes": 0}, "planes"),
-                                 ({"planes": 64}, "planes"), ({"encoding": 6}, "encoding"),
+                                 ({"planes": 1 << 20}, "planes"), ({"encoding": 6}, "encoding"),
                                  ({"planes": 3, "encoding": wire.PNG}, "planes")):
                 seq = client.next_seq()
                 client.send(wire.render(seq, model, **named))

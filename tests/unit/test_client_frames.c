@@ -285,7 +285,7 @@ static void bad_arguments_send_nothing(void **state)
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     assert_non_null(strstr(error.text, "1 to 1000"));
     request = small_request(SHEEN_PLANES_ZSTD);
-    request.pattern.duty = 2;
+    request.lights[0].pattern.duty = 2;
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     request = small_request((enum sheen_format)17);
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);

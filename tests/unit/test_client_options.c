@@ -9,6 +9,7 @@
 
 #include "client/commands.h"
 #include "client/json.h"
+#include "client/lights_text.h"
 #include "client/values.h"
 
 static void numbers_are_strict(void **state)
@@ -64,8 +65,8 @@ static void planes_and_formats(void **state)
 {
     (void)state;
     uint32_t planes;
-    assert_true(value_planes("P,N,ptex,light,k", &planes));
-    assert_int_equal(planes, 62);
+    assert_true(value_planes("P,N,ptex,light,k,dlight", &planes));
+    assert_int_equal(planes, 126);
     assert_true(value_planes("k", &planes));
     assert_int_equal(planes, SHEEN_CURVATURE);
     static const char *const bad[] = {"", "p", "P,", ",P", "P,,N", "P N", "depth"};
@@ -88,28 +89,78 @@ static void patterns(void **state)
     (void)state;
     struct sheen_pattern pattern;
     const char *image;
-    char why[VALUES_WHY_BYTES];
-    assert_true(value_pattern("stripes", &pattern, &image, why));
+    char why[LIGHTS_WHY_BYTES];
+    assert_true(text_pattern("stripes", &pattern, &image, why));
     assert_true(pattern.count == 40 && pattern.duty == 0.5 && !pattern.has_colours);
     assert_null(image);
-    assert_true(value_pattern("circles:count=7,bg=#000080,duty=0.25", &pattern, &image, why));
+    assert_true(text_pattern("circles:count=7,bg=#000080,duty=0.25", &pattern, &image, why));
     assert_int_equal(pattern.kind, SHEEN_CIRCLES);
     assert_true(pattern.count == 7 && pattern.duty == 0.25 && pattern.has_colours);
     assert_true(pattern.foreground[0] == 1 && pattern.background[3] == 1);
-    assert_true(value_pattern("lattice:count=3", &pattern, &image, why));
+    assert_true(text_pattern("lattice:count=3", &pattern, &image, why));
     assert_int_equal(pattern.kind, SHEEN_LATTICE);
-    assert_true(value_pattern("image:a:b,c.png", &pattern, &image, why));
+    assert_true(text_pattern("image:a:b,c.png", &pattern, &image, why));
     assert_int_equal(pattern.kind, SHEEN_IMAGE);
     assert_string_equal(image, "a:b,c.png");
-    static const char *const bad[][2] = {
-        {"", "patterns are"},         {"dots", "patterns are"},     {"stripes:", "nothing"},
-        {"stripes:count", "'='"},     {"stripes:count=0", "count"}, {"stripes:count=1e6", "count"},
-        {"stripes:duty=1.1", "duty"}, {"stripes:duty=nan", "duty"}, {"stripes:fg=red", "#rrggbb"},
-        {"stripes:n=3", "parts are"}, {"image:", "file"},           {"stripes:count=3,,", "'='"}};
+    assert_true(text_pattern("lines:at=0.1/0.5,width=0.02,soft=0", &pattern, &image, why));
+    assert_int_equal(pattern.kind, SHEEN_LINES);
+    assert_true(pattern.n_at == 2 && pattern.at[1] == 0.5 && pattern.width == 0.02);
+    assert_true(text_pattern("rainbow:period=3,rotation=-45,offset=0.25,opacity=0.5", &pattern,
+                             &image, why));
+    assert_true(pattern.kind == SHEEN_RAINBOW && pattern.period == 3 &&
+                pattern.rotation_deg == -45 && pattern.offset == 0.25 && pattern.opacity == 0.5);
+    static const char *const bad[][2] = {{"stripes:at=1", "lines"},
+                                         {"lines:at=", "at must"},
+                                         {"lines:at=1/x", "at must"},
+                                         {"lines:width=0", "width"},
+                                         {"stripes:soft=2", "soft"},
+                                         {"stripes:opacity=-1", "opacity"},
+                                         {"stripes:period=0", "period"},
+                                         {"lines:at=1/1/1/1/1/1/1/1/1/1/1/1/1/1/1/1/1", "at must"},
+                                         {"", "patterns are"},
+                                         {"dots", "patterns are"},
+                                         {"stripes:", "nothing"},
+                                         {"stripes:count", "'='"},
+                                         {"stripes:count=0", "count"},
+                                         {"stripes:count=1e6", "count"},
+                                         {"stripes:duty=1.1", "duty"},
+                                         {"stripes:duty=nan", "duty"},
+                                         {"stripes:fg=red", "#rrggbb"},
+                                         {"stripes:n=3", "no part 'n'"},
+                                         {"image:", "file"},
+                                         {"stripes:count=3,,", "'='"}};
     for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++) {
-        assert_false(value_pattern(bad[i][0], &pattern, &image, why));
+        assert_false(text_pattern(bad[i][0], &pattern, &image, why));
         assert_non_null(strstr(why, bad[i][1]));
     }
+}
+
+static void families_and_lights(void **state)
+{
+    (void)state;
+    struct sheen_lines lines;
+    struct sheen_light light;
+    char why[LIGHTS_WHY_BYTES];
+    assert_true(text_lines("isophote:0,0,1", &lines, why));
+    assert_true(lines.family == SHEEN_ISOPHOTE && lines.has_direction && lines.direction[2] == 1);
+    assert_true(text_lines("zebra", &lines, why));
+    assert_true(lines.family == SHEEN_ZEBRA && !lines.has_direction);
+    assert_false(text_lines("reflection:0,0,1", &lines, why));
+    assert_false(text_lines("zebras", &lines, why));
+    assert_false(text_lines("isophote:1,2", &lines, why));
+    assert_true(text_light("plane:one-sided", &light, why));
+    assert_true(light.kind == SHEEN_PLANE && light.one_sided);
+    assert_true(text_light("sphere", &light, why));
+    assert_true(light.kind == SHEEN_SPHERE && !light.one_sided);
+    assert_false(text_light("tunnel:one-sided", &light, why));
+    assert_false(text_light("plane:two-sided", &light, why));
+    assert_true(text_line_eye("1,2,3", &lines, why));
+    assert_true(lines.eye_kind == SHEEN_EYE_POINT && lines.eye[2] == 3);
+    assert_true(text_line_eye("dir:0,0,-1", &lines, why));
+    assert_true(lines.eye_kind == SHEEN_EYE_DIRECTION && lines.eye[2] == -1);
+    assert_true(text_line_eye("camera", &lines, why));
+    assert_int_equal(lines.eye_kind, SHEEN_EYE_CAMERA);
+    assert_false(text_line_eye("dir:", &lines, why));
 }
 
 /* Parses a command line that is written with spaces. */
@@ -136,7 +187,7 @@ static void good_command_lines(void **state)
     assert_int_equal(options.request.width_px, 1280);
     assert_int_equal(options.request.camera.projection, SHEEN_PROJECTION_AUTO);
     assert_int_equal(options.request.planes, SHEEN_COLOUR);
-    assert_false(options.request.light.is_set);
+    assert_false(options.request.lights[0].is_placed);
     assert_int_equal(parse(&COMMAND_RENDER,
                            "--json --size 64x32 --eye -1,-2,3 m.glb --target 0,0,0 --ortho 2 "
                            "--light-center 0,0,4 --light-u 4,0,0 --light-v 0,4,0 --output=o.exr "
@@ -146,10 +197,23 @@ static void good_command_lines(void **state)
     assert_int_equal(options.request.camera.projection, SHEEN_PROJECTION_ORTHOGRAPHIC);
     assert_true(options.request.camera.eye[0] == -1 && options.request.camera.up[2] == 1);
     assert_false(options.request.camera.auto_view || options.request.camera.auto_up);
-    assert_true(options.request.light.is_set && options.json && options.quiet);
+    assert_true(options.request.lights[0].is_placed && options.json && options.quiet);
     assert_int_equal(options.request.planes, 7);
     assert_int_equal(options.request.format, SHEEN_FILE_EXR);
     assert_true(options.request.has_miss && !options.request.has_empty);
+    assert_int_equal(parse(&COMMAND_RENDER,
+                           "m.obj -o o.png --pattern lines --light tunnel --light plane "
+                           "--light-center 0,0,4 --light-u 4,0,0 --light-v 0,4,0 --pattern "
+                           "circles --light sphere --line-eye 1,2,3 --filter off",
+                           &options, why),
+                     OPTIONS_RUN);
+    assert_int_equal(options.request.n_lights, 3);
+    const struct sheen_light *lights = options.request.lights;
+    assert_true(lights[0].kind == SHEEN_TUNNEL && lights[0].pattern.kind == SHEEN_LINES);
+    assert_true(lights[1].kind == SHEEN_PLANE && lights[1].pattern.kind == SHEEN_CIRCLES);
+    assert_true(!lights[0].is_placed && lights[1].is_placed && !lights[2].is_placed);
+    assert_true(lights[2].kind == SHEEN_SPHERE && lights[2].pattern.kind == SHEEN_STRIPES);
+    assert_true(options.request.unfiltered);
     assert_int_equal(
         parse(&COMMAND_STREAM, "m.obj --frames 10 --orbit -3 --light-only", &options, why),
         OPTIONS_RUN);
@@ -194,7 +258,7 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj n.obj -o a.png", "n.obj"},
         {&COMMAND_RENDER, "m.obj -o a.bmp", "--output 'a.bmp'"},
         {&COMMAND_RENDER, "m.obj -o a.png --aov P", ".exr"},
-        {&COMMAND_RENDER, "m.obj -o a.exr --aov depth", "P,N,ptex,light,k"},
+        {&COMMAND_RENDER, "m.obj -o a.exr --aov depth", "P,N,ptex,light,k,dlight"},
         {&COMMAND_RENDER, "m.obj -o a.png --size 0x0", "--size '0x0'"},
         {&COMMAND_RENDER, "m.obj -o a.png --eye 1,2,3", "come together"},
         {&COMMAND_RENDER, "m.obj -o a.png --target 1,2,3", "come together"},
@@ -203,7 +267,18 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png --eye 1,1,1 --target 0,0,0 --fov 30 --ortho 2",
          "exclude"},
         {&COMMAND_RENDER, "m.obj -o a.png --light-u 1,0,0", "come together"},
-        {&COMMAND_RENDER, "m.obj -o a.png --lines zebra", "not available yet"},
+        {&COMMAND_RENDER, "m.obj -o a.png --lines zebras", "--lines 'zebras'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --lines highlight:0,0,1", "isophote"},
+        {&COMMAND_RENDER, "m.obj -o a.png --light bulb", "--light 'bulb'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --light-u 1,0,0 --light plane --light plane",
+         "come together"},
+        {&COMMAND_RENDER,
+         "m.obj -o a.png --light plane --light plane --light plane --light plane --light plane "
+         "--light plane --light plane --light plane --light plane",
+         "8 lights"},
+        {&COMMAND_RENDER, "m.obj -o a.png --line-eye 1,2", "--line-eye '1,2'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --filter on", "exact or off"},
+        {&COMMAND_RENDER, "m.obj -o a.png --base blue", "#rrggbb"},
         {&COMMAND_RENDER, "m.obj -o a.png --surface polygon:3", "not available yet"},
         {&COMMAND_RENDER, "m.obj -o a.png --pattern dots", "--pattern 'dots'"},
         {&COMMAND_RENDER, "m.obj -o a.png --empty red", "#rrggbb"},
@@ -313,6 +388,7 @@ int main(void)
         cmocka_unit_test(vectors_sizes_colours),
         cmocka_unit_test(planes_and_formats),
         cmocka_unit_test(patterns),
+        cmocka_unit_test(families_and_lights),
         cmocka_unit_test(good_command_lines),
         cmocka_unit_test(cameras_in_part),
         cmocka_unit_test(bad_command_lines_name_the_option),

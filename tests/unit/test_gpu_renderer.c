@@ -81,16 +81,18 @@ static struct frame_request request_for(const struct scene *scene, uint32_t widt
     struct frame_request request = {
         .width_px = width,
         .height_px = height,
-        .pattern = {.kind = PATTERN_STRIPES,
-                    .count = 40,
-                    .duty = 0.5,
-                    .foreground = {1, 1, 1, 1},
-                    .background = {0, 0, 0, 1}},
+        .n_lights = 1,
+        .lights = {{.pattern = {.kind = PATTERN_STRIPES,
+                                .count = 40,
+                                .duty = 0.5,
+                                .opacity = 1,
+                                .foreground = {1, 1, 1, 1},
+                                .background = {0, 0, 0, 1}}}},
         .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_LIGHT,
     };
     const double *low = scene->tables.box_min, *high = scene->tables.box_max;
     renderer_default_camera(low, high, width, height, &request.camera);
-    renderer_default_light(low, high, &request.camera, &request.light);
+    renderer_default_light(low, high, &request.camera, &request.lights[0]);
     return request;
 }
 
@@ -229,8 +231,8 @@ static void test_light_only(void **state)
     struct frame frame = render(renderer, model, &request);
     assert_true(frame.times.evaluate_us > 0);
     frame_finish(&frame);
-    request.light.centre[0] += 0.3;
-    request.pattern.kind = PATTERN_LATTICE;
+    request.lights[0].centre[0] += 0.3;
+    request.lights[0].pattern.kind = PATTERN_LATTICE;
     frame = render(renderer, model, &request);
     assert_int_equal(frame.times.visibility_us, 0);
     assert_int_equal(frame.times.evaluate_us, 0);
@@ -262,7 +264,7 @@ static void test_image_pattern(void **state)
             bool red = (x / (SIZE / SQUARES) + y / (SIZE / SQUARES)) & 1;
             memcpy(texels[y][x], red ? "\377\0\0\377" : "\0\0\377\377", 4);
         }
-    struct image image = {SIZE, SIZE, false, texels};
+    struct image image = {SIZE, SIZE, false, false, texels};
     struct error error = {0};
     struct scene scene;
     scene_init(&scene, "tests/models/sheet.obj");
@@ -271,8 +273,8 @@ static void test_image_pattern(void **state)
     struct renderer_image *light = renderer_image_create(renderer, &image, &error);
     assert_non_null(light);
     struct frame_request request = request_for(&scene, 400, 300);
-    request.pattern.kind = PATTERN_IMAGE;
-    request.pattern.image = light;
+    request.lights[0].pattern.kind = PATTERN_IMAGE;
+    request.lights[0].pattern.image = light;
     struct frame frame = render(renderer, model, &request);
     const uint8_t(*colour)[4] = frame.plane[0];
     const float(*st)[2] = frame.plane[4];
@@ -393,9 +395,9 @@ static void test_refused_requests(void **state)
         bad[3].camera.up[k] = bad[3].camera.target[k] - bad[3].camera.eye[k];
     bad[4].camera.fov_deg = 180;
     bad[5].camera.eye[1] = NAN;
-    memcpy(bad[6].light.v, bad[6].light.u, sizeof bad[6].light.u);
-    bad[7].pattern.count = 0;
-    bad[8].pattern.duty = 2;
+    memcpy(bad[6].lights[0].v, bad[6].lights[0].u, sizeof bad[6].lights[0].u);
+    bad[7].lights[0].pattern.count = 0;
+    bad[8].lights[0].pattern.duty = 2;
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         struct error error = {0};
         struct frame frame;

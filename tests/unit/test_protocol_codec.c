@@ -96,8 +96,12 @@ static const char *unpack(const struct packed *packed, const uint8_t *bytes, siz
 static void zstd_round_trip(void **state)
 {
     (void)state;
-    static const uint32_t cases[][3] = {{1, 1, 1},      {2, 1, 63},    {641, 479, 63},
-                                        {1280, 720, 1}, {65536, 2, 2}, {3, 50000, 32}};
+    static const uint32_t cases[][3] = {{1, 1, 1},
+                                        {2, 1, CODEC_ALL_PLANES},
+                                        {641, 479, CODEC_ALL_PLANES},
+                                        {1280, 720, 1},
+                                        {65536, 2, 2},
+                                        {3, 50000, 32}};
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct packed packed;
         pack(&packed, cases[i][0], cases[i][1], cases[i][2]);
@@ -110,7 +114,7 @@ static void strips_cover_every_row_once(void **state)
 {
     (void)state;
     struct codec_layout layout;
-    assert_true(codec_layout_init(&layout, 1920, 1080, 63));
+    assert_true(codec_layout_init(&layout, 1920, 1080, CODEC_ALL_PLANES));
     size_t next[CODEC_PLANES] = {0};
     unsigned last = 0;
     for (size_t i = 0; i < layout.n_strips; i++) {
@@ -125,7 +129,7 @@ static void strips_cover_every_row_once(void **state)
     }
     for (unsigned i = 0; i < CODEC_PLANES; i++)
         assert_int_equal(next[i], codec_plane_bytes(&layout, i));
-    assert_int_equal(layout.raw_bytes, 1920ull * 1080 * 56);
+    assert_int_equal(layout.raw_bytes, 1920ull * 1080 * 72);
 }
 
 static void layouts_are_bounded(void **state)
@@ -135,7 +139,7 @@ static void layouts_are_bounded(void **state)
     assert_false(codec_layout_init(&layout, 0, 1, 1));
     assert_false(codec_layout_init(&layout, 1, 0, 1));
     assert_false(codec_layout_init(&layout, 1, 1, 0));
-    assert_false(codec_layout_init(&layout, 1, 1, 64));
+    assert_false(codec_layout_init(&layout, 1, 1, CODEC_ALL_PLANES + 1));
     assert_false(codec_layout_init(&layout, 65537, 1, 1));
     assert_false(codec_layout_init(&layout, 1, UINT32_MAX, 1));
     assert_false(codec_layout_init(&layout, 65536, 65536, 63));

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "protocol/codec.h"
 #include "protocol/message.h"
 
 static const sheen_Render GOOD = {
@@ -19,18 +20,23 @@ static const sheen_Render GOOD = {
                .up = {0, 0, 1},
                .has_fov_deg = true,
                .fov_deg = 35},
-    .has_light = true,
-    .light = {{0, 0, 4}, {4, 0, 0}, {0, 4, 0}},
-    .has_pattern = true,
-    .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
-                .has_count = true,
-                .count = 20,
-                .has_duty = true,
-                .duty = 0.5,
-                .has_foreground = true,
-                .foreground = {1, 1, 1, 1},
-                .has_background = true,
-                .background = {0, 0, 0, 1}},
+    .lights_count = 1,
+    .lights = {{.has_centre = true,
+                .centre = {0, 0, 4},
+                .has_u = true,
+                .u = {4, 0, 0},
+                .has_v = true,
+                .v = {0, 4, 0},
+                .has_pattern = true,
+                .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                            .has_count = true,
+                            .count = 20,
+                            .has_duty = true,
+                            .duty = 0.5,
+                            .has_foreground = true,
+                            .foreground = {1, 1, 1, 1},
+                            .has_background = true,
+                            .background = {0, 0, 0, 1}}}},
     .has_miss = true,
     .has_empty = true,
     .planes = sheen_Plane_PLANE_COLOUR,
@@ -85,25 +91,25 @@ static void render_floats(void **state)
     REFUSED(camera.eye.x, NAN, "camera.eye.x");
     REFUSED(camera.target.y, INFINITY, "camera.target.y");
     REFUSED(camera.up.z, 1.1e30, "camera.up.z");
-    REFUSED(light.centre.z, -INFINITY, "light.centre.z");
-    REFUSED(light.u.x, NAN, "light.u.x");
-    REFUSED(light.v.y, 1e308, "light.v.y");
+    REFUSED(lights[0].centre.z, -INFINITY, "light.centre.z");
+    REFUSED(lights[0].u.x, NAN, "light.u.x");
+    REFUSED(lights[0].v.y, 1e308, "light.v.y");
     REFUSED(camera.fov_deg, 0, "fov_deg");
     REFUSED(camera.fov_deg, 180, "fov_deg");
     REFUSED(camera.fov_deg, NAN, "fov_deg");
-    REFUSED(pattern.count, 0, "pattern.count");
-    REFUSED(pattern.count, 100001, "pattern.count");
-    REFUSED(pattern.count, NAN, "pattern.count");
-    REFUSED(pattern.duty, -0.001, "pattern.duty");
-    REFUSED(pattern.duty, 1.001, "pattern.duty");
-    REFUSED(pattern.duty, NAN, "pattern.duty");
-    REFUSED(pattern.foreground.r, 1.01f, "pattern.foreground.r");
-    REFUSED(pattern.background.a, NAN, "pattern.background.a");
+    REFUSED(lights[0].pattern.count, 0, "pattern.count");
+    REFUSED(lights[0].pattern.count, 100001, "pattern.count");
+    REFUSED(lights[0].pattern.count, NAN, "pattern.count");
+    REFUSED(lights[0].pattern.duty, -0.001, "pattern.duty");
+    REFUSED(lights[0].pattern.duty, 1.001, "pattern.duty");
+    REFUSED(lights[0].pattern.duty, NAN, "pattern.duty");
+    REFUSED(lights[0].pattern.foreground.r, 1.01f, "pattern.foreground.r");
+    REFUSED(lights[0].pattern.background.a, NAN, "pattern.background.a");
     REFUSED(miss.g, -0.01f, "miss.g");
     REFUSED(empty.b, INFINITY, "empty.b");
     ACCEPTED(camera.fov_deg, 179.9);
-    ACCEPTED(pattern.count, 100000);
-    ACCEPTED(pattern.duty, 0);
+    ACCEPTED(lights[0].pattern.count, 100000);
+    ACCEPTED(lights[0].pattern.duty, 0);
     ACCEPTED(camera.eye.x, 1e30);
 }
 
@@ -117,8 +123,8 @@ static void render_geometry(void **state)
     REFUSED(camera.up, along, "--up 0,1,0");
     REFUSED(camera.has_eye, false, "come together");
     REFUSED(camera.has_target, false, "come together");
-    REFUSED(light.u, zero, "rectangle");
-    REFUSED(light.v, GOOD.light.u, "rectangle");
+    REFUSED(lights[0].u, zero, "span no light");
+    REFUSED(lights[0].v, GOOD.lights[0].u, "span no light");
     REFUSED(camera.has_ortho_height, true, "exclude");
     /* Another up is suggested than the one that does not do. */
     sheen_Render along_y = GOOD;
@@ -137,8 +143,8 @@ static void render_geometry(void **state)
     assert_false(check(&ortho, text));
     /* Far apart in size, yet a proper rectangle and view. */
     sheen_Vec3 tiny = {0, 1e-200, 0}, huge = {1e30, 0, 0};
-    ACCEPTED(light.v, tiny);
-    ACCEPTED(light.u, huge);
+    ACCEPTED(lights[0].v, tiny);
+    ACCEPTED(lights[0].u, huge);
 }
 
 /* The rest of such a camera is the daemon's. */
@@ -171,12 +177,12 @@ static void render_kinds(void **state)
 {
     (void)state;
     REFUSED(planes, 0, "planes");
-    REFUSED(planes, 64, "planes");
+    REFUSED(planes, CODEC_ALL_PLANES + 1, "planes");
     REFUSED(planes, UINT32_MAX, "planes");
     REFUSED(encoding, (sheen_Encoding)6, "encoding");
-    REFUSED(pattern.kind, (sheen_PatternKind)4, "pattern.kind");
-    REFUSED(pattern.kind, sheen_PatternKind_PATTERN_IMAGE, "image_sha256");
-    REFUSED(pattern.has_image_sha256, true, "image_sha256");
+    REFUSED(lights[0].pattern.kind, (sheen_PatternKind)7, "pattern.kind");
+    REFUSED(lights[0].pattern.kind, sheen_PatternKind_PATTERN_IMAGE, "image_sha256");
+    REFUSED(lights[0].pattern.has_image_sha256, true, "image_sha256");
     sheen_Render png = GOOD;
     char text[MESSAGE_TEXT_BYTES];
     png.encoding = sheen_Encoding_ENCODING_PNG;
@@ -193,8 +199,8 @@ static void left_out_fields_are_not_looked_at(void **state)
     sheen_Render render = {.width_px = 1, .height_px = 1, .planes = 1};
     char text[MESSAGE_TEXT_BYTES];
     render.camera.eye.x = NAN;
-    render.light.u.x = NAN;
-    render.pattern.count = NAN;
+    render.lights[0].u.x = NAN;
+    render.lights[0].pattern.count = NAN;
     render.miss.r = NAN;
     assert_true(check(&render, text));
 }
@@ -282,8 +288,8 @@ static void answers_are_checked(void **state)
                          .planes = 1,
                          .data_bytes = 16,
                          .camera = GOOD.camera,
-                         .light = GOOD.light,
-                         .pattern = GOOD.pattern};
+                         .lights_count = 1,
+                         .lights = {GOOD.lights[0]}};
     assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
     frame.camera.has_up = false; /* a request may leave it out, an answer may not */
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));

@@ -25,26 +25,26 @@ static void test_defaults_are_valid(void **state)
     struct frame_request request;
     wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &request);
     const sheen_Pattern pattern = sheen_Pattern_init_default;
-    assert_true(request.pattern.count == pattern.count);
-    assert_true(request.pattern.duty == pattern.duty);
-    assert_true(request.pattern.foreground[0] == 1 && request.pattern.background[0] == 0);
+    assert_true(request.lights[0].pattern.count == pattern.count);
+    assert_true(request.lights[0].pattern.duty == pattern.duty);
+    assert_true(request.lights[0].pattern.foreground[0] == 1 &&
+                request.lights[0].pattern.background[0] == 0);
     /* What misses the light is told from the dark stripes. */
     const float miss[4] = {0.16f, 0.19f, 0.23f, 1};
     assert_memory_equal(request.miss, miss, sizeof miss);
 
     /* Sent back as a request it is the same frame. */
-    render.has_camera = render.has_light = render.has_pattern = true;
+    render.has_camera = true;
+    render.lights_count = 1;
     render.camera = wire_from_camera(&request.camera);
-    render.light = wire_from_light(&request.light);
-    render.pattern = wire_from_pattern(&request.pattern, &render.pattern);
+    render.lights[0] = wire_from_light(&request.lights[0], NULL);
     char text[MESSAGE_TEXT_BYTES] = "";
     if (!message_check_render(&render, 1000, 1000, text))
         fail_msg("%s", text);
     struct frame_request again;
     wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &again);
     assert_memory_equal(&again.camera.eye, &request.camera.eye, sizeof again.camera.eye);
-    assert_memory_equal(&again.light, &request.light, sizeof again.light);
-    assert_memory_equal(again.pattern.foreground, request.pattern.foreground, 4 * sizeof(float));
+    assert_memory_equal(&again.lights[0], &request.lights[0], sizeof again.lights[0]);
 }
 
 static void test_what_is_given_is_kept(void **state)
@@ -60,10 +60,12 @@ static void test_what_is_given_is_kept(void **state)
                                    .up = {0, 1, 0},
                                    .has_ortho_height = true,
                                    .ortho_height = 7};
-    render.has_pattern = true;
-    render.pattern.kind = sheen_PatternKind_PATTERN_CIRCLES;
-    render.pattern.has_count = true;
-    render.pattern.count = 3;
+    render.lights_count = 1;
+    render.lights[0] = (sheen_Light)sheen_Light_init_default;
+    render.lights[0].has_pattern = true;
+    render.lights[0].pattern.kind = sheen_PatternKind_PATTERN_CIRCLES;
+    render.lights[0].pattern.has_count = true;
+    render.lights[0].pattern.count = 3;
     render.has_miss = true;
     render.miss = (sheen_Colour){0.25f, 0.5f, 0.75f, 1};
     struct frame_request request;
@@ -71,8 +73,8 @@ static void test_what_is_given_is_kept(void **state)
     assert_int_equal(request.camera.kind, CAMERA_ORTHOGRAPHIC);
     assert_true(request.camera.ortho_height == 7 && request.camera.target[2] == 6);
     assert_true(request.camera.eye[0] == 1 && request.camera.up[1] == 1);
-    assert_int_equal(request.pattern.kind, PATTERN_CIRCLES);
-    assert_true(request.pattern.count == 3 && request.pattern.duty == 0.5);
+    assert_int_equal(request.lights[0].pattern.kind, PATTERN_CIRCLES);
+    assert_true(request.lights[0].pattern.count == 3 && request.lights[0].pattern.duty == 0.5);
     assert_true(request.miss[2] == 0.75f);
     sheen_Camera back = wire_from_camera(&request.camera);
     assert_true(back.has_ortho_height && !back.has_fov_deg && back.eye.y == 2);
@@ -142,11 +144,15 @@ static void test_label_holds_every_digit(void **state)
     request.camera.eye[0] = 0.1;
     request.camera.fov_deg = 1.0 / 3;
     for (int i = 0; i < 3; i++)
-        request.light.u[i] = -1.7976931348623157e308; /* the longest numbers fit */
-    request.pattern.kind = PATTERN_IMAGE;
+        request.lights[0].u[i] = -1.7976931348623157e308; /* the longest numbers fit */
+    request.lights[0].pattern.kind = PATTERN_IMAGE;
     const struct renderer_info info = {.device = "a device", .driver = "4.5", .software = true};
     struct label label;
-    label_init(&label, &request, &info, "0123", "abcd");
+    sheen_Render asked = sheen_Render_init_default;
+    asked.lights_count = request.n_lights = 1;
+    asked.lights[0].pattern.has_image_sha256 = true;
+    asked.lights[0].pattern.image_sha256[0] = 0xab;
+    label_init(&label, &request, &asked, &info);
     const char *all = "";
     for (int i = 0; i < LABEL_ATTRIBUTES; i++) {
         const struct image_attribute *attribute = &label.attributes[i];
@@ -157,8 +163,8 @@ static void test_label_holds_every_digit(void **state)
     }
     assert_non_null(strstr(all, "eye=0.10000000000000001,0,0"));
     assert_non_null(strstr(all, "fov_deg=0.33333333333333331"));
-    assert_non_null(strstr(label.values[6], "u=-1.7976931348623157e+308,"));
-    assert_non_null(strstr(label.values[7], "image=abcd"));
+    assert_non_null(strstr(label.values[7], "u=-1.7976931348623157e+308,"));
+    assert_non_null(strstr(label.values[7], "image=ab00"));
 }
 
 static void test_texts(void **state)

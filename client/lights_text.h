@@ -1,0 +1,42 @@
+/* Line families, lights and patterns as text: what the options take, and what `sheen lights` and
+ * `sheen patterns` say of them, from the same tables. */
+#ifndef SHEEN_CLIENT_LIGHTS_TEXT_H
+#define SHEEN_CLIENT_LIGHTS_TEXT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "client/sheen.h"
+
+#define LIGHTS_WHY_BYTES 200
+
+/* The functions below return false with one reason in `why`; *value is then undefined. */
+
+/* KIND:key=value,... as `sheen patterns` lists them, or image:FILE, for which *image_path then
+ * points into `text`, else NULL. */
+bool text_pattern(const char *text, struct sheen_pattern *value, const char **image_path,
+                  char why[static LIGHTS_WHY_BYTES]);
+
+/* KIND or KIND:one-sided; only these two members are set. */
+bool text_light(const char *text, struct sheen_light *value, char why[static LIGHTS_WHY_BYTES]);
+
+/* FAMILY or FAMILY:X,Y,Z; family and direction are set. */
+bool text_lines(const char *text, struct sheen_lines *value, char why[static LIGHTS_WHY_BYTES]);
+
+/* camera, X,Y,Z or dir:X,Y,Z; the eye is set. */
+bool text_line_eye(const char *text, struct sheen_lines *value, char why[static LIGHTS_WHY_BYTES]);
+
+const char *text_pattern_kind(enum sheen_pattern_kind kind);
+const char *text_light_kind(enum sheen_light_kind kind);
+const char *text_line_family(enum sheen_line_family family);
+
+/* One line of what there is. Tables end with name NULL. */
+struct text_row {
+    const char *name;
+    const char *meaning;
+    const char *example; /* options of sheen render */
+};
+extern const struct text_row TEXT_FAMILIES[], TEXT_LIGHTS[], TEXT_PATTERNS[];
+extern const struct text_row TEXT_PATTERN_KEYS[]; /* example: range and default */
+
+#endif

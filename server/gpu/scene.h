@@ -1,0 +1,77 @@
+/* What a frame shall show: camera, line family, lights and their patterns. The formulas are in
+ * shaders/README.md. Plain data; no ownership but what is said. */
+#ifndef SHEEN_GPU_SCENE_H
+#define SHEEN_GPU_SCENE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { MAX_LIGHTS = 8, MAX_LINES = 16 };
+
+struct renderer_image;
+
+enum camera_kind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC };
+/* World units; right-handed. up need not be perpendicular, but not parallel to target - eye. */
+struct camera {
+    enum camera_kind kind;
+    double eye[3], target[3], up[3];
+    double fov_deg;      /* perspective: vertical field of view, (0, 180) */
+    double ortho_height; /* orthographic: world units from top to bottom of the picture */
+};
+
+enum pattern_kind {
+    PATTERN_STRIPES,
+    PATTERN_LATTICE,
+    PATTERN_CIRCLES,
+    PATTERN_IMAGE,
+    PATTERN_LINES,
+    PATTERN_RAINBOW,
+    PATTERN_DISTANCE,
+};
+/* What a light shows. Colours are RGBA in [0,1], as displayed. */
+struct pattern {
+    enum pattern_kind kind;
+    double count;                       /* (0, 100000]: periods over the light's width */
+    double period;                      /* the light's units; 0: by count */
+    double duty;                        /* [0, 1]: bright part of a period */
+    double rotation_deg;                /* on the light */
+    double offset;                      /* periods */
+    double soft;                        /* [0, 1]: share of a period that an edge takes */
+    double opacity;                     /* [0, 1]: over the shaded base */
+    double at[MAX_LINES];               /* LINES: places, in widths of the light */
+    uint32_t n_at;                      /* 1 to MAX_LINES */
+    double width;                       /* LINES: (0, 1], in widths of the light */
+    float foreground[4];                /* bright part */
+    float background[4];                /* dark part */
+    const struct renderer_image *image; /* IMAGE; must outlive the frame */
+};
+
+enum light_kind { LIGHT_RECTANGLE, LIGHT_PLANE, LIGHT_TUNNEL, LIGHT_SPHERE };
+/* u and v are not parallel. Rectangle: x = centre + (s - 1/2) u + (t - 1/2) v, s and t in [0,1].
+ * Tunnel: u is the radius, v the axis. Sphere at infinity: v is the axis, centre plays no part. */
+struct light {
+    enum light_kind kind;
+    double centre[3], u[3], v[3];
+    bool one_sided; /* seen only against u x v; else from both sides */
+    struct pattern pattern;
+};
+
+enum line_family {
+    LINES_REFLECTION,
+    LINES_HIGHLIGHT,
+    LINES_ISOPHOTE,
+    LINES_ZEBRA,
+    LINES_ENVIRONMENT,
+};
+
+/* Whose view the lines are computed for. */
+enum line_eye_kind { LINE_EYE_CAMERA, LINE_EYE_POINT, LINE_EYE_DIRECTION };
+struct lines {
+    enum line_family family;
+    bool has_direction;
+    double direction[3]; /* ISOPHOTE: compared with N; ZEBRA, ENVIRONMENT: the axis */
+    enum line_eye_kind eye_kind;
+    double eye[3]; /* a place, or the direction of view; not zero */
+};
+
+#endif

@@ -1,0 +1,115 @@
+// What the light shows at a place, averaged over the pixel's footprint there.
+//
+// Defined before this file: PATTERN, and SOFT for soft edges: a program for each kind, since some
+// devices walk through every branch.
+
+#define STRIPES 0
+#define LATTICE 1
+#define CIRCLES 2
+#define IMAGE 3
+#define LINES 4
+#define RAINBOW 5
+#define DISTANCE 6
+
+layout(binding = 0) uniform sampler2D picture;
+
+// The wave of duty d, its edges as wide as `soft`: convolved with one more box. The two widest
+// boxes are integrated in closed form, the narrowest by Gauss's rule of three points, under which
+// the result is a piecewise quadratic function.
+float soft_stripe(float phase, vec2 g, float d, float soft)
+{
+    g = abs(g);
+    float low = min(min(g.x, g.y), soft), high = max(max(g.x, g.y), soft);
+    vec2 wide = vec2(high, g.x + g.y + soft - low - high);
+    float reach = 0.5 * 0.774596669 * low;
+    return (5.0 * stripe(phase - reach, wide, d) + 8.0 * stripe(phase, wide, d) +
+            5.0 * stripe(phase + reach, wide, d)) / 18.0;
+}
+
+float wave_at(float phase, vec2 g)
+{
+#ifdef SOFT
+    return soft_stripe(phase, g, wave.z, wave.w);
+#else
+    return stripe(phase, g, wave.z);
+#endif
+}
+
+// The image over the pixel's parallelogram: samples along its longer side, each as wide as the
+// shorter. Not textureGrad: software devices take one footprint for neighbouring pixels together.
+vec4 image_colour(vec2 st, vec2 right, vec2 down)
+{
+    const float most = 16.0;
+    vec2 texels = vec2(textureSize(picture, 0));
+    float a = length(right * texels), b = length(down * texels);
+    vec2 along = a > b ? right : down;
+    float n = clamp(ceil(max(a, b) / max(min(a, b), 1.0)), 1.0, most);
+    float lod = log2(max(max(a, b) / n, 1.0));
+#ifdef UNFILTERED
+    n = 1.0;
+    lod = 0.0;
+#endif
+    vec4 sum = vec4(0.0);
+    for (float i = 0.5; i < n; i += 1.0) {
+        vec2 at = st + along * (i / n - 0.5);
+        sum += textureLod(picture, vec2(at.x, 1.0 - at.y), lod);
+    }
+    sum /= n;
+    // Linear light is shown through the sRGB curve.
+    vec3 shown = mix(12.92 * sum.rgb, 1.055 * pow(max(sum.rgb, 0.0031308), vec3(1.0 / 2.4)) - 0.055,
+                     step(0.0031308, sum.rgb));
+    return is_linear ? vec4(clamp(shown, 0.0, 1.0), clamp(sum.a, 0.0, 1.0)) : sum;
+}
+
+// A coordinate turned on the light, and its change over the pixel.
+void turned(Met met, vec2 along, out float a, out vec2 da)
+{
+    a = dot(along, met.q);
+    da = along.x * met.ds + along.y * met.dt;
+}
+
+// Single lines: how much of the pixel they cover.
+float lines_at(float a, vec2 da)
+{
+    float bright = 0.0;
+    for (int i = 0; i < n_single; i++) {
+        float z = a - single[i >> 2][i & 3];
+        bright += half_plane(z + half_width, da) - half_plane(z - half_width, da);
+    }
+    return min(bright, 1.0);
+}
+
+vec4 pattern_colour(Met met)
+{
+    vec2 da, db;
+    float a, b;
+    turned(met, turn.xy, a, da);
+    turned(met, vec2(-turn.y, turn.x), b, db);
+#if PATTERN == IMAGE
+    vec2 right = vec2(da.x, db.x) / size.xy, down = vec2(da.y, db.y) / size.xy;
+    return image_colour(vec2(a, b) / size.xy + 0.5, right, down);
+#elif PATTERN == RAINBOW
+    // Each channel of a turn of hue is a wave whose edges take a sixth.
+    vec3 rgb;
+    for (int i = 0; i < 3; i++)
+        rgb[i] = soft_stripe(a * turn.z + wave.x + 0.25 - float(i) / 3.0, da * turn.z, 0.5, 1.0 / 6.0);
+    return vec4(rgb, 1.0);
+#else
+#if PATTERN == CIRCLES
+    float rho = length(met.q);
+    vec2 radial = met.q / max(rho, 1e-20) * turn.z;
+    float bright = wave_at(rho * turn.z + turn.w, radial.x * met.ds + radial.y * met.dt);
+#elif PATTERN == LINES
+    float bright = lines_at(a, da);
+#elif PATTERN == DISTANCE
+    float bright = wave_at(met.tau * turn.z + turn.w, met.dtau * turn.z);
+#else
+    float bright = wave_at(a * turn.z + wave.x, da * turn.z);
+#endif
+#if PATTERN == LATTICE
+    float along = wave_at(b * turn.z + wave.y, db * turn.z);
+    bright = 1.0 - (1.0 - bright) * (1.0 - along);
+#endif
+    return mix(background, foreground, bright);
+#endif
+}
