@@ -1,18 +1,19 @@
-/* The tables of server/limit evaluated on the CPU as server/limit/tables.h describes them, in
- * double from the single precision points: what the shaders do, without their arithmetic. */
+/* The tables of server/limit built from a cage and evaluated by server/limit/evaluate.h, in double
+ * from the single precision points: what the shaders do, without their arithmetic. */
 #ifndef SHEEN_TESTS_ORACLE_TABLES_H
 #define SHEEN_TESTS_ORACLE_TABLES_H
 
 #include "tests/oracle/vec.h"
 
 extern "C" {
-#include "server/limit/tables.h"
+#include "server/limit/evaluate.h"
 }
 
-/* Derivatives are by the table's own cell coordinates: up to one positive factor for each of the
- * two directions, and turned with the node. */
+/* Derivatives are by the coordinates that the place was given in; those of evaluate_ring() by the
+ * ring's own. */
 struct surface_point {
-    vec3 p, du, dv, duu, duv, dvv;
+    vec3 p, du, dv;
+    double luu, luv, lvv; /* second derivatives along the normal */
 
     vec3 normal() const /* unit */
     {
@@ -42,24 +43,27 @@ struct place {
 class table_evaluator
 {
   public:
-    /* Throws std::runtime_error when the cage is refused. */
+    /* Throws std::runtime_error when the cage is refused, or a node is not the part of its parent
+     * that the descent takes it for. */
     explicit table_evaluator(const cage &cage);
     ~table_evaluator();
     table_evaluator(const table_evaluator &) = delete;
     table_evaluator &operator=(const table_evaluator &) = delete;
 
-    /* False where there is no surface, and at an extraordinary vertex itself. Throws when a node is
-     * not where the descent led. */
+    /* False where there is no surface, and at an extraordinary vertex itself. */
     bool evaluate(uint32_t face, double u, double v, surface_point *out) const;
     bool evaluate(const place &place, surface_point *out) const;
     /* (u, v) in [0,1] over any node and what lies below it. */
     bool evaluate_node(uint32_t node, double u, double v, surface_point *out) const;
 
     limit_tables tables = {};
+
+  private:
+    bool evaluate(const limit_place &at, surface_point *out) const;
 };
 
-/* Ring level n (1 first) of a corner table at local (a, b), where 1 <= 2^n max(a,b) <= 2, in the
- * vertex's frame. */
-surface_point evaluate_ring(const float (*texels)[3], int n, double a, double b);
+/* Ring level n (1 first) of a CORNER at local (a, b), where 1 <= 2^n max(a,b) <= 2. */
+surface_point evaluate_ring(const limit_tables &tables, const limit_node &node, int n, double a,
+                            double b);
 
 #endif

@@ -77,14 +77,13 @@ void compare_seams(const table_evaluator &tables, figures *f)
         const limit_node &node = tables.tables.nodes[k];
         if (node.kind != LIMIT_CORNER)
             continue;
-        const float(*texels)[3] = tables.tables.points + node.first;
         for (int n = 1; n < int(node.levels & ~LIMIT_NO_NORMAL); n++)
             for (int side = 0; side < 6; side++) {
                 double reach = std::ldexp(1.0, -n), other = reach * (side % 3) / 2.0;
                 double a = side < 3 ? reach : other, b = side < 3 ? other : reach;
                 /* The inner ring has its outer border at s = 2: the top of its last patch. */
-                surface_point outer = evaluate_ring(texels, n, a, b);
-                surface_point inner = evaluate_ring(texels, n + 1, a, b);
+                surface_point outer = evaluate_ring(tables.tables, node, n, a, b);
+                surface_point inner = evaluate_ring(tables.tables, node, n + 1, a, b);
                 double size = length(outer.du) + length(outer.dv);
                 f->seam.push_back(length(outer.p - inner.p) / size);
                 vec3 normal = cross(outer.du, outer.dv);
