@@ -167,10 +167,8 @@ static bool apply_empty(struct options *options, const char *value, char *why)
 
 static bool apply_surface(struct options *options, const char *value, char *why)
 {
-    (void)options;
-    return strcmp(value, "exact") == 0 ||
-           options_refuse(why, "must be exact; polygon:LEVEL and wireframe:LEVEL are not available "
-                               "yet");
+    return value_surface(value, &options->request.surface, &options->request.surface_level) ||
+           options_refuse(why, "must be exact, polygon:LEVEL or wireframe:LEVEL, LEVEL 0 to 6");
 }
 
 const struct option_row OPTIONS_COMMON[] = {
@@ -250,6 +248,10 @@ const struct option_row OPTIONS_SCENE[] = {
      apply_miss},
     {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa (default: #808080, grey)",
      apply_empty},
-    {"surface", 0, "KIND", "exact (default); the only kind yet", apply_surface},
+    {"surface", 0, "KIND",
+     "exact (default): the limit surface; for comparison polygon:LEVEL, the cage\n"
+     "subdivided LEVEL times (0 to 6), normals interpolated as a graphics card\n"
+     "does, or wireframe:LEVEL, the edges of those polygons",
+     apply_surface},
     {0},
 };

@@ -54,6 +54,10 @@ static void fill_render(sheen_Render *render, const struct sheen_request *reques
         .unfiltered = request->unfiltered,
         .planes = request->planes,
         .encoding = (sheen_Encoding)request->format,
+        .has_surface = request->surface != SHEEN_SURFACE_EXACT,
+        .surface = (sheen_SurfaceKind)request->surface,
+        .has_surface_level = request->surface_level != 0,
+        .surface_level = request->surface_level,
     };
     memcpy(render->model_sha256, request->model_id, SHEEN_ID_BYTES);
     fill_camera(render, &request->camera);

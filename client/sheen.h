@@ -255,6 +255,10 @@ struct sheen_lines {
     double eye[3];                /* a place, or a direction of view that is not zero */
 };
 
+/* The polygons are those of the cage subdivided surface_level times, with vertices and normals on
+ * the limit surface, interpolated between: the conventional picture, for comparison. */
+enum sheen_surface { SHEEN_SURFACE_EXACT, SHEEN_SURFACE_POLYGON, SHEEN_SURFACE_WIREFRAME };
+
 struct sheen_request {
     uint8_t model_id[SHEEN_ID_BYTES]; /* an uploaded model */
     uint32_t width_px, height_px;     /* 1 to the daemon's limit */
@@ -269,6 +273,8 @@ struct sheen_request {
     bool unfiltered;                    /* one sample a pixel, for comparison */
     uint32_t planes;                    /* enum sheen_plane bits */
     enum sheen_format format;
+    enum sheen_surface surface;
+    uint32_t surface_level; /* 0 to 6; exact: 0 */
 };
 #define SHEEN_REQUEST_DEFAULTS                                                                     \
     ((struct sheen_request){.width_px = 1280,                                                      \

@@ -8,6 +8,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "protocol/limits.h"
+
 bool value_double(const char *text, double *value)
 {
     /* strtod() takes more than a person means by a number: white space, hex, nan, inf. */
@@ -102,6 +104,23 @@ bool value_planes(const char *text, uint32_t *planes)
         *planes |= names[i].plane;
     }
     return true;
+}
+
+bool value_surface(const char *text, enum sheen_surface *surface, uint32_t *level)
+{
+    static const char *const kinds[] = {"exact", "polygon", "wireframe"};
+    char kind[16];
+    *level = 0;
+    *surface = SHEEN_SURFACE_EXACT;
+    if (strcmp(text, kinds[SHEEN_SURFACE_EXACT]) == 0)
+        return true;
+    if (!next_part(&text, ':', kind, sizeof(kind)))
+        return false;
+    for (int k = SHEEN_SURFACE_POLYGON; k <= SHEEN_SURFACE_WIREFRAME; k++)
+        if (strcmp(kind, kinds[k]) == 0)
+            *surface = (enum sheen_surface)k;
+    return *surface != SHEEN_SURFACE_EXACT && value_uint32(text, level) &&
+           *level <= PROTOCOL_MAX_SURFACE_LEVEL;
 }
 
 bool value_format(const char *path, enum sheen_format *format)

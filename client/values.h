@@ -17,6 +17,9 @@ bool value_size(const char *text, uint32_t *width, uint32_t *height); /* 1280x72
 bool value_colour(const char *text, float value[static 4]);           /* #rrggbb or #rrggbbaa */
 bool value_planes(const char *text, uint32_t *planes);                /* P,N,ptex,light,k,dlight */
 
+/* exact, polygon:LEVEL or wireframe:LEVEL, LEVEL 0 to 6. */
+bool value_surface(const char *text, enum sheen_surface *surface, uint32_t *level);
+
 /* The format of a file by its ending, in any case: .png .exr .jpg .jpeg .tif .tiff. */
 bool value_format(const char *path, enum sheen_format *format);
 

@@ -23,6 +23,7 @@
 #define PROTOCOL_MAX_IN_FLIGHT 4u
 
 /* Ranges of numbers in requests. */
+#define PROTOCOL_MAX_SURFACE_LEVEL 6
 #define PROTOCOL_MAX_COORDINATE 1e30 /* absolute; squares stay finite in double */
 #define PROTOCOL_MAX_PATTERN_COUNT 100000.0
 #define PROTOCOL_MAX_PATTERN_TURNS 1e6 /* absolute: degrees of rotation, periods of offset */

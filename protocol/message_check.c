@@ -304,6 +304,18 @@ bool message_check_upload_begin(const sheen_UploadBegin *begin,
                   (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
 }
 
+static bool check_surface(const sheen_Render *render, char *text)
+{
+    bool exact = !render->has_surface || render->surface == sheen_SurfaceKind_SURFACE_EXACT;
+    uint32_t last = exact ? 0 : PROTOCOL_MAX_SURFACE_LEVEL;
+    if (render->has_surface &&
+        !check_enum(render->surface, sheen_SurfaceKind_SURFACE_WIREFRAME, "surface", text))
+        return false;
+    return !render->has_surface_level || render->surface_level <= last ||
+           refuse(text, "surface_level is %u; it must be from 0 to %u%s", render->surface_level,
+                  last, exact ? " for the exact surface" : "");
+}
+
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES])
 {
@@ -323,6 +335,7 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
     return (!render->has_camera || check_camera(&render->camera, text)) &&
            check_lights(&render->lines, render->lights, render->lights_count, text) &&
            (!render->has_base || check_colour(&render->base, "base", text)) &&
+           check_surface(render, text) &&
            (!render->has_miss || check_colour(&render->miss, "miss", text)) &&
            (!render->has_empty || check_colour(&render->empty, "empty", text));
 }

@@ -71,9 +71,9 @@ struct renderer_model *renderer_model_create(struct renderer *renderer,
 
 void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model)
 {
-    (void)renderer;
     if (!model)
         return;
+    polygons_forget(&renderer->polygons, model->serial);
     banks_finish(&model->points);
     banks_finish(&model->nodes);
     banks_finish(&model->adjacency);

@@ -1,6 +1,13 @@
 /* The covered blocks of a tile, one workgroup each (shaders/blocks.glsl). */
 #include "server/gpu/gpu.h"
 
+void blocks_upload(struct renderer *r)
+{
+    size_t n = r->pieces.n_blocks;
+    glNamedBufferData(r->block_buffer, (GLsizeiptr)((n ? n : 1) * sizeof(uint32_t)),
+                      n ? r->pieces.block : NULL, GL_STREAM_DRAW);
+}
+
 /* Groups in one dimension are limited (to 65,535 at least), so blocks go in rows. */
 void dispatch_blocks(struct renderer *r, GLuint program)
 {

@@ -36,9 +36,7 @@ void stage_evaluate(struct renderer *r, const struct renderer_model *model, cons
     static const GLuint no_work[4] = {0, 1, 1, 0};
     if (blocks_leave_gaps(r, tile))
         clear_planes(r, want_ptex);
-    size_t n = r->pieces.n_blocks;
-    glNamedBufferData(r->block_buffer, (GLsizeiptr)((n ? n : 1) * sizeof(uint32_t)),
-                      n ? r->pieces.block : NULL, GL_STREAM_DRAW);
+    blocks_upload(r);
     glNamedBufferSubData(r->target.unsolved, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, r->target.unsolved);
     bind_planes(r, model);

@@ -50,11 +50,34 @@ struct target {
     GLuint unsolved;                /* buffer: shaders/planes.glsl */
 };
 
+/* One mesh of polygons on the device (mesh.h). */
+struct polygon_mesh {
+    uint64_t model_serial; /* 0: a free place */
+    uint32_t level;
+    GLuint array, buffer[2]; /* vertices, indices */
+    GLsizei n_indices;
+    size_t bytes;
+    uint64_t used; /* by the cache's clock */
+    double centre[3];
+};
+
+enum { MAX_POLYGON_MESHES = 32 };
+
+/* The conventional picture's meshes and programs (polygon.c). All zero until first used. */
+struct polygons {
+    struct polygon_mesh mesh[MAX_POLYGON_MESHES];
+    size_t bytes; /* of all meshes */
+    uint64_t clock;
+    GLuint fill, edges; /* programs */
+    GLuint framebuffer;
+};
+
 /* What the planes of the target hold, so that a light-only change can reuse them. */
 struct kept {
     uint64_t model_serial; /* 0: nothing */
     uint32_t width_px, height_px;
     struct camera camera;
+    struct surface surface;
     bool ptex;
 };
 
@@ -66,6 +89,7 @@ struct renderer {
     struct target target;
     struct kept kept;
     struct pieces pieces;
+    struct polygons polygons;
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
     /* By line family, light, pattern, soft edges, one sample a pixel; 0 until first asked for. */
@@ -96,10 +120,28 @@ void stage_visibility(struct renderer *renderer, const struct renderer_model *mo
                       const struct tile *tile);
 void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
                     const struct tile *tile, bool want_ptex);
+/* Stages 1 and 2 of polygons: the same planes from a mesh. */
+bool stage_polygons(struct renderer *renderer, const struct renderer_model *model,
+                    const struct frame_request *request, const struct tile *tile,
+                    struct error *error);
 bool stage_shade_init(struct renderer *renderer, struct error *error);
 /* Compiles the pattern's program when it is asked for first. */
 bool stage_shade(struct renderer *renderer, const struct frame_request *request,
                  const struct tile *tile, struct error *error);
+
+/* After stage_shade: the polygons' edges in place of the colour, by the depths of stage_polygons.
+ */
+bool stage_wireframe(struct renderer *renderer, const struct renderer_model *model,
+                     const struct frame_request *request, const struct tile *tile,
+                     struct error *error);
+/* Drops the meshes of a model that goes. */
+void polygons_forget(struct polygons *polygons, uint64_t model_serial);
+
+/* Draws into a framebuffer from here on: the tile's viewport, nearest first by reversed depth. */
+void raster_begin(GLuint framebuffer, const struct tile *tile);
+
+/* The covered blocks to the device. */
+void blocks_upload(struct renderer *renderer);
 
 /* One workgroup for each covered block, for the program in use. */
 void dispatch_blocks(struct renderer *renderer, GLuint program);

@@ -300,9 +300,13 @@ static void choose_corner(struct chooser *c, uint32_t node)
     emit(c, 0, (struct piece){node, level, 0, 0}, &extent);
 }
 
-static bool reserve_blocks(struct chooser *c)
+static bool reserve_blocks(struct chooser *c, struct error *error)
 {
     struct pieces *out = c->out;
+    c->blocks[0] = (c->tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    c->blocks[1] = (c->tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    for (int b = 0; b < PIECE_BUCKETS; b++)
+        out->bucket[b].n = 0;
     size_t n = (size_t)c->blocks[0] * c->blocks[1];
     if (n > out->capacity) {
         free(out->block);
@@ -311,7 +315,7 @@ static bool reserve_blocks(struct chooser *c)
         out->is_covered = malloc(n);
         out->capacity = out->block && out->is_covered ? n : 0;
         if (!out->capacity)
-            return false;
+            return error_set(error, ERROR_SERVER, "out of memory for the blocks of a frame");
     }
     memset(out->is_covered, 0, n);
     return true;
@@ -331,13 +335,9 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
                    const struct view *view, const struct tile *tile, struct error *error)
 {
     struct chooser c = {.out = pieces, .tables = tables, .view = view, .tile = tile};
-    c.blocks[0] = (tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
-    c.blocks[1] = (tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
-    if (!reserve_blocks(&c))
-        return error_set(error, ERROR_SERVER, "out of memory for the blocks of a frame");
+    if (!reserve_blocks(&c, error))
+        return false;
     set_sides(&c, tile);
-    for (int b = 0; b < PIECE_BUCKETS; b++)
-        pieces->bucket[b].n = 0;
     for (uint32_t node = 0; node < tables->n_nodes; node++) {
         if (tables->nodes[node].kind == LIMIT_REGULAR)
             choose_regular(&c, node);
@@ -354,6 +354,16 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
                          "camera: the view would take more than %llu grid vertices: move it away "
                          "from the model, or make the picture smaller",
                          (unsigned long long)MAX_VERTICES);
+    return true;
+}
+
+bool pieces_cover_all(struct pieces *pieces, const struct tile *tile, struct error *error)
+{
+    struct chooser c = {.out = pieces, .tile = tile};
+    if (!reserve_blocks(&c, error))
+        return false;
+    memset(pieces->is_covered, 1, (size_t)c.blocks[0] * c.blocks[1]);
+    list_blocks(&c);
     return true;
 }
 

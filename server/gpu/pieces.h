@@ -46,6 +46,8 @@ struct pieces {
  * ERROR_SERVER when memory is short. */
 bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
                    const struct view *view, const struct tile *tile, struct error *error);
+/* No pieces, and every block of the tile: for what is drawn in another way. */
+bool pieces_cover_all(struct pieces *pieces, const struct tile *tile, struct error *error);
 void pieces_finish(struct pieces *pieces);
 
 #endif

@@ -37,6 +37,8 @@ static bool is_kept(const struct kept *kept, const struct renderer_model *model,
 {
     return kept->model_serial == model->serial && kept->width_px == request->width_px &&
            kept->height_px == request->height_px && same_camera(&kept->camera, &request->camera) &&
+           kept->surface.kind == request->surface.kind &&
+           kept->surface.level == request->surface.level &&
            (kept->ptex || !(request->planes & PLANE_PTEX));
 }
 
@@ -69,7 +71,12 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
     glNamedBufferSubData(r->view_buffer, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
     uint64_t since = now_us();
-    if (!is_kept(&r->kept, model, request)) {
+    bool exact = request->surface.kind == SURFACE_EXACT;
+    if (!is_kept(&r->kept, model, request) && !exact) {
+        if (!stage_polygons(r, model, request, tile, error))
+            return false;
+        end_stage(&frame->times.visibility_us, &since);
+    } else if (!is_kept(&r->kept, model, request)) {
         if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
             return false;
         stage_visibility(r, model, tile);
@@ -78,6 +85,9 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
         end_stage(&frame->times.evaluate_us, &since);
     }
     if (!stage_shade(r, request, tile, error))
+        return false;
+    if (request->surface.kind == SURFACE_WIREFRAME &&
+        !stage_wireframe(r, model, request, tile, error))
         return false;
     end_stage(&frame->times.shade_us, &since);
     bool ok = readback(r, request, tile, frame, error);
@@ -111,9 +121,11 @@ bool renderer_render(struct renderer *r, struct renderer_model *model,
     }
     bool single = request->width_px <= TILE_MAX_PX && request->height_px <= TILE_MAX_PX;
     bool still_kept = is_kept(&r->kept, model, request) && r->kept.ptex;
-    bool ptex = request->planes & PLANE_PTEX || still_kept;
-    r->kept = (struct kept){single ? model->serial : 0, request->width_px, request->height_px,
-                            request->camera, ptex};
+    bool drawn = request->surface.kind != SURFACE_EXACT; /* polygons always write ptex */
+    bool ptex = request->planes & PLANE_PTEX || still_kept || drawn;
+    r->kept = (struct kept){single ? model->serial : 0, request->width_px,
+                            request->height_px,         request->camera,
+                            request->surface,           ptex};
     return true;
 
 fail:

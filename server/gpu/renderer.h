@@ -55,6 +55,7 @@ struct frame_request {
     float base[4];                   /* of the surface, where patterns are transparent */
     bool unfiltered;                 /* one sample a pixel, for comparison */
     uint32_t planes;                 /* enum renderer_plane bits to read back */
+    struct surface surface;
 };
 
 struct frame_times {

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "server/gpu/mesh.h"
 #include "server/limit/vec.h"
 
 static bool finite3(const double v[3])
@@ -108,6 +109,15 @@ static bool check_eye_off_light(const struct frame_request *request, const struc
                      "light: the eye lies in the light's plane: move the eye or the light");
 }
 
+static bool check_surface(const struct surface *surface, struct error *error)
+{
+    if (surface->kind > SURFACE_WIREFRAME)
+        return error_set(error, ERROR_REQUEST, "surface: there is no kind %d", surface->kind);
+    return surface->level <= MESH_MAX_LEVEL ||
+           error_set(error, ERROR_REQUEST, "surface: level %u is not in 0 to %d", surface->level,
+                     MESH_MAX_LEVEL);
+}
+
 bool request_check(const struct renderer_info *info, const struct frame_request *request,
                    struct error *error)
 {
@@ -126,5 +136,5 @@ bool request_check(const struct renderer_info *info, const struct frame_request 
             !check_pattern(&request->lights[i].pattern, error) ||
             !check_eye_off_light(request, &request->lights[i], error))
             return false;
-    return true;
+    return check_surface(&request->surface, error);
 }

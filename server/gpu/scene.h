@@ -74,4 +74,13 @@ struct lines {
     double eye[3]; /* a place, or the direction of view; not zero */
 };
 
+/* What is seen: the limit surface, or as the conventional picture has it the polygons of the cage
+ * subdivided `level` times (0 to 6), vertices and normals on the limit surface and interpolated
+ * between (mesh.h), or their edges. */
+enum surface_kind { SURFACE_EXACT, SURFACE_POLYGON, SURFACE_WIREFRAME };
+struct surface {
+    enum surface_kind kind;
+    uint32_t level; /* SURFACE_EXACT: 0 */
+};
+
 #endif

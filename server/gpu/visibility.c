@@ -65,12 +65,9 @@ static void draw_pieces(struct renderer *r, GLuint program, int bucket, size_t f
                             (GLsizei)((n + (size_t)per_instance - 1) / (size_t)per_instance));
 }
 
-void stage_visibility(struct renderer *r, const struct renderer_model *model,
-                      const struct tile *tile)
+void raster_begin(GLuint framebuffer, const struct tile *tile)
 {
-    static const GLuint none[4] = {UINT32_MAX, 0, 0, 0};
-    static const GLfloat farthest = 0; /* reversed depth */
-    glBindFramebuffer(GL_FRAMEBUFFER, r->target.framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, (GLsizei)tile->width, (GLsizei)tile->height);
     glScissor(0, 0, (GLsizei)tile->width, (GLsizei)tile->height);
     glEnable(GL_SCISSOR_TEST);
@@ -78,6 +75,14 @@ void stage_visibility(struct renderer *r, const struct renderer_model *model,
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_GREATER);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+}
+
+void stage_visibility(struct renderer *r, const struct renderer_model *model,
+                      const struct tile *tile)
+{
+    static const GLuint none[4] = {UINT32_MAX, 0, 0, 0};
+    static const GLfloat farthest = 0; /* reversed depth */
+    raster_begin(r->target.framebuffer, tile);
     glClearBufferuiv(GL_COLOR, 0, none);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
 

@@ -6,12 +6,13 @@
 
 #include "server/service/wire.h"
 
-enum { VERSION, DEVICE, DRIVER, SOFTWARE, MODEL, CAMERA, LINES, LIGHT, COLOURS };
+enum { VERSION, DEVICE, DRIVER, SOFTWARE, MODEL, CAMERA, LINES, LIGHT, COLOURS, SURFACE };
 
 static const char *const NAMES[LABEL_ATTRIBUTES] = {
     [VERSION] = "sheen:version",   [DEVICE] = "sheen:device", [DRIVER] = "sheen:driver",
     [SOFTWARE] = "sheen:software", [MODEL] = "sheen:model",   [CAMERA] = "sheen:camera",
     [LINES] = "sheen:lines",       [LIGHT] = "sheen:light",   [COLOURS] = "sheen:colours",
+    [SURFACE] = "sheen:surface",
 };
 
 #define VEC3 "%.17g,%.17g,%.17g"
@@ -50,6 +51,14 @@ static void describe_lines(char *value, const struct frame_request *request)
             VEC3_OF(lines->eye));
     if (request->unfiltered)
         add(value, " unfiltered");
+}
+
+static void describe_surface(char *value, const struct surface *surface)
+{
+    static const char *const kinds[] = {"exact", "polygon", "wireframe"};
+    add(value, "%s", kinds[surface->kind]);
+    if (surface->kind != SURFACE_EXACT)
+        add(value, ":%u", surface->level);
 }
 
 static void describe_pattern(char *value, const struct pattern *pattern, const sheen_Light *asked)
@@ -104,4 +113,5 @@ void label_init(struct label *label, const struct frame_request *request, const 
                        i < asked->lights_count ? &asked->lights[i] : NULL);
     add(label->values[COLOURS], "miss=" COLOUR " empty=" COLOUR " base=" COLOUR,
         COLOUR_OF(request->miss), COLOUR_OF(request->empty), COLOUR_OF(request->base));
+    describe_surface(label->values[SURFACE], &request->surface);
 }

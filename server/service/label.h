@@ -7,7 +7,7 @@
 #include "server/gpu/renderer.h"
 #include "server/image/image.h"
 
-#define LABEL_ATTRIBUTES 9
+#define LABEL_ATTRIBUTES 10
 #define LABEL_VALUE_BYTES 8192
 
 /* Attributes point into the struct itself: it must not be moved once filled in. */

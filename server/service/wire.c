@@ -11,6 +11,10 @@ _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
                    (int)PLANE_CURVATURE == (int)sheen_Plane_PLANE_CURVATURE &&
                    (int)PLANE_LIGHT_CHANGE == (int)sheen_Plane_PLANE_LIGHT_CHANGE,
                "planes have the same bits on the wire");
+_Static_assert((int)SURFACE_EXACT == (int)sheen_SurfaceKind_SURFACE_EXACT &&
+                   (int)SURFACE_POLYGON == (int)sheen_SurfaceKind_SURFACE_POLYGON &&
+                   (int)SURFACE_WIREFRAME == (int)sheen_SurfaceKind_SURFACE_WIREFRAME,
+               "surfaces have the same numbers on the wire");
 /* What is left out of a request. Where the reflected ray misses the light is no dark stripe: it has
  * a colour of its own. */
 static const sheen_Colour DEFAULT_MISS = {0.16f, 0.19f, 0.23f, 1};
@@ -97,6 +101,7 @@ void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
         .planes = render->planes,
         .unfiltered = render->unfiltered,
         .n_lights = render->lights_count ? render->lights_count : 1,
+        .surface = {(enum surface_kind)render->surface, render->surface_level},
     };
     renderer_default_camera(box_min, box_max, render->width_px, render->height_px,
                             &request->camera);

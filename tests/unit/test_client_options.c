@@ -214,6 +214,11 @@ static void good_command_lines(void **state)
     assert_true(!lights[0].is_placed && lights[1].is_placed && !lights[2].is_placed);
     assert_true(lights[2].kind == SHEEN_SPHERE && lights[2].pattern.kind == SHEEN_STRIPES);
     assert_true(options.request.unfiltered);
+    assert_int_equal(options.request.surface, SHEEN_SURFACE_EXACT);
+    assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --surface wireframe:5", &options, why),
+                     OPTIONS_RUN);
+    assert_int_equal(options.request.surface, SHEEN_SURFACE_WIREFRAME);
+    assert_int_equal(options.request.surface_level, 5);
     assert_int_equal(
         parse(&COMMAND_STREAM, "m.obj --frames 10 --orbit -3 --light-only", &options, why),
         OPTIONS_RUN);
@@ -279,7 +284,12 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png --line-eye 1,2", "--line-eye '1,2'"},
         {&COMMAND_RENDER, "m.obj -o a.png --filter on", "exact or off"},
         {&COMMAND_RENDER, "m.obj -o a.png --base blue", "#rrggbb"},
-        {&COMMAND_RENDER, "m.obj -o a.png --surface polygon:3", "not available yet"},
+        {&COMMAND_RENDER, "m.obj -o a.png --surface polygon", "polygon:LEVEL"},
+        {&COMMAND_RENDER, "m.obj -o a.png --surface polygon:", "polygon:LEVEL"},
+        {&COMMAND_RENDER, "m.obj -o a.png --surface polygon:7", "LEVEL 0 to 6"},
+        {&COMMAND_RENDER, "m.obj -o a.png --surface wireframe:-1", "LEVEL 0 to 6"},
+        {&COMMAND_RENDER, "m.obj -o a.png --surface exact:1", "LEVEL 0 to 6"},
+        {&COMMAND_RENDER, "m.obj -o a.png --surface tessellation:1", "LEVEL 0 to 6"},
         {&COMMAND_RENDER, "m.obj -o a.png --pattern dots", "--pattern 'dots'"},
         {&COMMAND_RENDER, "m.obj -o a.png --empty red", "#rrggbb"},
         {&COMMAND_RENDER, "m.obj -o a.png --nonsense", "--nonsense"},

@@ -1,0 +1,156 @@
+#include "server/gpu/mesh.h"
+
+#include <stdlib.h>
+
+#include "server/limit/evaluate.h"
+
+/* Quads along an edge of a Ptex face. */
+static uint32_t cells_of(const struct limit_node *root, uint32_t level)
+{
+    return !root->ngon_size ? 1u << level : level ? 1u << (level - 1) : 1u;
+}
+
+struct mesh_size {
+    uint64_t vertices, quads;
+};
+
+static struct mesh_size measure(const struct limit_tables *tables, uint32_t level)
+{
+    struct mesh_size size = {0, 0};
+    for (size_t face = 0; face < tables->n_faces; face++) {
+        const struct limit_node *root = &tables->nodes[face];
+        if (root->kind == LIMIT_HOLE)
+            continue;
+        uint64_t cells = cells_of(root, level);
+        size.vertices += (cells + 1) * (cells + 1);
+        size.quads += cells * cells;
+    }
+    return size;
+}
+
+static bool refuse(const struct limit_tables *tables, uint32_t level, uint64_t quads,
+                   struct error *error)
+{
+    uint32_t fits = level;
+    while (fits > 0 && measure(tables, fits).vertices > MESH_MAX_VERTICES)
+        fits--;
+    if (measure(tables, fits).vertices > MESH_MAX_VERTICES)
+        return error_set(error, ERROR_REQUEST,
+                         "surface: the cage alone has %llu faces, more than polygons are made of: "
+                         "choose --surface exact",
+                         (unsigned long long)measure(tables, 0).quads);
+    return error_set(error, ERROR_REQUEST,
+                     "surface: level %u makes %llu polygons, more than fit (%llu vertices): choose "
+                     "level %u or less",
+                     level, (unsigned long long)quads, (unsigned long long)MESH_MAX_VERTICES, fits);
+}
+
+/* The two triangles of every cell of the grid whose vertices come next. */
+static void add_cells(struct mesh *mesh, uint32_t cells)
+{
+    uint32_t first = (uint32_t)mesh->n_vertices, row = cells + 1;
+    for (uint32_t k = 0; k < cells * cells; k++) {
+        uint32_t a = first + k / cells * row + k % cells, b = a + 1, c = b + row, d = a + row;
+        const uint32_t corners[6] = {a, b, c, a, c, d};
+        for (int i = 0; i < 6; i++)
+            mesh->index[mesh->n_indices++] = corners[i];
+    }
+}
+
+static void add_vertex(struct mesh *mesh, uint32_t face, uint32_t cells, uint32_t x, uint32_t y,
+                       struct vec s, struct vec n)
+{
+    const double *c = mesh->centre;
+    mesh->vertex[mesh->n_vertices++] = (struct mesh_vertex){
+        .position = {(float)(s.x - c[0]), (float)(s.y - c[1]), (float)(s.z - c[2])},
+        .normal = {(float)n.x, (float)n.y, (float)n.z},
+        .face = face,
+        .x = (uint8_t)x,
+        .y = (uint8_t)y,
+        .cells = (uint8_t)cells,
+    };
+}
+
+static void add_face(struct mesh *mesh, const struct limit_tables *tables, uint32_t face,
+                     uint32_t cells)
+{
+    add_cells(mesh, cells);
+    for (uint32_t y = 0; y <= cells; y++)
+        for (uint32_t x = 0; x <= cells; x++) {
+            struct limit_point p = {0};
+            limit_evaluate(tables, face, (double)x / cells, (double)y / cells, &p);
+            add_vertex(mesh, face, cells, x, y, p.s, p.n);
+        }
+}
+
+static struct limit_point corner_of(const struct limit_tables *tables, uint32_t face)
+{
+    struct limit_point p = {0};
+    limit_evaluate(tables, face, 0, 0, &p);
+    return p;
+}
+
+static struct vec halfway(struct vec a, struct vec b)
+{
+    return vec_scale(vec_add(a, b), 0.5);
+}
+
+/* A whole n-gon at level 0: `first` is the Ptex face at its corner 0. Between two corners and the
+ * middle everything is linear, so the halves of a triangle lie in it. */
+static void add_fan(struct mesh *mesh, const struct limit_tables *tables, uint32_t first,
+                    uint32_t n)
+{
+    struct vec s = {0, 0, 0}, normal = {0, 0, 0};
+    for (uint32_t k = 0; k < n; k++) {
+        struct limit_point p = corner_of(tables, first + k);
+        s = vec_mad(s, 1.0 / n, p.s);
+        normal = vec_mad(normal, 1.0 / n, p.n);
+    }
+    struct limit_point before = corner_of(tables, first + n - 1), own = corner_of(tables, first);
+    for (uint32_t k = 0; k < n; k++) {
+        struct limit_point after = corner_of(tables, first + (k + 1) % n);
+        uint32_t face = (first + k) | MESH_IS_FAN;
+        add_cells(mesh, 1);
+        add_vertex(mesh, face, 1, 0, 0, own.s, own.n);
+        add_vertex(mesh, face, 1, 1, 0, halfway(own.s, after.s), halfway(own.n, after.n));
+        add_vertex(mesh, face, 1, 0, 1, halfway(before.s, own.s), halfway(before.n, own.n));
+        add_vertex(mesh, face, 1, 1, 1, s, normal);
+        before = own;
+        own = after;
+    }
+}
+
+bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t level,
+               struct error *error)
+{
+    *mesh = (struct mesh){0};
+    struct mesh_size size = measure(tables, level);
+    if (size.vertices > MESH_MAX_VERTICES)
+        return refuse(tables, level, size.quads, error);
+    mesh->vertex = malloc((size.vertices + 1) * sizeof *mesh->vertex);
+    mesh->index = malloc((6 * size.quads + 1) * sizeof *mesh->index);
+    if (!mesh->vertex || !mesh->index) {
+        mesh_finish(mesh);
+        return error_set(error, ERROR_SERVER, "out of memory for %llu polygons",
+                         (unsigned long long)size.quads);
+    }
+    for (int k = 0; k < 3; k++)
+        mesh->centre[k] = 0.5 * (tables->box_min[k] + tables->box_max[k]);
+    for (uint32_t face = 0; face < tables->n_faces; face++) {
+        const struct limit_node *root = &tables->nodes[face];
+        if (root->kind == LIMIT_HOLE)
+            continue;
+        if (level > 0 || !root->ngon_size)
+            add_face(mesh, tables, face, cells_of(root, level));
+        else if (root->ngon_corner == 0)
+            add_fan(mesh, tables, face, root->ngon_size);
+    }
+    return true;
+}
+
+void mesh_finish(struct mesh *mesh)
+{
+    free(mesh->vertex);
+    free(mesh->index);
+    *mesh = (struct mesh){0};
+}
