@@ -1,0 +1,407 @@
+/* The conventional picture: how its error falls from level to level, its wireframe, what is kept
+ * between frames, and how many polygons are too many. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "server/gpu/mesh.h"
+#include "server/gpu/renderer.h"
+
+struct scene {
+    struct limit_tables tables;
+    struct renderer *renderer;
+    struct renderer_model *model;
+};
+
+static void build(const char *bytes, size_t size, struct limit_tables *tables)
+{
+    struct cage cage;
+    struct error error = {0};
+    if (!cage_read(&cage, bytes, size, "scene.obj", &error))
+        fail_msg("%s", error.text);
+    struct limit_plan *plan = limit_plan_create(&cage, &error);
+    assert_non_null(plan);
+    assert_true(limit_tables_init(tables, plan, &error));
+    assert_true(limit_build_faces(tables, plan, 0, tables->n_faces, &error));
+    limit_plan_destroy(plan);
+    cage_finish(&cage);
+}
+
+static void build_file(const char *path, struct limit_tables *tables)
+{
+    static char bytes[1 << 20];
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    build(bytes, size, tables);
+}
+
+/* A torus of n x n quads: smooth, and regular all over. */
+static void build_torus(unsigned n, struct limit_tables *tables)
+{
+    size_t room = (size_t)n * n * 100, used = 0;
+    char *text = malloc(room);
+    assert_non_null(text);
+    for (unsigned k = 0; k < n * n; k++) {
+        double a = 6.283185307179586 * (k / n) / n, b = 6.283185307179586 * (k % n) / n;
+        double r = 2 + cos(b);
+        used += (size_t)snprintf(text + used, room - used, "v %.12f %.12f %.12f\n", r * cos(a),
+                                 r * sin(a), sin(b));
+    }
+    for (unsigned k = 0; k < n * n; k++) {
+        unsigned i = k / n, j = k % n, i2 = (i + 1) % n, j2 = (j + 1) % n;
+        used += (size_t)snprintf(text + used, room - used, "f %u %u %u %u\n", i * n + j + 1,
+                                 i2 * n + j + 1, i2 * n + j2 + 1, i * n + j2 + 1);
+    }
+    build(text, used, tables);
+    free(text);
+}
+
+static void open_scene(struct scene *scene)
+{
+    const struct renderer_options options = {.device = "software"};
+    struct error error = {0};
+    scene->renderer = renderer_create(&options, &error);
+    if (!scene->renderer)
+        fail_msg("%s", error.text);
+    scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
+    assert_non_null(scene->model);
+}
+
+static void close_scene(struct scene *scene)
+{
+    renderer_model_destroy(scene->renderer, scene->model);
+    renderer_destroy(scene->renderer);
+    limit_tables_finish(&scene->tables);
+}
+
+static struct frame_request request_for(const struct scene *scene)
+{
+    struct frame_request request = {
+        .width_px = 240,
+        .height_px = 160,
+        .pattern = {.count = 20,
+                    .duty = 0.5,
+                    .foreground = {1, 1, 1, 1},
+                    .background = {0, 0, 0, 1}},
+        .miss = {0, 0, 1, 1},
+        .empty = {1, 0, 0, 1},
+        .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_CURVATURE,
+    };
+    const struct limit_tables *tables = &scene->tables;
+    renderer_default_camera(tables->box_min, tables->box_max, request.width_px, request.height_px,
+                            &request.camera);
+    renderer_default_light(tables->box_min, tables->box_max, &request.camera, &request.light);
+    return request;
+}
+
+static struct frame render(struct scene *scene, const struct frame_request *request)
+{
+    struct error error = {0};
+    struct frame frame;
+    if (!renderer_render(scene->renderer, scene->model, request, &frame, &error))
+        fail_msg("%s", error.text);
+    return frame;
+}
+
+static struct frame render_surface(struct scene *scene, enum surface_kind kind, uint32_t level)
+{
+    struct frame_request request = request_for(scene);
+    request.surface = (struct surface){kind, level};
+    return render(scene, &request);
+}
+
+static const float *vec3_of(const struct frame *frame, int plane, size_t pixel)
+{
+    return (const float *)frame->plane[plane] + 3 * pixel;
+}
+
+static uint32_t face_of(const struct frame *frame, size_t pixel)
+{
+    return ((const uint32_t *)frame->plane[3])[3 * pixel];
+}
+
+/* Whether the surface is seen from well above: near its outline a pixel's ray runs along it, and
+ * meets the polygons far from where it meets the surface. */
+static bool faces_eye(const struct frame *frame, size_t pixel, const double eye[3])
+{
+    const float *p = vec3_of(frame, 1, pixel), *n = vec3_of(frame, 2, pixel);
+    double dot = 0, size = 0;
+    for (int k = 0; k < 3; k++) {
+        dot += ((double)p[k] - eye[k]) * (double)n[k];
+        size = hypot(size, (double)p[k] - eye[k]);
+    }
+    return fabs(dot) > 0.5 * size;
+}
+
+/* What the polygons are off, where both frames show one Ptex face from well above. */
+struct errors {
+    double normal_rad, place, curvature; /* the largest of the first two, the curvatures' mean */
+    size_t n, same, hit;
+};
+
+static struct errors compare(const struct frame *a, const struct frame *b, const double eye[3])
+{
+    struct errors e = {0};
+    for (size_t k = 0; k < (size_t)a->width_px * a->height_px; k++) {
+        e.hit += face_of(b, k) != UINT32_MAX;
+        if (face_of(a, k) != face_of(b, k) || face_of(a, k) == UINT32_MAX)
+            continue;
+        e.same++;
+        if (!faces_eye(b, k, eye))
+            continue;
+        const float *m = vec3_of(a, 2, k), *n = vec3_of(b, 2, k);
+        const float *p = vec3_of(a, 1, k), *q = vec3_of(b, 1, k);
+        const float *c = (const float *)a->plane[5] + 2 * k,
+                    *d = (const float *)b->plane[5] + 2 * k;
+        double chord =
+            hypot(hypot((double)(m[0] - n[0]), (double)(m[1] - n[1])), (double)(m[2] - n[2]));
+        double place =
+            hypot(hypot((double)(p[0] - q[0]), (double)(p[1] - q[1])), (double)(p[2] - q[2]));
+        e.normal_rad = fmax(e.normal_rad, 2 * asin(0.5 * chord));
+        e.place = fmax(e.place, place);
+        e.curvature += fabs((double)(c[0] - d[0])) + fabs((double)(c[1] - d[1]));
+        e.n++;
+    }
+    e.curvature /= (double)e.n;
+    return e;
+}
+
+/* Linear interpolation: an error of second order, in normals and in places. The shape operator
+ * that stands in has one of first order. */
+static void test_error_falls(void **state)
+{
+    (void)state;
+    struct scene scene;
+    build_torus(12, &scene.tables);
+    open_scene(&scene);
+    struct frame_request view = request_for(&scene);
+    struct frame exact = render(&scene, &view);
+    struct errors last = {0};
+    for (uint32_t level = 0; level <= 5; level++) {
+        struct frame frame = render_surface(&scene, SURFACE_POLYGON, level);
+        struct errors e = compare(&frame, &exact, view.camera.eye);
+        printf("level %u: normal %.2e rad, place %.2e, curvature %.2e, %zu of %zu pixels\n", level,
+               e.normal_rad, e.place, e.curvature, e.n, e.hit);
+        assert_true(e.n > 2000);
+        if (level > 1) {
+            assert_true(e.normal_rad < last.normal_rad / 3);
+            assert_true(e.place < last.place / 2.5);
+            assert_true(e.curvature < last.curvature / 1.6);
+        }
+        last = e;
+        frame_finish(&frame);
+    }
+    assert_true(last.normal_rad < 1e-3 && last.normal_rad > 0);
+    assert_true((double)last.same > 0.99 * (double)last.hit);
+    frame_finish(&exact);
+    close_scene(&scene);
+}
+
+static uint8_t red_of(const struct frame *frame, size_t pixel)
+{
+    return ((const uint8_t *)frame->plane[0])[4 * pixel];
+}
+
+/* The wireframe of a torus of 12 x 12 quads: its planes are the polygons', its colours grey, and
+ * the more lines there are the darker. */
+static void test_wireframe(void **state)
+{
+    (void)state;
+    struct scene scene;
+    build_torus(12, &scene.tables);
+    open_scene(&scene);
+    double last = 0;
+    for (uint32_t level = 0; level < 3; level++) {
+        struct frame polygon = render_surface(&scene, SURFACE_POLYGON, level);
+        struct frame wire = render_surface(&scene, SURFACE_WIREFRAME, level);
+        size_t pixels = (size_t)wire.width_px * wire.height_px, n = 0;
+        double ink = 0;
+        for (int p = 1; p < PLANE_COUNT; p++)
+            if (wire.plane[p])
+                assert_memory_equal(wire.plane[p], polygon.plane[p],
+                                    pixels * renderer_plane_bytes((enum renderer_plane)(1 << p)));
+        for (size_t k = 0; k < pixels; k++) {
+            const uint8_t *rgba = (const uint8_t *)wire.plane[0] + 4 * k;
+            if (face_of(&wire, k) == UINT32_MAX) {
+                assert_true(rgba[0] == 255 && rgba[1] == 0 && rgba[2] == 0);
+                continue;
+            }
+            assert_true(rgba[0] == rgba[1] && rgba[1] == rgba[2] && rgba[3] == 255);
+            assert_in_range(rgba[0], 20, 225);
+            ink += (219 - rgba[0]) / 193.8;
+            n++;
+        }
+        printf("level %u: lines cover %.3f of the surface\n", level, ink / (double)n);
+        assert_true(n > 5000 && ink / (double)n > 1.3 * last);
+        last = ink / (double)n;
+        frame_finish(&polygon);
+        frame_finish(&wire);
+    }
+    assert_true(last < 0.9);
+    close_scene(&scene);
+}
+
+/* One quad that faces the camera: lines along its edges, none along its diagonal, and as wide as
+ * they are said to be. */
+static void test_edges_of_a_quad(void **state)
+{
+    (void)state;
+    static const char text[] = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 8 0 0\nv 8 4 0\n"
+                               "f 1 2 3 4\nf 2 5 6 3\n"
+                               "t corner 4/1/0 0 3 4 5 10\n";
+    struct scene scene;
+    build(text, sizeof text - 1, &scene.tables);
+    open_scene(&scene);
+    struct frame_request request = request_for(&scene);
+    request.camera = (struct camera){.kind = CAMERA_ORTHOGRAPHIC,
+                                     .eye = {4, 2, 5},
+                                     .target = {4, 2, 0},
+                                     .up = {0, 1, 0},
+                                     .ortho_height = 8};
+    request.surface = (struct surface){SURFACE_WIREFRAME, 0};
+    struct frame frame = render(&scene, &request);
+    /* 20 px a unit: the sheet covers x 40 to 200 and y 40 to 120 px; an edge lies at x = 120. */
+    double across = 0;
+    for (size_t x = 110; x < 130; x++)
+        across += (219 - red_of(&frame, 80 * 240 + x)) / 193.8;
+    printf("a line is %.3f px wide\n", across);
+    assert_true(fabs(across - 1) < 0.02);
+    for (size_t k = 50; k < 110; k++) /* the left quad's two diagonals */
+        for (size_t side = 0; side < 2; side++)
+            assert_int_equal(red_of(&frame, (side ? k : 159 - k) * 240 + k), 219);
+    assert_true(red_of(&frame, 80 * 240 + 40) < 150 && red_of(&frame, 40 * 240 + 80) < 150);
+    frame_finish(&frame);
+    close_scene(&scene);
+}
+
+static void assert_same(const struct frame *a, const struct frame *b)
+{
+    for (int p = 0; p < PLANE_COUNT; p++)
+        if (a->plane[p])
+            assert_memory_equal(a->plane[p], b->plane[p],
+                                (size_t)a->width_px * a->height_px *
+                                    renderer_plane_bytes((enum renderer_plane)(1 << p)));
+}
+
+/* A light-only change draws no polygon again; another surface does, and nothing of the last one
+ * shows. */
+static void test_kept_planes(void **state)
+{
+    (void)state;
+    static const struct surface surfaces[] = {{SURFACE_EXACT, 0},
+                                              {SURFACE_POLYGON, 1},
+                                              {SURFACE_WIREFRAME, 1},
+                                              {SURFACE_POLYGON, 2},
+                                              {SURFACE_EXACT, 0}};
+    enum { N = sizeof surfaces / sizeof *surfaces };
+    struct frame expected[N];
+    struct scene scene;
+    for (size_t k = 0; k < N; k++) { /* each by a renderer that has drawn nothing before */
+        build_torus(12, &scene.tables);
+        open_scene(&scene);
+        struct frame_request request = request_for(&scene);
+        request.surface = surfaces[k];
+        request.light.centre[0] += 0.25;
+        expected[k] = render(&scene, &request);
+        close_scene(&scene);
+    }
+    build_torus(12, &scene.tables);
+    open_scene(&scene);
+    for (size_t k = 0; k < N; k++) {
+        struct frame_request request = request_for(&scene);
+        request.surface = surfaces[k];
+        struct frame frame = render(&scene, &request);
+        assert_true(frame.times.visibility_us > 0);
+        frame_finish(&frame);
+        request.light.centre[0] += 0.25;
+        frame = render(&scene, &request);
+        assert_int_equal(frame.times.visibility_us + frame.times.evaluate_us, 0);
+        assert_same(&frame, &expected[k]);
+        frame_finish(&frame);
+        frame_finish(&expected[k]);
+    }
+    close_scene(&scene);
+}
+
+/* At level 0 an n-gon is one polygon, at level 1 n quads; what each Ptex face shows stays its own
+ * part. */
+static void test_ngons(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct error error = {0};
+    build_file("tests/models/ngons.obj", &scene.tables);
+    open_scene(&scene);
+    struct mesh mesh;
+    size_t n_quads = 0, n_parts = 0;
+    for (size_t face = 0; face < scene.tables.n_faces; face++)
+        *(scene.tables.nodes[face].ngon_size ? &n_parts : &n_quads) += 1;
+    assert_true(n_parts > 0);
+    for (uint32_t level = 0; level < 3; level++) {
+        size_t quads = (n_quads << 2 * level) + (level ? n_parts << 2 * (level - 1) : n_parts);
+        assert_true(mesh_init(&mesh, &scene.tables, level, &error));
+        assert_int_equal(mesh.n_indices, 6 * quads);
+        for (size_t k = 0; k < mesh.n_vertices; k++)
+            assert_true(
+                ((mesh.vertex[k].face & MESH_IS_FAN) != 0) ==
+                (level == 0 && scene.tables.nodes[mesh.vertex[k].face & ~MESH_IS_FAN].ngon_size));
+        mesh_finish(&mesh);
+    }
+    struct frame_request view = request_for(&scene);
+    struct frame exact = render(&scene, &view);
+    double last = 0;
+    for (uint32_t level = 0; level < 4; level++) {
+        struct frame frame = render_surface(&scene, SURFACE_POLYGON, level);
+        struct errors e = compare(&frame, &exact, view.camera.eye);
+        printf("level %u: %zu of %zu pixels show their Ptex face\n", level, e.same, e.hit);
+        double share = (double)e.same / (double)e.hit;
+        assert_true(share > 0.5 && share > last);
+        last = share;
+        frame_finish(&frame);
+    }
+    frame_finish(&exact);
+    close_scene(&scene);
+}
+
+/* 50 x 50 faces: level 6 has 10.6 million vertices. Refused at once, with the level that fits. */
+static void test_too_many(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct error error = {0};
+    build_torus(50, &scene.tables);
+    open_scene(&scene);
+    struct frame_request request = request_for(&scene);
+    struct frame frame;
+    request.surface = (struct surface){SURFACE_POLYGON, 6};
+    assert_false(renderer_render(scene.renderer, scene.model, &request, &frame, &error));
+    assert_int_equal(error.kind, ERROR_REQUEST);
+    assert_non_null(strstr(error.text, "level 6 makes 10240000 polygons"));
+    assert_non_null(strstr(error.text, "level 5 or less"));
+    request.surface.level = 7;
+    assert_false(renderer_render(scene.renderer, scene.model, &request, &frame, &error));
+    assert_non_null(strstr(error.text, "level 7 is not in 0 to 6"));
+    request.surface.level = 2;
+    frame = render(&scene, &request);
+    frame_finish(&frame);
+    close_scene(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_error_falls),     cmocka_unit_test(test_wireframe),
+        cmocka_unit_test(test_edges_of_a_quad), cmocka_unit_test(test_kept_planes),
+        cmocka_unit_test(test_ngons),           cmocka_unit_test(test_too_many),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
