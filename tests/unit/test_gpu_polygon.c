@@ -88,10 +88,12 @@ static struct frame_request request_for(const struct scene *scene)
     struct frame_request request = {
         .width_px = 240,
         .height_px = 160,
-        .pattern = {.count = 20,
-                    .duty = 0.5,
-                    .foreground = {1, 1, 1, 1},
-                    .background = {0, 0, 0, 1}},
+        .n_lights = 1,
+        .lights = {{.pattern = {.count = 20,
+                                .duty = 0.5,
+                                .opacity = 1,
+                                .foreground = {1, 1, 1, 1},
+                                .background = {0, 0, 0, 1}}}},
         .miss = {0, 0, 1, 1},
         .empty = {1, 0, 0, 1},
         .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_CURVATURE,
@@ -99,7 +101,7 @@ static struct frame_request request_for(const struct scene *scene)
     const struct limit_tables *tables = &scene->tables;
     renderer_default_camera(tables->box_min, tables->box_max, request.width_px, request.height_px,
                             &request.camera);
-    renderer_default_light(tables->box_min, tables->box_max, &request.camera, &request.light);
+    renderer_default_light(tables->box_min, tables->box_max, &request.camera, &request.lights[0]);
     return request;
 }
 
@@ -310,7 +312,7 @@ static void test_kept_planes(void **state)
         open_scene(&scene);
         struct frame_request request = request_for(&scene);
         request.surface = surfaces[k];
-        request.light.centre[0] += 0.25;
+        request.lights[0].centre[0] += 0.25;
         expected[k] = render(&scene, &request);
         close_scene(&scene);
     }
@@ -322,7 +324,7 @@ static void test_kept_planes(void **state)
         struct frame frame = render(&scene, &request);
         assert_true(frame.times.visibility_us > 0);
         frame_finish(&frame);
-        request.light.centre[0] += 0.25;
+        request.lights[0].centre[0] += 0.25;
         frame = render(&scene, &request);
         assert_int_equal(frame.times.visibility_us + frame.times.evaluate_us, 0);
         assert_same(&frame, &expected[k]);
