@@ -1,0 +1,37 @@
+#!/bin/sh
+# contact_sheet.sh MODEL OUT.jpg: every line family, light and pattern on one model, in one picture.
+# Needs oiiotool (Debian: openimageio-tools) and the programs of `make`.
+set -eu
+[ $# = 2 ] || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
+command -v oiiotool >/dev/null || { echo "$0: oiiotool is missing: apt-get install openimageio-tools" >&2; exit 2; }
+sheen=$(dirname "$0")/../build/sheen
+model=$1 out=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+n=100
+
+panel() { # title, options of sheen render
+    title=$1
+    shift
+    n=$((n + 1))
+    "$sheen" render "$model" -o "$work/panel.png" --size 400x260 -q "$@"
+    oiiotool "$work/panel.png" --text:x=10:y=250:size=16:font=DejaVuSans:color=1,1,1,1 "$title" \
+        -o "$work/$n.png"
+}
+
+panel "reflection, stripes"
+panel "highlight" --lines highlight
+panel "isophote, from the eye" --lines isophote --pattern stripes:count=36
+panel "zebra" --lines zebra --pattern stripes:count=30
+panel "tunnel, duty=0.3" --light tunnel --pattern stripes:count=24,duty=0.3
+panel "sphere, soft=0.6" --light sphere --pattern stripes:count=48,soft=0.6
+panel "lattice" --pattern lattice:count=40,duty=0.15
+panel "circles" --pattern circles:count=20
+panel "single lines" --pattern lines:at=0.4/0.45/0.5/0.55/0.6,width=0.006
+panel "rainbow" --pattern rainbow:count=10
+panel "distance" --pattern distance:count=40
+panel "two lights, opacity" --light rectangle \
+    --pattern lines:at=0.45/0.5/0.55,width=0.01,fg=#d02020,bg=#00000000 \
+    --light tunnel --pattern stripes:count=24,opacity=0.5
+
+oiiotool "$work"/1*.png --mosaic:pad=4 4x3 --ch R,G,B -d uint8 --attrib "quality" 90 -o "$out"
