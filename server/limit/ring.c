@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "server/limit/crease.h"
+#include "server/limit/tables.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -173,14 +174,17 @@ static void crease_tangents(const struct ring *ring, struct vec *t1, struct vec 
 }
 
 /* A smooth corner of one quad: both borders run along a, and the normal is the limit of
- * S_u x S_v ~ (u + v) a x (b + c) with S = a (u - v) + b (u^2 + v^2)/2 + c u v. */
+ * S_u x S_v ~ (u + v) a x (b + c) with S = a (u - v) + b (u^2 + v^2)/2 + c u v. Of a level's net,
+ * that is: from level to level b stays and c grows by b/2 (the matrix's eigenvalue 1/4 has a Jordan
+ * block), so that the normal turns for ever, ever less. Taken is what it has come to at the last
+ * level of a table. */
 static void corner_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
 {
     struct vec ends = vec_add(ring->edge[0], ring->edge[1]);
     struct vec b = vec_mad(ends, -2, ring->centre);
     struct vec mixed = vec_sub(vec_add(ring->centre, ring->face[0]), ends);
     *t1 = vec_sub(ring->edge[0], ring->edge[1]);
-    *t2 = vec_add(b, mixed);
+    *t2 = vec_mad(mixed, 1 + LIMIT_MIN_LEVELS / 2.0, b);
 }
 
 /* The mean of the quads' own normals at the vertex: for vertices without tangent masks. */

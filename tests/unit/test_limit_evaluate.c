@@ -102,6 +102,30 @@ static void test_no_normal_at_a_tip(void **state)
     limit_tables_finish(&tables);
 }
 
+/* A smooth corner of one quad: the normal turns on towards the corner, as 1/n at 2^-n, and must
+ * come to the one that the corner itself has. */
+static void test_corner_of_one_quad(void **state)
+{
+    (void)state;
+    struct limit_tables tables;
+    struct limit_point corner, near;
+    double last = 1;
+    build_file("tests/models/fender.obj", &tables);
+    uint32_t face = 0;
+    while (tables.adjacency[face].across[0] != LIMIT_NO_FACE ||
+           tables.adjacency[face].across[3] != LIMIT_NO_FACE)
+        face++;
+    assert_true(limit_evaluate(&tables, face, 0, 0, &corner) && corner.has_normal);
+    for (int n = 4; n < 32; n += 3) {
+        assert_true(limit_evaluate(&tables, face, ldexp(1, -n), ldexp(0.6, -n), &near));
+        double off = vec_length(vec_sub(near.n, corner.n));
+        assert_true(off < last);
+        last = off;
+    }
+    assert_true(last < 2e-4);
+    limit_tables_finish(&tables);
+}
+
 static void test_hole(void **state)
 {
     (void)state;
@@ -222,7 +246,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_extraordinary_vertex), cmocka_unit_test(test_next_to_the_vertex),
         cmocka_unit_test(test_no_normal_at_a_tip),   cmocka_unit_test(test_hole),
-        cmocka_unit_test(test_derivatives),          cmocka_unit_test(test_corners_of_a_face),
+        cmocka_unit_test(test_corner_of_one_quad),   cmocka_unit_test(test_derivatives),
+        cmocka_unit_test(test_corners_of_a_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
