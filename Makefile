@@ -57,7 +57,8 @@ SERVER_OBJ += $(KEEP_MODULES)
 CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 
 SERVER_LIBS := -lepoxy -lOpenImageIO -lOpenImageIO_Util -ltinygltf -lprotobuf-nanopb -lzstd -lcrypto -linih -lm
-CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lcrypto -lm
+CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lcrypto -lpng -lm
+TEST_LIBS := $(SERVER_LIBS) -lpng
 
 .PHONY: all
 all: $(BUILD)/sheend $(BUILD)/sheen
@@ -104,17 +105,17 @@ ORACLE_TESTS := $(patsubst tests/oracle/%.cpp,$(BUILD)/tests/%,$(wildcard tests/
 $(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(SERVER_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(TEST_LIBS)
 $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(SERVER_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(TEST_LIBS)
 
 BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/*.cpp))
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(SERVER_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(TEST_LIBS)
 
 .PHONY: tests unit service oracle check bench lint format demo deps install clean
 tests: all $(UNIT_TESTS) $(ORACLE_TESTS)

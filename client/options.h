@@ -24,6 +24,7 @@ enum options_given {
     GIVEN_LIGHT_V = 1 << 7,
     GIVEN_FRAMES = 1 << 8,
     GIVEN_LIGHT = 1 << 9,
+    GIVEN_SIZE = 1 << 10,
 };
 
 struct options {

@@ -44,6 +44,7 @@ static bool apply_quiet(struct options *options, const char *value, char *why)
 
 static bool apply_size(struct options *options, const char *value, char *why)
 {
+    options->given |= GIVEN_SIZE;
     return value_size(value, &options->request.width_px, &options->request.height_px) ||
            options_refuse(why, "must be WIDTHxHEIGHT in whole pixels, 1 or more");
 }

@@ -1,9 +1,11 @@
 // The edges of the polygons (--surface wireframe:LEVEL) over the picture that was shaded: lines of
 // WIDTH px in all, half of it on either side, by the distance in the picture to the nearest edge.
-// The grid's coordinates are linear over a triangle, so the diagonal of a quad is no edge.
+// The grid's coordinates are linear over a triangle, so the diagonal of a quad is no edge. Where
+// lines come closer than the pixels can show, they take at most MOST of the surface, and fade to that
+// mean: a fine mesh is a grey, not a noise.
 
 const uint FAN = 0x80000000u;
-const float WIDTH = 1.0;
+const float WIDTH = 1.0, MOST = 0.4;
 const vec3 LINE = vec3(0.10), FILL = vec3(0.86);
 
 in vec3 seen_at;
@@ -13,15 +15,22 @@ flat in uvec2 where;
 
 layout(location = 0) out vec4 colour;
 
+// Share of the pixel under the lines of one of the grid's directions.
+float line(float at, bool is_fan)
+{
+    float nearest = round(at);
+    float per_px = max(length(vec2(dFdxFine(at), dFdyFine(at))), 1e-20);
+    float width = min(WIDTH, MOST / per_px);
+    float px = abs(at - nearest) / per_px;
+    float sharp = clamp(0.5 + 0.5 * width - px, 0.0, min(width, 1.0));
+    float mean = width * per_px;
+    // Of a fan's part only the edges at the n-gon's corner are edges.
+    return is_fan && nearest > 0.0 ? 0.0 : mix(sharp, mean, smoothstep(0.25, 0.6, per_px));
+}
+
 void main()
 {
-    vec2 nearest = round(grid);
-    vec2 per_px = vec2(length(vec2(dFdxFine(grid.x), dFdyFine(grid.x))),
-                       length(vec2(dFdxFine(grid.y), dFdyFine(grid.y))));
-    vec2 px = abs(grid - nearest) / max(per_px, 1e-20);
-    // Of a fan's part only the edges at the n-gon's corner are edges.
-    bvec2 inner = bvec2((where.x & FAN) != 0u && nearest.x > 0.0, (where.x & FAN) != 0u && nearest.y > 0.0);
-    px = mix(px, vec2(1e9), inner);
-    float ink = clamp(0.5 + 0.5 * WIDTH - min(px.x, px.y), 0.0, 1.0);
+    bool is_fan = (where.x & FAN) != 0u;
+    float ink = 1.0 - (1.0 - line(grid.x, is_fan)) * (1.0 - line(grid.y, is_fan));
     colour = vec4(mix(FILL, LINE, ink), 1.0);
 }
