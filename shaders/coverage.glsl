@@ -2,14 +2,9 @@
 // (limit-surface 5.2). A phase's gradient g is its change per pixel in x and in y; the unit pixel
 // square projects to a trapezoid along the phase, whose ramps these functions integrate.
 
-// Defined before this file, for one sample a pixel: UNFILTERED.
-
 // Share of the pixel where a linear function with value z at its centre and gradient g is positive.
 float half_plane(float z, vec2 g)
 {
-#ifdef UNFILTERED
-    g = vec2(0.0);
-#endif
     g = abs(g);
     float a = max(max(g.x, g.y), 1e-20), b = min(g.x, g.y);
     float reach = 0.5 * (a + b), t = abs(z);
@@ -30,9 +25,6 @@ float twice_integrated(float phase, float d)
 // goes to its mean d.
 float stripe(float phase, vec2 g, float d)
 {
-#ifdef UNFILTERED
-    return fract(phase) < d ? 1.0 : 0.0;
-#endif
     g = abs(g);
     float reach = 0.5 * (g.x + g.y), thin = min(g.x, g.y);
     if (reach < 0.25) {

@@ -1,7 +1,7 @@
 // From a surface point to the light: the ray of the line family, where it meets the light, and how
 // both change over the pixel (limit-surface 5.1; Igehy 1999).
 //
-// Defined before this file: FAMILY, LIGHT and, for a single sample a pixel, UNFILTERED.
+// Defined before this file: FAMILY, LIGHT.
 
 #define REFLECTION 0
 #define HIGHLIGHT 1

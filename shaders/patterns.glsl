@@ -45,10 +45,6 @@ vec4 image_colour(vec2 st, vec2 right, vec2 down)
     vec2 along = a > b ? right : down;
     float n = clamp(ceil(max(a, b) / max(min(a, b), 1.0)), 1.0, most);
     float lod = log2(max(max(a, b) / n, 1.0));
-#ifdef UNFILTERED
-    n = 1.0;
-    lod = 0.0;
-#endif
     vec4 sum = vec4(0.0);
     for (float i = 0.5; i < n; i += 1.0) {
         vec2 at = st + along * (i / n - 0.5);

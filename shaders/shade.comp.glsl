@@ -51,6 +51,11 @@ void main()
     }
     Sample at = sample_at(p, place, facing.xyz, vec3(imageLoad(shape, p).xy, facing.w));
     Met met = meet(at);
+    vec4 change = vec4(met.ds, met.dt) / size.xxyy;
+#ifdef UNFILTERED  // one sample a pixel
+    met.ds = met.dt = met.dtau = vec2(0.0);
+    met.cover = step(0.5, met.cover);
+#endif
     vec4 under = is_hindmost ? miss : imageLoad(colour, p);
     float lit = 0.3 + 0.7 * abs(dot(at.n, normalize(to_world(vec3(pixel_offset(p) * ray.x, 1.0)))));
     vec4 shown = mix(vec4(base.rgb * lit, base.a), pattern_colour(met), opacity);
@@ -58,7 +63,6 @@ void main()
     float over = is_hindmost ? met.cover : met.cover * shown.a;
     imageStore(colour, p, mix(under, is_hindmost ? shown : vec4(shown.rgb, 1.0), over));
     bool inside = met.cover > 0.0 && met.inside;
-    vec4 change = vec4(met.ds, met.dt) / size.xxyy;
     store_planes(p, inside ? met.q / size.xy + 0.5 : NONE.xy, inside ? change : NONE,
                  principal_curvatures(at.h));
 }
