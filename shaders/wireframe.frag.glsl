@@ -1,11 +1,11 @@
 // The edges of the polygons (--surface wireframe:LEVEL) over the picture that was shaded: lines of
 // WIDTH px in all, half of it on either side, by the distance in the picture to the nearest edge.
 // The grid's coordinates are linear over a triangle, so the diagonal of a quad is no edge. Where
-// lines come closer than the pixels can show, they take at most MOST of the surface, and fade to that
-// mean: a fine mesh is a grey, not a noise.
+// lines come close they grow thinner, so that those of one direction take at most MOST of the surface,
+// and where the pixels cannot show them they fade to that mean: a fine mesh is a grey, not a noise.
 
 const uint FAN = 0x80000000u;
-const float WIDTH = 1.0, MOST = 0.4;
+const float WIDTH = 1.0, MOST = 0.2;
 const vec3 LINE = vec3(0.10), FILL = vec3(0.86);
 
 in vec3 seen_at;
@@ -25,7 +25,7 @@ float line(float at, bool is_fan)
     float sharp = clamp(0.5 + 0.5 * width - px, 0.0, min(width, 1.0));
     float mean = width * per_px;
     // Of a fan's part only the edges at the n-gon's corner are edges.
-    return is_fan && nearest > 0.0 ? 0.0 : mix(sharp, mean, smoothstep(0.25, 0.6, per_px));
+    return is_fan && nearest > 0.0 ? 0.0 : mix(sharp, mean, smoothstep(0.4, 0.8, per_px));
 }
 
 void main()

@@ -214,7 +214,8 @@ static uint8_t red_of(const struct frame *frame, size_t pixel)
 }
 
 /* The wireframe of a torus of 12 x 12 quads: its planes are the polygons', its colours grey, and
- * the more lines there are the darker. */
+ * the more lines there are the darker,
+ * but never black. */
 static void test_wireframe(void **state)
 {
     (void)state;
@@ -243,12 +244,12 @@ static void test_wireframe(void **state)
             n++;
         }
         printf("level %u: lines cover %.3f of the surface\n", level, ink / (double)n);
-        assert_true(n > 5000 && ink / (double)n > 1.3 * last);
+        assert_true(n > 5000 && ink / (double)n > 1.1 * last);
         last = ink / (double)n;
         frame_finish(&polygon);
         frame_finish(&wire);
     }
-    assert_true(last < 0.9);
+    assert_true(last < 0.36 + 0.01); /* of either direction a fifth */
     close_scene(&scene);
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "protocol/codec.h"
+#include "protocol/limits.h"
 #include "protocol/message.h"
 
 static const sheen_Render GOOD = {
@@ -191,6 +192,32 @@ static void render_kinds(void **state)
     assert_false(check(&png, text));
     png.encoding = sheen_Encoding_ENCODING_EXR;
     assert_true(check(&png, text));
+}
+
+static void render_surfaces(void **state)
+{
+    (void)state;
+    char why[MESSAGE_TEXT_BYTES];
+    sheen_Render render = GOOD;
+    render.has_surface = render.has_surface_level = true;
+    for (unsigned level = 0; level <= PROTOCOL_MAX_SURFACE_LEVEL + 1; level++) {
+        bool fits = level <= PROTOCOL_MAX_SURFACE_LEVEL;
+        render.surface_level = level;
+        render.surface = sheen_SurfaceKind_SURFACE_POLYGON;
+        assert_int_equal(check(&render, why), fits);
+        render.surface = sheen_SurfaceKind_SURFACE_WIREFRAME;
+        assert_int_equal(check(&render, why), fits);
+        render.surface = sheen_SurfaceKind_SURFACE_EXACT;
+        assert_int_equal(check(&render, why), level == 0);
+    }
+    assert_non_null(strstr(why, "surface_level"));
+    render.surface = (sheen_SurfaceKind)3;
+    assert_false(check(&render, why));
+    assert_non_null(strstr(why, "surface is 3"));
+    render = GOOD;
+    render.has_surface_level = true;
+    render.surface_level = 1; /* of the exact surface, which is the default */
+    assert_false(check(&render, why));
 }
 
 static void left_out_fields_are_not_looked_at(void **state)
@@ -380,6 +407,7 @@ int main(void)
         cmocka_unit_test(render_geometry),
         cmocka_unit_test(cameras_in_part),
         cmocka_unit_test(render_kinds),
+        cmocka_unit_test(render_surfaces),
         cmocka_unit_test(left_out_fields_are_not_looked_at),
         cmocka_unit_test(text_is_utf8_without_controls),
         cmocka_unit_test(uploads_are_checked),
