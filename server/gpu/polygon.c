@@ -127,6 +127,7 @@ static void attach(struct renderer *r, const GLuint *planes, GLsizei n)
     static const GLenum all[4] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
                                   GL_COLOR_ATTACHMENT3};
     GLuint framebuffer = r->polygons.framebuffer;
+    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT); /* the other stages store into these planes */
     for (GLsizei k = 0; k < 4; k++)
         glNamedFramebufferTexture(framebuffer, all[k], k < n ? planes[k] : 0, 0);
     glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, r->target.seen_depth, 0);
@@ -179,7 +180,6 @@ bool stage_wireframe(struct renderer *r, const struct renderer_model *model,
     struct polygon_mesh *mesh = find_or_build(p, model, request->surface.level, error);
     if (!mesh)
         return false;
-    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
     attach(r, &r->target.colour, 1);
     raster_begin(p->framebuffer, tile);
     glDepthFunc(GL_EQUAL);
