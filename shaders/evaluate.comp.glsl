@@ -59,7 +59,7 @@ void main()
     bool doubtful = is_seen ? front < s.s.z - 4.0 * pixel_units(s.s.z) : front < 1e30;
     if (solved && !doubtful) {
         vec2 xy = ldexp(own.origin + own.st, -own.scale);
-        store_hit(p, s, node.face, ptex_uv(node, xy));
+        store_hit(p, node, xy, own.scale, s);
     } else if (is_seen || doubtful) {
         list_unsolved(p);
     } else {

@@ -27,7 +27,7 @@ layout(std140, binding = 1) uniform Light {
     vec4 single[4];                    // places of single lines, from the centre
     float opacity, half_width;
     int n_single;
-    bool is_hindmost, is_one_sided, has_direction, is_linear, unused;
+    bool is_hindmost, is_foremost, is_one_sided, has_direction, is_linear;
     ivec4 want;                        // whether to write light_st, curvature, light_change
 };
 
@@ -58,21 +58,22 @@ vec3 normal_change(vec3 along, vec3 n, vec3 h)
     return -(e1 * (h.x * a.x + h.y * a.y) + e2 * (h.y * a.x + h.z * a.y));
 }
 
-// Steps (1) to (4) of limit-surface 5.1.
-Sample sample_at(ivec2 pixel, vec4 place, vec3 n, vec3 h)
+// Steps (1) to (4) of limit-surface 5.1, at a place on the ray of q (view.glsl), over a square of
+// size_px. The shape operator is that at a normal nearby.
+Sample sample_at(vec2 q, float size_px, vec4 place, vec3 n, vec3 h, vec3 h_normal)
 {
     Sample at;
     at.x = place.xyz;
     at.n = n;
     at.h = h;
-    vec3 d = to_world(vec3(pixel_offset(pixel) * ray.x, 1.0));
+    vec3 d = to_world(vec3(q * ray.x, 1.0));
     vec3 from_eye = at.x - line_eye.xyz;
     float distance = line_eye.w > 0.0 ? length(from_eye) : 1.0;
     at.v = line_eye.w > 0.0 ? from_eye / distance : line_eye.xyz;
     for (int i = 0; i < 2; i++) {
-        vec3 raw = axis[i].xyz * pixel_units(place.w);
+        vec3 raw = axis[i].xyz * (size_px * pixel_units(place.w));
         at.dx[i] = raw - d * (dot(raw, n) / dot(d, n));
-        at.dn[i] = normal_change(at.dx[i], n, h);
+        at.dn[i] = normal_change(at.dx[i], h_normal, h);
         at.dv[i] = line_eye.w / distance * (at.dx[i] - at.v * dot(at.v, at.dx[i]));
     }
     return at;

@@ -109,3 +109,13 @@ vec4 pattern_colour(Met met)
     return mix(background, foreground, bright);
 #endif
 }
+
+// The pattern over the shaded base, over what lies under it; q as for sample_at.
+vec4 lay_over(vec4 under, Sample at, Met met, vec2 q)
+{
+    float lit = 0.3 + 0.7 * abs(dot(at.n, normalize(to_world(vec3(q * ray.x, 1.0)))));
+    vec4 shown = mix(vec4(base.rgb * lit, base.a), pattern_colour(met), opacity);
+    // Over other lights a colour's alpha lets them through; over none it is the picture's.
+    float over = is_hindmost ? met.cover : met.cover * shown.a;
+    return mix(under, is_hindmost ? shown : vec4(shown.rgb, 1.0), over);
+}

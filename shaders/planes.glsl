@@ -7,6 +7,8 @@ layout(binding = 1, rgba32f) writeonly uniform image2D normal;
 // Shape operator entries (1,1) and (1,2) in the basis tangent_basis(normal), 1/unit.
 layout(binding = 2, rg32f) writeonly uniform image2D shape;
 layout(binding = 3, rgba32ui) writeonly uniform uimage2D ptex;
+// Two halves: from the pixel's centre to the nearest border of the piece seen, px (edges.glsl).
+layout(binding = 4, r32ui) writeonly uniform uimage2D border;
 
 layout(binding = TEXTURES_FREE) uniform usampler2D seen;
 layout(binding = TEXTURES_FREE + 1) uniform sampler2D seen_depth;
@@ -44,6 +46,42 @@ vec3 shape_operator(Surface s, vec3 n_world)
     return vec3(dot(a, second * a), dot(a, second * b), dot(b, second * b)) / s.scale;
 }
 
+// From the pixel's centre to the nearest border of the Ptex face, px: the foot of the perpendicular on
+// the border's line in the picture, to first order. A crease counts where its rounding is narrower
+// than THIN px; inside the rounding the foot is 0. NO_BORDER when there is none.
+const vec2 NO_BORDER = vec2(1000.0);
+const float THIN = 0.5;
+
+vec2 border_foot(Node node, vec2 xy, ivec2 steps, Surface s)
+{
+    // How the picture moves along x and y, px.
+    vec2 slope = is_perspective() ? s.s.xy / s.s.z : vec2(0.0);
+    float px = s.scale / pixel_units(s.s.z);
+    vec2 along_x = ldexp((s.su.xy - slope * s.su.z) * px, ivec2(steps.x));
+    vec2 along_y = ldexp((s.sv.xy - slope * s.sv.z) * px, ivec2(steps.y));
+    float area = along_x.x * along_y.y - along_x.y * along_y.x;
+    // One unit of x further, across the lines of equal x; y alike.
+    vec2 to_x = vec2(along_y.y, -along_y.x) * (area / max(dot(along_y, along_y), 1e-30));
+    vec2 to_y = vec2(-along_x.y, along_x.x) * (area / max(dot(along_x, along_x), 1e-30));
+    // How many cells lie between the node's edges and the face's.
+    vec2 last = vec2((1u << node.depth) - 1u), cell = vec2(node.cell);
+    vec4 cells = vec4(cell.y, last.x - cell.x, last.y - cell.y, cell.x);
+    uint k = node.rotation;
+    cells = k == 0u ? cells : k == 1u ? cells.yzwx : k == 2u ? cells.zwxy : cells.wxyz;
+    vec4 away = cells + vec4(xy.y, 1.0 - xy.x, 1.0 - xy.y, xy.x);
+    vec2 nearest = NO_BORDER;
+    for (int e = 0; e < 4; e++) {
+        uint border = node.borders >> 4 * e & 15u;
+        vec2 to = e == 0 ? -to_y : e == 1 ? to_x : e == 2 ? to_y : -to_x;
+        float rounding = border == BORDER_SHARP ? 0.0 : ldexp(1.0, int(node.depth) - int(border));
+        bool counts = border != 0u && rounding * rounding * dot(to, to) < THIN * THIN;
+        vec2 foot = (away[e] < rounding ? 0.0 : away[e]) * to;
+        if (counts && dot(foot, foot) < dot(nearest, nearest))
+            nearest = foot;
+    }
+    return nearest;
+}
+
 void store_miss(ivec2 p)
 {
     imageStore(position, p, vec4(0.0));
@@ -51,13 +89,15 @@ void store_miss(ivec2 p)
         imageStore(ptex, p, uvec4(NONE, floatBitsToUint(vec2(0.0)), 0u));
 }
 
-void store_hit(ivec2 p, Surface s, uint face, vec2 uv)
+// steps: the surface's parameters run 2^steps faster than the node's x,y.
+void store_hit(ivec2 p, Node node, vec2 xy, ivec2 steps, Surface s)
 {
     vec3 n = dot(s.n, s.n) > 0.0 ? normalize(to_world(s.n)) : vec3(0.0);
     vec3 h = shape_operator(s, n);
     imageStore(position, p, vec4(to_world(s.s), s.s.z));
     imageStore(normal, p, vec4(n, h.z));
     imageStore(shape, p, vec4(h.xy, 0.0, 0.0));
+    imageStore(border, p, uvec4(packHalf2x16(border_foot(node, xy, steps, s))));
     if (want_ptex)
-        imageStore(ptex, p, uvec4(face, floatBitsToUint(uv), 0u));
+        imageStore(ptex, p, uvec4(node.face, floatBitsToUint(ptex_uv(node, xy)), 0u));
 }

@@ -49,7 +49,9 @@ void main()
         store_planes(p, NONE.xy, NONE, NONE.xy);
         return;
     }
-    Sample at = sample_at(p, place, facing.xyz, vec3(imageLoad(shape, p).xy, facing.w));
+    vec2 q = pixel_offset(p);
+    vec3 h = vec3(imageLoad(shape, p).xy, facing.w);
+    Sample at = sample_at(q, 1.0, place, facing.xyz, h, facing.xyz);
     Met met = meet(at);
     vec4 change = vec4(met.ds, met.dt) / size.xxyy;
 #ifdef UNFILTERED  // one sample a pixel
@@ -57,11 +59,7 @@ void main()
     met.cover = step(0.5, met.cover);
 #endif
     vec4 under = is_hindmost ? miss : imageLoad(colour, p);
-    float lit = 0.3 + 0.7 * abs(dot(at.n, normalize(to_world(vec3(pixel_offset(p) * ray.x, 1.0)))));
-    vec4 shown = mix(vec4(base.rgb * lit, base.a), pattern_colour(met), opacity);
-    // Over other lights a colour's alpha lets them through; over none it is the picture's.
-    float over = is_hindmost ? met.cover : met.cover * shown.a;
-    imageStore(colour, p, mix(under, is_hindmost ? shown : vec4(shown.rgb, 1.0), over));
+    imageStore(colour, p, lay_over(under, at, met, q));
     bool inside = met.cover > 0.0 && met.inside;
     store_planes(p, inside ? met.q / size.xy + 0.5 : NONE.xy, inside ? change : NONE,
                  principal_curvatures(at.h));

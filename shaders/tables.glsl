@@ -8,6 +8,7 @@ const uint NONE = 0xffffffffu;
 const uint REGULAR = 0u, CORNER = 1u, SPLIT = 2u, HOLE = 3u, STRIP = 4u;
 const uint PATCH_TEXELS = 17u, CORNER_HEAD = 2u, LEVEL_TEXELS = 25u;
 const uint NO_NORMAL = 0x80u;
+const uint BORDER_SHARP = 15u;
 
 layout(binding = 0) uniform samplerBuffer points[POINT_BANKS];
 layout(binding = POINT_BANKS) uniform usamplerBuffer nodes[NODE_BANKS];
@@ -91,6 +92,7 @@ struct Node {
     uint kind;
     uint depth;
     uint rotation;
+    uint borders;     // four bits a local edge of the cell's Ptex face: BORDER_SHARP
     int levels;       // STRIP: patches but one; CORNER: rings towards the vertex
     bool has_normal;  // CORNER: at the vertex itself
     uint ngon_size, ngon_corner;
@@ -113,6 +115,7 @@ Node node_load(uint i)
     node.levels = int((c.y >> 24) & ~NO_NORMAL);
     node.has_normal = ((c.y >> 24) & NO_NORMAL) == 0u;
     node.ngon_size = c.z;
-    node.ngon_corner = c.w;
+    node.ngon_corner = c.w & 0xffffu;
+    node.borders = (c.w >> 16 | c.w & 0xffff0000u) >> 4u * node.rotation & 0xffffu;
     return node;
 }

@@ -12,6 +12,7 @@ const int STEPS = 12;
 struct Hit {
     Node node;
     vec2 xy;
+    ivec2 steps;  // the surface's parameters run 2^steps faster
     Surface surface;
 };
 
@@ -56,7 +57,7 @@ Solution solve(uvec2 guess, Ray r)
         newton_step(net, own.st, step_st);
         if (own.limit) {
             result.found = meet_limit(node, r, s);
-            result.hit = Hit(node, xy, s);
+            result.hit = Hit(node, xy, own.scale, s);
             break;
         }
         float residual = length(f) / pixel_units(s.s.z);
@@ -64,7 +65,7 @@ Solution solve(uvec2 guess, Ray r)
         bool last = i == STEPS - 1 || step_st == vec2(0.0);
         if (residual < enough || last || !(s.s.z > 0.0)) {
             result.found = residual < 4.0 * enough && s.s.z > 0.0;
-            result.hit = Hit(node, xy, s);
+            result.hit = Hit(node, xy, own.scale, s);
             break;
         }
         xy += ldexp(step_st, -own.scale);
@@ -98,7 +99,7 @@ void main()
             best = other;
     }
     if (best.found)
-        store_hit(p, best.hit.surface, best.hit.node.face, ptex_uv(best.hit.node, best.hit.xy));
+        store_hit(p, best.hit.node, best.hit.xy, best.hit.steps, best.hit.surface);
     else
         store_miss(p);
 }

@@ -44,10 +44,13 @@ struct target {
     GLuint seen, seen_depth;        /* visibility: RG32UI, DEPTH32F */
     GLuint position, normal, shape; /* evaluate: RGBA32F, RGBA32F, RG32F */
     GLuint ptex;                    /* RGBA32UI */
+    GLuint border;                  /* R32UI: two halves, shaders/planes.glsl */
     GLuint colour;                  /* RGBA8 */
     GLuint light, curvature;        /* RG32F */
     GLuint light_change;            /* RGBA32F */
+    GLuint coverage;                /* R32F: share of the pixel that shows surface */
     GLuint unsolved;                /* buffer: shaders/planes.glsl */
+    GLuint edges;                   /* buffer: shaders/edges.glsl */
 };
 
 /* One mesh of polygons on the device (mesh.h). */
@@ -78,7 +81,7 @@ struct kept {
     uint32_t width_px, height_px;
     struct camera camera;
     struct surface surface;
-    bool ptex;
+    bool ptex, edges;
 };
 
 enum { MAX_PROGRAM_SETS = 16 };
@@ -94,6 +97,9 @@ struct renderer {
     int n_programs;
     /* By line family, light, pattern, soft edges, one sample a pixel; 0 until first asked for. */
     GLuint shade[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2][2];
+    GLuint edges_find;
+    /* The same of the pixels at edges. */
+    GLuint shade_edges[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2];
     GLuint view_buffer, light_buffer, piece_buffer;
     GLuint block_buffer;  /* pieces.block of the tile whose planes the target holds */
     GLuint piece_texture; /* of piece_buffer */
@@ -120,6 +126,11 @@ void stage_visibility(struct renderer *renderer, const struct renderer_model *mo
                       const struct tile *tile);
 void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
                     const struct tile *tile, bool want_ptex);
+/* Lists the pixels that stage 3 looks at more closely; the coverage of all others. */
+bool stage_edges_init(struct renderer *renderer, struct error *error);
+void stage_edges(struct renderer *renderer, const struct tile *tile);
+/* Whether it does. */
+bool edges_wanted(const struct frame_request *request);
 /* Stages 1 and 2 of polygons: the same planes from a mesh. */
 bool stage_polygons(struct renderer *renderer, const struct renderer_model *model,
                     const struct frame_request *request, const struct tile *tile,

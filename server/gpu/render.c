@@ -39,7 +39,8 @@ static bool is_kept(const struct kept *kept, const struct renderer_model *model,
            kept->height_px == request->height_px && same_camera(&kept->camera, &request->camera) &&
            kept->surface.kind == request->surface.kind &&
            kept->surface.level == request->surface.level &&
-           (kept->ptex || !(request->planes & PLANE_PTEX));
+           (kept->ptex || !(request->planes & PLANE_PTEX)) &&
+           (kept->edges || !edges_wanted(request));
 }
 
 static bool frame_init(struct frame *frame, const struct frame_request *request,
@@ -82,6 +83,8 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
         stage_visibility(r, model, tile);
         end_stage(&frame->times.visibility_us, &since);
         stage_evaluate(r, model, tile, request->planes & PLANE_PTEX);
+        if (edges_wanted(request))
+            stage_edges(r, tile);
         end_stage(&frame->times.evaluate_us, &since);
     }
     if (!stage_shade(r, request, tile, error))
@@ -121,11 +124,12 @@ bool renderer_render(struct renderer *r, struct renderer_model *model,
     }
     bool single = request->width_px <= TILE_MAX_PX && request->height_px <= TILE_MAX_PX;
     bool still_kept = is_kept(&r->kept, model, request) && r->kept.ptex;
+    bool edges = edges_wanted(request) || (is_kept(&r->kept, model, request) && r->kept.edges);
     bool drawn = request->surface.kind != SURFACE_EXACT; /* polygons always write ptex */
     bool ptex = request->planes & PLANE_PTEX || still_kept || drawn;
     r->kept = (struct kept){single ? model->serial : 0, request->width_px,
                             request->height_px,         request->camera,
-                            request->surface,           ptex};
+                            request->surface,           ptex, edges};
     return true;
 
 fail:

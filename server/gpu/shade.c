@@ -18,7 +18,7 @@ struct light_block {
     float turn[4], wave[4];
     float single[MAX_LINES];
     float opacity, half_width;
-    int32_t n_single, is_hindmost, is_one_sided, has_direction, is_linear, unused;
+    int32_t n_single, is_hindmost, is_foremost, is_one_sided, has_direction, is_linear;
     int32_t want[4];
 };
 
@@ -27,23 +27,26 @@ static bool is_at_infinity(enum line_family family)
     return family == LINES_ISOPHOTE || family == LINES_ZEBRA || family == LINES_ENVIRONMENT;
 }
 
+/* The program of all covered pixels, or of those listed at edges. */
 static GLuint shade_program(struct renderer *r, const struct frame_request *request,
-                            const struct light *light, struct error *error)
+                            const struct light *light, bool edges, struct error *error)
 {
-    static const char *const files[] = {"view.glsl",       "blocks.glsl", "basis.glsl",
-                                        "coverage.glsl",   "lines.glsl",  "patterns.glsl",
-                                        "shade.comp.glsl", NULL};
+#define COMMON "view.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
+    static const char *const all[] = {COMMON, "blocks.glsl", "shade.comp.glsl", NULL};
+    static const char *const listed[] = {COMMON, "edges.glsl", "edges_shade.comp.glsl", NULL};
+#undef COMMON
     int family = request->lines.family, pattern = light->pattern.kind;
     int kind = is_at_infinity(request->lines.family) ? 0 : (int)light->kind;
     bool soft = light->pattern.soft > 0;
-    GLuint *program = &r->shade[family][kind][pattern][soft][request->unfiltered];
+    GLuint *program = edges ? &r->shade_edges[family][kind][pattern][soft]
+                            : &r->shade[family][kind][pattern][soft][request->unfiltered];
     if (!*program) {
         char defines[160];
         snprintf(defines, sizeof defines,
                  "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n%s%s", family, kind,
                  pattern, soft ? "#define SOFT\n" : "",
                  request->unfiltered ? "#define UNFILTERED\n" : "");
-        *program = program_compute(defines, files, error);
+        *program = program_compute(defines, edges ? listed : all, error);
     }
     return *program;
 }
@@ -52,7 +55,8 @@ bool stage_shade_init(struct renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const struct frame_request usual;
-    if (!shade_program(r, &usual, &usual.lights[0], error))
+    if (!shade_program(r, &usual, &usual.lights[0], false, error) ||
+        !shade_program(r, &usual, &usual.lights[0], true, error))
         return false;
     glCreateBuffers(1, &r->light_buffer);
     glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
@@ -193,7 +197,7 @@ static void fill_pattern(struct light_block *block, const struct pattern *patter
 static void fill_block(struct light_block *block, const struct frame_request *request, uint32_t i)
 {
     const struct light *light = &request->lights[i];
-    *block = (struct light_block){.is_hindmost = i + 1 == request->n_lights};
+    *block = (struct light_block){.is_hindmost = i + 1 == request->n_lights, .is_foremost = i == 0};
     fill_eye(block, request);
     put(vec_sub(get(light->centre), get(request->camera.eye)), block->centre);
     if (is_at_infinity(request->lines.family))
@@ -238,27 +242,8 @@ static void bind_picture(const struct renderer *r, const struct frame_request *r
                         rectangle || sphere ? GL_CLAMP_TO_EDGE : GL_REPEAT);
 }
 
-static bool shade_light(struct renderer *r, const struct frame_request *request, uint32_t i,
-                        struct error *error)
+static void bind_planes(const struct target *target)
 {
-    GLuint program = shade_program(r, request, &request->lights[i], error);
-    if (!program)
-        return false;
-    struct light_block block;
-    fill_block(&block, request, i);
-    glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
-    bind_picture(r, request, &request->lights[i]);
-    glUseProgram(program);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    dispatch_blocks(r, program);
-    return true;
-}
-
-bool stage_shade(struct renderer *r, const struct frame_request *request, const struct tile *tile,
-                 struct error *error)
-{
-    const struct target *target = &r->target;
-    glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
     glBindImageTexture(0, target->position, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
@@ -266,6 +251,47 @@ bool stage_shade(struct renderer *r, const struct frame_request *request, const 
     glBindImageTexture(4, target->light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
     glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
     glBindImageTexture(6, target->light_change, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+}
+
+/* After all covered pixels, those that stage_edges listed: their colours anew. */
+static void dispatch_edges(const struct target *target, GLuint program)
+{
+    glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
+    glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->edges);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, target->edges);
+    glUseProgram(program);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_COMMAND_BARRIER_BIT);
+    glDispatchComputeIndirect(0);
+}
+
+static bool shade_light(struct renderer *r, const struct frame_request *request, uint32_t i,
+                        struct error *error)
+{
+    const struct light *light = &request->lights[i];
+    bool edges = edges_wanted(request);
+    GLuint all = shade_program(r, request, light, false, error);
+    GLuint listed = all && edges ? shade_program(r, request, light, true, error) : 0;
+    if (!all || (edges && !listed))
+        return false;
+    struct light_block block;
+    fill_block(&block, request, i);
+    glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
+    bind_picture(r, request, light);
+    bind_planes(&r->target);
+    glUseProgram(all);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    dispatch_blocks(r, all);
+    if (edges)
+        dispatch_edges(&r->target, listed);
+    return true;
+}
+
+bool stage_shade(struct renderer *r, const struct frame_request *request, const struct tile *tile,
+                 struct error *error)
+{
+    glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
     if (blocks_leave_gaps(r, tile))
         clear_planes(r, request);
     for (uint32_t i = request->n_lights; i-- > 0;)

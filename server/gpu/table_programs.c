@@ -12,8 +12,8 @@ const struct table_programs *programs_for(struct renderer *r, int point_banks, i
                                          "visibility.vert.glsl", NULL};
     static const char *const fragment[] = {"visibility.frag.glsl", NULL};
 #define STAGE_2                                                                                    \
-    "view.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "planes.glsl", "newton.glsl",        \
-        "neighbours.glsl"
+    "view.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "neighbours.glsl", "planes.glsl",    \
+        "newton.glsl"
     static const char *const evaluate[] = {STAGE_2, "blocks.glsl", "evaluate.comp.glsl", NULL};
     static const char *const unsolved[] = {STAGE_2, "unsolved.comp.glsl", NULL};
 #undef STAGE_2

@@ -13,7 +13,9 @@ static const struct {
     {offsetof(struct target, normal), GL_RGBA32F},
     {offsetof(struct target, shape), GL_RG32F},
     {offsetof(struct target, ptex), GL_RGBA32UI},
+    {offsetof(struct target, border), GL_R32UI},
     {offsetof(struct target, colour), GL_RGBA8},
+    {offsetof(struct target, coverage), GL_R32F},
     {offsetof(struct target, light), GL_RG32F},
     {offsetof(struct target, curvature), GL_RG32F},
     {offsetof(struct target, light_change), GL_RGBA32F},
@@ -39,9 +41,12 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
         glTextureParameteri(*name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTextureParameteri(*name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
-    glCreateBuffers(1, &target->unsolved);
-    glNamedBufferData(target->unsolved, (GLsizeiptr)(16 + (size_t)width * height * 4), NULL,
-                      GL_DYNAMIC_COPY);
+    GLuint *const lists[] = {&target->unsolved, &target->edges};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+        glCreateBuffers(1, lists[i]);
+        glNamedBufferData(*lists[i], (GLsizeiptr)(16 + (size_t)width * height * 4), NULL,
+                          GL_DYNAMIC_COPY);
+    }
     glCreateFramebuffers(1, &target->framebuffer);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->seen, 0);
     glNamedFramebufferTexture(target->framebuffer, GL_DEPTH_ATTACHMENT, target->seen_depth, 0);
@@ -63,6 +68,7 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
 void target_finish(struct target *target)
 {
     glDeleteBuffers(1, &target->unsolved);
+    glDeleteBuffers(1, &target->edges);
     glDeleteFramebuffers(1, &target->framebuffer);
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         glDeleteTextures(1, image_name(target, i));

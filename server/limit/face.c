@@ -98,6 +98,7 @@ static void build_split(struct face_builder *b, uint32_t node, const struct quad
             nodes[first + i].face = parent->face;
             nodes[first + i].depth = (uint8_t)(parent->depth + 1);
             nodes[first + i].cell = x | y << 16;
+            nodes[first + i].borders = parent->borders;
         }
     }
     for (uint32_t i = 0; i < 4; i++)
@@ -186,6 +187,34 @@ static bool touches_ngon(const struct topology *t, uint32_t c)
     return false;
 }
 
+/* Across half-edge c, of a cage face: LIMIT_BORDER_... */
+static unsigned border_of(const struct limit_plan *plan, uint32_t c)
+{
+    const struct topology *t = &plan->topology;
+    float sharpness = edge_sharpness(t, c);
+    if (sharpness >= CAGE_SHARPNESS_INFINITE ||
+        (plan->hole && plan->hole[t->face[t->twin[c]]]))
+        return LIMIT_BORDER_SHARP;
+    return (unsigned)ceilf(fmaxf(sharpness, 0));
+}
+
+/* The borders of the Ptex face at cage corner c: an n-gon's has halves of two edges, where creases
+ * are one level less sharp. */
+static uint16_t borders_of(const struct limit_plan *plan, uint32_t c)
+{
+    const struct topology *t = &plan->topology;
+    unsigned bits = 0;
+    if (face_size(t, t->face[c]) != 4) {
+        unsigned first = border_of(plan, c), last = border_of(plan, corner_prev(t, c));
+        first -= first > 0 && first < LIMIT_BORDER_SHARP;
+        last -= last > 0 && last < LIMIT_BORDER_SHARP;
+        return (uint16_t)(first | last << 12);
+    }
+    for (unsigned e = 0; e < 4; e++, c = corner_next(t, c))
+        bits |= border_of(plan, c) << 4 * e;
+    return (uint16_t)bits;
+}
+
 static void start_root(struct face_builder *b, uint32_t ptex)
 {
     const struct topology *t = &b->plan->topology;
@@ -194,7 +223,8 @@ static void start_root(struct face_builder *b, uint32_t ptex)
     root->face = ptex;
     root->kind = LIMIT_HOLE;
     root->ngon_size = size == 4 ? 0 : size;
-    root->ngon_corner = size == 4 ? 0 : c - t->cage->face_start[t->face[c]];
+    root->ngon_corner = (uint16_t)(size == 4 ? 0 : c - t->cage->face_start[t->face[c]]);
+    root->borders = borders_of(b->plan, c);
     b->tables->bound_first[ptex] = b->next.bound;
     b->tables->adjacency[ptex] = adjacency_of(b->plan, ptex);
 }

@@ -53,8 +53,14 @@ struct limit_node {
     uint8_t levels;       /* STRIP: patches but one; CORNER: its levels, plus LIMIT_NO_NORMAL at a
                              cone's tip */
     uint32_t ngon_size;   /* of a root: corners of its n-gon, 0 for a quad */
-    uint32_t ngon_corner; /* and which of them is this Ptex face's corner 0 */
+    uint16_t ngon_corner; /* and which of them is this Ptex face's corner 0 */
+    uint16_t borders;     /* of the Ptex face: four bits an edge, LIMIT_BORDER_... */
 };
+
+/* Along an edge of a Ptex face the surface may end, or have a crease: 0 where it has neither, else
+ * the levels that the crease takes (it is rounded over 2^-levels of the face), LIMIT_BORDER_SHARP
+ * where the surface ends or the crease is infinitely sharp. Edge e has the bits from 4 e on. */
+#define LIMIT_BORDER_SHARP 15u
 
 /* What lies across edge e (corner e to corner e + 1) of a Ptex face: face << 2 | its edge there,
  * or LIMIT_NO_FACE. The quad beside an n-gon borders two of its Ptex faces: the one named is at the

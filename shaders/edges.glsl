@@ -1,0 +1,49 @@
+// Geometric antialiasing: the pixels that silhouettes, creases and open borders run through.
+//
+// Around each pixel's hit the surface is known to second order: a paraboloid from position, normal
+// and shape operator. Where its own piece ends is known too: `border`. So what a pixel at an edge shows
+// can be told from the hits of the 3 x 3 pixels around, without asking the surface again:
+//   edges_find   lists the pixels whose neighbours their own paraboloid does not explain, and those
+//                over which the normal turns so far that one footprint cannot tell;
+//   edges_shade  for each, meets rays all over the pixel with the pieces of surface around it, and
+//                shades where each meets.
+// At the rim of a tile the pixels beyond are not known: an edge there is seen from one side only.
+
+layout(binding = 0, rgba32f) readonly uniform image2D position;  // as in planes.glsl
+layout(binding = 1, rgba32f) readonly uniform image2D normal;
+layout(binding = 2, rg32f) readonly uniform image2D shape;
+layout(binding = 4, r32ui) readonly uniform uimage2D border;
+
+// The pixels listed: x | y << 16. The first three words are a dispatch.
+layout(std430, binding = 0) buffer Edges {
+    uint groups_x, groups_y, groups_z;
+    uint n_edges;
+    uint edges[];
+};
+
+struct Hit {
+    vec3 x;      // relative to the eye, world axes
+    float depth; // 0: nothing
+    vec3 n;
+    vec3 h;      // shape operator in tangent_basis(n): (1,1), (1,2), (2,2)
+};
+
+Hit hit_at(ivec2 p)
+{
+    if (any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, tile.zw)))
+        return Hit(vec3(0.0), -1.0, vec3(0.0), vec3(0.0));
+    vec4 place = imageLoad(position, p), facing = imageLoad(normal, p);
+    return Hit(place.xyz, place.w, facing.xyz, vec3(imageLoad(shape, p).xy, facing.w));
+}
+
+// Whether the paraboloid at `a` runs through x: how far off, px.
+float off_paraboloid(Hit a, vec3 x)
+{
+    vec3 e1, e2, d = x - a.x;
+    tangent_basis(a.n, e1, e2);
+    vec2 t = vec2(dot(d, e1), dot(d, e2));
+    float rise = 0.5 * (a.h.x * t.x * t.x + 2.0 * a.h.y * t.x * t.y + a.h.z * t.y * t.y);
+    return abs(dot(d, a.n) - rise) / pixel_units(a.depth);
+}
+
+const float SAME_PX = 0.25;  // as far as that, two hits are of one surface

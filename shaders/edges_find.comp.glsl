@@ -1,0 +1,59 @@
+// Lists the pixels at edges, and writes the coverage of all others: a pixel whose border runs
+// through it, or whose neighbour to a side is not where its paraboloid says. (An edge that runs
+// through a pixel has the centre of one of these four on its other side.)
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 5, r32f) writeonly uniform image2D coverage;
+
+uniform uint n_blocks;
+
+const ivec2 AROUND[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+
+bool border_crosses(ivec2 p)
+{
+    vec2 foot = unpackHalf2x16(imageLoad(border, p).x);
+    return dot(foot, foot) <= 0.5 * (abs(foot.x) + abs(foot.y));
+}
+
+// How far the normal turns from side to side, rad.
+const float MOST_TURN = 0.05;
+
+float turn_over_pixel(ivec2 p, Hit hit)
+{
+    vec3 e1, e2;
+    tangent_basis(hit.n, e1, e2);
+    vec3 d = to_world(vec3(pixel_offset(p) * ray.x, 1.0));
+    mat2 h = mat2(hit.h.xy, hit.h.yz);
+    float turn = 0.0;
+    for (int i = 0; i < 2; i++) {
+        vec3 along = axis[i].xyz - d * (dot(axis[i].xyz, hit.n) / dot(d, hit.n));
+        turn = max(turn, length(h * vec2(dot(along, e1), dot(along, e2))));
+    }
+    return turn * pixel_units(hit.depth);
+}
+
+void main()
+{
+    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= n_blocks)
+        return;
+    ivec2 p = block_pixel(gl_WorkGroupID, gl_LocalInvocationID, gl_NumWorkGroups);
+    if (any(greaterThanEqual(p, tile.zw)))
+        return;
+    Hit own = hit_at(p);
+    bool is_hit = own.depth > 0.0, at_edge = is_hit && border_crosses(p);
+    at_edge = at_edge || (is_hit && turn_over_pixel(p, own) > MOST_TURN);
+    for (int i = 0; i < 4; i++) {
+        ivec2 q = p + AROUND[i];
+        vec4 place = imageLoad(position, clamp(q, ivec2(0), tile.zw - 1));
+        bool other = place.w > 0.0;
+        at_edge = at_edge || is_hit != other || (is_hit && off_paraboloid(own, place.xyz) > SAME_PX);
+    }
+    imageStore(coverage, p, vec4(is_hit));
+    if (at_edge) {
+        uint slot = atomicAdd(n_edges, 1u);
+        if ((slot & 63u) == 0u)
+            atomicAdd(groups_x, 1u);
+        edges[slot] = uint(p.x) | uint(p.y) << 16;
+    }
+}
