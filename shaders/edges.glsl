@@ -42,8 +42,22 @@ float off_paraboloid(Hit a, vec3 x)
     vec3 e1, e2, d = x - a.x;
     tangent_basis(a.n, e1, e2);
     vec2 t = vec2(dot(d, e1), dot(d, e2));
-    float rise = 0.5 * (a.h.x * t.x * t.x + 2.0 * a.h.y * t.x * t.y + a.h.z * t.y * t.y);
+    float rise = 0.5 * dot(t, mat2(a.h.xy, a.h.yz) * t);
     return abs(dot(d, a.n) - rise) / pixel_units(a.depth);
 }
 
 const float SAME_PX = 0.25;  // as far as that, two hits are of one surface
+
+// The paraboloid's normal at `move` from the hit.
+vec3 normal_at(Hit a, vec3 move)
+{
+    vec3 e1, e2;
+    tangent_basis(a.n, e1, e2);
+    vec2 turn = mat2(a.h.xy, a.h.yz) * vec2(dot(move, e1), dot(move, e2));
+    return normalize(a.n - e1 * turn.x - e2 * turn.y);
+}
+
+bool same_surface(Hit a, Hit b)
+{
+    return off_paraboloid(a, b.x) < SAME_PX && dot(a.n, b.n) > 0.9;
+}

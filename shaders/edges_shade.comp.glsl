@@ -75,13 +75,10 @@ vec2 place_of(int i)
 // d: from the hit's own pixel, px.
 vec4 shade_ray(Hit hit, vec2 q, vec2 d, float z, vec4 under)
 {
-    vec3 e1, e2;
-    tangent_basis(hit.n, e1, e2);
     vec3 across = (axis[0].xyz * d.x + axis[1].xyz * d.y) * pixel_units(hit.depth);
     vec3 move = across + to_world(vec3(q * ray.x, 1.0)) * (z - hit.depth);
-    vec2 turn = mat2(hit.h.xy, hit.h.yz) * vec2(dot(move, e1), dot(move, e2));
-    vec3 n = normalize(hit.n - e1 * turn.x - e2 * turn.y);
-    Sample at = sample_at(q, 1.0 / float(SIDE), vec4(hit.x + move, z), n, hit.h, hit.n);
+    vec4 place = vec4(hit.x + move, z);
+    Sample at = sample_at(q, 1.0 / float(SIDE), place, normal_at(hit, move), hit.h, hit.n);
     return lay_over(under, at, meet(at), q);
 }
 
@@ -114,9 +111,7 @@ void main()
         beside_empty = beside_empty || hit.depth == 0.0;
         bool is_new = hit.depth > 0.0 && dot(hit.n, hit.n) > 0.5;
         for (int k = 0; k < PIECES; k++)
-            if (k < n && off_paraboloid(pieces[k].hit, hit.x) < SAME_PX &&
-                dot(pieces[k].hit.n, hit.n) > 0.9)
-                is_new = false;
+            is_new = is_new && (k >= n || !same_surface(pieces[k].hit, hit));
         if (!is_new || n == PIECES)
             continue;
         Piece piece = piece_of(hit, p, AROUND[i]);
