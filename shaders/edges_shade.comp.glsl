@@ -65,11 +65,16 @@ float depth_at(Piece piece, vec2 place)
     return there ? z : NOWHERE;
 }
 
-// One ray in each of the pixel's SIDE^2 rows and columns, and in each of SIDE x SIDE squares.
-vec2 place_of(int i)
+// SIDE x SIDE squares make up the pixel. A ray through each says what is seen there, one in each of the
+// pixel's SIDE^2 rows and columns.
+vec2 square_of(int i)
 {
-    vec2 square = vec2(i % SIDE, i / SIDE);
-    return (square + (square.yx + 0.5) / float(SIDE)) / float(SIDE) - 0.5;
+    return (vec2(i % SIDE, i / SIDE) + 0.5) / float(SIDE) - 0.5;
+}
+
+vec2 ray_in(vec2 square)
+{
+    return square + square.yx / float(SIDE);
 }
 
 // d: from the hit's own pixel, px.
@@ -132,21 +137,27 @@ void main()
     vec4 under = is_hindmost ? miss : imageLoad(colour, p), sum = vec4(0.0);
     float covered = 0.0, open = 0.0;
     for (int i = 0; i < SIDE * SIDE; i++) {
-        vec2 place = place_of(i);
+        vec2 place = ray_in(square_of(i));
         float nearest = NOWHERE;
-        Hit hit;
-        vec2 d;
+        Piece piece;
         for (int k = 0; k < PIECES; k++) {
             float z = k < n ? depth_at(pieces[k], place) : NOWHERE;
             if (z < nearest) {
                 nearest = z;
-                hit = pieces[k].hit;
-                d = place - pieces[k].at;
+                piece = pieces[k];
             }
         }
         if (nearest < NOWHERE) {
             covered += 1.0;
-            sum += premultiplied(shade_ray(hit, pixel_offset(p) + place, d, nearest, under));
+            float z = depth_at(piece, square_of(i));
+            // The square's middle, where squares tile the pixel, unless the piece does not reach it.
+            if (z < NOWHERE) {
+                place = square_of(i);
+                nearest = z;
+            }
+            vec2 d = place - piece.at;
+            vec2 q = pixel_offset(p) + place;
+            sum += premultiplied(shade_ray(piece.hit, q, d, nearest, under));
         } else if (beside_empty) {  // else a gap between pieces: nothing lies behind
             open += 1.0;
         }
