@@ -14,7 +14,10 @@ layout(binding = 1, rgba32f) readonly uniform image2D normal;
 layout(binding = 2, rg32f) readonly uniform image2D shape;
 layout(binding = 4, r32ui) readonly uniform uimage2D border;
 
-// The pixels listed: x | y << 16. The first three words are a dispatch.
+// The pixels listed: x | y << 16 | SMOOTH where no edge is near, but the normal turns far. The first
+// three words are a dispatch.
+const uint SMOOTH = 0x80000000u;
+
 layout(std430, binding = 0) buffer Edges {
     uint groups_x, groups_y, groups_z;
     uint n_edges;

@@ -17,7 +17,7 @@ bool border_crosses(ivec2 p)
 }
 
 // How far the normal turns from side to side, rad.
-const float MOST_TURN = 0.05;
+const float MOST_TURN = 0.025;
 
 float turn_over_pixel(ivec2 p, Hit hit)
 {
@@ -42,7 +42,6 @@ void main()
         return;
     Hit own = hit_at(p);
     bool is_hit = own.depth > 0.0, at_edge = is_hit && border_crosses(p);
-    at_edge = at_edge || (is_hit && turn_over_pixel(p, own) > MOST_TURN);
     for (int i = 0; i < 4; i++) {
         ivec2 q = p + AROUND[i];
         vec4 place = imageLoad(position, clamp(q, ivec2(0), tile.zw - 1));
@@ -50,10 +49,11 @@ void main()
         at_edge = at_edge || is_hit != other || (is_hit && off_paraboloid(own, place.xyz) > SAME_PX);
     }
     imageStore(coverage, p, vec4(is_hit));
-    if (at_edge) {
+    bool turns = is_hit && turn_over_pixel(p, own) > MOST_TURN;
+    if (at_edge || turns) {
         uint slot = atomicAdd(n_edges, 1u);
         if ((slot & 63u) == 0u)
             atomicAdd(groups_x, 1u);
-        edges[slot] = uint(p.x) | uint(p.y) << 16;
+        edges[slot] = uint(p.x) | uint(p.y) << 16 | (at_edge ? 0u : SMOOTH);
     }
 }

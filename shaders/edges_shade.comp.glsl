@@ -9,7 +9,7 @@ layout(binding = 3, rgba8) uniform image2D colour;
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
 
 const int PIECES = 4;
-const int SIDE = 4;  // SIDE x SIDE rays
+const int SIDE = 4, SIDE_SMOOTH = 2;  // SIDE x SIDE rays
 
 // The pixel itself first, then by distance.
 const ivec2 AROUND[9] = ivec2[9](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1),
@@ -65,25 +65,25 @@ float depth_at(Piece piece, vec2 place)
     return there ? z : NOWHERE;
 }
 
-// SIDE x SIDE squares make up the pixel. A ray through each says what is seen there, one in each of the
-// pixel's SIDE^2 rows and columns.
-vec2 square_of(int i)
+// side x side squares make up the pixel. A ray through each says what is seen there, one in each of the
+// pixel's side^2 rows and columns.
+vec2 square_of(int i, int side)
 {
-    return (vec2(i % SIDE, i / SIDE) + 0.5) / float(SIDE) - 0.5;
+    return (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
 }
 
-vec2 ray_in(vec2 square)
+vec2 ray_in(vec2 square, int side)
 {
-    return square + square.yx / float(SIDE);
+    return square + square.yx / float(side);
 }
 
-// d: from the hit's own pixel, px.
-vec4 shade_ray(Hit hit, vec2 q, vec2 d, float z, vec4 under)
+// d: from the hit's own pixel, px; size: of its square.
+vec4 shade_ray(Hit hit, vec2 q, vec2 d, float size, float z, vec4 under)
 {
     vec3 across = (axis[0].xyz * d.x + axis[1].xyz * d.y) * pixel_units(hit.depth);
     vec3 move = across + to_world(vec3(q * ray.x, 1.0)) * (z - hit.depth);
     vec4 place = vec4(hit.x + move, z);
-    Sample at = sample_at(q, 1.0 / float(SIDE), place, normal_at(hit, move), hit.h, hit.n);
+    Sample at = sample_at(q, size, place, normal_at(hit, move), hit.h, hit.n);
     return lay_over(under, at, meet(at), q);
 }
 
@@ -102,7 +102,9 @@ void main()
     if (gl_GlobalInvocationID.x >= n_edges)
         return;
     uint listed = edges[gl_GlobalInvocationID.x];
-    ivec2 p = ivec2(listed & 0xffffu, listed >> 16);
+    bool is_smooth = (listed & SMOOTH) != 0u;
+    ivec2 p = ivec2(listed & 0xffffu, (listed & ~SMOOTH) >> 16);
+    int side = is_smooth ? SIDE_SMOOTH : SIDE;
 
     // The distinct pieces of surface around.
     Piece pieces[PIECES];
@@ -110,7 +112,7 @@ void main()
     bool beside_empty = false;
     float own_depth = imageLoad(position, p).w;
     bool is_hit = own_depth > 0.0;
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < (is_smooth ? 1 : 9); i++) {
         ivec2 q = p + AROUND[i];
         Hit hit = hit_at(q);
         beside_empty = beside_empty || hit.depth == 0.0;
@@ -136,8 +138,8 @@ void main()
 
     vec4 under = is_hindmost ? miss : imageLoad(colour, p), sum = vec4(0.0);
     float covered = 0.0, open = 0.0;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        vec2 place = ray_in(square_of(i));
+    for (int i = 0; i < side * side; i++) {
+        vec2 square = square_of(i, side), place = ray_in(square, side);
         float nearest = NOWHERE;
         Piece piece;
         for (int k = 0; k < PIECES; k++) {
@@ -149,15 +151,15 @@ void main()
         }
         if (nearest < NOWHERE) {
             covered += 1.0;
-            float z = depth_at(piece, square_of(i));
+            float z = depth_at(piece, square);
             // The square's middle, where squares tile the pixel, unless the piece does not reach it.
             if (z < NOWHERE) {
-                place = square_of(i);
+                place = square;
                 nearest = z;
             }
             vec2 d = place - piece.at;
             vec2 q = pixel_offset(p) + place;
-            sum += premultiplied(shade_ray(piece.hit, q, d, nearest, under));
+            sum += premultiplied(shade_ray(piece.hit, q, d, 1.0 / float(side), nearest, under));
         } else if (beside_empty) {  // else a gap between pieces: nothing lies behind
             open += 1.0;
         }

@@ -84,6 +84,8 @@ oracle() {
     run far "$build/tests/test_far" "$build/sheen" tests/models/fender.obj "$car"
     run zoom "$build/tests/test_zoom" "$build/sheen" tests/models/body.obj tests/models/fender.obj \
         tests/models/creases.obj tests/models/pole.obj "$car"
+    run filter "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
+        tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
     run mirror "$build/tests/test_mirror" "$build/sheen"
 }
 

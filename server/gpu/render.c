@@ -127,9 +127,13 @@ bool renderer_render(struct renderer *r, struct renderer_model *model,
     bool edges = edges_wanted(request) || (is_kept(&r->kept, model, request) && r->kept.edges);
     bool drawn = request->surface.kind != SURFACE_EXACT; /* polygons always write ptex */
     bool ptex = request->planes & PLANE_PTEX || still_kept || drawn;
-    r->kept = (struct kept){single ? model->serial : 0, request->width_px,
-                            request->height_px,         request->camera,
-                            request->surface,           ptex, edges};
+    r->kept = (struct kept){single ? model->serial : 0,
+                            request->width_px,
+                            request->height_px,
+                            request->camera,
+                            request->surface,
+                            ptex,
+                            edges};
     return true;
 
 fail:

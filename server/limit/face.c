@@ -192,8 +192,7 @@ static unsigned border_of(const struct limit_plan *plan, uint32_t c)
 {
     const struct topology *t = &plan->topology;
     float sharpness = edge_sharpness(t, c);
-    if (sharpness >= CAGE_SHARPNESS_INFINITE ||
-        (plan->hole && plan->hole[t->face[t->twin[c]]]))
+    if (sharpness >= CAGE_SHARPNESS_INFINITE || (plan->hole && plan->hole[t->face[t->twin[c]]]))
         return LIMIT_BORDER_SHARP;
     return (unsigned)ceilf(fmaxf(sharpness, 0));
 }
