@@ -17,7 +17,7 @@ static bool apply_output(struct options *options, const char *value, char *why)
 static bool apply_aov(struct options *options, const char *value, char *why)
 {
     return value_planes(value, &options->aov_planes) ||
-           options_refuse(why, "must be some of P,N,ptex,light,k,dlight");
+           options_refuse(why, "must be some of P,N,ptex,light,k,dlight,coverage");
 }
 
 static bool check(struct options *options, char *why)
@@ -122,7 +122,8 @@ static const struct option_row ROWS[] = {
     {"aov", 0, "LIST",
      "planes beside colour, EXR only: some of P (position), N (normal), ptex,\n"
      "light (s, t on the light), k (principal curvatures), dlight (change of s, t\n"
-     "by a pixel right and down), with commas between",
+     "by a pixel right and down), coverage (share of the pixel that shows surface),\n"
+     "with commas between",
      apply_aov},
     {0},
 };

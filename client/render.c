@@ -9,7 +9,7 @@
 
 _Static_assert((int)SHEEN_MAX_IN_FLIGHT <= (int)PROTOCOL_MAX_IN_FLIGHT, "the daemon's limit");
 _Static_assert((int)SHEEN_FILE_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
-_Static_assert((int)SHEEN_LIGHT_CHANGE == (int)sheen_Plane_PLANE_LIGHT_CHANGE, "same bits");
+_Static_assert((int)SHEEN_COVERAGE == (int)sheen_Plane_PLANE_COVERAGE, "same bits");
 
 /* What a frame owns. */
 struct sheen_frame_memory {

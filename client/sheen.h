@@ -34,7 +34,7 @@
 #include <stdint.h>
 
 #define SHEEN_ID_BYTES 32 /* SHA-256 of a file's bytes */
-#define SHEEN_PLANES 7
+#define SHEEN_PLANES 8
 #define SHEEN_MAX_IN_FLIGHT 4 /* requests sent and not yet received, per session */
 
 enum sheen_status {
@@ -168,6 +168,8 @@ enum sheen_plane {
     SHEEN_LIGHT = 16,        /* float s, t on the first light; NaN where it is not met, too */
     SHEEN_CURVATURE = 32,    /* float k.min, k.max in 1/unit, signed against the normal */
     SHEEN_LIGHT_CHANGE = 64, /* float ds/dx ds/dy dt/dx dt/dy by a pixel right and down; as LIGHT */
+    SHEEN_COVERAGE = 128,    /* float share of the pixel that shows surface, 0 where none is; for
+                                the exact surface, filtered, only */
 };
 
 enum sheen_format {

@@ -86,8 +86,10 @@ bool value_planes(const char *text, uint32_t *planes)
     static const struct {
         const char *name;
         uint32_t plane;
-    } names[] = {{"P", SHEEN_POSITION},  {"N", SHEEN_NORMAL},    {"ptex", SHEEN_PTEX},
-                 {"light", SHEEN_LIGHT}, {"k", SHEEN_CURVATURE}, {"dlight", SHEEN_LIGHT_CHANGE}};
+    } names[] = {{"P", SHEEN_POSITION},       {"N", SHEEN_NORMAL},
+                 {"ptex", SHEEN_PTEX},        {"light", SHEEN_LIGHT},
+                 {"k", SHEEN_CURVATURE},      {"dlight", SHEEN_LIGHT_CHANGE},
+                 {"coverage", SHEEN_COVERAGE}};
     char part[16];
     *planes = 0;
     size_t length = strlen(text);

@@ -15,7 +15,7 @@ bool value_uint32(const char *text, uint32_t *value);                 /* decimal
 bool value_vec3(const char *text, double value[static 3]);            /* X,Y,Z */
 bool value_size(const char *text, uint32_t *width, uint32_t *height); /* 1280x720, not 0 */
 bool value_colour(const char *text, float value[static 4]);           /* #rrggbb or #rrggbbaa */
-bool value_planes(const char *text, uint32_t *planes);                /* P,N,ptex,light,k,dlight */
+bool value_planes(const char *text, uint32_t *planes); /* P,N,ptex,light,k,dlight,coverage */
 
 /* exact, polygon:LEVEL or wireframe:LEVEL, LEVEL 0 to 6. */
 bool value_surface(const char *text, enum sheen_surface *surface, uint32_t *level);

@@ -28,7 +28,7 @@ struct codec_decoder {
 
 uint32_t codec_pixel_bytes(unsigned plane)
 {
-    static const uint8_t bytes[CODEC_PLANES] = {4, 12, 12, 12, 8, 8, 16};
+    static const uint8_t bytes[CODEC_PLANES] = {4, 12, 12, 12, 8, 8, 16, 4};
     return bytes[plane];
 }
 

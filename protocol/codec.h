@@ -20,8 +20,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CODEC_PLANES 7         /* bits 0 to 6 of Render.planes */
-#define CODEC_ALL_PLANES 0x7fu /* all of them */
+#define CODEC_PLANES 8         /* bits 0 to 7 of Render.planes */
+#define CODEC_ALL_PLANES 0xffu /* all of them */
 
 /* How a frame's planes lie in memory and on the wire. */
 struct codec_layout {
@@ -34,7 +34,7 @@ struct codec_layout {
 
 /* One strip: rows [first_row, first_row + rows) of a plane. */
 struct codec_strip {
-    unsigned plane;       /* its bit's number, 0 to 6 */
+    unsigned plane;       /* its bit's number, 0 to 7 */
     uint32_t pixel_bytes; /* of this plane */
     uint32_t first_row, rows;
     size_t offset_bytes; /* of the strip in its plane */
@@ -44,7 +44,7 @@ struct codec_strip {
 struct codec_encoder;
 struct codec_decoder;
 
-/* Bytes of one pixel of plane number 0 to 6: 4, 12, 12, 12, 8, 8, 16. */
+/* Bytes of one pixel of plane number 0 to 7: 4, 12, 12, 12, 8, 8, 16, 4. */
 uint32_t codec_pixel_bytes(unsigned plane);
 
 /* False when width or height is not 1 to PROTOCOL_MAX_SIZE_PX, planes is empty or has unknown bits,
@@ -81,7 +81,7 @@ void codec_decoder_destroy(struct codec_decoder *decoder);
 /* Largest sensible size of ZSTD data of this layout; more is a lie. */
 uint64_t codec_zstd_bound(const struct codec_layout *layout);
 
-/* Unpacks ZSTD data (table and strips) into planes[0..6] of codec_plane_bytes() each; those of
+/* Unpacks ZSTD data (table and strips) into planes[0..7] of codec_plane_bytes() each; those of
  * planes the layout lacks are not touched. Every length is checked before use. Returns NULL, or a
  * text that says what is wrong with the data. */
 const char *codec_zstd_decode(struct codec_decoder *decoder, const struct codec_layout *layout,

@@ -272,7 +272,7 @@ static const char *planes_wanted(uint32_t planes, unsigned encoding)
     if (planes == 0)
         return "at least one";
     if (planes & ~CODEC_ALL_PLANES)
-        return "bits 0 to 6";
+        return "bits 0 to 7";
     bool picture = encoding == sheen_Encoding_ENCODING_PNG ||
                    encoding == sheen_Encoding_ENCODING_JPEG ||
                    encoding == sheen_Encoding_ENCODING_TIFF;

@@ -119,6 +119,7 @@ bool readback(struct renderer *r, const struct frame_request *request, const str
         {4, r->target.light, GL_RG, GL_FLOAT},
         {5, r->target.curvature, GL_RG, GL_FLOAT},
         {6, r->target.light_change, GL_RGBA, GL_FLOAT},
+        {7, r->target.coverage, GL_RED, GL_FLOAT},
     };
     for (size_t i = 0; i < sizeof direct / sizeof direct[0]; i++) {
         if (!(request->planes & 1u << direct[i].plane))
@@ -134,6 +135,7 @@ size_t renderer_plane_bytes(enum renderer_plane plane)
 {
     switch (plane) {
     case PLANE_COLOUR:
+    case PLANE_COVERAGE:
         return 4;
     case PLANE_POSITION:
     case PLANE_NORMAL:

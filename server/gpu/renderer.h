@@ -27,8 +27,9 @@ enum renderer_plane {
     PLANE_LIGHT = 1 << 4,        /* float s, t on the first light; NaN where it is not met */
     PLANE_CURVATURE = 1 << 5,    /* float k.min, k.max, 1/unit, signed against N; NaN where none */
     PLANE_LIGHT_CHANGE = 1 << 6, /* float ds/dx ds/dy dt/dx dt/dy, a pixel; NaN as PLANE_LIGHT */
+    PLANE_COVERAGE = 1 << 7,     /* float share of the pixel that shows surface, [0, 1] */
 };
-#define PLANE_COUNT 7
+#define PLANE_COUNT 8
 
 struct renderer_options {
     const char *device; /* "auto", "software" or a number: the n-th EGL device */

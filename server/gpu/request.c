@@ -118,6 +118,14 @@ static bool check_surface(const struct surface *surface, struct error *error)
                      MESH_MAX_LEVEL);
 }
 
+static bool check_planes(const struct frame_request *request, struct error *error)
+{
+    bool has_coverage = request->surface.kind == SURFACE_EXACT && !request->unfiltered;
+    return has_coverage || !(request->planes & PLANE_COVERAGE) ||
+           error_set(error, ERROR_REQUEST,
+                     "planes: coverage is known for the exact surface, filtered, only");
+}
+
 bool request_check(const struct renderer_info *info, const struct frame_request *request,
                    struct error *error)
 {
@@ -136,5 +144,5 @@ bool request_check(const struct renderer_info *info, const struct frame_request 
             !check_pattern(&request->lights[i].pattern, error) ||
             !check_eye_off_light(request, &request->lights[i], error))
             return false;
-    return check_surface(&request->surface, error);
+    return check_surface(&request->surface, error) && check_planes(request, error);
 }

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #define ZSTD_LEVEL 1
-#define MAX_CHANNELS 21 /* of all planes together */
+#define MAX_CHANNELS 22 /* of all planes together */
 
 struct encode_job;
 
@@ -191,7 +191,7 @@ static const struct {
     {"light.t", 4, IMAGE_FLOAT, 4},     {"k.min", 5, IMAGE_FLOAT, 0},
     {"k.max", 5, IMAGE_FLOAT, 4},       {"light.dsdx", 6, IMAGE_FLOAT, 0},
     {"light.dsdy", 6, IMAGE_FLOAT, 4},  {"light.dtdx", 6, IMAGE_FLOAT, 8},
-    {"light.dtdy", 6, IMAGE_FLOAT, 12},
+    {"light.dtdy", 6, IMAGE_FLOAT, 12}, {"coverage", 7, IMAGE_FLOAT, 0},
 };
 
 static enum image_format file_format(sheen_Encoding encoding)

@@ -9,7 +9,8 @@ _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
                    (int)PLANE_PTEX == (int)sheen_Plane_PLANE_PTEX &&
                    (int)PLANE_LIGHT == (int)sheen_Plane_PLANE_LIGHT &&
                    (int)PLANE_CURVATURE == (int)sheen_Plane_PLANE_CURVATURE &&
-                   (int)PLANE_LIGHT_CHANGE == (int)sheen_Plane_PLANE_LIGHT_CHANGE,
+                   (int)PLANE_LIGHT_CHANGE == (int)sheen_Plane_PLANE_LIGHT_CHANGE &&
+                   (int)PLANE_COVERAGE == (int)sheen_Plane_PLANE_COVERAGE,
                "planes have the same bits on the wire");
 _Static_assert((int)SURFACE_EXACT == (int)sheen_SurfaceKind_SURFACE_EXACT &&
                    (int)SURFACE_POLYGON == (int)sheen_SurfaceKind_SURFACE_POLYGON &&

@@ -65,8 +65,8 @@ static void planes_and_formats(void **state)
 {
     (void)state;
     uint32_t planes;
-    assert_true(value_planes("P,N,ptex,light,k,dlight", &planes));
-    assert_int_equal(planes, 126);
+    assert_true(value_planes("P,N,ptex,light,k,dlight,coverage", &planes));
+    assert_int_equal(planes, 254);
     assert_true(value_planes("k", &planes));
     assert_int_equal(planes, SHEEN_CURVATURE);
     static const char *const bad[] = {"", "p", "P,", ",P", "P,,N", "P N", "depth"};

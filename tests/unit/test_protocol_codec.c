@@ -129,7 +129,7 @@ static void strips_cover_every_row_once(void **state)
     }
     for (unsigned i = 0; i < CODEC_PLANES; i++)
         assert_int_equal(next[i], codec_plane_bytes(&layout, i));
-    assert_int_equal(layout.raw_bytes, 1920ull * 1080 * 72);
+    assert_int_equal(layout.raw_bytes, 1920ull * 1080 * 76);
 }
 
 static void layouts_are_bounded(void **state)
