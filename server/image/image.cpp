@@ -1,4 +1,5 @@
-// Images in and out of memory through OpenImageIO: see image.h. No exception leaves this file.
+// Images in and out of memory, and text, through OpenImageIO: see image.h. No exception leaves this
+// file.
 //
 // A reader is chosen by the first bytes (by the name's ending where a format has no signature) and
 // is given the bytes through a proxy, never a path: a name from outside opens no file here.
@@ -21,6 +22,8 @@ extern "C" {
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/half.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 namespace
@@ -401,6 +404,49 @@ bool encode(enum image_format kind, uint32_t width, uint32_t height,
     return true;
 }
 
+// --- text
+
+constexpr const char *FONT = "DejaVuSans";
+
+// Puts a colour of some coverage over a pixel of straight alpha.
+void blend(uint8_t *pixel, const float colour[4], float coverage)
+{
+    float over = colour[3] * coverage, under = static_cast<float>(pixel[3]) / 255.0f * (1 - over);
+    if (over + under <= 0)
+        return;
+    for (int k = 0; k < 3; k++) {
+        float mixed = over * colour[k] * 255.0f + under * static_cast<float>(pixel[k]);
+        pixel[k] = static_cast<uint8_t>(std::lround(mixed / (over + under)));
+    }
+    pixel[3] = static_cast<uint8_t>(std::lround((over + under) * 255.0f));
+}
+
+bool draw_text(uint8_t *rgba, uint32_t width, uint32_t height, int x, int y, int size,
+               enum image_align align, const char *text, const float colour[4])
+{
+    OIIO::ROI box = OIIO::ImageBufAlgo::text_size(text, size, FONT);
+    if (!box.defined()) {
+        OIIO::geterror(); // or it would be told with the next error of another
+        return false;
+    }
+    int w = box.xend - box.xbegin, h = box.yend - box.ybegin;
+    OIIO::ImageBuf coverage(OIIO::ImageSpec(w, h, 1, OIIO::TypeDesc::FLOAT),
+                            OIIO::InitializePixels::Yes);
+    if (!OIIO::ImageBufAlgo::render_text(coverage, -box.xbegin, -box.ybegin, text, size, FONT,
+                                         1.0f))
+        return false;
+    int left = x + box.xbegin - (align == IMAGE_LEFT ? 0 : align == IMAGE_RIGHT ? w : w / 2);
+    int top = y + box.ybegin;
+    for (int row = std::max(0, -top); row < h && top + row < static_cast<int>(height); row++)
+        for (int column = std::max(0, -left); column < w && left + column < static_cast<int>(width);
+             column++) {
+            size_t pixel =
+                static_cast<size_t>(top + row) * width + static_cast<size_t>(left + column);
+            blend(rgba + 4 * pixel, colour, coverage.getchannel(column, row, 0, 0));
+        }
+    return true;
+}
+
 // Runs work() and turns what it throws into an error of this program.
 template <typename Work> bool guarded(const char *what, struct error *error, Work work)
 {
@@ -440,5 +486,14 @@ extern "C" bool image_encode(enum image_format format, uint32_t width_px, uint32
     return guarded("encoding", error, [&] {
         return encode(format, width_px, height_px, channels, n_channels, attributes, n_attributes,
                       bytes, size, error);
+    });
+}
+
+extern "C" bool image_draw_text(uint8_t *rgba, uint32_t width_px, uint32_t height_px, int x_px,
+                                int y_px, int size_px, enum image_align align, const char *text,
+                                const float colour[4])
+{
+    return guarded("text", nullptr, [&] {
+        return draw_text(rgba, width_px, height_px, x_px, y_px, size_px, align, text, colour);
     });
 }

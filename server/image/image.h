@@ -1,5 +1,6 @@
-/* Images in and out through OpenImageIO, behind a C header: the one file that includes OpenImageIO
- * is image.cpp. Thread: every function may be called from any thread, on different data. */
+/* Images in and out, and text on them, through OpenImageIO, behind a C header: the one file that
+ * includes OpenImageIO is image.cpp. Thread: every function may be called from any thread, on
+ * different data. */
 #ifndef SHEEN_IMAGE_IMAGE_H
 #define SHEEN_IMAGE_IMAGE_H
 
@@ -59,5 +60,14 @@ bool image_encode(enum image_format format, uint32_t width_px, uint32_t height_p
                   const struct image_channel *channels, size_t n_channels,
                   const struct image_attribute *attributes, size_t n_attributes, uint8_t **bytes,
                   size_t *size, struct error *error);
+
+enum image_align { IMAGE_LEFT, IMAGE_CENTRE, IMAGE_RIGHT };
+
+/* Writes one line of ASCII (OpenImageIO 2.4 misreads more) over 8-bit RGBA pixels (straight alpha,
+ * rows contiguous, top first), in DejaVu Sans of size_px: its baseline begins, has its middle or
+ * ends at (x_px, y_px). What lies outside of the picture is left out. False when the font or memory
+ * is missing; nothing is drawn then. */
+bool image_draw_text(uint8_t *rgba, uint32_t width_px, uint32_t height_px, int x_px, int y_px,
+                     int size_px, enum image_align align, const char *text, const float colour[4]);
 
 #endif
