@@ -40,9 +40,14 @@ bool message_check_upload_begin(const sheen_UploadBegin *begin,
                                 char text[static MESSAGE_TEXT_BYTES]);
 /* Sizes are checked against the device's limits (a client that does not know them says
  * UINT32_MAX). After true every float of the request is finite and in range, enums are known,
- * the planes suit the encoding, and codec_layout_init() takes the request's size and planes. */
+ * the planes suit the encoding, and codec_layout_init() takes the request's size and all planes
+ * that it is made of. */
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES]);
+
+/* The planes that a frame is made of: those asked for, and those that its false colour is painted
+ * from. */
+uint32_t message_render_planes(const sheen_Render *render);
 
 /* Checks a decoded answer, for the client: strings are UTF-8 free of control characters (they reach
  * a terminal), floats finite, enums known. `type` is one that a server sends. False names the

@@ -316,6 +316,45 @@ static bool check_surface(const sheen_Render *render, char *text)
                   last, exact ? " for the exact surface" : "");
 }
 
+uint32_t message_render_planes(const sheen_Render *render)
+{
+    static const uint32_t painted_from[] = {
+        [sheen_ShowKind_SHOW_CURVATURE] = sheen_Plane_PLANE_CURVATURE | sheen_Plane_PLANE_POSITION,
+        [sheen_ShowKind_SHOW_GAUSSIAN] = sheen_Plane_PLANE_CURVATURE | sheen_Plane_PLANE_POSITION,
+        [sheen_ShowKind_SHOW_MEAN] = sheen_Plane_PLANE_CURVATURE | sheen_Plane_PLANE_POSITION,
+        [sheen_ShowKind_SHOW_NORMAL] = sheen_Plane_PLANE_NORMAL | sheen_Plane_PLANE_POSITION,
+        [sheen_ShowKind_SHOW_PTEX] = sheen_Plane_PLANE_PTEX,
+        [sheen_ShowKind_SHOW_DRAFT] = sheen_Plane_PLANE_NORMAL | sheen_Plane_PLANE_POSITION,
+    };
+    return render->planes | painted_from[render->show.kind];
+}
+
+static bool check_show(const sheen_Render *render, char *text)
+{
+    const sheen_Show *show = &render->show;
+    if (!check_enum(show->kind, sheen_ShowKind_SHOW_DRAFT, "show.kind", text))
+        return false;
+    bool is_draft = show->kind == sheen_ShowKind_SHOW_DRAFT;
+    bool is_scale = is_draft || show->kind == sheen_ShowKind_SHOW_CURVATURE ||
+                    show->kind == sheen_ShowKind_SHOW_GAUSSIAN ||
+                    show->kind == sheen_ShowKind_SHOW_MEAN;
+    if (show->has_direction != is_draft)
+        return refuse(text, "show.direction belongs to draft, which needs it, and to no other");
+    if (is_draft && !check_direction(&show->direction, "show.direction", text))
+        return false;
+    if (show->has_range && !is_scale)
+        return refuse(text, "show.range (--show-range) is for curvature, gaussian, mean and draft");
+    if (show->has_range &&
+        !check_positive(show->range, is_draft ? 90 : PROTOCOL_MAX_COORDINATE, "show.range", text))
+        return false;
+    if (show->kind == sheen_ShowKind_SHOW_LINES)
+        return true;
+    if (!(render->planes & sheen_Plane_PLANE_COLOUR))
+        return refuse(text, "planes is %u; show paints colour, bit 0", render->planes);
+    return !render->has_surface || render->surface != sheen_SurfaceKind_SURFACE_WIREFRAME ||
+           refuse(text, "show paints surfaces; a wireframe has none");
+}
+
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES])
 {
@@ -325,12 +364,13 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
     if (render->height_px == 0 || render->height_px > max_height_px)
         return refuse(text, "height is %u px; it must be from 1 to %u", render->height_px,
                       max_height_px);
-    if (!check_planes(render->planes, render->encoding, text))
+    if (!check_planes(render->planes, render->encoding, text) || !check_show(render, text))
         return false;
     struct codec_layout layout;
-    if (!codec_layout_init(&layout, render->width_px, render->height_px, render->planes))
+    uint32_t planes = message_render_planes(render);
+    if (!codec_layout_init(&layout, render->width_px, render->height_px, planes))
         return refuse(text, "%ux%u px with planes %u is over %llu bytes or %u px a side",
-                      render->width_px, render->height_px, render->planes,
+                      render->width_px, render->height_px, planes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
     return (!render->has_camera || check_camera(&render->camera, text)) &&
            check_lights(&render->lines, render->lights, render->lights_count, text) &&
@@ -351,6 +391,9 @@ static bool check_frame(const sheen_Frame *frame, char *text)
         return refuse(text, "data_bytes is %llu; it must be from 1 to %llu",
                       (unsigned long long)frame->data_bytes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
+    if (frame->has_show_range &&
+        !check_positive(frame->show_range, PROTOCOL_MAX_COORDINATE, "show_range", text))
+        return false;
     if (frame->lights_count == 0)
         return refuse(text, "a frame has a light");
     for (size_t i = 0; i < frame->lights_count; i++)
