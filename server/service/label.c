@@ -6,13 +6,13 @@
 
 #include "server/service/wire.h"
 
-enum { VERSION, DEVICE, DRIVER, SOFTWARE, MODEL, CAMERA, LINES, LIGHT, COLOURS, SURFACE };
+enum { VERSION, DEVICE, DRIVER, SOFTWARE, MODEL, CAMERA, LINES, LIGHT, COLOURS, SURFACE, SHOW };
 
 static const char *const NAMES[LABEL_ATTRIBUTES] = {
     [VERSION] = "sheen:version",   [DEVICE] = "sheen:device", [DRIVER] = "sheen:driver",
     [SOFTWARE] = "sheen:software", [MODEL] = "sheen:model",   [CAMERA] = "sheen:camera",
     [LINES] = "sheen:lines",       [LIGHT] = "sheen:light",   [COLOURS] = "sheen:colours",
-    [SURFACE] = "sheen:surface",
+    [SURFACE] = "sheen:surface",   [SHOW] = "sheen:show",
 };
 
 #define VEC3 "%.17g,%.17g,%.17g"
@@ -59,6 +59,18 @@ static void describe_surface(char *value, const struct surface *surface)
     add(value, "%s", kinds[surface->kind]);
     if (surface->kind != SURFACE_EXACT)
         add(value, ":%u", surface->level);
+}
+
+static void describe_show(char *value, const sheen_Show *show)
+{
+    static const char *const kinds[] = {"lines",  "curvature", "gaussian", "mean",
+                                        "normal", "ptex",      "draft"};
+    add(value, "%s", kinds[show->kind]);
+    if (show->has_direction)
+        add(value, " direction=%.17g,%.17g,%.17g", show->direction.x, show->direction.y,
+            show->direction.z);
+    if (show->has_range)
+        add(value, " range=%.17g", show->range);
 }
 
 static void describe_pattern(char *value, const struct pattern *pattern, const sheen_Light *asked)
@@ -114,4 +126,5 @@ void label_init(struct label *label, const struct frame_request *request, const 
     add(label->values[COLOURS], "miss=" COLOUR " empty=" COLOUR " base=" COLOUR,
         COLOUR_OF(request->miss), COLOUR_OF(request->empty), COLOUR_OF(request->base));
     describe_surface(label->values[SURFACE], &request->surface);
+    describe_show(label->values[SHOW], &asked->show);
 }

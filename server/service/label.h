@@ -7,7 +7,7 @@
 #include "server/gpu/renderer.h"
 #include "server/image/image.h"
 
-#define LABEL_ATTRIBUTES 10
+#define LABEL_ATTRIBUTES 11
 #define LABEL_VALUE_BYTES 8192
 
 /* Attributes point into the struct itself: it must not be moved once filled in. */
@@ -16,7 +16,7 @@ struct label {
     char values[LABEL_ATTRIBUTES][LABEL_VALUE_BYTES];
 };
 
-/* `asked` is the message that the request was made from. */
+/* `asked` is the message that the request was made from; its show.range is as used. */
 void label_init(struct label *label, const struct frame_request *request, const sheen_Render *asked,
                 const struct renderer_info *info);
 

@@ -1,10 +1,12 @@
 #include "server/service/request.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "server/service/label.h"
+#include "server/service/show.h"
 #include "server/service/wire.h"
 
 /* Something from the store that a request works with. */
@@ -31,8 +33,8 @@ struct request {
     struct frame_request frame_request;
     struct codec_layout layout;
     struct schedule_entry entry;
-    struct work work;      /* on the GL thread */
-    atomic_bool abandoned; /* read by the GL thread */
+    struct work work;      /* on the GL thread, then on the pool to paint false colour */
+    atomic_bool abandoned; /* read by the GL thread and the pool's */
     bool rendered;
     struct frame frame;
     sheen_Times times;
@@ -277,7 +279,7 @@ static void fill_frame(const struct request *request, const struct encoded *enco
     *frame = (sheen_Frame){
         .width_px = asked->width_px,
         .height_px = asked->height_px,
-        .planes = asked->planes,
+        .planes = request->render.planes,
         .encoding = request->render.encoding,
         .data_bytes = encoded->size,
         .times = request->times,
@@ -285,6 +287,8 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .lights_count = (pb_size_t)asked->n_lights,
         .lines = wire_from_lines(&asked->lines),
         .software = info->software,
+        .has_show_range = request->render.show.has_range,
+        .show_range = request->render.show.range,
     };
     for (uint32_t i = 0; i < asked->n_lights; i++)
         frame->lights[i] =
@@ -325,30 +329,69 @@ static void encode_finished(void *owner, struct encoded *encoded, const struct e
 
 static void start_encoding(struct request *request)
 {
-    const struct frame_times *times = &request->frame.times;
-    request->times.visibility_us = times->visibility_us;
-    request->times.evaluate_us = times->evaluate_us;
-    request->times.shade_us = times->shade_us;
-    request->times.readback_us = times->readback_us;
-    request->encode_start_us = loop_now_us();
-
     label_init(&request->label, &request->frame_request, &request->render,
                render_thread_info(request->host->render_thread));
     encode_start(request->host->pool, &request->frame, &request->layout, request->render.encoding,
                  request->label.attributes, LABEL_ATTRIBUTES, encode_finished, request);
 }
 
-static void render_done(struct work *work)
+/* There is no frame, or nobody to take it. */
+static void end_unencoded(struct request *request)
 {
-    struct request *request = work->owner;
-    if (request->rendered && request->session) {
-        start_encoding(request);
-        return;
-    }
     if (request->rendered)
         frame_finish(&request->frame);
     scheduler_finished(&request->host->scheduler, &request->entry);
     request_fail(request, &request->failure);
+}
+
+static void paint_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct request *request = work->owner;
+    struct frame *frame = &request->frame;
+    const struct limit_tables *tables = &request->model.asset->model->tables;
+    if (atomic_load(&request->abandoned))
+        return;
+    double size = 0;
+    for (int i = 0; i < 3; i++)
+        size = hypot(size, tables->box_max[i] - tables->box_min[i]);
+    show_paint(frame, &request->render.show, size, request->frame_request.miss,
+               request->frame_request.empty);
+    for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
+        if (!(request->layout.planes & 1u << plane)) {
+            free(frame->plane[plane]);
+            frame->plane[plane] = NULL;
+        }
+}
+
+static void paint_done(struct work *work)
+{
+    struct request *request = work->owner;
+    if (request->session)
+        start_encoding(request);
+    else
+        end_unencoded(request);
+}
+
+static void render_done(struct work *work)
+{
+    struct request *request = work->owner;
+    if (!request->rendered || !request->session) {
+        end_unencoded(request);
+        return;
+    }
+    const struct frame_times *times = &request->frame.times;
+    request->times.visibility_us = times->visibility_us;
+    request->times.evaluate_us = times->evaluate_us;
+    request->times.shade_us = times->shade_us;
+    request->times.readback_us = times->readback_us;
+    request->encode_start_us = loop_now_us();
+    if (request->render.show.kind == sheen_ShowKind_SHOW_LINES) {
+        start_encoding(request);
+        return;
+    }
+    request->work = (struct work){paint_run, paint_done, request, NULL};
+    pool_submit(request->host->pool, &request->work, POOL_URGENT);
 }
 
 void request_start_next(struct session_host *host)

@@ -99,7 +99,7 @@ void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
     *request = (struct frame_request){
         .width_px = render->width_px,
         .height_px = render->height_px,
-        .planes = render->planes,
+        .planes = message_render_planes(render),
         .unfiltered = render->unfiltered,
         .n_lights = render->lights_count ? render->lights_count : 1,
         .surface = {(enum surface_kind)render->surface, render->surface_level},
