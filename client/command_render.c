@@ -57,6 +57,8 @@ static void print_json(struct json *json, const struct options *options, const s
         json_double(json, "fov_deg", frame->camera.fov_deg);
     json_object_end(json);
     job_json_lights(json, frame);
+    if (frame->show_range > 0)
+        json_double(json, "show_range", frame->show_range);
     json_lines(json, "warnings", info->warnings);
     json_object_end(json);
 }

@@ -6,6 +6,7 @@ _Static_assert((int)SHEEN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same o
 _Static_assert((int)SHEEN_DISTANCE == (int)sheen_PatternKind_PATTERN_DISTANCE, "same order");
 _Static_assert((int)SHEEN_SPHERE == (int)sheen_LightKind_LIGHT_SPHERE, "same order");
 _Static_assert((int)SHEEN_ENVIRONMENT == (int)sheen_LineFamily_LINES_ENVIRONMENT, "same order");
+_Static_assert((int)SHEEN_SHOW_DRAFT == (int)sheen_ShowKind_SHOW_DRAFT, "same order");
 _Static_assert(SHEEN_MAX_LIGHTS == sizeof((sheen_Render *)0)->lights / sizeof(sheen_Light),
                "as many as the wire carries");
 _Static_assert(SHEEN_MAX_LINES == sizeof((sheen_Pattern *)0)->at / sizeof(double),
@@ -102,6 +103,14 @@ void lights_to_message(sheen_Render *render, const struct sheen_request *request
     for (uint32_t i = 0; i < request->n_lights; i++)
         render->lights[i] = to_light(&request->lights[i]);
     render->lights_count = (pb_size_t)request->n_lights;
+    render->has_show = request->show.kind != SHEEN_SHOW_LINES || request->show.range != 0;
+    render->show = (sheen_Show){
+        .kind = (sheen_ShowKind)request->show.kind,
+        .has_direction = request->show.kind == SHEEN_SHOW_DRAFT,
+        .direction = message_vec3(request->show.direction),
+        .has_range = request->show.range != 0,
+        .range = request->show.range,
+    };
 }
 
 static void from_pattern(struct sheen_pattern *pattern, const sheen_Pattern *message)
@@ -137,6 +146,7 @@ void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
     };
     message_get_vec3(frame->lines.direction, &lines->direction);
     message_get_vec3(frame->lines.eye, lines->has_eye ? &lines->eye : &lines->eye_direction);
+    frame->show_range = body->has_show_range ? body->show_range : 0;
     frame->n_lights = body->lights_count;
     for (uint32_t i = 0; i < frame->n_lights; i++) {
         const sheen_Light *from = &body->lights[i];

@@ -221,6 +221,23 @@ bool text_line_eye(const char *text, struct sheen_lines *value, char why[static 
            refuse(why, "must be camera, a point X,Y,Z or a direction of view dir:X,Y,Z");
 }
 
+bool text_show(const char *text, struct sheen_show *value, char why[static LIGHTS_WHY_BYTES])
+{
+    static const struct text_row kinds[] = {
+        {.name = "lines"},  {.name = "curvature"}, {.name = "gaussian"}, {.name = "mean"},
+        {.name = "normal"}, {.name = "ptex"},      {.name = "draft"},    {0}};
+    size_t length = strcspn(text, ":");
+    int kind = find_row(kinds, text, length);
+    if (kind < 0 || (kind != SHEEN_SHOW_DRAFT && text[length]))
+        return refuse(why, "must be curvature, gaussian, mean, normal, ptex, draft:X,Y,Z or lines");
+    value->kind = (enum sheen_show_kind)kind;
+    const double *d = value->direction;
+    return kind != SHEEN_SHOW_DRAFT ||
+           (text[length] && value_vec3(text + length + 1, value->direction) &&
+            (d[0] != 0 || d[1] != 0 || d[2] != 0)) ||
+           refuse(why, "draft needs the pull direction, as draft:0,0,1; not 0,0,0");
+}
+
 const char *text_pattern_kind(enum sheen_pattern_kind kind)
 {
     static const char *const names[] = {"stripes", "lattice", "circles", "image",

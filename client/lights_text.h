@@ -1,4 +1,4 @@
-/* Line families, lights and patterns as text: what the options take, and what `sheen lights` and
+/* Line families, lights, patterns and false colour as text: what the options take, and what `sheen lights` and
  * `sheen patterns` say of them, from the same tables. */
 #ifndef SHEEN_CLIENT_LIGHTS_TEXT_H
 #define SHEEN_CLIENT_LIGHTS_TEXT_H
@@ -25,6 +25,9 @@ bool text_lines(const char *text, struct sheen_lines *value, char why[static LIG
 
 /* camera, X,Y,Z or dir:X,Y,Z; the eye is set. */
 bool text_line_eye(const char *text, struct sheen_lines *value, char why[static LIGHTS_WHY_BYTES]);
+
+/* A kind of false colour, or draft:X,Y,Z; kind and direction are set. */
+bool text_show(const char *text, struct sheen_show *value, char why[static LIGHTS_WHY_BYTES]);
 
 const char *text_pattern_kind(enum sheen_pattern_kind kind);
 const char *text_light_kind(enum sheen_light_kind kind);

@@ -172,6 +172,19 @@ static bool apply_surface(struct options *options, const char *value, char *why)
            options_refuse(why, "must be exact, polygon:LEVEL or wireframe:LEVEL, LEVEL 0 to 6");
 }
 
+static bool apply_show(struct options *options, const char *value, char *why)
+{
+    char reason[LIGHTS_WHY_BYTES];
+    return text_show(value, &options->request.show, reason) || options_refuse(why, "%s", reason);
+}
+
+static bool apply_show_range(struct options *options, const char *value, char *why)
+{
+    double *range = &options->request.show.range;
+    return (value_double(value, range) && *range > 0) ||
+           options_refuse(why, "must be a number above 0");
+}
+
 const struct option_row OPTIONS_COMMON[] = {
     {"server", 0, "ADDRESS",
      "a running daemon: unix:PATH or tcp:HOST:PORT (default: SHEEN_SERVER\n"
@@ -254,5 +267,15 @@ const struct option_row OPTIONS_SCENE[] = {
      "subdivided LEVEL times (0 to 6), normals interpolated as a graphics card\n"
      "does, or wireframe:LEVEL, the edges of those polygons",
      apply_surface},
+    {"show", 0, "KIND",
+     "false colour with a legend: curvature (the principal curvature of larger\n"
+     "magnitude), gaussian, mean, normal, ptex, draft:X,Y,Z (degrees to the pull\n"
+     "direction X,Y,Z), or lines (default: lines)",
+     apply_show},
+    {"show-range", 0, "VALUE",
+     "where the colours of --show end, both ways: 1/unit, gaussian 1/unit^2,\n"
+     "above 0 (default: 98 of 100 pixels are inside), draft in degrees, at most\n"
+     "90 (default: 3)",
+     apply_show_range},
     {0},
 };

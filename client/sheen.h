@@ -261,6 +261,23 @@ struct sheen_lines {
  * the limit surface, interpolated between: the conventional picture, for comparison. */
 enum sheen_surface { SHEEN_SURFACE_EXACT, SHEEN_SURFACE_POLYGON, SHEEN_SURFACE_WIREFRAME };
 
+/* False colour with a legend, instead of lines. */
+enum sheen_show_kind {
+    SHEEN_SHOW_LINES,
+    SHEEN_SHOW_CURVATURE, /* the principal curvature of larger magnitude, 1/unit, signed */
+    SHEEN_SHOW_GAUSSIAN,  /* 1/unit^2 */
+    SHEEN_SHOW_MEAN,      /* 1/unit */
+    SHEEN_SHOW_NORMAL,
+    SHEEN_SHOW_PTEX,
+    SHEEN_SHOW_DRAFT, /* 90 degrees - angle(normal, direction) */
+};
+
+struct sheen_show {
+    enum sheen_show_kind kind;
+    double direction[3]; /* DRAFT: the pull direction, not zero */
+    double range;        /* the colours' ends, > 0, DRAFT <= 90; 0: from the frame, DRAFT 3 */
+};
+
 struct sheen_request {
     uint8_t model_id[SHEEN_ID_BYTES]; /* an uploaded model */
     uint32_t width_px, height_px;     /* 1 to the daemon's limit */
@@ -273,6 +290,7 @@ struct sheen_request {
     float empty[4];                     /* where no surface is hit */
     float base[4];                      /* of the surface, where patterns are transparent */
     bool unfiltered;                    /* one sample a pixel, for comparison */
+    struct sheen_show show;             /* in the colour plane; not with WIREFRAME */
     uint32_t planes;                    /* enum sheen_plane bits */
     enum sheen_format format;
     enum sheen_surface surface;
@@ -308,6 +326,7 @@ struct sheen_frame {
     struct sheen_lines lines;
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
+    double show_range; /* of false colour, as used; 0: none */
     struct sheen_times times;
     char device[128], driver[128], server[32];
     bool software;
