@@ -9,8 +9,8 @@ sheen_Vec3 message_vec3(const double v[3]);
 void message_get_vec3(double v[3], const sheen_Vec3 *message);
 sheen_Colour message_colour(const float c[4]);
 
-/* Fills in lines, lights and false colour. More places of lines than a message carries are left out, and what is
- * left is refused by message_check_render() like any other bad number. */
+/* Fills in lines, lights and false colour. More places of lines than a message carries are left
+ * out, and what is left is refused by message_check_render() like any other bad number. */
 void lights_to_message(sheen_Render *render, const struct sheen_request *request);
 
 /* Fills in the frame's lines, lights and false colour, as used. */

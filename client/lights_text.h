@@ -1,5 +1,5 @@
-/* Line families, lights, patterns and false colour as text: what the options take, and what `sheen lights` and
- * `sheen patterns` say of them, from the same tables. */
+/* Line families, lights, patterns and false colour as text: what the options take, and what
+ * `sheen lights` and `sheen patterns` say of the first three, from the same tables. */
 #ifndef SHEEN_CLIENT_LIGHTS_TEXT_H
 #define SHEEN_CLIENT_LIGHTS_TEXT_H
 

@@ -11,6 +11,7 @@
 #define NO_FACE 0xffffffffu
 #define DEFAULT_DRAFT_DEG 3
 #define LEAST_TURN_RAD 1e-5 /* over the model, by a range from the frame: less is rounding */
+#define ROUNDING 1e-6       /* of single precision, relative */
 #define SHARE_INSIDE 0.98   /* of the values, by a range from the frame */
 
 static const double DEG_PER_RAD = 57.295779513082320877;
@@ -68,8 +69,10 @@ static uint64_t bits_of(double value)
     return bits;
 }
 
-/* How many finite values begin with the bits of `prefix`, by the DIGIT_BITS that follow. */
 enum { DIGIT_BITS = 16 };
+
+/* How many finite values begin with the bits of `prefix`, all told and by the digit that follows.
+ */
 static uint64_t count_digits(const struct painting *painting, uint64_t prefix, int shift,
                              uint32_t counts[static 1 << DIGIT_BITS])
 {
@@ -113,7 +116,7 @@ static double round_up(double value)
 {
     int exponent = (int)floor(log10(value)) - 1;
     double unit = pow(10, abs(exponent));
-    double digits = ceil((exponent < 0 ? value * unit : value / unit) * (1 - 1e-12));
+    double digits = ceil((exponent < 0 ? value * unit : value / unit) * (1 - ROUNDING));
     return exponent < 0 ? digits / unit : digits * unit;
 }
 
@@ -121,7 +124,7 @@ static double range_of(const struct painting *painting, double size)
 {
     if (painting->kind == sheen_ShowKind_SHOW_DRAFT)
         return DEFAULT_DRAFT_DEG;
-    double least = LEAST_TURN_RAD / size;
+    double least = LEAST_TURN_RAD / fmax(size, 1 / PROTOCOL_MAX_COORDINATE);
     if (painting->kind == sheen_ShowKind_SHOW_GAUSSIAN)
         least *= least;
     double value = fmax(least, percentile(painting, SHARE_INSIDE));
@@ -248,37 +251,39 @@ static void bar_colour(const void *context, double s, double t, float rgb[3])
     }
 }
 
-static void mark(struct legend *legend, double at, const char *format, double value)
+static void mark(struct legend *legend, double at, const char *text)
 {
     struct legend_mark *next = &legend->marks[legend->n_marks++];
     next->at = at;
-    snprintf(next->text, sizeof next->text, format, value);
+    snprintf(next->text, sizeof next->text, "%s", text);
 }
 
 static void add_marks(const struct painting *painting, struct legend *legend)
 {
-    double range = painting->range;
+    char low[24], high[24];
+    snprintf(low, sizeof low, "%.3g", -painting->range);
+    snprintf(high, sizeof high, "%.3g", painting->range);
     switch (painting->kind) {
     case sheen_ShowKind_SHOW_NORMAL:
-        mark(legend, 1.0 / 6, "x", 0);
-        mark(legend, 3.0 / 6, "y", 0);
-        mark(legend, 5.0 / 6, "z", 0);
+        mark(legend, 1.0 / 6, "x");
+        mark(legend, 3.0 / 6, "y");
+        mark(legend, 5.0 / 6, "z");
         break;
     case sheen_ShowKind_SHOW_PTEX:
-        mark(legend, 0, "u = 0", 0);
-        mark(legend, 1, "u = 1", 0);
+        mark(legend, 0, "u = 0");
+        mark(legend, 1, "u = 1");
         break;
     case sheen_ShowKind_SHOW_DRAFT:
-        mark(legend, 0, "-90", 0);
-        mark(legend, 0.25, "%.3g", -range);
-        mark(legend, 0.5, "0", 0);
-        mark(legend, 0.75, "%.3g", range);
-        mark(legend, 1, "90", 0);
+        mark(legend, 0, "-90");
+        mark(legend, 0.25, low);
+        mark(legend, 0.5, "0");
+        mark(legend, 0.75, high);
+        mark(legend, 1, "90");
         break;
     default:
-        mark(legend, 0, "%.3g", -range);
-        mark(legend, 0.5, "0", 0);
-        mark(legend, 1, "%.3g", range);
+        mark(legend, 0, low);
+        mark(legend, 0.5, "0");
+        mark(legend, 1, high);
     }
 }
 

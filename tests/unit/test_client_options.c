@@ -219,6 +219,17 @@ static void good_command_lines(void **state)
                      OPTIONS_RUN);
     assert_int_equal(options.request.surface, SHEEN_SURFACE_WIREFRAME);
     assert_int_equal(options.request.surface_level, 5);
+    assert_int_equal(options.request.show.kind, SHEEN_SHOW_LINES);
+    assert_int_equal(
+        parse(&COMMAND_RENDER, "m.obj -o a.png --show-range 0.5 --show gaussian", &options, why),
+        OPTIONS_RUN);
+    assert_int_equal(options.request.show.kind, SHEEN_SHOW_GAUSSIAN);
+    assert_true(options.request.show.range == 0.5);
+    assert_int_equal(parse(&COMMAND_STREAM, "m.obj --frames 2 --show draft:0,-1,2", &options, why),
+                     OPTIONS_RUN);
+    const struct sheen_show *show = &options.request.show;
+    assert_int_equal(show->kind, SHEEN_SHOW_DRAFT);
+    assert_true(show->direction[1] == -1 && show->direction[2] == 2 && show->range == 0);
     assert_int_equal(
         parse(&COMMAND_STREAM, "m.obj --frames 10 --orbit -3 --light-only", &options, why),
         OPTIONS_RUN);
@@ -290,6 +301,13 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png --surface wireframe:-1", "LEVEL 0 to 6"},
         {&COMMAND_RENDER, "m.obj -o a.png --surface exact:1", "LEVEL 0 to 6"},
         {&COMMAND_RENDER, "m.obj -o a.png --surface tessellation:1", "LEVEL 0 to 6"},
+        {&COMMAND_RENDER, "m.obj -o a.png --show torsion", "curvature, gaussian"},
+        {&COMMAND_RENDER, "m.obj -o a.png --show mean:1", "--show 'mean:1'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --show draft", "draft:0,0,1"},
+        {&COMMAND_RENDER, "m.obj -o a.png --show draft:1,2", "draft:0,0,1"},
+        {&COMMAND_RENDER, "m.obj -o a.png --show draft:0,0,0", "not 0,0,0"},
+        {&COMMAND_RENDER, "m.obj -o a.png --show-range 0", "--show-range '0'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --show-range nan", "above 0"},
         {&COMMAND_RENDER, "m.obj -o a.png --pattern dots", "--pattern 'dots'"},
         {&COMMAND_RENDER, "m.obj -o a.png --empty red", "#rrggbb"},
         {&COMMAND_RENDER, "m.obj -o a.png --nonsense", "--nonsense"},

@@ -287,6 +287,62 @@ static void test_planes_a_format_cannot_hold(void **state)
     free(p);
 }
 
+/* The columns and rows that text has touched; false: none. */
+static bool touched(uint8_t (*rgba)[4], int box[4])
+{
+    bool any = false;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            if (rgba[y * WIDTH + x][3]) {
+                box[0] = any && box[0] < x ? box[0] : x;
+                box[1] = any && box[1] > x ? box[1] : x;
+                box[2] = any ? box[2] : y;
+                box[3] = y;
+                any = true;
+            }
+    return any;
+}
+
+static void test_text(void **state)
+{
+    (void)state;
+    static const float orange[4] = {1, 0.5f, 0, 1};
+    static uint8_t rgba[HEIGHT * WIDTH][4];
+    int box[4];
+    const struct {
+        enum image_align align;
+        int low, high; /* of the text's first column less the point, and of its last one */
+    } cases[] = {{IMAGE_LEFT, 0, 30}, {IMAGE_CENTRE, -15, 15}, {IMAGE_RIGHT, -30, 0}};
+    for (int i = 0; i < 3; i++) {
+        memset(rgba, 0, sizeof rgba);
+        assert_true(
+            image_draw_text(rgba[0], WIDTH, HEIGHT, 33, 60, 20, cases[i].align, "H0", orange));
+        assert_true(touched(rgba, box));
+        assert_in_range(box[0], 33 + cases[i].low, 33 + cases[i].low + 5);
+        assert_in_range(box[1], 33 + cases[i].high - 8, 33 + cases[i].high);
+        assert_in_range(box[2], 43, 47); /* capitals are 0.73 of the size high */
+        assert_in_range(box[3], 58, 60);
+    }
+    /* What is wholly covered has the colour; a half-covered, transparent pixel has it as well. */
+    bool solid = false;
+    for (int i = 0; i < HEIGHT * WIDTH; i++)
+        if (rgba[i][3]) {
+            assert_int_equal(rgba[i][0], 255);
+            assert_in_range(rgba[i][1], 127, 128);
+            assert_int_equal(rgba[i][2], 0);
+            solid |= rgba[i][3] == 255;
+        }
+    assert_true(solid);
+    /* Over the border, and far outside. */
+    for (int at = -40; at < 200; at += 7)
+        assert_true(
+            image_draw_text(rgba[0], WIDTH, HEIGHT, at, at, 20, IMAGE_CENTRE, "H0", orange));
+    memset(rgba, 0, sizeof rgba);
+    assert_true(image_draw_text(rgba[0], WIDTH, HEIGHT, 10, 5000, 20, IMAGE_LEFT, "H0", orange));
+    assert_true(image_draw_text(rgba[0], WIDTH, HEIGHT, -5000, 60, 20, IMAGE_LEFT, "H0", orange));
+    assert_false(touched(rgba, box));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +354,7 @@ int main(void)
         cmocka_unit_test(test_no_image),
         cmocka_unit_test(test_truncated),
         cmocka_unit_test(test_planes_a_format_cannot_hold),
+        cmocka_unit_test(test_text),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -220,6 +220,73 @@ static void render_surfaces(void **state)
     assert_false(check(&render, why));
 }
 
+static void false_colour(void **state)
+{
+    (void)state;
+    const sheen_Show mean = {.kind = sheen_ShowKind_SHOW_MEAN, .has_range = true, .range = 0.5};
+    const sheen_Show normal = {.kind = sheen_ShowKind_SHOW_NORMAL};
+    const sheen_Show draft = {.kind = sheen_ShowKind_SHOW_DRAFT,
+                              .has_direction = true,
+                              .direction = {0, 0, 1},
+                              .has_range = true,
+                              .range = 90};
+    sheen_Show bad = mean;
+    ACCEPTED(show, mean);
+    ACCEPTED(show, normal);
+    ACCEPTED(show, draft);
+    bad.kind = (sheen_ShowKind)7;
+    REFUSED(show, bad, "show.kind is 7");
+    const double ranges[] = {0, -1, NAN, INFINITY};
+    for (int i = 0; i < 4; i++) {
+        bad = mean;
+        bad.range = ranges[i];
+        REFUSED(show, bad, "show.range");
+    }
+    bad = mean;
+    bad.has_direction = true;
+    REFUSED(show, bad, "show.direction");
+    bad = normal;
+    bad.has_range = true;
+    bad.range = 1;
+    REFUSED(show, bad, "show.range");
+    bad = draft;
+    bad.range = 90.1;
+    REFUSED(show, bad, "at most 90");
+    bad = draft;
+    bad.has_direction = false;
+    REFUSED(show, bad, "show.direction");
+    bad = draft;
+    bad.direction.z = 0;
+    REFUSED(show, bad, "0,0,0");
+    bad.direction.z = NAN;
+    REFUSED(show, bad, "show.direction.z");
+
+    sheen_Render render = GOOD;
+    char text[MESSAGE_TEXT_BYTES];
+    assert_int_equal(message_render_planes(&render), sheen_Plane_PLANE_COLOUR);
+    render.show = mean;
+    assert_int_equal(message_render_planes(&render), sheen_Plane_PLANE_COLOUR |
+                                                         sheen_Plane_PLANE_POSITION |
+                                                         sheen_Plane_PLANE_CURVATURE);
+    render.planes = sheen_Plane_PLANE_CURVATURE;
+    assert_false(check(&render, text));
+    assert_non_null(strstr(text, "colour"));
+    render.planes = sheen_Plane_PLANE_COLOUR;
+    render.has_surface = true;
+    render.surface = sheen_SurfaceKind_SURFACE_POLYGON;
+    assert_true(check(&render, text));
+    render.surface = sheen_SurfaceKind_SURFACE_WIREFRAME;
+    assert_false(check(&render, text));
+    assert_non_null(strstr(text, "wireframe"));
+    /* The planes that it is painted from count, too: 24 bytes a pixel. */
+    render.surface = sheen_SurfaceKind_SURFACE_EXACT;
+    render.width_px = render.height_px = 16384;
+    assert_false(check(&render, text));
+    assert_non_null(strstr(text, "bytes"));
+    render.show = (sheen_Show){0};
+    assert_true(check(&render, text));
+}
+
 static void left_out_fields_are_not_looked_at(void **state)
 {
     (void)state;
@@ -318,6 +385,13 @@ static void answers_are_checked(void **state)
                          .lights_count = 1,
                          .lights = {GOOD.lights[0]}};
     assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.has_show_range = true;
+    frame.show_range = 0.25;
+    assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.show_range = NAN;
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    assert_non_null(strstr(text, "show_range"));
+    frame.has_show_range = false;
     frame.camera.has_up = false; /* a request may leave it out, an answer may not */
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     assert_non_null(strstr(text, "camera"));
@@ -408,6 +482,7 @@ int main(void)
         cmocka_unit_test(cameras_in_part),
         cmocka_unit_test(render_kinds),
         cmocka_unit_test(render_surfaces),
+        cmocka_unit_test(false_colour),
         cmocka_unit_test(left_out_fields_are_not_looked_at),
         cmocka_unit_test(text_is_utf8_without_controls),
         cmocka_unit_test(uploads_are_checked),
