@@ -211,21 +211,26 @@ static bool is_empty(const struct painting *painting, size_t i)
     return painting->ptex ? painting->ptex[i].face == NO_FACE : isnan(painting->position[i][0]);
 }
 
-static uint8_t byte_of(float channel)
+static void to_bytes(const float colour[4], uint8_t rgba[4])
 {
-    return (uint8_t)lroundf(255 * fminf(1, fmaxf(0, channel)));
+    for (int k = 0; k < 4; k++)
+        rgba[k] = (uint8_t)(255 * fminf(1, fmaxf(0, colour[k])) + 0.5f);
 }
 
 static void paint_pixels(const struct painting *painting, uint8_t (*rgba)[4], const float miss[4],
                          const float empty[4])
 {
+    uint8_t missed[4], emptied[4];
+    to_bytes(miss, missed);
+    to_bytes(empty, emptied);
     for (size_t i = 0; i < painting->n_pixels; i++) {
         float shown[4] = {0, 0, 0, 1};
-        const float *colour = is_empty(painting, i)           ? empty
-                              : colour_at(painting, i, shown) ? shown
-                                                              : miss;
-        for (int k = 0; k < 4; k++)
-            rgba[i][k] = byte_of(colour[k]);
+        if (is_empty(painting, i))
+            memcpy(rgba[i], emptied, sizeof emptied);
+        else if (colour_at(painting, i, shown))
+            to_bytes(shown, rgba[i]);
+        else
+            memcpy(rgba[i], missed, sizeof missed);
     }
 }
 
