@@ -89,9 +89,11 @@ class Surface(DaemonCase):
                 last = mean
             self.assertLess(last, 2e-3)
             self.assertLess(largest, 0.3)
-            same = sum(polygons.colour[4 * k:4 * k + 3] == exact.colour[4 * k:4 * k + 3]
+            # Only the exact surface is antialiased at its edges and in its sharp bends.
+            near = sum(max(abs(a - b) for a, b in zip(polygons.colour[4 * k:4 * k + 3],
+                                                      exact.colour[4 * k:4 * k + 3])) <= 8
                        for k in range(WIDTH * HEIGHT))
-            self.assertGreater(same, 0.97 * WIDTH * HEIGHT)
+            self.assertGreater(near, 0.97 * WIDTH * HEIGHT)
 
     def test_wireframe_differs(self):
         with wire.Client(self.daemon.unix) as client:
