@@ -3,7 +3,7 @@
 #   make demo       install what is missing, build, render the demo model to a PNG
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
-#   make bench      what grows with the size of a cage
+#   make bench      how fast, each question by a program of tests/bench; figures to build/bench
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
 #   make deps       install Debian packages (needs root or sudo)
@@ -111,11 +111,19 @@ $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SH
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(TEST_LIBS)
 
-BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/*.cpp))
-$(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
+# Every benchmark is one bench_NAME.cpp; what is beside them they share.
+BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/bench_*.cpp))
+BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/scene.cpp) $(ORACLE_SHARED)
+BENCH_LIBS := -losdCPU $(TEST_LIBS)
+$(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(TEST_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $(filter %.o,$^) $(TEST_LIB) $(BENCH_LIBS)
+# The peer gets what its users would give it: all of this processor.
+EMBREE_OBJ := $(call obj,tests/bench/embree.cpp)
+$(EMBREE_OBJ): CXXFLAGS += -O3 -march=native -ffp-contract=fast
+$(BUILD)/tests/bench_frame: $(EMBREE_OBJ)
+$(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
 
 .PHONY: tests unit service oracle check bench lint format demo deps install clean
 tests: all $(UNIT_TESTS) $(ORACLE_TESTS)
@@ -131,8 +139,10 @@ check:
 	$(MAKE) tests
 	sh tests/run.sh all $(BUILD)
 
+# One after the other: each wants the machine for itself.
 bench: all $(BENCH)
 	$(BUILD)/tests/bench_size $(BUILD)/sheen
+	for bench in $(filter-out %/bench_size,$(BENCH)); do $$bench --folder $(BUILD)/bench || exit; done
 
 lint:
 	sh tests/lint.sh
