@@ -149,8 +149,9 @@ void report::compare(const std::string &path) const
     std::printf("against %s of %s:\n", path.c_str(), old.value("date", "?").c_str());
     table table({"figure", "then", "now", "now/then"});
     for (const auto &[key, value] : figures) {
-        double then = old["figures"].value(key, std::nan(""));
-        if (std::isfinite(then) && then != 0)
+        const nlohmann::json &figure = old["figures"][key];
+        double then = figure.is_number() ? figure.get<double>() : 0;
+        if (then != 0)
             table.row({key, number(then, 3), number(value, 3), number(value / then, 2)});
     }
     table.print();

@@ -1,5 +1,7 @@
 #include "tests/bench/scene.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
 #include <thread>
@@ -16,19 +18,22 @@ void check(bool ok, const error &error)
         throw std::runtime_error(error.text);
 }
 
-/* Equal ranges of faces to each thread. */
+/* Ranges of 16 faces to whoever is free, as the daemon's pool does with them. */
 void build(limit_tables *tables, const limit_plan *plan, int n_threads)
 {
+    const size_t range = 16;
     std::vector<error> errors((size_t)n_threads);
-    std::vector<char> built((size_t)n_threads);
-    auto range = [&](int k) {
-        size_t n = tables->n_faces, i = (size_t)k, all = (size_t)n_threads;
-        built[i] = limit_build_faces(tables, plan, n * i / all, n * (i + 1) / all, &errors[i]);
+    std::vector<char> built((size_t)n_threads, true);
+    std::atomic<size_t> next{0};
+    auto work = [&](size_t k) {
+        for (size_t first; built[k] && (first = next.fetch_add(range)) < tables->n_faces;)
+            built[k] = limit_build_faces(tables, plan, first,
+                                         std::min(first + range, tables->n_faces), &errors[k]);
     };
     std::vector<std::thread> others;
-    for (int k = 1; k < n_threads; k++)
-        others.emplace_back(range, k);
-    range(0);
+    for (size_t k = 1; k < errors.size(); k++)
+        others.emplace_back(work, k);
+    work(0);
     for (std::thread &thread : others)
         thread.join();
     for (size_t k = 0; k < errors.size(); k++)

@@ -1,0 +1,50 @@
+/* bench_light: what a frame costs whose light alone moved, against a full frame: both with the
+ * picture read back, in turn, on the same view. */
+#include "tests/bench/bench.h"
+
+#include "tests/bench/scene.h"
+#include "tests/oracle/model.h"
+
+namespace
+{
+
+void measure(report *report, table *table, const std::string &path, const char *device)
+{
+    scene scene(read_cage_file(path));
+    drawing drawing(scene, device);
+    frame_request request = scene.request(1920, 1080);
+    auto render = [&] { return time_ms([&] { drawing.times(request); }); };
+    pair_of_samples pair = measure_pairs(
+        report->given().runs,
+        [&](int run) {
+            orbit(&request.camera, run % 2 ? 0.1 : -0.1);
+            return render();
+        },
+        [&](int run) {
+            request.lights[0].pattern.offset = 0.01 * run + 0.005;
+            return render();
+        });
+    std::string name = model_name(path);
+    table->row({name, "1920x1080", number(pair.a.median(), 1), number(pair.b.median(), 1),
+                number(pair.a.least(), 1), number(pair.b.least(), 1),
+                number(pair.ratio.median(), 3)});
+    report->figure(name + " full_ms", pair.a.median());
+    report->figure(name + " light_ms", pair.b.median());
+    report->figure(name + " light/full", pair.ratio.median());
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    return bench_main("bench_light", [&] {
+        report report("bench_light", argc, argv, {"device"});
+        table table(
+            {"light only", "size", "full ms", "light ms", "least", "light's", "light/full"});
+        std::string device = report.given().other("device", "software");
+        for (const std::string &path : bench_models(report.given()))
+            measure(&report, &table, path, device.c_str());
+        table.print();
+        report.finish();
+    });
+}
