@@ -113,7 +113,8 @@ $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SH
 
 # Every benchmark is one bench_NAME.cpp; what is beside them they share.
 BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/bench_*.cpp))
-BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/scene.cpp tests/bench/sheet.cpp) $(ORACLE_SHARED)
+BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/daemon.cpp tests/bench/scene.cpp \
+                tests/bench/sheet.cpp) $(ORACLE_SHARED)
 BENCH_LIBS := -losdCPU $(TEST_LIBS)
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
@@ -141,8 +142,7 @@ check:
 
 # One after the other: each wants the machine for itself.
 bench: all $(BENCH)
-	$(BUILD)/tests/bench_size $(BUILD)/sheen
-	for bench in $(filter-out %/bench_size,$(BENCH)); do $$bench --folder $(BUILD)/bench || exit; done
+	for bench in $(BENCH); do $$bench --folder $(BUILD)/bench || exit 1; done
 
 lint:
 	sh tests/lint.sh

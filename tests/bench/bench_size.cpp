@@ -1,112 +1,46 @@
-/* bench_size SHEEN: what a cage of N x N regular quads costs, from 10,000 to 1,000,000 faces: to
- * read, to build its tables in two threads, bytes a face, and its first frame through a daemon.
- * Cost must grow with the number of faces and no faster: the last column is time a face against the
- * first row's. */
-#include <chrono>
+/* bench_size: what a cage of N x N regular quads costs, from 1,000 to 1,000,000 faces: to read, to
+ * build its tables in two threads, bytes a face, and a frame of 1280x720 that shows all of it, by a
+ * view that stays. Cost of reading and building must grow with the number of faces and no faster,
+ * that of a frame much slower: the last columns are against the first row's. */
+#include "tests/bench/bench.h"
+
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
-#include <stdexcept>
-#include <string>
-#include <thread>
+#include <memory>
 
+#include "tests/bench/scene.h"
+#include "tests/bench/sheet.h"
+#include "tests/oracle/model.h"
 #include "tests/oracle/render.h"
-
-extern "C" {
-#include "server/limit/tables.h"
-}
 
 namespace
 {
 
-const int n_threads = 2;
-
-double now_ms()
-{
-    using namespace std::chrono;
-    return duration<double, std::milli>(steady_clock::now().time_since_epoch()).count();
-}
-
-/* A rolling sheet over [0,1] x [0,1]. */
-void write_sheet(const std::string &path, int n)
-{
-    std::FILE *file = std::fopen(path.c_str(), "w");
-    if (!file)
-        throw std::runtime_error(path + ": cannot be written");
-    for (int j = 0; j <= n; j++)
-        for (int i = 0; i <= n; i++) {
-            double x = (double)i / n, y = (double)j / n;
-            std::fprintf(file, "v %.9g %.9g %.9g\n", x, y,
-                         0.05 * std::sin(9 * x) * std::cos(7 * y));
-        }
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < n; i++) {
-            int a = j * (n + 1) + i + 1;
-            std::fprintf(file, "f %d %d %d %d\n", a, a + 1, a + n + 2, a + n + 1);
-        }
-    std::fclose(file);
-}
-
 struct costs {
-    double faces, import_ms, tables_ms, bytes, frame_ms;
+    double faces, import_ms, tables_ms, bytes, first_ms, frame_ms;
 };
 
-void fail(bool ok, const error &error)
-{
-    if (!ok)
-        throw std::runtime_error(error.text);
-}
-
-/* Equal ranges of faces to each thread. */
-void build(limit_tables *tables, const limit_plan *plan)
-{
-    std::thread threads[n_threads];
-    error errors[n_threads];
-    bool built[n_threads];
-    for (int k = 0; k < n_threads; k++)
-        threads[k] = std::thread([&, k] {
-            built[k] = limit_build_faces(tables, plan, tables->n_faces * (size_t)k / n_threads,
-                                         tables->n_faces * (size_t)(k + 1) / n_threads, &errors[k]);
-        });
-    for (std::thread &thread : threads)
-        thread.join();
-    for (int k = 0; k < n_threads; k++)
-        fail(built[k], errors[k]);
-}
-
-costs measure(const std::string &sheen, int n)
+costs measure(const options &given, const char *device, int n)
 {
     temporary_folder folder;
     std::string path = folder.file("sheet.obj");
-    write_sheet(path, n);
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    error error;
-    cage cage;
-    limit_tables tables;
-    double start = now_ms();
-    fail(cage_read(&cage, bytes.data(), bytes.size(), path.c_str(), &error), error);
-    double imported = now_ms();
-    limit_plan *plan = limit_plan_create(&cage, &error);
-    fail(plan, error);
-    fail(limit_tables_init(&tables, plan, &error), error);
-    build(&tables, plan);
-    double built = now_ms();
-    costs costs = {(double)n * n, imported - start, built - imported,
-                   (double)limit_tables_bytes(&tables) / ((double)n * n), 0};
-    limit_tables_finish(&tables);
-    limit_plan_destroy(plan);
-    cage_finish(&cage);
-    bytes.clear();
-    bytes.shrink_to_fit();
-
-    start = now_ms();
-    program_result result = run_program(
-        {sheen, "render", path, "-o", folder.file("frame.png"), "--size", "1280x720"}, folder);
-    if (result.exit_code != 0)
-        throw std::runtime_error("sheen render: " + result.errors);
-    costs.frame_ms = now_ms() - start;
+    sheet(n, n, 0).write_obj(path);
+    costs costs = {};
+    costs.faces = (double)n * n;
+    std::shared_ptr<const cage> cage;
+    std::unique_ptr<scene> tables;
+    costs.import_ms = time_ms([&] { cage = read_cage_file(path); });
+    costs.tables_ms = time_ms([&] { tables.reset(new scene(cage)); });
+    costs.bytes = (double)tables->bytes() / costs.faces;
+    drawing drawing(*tables, device);
+    frame_request request = tables->request(1280, 720);
+    costs.first_ms = time_ms([&] { drawing.times(request); });
+    samples frames;
+    for (int run = 0; run < given.runs; run++) {
+        orbit(&request.camera, 0.1);
+        frames.add(stages_ms(drawing.times(request)));
+    }
+    costs.frame_ms = frames.median();
     return costs;
 }
 
@@ -114,27 +48,29 @@ costs measure(const std::string &sheen, int n)
 
 int main(int argc, char **argv)
 {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: bench_size SHEEN\n");
-        return 2;
-    }
-    std::printf("%9s %10s %10s %8s %14s %s\n", "faces", "import ms", "tables ms", "B/face",
-                "first frame ms", "time a face, import and tables, against the first row");
-    costs first = {};
-    try {
-        for (int n : {100, 316, 1000}) {
-            costs c = measure(argv[1], n);
-            if (n == 100)
+    return bench_main("bench_size", [&] {
+        report report("bench_size", argc, argv, {"device"});
+        std::string device = report.given().other("device", "software");
+        table table({"faces", "import ms", "tables ms", "B/face", "first frame ms", "frame ms",
+                     "import a face", "tables a face", "frame"});
+        costs first = {};
+        for (int n : {32, 100, 316, 1000}) {
+            costs c = measure(report.given(), device.c_str(), n);
+            if (n == 32)
                 first = c;
-            std::printf("%9.0f %10.1f %10.1f %8.1f %14.0f %.2f %.2f\n", c.faces, c.import_ms,
-                        c.tables_ms, c.bytes, c.frame_ms,
-                        c.import_ms / c.faces / (first.import_ms / first.faces),
-                        c.tables_ms / c.faces / (first.tables_ms / first.faces));
-            std::fflush(stdout);
+            double faces = c.faces / first.faces;
+            table.row({count(c.faces), number(c.import_ms, 1), number(c.tables_ms, 1),
+                       number(c.bytes, 1), number(c.first_ms, 0), number(c.frame_ms, 1),
+                       number(c.import_ms / first.import_ms / faces, 2),
+                       number(c.tables_ms / first.tables_ms / faces, 2),
+                       number(c.frame_ms / first.frame_ms, 1)});
+            std::string key = number(c.faces, 0) + " faces ";
+            report.figure(key + "import_ms", c.import_ms);
+            report.figure(key + "tables_ms", c.tables_ms);
+            report.figure(key + "bytes_a_face", c.bytes);
+            report.figure(key + "frame_ms", c.frame_ms);
         }
-    } catch (const std::exception &failure) {
-        std::fprintf(stderr, "bench_size: %s\n", failure.what());
-        return 1;
-    }
-    return 0;
+        table.print();
+        report.finish();
+    });
 }

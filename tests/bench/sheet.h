@@ -14,6 +14,10 @@ class sheet
     /* every: one turned edge for so many faces; 0: none. */
     sheet(int columns, int rows, int every);
     std::shared_ptr<const struct cage> cage() const;
+    void write_obj(const std::string &path) const
+    {
+        loose.write_obj(path);
+    }
     size_t irregular() const /* vertices inside */
     {
         return 4 * turned;
