@@ -133,10 +133,13 @@ float sharpness_of(float sharpness)
 
 void set_topology(RTCGeometry geometry, const cage &cage)
 {
-    float *vertex = new_buffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                      cage.n_vertices, 3 * sizeof(float));
-    for (size_t i = 0; i < 3 * cage.n_vertices; i++)
-        vertex[i] = (float)cage.position[i / 3][i % 3];
+    /* Embree reads vertices four floats at a time, the last one, too. */
+    typedef float padded[4];
+    padded *vertex =
+        new_buffer<padded>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, cage.n_vertices);
+    for (size_t i = 0; i < cage.n_vertices; i++)
+        for (int k = 0; k < 4; k++)
+            vertex[i][k] = k < 3 ? (float)cage.position[i][k] : 0;
     uint32_t *face =
         new_buffer<uint32_t>(geometry, RTC_BUFFER_TYPE_FACE, RTC_FORMAT_UINT, cage.n_faces);
     for (size_t f = 0; f < cage.n_faces; f++)
