@@ -152,9 +152,9 @@ Met meet_plane(Sample at, vec3 r, vec3 dr[2])
 #else
     met.cover = faces && tau > 0.0 ? 1.0 : 0.0;
 #endif
-    met.inside = true;
+    met.inside = faces && (FAMILY == HIGHLIGHT || tau > 0.0);
 #if LIGHT == RECTANGLE
-    met.inside = max(abs(met.q.x / size.x), abs(met.q.y / size.y)) <= 0.5;
+    met.inside = met.inside && max(abs(met.q.x / size.x), abs(met.q.y / size.y)) <= 0.5;
     met.cover *= rectangle_cover(met);
 #endif
     met.dtau *= sign(tau);

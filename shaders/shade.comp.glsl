@@ -56,7 +56,7 @@ void main()
     vec4 change = vec4(met.ds, met.dt) / size.xxyy;
 #ifdef UNFILTERED  // one sample a pixel
     met.ds = met.dt = met.dtau = vec2(0.0);
-    met.cover = step(0.5, met.cover);
+    met.cover = float(met.inside);
 #endif
     vec4 under = is_hindmost ? miss : imageLoad(colour, p);
     imageStore(colour, p, lay_over(under, at, met, q));
