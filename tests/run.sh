@@ -86,6 +86,8 @@ oracle() {
         tests/models/creases.obj tests/models/pole.obj "$car"
     run filter "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
+    run lines "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
+        tests/models/body.obj tests/models/creases.obj tests/models/pole.obj "$car"
     run mirror "$build/tests/test_mirror" "$build/sheen"
 }
 

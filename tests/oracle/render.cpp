@@ -65,17 +65,34 @@ bool names_plane(const std::string &aov, const std::string &plane)
     return ("," + aov + ",").find("," + plane + ",") != std::string::npos;
 }
 
+void read_colour(OIIO::ImageInput *input, const char *channel, std::vector<float> *values)
+{
+    int index = channel_index(input->spec(), channel);
+    values->resize((size_t)input->spec().image_pixels());
+    if (!input->read_image(0, 0, index, index + 1, OIIO::TypeFloat, values->data()))
+        throw std::runtime_error(std::string("channel ") + channel + ": " + input->geterror());
+}
+
 void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
 {
     struct {
         const char *plane, *channel;
         std::vector<float> *values;
     } wanted[] = {
-        {"P", "P.X", &planes->px},        {"P", "P.Y", &planes->py},
-        {"P", "P.Z", &planes->pz},        {"N", "N.X", &planes->nx},
-        {"N", "N.Y", &planes->ny},        {"N", "N.Z", &planes->nz},
-        {"ptex", "ptex.u", &planes->u},   {"ptex", "ptex.v", &planes->v},
-        {"light", "light.s", &planes->s}, {"light", "light.t", &planes->t},
+        {"P", "P.X", &planes->px},
+        {"P", "P.Y", &planes->py},
+        {"P", "P.Z", &planes->pz},
+        {"N", "N.X", &planes->nx},
+        {"N", "N.Y", &planes->ny},
+        {"N", "N.Z", &planes->nz},
+        {"ptex", "ptex.u", &planes->u},
+        {"ptex", "ptex.v", &planes->v},
+        {"light", "light.s", &planes->s},
+        {"light", "light.t", &planes->t},
+        {"dlight", "light.dsdx", &planes->dsdx},
+        {"dlight", "light.dsdy", &planes->dsdy},
+        {"dlight", "light.dtdx", &planes->dtdx},
+        {"dlight", "light.dtdy", &planes->dtdy},
     };
     native_picture picture(input);
     for (auto &w : wanted)
@@ -84,10 +101,9 @@ void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
     if (names_plane(aov, "ptex"))
         picture.extract("ptex.face", OIIO::TypeUInt32, &planes->face);
     if (names_plane(aov, "light")) {
-        int index = channel_index(input->spec(), "G");
-        planes->green.resize((size_t)input->spec().image_pixels());
-        if (!input->read_image(0, 0, index, index + 1, OIIO::TypeFloat, planes->green.data()))
-            throw std::runtime_error("channel G: " + input->geterror());
+        read_colour(input, "R", &planes->red);
+        read_colour(input, "G", &planes->green);
+        read_colour(input, "B", &planes->blue);
     }
 }
 

@@ -1,0 +1,24 @@
+/* The families, lights, patterns and line eyes that test_lines puts together for a view. */
+#ifndef SHEEN_TESTS_ORACLE_LINE_SETUPS_H
+#define SHEEN_TESTS_ORACLE_LINE_SETUPS_H
+
+#include <string>
+#include <vector>
+
+#include "tests/oracle/lines.h"
+#include "tests/oracle/model.h"
+
+struct named_setup {
+    std::string name;
+    line_setup setup;
+    /* Whether the lines stay on the surface when the camera moves. */
+    bool locked() const
+    {
+        return setup.eye_kind != line_eye_kind::camera;
+    }
+};
+
+/* Every family and light at least twice, every pattern, one and several lights. */
+std::vector<named_setup> line_setups(const model &model, const view &view);
+
+#endif

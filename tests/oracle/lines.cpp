@@ -1,0 +1,292 @@
+#include "tests/oracle/lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+
+const double degrees = 180 / M_PI;
+
+vec3 without_part_along(vec3 v, vec3 unit)
+{
+    return v - dot(v, unit) * unit;
+}
+
+/* The angle of r from u about v, over a full turn: (-1/2, 1/2]. */
+double turn_about(vec3 r, vec3 u, vec3 v)
+{
+    vec3 axis = normalized(v);
+    vec3 e1 = normalized(without_part_along(u, axis));
+    return std::atan2(dot(r, cross(axis, e1)), dot(r, e1)) / (2 * M_PI);
+}
+
+/* The elevation of unit r over the plane across v, over half a turn: [-1/2, 1/2]. */
+double elevation(vec3 r, vec3 v)
+{
+    vec3 axis = normalized(v);
+    return std::atan2(dot(r, axis), length(cross(r, axis))) / M_PI;
+}
+
+/* Where azimuths about an axis begin. */
+vec3 azimuth_zero(vec3 axis)
+{
+    vec3 x = {1, 0, 0};
+    return length(cross(axis, x)) > 1e-6 * length(axis) ? x : vec3{0, 1, 0};
+}
+
+/* The ray from x along r, or the line both ways, against the light's plane. */
+light_hit meet_plane(vec3 x, vec3 r, bool both_ways, const line_light &light)
+{
+    light_hit hit;
+    hit.width = length(light.u);
+    hit.height = length(light.v);
+    vec3 normal = cross(light.u, light.v);
+    double tau = dot(normal, light.centre - x) / dot(normal, r);
+    vec3 offset = x + tau * r - light.centre;
+    /* u and v need not be perpendicular: coordinates by the reciprocal vectors. */
+    vec3 by_u = cross(light.v, normal), by_v = cross(normal, light.u);
+    hit.s = 0.5 + dot(offset, by_u) / dot(light.u, by_u);
+    hit.t = 0.5 + dot(offset, by_v) / dot(light.v, by_v);
+    hit.tau = std::fabs(tau);
+    vec3 towards = tau < 0 ? -1 * r : r;
+    bool bounded = light.kind == line_light_kind::rectangle;
+    hit.inside = bounded ? std::min(std::min(hit.s, 1 - hit.s), std::min(hit.t, 1 - hit.t)) : 1;
+    hit.met = std::isfinite(tau) && (both_ways || tau > 0) && hit.inside >= 0 &&
+              !(light.one_sided && dot(towards, normal) >= 0);
+    return hit;
+}
+
+/* The far side of the cylinder about the axis. */
+light_hit meet_tunnel(vec3 x, vec3 r, const line_light &light)
+{
+    light_hit hit;
+    vec3 axis = normalized(light.v), from = x - light.centre;
+    vec3 p = without_part_along(from, axis), q = without_part_along(r, axis);
+    double radius = length(without_part_along(light.u, axis));
+    double a = dot(q, q), b = dot(p, q), c = dot(p, p) - radius * radius, root = b * b - a * c;
+    hit.width = 2 * M_PI * radius;
+    hit.height = length(light.v);
+    hit.s_wraps = true;
+    hit.inside = root / (a * radius * radius);
+    if (!(root >= 0 && a > 0))
+        return hit;
+    hit.tau = (std::sqrt(root) - b) / a;
+    hit.met = hit.tau > 0;
+    vec3 y = from + hit.tau * r;
+    hit.s = 0.5 + turn_about(y, light.u, light.v);
+    hit.t = 0.5 + dot(y, light.v) / dot(light.v, light.v);
+    return hit;
+}
+
+light_hit meet_sphere(vec3 r, const line_light &light)
+{
+    light_hit hit;
+    hit.met = true;
+    hit.width = 360;
+    hit.height = 180;
+    hit.s_wraps = true;
+    hit.s = 0.5 + turn_about(r, light.u, light.v);
+    hit.t = 0.5 + elevation(r, light.v);
+    hit.inside = 1;
+    return hit;
+}
+
+light_hit isophote(vec3 n, vec3 d)
+{
+    light_hit hit;
+    hit.met = true;
+    hit.s = angle(n, d) / M_PI;
+    hit.t = 0.5;
+    hit.width = 180;
+    hit.height = 360;
+    hit.inside = 1;
+    return hit;
+}
+
+light_hit zebra(vec3 r, vec3 axis)
+{
+    light_hit hit;
+    hit.met = true;
+    hit.s = 0.5 + elevation(r, axis);
+    hit.t = 0.5 + turn_about(r, azimuth_zero(axis), axis);
+    hit.width = 180;
+    hit.height = 360;
+    hit.t_wraps = true;
+    hit.inside = 1;
+    return hit;
+}
+
+light_hit environment(vec3 r, vec3 axis)
+{
+    light_hit hit;
+    hit.met = true;
+    hit.s = 0.5 - turn_about(r, azimuth_zero(axis), axis);
+    hit.t = 0.5 + elevation(r, axis);
+    hit.width = 360;
+    hit.height = 180;
+    hit.s_wraps = true;
+    hit.inside = 1;
+    return hit;
+}
+
+/* How much of phases [0, phase) is bright. */
+double bright_until(double phase, double duty)
+{
+    double whole = std::floor(phase);
+    return whole * duty + std::min(phase - whole, duty);
+}
+
+/* The wave at a phase, convolved with a box as wide as `soft` says. */
+double wave(double phase, const line_pattern &pattern)
+{
+    if (pattern.soft == 0)
+        return phase - std::floor(phase) < pattern.duty ? 1 : 0;
+    double low = phase - pattern.soft / 2, high = phase + pattern.soft / 2;
+    return (bright_until(high, pattern.duty) - bright_until(low, pattern.duty)) / pattern.soft;
+}
+
+/* Full saturation and value. */
+rgba hue_colour(double hue)
+{
+    auto ramp = [&](double shift) {
+        double h = 6 * (hue + shift - std::floor(hue + shift));
+        return std::clamp(std::fabs(h - 3) - 1, 0.0, 1.0);
+    };
+    return {ramp(0), ramp(2.0 / 3), ramp(1.0 / 3), 1};
+}
+
+rgba mixed(const rgba &a, const rgba &b, double b_share)
+{
+    auto mix = [&](double x, double y) { return x + b_share * (y - x); };
+    return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b), mix(a.a, b.a)};
+}
+
+/* Straight alpha. */
+rgba over(const rgba &top, const rgba &below)
+{
+    double share = below.a * (1 - top.a), alpha = top.a + share;
+    if (!(alpha > 0))
+        return {0, 0, 0, 0};
+    rgba colour = mixed(top, below, share / alpha);
+    colour.a = alpha;
+    return colour;
+}
+
+double bright_share(const line_pattern &p, const light_hit &hit)
+{
+    double q = p.rotation_deg / degrees;
+    double x = (hit.s - 0.5) * hit.width, y = (hit.t - 0.5) * hit.height;
+    double a = std::cos(q) * x + std::sin(q) * y, b = std::cos(q) * y - std::sin(q) * x;
+    double period = p.period > 0 ? p.period : hit.width / p.count;
+    double along_a = a / period + hit.width / (2 * period) + p.offset;
+    double along_b = b / period + hit.height / (2 * period) + p.offset;
+    switch (p.kind) {
+    case line_pattern_kind::stripes:
+        return wave(along_a, p);
+    case line_pattern_kind::lattice:
+        return 1 - (1 - wave(along_a, p)) * (1 - wave(along_b, p));
+    case line_pattern_kind::circles:
+        if (!(p.period > 0))
+            period = std::min(hit.width, hit.height) / (2 * p.count);
+        return wave(std::hypot(x, y) / period + p.offset, p);
+    case line_pattern_kind::lines:
+        return std::any_of(p.at.begin(), p.at.end(), [&](double at) {
+            return std::fabs(a / hit.width + 0.5 - at) < p.width / 2;
+        });
+    case line_pattern_kind::distance:
+        return wave(hit.tau / period + p.offset, p);
+    case line_pattern_kind::rainbow:
+        break;
+    }
+    return along_a; /* rainbow: its hue */
+}
+
+} // namespace
+
+rgba pattern_colour(const line_pattern &pattern, const light_hit &hit)
+{
+    double share = bright_share(pattern, hit);
+    if (pattern.kind == line_pattern_kind::rainbow)
+        return hue_colour(share);
+    return mixed(pattern.background, pattern.foreground, share);
+}
+
+double coordinate_difference(double a, double b, bool wraps)
+{
+    return wraps ? a - b - std::round(a - b) : a - b;
+}
+
+line_tracer::line_tracer(const line_setup &line_setup, const view &view)
+    : setup(line_setup), camera(view)
+{
+    forward = normalized(view.target - view.eye);
+    camera_up = normalized(view.up);
+    picture_up = normalized(without_part_along(camera_up, forward));
+}
+
+vec3 line_tracer::view_from_camera(vec3 x) const
+{
+    return camera.orthographic ? forward : normalized(x - camera.eye);
+}
+
+vec3 line_tracer::view_from_line_eye(vec3 x) const
+{
+    switch (setup.eye_kind) {
+    case line_eye_kind::point:
+        return normalized(x - setup.eye);
+    case line_eye_kind::direction:
+        return normalized(setup.eye);
+    case line_eye_kind::camera:
+        break;
+    }
+    return view_from_camera(x);
+}
+
+light_hit line_tracer::meet(vec3 x, vec3 n, const line_light &light) const
+{
+    vec3 v = view_from_line_eye(x), r = v - (2 * dot(v, n)) * n;
+    switch (setup.family) {
+    case line_family::isophote:
+        return isophote(n, setup.has_axis ? setup.axis : -1 * v);
+    case line_family::zebra:
+        return zebra(r, setup.has_axis ? setup.axis : picture_up);
+    case line_family::environment:
+        return environment(r, setup.has_axis ? setup.axis : camera_up);
+    case line_family::highlight:
+        r = dot(v, n) > 0 ? -1 * n : n; /* of the two ways, the one that faces the eye */
+        break;
+    case line_family::reflection:
+        break;
+    }
+    if (light.kind == line_light_kind::tunnel)
+        return meet_tunnel(x, r, light);
+    if (light.kind == line_light_kind::sphere)
+        return meet_sphere(r, light);
+    return meet_plane(x, r, setup.family == line_family::highlight, light);
+}
+
+bool line_tracer::at_turn(vec3 x, vec3 n) const
+{
+    return setup.family == line_family::highlight &&
+           std::fabs(dot(view_from_line_eye(x), n)) < 1e-4;
+}
+
+rgba line_tracer::colour(vec3 x, vec3 n) const
+{
+    rgba colour = {0, 0, 0, 0};
+    bool any = false;
+    double shade = 0.3 + 0.7 * std::fabs(dot(n, view_from_camera(x)));
+    rgba base = {setup.base.r * shade, setup.base.g * shade, setup.base.b * shade, setup.base.a};
+    size_t n_lights = setup.meets_lights() ? setup.lights.size() : 1;
+    for (size_t i = 0; i < n_lights; i++) {
+        const line_light &light = setup.lights[i];
+        light_hit hit = meet(x, n, light);
+        if (!hit.met)
+            continue;
+        any = true;
+        colour =
+            over(colour, mixed(base, pattern_colour(light.pattern, hit), light.pattern.opacity));
+    }
+    return any ? colour : setup.miss;
+}

@@ -1,0 +1,95 @@
+/* Line families, lights and patterns as shaders/README.md defines them, in double and one sample at
+ * a time: written from its formulas alone, so that it judges the shaders. */
+#ifndef SHEEN_TESTS_ORACLE_LINES_H
+#define SHEEN_TESTS_ORACLE_LINES_H
+
+#include <string>
+#include <vector>
+
+#include "tests/oracle/vec.h"
+#include "tests/oracle/view.h"
+
+enum class line_family { reflection, highlight, isophote, zebra, environment };
+enum class line_light_kind { rectangle, plane, tunnel, sphere };
+enum class line_pattern_kind { stripes, lattice, circles, lines, rainbow, distance };
+enum class line_eye_kind { camera, point, direction };
+
+struct rgba {
+    double r = 0, g = 0, b = 0, a = 1; /* [0,1], as displayed */
+};
+
+struct line_pattern {
+    line_pattern_kind kind = line_pattern_kind::stripes;
+    double count = 40, period = 0; /* period 0: by count */
+    double duty = 0.5, rotation_deg = 0, offset = 0, soft = 0, opacity = 1;
+    std::vector<double> at = {0.5}; /* lines */
+    double width = 0.01;            /* lines */
+    rgba foreground = {1, 1, 1, 1}, background = {0, 0, 0, 1};
+};
+
+struct line_light {
+    line_light_kind kind = line_light_kind::rectangle;
+    bool one_sided = false;
+    vec3 centre, u, v;
+    line_pattern pattern;
+};
+
+/* All that a frame's lines are made of. */
+struct line_setup {
+    line_family family = line_family::reflection;
+    bool has_axis = false;
+    vec3 axis; /* isophote, zebra, environment */
+    line_eye_kind eye_kind = line_eye_kind::camera;
+    vec3 eye; /* the point, or the direction of view */
+    std::vector<line_light> lights;
+    /* sheen's own, as #rrggbb says them */
+    rgba base = {0xb3 / 255.0, 0xb8 / 255.0, 0xbf / 255.0, 1};
+    rgba miss = {0x29 / 255.0, 0x30 / 255.0, 0x3b / 255.0, 1};
+
+    /* Whether the first light plays a part, and not its pattern alone. */
+    bool meets_lights() const
+    {
+        return family == line_family::reflection || family == line_family::highlight;
+    }
+};
+
+/* Where the ray of a surface point meets a light. */
+struct light_hit {
+    bool met = false;
+    double s = 0, t = 0;
+    double tau = 0; /* length of the ray; 0 where the light is at infinity */
+    double width = 0, height = 0;
+    bool s_wraps = false, t_wraps = false; /* 0 and 1 are the same place */
+    double inside = 0; /* how far within the light's border, in s or t; below 0: beyond it */
+};
+
+class line_tracer
+{
+  public:
+    line_tracer(const line_setup &setup, const view &camera);
+    /* For the surface point x with unit normal n, along the winding. */
+    light_hit meet(vec3 x, vec3 n, const line_light &light) const;
+    /* The colour of one sample there, lights over each other. */
+    rgba colour(vec3 x, vec3 n) const;
+    /* Whether rounding decides which way a highlight's normal faces. */
+    bool at_turn(vec3 x, vec3 n) const;
+    const line_setup setup;
+
+  private:
+    vec3 view_from_camera(vec3 x) const;
+    vec3 view_from_line_eye(vec3 x) const;
+    view camera;
+    vec3 forward, picture_up, camera_up;
+};
+
+/* The colour of a pattern at a place on its light: foreground or background, or between them where
+ * an edge is soft. Without opacity. */
+rgba pattern_colour(const line_pattern &pattern, const light_hit &hit);
+
+/* a - b for coordinates of a light, the short way round where they wrap. */
+double coordinate_difference(double a, double b, bool wraps);
+
+/* Options of `sheen render` for all of it; every number with 17 digits. */
+std::vector<std::string> line_options(const line_setup &setup);
+
+#endif
