@@ -88,6 +88,8 @@ oracle() {
         tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
     run lines "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/creases.obj tests/models/pole.obj "$car"
+    run fine "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
+    run isophotes "$build/tests/test_isophotes" "$build/sheen" tests/models/body.obj
     run mirror "$build/tests/test_mirror" "$build/sheen"
 }
 

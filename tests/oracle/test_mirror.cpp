@@ -15,7 +15,7 @@ namespace
 const double max_normal_error = 1e-6; /* rad from (0,0,1) */
 const double max_light_px = 1e-3;     /* how far on the picture (s,t) belong from where they are */
 const double max_bend_px = 1e-3;
-const int stripe_count = 24;
+const double max_phase_error = 1e-4; /* of a period */
 const double stripe_duty = 0.4;
 
 struct rectangle {
@@ -41,17 +41,23 @@ bool mirror_light(const projector &camera, const rectangle &light, double x, dou
     return distance > 0 && *s >= 0 && *s <= 1 && *t >= 0 && *t <= 1;
 }
 
+struct scene {
+    view camera;
+    rectangle light;
+    int stripe_count;
+};
+
 struct figures {
     size_t hit = 0, on_light = 0, wrong_miss = 0, wrong_colour = 0, edges = 0;
     double normal = 0, height = 0, bend_px = 0;
-    std::vector<double> light_px;
+    std::vector<double> light_px, phase;
 };
 
 /* s and t on every pixel against the closed form. Within 1e-5 of the rectangle's edge a pixel may
  * be on either side. */
-void measure_light(const projector &camera, const rectangle &light, const planes &planes,
-                   figures *f)
+void measure_light(const projector &camera, const scene &scene, const planes &planes, figures *f)
 {
+    const rectangle &light = scene.light;
     for (size_t i = 0; i < planes.face.size(); i++) {
         if (!planes.hit(i))
             continue;
@@ -69,6 +75,7 @@ void measure_light(const projector &camera, const rectangle &light, const planes
         if (!expected || !found)
             continue;
         f->on_light++;
+        f->phase.push_back(std::fabs(planes.s[i] - s) * scene.stripe_count);
         double right_s, right_t, down_s, down_t;
         mirror_light(camera, light, x + 1, y, &right_s, &right_t);
         mirror_light(camera, light, x, y + 1, &down_s, &down_t);
@@ -117,7 +124,7 @@ double straightness(const std::vector<point> &points)
 }
 
 /* Every stripe edge, located along rows between pixels by s, must be a straight line. */
-void measure_edges(const planes &planes, figures *f)
+void measure_edges(const planes &planes, int stripe_count, figures *f)
 {
     std::map<long, std::vector<point>> edges; /* by twice the period, odd for the falling edge */
     for (int y = 0; y < planes.height_px; y++)
@@ -146,9 +153,9 @@ void measure_edges(const planes &planes, figures *f)
 
 /* Away from edges by a pixel and a half, all bright pixels look alike, all dark ones too, and
  * bright is brighter. */
-void measure_colours(const projector &camera, const rectangle &light, const planes &planes,
-                     figures *f)
+void measure_colours(const projector &camera, const scene &scene, const planes &planes, figures *f)
 {
+    const rectangle &light = scene.light;
     float tone[2] = {NAN, NAN};
     for (int y = 2; y < planes.height_px - 2; y++)
         for (int x = 2; x < planes.width_px - 2; x++) {
@@ -159,8 +166,8 @@ void measure_colours(const projector &camera, const rectangle &light, const plan
                 int dx = corner & 1 ? 1 : -1, dy = corner & 2 ? 1 : -1;
                 lit = mirror_light(camera, light, x + 0.5 + 1.5 * dx, y + 0.5 + 1.5 * dy, &s, &t) &&
                       planes.hit(i + (size_t)(dx + dy * planes.width_px)) && lit;
-                low = std::fmin(low, s * stripe_count);
-                high = std::fmax(high, s * stripe_count);
+                low = std::fmin(low, s * scene.stripe_count);
+                high = std::fmax(high, s * scene.stripe_count);
             }
             double phase = low - std::floor(low), width = high - low;
             bool bright = phase + width < stripe_duty;
@@ -173,11 +180,6 @@ void measure_colours(const projector &camera, const rectangle &light, const plan
         }
     f->wrong_colour += !(tone[1] > tone[0]);
 }
-
-struct scene {
-    view camera;
-    rectangle light;
-};
 
 std::vector<scene> make_scenes()
 {
@@ -198,15 +200,21 @@ std::vector<scene> make_scenes()
     flat.name = "ortho";
     flat.orthographic = true;
     flat.ortho_height = 1.7;
-    return {{oblique, {{0.2, 3, 3.5}, {5, 0.4, 0.3}, {-0.2, 3.5, -2.5}}},
-            {steep, {{0, 0.3, 3}, {3.5, 1, 0}, {-0.7, 3, 0.4}}},
-            {flat, {{0.2, 3, 2.5}, {3, 0.4, 0.3}, {-0.2, 3.5, -2.5}}}};
+    view diagonal = oblique;
+    diagonal.name = "45 deg";
+    diagonal.eye = {0, -3, 3};
+    diagonal.target = {0, 0, 0};
+    return {{oblique, {{0.2, 3, 3.5}, {5, 0.4, 0.3}, {-0.2, 3.5, -2.5}}, 24},
+            {steep, {{0, 0.3, 3}, {3.5, 1, 0}, {-0.7, 3, 0.4}}, 24},
+            {flat, {{0.2, 3, 2.5}, {3, 0.4, 0.3}, {-0.2, 3.5, -2.5}}, 24},
+            {diagonal, {{0, 3, 3}, {40, 8, 0}, {-2, 8, -8}}, 400}};
 }
 
 void judge(const std::string &sheen, const std::string &plane, scene scene, verdict *verdict)
 {
     char pattern[64];
-    std::snprintf(pattern, sizeof pattern, "stripes:count=%d,duty=%g", stripe_count, stripe_duty);
+    std::snprintf(pattern, sizeof pattern, "stripes:count=%d,duty=%g", scene.stripe_count,
+                  stripe_duty);
     planes planes;
     int exit_code;
     std::string wrong = render_view(sheen, plane, &scene.camera, "P,N,ptex,light",
@@ -218,12 +226,14 @@ void judge(const std::string &sheen, const std::string &plane, scene scene, verd
         return;
     projector camera(scene.camera);
     figures f;
-    measure_light(camera, scene.light, planes, &f);
-    measure_edges(planes, &f);
-    measure_colours(camera, scene.light, planes, &f);
+    measure_light(camera, scene, planes, &f);
+    measure_edges(planes, scene.stripe_count, &f);
+    measure_colours(camera, scene, planes, &f);
+    double phase = quantile(f.phase, 0.999);
     double light_px = quantile(f.light_px, 0.999);
-    std::printf("%-8s %7zu %8zu | %8.1e %8.1e %8.1e | %5zu %8.1e\n", scene.camera.name.c_str(),
-                f.hit, f.on_light, f.normal, f.height, light_px, f.edges, f.bend_px);
+    std::printf("%-8s %7zu %8zu | %8.1e %8.1e %8.1e | %5zu %8.1e | %8.1e\n",
+                scene.camera.name.c_str(), f.hit, f.on_light, f.normal, f.height, light_px, f.edges,
+                f.bend_px, phase);
     std::string what = scene.camera.name + ": ";
     verdict->check(f.on_light > 20000, what + "too few pixels see the light");
     verdict->check(f.edges >= 8, what + "too few stripe edges to judge");
@@ -231,6 +241,7 @@ void judge(const std::string &sheen, const std::string &plane, scene scene, verd
     verdict->at_most(f.height, max_normal_error, what + "|z|");
     verdict->at_most(light_px, max_light_px, what + "light s, t p99.9 (px)");
     verdict->at_most(f.bend_px, max_bend_px, what + "bend of a stripe edge (px)");
+    verdict->at_most(phase, max_phase_error, what + "phase of a stripe p99.9 (periods)");
     verdict->check(f.wrong_miss == 0, what + std::to_string(f.wrong_miss) +
                                           " pixels on the wrong side of the light's border");
     verdict->check(f.wrong_colour == 0,
@@ -266,8 +277,8 @@ int main(int argc, char **argv)
     std::vector<std::string> given = list_models(std::vector<std::string>(argv + 2, argv + argc));
     std::string plane = given.empty() ? write_plane(folder) : given[0];
     verdict verdict;
-    std::printf("%-8s %7s %8s | %8s %8s %8s | %5s %8s\n", "view", "hit px", "light px", "N, rad",
-                "|z|", "s,t, px", "edges", "bend, px");
+    std::printf("%-8s %7s %8s | %8s %8s %8s | %5s %8s | %s\n", "view", "hit px", "light px",
+                "N, rad", "|z|", "s,t, px", "edges", "bend, px", "phase");
     for (const scene &scene : make_scenes())
         judge(argv[1], plane, scene, &verdict);
     return verdict.finish();
