@@ -25,6 +25,8 @@ float twice_integrated(float phase, float d)
 // goes to its mean d.
 float stripe(float phase, vec2 g, float d)
 {
+    if (d >= 1.0)  // its edges meet and cancel
+        return 1.0;
     g = abs(g);
     float reach = 0.5 * (g.x + g.y), thin = min(g.x, g.y);
     if (reach < 0.25) {
