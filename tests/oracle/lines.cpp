@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/oracle/fault.h"
+
 namespace
 {
 
@@ -18,6 +20,8 @@ double turn_about(vec3 r, vec3 u, vec3 v)
 {
     vec3 axis = normalized(v);
     vec3 e1 = normalized(without_part_along(u, axis));
+    if (has_fault("turn"))
+        r = r + 1e-4 * e1;
     return std::atan2(dot(r, cross(axis, e1)), dot(r, e1)) / (2 * M_PI);
 }
 
@@ -71,7 +75,7 @@ light_hit meet_tunnel(vec3 x, vec3 r, const line_light &light)
     hit.inside = root / (a * radius * radius);
     if (!(root >= 0 && a > 0))
         return hit;
-    hit.tau = (std::sqrt(root) - b) / a;
+    hit.tau = ((has_fault("side") ? -1 : 1) * std::sqrt(root) - b) / a;
     hit.met = hit.tau > 0;
     vec3 y = from + hit.tau * r;
     hit.s = 0.5 + turn_about(y, light.u, light.v);
@@ -96,7 +100,7 @@ light_hit isophote(vec3 n, vec3 d)
 {
     light_hit hit;
     hit.met = true;
-    hit.s = angle(n, d) / M_PI;
+    hit.s = angle(n, d) / (has_fault("isophote") ? M_PI * (1 + 1e-4) : M_PI);
     hit.t = 0.5;
     hit.width = 180;
     hit.height = 360;
@@ -141,7 +145,7 @@ double bright_until(double phase, double duty)
 double wave(double phase, const line_pattern &pattern)
 {
     if (pattern.soft == 0)
-        return phase - std::floor(phase) < pattern.duty ? 1 : 0;
+        return phase - std::floor(phase) < pattern.duty + (has_fault("duty") ? 0.01 : 0) ? 1 : 0;
     double low = phase - pattern.soft / 2, high = phase + pattern.soft / 2;
     return (bright_until(high, pattern.duty) - bright_until(low, pattern.duty)) / pattern.soft;
 }
@@ -232,6 +236,8 @@ vec3 line_tracer::view_from_camera(vec3 x) const
 
 vec3 line_tracer::view_from_line_eye(vec3 x) const
 {
+    if (has_fault("eye"))
+        return view_from_camera(x);
     switch (setup.eye_kind) {
     case line_eye_kind::point:
         return normalized(x - setup.eye);
@@ -246,6 +252,8 @@ vec3 line_tracer::view_from_line_eye(vec3 x) const
 light_hit line_tracer::meet(vec3 x, vec3 n, const line_light &light) const
 {
     vec3 v = view_from_line_eye(x), r = v - (2 * dot(v, n)) * n;
+    if (has_fault("mirror"))
+        r = r + 1e-4 * n;
     switch (setup.family) {
     case line_family::isophote:
         return isophote(n, setup.has_axis ? setup.axis : -1 * v);

@@ -1,5 +1,6 @@
 /* Line families, lights and patterns as shaders/README.md defines them, in double and one sample at
- * a time: written from its formulas alone, so that it judges the shaders. */
+ * a time: written from its formulas alone, so that it judges the shaders. FAKE_FAULTS breaks some
+ * of them, for self_test.sh: sheen then differs from them as it would if it were wrong. */
 #ifndef SHEEN_TESTS_ORACLE_LINES_H
 #define SHEEN_TESTS_ORACLE_LINES_H
 

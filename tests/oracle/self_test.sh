@@ -98,5 +98,14 @@ finds test_mirror "" normal,position,bend,miss,colour \
     "normal (rad)" "|z|" "light s, t" "bend of a stripe edge" "wrong side of the light" \
     "wrong colour"
 
+# The formulas of lines are broken instead, for the program itself.
+fake=$folder/../sheen
+clean test_lines "$work/cube.obj"
+finds test_lines "$work/cube.obj" mirror,turn,side,isophote,duty,eye \
+    "rectangle stripes: (s,t) of P and N" "sphere rainbow: (s,t) of the surface" \
+    "narrow tunnel distance: " "rectangle stripes: change of (s,t)" \
+    "isophote axis: (s,t) of P and N" "eye at a point: (s,t) of P and N" \
+    "rectangle stripes: " "pixels of the wrong colour"
+
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -44,6 +44,16 @@ double largest_line(const std::vector<double> &run)
     return largest;
 }
 
+/* Whether the pixel and all about it are on the surface: it shows nothing else. */
+bool is_surrounded(const planes &planes, int x, int y)
+{
+    for (int k = 0; k < 9; k++)
+        if (!planes.hit((size_t)(y + k / 3 - 1) * (size_t)planes.width_px +
+                        (size_t)(x + k % 3 - 1)))
+            return false;
+    return true;
+}
+
 /* Whether the pattern is far finer than the pixel there, and its neighbours see the light too. */
 bool is_fine(const planes &planes, int x, int y)
 {
@@ -80,6 +90,35 @@ figures measure(const planes &planes, double mean)
         }
     }
     return f;
+}
+
+/* Under a light that is all foreground or all background every pixel is. */
+void judge_whole(const std::string &sheen, const model &model, const view &chosen, verdict *verdict)
+{
+    for (double whole : {0.0, 1.0})
+        for (double periods : {40.0, count}) {
+            line_setup setup;
+            setup.family = line_family::zebra;
+            setup.lights.resize(1);
+            setup.lights[0].u = {1, 0, 0};
+            setup.lights[0].v = {0, 1, 0};
+            setup.lights[0].pattern.duty = whole;
+            setup.lights[0].pattern.count = periods;
+            view view = chosen;
+            planes planes;
+            int exit_code;
+            std::string wrong = render_view(sheen, model.path, &view, "P,N,ptex,light,dlight",
+                                            line_options(setup), &planes, &exit_code);
+            if (!verdict->check(wrong.empty(), wrong))
+                return;
+            size_t off = 0;
+            for (int y = 1; y + 1 < height_px; y++)
+                for (int x = 1; x + 1 < width_px; x++)
+                    off += is_surrounded(planes, x, y) &&
+                           planes.green[(size_t)y * width_px + (size_t)x] != (float)whole;
+            verdict->check(off == 0, model.name + " duty " + std::to_string(whole) + ": " +
+                                         std::to_string(off) + " pixels of another colour");
+        }
 }
 
 struct fine_pattern {
@@ -158,6 +197,7 @@ int main(int argc, char **argv)
         view.fov_deg = 30;
         view.width_px = width_px;
         view.height_px = height_px;
+        judge_whole(argv[1], model, view, &verdict);
         for (const fine_pattern &pattern : patterns)
             judge(argv[1], model, view, pattern, &verdict);
     }
