@@ -6,6 +6,9 @@
 #include "server/gpu/mesh.h"
 #include "server/limit/vec.h"
 
+/* Squares of lengths on the light stay normal numbers in single precision. */
+static const double LEAST_LENGTH = 1e-18, LARGEST_LENGTH = 1e18;
+
 static bool finite3(const double v[3])
 {
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
@@ -42,6 +45,12 @@ static bool check_light(const struct light *light, struct error *error)
 {
     if (!finite3(light->centre) || !finite3(light->u) || !finite3(light->v))
         return error_set(error, ERROR_REQUEST, "light: centre, u and v must be finite numbers");
+    const double sides[] = {vec_length(get(light->u)), vec_length(get(light->v))};
+    for (int k = 0; k < 2; k++)
+        if (!(sides[k] == 0) && !(sides[k] >= LEAST_LENGTH && sides[k] <= LARGEST_LENGTH))
+            return error_set(error, ERROR_REQUEST,
+                             "light: %c is %g units long; lines are computed for %g to %g", "uv"[k],
+                             sides[k], LEAST_LENGTH, LARGEST_LENGTH);
     struct vec m = vec_cross(vec_unit(get(light->u)), vec_unit(get(light->v)));
     if (!(vec_length(m) > 1e-9))
         return error_set(error, ERROR_REQUEST,
@@ -70,6 +79,10 @@ static bool check_pattern(const struct pattern *pattern, struct error *error)
         !isfinite(pattern->offset) || pattern->period < 0)
         return error_set(error, ERROR_REQUEST,
                          "pattern: period, rotation and offset must be finite numbers");
+    if (pattern->period > 0 &&
+        !(pattern->period >= LEAST_LENGTH && pattern->period <= LARGEST_LENGTH))
+        return error_set(error, ERROR_REQUEST, "pattern: period %g is not in %g to %g",
+                         pattern->period, LEAST_LENGTH, LARGEST_LENGTH);
     if (pattern->kind == PATTERN_IMAGE && !pattern->image)
         return error_set(error, ERROR_REQUEST, "pattern: kind image without an image");
     if (pattern->kind == PATTERN_LINES &&
@@ -104,7 +117,8 @@ static bool check_eye_off_light(const struct frame_request *request, const struc
     struct vec eye = get(own ? request->lines.eye : request->camera.eye);
     struct vec u = get(light->u), v = get(light->v), to_eye = vec_sub(eye, get(light->centre));
     double off = vec_dot(vec_unit(vec_cross(vec_unit(u), vec_unit(v))), to_eye);
-    return fabs(off) > 1e-9 * (vec_length(u) + vec_length(to_eye)) ||
+    double size = light->kind == LIGHT_RECTANGLE ? vec_length(u) : 0;
+    return fabs(off) > 1e-9 * (size + vec_length(to_eye)) ||
            error_set(error, ERROR_REQUEST,
                      "light: the eye lies in the light's plane: move the eye or the light");
 }

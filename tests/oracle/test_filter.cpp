@@ -17,7 +17,7 @@ namespace
 {
 
 const int samples = 16; /* a pixel, each way */
-/* Over all pixels of a frame, in 1/255: what issue 4 asks for. */
+/* Over all pixels of a frame, in 1/255. */
 const double max_mean = 1, max_p99 = 8;
 /* The car is the exception: at 640 x 480 many of its parts are narrower than two pixels, and what
  * no pixel's centre sees cannot be known from the pixels around. */
