@@ -7,7 +7,10 @@
 
 layout(local_size_x = 64) in;
 
-const int STEPS = 12;
+// A solution may lie this many sub-patches away from its guess.
+const int PATCHES = 4;
+// Newton's method that is still so far from the ray inside a sub-patch will not meet it there.
+const float STUCK_PX = 0.5;
 
 struct Hit {
     Node node;
@@ -35,47 +38,54 @@ bool meet_limit(Node node, Ray r, inout Surface s)
     return z > 0.0 && distance(s.s, node.origin) < 2.0 * s.scale;
 }
 
-// From a guess to the place on the ray; not found when there is none near.
-Solution solve(uvec2 guess, Ray r)
+// The node and its coordinates where a step from `xy` leads, over borders if need be. False where it
+// leads into a hole.
+bool walk(inout Node node, inout vec2 xy)
+{
+    if (all(greaterThanEqual(xy, vec2(0.0))) && all(lessThanEqual(xy, vec2(1.0))))
+        return true;
+    Place place = place_of(node, xy);
+    settle(place);
+    node_under(place, node, xy);
+    return node.kind != HOLE;
+}
+
+// From the guess that pixel q has to the place on the ray; not found when there is none near.
+//
+// A sub-patch is fetched and projected once and left only when Newton's method has settled in it or
+// runs out of it: what it says of a place beyond its border is a guess for the next.
+Solution solve(ivec2 q, uvec2 guess, Ray r)
 {
     Solution result;
     result.found = false;
-    uint index = guess.x;
-    Node node = node_load(index);
+    Node node = node_load(guess.x);
     vec2 xy = guess_xy(node, guess.y);
-    for (int i = 0; i < STEPS; i++) {
-        vec2 step_st, net[16];
+    float px = pixel_units(depth_of(texelFetch(seen_depth, q, 0).x));
+    for (int i = 0; i < PATCHES; i++) {
+        vec2 net[16];
         vec3 points16[16];
         float scale;
         mat3 frame = frame_of(node);
         SubPatch own = sub_patch_at(node, xy);
         fetch_points(own, points16, scale);
-        Surface s = own.limit ? limit_of(node, frame, scale)
-                              : patch_at(node, frame, points16, scale, own.st);
         project(node, frame, points16, scale, r, net);
-        vec2 f = s.s.xy - r.start - r.slope * s.s.z;
-        newton_step(net, own.st, step_st);
-        if (own.limit) {
-            result.found = meet_limit(node, r, s);
-            result.hit = Hit(node, xy, own.scale, s);
+        vec2 st = own.st;
+        float residual = solve_patch(net, scale / px, st);
+        bool inside = all(greaterThanEqual(st, vec2(0.0))) && all(lessThanEqual(st, vec2(1.0)));
+        // Where the ray touches the surface, steps get shorter slowly; where it passes by, they do not.
+        bool settled = inside && (residual < close_enough(scale / px) || residual > STUCK_PX);
+        if (settled || own.limit || i == PATCHES - 1) {
+            Surface s = own.limit ? limit_of(node, frame, scale)
+                                  : patch_at(node, frame, points16, scale, st);
+            float off = length(s.s.xy - r.start - r.slope * s.s.z) / pixel_units(s.s.z);
+            bool is_near = off < 4.0 * close_enough(scale / pixel_units(s.s.z)) && s.s.z > 0.0;
+            result.found = own.limit ? meet_limit(node, r, s) : is_near && inside;
+            result.hit = Hit(node, ldexp(own.origin + st, -own.scale), own.scale, s);
             break;
         }
-        float residual = length(f) / pixel_units(s.s.z);
-        float enough = close_enough(scale / pixel_units(s.s.z));
-        bool last = i == STEPS - 1 || step_st == vec2(0.0);
-        if (residual < enough || last || !(s.s.z > 0.0)) {
-            result.found = residual < 4.0 * enough && s.s.z > 0.0;
-            result.hit = Hit(node, xy, own.scale, s);
+        xy = ldexp(own.origin + st, -own.scale);
+        if (!walk(node, xy))
             break;
-        }
-        xy += ldexp(step_st, -own.scale);
-        if (any(lessThan(xy, vec2(0.0))) || any(greaterThan(xy, vec2(1.0)))) {
-            Place place = place_of(node, xy);
-            settle(place);
-            index = node_under(place, node, xy);
-            if (node.kind == HOLE)
-                break;
-        }
     }
     return result;
 }
@@ -94,7 +104,7 @@ void main()
         uvec2 guess = texelFetch(seen, q, 0).xy;
         if (guess.x == NONE)
             continue;
-        Solution other = solve(guess, r);
+        Solution other = solve(q, guess, r);
         if (other.found && (!best.found || other.hit.surface.s.z < best.hit.surface.s.z))
             best = other;
     }
