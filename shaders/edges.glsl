@@ -3,26 +3,17 @@
 // Around each pixel's hit the surface is known to second order: a paraboloid from position, normal
 // and shape operator. Where its own piece ends is known too: `border`. So what a pixel at an edge shows
 // can be told from the hits of the 3 x 3 pixels around, without asking the surface again:
-//   edges_find   lists the pixels whose neighbours their own paraboloid does not explain, and those
-//                over which the normal turns so far that one footprint cannot tell;
-//   edges_shade  for each, meets rays all over the pixel with the pieces of surface around it, and
-//                shades where each meets.
+//   edges_find   lists the pixels whose neighbours their own paraboloid does not explain, and apart
+//                from them those over which the normal turns so far that one footprint cannot tell;
+//   edges_shade  for each of the first, meets rays all over the pixel with the pieces of surface
+//                around it, and shades the share of each;
+//   turns_shade  for each of the others, shades the pixel's quarters.
 // At the rim of a tile the pixels beyond are not known: an edge there is seen from one side only.
 
 layout(binding = 0, rgba32f) readonly uniform image2D position;  // as in planes.glsl
 layout(binding = 1, rgba32f) readonly uniform image2D normal;
 layout(binding = 2, rg32f) readonly uniform image2D shape;
 layout(binding = 4, r32ui) readonly uniform uimage2D border;
-
-// The pixels listed: x | y << 16 | SMOOTH where no edge is near, but the normal turns far. The first
-// three words are a dispatch.
-const uint SMOOTH = 0x80000000u;
-
-layout(std430, binding = 0) buffer Edges {
-    uint groups_x, groups_y, groups_z;
-    uint n_edges;
-    uint edges[];
-};
 
 struct Hit {
     vec3 x;      // relative to the eye, world axes

@@ -1,10 +1,22 @@
-// Lists the pixels at edges, and writes the coverage of all others: a pixel whose border runs
-// through it, or whose neighbour to a side is not where its paraboloid says. (An edge that runs
+// Lists the pixels at edges and those that turn, and writes the coverage of all others. At an edge is a
+// pixel whose border runs through it, or whose neighbour to a side is not where its paraboloid says. (An edge that runs
 // through a pixel has the centre of one of these four on its other side.)
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
+
+// The pixels listed: x | y << 16. The first three words are the dispatch that shades them.
+layout(std430, binding = 0) buffer Edges {
+    uint groups_x, groups_y, groups_z;
+    uint n_edges;
+    uint edges[];
+};
+layout(std430, binding = 2) buffer Turns {
+    uint turns_groups_x, turns_groups_y, turns_groups_z;
+    uint n_turns;
+    uint turns[];
+};
 
 uniform uint n_blocks;
 
@@ -49,11 +61,16 @@ void main()
         at_edge = at_edge || is_hit != other || (is_hit && off_paraboloid(own, place.xyz) > SAME_PX);
     }
     imageStore(coverage, p, vec4(is_hit));
-    bool turns = is_hit && turn_over_pixel(p, own) > MOST_TURN;
-    if (at_edge || turns) {
+    uint at = uint(p.x) | uint(p.y) << 16;
+    if (at_edge) {
         uint slot = atomicAdd(n_edges, 1u);
         if ((slot & 63u) == 0u)
             atomicAdd(groups_x, 1u);
-        edges[slot] = uint(p.x) | uint(p.y) << 16 | (at_edge ? 0u : SMOOTH);
+        edges[slot] = at;
+    } else if (is_hit && turn_over_pixel(p, own) > MOST_TURN) {
+        uint slot = atomicAdd(n_turns, 1u);
+        if ((slot & 63u) == 0u)
+            atomicAdd(turns_groups_x, 1u);
+        turns[slot] = at;
     }
 }

@@ -24,7 +24,9 @@ void stage_edges(struct renderer *r, const struct tile *tile)
     if (blocks_leave_gaps(r, tile))
         glClearTexImage(target->coverage, 0, GL_RED, GL_FLOAT, nothing);
     glNamedBufferSubData(target->edges, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->turns, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->edges);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->turns);
     glBindImageTexture(0, target->position, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);

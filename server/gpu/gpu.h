@@ -50,7 +50,7 @@ struct target {
     GLuint light_change;            /* RGBA32F */
     GLuint coverage;                /* R32F: share of the pixel that shows surface */
     GLuint unsolved;                /* buffer: shaders/planes.glsl */
-    GLuint edges;                   /* buffer: shaders/edges.glsl */
+    GLuint edges, turns;            /* buffers: shaders/edges_find.comp.glsl */
 };
 
 /* One mesh of polygons on the device (mesh.h). */
@@ -86,6 +86,9 @@ struct kept {
 
 enum { MAX_PROGRAM_SETS = 16 };
 
+/* Which pixels a program of stage 3 shades: all, all by one sample each, those listed. */
+enum shaded { SHADED_ALL, SHADED_UNFILTERED, SHADED_EDGES, SHADED_TURNS, SHADED_KINDS };
+
 struct renderer {
     struct egl egl;
     struct renderer_info info;
@@ -95,11 +98,9 @@ struct renderer {
     struct polygons polygons;
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
-    /* By line family, light, pattern, soft edges, one sample a pixel; 0 until first asked for. */
-    GLuint shade[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2][2];
+    /* By line family, light, pattern, soft edges and pixels; 0 until first asked for. */
+    GLuint shade[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2][SHADED_KINDS];
     GLuint edges_find;
-    /* The same of the pixels at edges. */
-    GLuint shade_edges[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2];
     GLuint view_buffer, light_buffer, piece_buffer;
     GLuint block_buffer;  /* pieces.block of the tile whose planes the target holds */
     GLuint piece_texture; /* of piece_buffer */

@@ -27,26 +27,28 @@ static bool is_at_infinity(enum line_family family)
     return family == LINES_ISOPHOTE || family == LINES_ZEBRA || family == LINES_ENVIRONMENT;
 }
 
-/* The program of all covered pixels, or of those listed at edges. */
 static GLuint shade_program(struct renderer *r, const struct frame_request *request,
-                            const struct light *light, bool edges, struct error *error)
+                            const struct light *light, enum shaded which, struct error *error)
 {
 #define COMMON "view.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
     static const char *const all[] = {COMMON, "blocks.glsl", "shade.comp.glsl", NULL};
-    static const char *const listed[] = {COMMON, "edges.glsl", "edges_shade.comp.glsl", NULL};
+    static const char *const edges[] = {COMMON, "edges.glsl", "pieces.glsl",
+                                        "edges_shade.comp.glsl", NULL};
+    static const char *const turns[] = {COMMON, "edges.glsl", "pieces.glsl",
+                                        "turns_shade.comp.glsl", NULL};
 #undef COMMON
+    static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns};
     int family = request->lines.family, pattern = light->pattern.kind;
     int kind = is_at_infinity(request->lines.family) ? 0 : (int)light->kind;
     bool soft = light->pattern.soft > 0;
-    GLuint *program = edges ? &r->shade_edges[family][kind][pattern][soft]
-                            : &r->shade[family][kind][pattern][soft][request->unfiltered];
+    GLuint *program = &r->shade[family][kind][pattern][soft][which];
     if (!*program) {
         char defines[160];
         snprintf(defines, sizeof defines,
                  "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n%s%s", family, kind,
                  pattern, soft ? "#define SOFT\n" : "",
-                 request->unfiltered ? "#define UNFILTERED\n" : "");
-        *program = program_compute(defines, edges ? listed : all, error);
+                 which == SHADED_UNFILTERED ? "#define UNFILTERED\n" : "");
+        *program = program_compute(defines, files[which], error);
     }
     return *program;
 }
@@ -55,9 +57,10 @@ bool stage_shade_init(struct renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const struct frame_request usual;
-    if (!shade_program(r, &usual, &usual.lights[0], false, error) ||
-        !shade_program(r, &usual, &usual.lights[0], true, error))
-        return false;
+    for (enum shaded which = SHADED_ALL; which < SHADED_KINDS; which++)
+        if (which != SHADED_UNFILTERED &&
+            !shade_program(r, &usual, &usual.lights[0], which, error))
+            return false;
     glCreateBuffers(1, &r->light_buffer);
     glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
     glCreateTextures(GL_TEXTURE_2D, 1, &r->blank_texture);
@@ -254,15 +257,13 @@ static void bind_planes(const struct target *target)
 }
 
 /* After all covered pixels, those that stage_edges listed: their colours anew. */
-static void dispatch_edges(const struct target *target, GLuint program)
+static void dispatch_listed(const struct target *target, GLuint program, GLuint list)
 {
     glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
     glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->edges);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, target->edges);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
     glUseProgram(program);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                    GL_COMMAND_BARRIER_BIT);
     glDispatchComputeIndirect(0);
 }
 
@@ -270,10 +271,12 @@ static bool shade_light(struct renderer *r, const struct frame_request *request,
                         struct error *error)
 {
     const struct light *light = &request->lights[i];
-    bool edges = edges_wanted(request);
-    GLuint all = shade_program(r, request, light, false, error);
-    GLuint listed = all && edges ? shade_program(r, request, light, true, error) : 0;
-    if (!all || (edges && !listed))
+    bool closer = edges_wanted(request);
+    GLuint all = shade_program(r, request, light,
+                               request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL, error);
+    GLuint edges = all && closer ? shade_program(r, request, light, SHADED_EDGES, error) : 0;
+    GLuint turns = edges ? shade_program(r, request, light, SHADED_TURNS, error) : 0;
+    if (!all || (closer && !turns))
         return false;
     struct light_block block;
     fill_block(&block, request, i);
@@ -283,8 +286,12 @@ static bool shade_light(struct renderer *r, const struct frame_request *request,
     glUseProgram(all);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     dispatch_blocks(r, all);
-    if (edges)
-        dispatch_edges(&r->target, listed);
+    if (closer) {
+        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                        GL_COMMAND_BARRIER_BIT);
+        dispatch_listed(&r->target, edges, r->target.edges);
+        dispatch_listed(&r->target, turns, r->target.turns);
+    }
     return true;
 }
 

@@ -1,0 +1,28 @@
+// What a listed pixel without an edge shows, over which the normal turns so far that one footprint
+// cannot tell: its own paraboloid in SIDE x SIDE squares, each shaded by itself.
+
+layout(local_size_x = 64) in;
+
+const int SIDE = 2;
+
+void main()
+{
+    if (gl_GlobalInvocationID.x >= n_listed)
+        return;
+    uint at = listed[gl_GlobalInvocationID.x];
+    ivec2 p = ivec2(at & 0xffffu, at >> 16);
+    Piece piece = piece_of(hit_at(p), p, ivec2(0));
+    vec4 under = is_hindmost ? miss : imageLoad(colour, p), sum = vec4(0.0);
+    float n = 0.0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        vec2 d = (vec2(i % SIDE, i / SIDE) + 0.5) / float(SIDE) - 0.5;
+        float z = depth_at(piece, d);
+        if (z < NOWHERE) {
+            sum += premultiplied(
+                shade_ray(piece.hit, pixel_offset(p) + d, d, 1.0 / float(SIDE), z, under));
+            n += 1.0;
+        }
+    }
+    if (n > 0.0)
+        imageStore(colour, p, straight(sum / n));
+}
