@@ -41,15 +41,14 @@ void main()
     Node node = node_load(is_seen ? guess.x : 0u);
     SubPatch own = sub_patch_at(node, guess_xy(node, guess.y));
     mat3 frame = frame_of(node);
-    vec3 points16[16];
-    vec2 net[16];
+    Net points;
     float scale;
-    fetch_points(own, points16, scale);
-    project(node, frame, points16, scale, ray_of(p), net);
+    fetch_points(own, points, scale);
+    FlatNet net = project(node, frame, points, scale, ray_of(p));
     float z = depth_of(texelFetch(seen_depth, p, 0).x);
     float px_per_scale = scale / pixel_units(z);
     float residual = solve_patch(net, px_per_scale, own.st);
-    Surface s = patch_at(node, frame, points16, scale, own.st);
+    Surface s = patch_at(node, frame, points, scale, own.st);
 
     bool inside = all(greaterThanEqual(own.st, vec2(0.0))) && all(lessThanEqual(own.st, vec2(1.0)));
     bool solved = is_seen && residual < close_enough(px_per_scale) && inside && s.s.z > 0.0 && !own.limit;

@@ -15,29 +15,36 @@ Ray ray_of(ivec2 pixel)
     return Ray(q * ray.x, q * ray.y);
 }
 
-// The 16 points' distances from the planes, in units of scale.
-void project(Node node, mat3 frame, vec3 p[16], float scale, Ray r, out vec2 net[16])
+// The 16 points' distances from the two planes, in units of scale, as rows like those of a Net.
+struct FlatNet {
+    vec4 x[4], y[4];
+};
+
+FlatNet project(Node node, mat3 frame, Net p, float scale, Ray r)
 {
     vec3 h = vec3(1.0, 0.0, -r.slope.x) * frame, k = vec3(0.0, 1.0, -r.slope.y) * frame;
     vec2 at = (node.origin.xy - r.start - r.slope * node.origin.z) / scale;
-    for (int i = 0; i < 16; i++)
-        net[i] = at + vec2(dot(h, p[i]), dot(k, p[i]));
+    FlatNet net;
+    for (int j = 0; j < 4; j++) {
+        net.x[j] = at.x + (h.x * p.x[j] + h.y * p.y[j] + h.z * p.z[j]);
+        net.y[j] = at.y + (k.x * p.x[j] + k.y * p.y[j] + k.z * p.z[j]);
+    }
+    return net;
 }
 
 // One step from st; returns f there. The step is cut at half a sub-patch: beyond it the linear
 // model says little. Where the ray touches the surface (no inverse) the step is 0.
-vec2 newton_step(vec2 net[16], vec2 st, out vec2 step_st)
+vec2 newton_step(FlatNet net, vec2 st, out vec2 step_st)
 {
     vec4 bu, du, bv, dv, unused;
     blends(st.x, bu, du, unused);
     blends(st.y, bv, dv, unused);
     vec2 f = vec2(0.0), fu = vec2(0.0), fv = vec2(0.0);
     for (int j = 0; j < 4; j++) {
-        vec2 p0 = net[4 * j], p1 = net[4 * j + 1], p2 = net[4 * j + 2], p3 = net[4 * j + 3];
-        vec2 c = bu.x * p0 + bu.y * p1 + bu.z * p2 + bu.w * p3;
+        vec2 c = vec2(dot(bu, net.x[j]), dot(bu, net.y[j]));
         f += bv[j] * c;
         fv += dv[j] * c;
-        fu += bv[j] * (du.x * p0 + du.y * p1 + du.z * p2 + du.w * p3);
+        fu += bv[j] * vec2(dot(du, net.x[j]), dot(du, net.y[j]));
     }
     float det = fu.x * fv.y - fu.y * fv.x;
     bool touches = !(abs(det) > 1e-7 * (dot(fu, fu) + dot(fv, fv)));
@@ -56,7 +63,7 @@ float close_enough(float px_per_scale)
 
 // Newton's method inside one sub-patch, whose polynomials also hold a little beyond it. Returns
 // how far from the ray, px, the surface then is.
-float solve_patch(vec2 net[16], float px_per_scale, inout vec2 st)
+float solve_patch(FlatNet net, float px_per_scale, inout vec2 st)
 {
     float residual = 1e30, enough = close_enough(px_per_scale);
     for (int i = 0; i < 5; i++) {

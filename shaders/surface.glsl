@@ -27,7 +27,7 @@ mat3 frame_of(Node node)
     mat3 camera = transpose(mat3(axis[0].xyz, axis[1].xyz, axis[2].xyz));
     if (node.kind != CORNER)
         return camera;
-    vec4 q = vec4(point_at(node.first), point_at(node.first + 1u).x);
+    vec4 q = texel_at(node.first);
     vec3 d = 2.0 * q.xyz;
     float xx = q.x * d.x, yy = q.y * d.y, zz = q.z * d.z;
     float xy = q.x * d.y, xz = q.x * d.z, yz = q.y * d.z;
@@ -44,13 +44,14 @@ ivec2 level_scale(Node node, int level)
 
 // The sub-patch of a node that holds a place (limit-surface 4.3, 4.5).
 struct SubPatch {
-    ivec2 scale;  // its parameters run 2^scale times faster than the node's x,y
-    vec2 origin;  // where it begins, in those parameters
-    vec2 st;      // the place, in [0,1]
-    uint texels;  // the scale
-    uint first;   // its 16 points: rows of 4, `stride` texels apart
-    uint stride;
-    bool limit;   // beyond the last level of a CORNER: the extraordinary vertex itself
+    ivec2 scale;   // its parameters run 2^scale times faster than the node's x,y
+    vec2 origin;   // where it begins, in those parameters
+    vec2 st;       // the place, in [0,1]
+    uint scale_at; // the texel of its points' scale
+    uint scale_of; // and which of the four there
+    uint rows;     // its points: 4 rows of 3 texels (server/limit/texels.h)
+    uint column;   // not NONE: these points come first in the rows, whose last drop out
+    bool limit;    // beyond the last level of a CORNER: the extraordinary vertex itself
 };
 
 SubPatch sub_patch_at(Node node, vec2 xy)
@@ -67,18 +68,37 @@ SubPatch sub_patch_at(Node node, vec2 xy)
     ivec2 scale = level_scale(node, last ? level - 1 : level);
     vec2 st = ldexp(xy, scale);
     bvec2 far = bvec2(corner && st.x >= 1.0, (corner && st.y >= 1.0) || (strip && !last));
-    uint texels = node.first + (corner  ? CORNER_HEAD + LEVEL_TEXELS * uint(level - 1)
-                                : strip ? PATCH_TEXELS * uint(level - 1)
-                                        : 0u);
-    uint first = texels + (corner ? uint(far.x) + 5u * uint(far.y) : 1u);
-    return SubPatch(scale, vec2(far), st - vec2(far), texels, first, corner ? 5u : 4u, limit);
+    uint n = uint(max(level, 1)) - 1u;
+    uint patches = node.first + (strip ? PATCH_TEXELS * n : 0u);
+    uint levels = node.first + 1u + (uint(node.levels) + 3u) / 4u + LEVEL_TEXELS * n;
+    return SubPatch(scale, vec2(far), st - vec2(far), corner ? node.first + 1u + n / 4u : patches,
+                    corner ? n % 4u : 0u, corner ? levels + (far.y ? 3u : 0u) : patches + 1u,
+                    corner && !far.x ? levels + 15u : NONE, limit);
 }
 
-void fetch_points(SubPatch patch_, out vec3 p[16], out float scale)
+// 16 points as rows of their x, y and z: of row j, x[j][i].
+struct Net {
+    vec4 x[4], y[4], z[4];
+};
+
+void fetch_points(SubPatch patch_, out Net p, out float scale)
 {
-    scale = point_at(patch_.texels).x;
-    for (uint k = 0u; k < 16u; k++)
-        p[k] = point_at(patch_.first + (k >> 2) * patch_.stride + (k & 3u));
+    scale = texel_at(patch_.scale_at)[patch_.scale_of];
+    bool has_column = patch_.column != NONE;
+    uint at = has_column ? patch_.column : patch_.rows;
+    vec4 x = texel_at(at), y = texel_at(at + 1u), z = texel_at(at + 2u);
+    for (uint j = 0u; j < 4u; j++) {
+        vec4 row_x = texel_at(patch_.rows + 3u * j), row_y = texel_at(patch_.rows + 3u * j + 1u);
+        vec4 row_z = texel_at(patch_.rows + 3u * j + 2u);
+        p.x[j] = has_column ? vec4(x[j], row_x.xyz) : row_x;
+        p.y[j] = has_column ? vec4(y[j], row_y.xyz) : row_y;
+        p.z[j] = has_column ? vec4(z[j], row_z.xyz) : row_z;
+    }
+}
+
+vec3 along_row(Net p, int j, vec4 blend)
+{
+    return vec3(dot(blend, p.x[j]), dot(blend, p.y[j]), dot(blend, p.z[j]));
 }
 
 // The normal of derivatives at st, and |su x sv|^2. Where a derivative vanishes or both are parallel
@@ -100,7 +120,7 @@ vec3 limit_normal(vec3 su, vec3 sv, vec3 suu, vec3 suv, vec3 svv, vec2 st, out f
 }
 
 // The patch of 16 points at st, with first and second derivatives.
-Surface patch_at(Node node, mat3 frame, vec3 p[16], float scale, vec2 st)
+Surface patch_at(Node node, mat3 frame, Net p, float scale, vec2 st)
 {
     vec4 bu, du, ddu, bv, dv, ddv;
     blends(st.x, bu, du, ddu);
@@ -108,13 +128,11 @@ Surface patch_at(Node node, mat3 frame, vec3 p[16], float scale, vec2 st)
     vec3 s = vec3(0.0), su = vec3(0.0), sv = vec3(0.0);
     vec3 suu = vec3(0.0), suv = vec3(0.0), svv = vec3(0.0);
     for (int j = 0; j < 4; j++) {
-        vec3 p0 = p[4 * j], p1 = p[4 * j + 1], p2 = p[4 * j + 2], p3 = p[4 * j + 3];
-        vec3 c = bu.x * p0 + bu.y * p1 + bu.z * p2 + bu.w * p3;
-        vec3 d = du.x * p0 + du.y * p1 + du.z * p2 + du.w * p3;
+        vec3 c = along_row(p, j, bu), d = along_row(p, j, du);
         s += bv[j] * c;
         su += bv[j] * d;
         sv += dv[j] * c;
-        suu += bv[j] * (ddu.x * p0 + ddu.y * p1 + ddu.z * p2 + ddu.w * p3);
+        suu += bv[j] * along_row(p, j, ddu);
         suv += dv[j] * d;
         svv += ddv[j] * c;
     }

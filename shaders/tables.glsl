@@ -6,11 +6,11 @@
 
 const uint NONE = 0xffffffffu;
 const uint REGULAR = 0u, CORNER = 1u, SPLIT = 2u, HOLE = 3u, STRIP = 4u;
-const uint PATCH_TEXELS = 17u, CORNER_HEAD = 2u, LEVEL_TEXELS = 25u;
+const uint PATCH_TEXELS = 13u, LEVEL_TEXELS = 18u;  // server/limit/texels.h
 const uint NO_NORMAL = 0x80u;
 const uint BORDER_SHARP = 15u;
 
-layout(binding = 0) uniform samplerBuffer points[POINT_BANKS];
+layout(binding = 0) uniform samplerBuffer texels[POINT_BANKS];
 layout(binding = POINT_BANKS) uniform usamplerBuffer nodes[NODE_BANKS];
 layout(binding = POINT_BANKS + NODE_BANKS) uniform usamplerBuffer adjacency[ADJACENCY_BANKS];
 
@@ -19,37 +19,37 @@ layout(binding = POINT_BANKS + NODE_BANKS) uniform usamplerBuffer adjacency[ADJA
     uint bank = (i) / uint(size);                                                                  \
     int at = int((i) - bank * uint(size));
 
-vec3 point_at(uint i)
+vec4 texel_at(uint i)
 {
 #if POINT_BANKS == 1
-    return texelFetch(points[0], int(i)).xyz;
+    return texelFetch(texels[0], int(i));
 #else
     LADDER(i, BANK_TEXELS)
     if (bank == 0u)
-        return texelFetch(points[0], at).xyz;
+        return texelFetch(texels[0], at);
     if (bank == 1u)
-        return texelFetch(points[1], at).xyz;
+        return texelFetch(texels[1], at);
 #if POINT_BANKS > 2
     if (bank == 2u)
-        return texelFetch(points[2], at).xyz;
+        return texelFetch(texels[2], at);
 #endif
 #if POINT_BANKS > 3
     if (bank == 3u)
-        return texelFetch(points[3], at).xyz;
+        return texelFetch(texels[3], at);
 #endif
 #if POINT_BANKS > 4
     if (bank == 4u)
-        return texelFetch(points[4], at).xyz;
+        return texelFetch(texels[4], at);
 #endif
 #if POINT_BANKS > 5
     if (bank == 5u)
-        return texelFetch(points[5], at).xyz;
+        return texelFetch(texels[5], at);
 #endif
 #if POINT_BANKS > 6
     if (bank == 6u)
-        return texelFetch(points[6], at).xyz;
+        return texelFetch(texels[6], at);
 #endif
-    return texelFetch(points[POINT_BANKS - 1], at).xyz;
+    return texelFetch(texels[POINT_BANKS - 1], at);
 #endif
 }
 

@@ -62,21 +62,19 @@ Solution solve(ivec2 q, uvec2 guess, Ray r)
     vec2 xy = guess_xy(node, guess.y);
     float px = pixel_units(depth_of(texelFetch(seen_depth, q, 0).x));
     for (int i = 0; i < PATCHES; i++) {
-        vec2 net[16];
-        vec3 points16[16];
+        Net points;
         float scale;
         mat3 frame = frame_of(node);
         SubPatch own = sub_patch_at(node, xy);
-        fetch_points(own, points16, scale);
-        project(node, frame, points16, scale, r, net);
+        fetch_points(own, points, scale);
         vec2 st = own.st;
-        float residual = solve_patch(net, scale / px, st);
+        float residual = solve_patch(project(node, frame, points, scale, r), scale / px, st);
         bool inside = all(greaterThanEqual(st, vec2(0.0))) && all(lessThanEqual(st, vec2(1.0)));
         // Where the ray touches the surface, steps get shorter slowly; where it passes by, they do not.
         bool settled = inside && (residual < close_enough(scale / px) || residual > STUCK_PX);
         if (settled || own.limit || i == PATCHES - 1) {
             Surface s = own.limit ? limit_of(node, frame, scale)
-                                  : patch_at(node, frame, points16, scale, st);
+                                  : patch_at(node, frame, points, scale, st);
             float off = length(s.s.xy - r.start - r.slope * s.s.z) / pixel_units(s.s.z);
             bool is_near = off < 4.0 * close_enough(scale / pixel_units(s.s.z)) && s.s.z > 0.0;
             result.found = own.limit ? meet_limit(node, r, s) : is_near && inside;

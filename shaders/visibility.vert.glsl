@@ -16,10 +16,10 @@ vec3 position_at(Node node, vec2 xy)
     SubPatch own = sub_patch_at(node, xy);
     if (own.limit)
         return node.origin;
-    vec3 p[16];
+    Net points;
     float scale;
-    fetch_points(own, p, scale);
-    return patch_at(node, frame_of(node), p, scale, own.st).s;
+    fetch_points(own, points, scale);
+    return patch_at(node, frame_of(node), points, scale, own.st).s;
 }
 
 void main()

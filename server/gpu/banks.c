@@ -54,8 +54,8 @@ struct renderer_model *renderer_model_create(struct renderer *renderer,
     size_t max = renderer->info.max_texels;
     /* A node's three texels stay in one bank. */
     size_t node_max = max / 3 * 3;
-    if (upload(&model->points, MAX_POINT_BANKS, GL_RGB32F, tables->points, tables->n_points,
-               sizeof *tables->points, max, "points", error) &&
+    if (upload(&model->points, MAX_POINT_BANKS, GL_RGBA32F, tables->texels, tables->n_texels,
+               sizeof *tables->texels, max, "points", error) &&
         upload(&model->nodes, MAX_NODE_BANKS, GL_RGBA32UI, tables->nodes, 3 * tables->n_nodes, 16,
                node_max, "nodes", error) &&
         upload(&model->adjacency, MAX_ADJACENCY_BANKS, GL_RGBA32UI, tables->adjacency,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/limit/bound.h"
+#include "server/limit/evaluate.h"
 #include "server/limit/vec.h"
 
 /* How far a triangle may be from the surface, px. Stage 2 mends the rest. */
@@ -152,33 +153,15 @@ static void patch_points(const struct limit_tables *tables, const struct piece *
                          struct vec grid[16])
 {
     const struct limit_node *node = &tables->nodes[piece->node];
-    unsigned level = piece->where & 63, square = piece->where >> 6 & 3;
-    const float(*texels)[3] = tables->points + node->first;
-    size_t first = 1, stride = 4;
-    if (node->kind == LIMIT_CORNER) {
-        texels += LIMIT_CORNER_HEAD + (level - 1) * LIMIT_LEVEL_TEXELS;
-        first = (square <= 2) + (square >= 2 ? 5 : 0);
-        stride = 5;
-    } else if (node->kind == LIMIT_STRIP) {
-        texels += (square ? level - 1 : level) * LIMIT_PATCH_TEXELS;
-    }
-    double scale = texels[0][0];
-    for (size_t k = 0; k < 16; k++) {
-        const float *p = texels[first + k / 4 * stride + k % 4];
-        grid[k] = (struct vec){p[0] * scale, p[1] * scale, p[2] * scale};
-    }
-}
-
-/* The world direction of a frame vector of a node. */
-static struct vec frame_to_world(const struct limit_tables *tables, const struct limit_node *node,
-                                 struct vec v)
-{
-    if (node->kind != LIMIT_CORNER)
-        return v;
-    const float(*head)[3] = tables->points + node->first;
-    struct vec axis = {head[0][0], head[0][1], head[0][2]};
-    struct vec t = vec_scale(vec_cross(axis, v), 2);
-    return vec_add(vec_mad(v, head[1][0], t), vec_cross(axis, t));
+    int level = piece->where & 63;
+    unsigned square = piece->where >> 6 & 3;
+    struct limit_patch patch;
+    /* A place in its middle; the rest of a STRIP comes after all levels. */
+    bool rest = node->kind == LIMIT_STRIP && !square;
+    double x = square == 1 || square == 2 ? 1.5 : 0.5, y = square >= 2 ? 1.5 : 0.5;
+    limit_patch_of_level(&patch, tables, node, rest ? level + 1 : level, ldexp(x, -level),
+                         ldexp(y, -level));
+    limit_patch_points(&patch, grid);
 }
 
 static struct extent square_extent(const struct chooser *c, const struct piece *piece,
@@ -205,12 +188,12 @@ static struct extent square_extent(const struct chooser *c, const struct piece *
         /* What runs along the view does not show. */
         struct vec forward = {c->view->axis[2][0], c->view->axis[2][1], c->view->axis[2][2]};
         for (int k = 0; k < 16; k++) {
-            struct vec p = frame_to_world(c->tables, node, grid[k]);
+            struct vec p = limit_frame_to_world(c->tables, node, grid[k]);
             grid[k] = vec_mad(p, -vec_dot(p, forward), forward);
         }
         bound.bend = bound_of_grid(grid, 4, false).bend;
     }
-    struct vec at = frame_to_world(c->tables, node, middle);
+    struct vec at = limit_frame_to_world(c->tables, node, middle);
     const double world[3] = {node->origin[0] + at.x, node->origin[1] + at.y,
                              node->origin[2] + at.z};
     struct extent extent = {.radius = bound.radius, .bend = bound.bend};

@@ -58,8 +58,7 @@ bool stage_shade_init(struct renderer *r, struct error *error)
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const struct frame_request usual;
     for (enum shaded which = SHADED_ALL; which < SHADED_KINDS; which++)
-        if (which != SHADED_UNFILTERED &&
-            !shade_program(r, &usual, &usual.lights[0], which, error))
+        if (which != SHADED_UNFILTERED && !shade_program(r, &usual, &usual.lights[0], which, error))
             return false;
     glCreateBuffers(1, &r->light_buffer);
     glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);

@@ -1,6 +1,7 @@
 #include "server/limit/corner.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "server/limit/bound.h"
 #include "server/limit/crease.h"
@@ -168,7 +169,7 @@ static void next_net(const struct net *in, const struct ring_modes *modes, struc
 }
 
 /* The rotation whose columns are the axes, as a unit quaternion (Shepperd 1978). */
-static void write_frame(const struct vec axis[3], float (*texels)[3])
+static void write_frame(const struct vec axis[3], float texel[4])
 {
     const double m[3][3] = {{axis[0].x, axis[1].x, axis[2].x},
                             {axis[0].y, axis[1].y, axis[2].y},
@@ -189,8 +190,8 @@ static void write_frame(const struct vec axis[3], float (*texels)[3])
         r[3] = m[k][j] - m[j][k];
     }
     double length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
-    for (int n = 0; n < 6; n++)
-        texels[n / 3][n % 3] = n < 4 ? (float)(r[n] / length) : 0;
+    for (int n = 0; n < 4; n++)
+        texel[n] = (float)(r[n] / length);
 }
 
 /* The frame in which single precision keeps everything: axis[2] is the normal where there is one. A
@@ -220,7 +221,7 @@ unsigned corner_levels(const struct ring *ring)
     return (unsigned)fmin(fmax(levels, LIMIT_MIN_LEVELS), LIMIT_MAX_LEVELS);
 }
 
-bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[3],
+bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[4],
                   struct limit_bound *bounds, double origin[3])
 {
     const struct ring *ring = &quad->corner[0];
@@ -234,12 +235,14 @@ bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena,
                           ? ring_take(arena, WINDOW, false, false)
                           : ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
     first_net(quad, limit, axis, &net[0]);
-    write_frame(axis, texels);
-    texels += LIMIT_CORNER_HEAD;
+    write_frame(axis, texels[0]);
+    float *scales = texels[1];
+    memset(scales, 0, (LIMIT_CORNER_HEAD(levels) - 1) * sizeof *texels);
+    texels += LIMIT_CORNER_HEAD(levels);
     for (unsigned n = 0; n < levels; n++) {
         struct net *fine = &net[(n + 1) & 1];
         next_net(&net[n & 1], &modes, fine);
-        texels_write(&fine->grid[0][1], LIMIT_LEVEL_TEXELS - 1, texels + n * LIMIT_LEVEL_TEXELS);
+        scales[n] = texels_write_level(fine->grid, texels + n * LIMIT_LEVEL_TEXELS);
         bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true);
     }
     origin[0] = limit.x;

@@ -2,10 +2,10 @@
  * single precision.
  *
  * Level n holds the 24 control points of the n times refined net that the ring of sub-patches
- * 2^-n <= max(u,v) <= 2^(1-n) needs: the 5x5 grid (i,j) in -1..3 without (-1,-1), point (i,j) at
- * 5 (j + 1) + (i + 1) - 1. Coordinates are in the vertex's orthonormal frame, relative to its limit
- * position (re-centred in double at every level, or the refinement itself would lose it), divided
- * by the level's scale, which has the place of (-1,-1) (limit-surface 4.4 to 4.6). */
+ * 2^-n <= max(u,v) <= 2^(1-n) needs: the 5x5 grid (i,j) in -1..3 without (-1,-1). Coordinates are
+ * in the vertex's orthonormal frame, relative to its limit position (re-centred in double at every
+ * level, or the refinement itself would lose it), divided by the level's scale (limit-surface 4.4
+ * to 4.6). How they lie in texels is said in texels.h. */
 #ifndef SHEEN_LIMIT_CORNER_H
 #define SHEEN_LIMIT_CORNER_H
 
@@ -17,11 +17,10 @@
  * 2^-24 of the face. LIMIT_MIN_LEVELS to LIMIT_MAX_LEVELS. */
 unsigned corner_levels(const struct ring *ring);
 
-/* Writes LIMIT_CORNER_TEXELS(levels) texels (the first two are the frame as a quaternion x y z w
- * that turns frame coordinates into world directions), the bounds of every level and the origin
- * (the limit position, world). The extraordinary vertex is corner 0; nothing is semi-sharp. Returns
+/* Writes LIMIT_CORNER_TEXELS(levels) texels, the bounds of every level and the origin (the limit
+ * position, world). The extraordinary vertex is corner 0; nothing is semi-sharp. Returns
  * whether the vertex has a limit normal. */
-bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[3],
+bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[4],
                   struct limit_bound *bounds, double origin[3]);
 
 #endif

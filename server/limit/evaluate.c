@@ -1,6 +1,9 @@
 #include "server/limit/evaluate.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "server/limit/texels.h"
 
 /* The four uniform cubic B-splines at t: values, first and second derivatives. */
 struct blends {
@@ -29,29 +32,31 @@ static void turn_place(unsigned turn, double a, double b, double *x, double *y)
 void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *tables,
                           const struct limit_node *node, int n, double x, double y)
 {
-    const float(*texels)[3] = (const float(*)[3])tables->points + node->first;
-    *patch = (struct limit_patch){.node = node, .scale = texels, .stride = 4, .s = x, .t = y};
+    const float(*texels)[4] = (const float(*)[4])tables->texels + node->first;
+    *patch = (struct limit_patch){.node = node, .s = x, .t = y};
     if (node->kind == LIMIT_CORNER) {
-        patch->scale = texels + LIMIT_CORNER_TEXELS(n - 1);
-        patch->stride = 5;
+        int head = LIMIT_CORNER_HEAD(node->levels & ~(int)LIMIT_NO_NORMAL);
+        patch->scale = (double)texels[1 + (n - 1) / 4][(n - 1) % 4];
         patch->level_x = patch->level_y = n;
         patch->s = ldexp(x, n);
         patch->t = ldexp(y, n);
-        int column = patch->s >= 1, row = patch->t >= 1; /* the first of the 5x5 grid */
-        patch->s -= column;
-        patch->t -= row;
-        /* The place of (-1,-1), which no sub-patch reads, holds the scale. */
-        patch->points = patch->scale + 5 * row + column;
+        bool far_x = patch->s >= 1, far_y = patch->t >= 1;
+        patch->s -= far_x;
+        patch->t -= far_y;
+        const float(*level)[4] = texels + head + LIMIT_LEVEL_TEXELS * (n - 1);
+        patch->rows = far_y ? level + 3 : level;
+        patch->column = far_x ? NULL : level + 15;
         return;
     }
     if (node->kind == LIMIT_STRIP) {
         /* Patch n = 1..levels covers 2^-n <= y <= 2^(1-n), patch levels + 1 the rest. */
         bool is_last = n > node->levels;
-        patch->scale = texels + LIMIT_PATCH_TEXELS * (n - 1);
+        texels += LIMIT_PATCH_TEXELS * (n - 1);
         patch->level_y = is_last ? n - 1 : n;
         patch->t = ldexp(y, patch->level_y) - !is_last;
     }
-    patch->points = patch->scale + 1;
+    patch->scale = (double)texels[0][0];
+    patch->rows = texels + 1;
 }
 
 /* Which level of a node holds (x,y); beyond the last one of a CORNER lies its vertex. */
@@ -92,24 +97,40 @@ bool limit_patch_find(const struct limit_tables *tables, const struct limit_plac
     return true;
 }
 
-/* A vector of a CORNER's frame in the world. */
-static struct vec rotate(const float (*head)[3], struct vec p)
+void limit_patch_points(const struct limit_patch *patch, struct vec grid[16])
 {
-    struct vec axis = {(double)head[0][0], (double)head[0][1], (double)head[0][2]};
-    struct vec twice = vec_scale(vec_cross(axis, p), 2);
-    return vec_add(vec_mad(p, (double)head[1][0], twice), vec_cross(axis, twice));
+    for (int j = 0; j < 4; j++)
+        texels_read_row(patch->rows + 3 * j, patch->scale, grid + 4 * j);
+    if (!patch->column)
+        return;
+    struct vec first[4];
+    texels_read_row(patch->column, patch->scale, first);
+    for (int j = 0; j < 4; j++) {
+        memmove(grid + 4 * j + 1, grid + 4 * j, 3 * sizeof *grid);
+        grid[4 * j] = first[j];
+    }
+}
+
+struct vec limit_frame_to_world(const struct limit_tables *tables, const struct limit_node *node,
+                                struct vec v)
+{
+    if (node->kind != LIMIT_CORNER)
+        return v;
+    const float *q = tables->texels[node->first];
+    struct vec axis = {(double)q[0], (double)q[1], (double)q[2]};
+    struct vec twice = vec_scale(vec_cross(axis, v), 2);
+    return vec_add(vec_mad(v, (double)q[3], twice), vec_cross(axis, twice));
 }
 
 /* Sums of the 16 points, in the node's frame, by s and t. */
 static void sum_points(const struct limit_patch *patch, struct limit_point *out)
 {
     struct blends x = blends_at(patch->s), y = blends_at(patch->t);
-    double scale = (double)patch->scale[0][0];
+    struct vec grid[16];
+    limit_patch_points(patch, grid);
     for (int k = 0; k < 16; k++) {
         int i = k & 3, j = k >> 2;
-        const float *texel = patch->points[j * patch->stride + i];
-        struct vec p = {scale * (double)texel[0], scale * (double)texel[1],
-                        scale * (double)texel[2]};
+        struct vec p = grid[k];
         out->s = vec_mad(out->s, x.value[i] * y.value[j], p);
         out->su = vec_mad(out->su, x.first[i] * y.value[j], p);
         out->sv = vec_mad(out->sv, x.value[i] * y.first[j], p);
@@ -168,13 +189,10 @@ void limit_patch_evaluate(const struct limit_tables *tables, const struct limit_
         set_normal(patch, out); /* in the node's own frame, as on the GPU */
         turn_derivatives(patch, out);
     }
-    if (node->kind == LIMIT_CORNER) {
-        const float(*head)[3] = (const float(*)[3])tables->points + node->first;
-        struct vec *const vectors[] = {&out->s,   &out->su,  &out->sv, &out->suu,
-                                       &out->suv, &out->svv, &out->n};
-        for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++)
-            *vectors[k] = rotate(head, *vectors[k]);
-    }
+    struct vec *const vectors[] = {&out->s,   &out->su,  &out->sv, &out->suu,
+                                   &out->suv, &out->svv, &out->n};
+    for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++)
+        *vectors[k] = limit_frame_to_world(tables, node, *vectors[k]);
     out->s = vec_add(out->s, (struct vec){node->origin[0], node->origin[1], node->origin[2]});
 }
 

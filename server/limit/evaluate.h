@@ -31,9 +31,10 @@ struct limit_point {
 /* One bicubic sub-patch and a place on it. */
 struct limit_patch {
     const struct limit_node *node;
-    const float (*scale)[3]; /* its x: the points are divided by it */
-    const float (*points)[3];
-    int stride;           /* texels from a row of 4 points to the next */
+    double scale;           /* the points are divided by it */
+    const float (*rows)[4]; /* texels of four rows (texels.h) */
+    const float (
+        *column)[4];      /* not NULL: these points come first in the rows, whose last drop out */
     int level_x, level_y; /* s and t run 2^level times faster than the node's local x and y */
     double s, t;          /* in [0,1] */
     unsigned turn;        /* local x, y are the place's a, b seen from so many corners on */
@@ -49,6 +50,13 @@ void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *
 /* The sub-patch that holds a place. False in a hole. */
 bool limit_patch_find(const struct limit_tables *tables, const struct limit_place *place,
                       struct limit_patch *patch);
+
+/* Its 16 points, 4 (j + 1) + (i + 1), in the node's frame and world units. */
+void limit_patch_points(const struct limit_patch *patch, struct vec grid[16]);
+
+/* A vector of a node's frame in the world. */
+struct vec limit_frame_to_world(const struct limit_tables *tables, const struct limit_node *node,
+                                struct vec v);
 
 /* The patch at its place; the tables are those it was found in. */
 void limit_patch_evaluate(const struct limit_tables *tables, const struct limit_patch *patch,

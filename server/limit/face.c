@@ -22,11 +22,11 @@ static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4
         out->origin[0] = centre.x;
         out->origin[1] = centre.y;
         out->origin[2] = centre.z;
-        out->first = b->next.point;
-        texels_write(&grid[0][0], 16, b->tables->points + b->next.point);
+        out->first = b->next.texel;
+        texels_write_patch(&grid[0][0], b->tables->texels + b->next.texel);
         b->tables->bounds[b->next.bound] = bound_of_grid(&grid[0][0], 4, false);
     }
-    b->next.point += LIMIT_PATCH_TEXELS;
+    b->next.texel += LIMIT_PATCH_TEXELS;
     b->next.bound += 1;
     b->n_regular++;
 }
@@ -51,13 +51,13 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
         struct quad turned = quad_rotated(quad, corner);
         out->kind = LIMIT_CORNER;
         out->rotation = (uint8_t)corner;
-        out->first = b->next.point;
+        out->first = b->next.texel;
         bool has_normal =
-            corner_table(&turned, levels, &b->arena, b->tables->points + b->next.point,
+            corner_table(&turned, levels, &b->arena, b->tables->texels + b->next.texel,
                          b->tables->bounds + b->next.bound, out->origin);
         out->levels = (uint8_t)(has_normal ? levels : levels | LIMIT_NO_NORMAL);
     }
-    b->next.point += LIMIT_CORNER_TEXELS(levels);
+    b->next.texel += LIMIT_CORNER_TEXELS(levels);
     b->next.bound += levels;
     b->n_corner++;
 }
@@ -71,11 +71,11 @@ static void build_strip(struct face_builder *b, uint32_t node, const struct quad
         out->kind = LIMIT_STRIP;
         out->rotation = (uint8_t)edge;
         out->levels = (uint8_t)levels;
-        out->first = b->next.point;
-        strip_table(&turned, levels, b->tables->points + b->next.point,
+        out->first = b->next.texel;
+        strip_table(&turned, levels, b->tables->texels + b->next.texel,
                     b->tables->bounds + b->next.bound, out->origin);
     }
-    b->next.point += (levels + 1) * LIMIT_PATCH_TEXELS;
+    b->next.texel += (levels + 1) * LIMIT_PATCH_TEXELS;
     b->next.bound += levels + 2;
     b->n_strip++;
 }

@@ -4,7 +4,7 @@
 
 #include "server/limit/plan.h"
 
-/* Where the next node, point and bound go, and what has been made of each kind. */
+/* Where the next node, texel and bound go, and what has been made of each kind. */
 struct face_builder {
     struct limit_tables *tables; /* NULL: measure only */
     const struct limit_plan *plan;

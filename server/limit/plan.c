@@ -39,27 +39,27 @@ static bool lay_out(struct limit_plan *plan, struct error *error)
                                    .box_max = {-INFINITY, -INFINITY, -INFINITY}};
     if (!arena_init(&measure.arena, plan->arena_bytes))
         return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
-    uint64_t node = plan->n_ptex, point = 0, bound = 0;
+    uint64_t node = plan->n_ptex, texel = 0, bound = 0;
     bool ok = true;
     for (uint32_t p = 0; p < plan->n_ptex && ok; p++) {
-        plan->offsets[p] = (struct plan_offsets){(uint32_t)node, (uint32_t)point, (uint32_t)bound};
+        plan->offsets[p] = (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
         measure.next = (struct plan_offsets){0, 0, 0};
         face_build(&measure, p);
         node += measure.next.node;
-        point += measure.next.point;
+        texel += measure.next.texel;
         bound += measure.next.bound;
         if (measure.dart_valence)
             ok = error_set(error, ERROR_MODEL,
                            "a crease ends at a vertex of %u faces, more than the %d that sheen "
                            "evaluates",
                            measure.dart_valence, MODES_MAX_VALENCE);
-        else if (node > INT32_MAX || point > UINT32_MAX)
+        else if (node > INT32_MAX || texel > UINT32_MAX)
             ok = error_set(error, ERROR_MODEL,
-                           "the cage needs more than %u table points: split it in parts",
+                           "the cage needs more than %u table texels: split it in parts",
                            UINT32_MAX);
     }
     plan->offsets[plan->n_ptex] =
-        (struct plan_offsets){(uint32_t)node, (uint32_t)point, (uint32_t)bound};
+        (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
     plan->n_regular = measure.n_regular;
     plan->n_corner = measure.n_corner;
     plan->n_strip = measure.n_strip;

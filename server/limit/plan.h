@@ -8,7 +8,7 @@
 
 /* Where one Ptex face's share of the tables begins, apart from its root node. */
 struct plan_offsets {
-    uint32_t node, point, bound;
+    uint32_t node, texel, bound;
 };
 
 struct limit_plan {

@@ -50,15 +50,15 @@ static void refine_rows(struct vec rows[4][4], double crease, struct vec fine[5]
     }
 }
 
-static void write_patch(const struct vec *points, float (**texels)[3], struct limit_bound **bounds)
+static void write_patch(const struct vec *points, float (**texels)[4], struct limit_bound **bounds)
 {
-    texels_write(points, 16, *texels);
+    texels_write_patch(points, *texels);
     **bounds = bound_of_grid(points, 4, false);
     *texels += LIMIT_PATCH_TEXELS;
     *bounds += 1;
 }
 
-void strip_table(const struct quad *quad, unsigned levels, float (*texels)[3],
+void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
                  struct limit_bound *bounds, double origin[3])
 {
     struct vec rows[4][4], fine[5][4], centre = {0, 0, 0};

@@ -31,14 +31,14 @@ bool limit_tables_init(struct limit_tables *tables, const struct limit_plan *pla
     struct plan_offsets total = plan->offsets[plan->n_ptex];
     *tables = (struct limit_tables){.n_faces = plan->n_ptex,
                                     .n_nodes = total.node,
-                                    .n_points = total.point,
+                                    .n_texels = total.texel,
                                     .n_bounds = total.bound};
     tables->nodes = calloc(tables->n_nodes, sizeof *tables->nodes);
     tables->adjacency = malloc(tables->n_faces * sizeof *tables->adjacency);
-    tables->points = malloc((tables->n_points + 1) * sizeof *tables->points);
+    tables->texels = malloc((tables->n_texels + 1) * sizeof *tables->texels);
     tables->bound_first = malloc(tables->n_nodes * sizeof *tables->bound_first);
     tables->bounds = malloc((tables->n_bounds + 1) * sizeof *tables->bounds);
-    if (!tables->nodes || !tables->adjacency || !tables->points || !tables->bound_first ||
+    if (!tables->nodes || !tables->adjacency || !tables->texels || !tables->bound_first ||
         !tables->bounds) {
         size_t bytes = limit_tables_bytes(tables);
         limit_tables_finish(tables);
@@ -59,7 +59,7 @@ void limit_tables_finish(struct limit_tables *tables)
 {
     free(tables->nodes);
     free(tables->adjacency);
-    free(tables->points);
+    free(tables->texels);
     free(tables->bound_first);
     free(tables->bounds);
     *tables = (struct limit_tables){0};
@@ -68,7 +68,7 @@ void limit_tables_finish(struct limit_tables *tables)
 size_t limit_tables_bytes(const struct limit_tables *tables)
 {
     return tables->n_nodes * sizeof *tables->nodes + tables->n_faces * sizeof *tables->adjacency +
-           tables->n_points * sizeof *tables->points;
+           tables->n_texels * sizeof *tables->texels;
 }
 
 bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,
@@ -81,7 +81,7 @@ bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *pla
         builder.next = plan->offsets[p];
         face_build(&builder, (uint32_t)p);
         assert(builder.next.node == plan->offsets[p + 1].node);
-        assert(builder.next.point == plan->offsets[p + 1].point);
+        assert(builder.next.texel == plan->offsets[p + 1].texel);
     }
     arena_finish(&builder.arena);
     return true;

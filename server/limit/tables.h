@@ -3,15 +3,14 @@
  *
  * The surface is a list of nodes. The first n_faces nodes are the Ptex faces' roots (OpenSubdiv's
  * numbering: a quad is one Ptex face, an n-gon is n). A node is
- *   REGULAR  one bicubic B-spline patch: 16 points, 4 (j + 1) + (i + 1) for i,j = -1..2;
- *   CORNER   one extraordinary vertex at local (0,0): two texels for the vertex's own orthonormal
- *            frame, a quaternion, then levels of 24 points in it, each re-centred on the vertex's
- *            limit position (corner.h);
+ *   REGULAR  one bicubic B-spline patch of 16 points i,j = -1..2;
+ *   CORNER   one extraordinary vertex at local (0,0): levels of 24 points in the vertex's own
+ *            orthonormal frame, each re-centred on the vertex's limit position (corner.h);
  *   STRIP    a semi-sharp crease along local v = 0: `levels` + 1 patches across it (strip.h);
  *   SPLIT    four children at (0,0) (1,0) (1,1) (0,1) of the half-size cells;
  *   HOLE     no surface (a hole, or boundary mode NONE).
- * Points are relative to the node's origin. The points of a patch or level are divided by a power
- * of two, which is the x of one more texel before them (texels.h).
+ * Points are relative to the node's origin. Those of a patch or level are divided by a power of
+ * two, their scale. How they lie in texels of four floats is said in texels.h.
  *
  * Built in two steps so that callers may use threads (this module knows none): limit_plan() reads
  * the cage and sizes everything; limit_build_faces() fills any range of faces, ranges in parallel
@@ -30,10 +29,10 @@
  * are 2^-24 of the face, and never fewer than the least (corner.h). */
 #define LIMIT_MIN_LEVELS 32
 #define LIMIT_MAX_LEVELS 41
-#define LIMIT_PATCH_TEXELS 17 /* the scale, 16 points */
-#define LIMIT_CORNER_HEAD 2   /* the frame: x y z, w 0 0 of its quaternion */
-#define LIMIT_LEVEL_TEXELS 25 /* the scale, the 5x5 grid i,j = -1..3 without (-1,-1) */
-#define LIMIT_CORNER_TEXELS(levels) (LIMIT_CORNER_HEAD + (levels)*LIMIT_LEVEL_TEXELS)
+#define LIMIT_PATCH_TEXELS 13                              /* the scale; 4 rows of 4 points */
+#define LIMIT_CORNER_HEAD(levels) (1 + ((levels) + 3) / 4) /* the frame; the levels' scales */
+#define LIMIT_LEVEL_TEXELS 18                              /* 5 rows and a column of 4 points */
+#define LIMIT_CORNER_TEXELS(levels) (LIMIT_CORNER_HEAD(levels) + (levels)*LIMIT_LEVEL_TEXELS)
 #define LIMIT_NO_NORMAL 0x80u /* added to a CORNER's levels */
 #define LIMIT_NO_FACE UINT32_MAX
 /* The cost of a corner grows with its valence, and a vertex has as many corners. */
@@ -44,7 +43,7 @@ enum limit_kind { LIMIT_REGULAR, LIMIT_CORNER, LIMIT_SPLIT, LIMIT_HOLE, LIMIT_ST
 /* 48 bytes, three RGBA32UI texels on the GPU. */
 struct limit_node {
     double origin[3];     /* world; the points are relative to it */
-    uint32_t first;       /* all with points: first texel in `points`; SPLIT: first of 4 children */
+    uint32_t first;       /* all with points: first of its texels; SPLIT: first of 4 children */
     uint32_t face;        /* Ptex face */
     uint32_t cell;        /* x | y << 16: which cell of the 2^depth by 2^depth grid over the face */
     uint8_t kind;         /* enum limit_kind */
@@ -81,8 +80,8 @@ struct limit_tables {
     size_t n_nodes;
     struct limit_node *nodes;
     struct limit_adjacency *adjacency; /* [n_faces] */
-    size_t n_points;
-    float (*points)[3];
+    size_t n_texels;
+    float (*texels)[4];
 
     /* Bounds for the CPU's choice of grids; not on the GPU. bound_first[node] indexes bounds: one
      * for REGULAR, one for each level of a CORNER, one for a STRIP and one for each of its patches.
@@ -116,7 +115,7 @@ void limit_tables_finish(struct limit_tables *tables);
 bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,
                        size_t last, struct error *error);
 
-/* Bytes that the GPU holds for these tables: nodes + adjacency + points. */
+/* Bytes that the GPU holds for these tables: nodes + adjacency + texels. */
 size_t limit_tables_bytes(const struct limit_tables *tables);
 
 #endif

@@ -48,14 +48,15 @@ void break_tables(limit_tables *t)
         limit_node *node = &t->nodes[k];
         if (node->kind == LIMIT_SPLIT)
             continue;
-        float(*texels)[3] = t->points + node->first;
+        float(*texels)[4] = t->texels + node->first;
+        int levels = node->levels & ~(int)LIMIT_NO_NORMAL;
         float off = k % 2 ? 1e-4f : -1e-4f; /* else neighbours would agree in their fault */
         if (has_fault("point"))
-            texels[node->kind == LIMIT_CORNER ? LIMIT_CORNER_HEAD + 6 : 6][0] += off;
+            texels[node->kind == LIMIT_CORNER ? LIMIT_CORNER_HEAD(levels) + 6 : 6][0] += off;
         if (has_fault("frame") && node->kind == LIMIT_CORNER)
             texels[0][0] += off;
         if (has_fault("deep") && node->kind == LIMIT_CORNER)
-            texels[LIMIT_CORNER_TEXELS(25)][0] *= 1.001f;
+            texels[1 + 25 / 4][25 % 4] *= 1.001f;
         if (has_fault("hole") && !opened)
             node->kind = LIMIT_HOLE;
         opened = true;

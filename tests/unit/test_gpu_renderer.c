@@ -158,7 +158,7 @@ static void test_point_banks(void **state)
     (void)state;
     struct scene scene;
     scene_init(&scene, "tests/models/fender.obj");
-    assert_banks_do_not_show(&scene, scene.tables.n_points / 5 + 1);
+    assert_banks_do_not_show(&scene, scene.tables.n_texels / 5 + 1);
     scene_finish(&scene);
 }
 

@@ -144,16 +144,17 @@ static bool neighbours(const struct limit_tables *tables, const struct limit_pla
                        struct limit_point p[5])
 {
     static const int along[5][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-    const float(*scale)[3] = NULL;
+    const float(*rows)[4] = NULL, (*column)[4] = NULL;
     for (int k = 0; k < 5; k++) {
         struct limit_place place = *at;
         struct limit_patch patch;
         place.a += h * along[k][0];
         place.b += h * along[k][1];
         if (!limit_patch_find(tables, &place, &patch) || patch.is_vertex ||
-            (k > 0 && patch.scale != scale))
+            (k > 0 && (patch.rows != rows || patch.column != column)))
             return false;
-        scale = patch.scale;
+        rows = patch.rows;
+        column = patch.column;
         limit_patch_evaluate(tables, &patch, &p[k]);
     }
     return true;
