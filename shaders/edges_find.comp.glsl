@@ -2,7 +2,7 @@
 // pixel whose border runs through it, or whose neighbour to a side is not where its paraboloid says. (An edge that runs
 // through a pixel has the centre of one of these four on its other side.)
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
 
@@ -17,8 +17,6 @@ layout(std430, binding = 2) buffer Turns {
     uint n_turns;
     uint turns[];
 };
-
-uniform uint n_blocks;
 
 const ivec2 AROUND[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -47,9 +45,7 @@ float turn_over_pixel(ivec2 p, Hit hit)
 
 void main()
 {
-    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= n_blocks)
-        return;
-    ivec2 p = block_pixel(gl_WorkGroupID, gl_LocalInvocationID, gl_NumWorkGroups);
+    ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
     if (any(greaterThanEqual(p, tile.zw)))
         return;
     Hit own = hit_at(p);

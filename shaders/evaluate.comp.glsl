@@ -6,7 +6,7 @@
 // of sub-patches) are listed for unsolved.comp.glsl. So no pixel pays for the rare cases, on
 // devices whose lanes all walk through every branch.
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
 const ivec2 AROUND[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -27,13 +27,9 @@ void list_unsolved(ivec2 p)
     unsolved[slot] = uint(p.x) | uint(p.y) << 16;
 }
 
-uniform uint n_blocks;
-
 void main()
 {
-    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= n_blocks)
-        return;
-    ivec2 p = block_pixel(gl_WorkGroupID, gl_LocalInvocationID, gl_NumWorkGroups);
+    ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
     if (any(greaterThanEqual(p, tile.zw)))
         return;
     uvec2 guess = texelFetch(seen, p, 0).xy;

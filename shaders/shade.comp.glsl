@@ -4,7 +4,7 @@
 // Light, pattern and colours may change without stages 1 and 2. Several lights are several passes,
 // the hindmost first; each blends over what is there.
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
 layout(binding = 0, rgba32f) readonly uniform image2D position;
 layout(binding = 1, rgba32f) readonly uniform image2D normal;
@@ -13,8 +13,6 @@ layout(binding = 3, rgba8) uniform image2D colour;
 layout(binding = 4, rg32f) writeonly uniform image2D light_st;
 layout(binding = 5, rg32f) writeonly uniform image2D curvature;
 layout(binding = 6, rgba32f) writeonly uniform image2D light_change;
-
-uniform uint n_blocks;
 
 const vec4 NONE = vec4(uintBitsToFloat(0x7fc00000u));
 
@@ -36,9 +34,7 @@ vec2 principal_curvatures(vec3 h)
 
 void main()
 {
-    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= n_blocks)
-        return;
-    ivec2 p = block_pixel(gl_WorkGroupID, gl_LocalInvocationID, gl_NumWorkGroups);
+    ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
     if (any(greaterThanEqual(p, tile.zw)))
         return;
     vec4 place = imageLoad(position, p);

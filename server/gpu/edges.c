@@ -6,7 +6,7 @@
 bool stage_edges_init(struct renderer *r, struct error *error)
 {
     static const char *const files[] = {"view.glsl",   "basis.glsl",           "edges.glsl",
-                                        "blocks.glsl", "edges_find.comp.glsl", NULL};
+                                        "groups.glsl", "edges_find.comp.glsl", NULL};
     r->edges_find = program_compute("", files, error);
     return r->edges_find;
 }
@@ -16,13 +16,12 @@ bool edges_wanted(const struct frame_request *request)
     return !request->unfiltered && request->surface.kind == SURFACE_EXACT;
 }
 
-void stage_edges(struct renderer *r, const struct tile *tile)
+void stage_edges(struct renderer *r)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
     static const GLfloat nothing[4] = {0, 0, 0, 0};
     const struct target *target = &r->target;
-    if (blocks_leave_gaps(r, tile))
-        glClearTexImage(target->coverage, 0, GL_RED, GL_FLOAT, nothing);
+    glClearTexImage(target->coverage, 0, GL_RED, GL_FLOAT, nothing);
     glNamedBufferSubData(target->edges, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->turns, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->edges);
@@ -33,6 +32,5 @@ void stage_edges(struct renderer *r, const struct tile *tile)
     glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
     glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    glUseProgram(r->edges_find);
-    dispatch_blocks(r, r->edges_find);
+    dispatch_groups(r, r->edges_find);
 }

@@ -21,7 +21,7 @@ static void bind_planes(const struct renderer *r, const struct renderer_model *m
     glBindImageTexture(4, r->target.border, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
 }
 
-/* What lies outside the area is missed without asking. */
+/* What lies outside the groups is missed without asking. */
 static void clear_planes(const struct renderer *r, bool want_ptex)
 {
     static const GLfloat nothing[4] = {0, 0, 0, 0};
@@ -31,19 +31,16 @@ static void clear_planes(const struct renderer *r, bool want_ptex)
         glClearTexImage(r->target.ptex, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, no_face);
 }
 
-void stage_evaluate(struct renderer *r, const struct renderer_model *model, const struct tile *tile,
-                    bool want_ptex)
+void stage_evaluate(struct renderer *r, const struct renderer_model *model, bool want_ptex)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
-    if (blocks_leave_gaps(r, tile))
-        clear_planes(r, want_ptex);
-    blocks_upload(r);
+    clear_planes(r, want_ptex);
     glNamedBufferSubData(r->target.unsolved, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, r->target.unsolved);
     bind_planes(r, model);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     set_uniforms(model->programs->evaluate, want_ptex);
-    dispatch_blocks(r, model->programs->evaluate);
+    dispatch_groups(r, model->programs->evaluate);
 
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
     set_uniforms(model->programs->unsolved, want_ptex);

@@ -49,6 +49,7 @@ struct target {
     GLuint light, curvature;        /* RG32F */
     GLuint light_change;            /* RGBA32F */
     GLuint coverage;                /* R32F: share of the pixel that shows surface */
+    GLuint groups;                  /* buffer: shaders/groups.glsl */
     GLuint unsolved;                /* buffer: shaders/planes.glsl */
     GLuint edges, turns;            /* buffers: shaders/edges_find.comp.glsl */
 };
@@ -102,7 +103,8 @@ struct renderer {
     GLuint shade[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2][SHADED_KINDS];
     GLuint edges_find;
     GLuint view_buffer, light_buffer, piece_buffer;
-    GLuint block_buffer;  /* pieces.block of the tile whose planes the target holds */
+    GLuint gather;        /* program */
+    GLuint block_buffer;  /* pieces.block of the last tile gathered */
     GLuint piece_texture; /* of piece_buffer */
     GLuint vertex_array;
     GLuint grid_buffer[PIECE_BUCKETS]; /* element indices of each bucket's grid */
@@ -125,11 +127,10 @@ void target_finish(struct target *target);
 bool stage_visibility_init(struct renderer *renderer, struct error *error);
 void stage_visibility(struct renderer *renderer, const struct renderer_model *model,
                       const struct tile *tile);
-void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
-                    const struct tile *tile, bool want_ptex);
+void stage_evaluate(struct renderer *renderer, const struct renderer_model *model, bool want_ptex);
 /* Lists the pixels that stage 3 looks at more closely; the coverage of all others. */
 bool stage_edges_init(struct renderer *renderer, struct error *error);
-void stage_edges(struct renderer *renderer, const struct tile *tile);
+void stage_edges(struct renderer *renderer);
 /* Whether it does. */
 bool edges_wanted(const struct frame_request *request);
 /* Stages 1 and 2 of polygons: the same planes from a mesh. */
@@ -139,7 +140,7 @@ bool stage_polygons(struct renderer *renderer, const struct renderer_model *mode
 bool stage_shade_init(struct renderer *renderer, struct error *error);
 /* Compiles the pattern's program when it is asked for first. */
 bool stage_shade(struct renderer *renderer, const struct frame_request *request,
-                 const struct tile *tile, struct error *error);
+                 struct error *error);
 
 /* After stage_shade: the polygons' edges in place of the colour, by the depths of stage_polygons.
  */
@@ -152,14 +153,11 @@ void polygons_forget(struct polygons *polygons, uint64_t model_serial);
 /* Draws into a framebuffer from here on: the tile's viewport, nearest first by reversed depth. */
 void raster_begin(GLuint framebuffer, const struct tile *tile);
 
-/* The covered blocks to the device. */
-void blocks_upload(struct renderer *renderer);
-
-/* One workgroup for each covered block, for the program in use. */
-void dispatch_blocks(struct renderer *renderer, GLuint program);
-
-/* Whether blocks of the tile stay out of the dispatch, so that its planes must be cleared. */
-bool blocks_leave_gaps(const struct renderer *renderer, const struct tile *tile);
+/* After stage 1 or polygons: lists the pixels near what is seen, over which dispatch_groups() runs
+ * a program. Planes that it writes must be cleared before: it leaves gaps. */
+bool stage_gather_init(struct renderer *renderer, struct error *error);
+void stage_gather(struct renderer *renderer);
+void dispatch_groups(const struct renderer *renderer, GLuint program);
 
 /* Copies the planes asked for from the target into the frame. */
 bool readback(struct renderer *renderer, const struct frame_request *request,

@@ -159,7 +159,6 @@ bool stage_polygons(struct renderer *r, const struct renderer_model *model,
         compile(p, error) ? find_or_build(p, model, request->surface.level, error) : NULL;
     if (!mesh || !pieces_cover_all(&r->pieces, tile, error))
         return false;
-    blocks_upload(r);
     if (!p->framebuffer)
         glCreateFramebuffers(1, &p->framebuffer);
     attach(r, planes, 4);

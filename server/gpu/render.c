@@ -76,18 +76,20 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
     if (!is_kept(&r->kept, model, request) && !exact) {
         if (!stage_polygons(r, model, request, tile, error))
             return false;
+        stage_gather(r);
         end_stage(&frame->times.visibility_us, &since);
     } else if (!is_kept(&r->kept, model, request)) {
         if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
             return false;
         stage_visibility(r, model, tile);
+        stage_gather(r);
         end_stage(&frame->times.visibility_us, &since);
-        stage_evaluate(r, model, tile, request->planes & PLANE_PTEX);
+        stage_evaluate(r, model, request->planes & PLANE_PTEX);
         if (edges_wanted(request))
-            stage_edges(r, tile);
+            stage_edges(r);
         end_stage(&frame->times.evaluate_us, &since);
     }
-    if (!stage_shade(r, request, tile, error))
+    if (!stage_shade(r, request, error))
         return false;
     if (request->surface.kind == SURFACE_WIREFRAME &&
         !stage_wireframe(r, model, request, tile, error))

@@ -39,10 +39,9 @@ struct renderer *renderer_create(const struct renderer_options *options, struct 
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glCreateBuffers(1, &r->view_buffer);
-    glCreateBuffers(1, &r->block_buffer);
     glNamedBufferData(r->view_buffer, sizeof(struct view_block), NULL, GL_STREAM_DRAW);
-    if (!stage_visibility_init(r, error) || !stage_edges_init(r, error) ||
-        !stage_shade_init(r, error)) {
+    if (!stage_visibility_init(r, error) || !stage_gather_init(r, error) ||
+        !stage_edges_init(r, error) || !stage_shade_init(r, error)) {
         renderer_destroy(r);
         return NULL;
     }

@@ -31,7 +31,7 @@ static GLuint shade_program(struct renderer *r, const struct frame_request *requ
                             const struct light *light, enum shaded which, struct error *error)
 {
 #define COMMON "view.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
-    static const char *const all[] = {COMMON, "blocks.glsl", "shade.comp.glsl", NULL};
+    static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
     static const char *const edges[] = {COMMON, "edges.glsl", "pieces.glsl",
                                         "edges_shade.comp.glsl", NULL};
     static const char *const turns[] = {COMMON, "edges.glsl", "pieces.glsl",
@@ -215,7 +215,7 @@ static void fill_block(struct light_block *block, const struct frame_request *re
     block->want[2] = i == 0 && request->planes & PLANE_LIGHT_CHANGE;
 }
 
-/* What lies outside the covered area shows no surface. */
+/* What lies outside the groups shows no surface. */
 static void clear_planes(const struct renderer *r, const struct frame_request *request)
 {
     static const GLfloat none[4] = {NAN, NAN, NAN, NAN};
@@ -282,9 +282,8 @@ static bool shade_light(struct renderer *r, const struct frame_request *request,
     glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
     bind_picture(r, request, light);
     bind_planes(&r->target);
-    glUseProgram(all);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    dispatch_blocks(r, all);
+    dispatch_groups(r, all);
     if (closer) {
         glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                         GL_COMMAND_BARRIER_BIT);
@@ -294,12 +293,10 @@ static bool shade_light(struct renderer *r, const struct frame_request *request,
     return true;
 }
 
-bool stage_shade(struct renderer *r, const struct frame_request *request, const struct tile *tile,
-                 struct error *error)
+bool stage_shade(struct renderer *r, const struct frame_request *request, struct error *error)
 {
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
-    if (blocks_leave_gaps(r, tile))
-        clear_planes(r, request);
+    clear_planes(r, request);
     for (uint32_t i = request->n_lights; i-- > 0;)
         if (!shade_light(r, request, i, error))
             return false;

@@ -14,7 +14,7 @@ const struct table_programs *programs_for(struct renderer *r, int point_banks, i
 #define STAGE_2                                                                                    \
     "view.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "neighbours.glsl", "planes.glsl",    \
         "newton.glsl"
-    static const char *const evaluate[] = {STAGE_2, "blocks.glsl", "evaluate.comp.glsl", NULL};
+    static const char *const evaluate[] = {STAGE_2, "groups.glsl", "evaluate.comp.glsl", NULL};
     static const char *const unsolved[] = {STAGE_2, "unsolved.comp.glsl", NULL};
 #undef STAGE_2
     for (int i = 0; i < r->n_programs; i++) {
