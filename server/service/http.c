@@ -1,0 +1,202 @@
+#include "server/service/http.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#define HEAD_BYTES 256
+
+struct http_connection {
+    struct loop_source source; /* fd -1: free */
+    struct http *http;
+    uint64_t start_us;
+    size_t received;
+    char request[HTTP_MAX_REQUEST_BYTES + 1];
+    bool answering;
+    char head[HEAD_BYTES];
+    size_t head_length, sent; /* sent: of head and body together */
+    struct text body;
+};
+
+struct http {
+    struct loop *loop;
+    struct http_handler handler;
+    struct http_connection connections[HTTP_MAX_CONNECTIONS];
+};
+
+static void drop(struct http_connection *connection)
+{
+    int fd = connection->source.fd;
+    if (fd < 0)
+        return;
+    loop_unwatch(connection->http->loop, &connection->source);
+    close(fd);
+    text_finish(&connection->body);
+}
+
+static const char *reason_of(int status)
+{
+    switch (status) {
+    case 200:
+        return "OK";
+    case 400:
+        return "Bad Request";
+    case 404:
+        return "Not Found";
+    case 405:
+        return "Method Not Allowed";
+    case 431:
+        return "Request Header Fields Too Large";
+    case 503:
+        return "Service Unavailable";
+    default:
+        return "Internal Server Error";
+    }
+}
+
+/* Writes as much of the answer as the socket takes, and closes behind the last byte. */
+static void send_some(struct http_connection *connection)
+{
+    size_t all = connection->head_length + connection->body.length;
+    while (connection->sent < all) {
+        bool head = connection->sent < connection->head_length;
+        const char *from =
+            head ? connection->head + connection->sent
+                 : connection->body.bytes + connection->sent - connection->head_length;
+        size_t n = head ? connection->head_length - connection->sent : all - connection->sent;
+        ssize_t sent = send(connection->source.fd, from, n, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR)
+            continue;
+        if (sent < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+            loop_change(connection->http->loop, &connection->source, EPOLLOUT);
+            return;
+        }
+        if (sent < 0)
+            break;
+        connection->sent += (size_t)sent;
+    }
+    drop(connection);
+}
+
+static void answer(struct http_connection *connection, int status)
+{
+    struct text *body = &connection->body;
+    if (status == 200 && body->failed)
+        status = 500; /* half an answer would be a wrong one */
+    if (status != 200 && status != 503) {
+        text_finish(body);
+        text_add(body, "%s\n", reason_of(status));
+    }
+    int n =
+        snprintf(connection->head, sizeof connection->head,
+                 "HTTP/1.1 %d %s\r\nContent-Type: text/plain; version=0.0.4; "
+                 "charset=utf-8\r\nContent-Length: %zu\r\n%sConnection: close\r\n\r\n",
+                 status, reason_of(status), body->length, status == 405 ? "Allow: GET\r\n" : "");
+    connection->head_length = (size_t)n;
+    connection->answering = true;
+    send_some(connection);
+}
+
+/* The request line, "GET /path HTTP/1.x"; fields behind it are not looked at. */
+static void answer_request(struct http_connection *connection)
+{
+    struct http *http = connection->http;
+    char *line = connection->request, *path = strchr(line, ' ');
+    line[strcspn(line, "\r\n")] = 0;
+    char *version = path ? strchr(path + 1, ' ') : NULL;
+    if (!version || path[1] != '/' || strncmp(version, " HTTP/1.", 8) != 0) {
+        answer(connection, 400);
+        return;
+    }
+    *path++ = *version = 0;
+    path[strcspn(path, "?")] = 0;
+    if (strcmp(line, "GET") != 0)
+        answer(connection, 405);
+    else
+        answer(connection, http->handler.get(http->handler.owner, path, &connection->body));
+}
+
+static void read_some(struct http_connection *connection)
+{
+    ssize_t n = read(connection->source.fd, connection->request + connection->received,
+                     HTTP_MAX_REQUEST_BYTES - connection->received);
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR))
+        return;
+    if (n <= 0) {
+        drop(connection);
+        return;
+    }
+    connection->received += (size_t)n;
+    connection->request[connection->received] = 0;
+    if (memchr(connection->request, 0, connection->received))
+        answer(connection, 400);
+    else if (strstr(connection->request, "\r\n\r\n") || strstr(connection->request, "\n\n"))
+        answer_request(connection);
+    else if (connection->received == HTTP_MAX_REQUEST_BYTES)
+        answer(connection, 431);
+}
+
+static void connection_ready(struct loop_source *source, uint32_t events)
+{
+    struct http_connection *connection = source->owner;
+    if (connection->answering && events & (EPOLLHUP | EPOLLERR))
+        drop(connection);
+    else if (connection->answering)
+        send_some(connection);
+    else
+        read_some(connection);
+}
+
+struct http *http_create(struct loop *loop, const struct http_handler *handler, struct error *error)
+{
+    struct http *http = calloc(1, sizeof *http);
+    if (!http) {
+        error_set(error, ERROR_SERVER, "no memory for the metrics' connections");
+        return NULL;
+    }
+    http->loop = loop;
+    http->handler = *handler;
+    for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++) {
+        http->connections[i].http = http;
+        http->connections[i].source.fd = -1;
+    }
+    return http;
+}
+
+void http_destroy(struct http *http)
+{
+    if (!http)
+        return;
+    for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++)
+        drop(&http->connections[i]);
+    free(http);
+}
+
+void http_accept(struct http *http, int fd)
+{
+    struct http_connection *connection = NULL;
+    for (int i = 0; i < HTTP_MAX_CONNECTIONS && !connection; i++)
+        if (http->connections[i].source.fd < 0)
+            connection = &http->connections[i];
+    if (!connection) {
+        close(fd);
+        return;
+    }
+    connection->source = (struct loop_source){fd, connection_ready, connection};
+    connection->start_us = loop_now_us();
+    connection->received = connection->sent = connection->head_length = 0;
+    connection->answering = false;
+    text_init(&connection->body, HTTP_MAX_ANSWER_BYTES);
+    if (!loop_watch(http->loop, &connection->source, EPOLLIN, NULL))
+        close(fd);
+}
+
+void http_tick(struct http *http, uint64_t now_us)
+{
+    for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++)
+        if (now_us - http->connections[i].start_us > HTTP_TIMEOUT_US)
+            drop(&http->connections[i]);
+}

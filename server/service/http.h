@@ -1,0 +1,36 @@
+/* A web server of the least kind, for health and metrics on loopback or a Unix socket: HTTP/1.1,
+ * GET only, one request a connection, no body in, no keep-alive. Everything is bounded: a request
+ * of HTTP_MAX_REQUEST_BYTES, HTTP_MAX_CONNECTIONS at once, HTTP_TIMEOUT_US from accept to the last
+ * byte sent. What goes over a bound is closed. Thread: the loop's. */
+#ifndef SHEEN_SERVICE_HTTP_H
+#define SHEEN_SERVICE_HTTP_H
+
+#include <stddef.h>
+
+#include "server/error.h"
+#include "server/service/loop.h"
+#include "server/service/text.h"
+
+#define HTTP_MAX_REQUEST_BYTES 4096
+#define HTTP_MAX_CONNECTIONS 8
+#define HTTP_MAX_ANSWER_BYTES (256u * 1024)
+#define HTTP_TIMEOUT_US 5000000u
+
+struct http;
+
+/* Writes the answer to GET `path` and returns its status: 200, 404 or 503. */
+struct http_handler {
+    int (*get)(void *owner, const char *path, struct text *body);
+    void *owner;
+};
+
+struct http *http_create(struct loop *loop, const struct http_handler *handler,
+                         struct error *error);
+void http_destroy(struct http *http); /* closes all; NULL is safe */
+
+/* Takes a connection over. With HTTP_MAX_CONNECTIONS there already, it is closed. */
+void http_accept(struct http *http, int fd);
+/* Closes what has taken too long. */
+void http_tick(struct http *http, uint64_t now_us);
+
+#endif
