@@ -5,6 +5,18 @@
 #include "client/commands.h"
 #include "client/job.h"
 
+static double per_second(const struct sheen_stats *stats, uint64_t n)
+{
+    return stats->window_us ? (double)n * 1e6 / (double)stats->window_us : 0;
+}
+
+static void json_times(struct json *json, const char *key, const struct sheen_times *times)
+{
+    json_object_begin(json, key);
+    job_json_times(json, times);
+    json_object_end(json);
+}
+
 static void print_json(struct json *json, const struct sheen_stats *stats)
 {
     json_object_begin(json, NULL);
@@ -22,10 +34,25 @@ static void print_json(struct json *json, const struct sheen_stats *stats)
     json_uint(json, "images", stats->images);
     json_uint(json, "uploads_bytes", stats->uploads_bytes);
     json_uint(json, "sent_bytes", stats->sent_bytes);
-    json_object_begin(json, "mean");
-    job_json_times(json, &stats->mean);
+    json_times(json, "mean", &stats->mean);
+    json_uint(json, "window_us", stats->window_us);
+    json_double(json, "requests_per_s", per_second(stats, stats->window_requests));
+    json_double(json, "frames_per_s", per_second(stats, stats->window_frames));
+    json_times(json, "p50", &stats->p50);
+    json_times(json, "p95", &stats->p95);
+    json_times(json, "p99", &stats->p99);
     json_object_end(json);
-    json_object_end(json);
+}
+
+static void print_times(const char *name, const struct sheen_times *times)
+{
+    const uint64_t us[] = {times->tables_us, times->visibility_us, times->evaluate_us,
+                           times->shade_us,  times->readback_us,   times->encode_us,
+                           times->total_us};
+    printf("%-10s", name);
+    for (size_t i = 0; i < sizeof(us) / sizeof(*us); i++)
+        printf(" %10.2f", (double)us[i] / 1e3);
+    putchar('\n');
 }
 
 static void print_table(const struct sheen_stats *stats)
@@ -39,12 +66,15 @@ static void print_table(const struct sheen_stats *stats)
            stats->model_bytes, stats->images);
     printf("%-10s %" PRIu64 " bytes in, %" PRIu64 " bytes out\n", "traffic", stats->uploads_bytes,
            stats->sent_bytes);
-    printf("%-10s tables %.2f, visibility %.2f, evaluate %.2f, shade %.2f, readback %.2f, "
-           "encode %.2f, total %.2f ms\n",
-           "mean", (double)stats->mean.tables_us / 1e3, (double)stats->mean.visibility_us / 1e3,
-           (double)stats->mean.evaluate_us / 1e3, (double)stats->mean.shade_us / 1e3,
-           (double)stats->mean.readback_us / 1e3, (double)stats->mean.encode_us / 1e3,
-           (double)stats->mean.total_us / 1e3);
+    printf("%-10s %.1f requests/s, %.1f frames/s over the last %.0f s\n", "rates",
+           per_second(stats, stats->window_requests), per_second(stats, stats->window_frames),
+           (double)stats->window_us / 1e6);
+    printf("%-10s %10s %10s %10s %10s %10s %10s %10s\n", "ms a frame", "tables", "visibility",
+           "evaluate", "shade", "readback", "encode", "total");
+    print_times("mean", &stats->mean);
+    print_times("p50", &stats->p50);
+    print_times("p95", &stats->p95);
+    print_times("p99", &stats->p99);
 }
 
 static int run(const struct options *options)
@@ -69,8 +99,10 @@ static const struct option_row *const TABLES[] = {OPTIONS_COMMON, OPTIONS_OUTPUT
 const struct command COMMAND_STATS = {
     .name = "stats",
     .arguments = "[option]...",
-    .summary = "Says what a daemon is doing. Without a server it tells of a fresh private daemon:\n"
-               "the device that this machine has.",
+    .summary =
+        "Says what a daemon is doing: how much, how fast (rates and percentiles of the last\n"
+        "minute, the mean of the last 64 frames). Without a server it tells of a fresh\n"
+        "private daemon: the device that this machine has.",
     .tables = TABLES,
     .examples = "  sheen stats --server unix:/run/sheen.sock\n"
                 "  sheen stats --json\n",

@@ -359,6 +359,10 @@ struct sheen_stats {
     uint64_t model_bytes;      /* tables on the GPU */
     uint64_t uploads_bytes, sent_bytes;
     struct sheen_times mean; /* over the last 64 frames */
+    /* The last minute, or what of it there has been; window_us is 0 when the daemon is too old to
+     * say. Percentiles are of each stage by itself, to 3 %; 0: no frame needed it. */
+    uint64_t window_us, window_requests, window_frames;
+    struct sheen_times p50, p95, p99;
     char device[128], driver[128], server[32];
     bool software;
 };

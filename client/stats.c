@@ -32,6 +32,12 @@ enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_
         .uploads_bytes = body.uploads_bytes,
         .sent_bytes = body.sent_bytes,
         .mean = times_from_message(&body.mean),
+        .window_us = body.window_us,
+        .window_requests = body.window_requests,
+        .window_frames = body.window_frames,
+        .p50 = times_from_message(&body.p50),
+        .p95 = times_from_message(&body.p95),
+        .p99 = times_from_message(&body.p99),
         .software = body.software,
     };
     memcpy(stats->device, body.device, sizeof(stats->device));

@@ -27,6 +27,11 @@ struct answer *answer_expect(struct answer_list *list, uint32_t seq)
     return answer;
 }
 
+uint32_t answer_seq(const struct answer *answer)
+{
+    return answer->seq;
+}
+
 static void drop_head(struct answer_list *list)
 {
     struct answer *answer = list->head;

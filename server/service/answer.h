@@ -17,6 +17,8 @@ struct answer_list {
 /* A request has come; its answer will follow those of the requests before. NULL when memory is
  * short: the connection cannot go on then. */
 struct answer *answer_expect(struct answer_list *list, uint32_t seq);
+/* The number of the request. */
+uint32_t answer_seq(const struct answer *answer);
 /* Gives up all that is owed. */
 void answer_list_finish(struct answer_list *list);
 

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -23,8 +24,7 @@ struct listener {
     struct address address;
     struct stat file; /* of a Unix socket */
     char text[LISTENER_TEXT_BYTES];
-    void (*accepted)(void *owner, int fd);
-    void *owner;
+    struct listener_handler handler;
 };
 
 /* --- addresses */
@@ -74,6 +74,29 @@ bool listener_check(const struct address *address, struct error *error)
         return false;
     freeaddrinfo(found);
     return true;
+}
+
+/* Without a directory that the system made for this user, one of his own under /tmp, where anybody
+ * might have put something of that name. */
+bool listener_default(struct address *address, struct error *error)
+{
+    char folder[512], text[sizeof folder + 32], why[ADDRESS_TEXT_BYTES];
+    const char *runtime = getenv("XDG_RUNTIME_DIR");
+    if (runtime && runtime[0] == '/') {
+        snprintf(folder, sizeof folder, "%s", runtime);
+    } else {
+        struct stat file;
+        snprintf(folder, sizeof folder, "/tmp/sheen-%lu", (unsigned long)getuid());
+        if (mkdir(folder, 0700) < 0 && errno != EEXIST)
+            return error_set(error, ERROR_SERVER, "cannot make %s: %s", folder, strerror(errno));
+        if (lstat(folder, &file) < 0 || !S_ISDIR(file.st_mode) || file.st_uid != getuid() ||
+            (file.st_mode & 077) != 0)
+            return error_set(error, ERROR_SERVER,
+                             "%s is not a directory of yours alone: remove it, or use --listen",
+                             folder);
+    }
+    snprintf(text, sizeof text, "unix:%s/sheen.sock", folder);
+    return address_parse(address, text, why) || error_set(error, ERROR_REQUEST, "%s", why);
 }
 
 /* --- opening */
@@ -145,14 +168,10 @@ static bool bind_tcp(struct listener *listener, const struct addrinfo *address)
     return false;
 }
 
-static void describe_tcp(struct listener *listener)
+static void describe_tcp(struct listener *listener, const struct sockaddr *name, socklen_t size)
 {
-    struct sockaddr_storage name;
-    socklen_t size = sizeof name;
     char host[INET6_ADDRSTRLEN] = "?", port[8] = "?";
-    if (getsockname(listener->fd, (struct sockaddr *)&name, &size) == 0)
-        getnameinfo((struct sockaddr *)&name, size, host, sizeof host, port, sizeof port,
-                    NI_NUMERICHOST | NI_NUMERICSERV);
+    getnameinfo(name, size, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV);
     bool v6 = strchr(host, ':') != NULL;
     snprintf(listener->text, sizeof listener->text, v6 ? "tcp:[%s]:%s" : "tcp:%s:%s", host, port);
 }
@@ -165,8 +184,10 @@ static bool open_tcp(struct listener *listener, struct error *error)
     bool ok = false;
     for (const struct addrinfo *a = found; a && !ok; a = a->ai_next)
         ok = bind_tcp(listener, a);
-    if (ok)
-        describe_tcp(listener);
+    struct sockaddr_storage name = {0};
+    socklen_t size = sizeof name;
+    if (ok && getsockname(listener->fd, (struct sockaddr *)&name, &size) == 0)
+        describe_tcp(listener, (const struct sockaddr *)&name, size);
     else
         error_set(error, ERROR_SERVER, "cannot listen on tcp:%s:%u: %s", listener->address.host,
                   (unsigned)listener->address.port, strerror(errno));
@@ -191,7 +212,7 @@ static bool accept_one(struct listener *listener)
     static const int on = 1;
     if (listener->address.kind == ADDRESS_TCP)
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    listener->accepted(listener->owner, fd);
+    listener->handler.accepted(listener->handler.owner, listener, fd);
     return true;
 }
 
@@ -218,8 +239,7 @@ const char *listener_text(const struct listener *listener)
     return listener->text;
 }
 
-struct listener *listener_open(struct loop *loop, const struct address *address,
-                               void (*accepted)(void *owner, int fd), void *owner,
+static struct listener *create(struct loop *loop, int fd, const struct listener_handler *handler,
                                struct error *error)
 {
     struct listener *listener = calloc(1, sizeof *listener);
@@ -227,23 +247,72 @@ struct listener *listener_open(struct loop *loop, const struct address *address,
         error_set(error, ERROR_SERVER, "no memory for a listener");
         return NULL;
     }
-    *listener = (struct listener){.loop = loop,
-                                  .source = {-1, listener_ready, listener},
-                                  .fd = -1,
-                                  .address = *address,
-                                  .accepted = accepted,
-                                  .owner = owner};
-    bool ok =
-        address->kind == ADDRESS_UNIX ? open_unix(listener, error) : open_tcp(listener, error);
+    *listener = (struct listener){
+        .loop = loop, .source = {-1, listener_ready, listener}, .fd = fd, .handler = *handler};
+    return listener;
+}
+
+/* Starts to accept, or closes when what came before has failed. */
+static struct listener *start(struct listener *listener, bool ok, struct error *error)
+{
     if (ok) {
         listener->source.fd = listener->fd;
-        ok = loop_watch(loop, &listener->source, EPOLLIN, error);
+        ok = loop_watch(listener->loop, &listener->source, EPOLLIN, error);
     }
-    if (!ok) {
-        listener_close(listener);
+    if (ok)
+        return listener;
+    listener_close(listener);
+    return NULL;
+}
+
+struct listener *listener_open(struct loop *loop, const struct address *address,
+                               const struct listener_handler *handler, struct error *error)
+{
+    struct listener *listener = create(loop, -1, handler, error);
+    if (!listener)
         return NULL;
+    listener->address = *address;
+    bool ok =
+        address->kind == ADDRESS_UNIX ? open_unix(listener, error) : open_tcp(listener, error);
+    return start(listener, ok, error);
+}
+
+static bool adopt(struct listener *listener, struct error *error)
+{
+    union {
+        struct sockaddr any;
+        struct sockaddr_un local;
+        struct sockaddr_storage room;
+    } name = {.room = {0}};
+    socklen_t size = sizeof name.room;
+    int flags = fcntl(listener->fd, F_GETFL);
+    if (flags < 0 || fcntl(listener->fd, F_SETFL, flags | O_NONBLOCK) < 0 ||
+        getsockname(listener->fd, &name.any, &size) < 0)
+        return error_set(error, ERROR_SERVER, "a socket from the service manager: %s",
+                         strerror(errno));
+    if (name.any.sa_family == AF_UNIX) {
+        listener->address.kind = ADDRESS_UNIX;
+        snprintf(listener->text, sizeof listener->text, "unix:%s",
+                 name.local.sun_path[0] ? name.local.sun_path : "@");
+        return true;
     }
-    return listener;
+    listener->address.kind = ADDRESS_TCP;
+    describe_tcp(listener, &name.any, size);
+    return is_loopback(&name.any) ||
+           error_set(error, ERROR_SERVER,
+                     "%s, from the service manager, is not a loopback address: "
+                     "this version has no TLS yet",
+                     listener->text);
+}
+
+struct listener *listener_adopt(struct loop *loop, int fd, const struct listener_handler *handler,
+                                struct error *error)
+{
+    struct listener *listener = create(loop, fd, handler, error);
+    if (listener)
+        return start(listener, adopt(listener, error), error);
+    close(fd);
+    return NULL;
 }
 
 void listener_close(struct listener *listener)

@@ -1,4 +1,5 @@
-/* Listening sockets: Unix (owner only) and TCP on loopback. Thread: the loop's. */
+/* Listening sockets: Unix, TCP on loopback, and those that a service manager has opened. Thread:
+ * the loop's. */
 #ifndef SHEEN_SERVICE_LISTEN_H
 #define SHEEN_SERVICE_LISTEN_H
 
@@ -14,13 +15,26 @@ struct listener;
  * read and change what is sent. ERROR_REQUEST if not; ERROR_SERVER if the name is unknown. */
 bool listener_check(const struct address *address, struct error *error);
 
-/* Opens the socket and calls accepted() with every new connection's fd, which is then the
- * callee's. A Unix socket is made with mode 0600; one that a dead daemon left behind is replaced,
- * one that somebody answers on, or a file of another kind, is not. NULL on failure. */
+/* Where a daemon listens when nobody says where: $XDG_RUNTIME_DIR/sheen.sock, else a socket in a
+ * folder of this user's alone under /tmp, which is made if need be. ERROR_SERVER when somebody else
+ * has put something of that name there. */
+bool listener_default(struct address *address, struct error *error);
+
+/* Who gets every new connection's fd, which is then his. */
+struct listener_handler {
+    void (*accepted)(void *owner, const struct listener *listener, int fd);
+    void *owner;
+};
+
+/* Opens the socket. A Unix socket is made with mode 0600; one that a dead daemon left behind is
+ * replaced, one that somebody answers on, or a file of another kind, is not. NULL on failure. */
 struct listener *listener_open(struct loop *loop, const struct address *address,
-                               void (*accepted)(void *owner, int fd), void *owner,
-                               struct error *error);
-/* Closes and removes the Unix socket's file, if it is still this one. NULL is safe. */
+                               const struct listener_handler *handler, struct error *error);
+/* Takes over a listening socket that somebody else has opened; its file stays when it closes.
+ * Closes fd on failure. */
+struct listener *listener_adopt(struct loop *loop, int fd, const struct listener_handler *handler,
+                                struct error *error);
+/* Closes and removes the Unix socket's file, if it is still the one made here. NULL is safe. */
 void listener_close(struct listener *listener);
 
 /* The address as people write it, with the port that the system chose. */

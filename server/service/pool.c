@@ -1,9 +1,16 @@
 #include "server/service/pool.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+struct pool_thread {
+    struct pool *pool;
+    pthread_t thread;
+    atomic_ullong busy_since_us; /* when its present work began; 0: it has none */
+};
 
 struct pool {
     char name[13];
@@ -15,7 +22,7 @@ struct pool {
     bool ending;
     unsigned n_threads, n_started, n_failed;
     struct error start_error; /* the first thread's that failed */
-    pthread_t threads[];
+    struct pool_thread threads[];
 };
 
 static struct work *next_work(struct pool *pool)
@@ -44,13 +51,16 @@ static bool start_worker(struct pool *pool, void **worker)
 
 static void *thread_main(void *argument)
 {
-    struct pool *pool = argument;
+    struct pool_thread *self = argument;
+    struct pool *pool = self->pool;
     pthread_setname_np(pthread_self(), pool->name);
     void *worker = NULL;
     if (!start_worker(pool, &worker))
         return NULL;
     for (struct work *work; (work = next_work(pool));) {
+        atomic_store(&self->busy_since_us, loop_now_us());
         work->run(work, worker);
+        atomic_store(&self->busy_since_us, 0);
         completions_post(pool->completions, work);
     }
     pool->worker.stop(worker);
@@ -61,7 +71,10 @@ static bool start_threads(struct pool *pool, unsigned n_threads, struct error *e
 {
     int code = 0;
     while (pool->n_threads < n_threads && code == 0) {
-        code = pthread_create(&pool->threads[pool->n_threads], NULL, thread_main, pool);
+        struct pool_thread *next = &pool->threads[pool->n_threads];
+        next->pool = pool;
+        atomic_init(&next->busy_since_us, 0);
+        code = pthread_create(&next->thread, NULL, thread_main, next);
         pool->n_threads += code == 0;
     }
     pthread_mutex_lock(&pool->lock);
@@ -104,10 +117,21 @@ void pool_destroy(struct pool *pool)
     pthread_cond_broadcast(&pool->changed);
     pthread_mutex_unlock(&pool->lock);
     for (unsigned i = 0; i < pool->n_threads; i++)
-        pthread_join(pool->threads[i], NULL);
+        pthread_join(pool->threads[i].thread, NULL);
     pthread_cond_destroy(&pool->changed);
     pthread_mutex_destroy(&pool->lock);
     free(pool);
+}
+
+uint64_t pool_busy_us(const struct pool *pool, uint64_t now_us)
+{
+    uint64_t longest = 0;
+    for (unsigned i = 0; i < pool->n_threads; i++) {
+        uint64_t since = atomic_load(&pool->threads[i].busy_since_us);
+        uint64_t busy = since && since < now_us ? now_us - since : 0;
+        longest = busy > longest ? busy : longest;
+    }
+    return longest;
 }
 
 void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency)

@@ -6,6 +6,7 @@
 #define SHEEN_SERVICE_POOL_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "server/service/work.h"
 
@@ -35,6 +36,10 @@ struct pool *pool_create(const char *name, unsigned n_threads, const struct pool
 /* Finishes every submitted work, then ends the threads. The works' done() calls are still to be
  * delivered then. NULL is safe. */
 void pool_destroy(struct pool *pool);
+
+/* For how long the thread that has been busy longest has been at its present work; 0: all wait for
+ * work. A thread that hangs is told from one that works by how long this is. */
+uint64_t pool_busy_us(const struct pool *pool, uint64_t now_us);
 
 /* Takes a work in. Never blocks and never fails: callers bound how much they submit. */
 void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency);

@@ -61,3 +61,8 @@ const struct renderer_info *render_thread_info(const struct render_thread *threa
 {
     return &thread->info;
 }
+
+uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us)
+{
+    return pool_busy_us(thread->pool, now_us);
+}

@@ -18,6 +18,9 @@ void render_thread_destroy(struct render_thread *thread);
 
 void render_thread_submit(struct render_thread *thread, struct work *work);
 
+/* As pool_busy_us(). */
+uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us);
+
 /* Constant while the thread lives. */
 const struct renderer_info *render_thread_info(const struct render_thread *thread);
 

@@ -306,7 +306,7 @@ static void answer_frame(struct request *request, struct encoded *encoded)
     request->times.tables_us = request->model.asset->unreported_us;
     request->times.total_us = now - request->start_us;
     request->model.asset->unreported_us = 0;
-    stats_frame(&request->host->stats, &request->times);
+    stats_frame(&request->host->stats, &request->times, now);
     sheen_Frame frame;
     fill_frame(request, encoded, &frame);
     session_answer_frame(request->session, request->answer, &frame, encoded);

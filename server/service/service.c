@@ -10,11 +10,18 @@
 #include <unistd.h>
 
 #include "server/service/listen.h"
+#include "server/service/monitor.h"
+#include "server/service/notify.h"
+#include "server/service/peer.h"
+#include "server/service/pool.h"
 #include "server/service/request.h"
 #include "server/service/session.h"
 
 struct service {
+    struct service_options options; /* those in force */
+    struct service_reloader reloader;
     struct session_host host;
+    struct monitor *monitor; /* NULL with a single session */
     struct completions *completions;
     struct listener *listeners[SERVICE_MAX_LISTENERS];
     size_t n_listeners;
@@ -40,18 +47,24 @@ static void turn_away(int fd, const char *text)
     close(fd);
 }
 
-static void accepted(void *owner, int fd)
+static void accepted(void *owner, const struct listener *listener, int fd)
 {
     struct service *service = owner;
+    struct session *session = NULL;
     struct error error = {0};
+    char peer[PEER_TEXT_BYTES];
+    peer_describe(fd, peer);
     if (service->host.n_sessions >= SERVICE_MAX_SESSIONS) {
-        service->host.stats.errors++;
-        turn_away(fd, "the daemon has as many clients as it takes: try again later");
-        return;
+        error_set(&error, ERROR_SERVER,
+                  "the daemon has as many clients as it takes: try again later");
+        turn_away(fd, error.text);
+    } else {
+        session = session_create(&service->host, fd, peer, &error);
     }
-    struct session *session = session_create(&service->host, fd, &error);
     if (!session) {
-        fprintf(stderr, "sheend: a client was turned away: %s\n", error.text);
+        service->host.stats.refused++;
+        log_event(LOG_WARN, "client turned away", log_text("peer", peer),
+                  log_text("listener", listener_text(listener)), log_text("text", error.text));
         return;
     }
     session->next = service->sessions;
@@ -114,6 +127,44 @@ static void close_listeners(struct service *service)
         listener_close(service->listeners[--service->n_listeners]);
 }
 
+static void drain(struct service *service)
+{
+    if (service->host.draining)
+        _exit(0); /* asked twice: at once, with the listeners gone already */
+    service->host.draining = true;
+    service->host.drain_start_us = loop_now_us();
+    close_listeners(service);
+    notify_send("STOPPING=1\nSTATUS=finishing what is in flight");
+    log_event(LOG_INFO, "shutting down", log_number("sessions", service->host.n_sessions));
+}
+
+/* What may change while the daemon serves. */
+static void apply(struct service *service, const struct service_options *options)
+{
+    service->options = *options;
+    service->host.idle_timeout_us = options->idle_timeout_s * 1000000;
+    service->host.drain_timeout_us = options->drain_timeout_s * 1000000;
+    /* The client of a private daemon shows its last line when it dies. */
+    log_set(service->single ? LOG_ERROR : options->log_level, options->log_format);
+    if (service->monitor)
+        monitor_set_stuck(service->monitor, options->stuck_s * 1000000);
+}
+
+static void reload(struct service *service)
+{
+    struct error error = {0};
+    struct service_options options;
+    notify_send("RELOADING=1");
+    if (service->reloader.read(service->reloader.owner, &options, &error)) {
+        apply(service, &options);
+        log_event(LOG_INFO, "configuration reloaded", log_text("version", SHEEN_VERSION));
+    } else {
+        log_event(LOG_ERROR, "the new configuration is bad: the old one stays",
+                  log_text("text", error.text));
+    }
+    notify_send("READY=1");
+}
+
 static void signal_ready(struct loop_source *source, uint32_t events)
 {
     (void)events;
@@ -121,11 +172,10 @@ static void signal_ready(struct loop_source *source, uint32_t events)
     struct signalfd_siginfo signal;
     if (read(service->signal_fd, &signal, sizeof signal) != (ssize_t)sizeof signal)
         return;
-    if (service->host.draining)
-        _exit(0); /* asked twice: at once, with the listeners gone already */
-    service->host.draining = true;
-    service->host.drain_start_us = loop_now_us();
-    close_listeners(service);
+    if (signal.ssi_signo != SIGHUP)
+        drain(service);
+    else if (service->reloader.read && !service->host.draining)
+        reload(service);
 }
 
 static bool watch_signals(struct service *service, struct error *error)
@@ -134,6 +184,8 @@ static bool watch_signals(struct service *service, struct error *error)
     sigemptyset(&set);
     sigaddset(&set, SIGTERM);
     sigaddset(&set, SIGINT);
+    if (!service->single)
+        sigaddset(&set, SIGHUP); /* a private daemon hangs up with its terminal */
     /* Before any thread starts: threads inherit the mask. */
     pthread_sigmask(SIG_BLOCK, &set, NULL);
     service->signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
@@ -145,53 +197,125 @@ static bool watch_signals(struct service *service, struct error *error)
 
 /* --- start and stop */
 
-static bool open_listeners(struct service *service, const struct service_options *options,
-                           struct error *error)
+/* Keeps a listener that has been opened; NULL has been explained by who returns it. */
+static bool keep_listener(struct service *service, struct listener *listener)
 {
-    for (size_t i = 0; i < options->n_listen; i++) {
-        struct listener *listener =
-            listener_open(service->host.loop, &options->listen[i], accepted, service, error);
-        if (!listener)
-            return false;
+    if (listener)
         service->listeners[service->n_listeners++] = listener;
+    return listener != NULL;
+}
+
+/* The service manager's sockets; one that it calls "metrics" is for those. */
+static bool adopt_listeners(struct service *service, struct error *error)
+{
+    struct notify_fds fds;
+    const struct listener_handler handler = {accepted, service};
+    if (!notify_listen_fds(&fds, error))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < fds.n; i++) {
+        if (!ok)
+            close(fds.fd[i]);
+        else if (strcmp(fds.name[i], "metrics") == 0)
+            ok = monitor_adopt(service->monitor, fds.fd[i], error);
+        else if (service->n_listeners < SERVICE_MAX_LISTENERS)
+            ok = keep_listener(service,
+                               listener_adopt(service->host.loop, fds.fd[i], &handler, error));
+        else
+            ok = error_set(error, ERROR_SERVER, "more than %d sockets from the service manager",
+                           SERVICE_MAX_LISTENERS);
     }
-    return true;
+    return ok;
+}
+
+static bool open_listeners(struct service *service, struct error *error)
+{
+    const struct listener_handler handler = {accepted, service};
+    struct service_listen listen = service->options.listen;
+    if (!adopt_listeners(service, error))
+        return false;
+    if (listen.n == 0 && service->n_listeners == 0) {
+        listen.n = 1;
+        if (!listener_default(&listen.address[0], error))
+            return false;
+    }
+    for (size_t i = 0; i < listen.n; i++) {
+        if (service->n_listeners == SERVICE_MAX_LISTENERS)
+            return error_set(error, ERROR_SERVER, "at most %d addresses to listen on",
+                             SERVICE_MAX_LISTENERS);
+        if (!keep_listener(service,
+                           listener_open(service->host.loop, &listen.address[i], &handler, error)))
+            return false;
+    }
+    const struct service_listen *metrics = &service->options.metrics;
+    return metrics->n == 0 || monitor_listen(service->monitor, &metrics->address[0], error);
 }
 
 static bool open_session(struct service *service, int fd, struct error *error)
 {
-    service->single = true;
-    struct session *session = session_create(&service->host, fd, error);
+    struct session *session = session_create(&service->host, fd, "private", error);
     service->sessions = session;
     return session != NULL;
 }
 
-static bool start(struct service *service, const struct service_options *options,
-                  struct error *error)
+static bool start(struct service *service, struct error *error)
 {
     struct session_host *host = &service->host;
+    const struct service_options *options = &service->options;
     const struct loop_hooks hooks = {after_batch, tick, service};
     const struct renderer_options renderer = {.device = options->device};
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
         !(service->completions = completions_create(host->loop, error)) ||
         !(host->render_thread = render_thread_create(&renderer, service->completions, error)) ||
-        !(host->pool = pool_create("sheend-pool", options->n_threads, &encode_worker,
+        !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, &encode_worker,
                                    service->completions, error)) ||
         !(host->store =
               store_create(host->pool, host->render_thread, options->memory_budget_bytes, error)))
         return false;
+    host->gpu_generation = 1;
     host->max_upload_bytes = options->memory_budget_bytes < PROTOCOL_MAX_UPLOAD_BYTES
                                  ? options->memory_budget_bytes
                                  : PROTOCOL_MAX_UPLOAD_BYTES;
-    host->idle_timeout_us = options->idle_timeout_s * 1000000ull;
-    host->drain_timeout_us = options->drain_timeout_s * 1000000ull;
     stats_init(&host->stats);
-    if (options->session_fd >= 0)
+    if (service->single)
         return open_session(service, options->session_fd, error);
-    return open_listeners(service, options, error);
+    service->monitor = monitor_create(host, options->stuck_s * 1000000, error);
+    return service->monitor && open_listeners(service, error);
 }
 
-struct service *service_create(const struct service_options *options, struct error *error)
+/* Joined by ", ". */
+static void list_addresses(const struct service *service, char *text, size_t capacity)
+{
+    size_t used = 0;
+    text[0] = 0;
+    for (size_t i = 0; i < service->n_listeners && used < capacity; i++)
+        used += (size_t)snprintf(text + used, capacity - used, "%s%s", i ? ", " : "",
+                                 listener_text(service->listeners[i]));
+}
+
+static void tell_ready(const struct service *service)
+{
+    char addresses[SERVICE_MAX_LISTENERS * LISTENER_TEXT_BYTES];
+    const char *device = render_thread_info(service->host.render_thread)->device;
+    list_addresses(service, addresses, sizeof addresses);
+    log_event(LOG_INFO, "listening", log_text("version", SHEEN_VERSION), log_text("device", device),
+              log_text("addresses", addresses),
+              log_text("metrics", monitor_address(service->monitor)));
+    notify_send("READY=1\nSTATUS=serving");
+}
+
+bool service_options_check(const struct service_options *options, struct error *error)
+{
+    if (options->session_fd >= 0 && options->listen.n > 0)
+        return error_set(error, ERROR_REQUEST, "--session-fd and --listen exclude each other");
+    for (size_t i = 0; i < options->listen.n; i++)
+        if (!listener_check(&options->listen.address[i], error))
+            return false;
+    return options->metrics.n == 0 || listener_check(&options->metrics.address[0], error);
+}
+
+struct service *service_create(const struct service_options *options,
+                               const struct service_reloader *reloader, struct error *error)
 {
     struct service *service = calloc(1, sizeof *service);
     if (!service) {
@@ -199,10 +323,17 @@ struct service *service_create(const struct service_options *options, struct err
         return NULL;
     }
     service->signal_fd = -1;
-    if (!start(service, options, error)) {
+    service->reloader = *reloader;
+    service->single = options->session_fd >= 0;
+    apply(service, options);
+    if (!start(service, error)) {
         service_destroy(service);
         return NULL;
     }
+    if (service->single)
+        service->host.idle_timeout_us = 0;
+    else
+        tell_ready(service);
     return service;
 }
 
@@ -219,6 +350,7 @@ void service_destroy(struct service *service)
         return;
     struct session_host *host = &service->host;
     close_listeners(service);
+    monitor_destroy(service->monitor);
     while (service->sessions) {
         struct session *session = service->sessions;
         service->sessions = session->next;
@@ -234,18 +366,4 @@ void service_destroy(struct service *service)
         close(service->signal_fd);
     loop_destroy(host->loop);
     free(service);
-}
-
-const struct renderer_info *service_device(const struct service *service)
-{
-    return render_thread_info(service->host.render_thread);
-}
-
-void service_addresses(const struct service *service, char *text, size_t capacity)
-{
-    size_t used = 0;
-    text[0] = 0;
-    for (size_t i = 0; i < service->n_listeners && used < capacity; i++)
-        used += (size_t)snprintf(text + used, capacity - used, "%s%s", i ? ", " : "",
-                                 listener_text(service->listeners[i]));
 }

@@ -4,39 +4,59 @@
 #define SHEEN_SERVICE_SERVICE_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "protocol/address.h"
 #include "server/error.h"
-#include "server/gpu/renderer.h"
+#include "server/service/log.h"
 
 #define SERVICE_MAX_LISTENERS 16
 #define SERVICE_MAX_SESSIONS 256u
+#define SERVICE_PATH_BYTES 512
+#define SERVICE_DEVICE_BYTES 64
 
-struct service_options {
-    struct address listen[SERVICE_MAX_LISTENERS];
-    size_t n_listen;
-    int session_fd;             /* serve this connected socket alone; -1: listen */
-    const char *device;         /* as renderer_options.device */
-    size_t memory_budget_bytes; /* as store_create() */
-    unsigned n_threads;         /* of the pool, 1 to POOL_MAX_THREADS */
-    unsigned idle_timeout_s;    /* 0: never */
-    unsigned drain_timeout_s;   /* to read what is in flight when the daemon shuts down */
+struct service_listen {
+    size_t n;
+    struct address address[SERVICE_MAX_LISTENERS];
 };
+
+/* Plain data, zeroed before it is filled, so that two can be compared byte by byte. */
+struct service_options {
+    struct service_listen listen;
+    struct service_listen metrics;     /* of health and metrics: none or one */
+    int session_fd;                    /* serve this connected socket alone; -1: listen */
+    char device[SERVICE_DEVICE_BYTES]; /* as renderer_options.device */
+    uint64_t memory_budget_bytes;      /* as store_create() */
+    uint64_t n_threads;                /* of the pool, 1 to POOL_MAX_THREADS */
+    uint64_t idle_timeout_s;           /* 0: never */
+    uint64_t drain_timeout_s;          /* to read what is in flight when the daemon shuts down */
+    uint64_t stuck_s;                  /* as monitor_create() */
+    enum log_level log_level;          /* with a single session: errors only */
+    enum log_format log_format;
+};
+
+/* SIGHUP asks for the configuration anew: fills *options, or says why the old one stays. */
+struct service_reloader {
+    bool (*read)(void *owner, struct service_options *options, struct error *error);
+    void *owner;
+};
+
+/* What no single option can know, and what they name in the system: addresses that may be listened
+ * on. ERROR_REQUEST, or ERROR_SERVER for a host that is not known. */
+bool service_options_check(const struct service_options *options, struct error *error);
 
 struct service;
 
-/* Opens the device, then the listeners. From here on SIGTERM and SIGINT are taken by the loop.
+/* Opens the device, then the listeners: those of the service manager, or else those of *options, or
+ * else one for this user alone. From here on SIGTERM, SIGINT and SIGHUP are taken by the loop.
  * NULL on failure: ERROR_DEVICE without a device, ERROR_REQUEST for an address that may not be
  * listened on, else ERROR_SERVER. */
-struct service *service_create(const struct service_options *options, struct error *error);
+struct service *service_create(const struct service_options *options,
+                               const struct service_reloader *reloader, struct error *error);
 void service_destroy(struct service *service); /* NULL is safe */
 
 /* Serves until SIGTERM or SIGINT (what is in flight is finished and sent; a second signal ends at
  * once), or until the one session has closed: then the process ends, if need be here and now. */
 void service_run(struct service *service);
-
-/* For the line at start-up: the device's name, and the listeners' addresses joined by ", ". */
-const struct renderer_info *service_device(const struct service *service);
-void service_addresses(const struct service *service, char *text, size_t capacity);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "server/service/log.h"
 #include "server/service/request.h"
 #include "server/service/wire.h"
 
@@ -20,8 +21,20 @@ static void after_fill(struct session *session, bool ok)
         conn_close(&session->conn);
 }
 
+static void count_answer(struct session *session, const struct answer *answer, uint8_t type,
+                         sheen_ErrorCode code)
+{
+    session->n_answers++;
+    stats_answer(&session->host->stats, type, code, loop_now_us());
+    if (type != MESSAGE_ERROR)
+        log_event(LOG_DEBUG, "request answered", log_number("session", session->id),
+                  log_number("request", answer_seq(answer)),
+                  log_text("answer", message_type_name(type)));
+}
+
 void session_answer(struct session *session, struct answer *answer, uint8_t type, const void *body)
 {
+    count_answer(session, answer, type, sheen_ErrorCode_ERROR_NONE);
     after_fill(session, answer_fill(answer, type, body));
 }
 
@@ -31,13 +44,17 @@ void session_answer_error(struct session *session, struct answer *answer, sheen_
     sheen_Error error = {.code = code};
     snprintf(error.text, sizeof error.text, "%s", text);
     wire_make_text(error.text, false);
-    session->host->stats.errors++;
-    session_answer(session, answer, MESSAGE_ERROR, &error);
+    count_answer(session, answer, MESSAGE_ERROR, code);
+    log_event(LOG_INFO, "request refused", log_number("session", session->id),
+              log_number("request", answer_seq(answer)), log_text("code", stats_error_name(code)),
+              log_text("text", error.text));
+    after_fill(session, answer_fill(answer, MESSAGE_ERROR, &error));
 }
 
 void session_answer_frame(struct session *session, struct answer *answer, const sheen_Frame *frame,
                           struct encoded *encoded)
 {
+    count_answer(session, answer, MESSAGE_FRAME, sheen_ErrorCode_ERROR_NONE);
     after_fill(session, answer_fill_frame(answer, frame, encoded));
 }
 
@@ -79,8 +96,9 @@ static void reply_error(struct session *session, uint32_t seq, sheen_ErrorCode c
 }
 
 /* The connection cannot go on: answers what came before, says why, and closes. */
-static void __attribute__((format(printf, 4, 5)))
-refuse(struct session *session, uint32_t seq, sheen_ErrorCode code, const char *format, ...)
+static void __attribute__((format(printf, 5, 6)))
+refuse(struct session *session, enum stats_end end, uint32_t seq, sheen_ErrorCode code,
+       const char *format, ...)
 {
     char text[sizeof((sheen_Error *)0)->text];
     va_list arguments;
@@ -88,6 +106,8 @@ refuse(struct session *session, uint32_t seq, sheen_ErrorCode code, const char *
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     struct answer *answer = session->refused ? NULL : expect_answer(session, seq);
+    if (!session->refused)
+        session->end = end;
     session->refused = true;
     conn_hold(&session->conn, true);
     if (!answer)
@@ -104,11 +124,12 @@ static void handle_hello(struct session *session, uint32_t seq, const uint8_t *b
     sheen_Hello hello;
     char text[MESSAGE_TEXT_BYTES];
     if (!message_hello_decode(body, length, model_id, &hello)) {
-        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO is not well-formed");
+        refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL,
+               "HELLO is not well-formed");
         return;
     }
     if (!message_check_hello(&hello, text)) {
-        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
+        refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
         return;
     }
     const struct renderer_info *info = render_thread_info(session->host->render_thread);
@@ -167,7 +188,7 @@ static void handle_upload_chunk(struct session *session, uint32_t seq, const uin
                                 size_t length)
 {
     if (seq != session->upload_seq || length == 0) {
-        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "UPLOAD_CHUNK %s",
+        refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL, "UPLOAD_CHUNK %s",
                length == 0 ? "without a byte" : "of no upload under way");
         return;
     }
@@ -185,7 +206,7 @@ static void handle_upload_chunk(struct session *session, uint32_t seq, const uin
         session->upload_seq = 0;
         reply_upload_state(session, seq, true, received);
     } else if (state == UPLOAD_TOO_MUCH) {
-        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
+        refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
     } else {
         reply_error(session, seq, wire_error_code(error.kind), error.text);
     }
@@ -211,6 +232,21 @@ static void handle_query(struct session *session, uint32_t seq, const sheen_Mode
         request_query(session, answer, seq, query);
 }
 
+/* The last minute: rates, and percentiles of each stage. */
+static void add_recent(sheen_Stats *body, const struct stats *stats)
+{
+    struct stats_recent recent;
+    stats_recent(stats, loop_now_us(), &recent);
+    body->has_window_us = body->has_window_requests = body->has_window_frames = true;
+    body->window_us = recent.window_us;
+    body->window_requests = recent.requests;
+    body->window_frames = recent.frames;
+    body->has_p50 = body->has_p95 = body->has_p99 = true;
+    body->p50 = recent.p50;
+    body->p95 = recent.p95;
+    body->p99 = recent.p99;
+}
+
 static void reply_stats(struct session *session, uint32_t seq)
 {
     const struct session_host *host = session->host;
@@ -230,6 +266,7 @@ static void reply_stats(struct session *session, uint32_t seq)
         .mean = stats_mean(&host->stats),
         .queued = host->scheduler.waiting,
     };
+    add_recent(&stats, &host->stats);
     snprintf(stats.device, sizeof stats.device, "%s", info->device);
     snprintf(stats.driver, sizeof stats.driver, "%s", info->driver);
     snprintf(stats.server, sizeof stats.server, "%s", SHEEN_VERSION);
@@ -245,12 +282,12 @@ static void handle_body(struct session *session, const struct message_header *he
         sheen_Render render;
     } body;
     if (!message_decode(header->type, bytes, header->length, &body)) {
-        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s is not well-formed",
-               message_type_name(header->type));
+        refuse(session, END_PROTOCOL, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+               "%s is not well-formed", message_type_name(header->type));
         return;
     }
     if (session->host->draining) {
-        refuse(session, header->seq, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
+        refuse(session, END_DRAIN, header->seq, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
         return;
     }
     if (header->type == MESSAGE_UPLOAD_BEGIN)
@@ -289,7 +326,7 @@ static void on_message(void *owner, const struct message_header *header, const u
     struct session *session = owner;
     const char *wrong = out_of_order(session, header);
     if (wrong) {
-        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
+        refuse(session, END_PROTOCOL, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
                message_type_name(header->type), wrong);
         return;
     }
@@ -309,7 +346,7 @@ static void on_message(void *owner, const struct message_header *header, const u
         handle_body(session, header, body);
         break;
     default:
-        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+        refuse(session, END_PROTOCOL, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
                "%s is a message that only servers send", message_type_name(header->type));
     }
     update_hold(session);
@@ -319,11 +356,11 @@ static void on_malformed(void *owner, const struct message_header *header, enum 
 {
     struct session *session = owner;
     if (error == HEADER_TOO_LONG)
-        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+        refuse(session, END_PROTOCOL, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
                "%s of %u bytes is longer than its type allows (%u)",
                message_type_name(header->type), header->length, message_max_length(header->type));
     else
-        refuse(session, header->seq,
+        refuse(session, END_PROTOCOL, header->seq,
                error == HEADER_BAD_MAJOR ? sheen_ErrorCode_ERROR_VERSION
                                          : sheen_ErrorCode_ERROR_PROTOCOL,
                "%s", header_error_text(error));
@@ -331,7 +368,8 @@ static void on_malformed(void *owner, const struct message_header *header, enum 
 
 /* --- its life */
 
-struct session *session_create(struct session_host *host, int fd, struct error *error)
+struct session *session_create(struct session_host *host, int fd, const char *peer,
+                               struct error *error)
 {
     static const struct conn_handler handler = {on_message, on_malformed};
     struct session *session = calloc(1, sizeof *session);
@@ -349,12 +387,23 @@ struct session *session_create(struct session_host *host, int fd, struct error *
     session->start_us = loop_now_us();
     scheduler_add_queue(&host->scheduler, &session->queue);
     host->n_sessions++;
+    host->stats.sessions++;
+    session->id = ++host->last_session_id;
+    log_event(LOG_INFO, "session opened", log_number("session", session->id),
+              log_text("peer", peer));
     return session;
 }
 
 void session_destroy(struct session *session)
 {
     struct session_host *host = session->host;
+    if (session->end == END_CLIENT && !session->conn.peer_ended)
+        session->end = END_LOST;
+    host->stats.ended[session->end]++;
+    log_event(LOG_INFO, "session closed", log_number("session", session->id),
+              log_text("reason", stats_end_name(session->end)),
+              log_number("answers", session->n_answers),
+              log_number("duration_us", loop_now_us() - session->start_us));
     request_abandon_all(session);
     answer_list_finish(&session->answers);
     upload_destroy(session->upload);
@@ -373,7 +422,7 @@ bool session_settle(struct session *session)
         if (conn->peer_ended)
             conn_close_after_flush(conn);
         else if (session->host->draining)
-            refuse(session, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
+            refuse(session, END_DRAIN, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
     }
     return conn->state != CONN_CLOSED;
 }
@@ -387,6 +436,13 @@ static bool drains_too_long(const struct session *session, uint64_t now)
     return host->draining && now - since > host->drain_timeout_us;
 }
 
+/* It does not read: there is no telling it. */
+static void close_unread(struct session *session)
+{
+    session->end = session->host->draining ? END_DRAIN : END_UNREAD;
+    conn_close(&session->conn);
+}
+
 static void check_deadlines(struct session *session, uint64_t now)
 {
     struct conn *conn = &session->conn;
@@ -398,17 +454,17 @@ static void check_deadlines(struct session *session, uint64_t now)
     if (conn->state == CONN_LINGERING && since_in > SESSION_LINGER_US)
         conn_close(conn);
     else if (sending && (since_out > stall || drains_too_long(session, now)))
-        conn_close(conn); /* it does not read: there is no telling it */
+        close_unread(session);
     else if (conn->state != CONN_OPEN)
         return;
     else if (!session->greeted && now - session->start_us > PROTOCOL_HELLO_TIMEOUT_MS * 1000ull)
-        refuse(session, 0, sheen_ErrorCode_ERROR_PROTOCOL, "no HELLO within %u ms",
+        refuse(session, END_HELLO, 0, sheen_ErrorCode_ERROR_PROTOCOL, "no HELLO within %u ms",
                PROTOCOL_HELLO_TIMEOUT_MS);
     else if (receiving && since_in > stall)
-        refuse(session, 0, sheen_ErrorCode_ERROR_PROTOCOL,
+        refuse(session, END_STALLED, 0, sheen_ErrorCode_ERROR_PROTOCOL,
                "a message or an upload stopped in the middle for %u ms", PROTOCOL_STALL_TIMEOUT_MS);
     else if (idle > 0 && !sending && session->answers.n == 0 && since_in > idle && since_out > idle)
-        refuse(session, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN,
+        refuse(session, END_IDLE, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN,
                "no request for %llu s: connect again when there is one",
                (unsigned long long)(idle / 1000000));
 }

@@ -29,6 +29,8 @@ struct session_host {
     struct scheduler scheduler;
     struct stats stats;
     uint32_t n_sessions;
+    uint32_t gpu_generation;  /* how often a device has been opened */
+    uint64_t last_session_id; /* sessions are numbered in the log */
     uint64_t max_upload_bytes;
     uint64_t idle_timeout_us; /* 0: never */
     bool draining;            /* no new request is taken, and answers must be read soon */
@@ -43,7 +45,10 @@ struct session {
     struct conn conn;
     struct schedule_queue queue;
     struct answer_list answers;
+    uint64_t id; /* in the log */
     uint64_t start_us;
+    uint64_t n_answers;
+    enum stats_end end;    /* why it ends, once the daemon has decided that it does */
     bool greeted;          /* HELLO has been answered */
     bool refused;          /* the last answer is on its way: nothing is read any more */
     struct upload *upload; /* NULL: none under way */
@@ -52,8 +57,9 @@ struct session {
     struct session *next; /* the service's list */
 };
 
-/* Takes the socket over (closes it on failure). */
-struct session *session_create(struct session_host *host, int fd, struct error *error);
+/* Takes the socket over (closes it on failure). `peer` is the client's address for the log. */
+struct session *session_create(struct session_host *host, int fd, const char *peer,
+                               struct error *error);
 /* Closes at once; requests in flight end unseen. */
 void session_destroy(struct session *session);
 

@@ -7,18 +7,58 @@ void stats_init(struct stats *stats)
     *stats = (struct stats){.start_us = loop_now_us()};
 }
 
-void stats_frame(struct stats *stats, const sheen_Times *times)
+/* The slice of this moment, emptied when it held one that has become too old. */
+static struct stats_slice *slice_now(struct stats *stats, uint64_t now_us)
 {
-    stats->last[stats->frames++ % STATS_FRAMES] = *times;
+    uint64_t number = (now_us - stats->start_us) / STATS_SLICE_US;
+    struct stats_slice *slice = &stats->slices[number % STATS_SLICES];
+    if (slice->number != number)
+        *slice = (struct stats_slice){.number = number};
+    return slice;
+}
+
+static const uint64_t *time_of(const sheen_Times *times, enum stats_stage stage)
+{
+    const uint64_t *const member[STAGE_COUNT] = {
+        &times->tables_us,   &times->visibility_us, &times->evaluate_us, &times->shade_us,
+        &times->readback_us, &times->encode_us,     &times->total_us,
+    };
+    return member[stage];
+}
+
+void stats_answer(struct stats *stats, uint8_t type, sheen_ErrorCode code, uint64_t now_us)
+{
+    stats->answers[type]++;
+    stats->frames += type == MESSAGE_FRAME;
+    stats->errors += type == MESSAGE_ERROR;
+    if (type == MESSAGE_ERROR)
+        stats->error_codes[code]++;
+    struct stats_slice *slice = slice_now(stats, now_us);
+    slice->requests++;
+    slice->frames += type == MESSAGE_FRAME;
+}
+
+void stats_frame(struct stats *stats, const sheen_Times *times, uint64_t now_us)
+{
+    struct stats_slice *slice = slice_now(stats, now_us);
+    for (unsigned stage = 0; stage < STAGE_COUNT; stage++) {
+        uint64_t us = *time_of(times, stage);
+        if (us == 0)
+            continue;
+        histogram_add(&stats->stage[stage], us);
+        histogram_add(&slice->stage[stage], us);
+    }
+    stats->last[stats->stage[STAGE_TOTAL].n % STATS_FRAMES] = *times;
 }
 
 sheen_Times stats_mean(const struct stats *stats)
 {
     sheen_Times mean = sheen_Times_init_zero;
-    uint64_t n = stats->frames < STATS_FRAMES ? stats->frames : STATS_FRAMES;
+    uint64_t n = stats->stage[STAGE_TOTAL].n;
+    n = n < STATS_FRAMES ? n : STATS_FRAMES;
     if (n == 0)
         return mean;
-    for (uint64_t i = 0; i < n; i++) {
+    for (uint64_t i = 0; i < STATS_FRAMES; i++) { /* places without a frame are zeros */
         const sheen_Times *t = &stats->last[i];
         mean.tables_us += t->tables_us;
         mean.visibility_us += t->visibility_us;
@@ -31,4 +71,67 @@ sheen_Times stats_mean(const struct stats *stats)
     return (sheen_Times){mean.tables_us / n, mean.visibility_us / n, mean.evaluate_us / n,
                          mean.shade_us / n,  mean.readback_us / n,   mean.encode_us / n,
                          mean.total_us / n};
+}
+
+static void percentiles(const struct histogram stage[static STAGE_COUNT], double p,
+                        sheen_Times *times)
+{
+    uint64_t *const member[STAGE_COUNT] = {
+        &times->tables_us,   &times->visibility_us, &times->evaluate_us, &times->shade_us,
+        &times->readback_us, &times->encode_us,     &times->total_us,
+    };
+    for (unsigned i = 0; i < STAGE_COUNT; i++)
+        *member[i] = histogram_percentile(&stage[i], p);
+}
+
+void stats_recent(const struct stats *stats, uint64_t now_us, struct stats_recent *recent)
+{
+    struct histogram stage[STAGE_COUNT] = {{0}};
+    uint64_t age = now_us - stats->start_us, number = age / STATS_SLICE_US;
+    uint64_t first = number >= STATS_SLICES ? number - STATS_SLICES + 1 : 0;
+    *recent = (struct stats_recent){.window_us = age - first * STATS_SLICE_US};
+    for (unsigned i = 0; i < STATS_SLICES; i++) {
+        const struct stats_slice *slice = &stats->slices[i];
+        if (slice->number < first)
+            continue;
+        recent->requests += slice->requests;
+        recent->frames += slice->frames;
+        for (unsigned k = 0; k < STAGE_COUNT; k++)
+            histogram_merge(&stage[k], &slice->stage[k]);
+    }
+    percentiles(stage, 0.5, &recent->p50);
+    percentiles(stage, 0.95, &recent->p95);
+    percentiles(stage, 0.99, &recent->p99);
+}
+
+const char *stats_stage_name(enum stats_stage stage)
+{
+    static const char *const NAMES[STAGE_COUNT] = {"tables",   "visibility", "evaluate", "shade",
+                                                   "readback", "encode",     "total"};
+    return NAMES[stage];
+}
+
+const char *stats_end_name(enum stats_end end)
+{
+    static const char *const NAMES[END_COUNT] = {
+        "client", "lost", "protocol", "hello", "stalled", "unread", "idle", "drain", "credentials"};
+    return NAMES[end];
+}
+
+const char *stats_error_name(sheen_ErrorCode code)
+{
+    static const char *const NAMES[_sheen_ErrorCode_ARRAYSIZE] = {
+        [sheen_ErrorCode_ERROR_NONE] = "none",
+        [sheen_ErrorCode_ERROR_PROTOCOL] = "protocol",
+        [sheen_ErrorCode_ERROR_VERSION] = "version",
+        [sheen_ErrorCode_ERROR_REQUEST] = "request",
+        [sheen_ErrorCode_ERROR_MODEL] = "model",
+        [sheen_ErrorCode_ERROR_IMAGE] = "image",
+        [sheen_ErrorCode_ERROR_UNKNOWN_MODEL] = "unknown_model",
+        [sheen_ErrorCode_ERROR_TOO_BIG] = "too_big",
+        [sheen_ErrorCode_ERROR_OVERLOADED] = "overloaded",
+        [sheen_ErrorCode_ERROR_SHUTTING_DOWN] = "shutting_down",
+        [sheen_ErrorCode_ERROR_DEVICE] = "device",
+    };
+    return NAMES[code];
 }

@@ -11,6 +11,7 @@ struct store {
     struct render_thread *render_thread;
     size_t budget_bytes, used_bytes;
     size_t n_assets;
+    uint64_t n_hits, n_misses, n_evictions;
     unsigned n_building;
     atomic_bool cancelled;
     struct asset *build_head, *build_tail; /* wait for a turn */
@@ -96,6 +97,7 @@ static bool evict_one(struct store *store)
         if (asset->users > 0 || asset->state == ASSET_BUILDING)
             continue;
         asset_destroy(asset);
+        store->n_evictions++;
         return true;
     }
     return false;
@@ -275,8 +277,11 @@ enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *wait
         return ACQUIRE_FAILED;
     }
     asset->users++;
-    if (asset->state == ASSET_READY)
+    if (asset->state == ASSET_READY) {
+        asset->store->n_hits++;
         return ACQUIRE_READY;
+    }
+    asset->store->n_misses++;
     waiter->next = asset->waiters;
     asset->waiters = waiter;
     if (asset->state == ASSET_STORED)
@@ -301,7 +306,11 @@ bool store_is_building(const struct store *store)
 
 struct store_counts store_count(const struct store *store)
 {
-    struct store_counts counts = {0};
+    struct store_counts counts = {.used_bytes = store->used_bytes,
+                                  .budget_bytes = store->budget_bytes,
+                                  .hits = store->n_hits,
+                                  .misses = store->n_misses,
+                                  .evictions = store->n_evictions};
     for (const struct asset *asset = store->newest; asset; asset = asset->older) {
         if (asset->state != ASSET_READY)
             continue;

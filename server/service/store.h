@@ -62,6 +62,8 @@ struct asset_waiter {
 struct store_counts {
     uint32_t models, images; /* ready */
     uint64_t model_bytes;    /* tables on the GPU */
+    uint64_t used_bytes, budget_bytes;
+    uint64_t hits, misses, evictions; /* ever: uses of what was ready, uses that had to wait */
 };
 
 /* budget_bytes: the most that files, tables and texels may take together. */

@@ -49,7 +49,7 @@ def resident_kb(pid):
 class Daemon:
     """A real sheend on a Unix socket and a TCP port of its own."""
 
-    def __init__(self, *arguments, folder=None, path=None, tcp=True):
+    def __init__(self, *arguments, folder=None, path=None, tcp=True, env=None):
         self.folder = folder or tempfile.mkdtemp(prefix="sheen-test-")
         self.owns_folder = folder is None
         self.path = path or os.path.join(self.folder, "sheen.sock")
@@ -57,7 +57,8 @@ class Daemon:
         listen = ["--listen", self.unix] + (["--listen", "tcp:127.0.0.1:0"] if tcp else [])
         self.stderr = tempfile.TemporaryFile("w+")
         self.process = subprocess.Popen([SHEEND, *listen, "--device", "software", *arguments],
-                                        stdout=subprocess.DEVNULL, stderr=self.stderr)
+                                        stdout=subprocess.DEVNULL, stderr=self.stderr,
+                                        env={**os.environ, **(env or {})})
         atexit.register(self.process.kill)  # where a test fails before it stops its daemon
         banner = self.wait_for_banner()
         found = re.search(r"tcp:127\.0\.0\.1:\d+", banner)
@@ -67,10 +68,19 @@ class Daemon:
         self.stderr.seek(0)
         return self.stderr.read()
 
+    def wait_for(self, words, timeout=10):
+        """Waits until the log has these words, and returns it."""
+        end = time.monotonic() + timeout
+        while words not in self.errors():
+            if time.monotonic() > end:
+                raise AssertionError(f"the log lacks '{words}': {self.errors()}")
+            time.sleep(0.02)
+        return self.errors()
+
     def wait_for_banner(self):
         for _ in range(600):
             text = self.errors()
-            if "listening on" in text:
+            if "msg=listening" in text or '"msg":"listening"' in text:
                 return text
             if self.process.poll() is not None:
                 break

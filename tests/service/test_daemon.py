@@ -175,8 +175,9 @@ class Sockets(unittest.TestCase):
 
     def test_banner(self):
         daemon = Daemon()
-        self.assertRegex(daemon.errors(), r"^sheend \d+\.\d+\.\d+ on .+, listening on unix:.+, "
-                                          r"tcp:127\.0\.0\.1:\d+\n$")
+        self.assertRegex(daemon.errors(),
+                         r'^ts=\S+Z level=info msg=listening version=\d+\.\d+\.\d+ device=.+ '
+                         r'addresses="unix:.+, tcp:127\.0\.0\.1:\d+" metrics=""\n$')
         self.assertEqual(daemon.stop(), 0)
 
 

@@ -293,7 +293,19 @@ static void check_stats(const uint8_t *bytes, size_t size)
                                .driver = "Mesa",
                                .software = true,
                                .server = "0.1.0",
-                               .mean = {.total_us = 36000}};
+                               .mean = {.total_us = 36000},
+                               .has_window_us = true,
+                               .window_us = 60000000,
+                               .has_window_requests = true,
+                               .window_requests = 3,
+                               .has_window_frames = true,
+                               .window_frames = 2,
+                               .has_p50 = true,
+                               .p50 = {.total_us = 35840},
+                               .has_p95 = true,
+                               .p95 = {.total_us = 37888},
+                               .has_p99 = true,
+                               .p99 = {.total_us = 37888}};
     same_message(MESSAGE_STATS, 6, &stats, bytes, size);
 }
 

@@ -10,7 +10,6 @@
 #include <cmocka.h>
 
 #include "server/service/label.h"
-#include "server/service/stats.h"
 #include "server/service/wire.h"
 
 static const double BOX_MIN[3] = {0, 0, 0}, BOX_MAX[3] = {4, 2, 1};
@@ -181,23 +180,6 @@ static void test_texts(void **state)
     assert_string_equal(lines, "a?b?[2J");
 }
 
-static void test_mean_of_the_last(void **state)
-{
-    (void)state;
-    struct stats stats;
-    stats_init(&stats);
-    assert_int_equal(stats_mean(&stats).total_us, 0);
-    const sheen_Times slow = {.total_us = 1000000}, fast = {.total_us = 10, .encode_us = 4};
-    stats_frame(&stats, &slow);
-    stats_frame(&stats, &fast);
-    assert_int_equal(stats_mean(&stats).total_us, 500005);
-    for (int i = 0; i < STATS_FRAMES; i++)
-        stats_frame(&stats, &fast);
-    assert_int_equal(stats_mean(&stats).total_us, 10);
-    assert_int_equal(stats_mean(&stats).encode_us, 4);
-    assert_int_equal(stats.frames, STATS_FRAMES + 2);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -206,7 +188,6 @@ int main(void)
         cmocka_unit_test(test_cameras_in_part),
         cmocka_unit_test(test_label_holds_every_digit),
         cmocka_unit_test(test_texts),
-        cmocka_unit_test(test_mean_of_the_last),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,191 @@
+#include "server/options.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <ini.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/options_table.h"
+#include "server/service/listen.h"
+
+#define MAX_ROWS 64
+#define HELP_COLUMN 28
+
+/* --- --help */
+
+static void print_row(const struct option_row *row)
+{
+    char name[64];
+    snprintf(name, sizeof name, "--%s %s", row->name, row->argument ? row->argument : "");
+    printf("%c %-*s", row->flags & OPTION_RELOADS ? '*' : ' ', HELP_COLUMN - 2, name);
+    if (strlen(name) >= HELP_COLUMN - 2)
+        printf("\n%-*s", HELP_COLUMN, "");
+    for (const char *c = row->help; *c; c++)
+        *c == '\n' ? (void)printf("\n%-*s", HELP_COLUMN, "") : (void)putchar(*c);
+    if (row->type == OPTION_NUMBER)
+        printf(", %llu to %llu", (unsigned long long)row->min, (unsigned long long)row->max);
+    if (row->initial)
+        printf(" (default: %s)", row->initial);
+    putchar('\n');
+}
+
+static void print_help(void)
+{
+    puts(
+        "sheend renders exact reflection lines on subdivision surfaces for clients of its socket.\n"
+        "\nusage: sheend [options]\n");
+    for (size_t i = 0; i < N_OPTION_ROWS; i++)
+        print_row(&OPTION_ROWS[i]);
+    puts(
+        "\nexamples:\n"
+        "  sheend                                       a daemon for this user alone\n"
+        "  sheend --listen unix:/run/sheen/sheen.sock   at a place of your choice\n"
+        "  sheend --listen tcp:127.0.0.1:7410 --device software --memory-budget 2G\n"
+        "  sheend --config /etc/sheen/sheend.conf --check-config\n"
+        "\nSIGHUP reads the configuration again and takes the options marked * from it; a bad one\n"
+        "changes nothing and is logged. SIGTERM and SIGINT finish what is in flight; a second\n"
+        "one ends at once.\n"
+        "exit codes: 0 done, 2 wrong usage, 4 cannot serve, 5 no device");
+}
+
+/* --- reading */
+
+static const struct option_row *find_row(const char *name)
+{
+    for (size_t i = 0; i < N_OPTION_ROWS; i++)
+        if (strcmp(name, OPTION_ROWS[i].name) == 0)
+            return &OPTION_ROWS[i];
+    return NULL;
+}
+
+struct file_reader {
+    struct settings *settings;
+    struct error *error;
+};
+
+/* inih's handler: 0 is an error. Only the first counts. */
+static int file_value(void *user, const char *section, const char *name, const char *value)
+{
+    struct file_reader *reader = user;
+    if (reader->error->kind != ERROR_NONE)
+        return 0;
+    if (*section && strcmp(section, "sheend") != 0)
+        return error_set(reader->error, ERROR_REQUEST, "unknown section [%s]; use [sheend]",
+                         section);
+    const struct option_row *row = find_row(name);
+    if (!row || !(row->flags & OPTION_IN_FILE))
+        return error_set(reader->error, ERROR_REQUEST,
+                         "unknown name '%s'; sheend --help lists them", name);
+    return option_set(row, reader->settings, value, reader->error);
+}
+
+static bool read_file(struct settings *settings, struct error *error)
+{
+    struct error found = {0};
+    struct file_reader reader = {settings, &found};
+    int line = ini_parse(settings->config, file_value, &reader);
+    if (line == 0)
+        return true;
+    if (line < 0)
+        return error_set(error, ERROR_REQUEST, "cannot read %s: %s", settings->config,
+                         strerror(errno));
+    return error_set(error, ERROR_REQUEST, "%s:%d: %s", settings->config, line,
+                     found.kind != ERROR_NONE ? found.text : "a line must be 'name = value'");
+}
+
+/* One option of the command line. `seen` tells whether it has been there before. */
+static bool take(const struct option_row *row, struct settings *settings, bool *seen,
+                 struct error *error)
+{
+    if (row->type == OPTION_LIST && !*seen)
+        memset((char *)settings + row->offset, 0, row->size);
+    *seen = true;
+    return option_set(row, settings, row->argument ? optarg : "yes", error);
+}
+
+static bool is_config(const struct option_row *row)
+{
+    return row->offset == offsetof(struct settings, config);
+}
+
+/* Walks the command line: --config and what acts at once, or all the others, so that they go over
+ * what the file says. */
+static enum options_result walk(int argc, char **argv, struct settings *settings, bool first,
+                                struct error *error)
+{
+    struct option longs[MAX_ROWS + 1] = {{0}};
+    bool seen[MAX_ROWS] = {false};
+    for (size_t i = 0; i < N_OPTION_ROWS; i++)
+        longs[i] =
+            (struct option){OPTION_ROWS[i].name,
+                            OPTION_ROWS[i].argument ? required_argument : no_argument, NULL, 0};
+    optind = 1;
+    opterr = 0;
+    for (int c, index; (c = getopt_long(argc, argv, "", longs, &index)) != -1;) {
+        if (c != 0) {
+            error_set(error, ERROR_REQUEST,
+                      "'%s' is no option or lacks its value; sheend --help lists them",
+                      argv[optind - 1]);
+            return OPTIONS_WRONG;
+        }
+        const struct option_row *row = &OPTION_ROWS[index];
+        if (row->type == OPTION_ACTION) {
+            strcmp(row->name, "help") == 0 ? print_help() : (void)puts("sheend " SHEEN_VERSION);
+            return OPTIONS_DONE;
+        }
+        if (is_config(row) == first && !take(row, settings, &seen[index], error))
+            return OPTIONS_WRONG;
+    }
+    if (optind == argc)
+        return OPTIONS_SERVE;
+    error_set(error, ERROR_REQUEST, "'%s' is no option; sheend --help lists them", argv[optind]);
+    return OPTIONS_WRONG;
+}
+
+static bool set_defaults(struct settings *settings, struct error *error)
+{
+    memset(settings, 0, sizeof *settings);
+    for (size_t i = 0; i < N_OPTION_ROWS; i++)
+        if (OPTION_ROWS[i].initial &&
+            !option_set(&OPTION_ROWS[i], settings, OPTION_ROWS[i].initial, error))
+            return false;
+    return true;
+}
+
+enum options_result options_read(int argc, char **argv, struct settings *settings,
+                                 struct error *error)
+{
+    _Static_assert(sizeof(bool) == 1, "flags are compared as bytes");
+    if (N_OPTION_ROWS > MAX_ROWS || !set_defaults(settings, error))
+        return OPTIONS_WRONG;
+    enum options_result result = walk(argc, argv, settings, true, error);
+    if (result != OPTIONS_SERVE)
+        return result;
+    if (*settings->config && !read_file(settings, error))
+        return OPTIONS_WRONG;
+    result = walk(argc, argv, settings, false, error);
+    if (result == OPTIONS_SERVE && !service_options_check(&settings->service, error))
+        return OPTIONS_WRONG;
+    return result == OPTIONS_SERVE && settings->check_config ? OPTIONS_CHECK : result;
+}
+
+void options_reload(struct settings *settings, const struct settings *fresh,
+                    char kept[static OPTIONS_CHANGED_BYTES])
+{
+    size_t used = 0;
+    kept[0] = 0;
+    for (size_t i = 0; i < N_OPTION_ROWS; i++) {
+        const struct option_row *row = &OPTION_ROWS[i];
+        char *value = (char *)settings + row->offset;
+        const char *other = (const char *)fresh + row->offset;
+        if (row->size == 0 || memcmp(value, other, row->size) == 0)
+            continue;
+        if (row->flags & OPTION_RELOADS)
+            memcpy(value, other, row->size);
+        else if (used < OPTIONS_CHANGED_BYTES)
+            used += (size_t)snprintf(kept + used, OPTIONS_CHANGED_BYTES - used, "%s%s",
+                                     used ? ", " : "", row->name);
+    }
+}

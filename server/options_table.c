@@ -1,0 +1,230 @@
+/* The table of options, and how their values are read. */
+#include "server/options_table.h"
+
+#include <errno.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "server/service/pool.h"
+
+/* --- values with a form of their own */
+
+static bool parse_number(const char *text, bool suffixes, uint64_t *number)
+{
+    if (*text < '0' || *text > '9')
+        return false;
+    char *end;
+    errno = 0;
+    uint64_t n = strtoull(text, &end, 10);
+    const char *suffix = suffixes && *end ? strchr("KMGT", *end) : NULL;
+    if (suffix) {
+        end++;
+        for (long i = suffix - "KMGT"; errno == 0 && i >= 0; i--)
+            errno = __builtin_mul_overflow(n, 1024, &n) ? ERANGE : 0;
+    }
+    *number = n;
+    return errno == 0 && *end == 0;
+}
+
+static bool add_listen(void *value, const char *text, struct error *error)
+{
+    struct service_listen *listen = value;
+    char why[ADDRESS_TEXT_BYTES];
+    if (listen->n == SERVICE_MAX_LISTENERS)
+        return error_set(error, ERROR_REQUEST, "at most %d addresses to listen on",
+                         SERVICE_MAX_LISTENERS);
+    if (!address_parse(&listen->address[listen->n], text, why))
+        return error_set(error, ERROR_REQUEST, "%s", why);
+    listen->n++;
+    return true;
+}
+
+static bool set_metrics(void *value, const char *text, struct error *error)
+{
+    memset(value, 0, sizeof(struct service_listen)); /* there is one: the last that is named */
+    return add_listen(value, text, error);
+}
+
+static bool set_choice(void *value, const char *text, const char *name, const char *const *choices,
+                       struct error *error)
+{
+    char list[96] = "";
+    for (int i = 0; choices[i]; i++) {
+        if (strcmp(text, choices[i]) == 0) {
+            memcpy(value, &i, sizeof i);
+            return true;
+        }
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", choices[i]);
+    }
+    return error_set(error, ERROR_REQUEST, "%s is '%s'; it must be one of %s", name, text, list);
+}
+
+static bool set_log_level(void *value, const char *text, struct error *error)
+{
+    _Static_assert(sizeof(enum log_level) == sizeof(int), "a choice is an int");
+    static const char *const LEVELS[] = {[LOG_ERROR] = "error",
+                                         [LOG_WARN] = "warn",
+                                         [LOG_INFO] = "info",
+                                         [LOG_DEBUG] = "debug",
+                                         NULL};
+    return set_choice(value, text, "log-level", LEVELS, error);
+}
+
+static bool set_log_format(void *value, const char *text, struct error *error)
+{
+    _Static_assert(sizeof(enum log_format) == sizeof(int), "a choice is an int");
+    static const char *const FORMATS[] = {[LOG_LOGFMT] = "logfmt", [LOG_JSON] = "json", NULL};
+    return set_choice(value, text, "log-format", FORMATS, error);
+}
+
+static bool set_device(void *value, const char *text, struct error *error)
+{
+    uint64_t number;
+    if (strcmp(text, "auto") != 0 && strcmp(text, "software") != 0 &&
+        !(parse_number(text, false, &number) && number <= 1023))
+        return error_set(error, ERROR_REQUEST,
+                         "device is '%s'; it must be auto, software or a device's number", text);
+    snprintf(value, SERVICE_DEVICE_BYTES, "%s", text);
+    return true;
+}
+
+/* The default: a thread for each processor that this process may use. */
+static bool set_threads(void *value, const char *text, struct error *error)
+{
+    uint64_t n;
+    cpu_set_t set;
+    if (strcmp(text, "auto") == 0)
+        n = sched_getaffinity(0, sizeof set, &set) == 0 ? (uint64_t)CPU_COUNT(&set) : 1;
+    else if (!parse_number(text, false, &n) || n < 1 || n > POOL_MAX_THREADS)
+        return error_set(error, ERROR_REQUEST,
+                         "threads is '%s'; it must be auto or a whole number from 1 to %u", text,
+                         POOL_MAX_THREADS);
+    n = n < 1 ? 1 : n > POOL_MAX_THREADS ? POOL_MAX_THREADS : n;
+    memcpy(value, &n, sizeof n);
+    return true;
+}
+
+static bool set_session_fd(void *value, const char *text, struct error *error)
+{
+    uint64_t number = 0;
+    struct stat file;
+    int fd = -1;
+    if (strcmp(text, "none") != 0) {
+        if (!parse_number(text, false, &number) || number > 1000000)
+            return error_set(error, ERROR_REQUEST,
+                             "session-fd is '%s'; it must be a whole number from 0 to 1000000",
+                             text);
+        fd = (int)number;
+        if (fstat(fd, &file) < 0 || !S_ISSOCK(file.st_mode))
+            return error_set(error, ERROR_REQUEST, "session-fd %s is no open socket", text);
+    }
+    memcpy(value, &fd, sizeof fd);
+    return true;
+}
+
+/* --- the table */
+
+#define VALUE(member) offsetof(struct settings, member), sizeof(((struct settings *)0)->member)
+
+const struct option_row OPTION_ROWS[] = {
+    {"listen", "ADDRESS", OPTION_LIST, OPTION_IN_FILE, VALUE(service.listen), 0, 0, NULL, NULL,
+     "unix:PATH or tcp:HOST:PORT (loopback only); may be given several times\n"
+     "(default: unix:$XDG_RUNTIME_DIR/sheen.sock, else unix:/tmp/sheen-UID/sheen.sock)",
+     add_listen},
+    {"device", "auto|software|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0, NULL,
+     "auto", "a GPU if there is one, the software device, or the N-th device", set_device},
+    {"memory-budget", "BYTES", OPTION_BYTES, OPTION_IN_FILE, VALUE(service.memory_budget_bytes), 1,
+     SIZE_MAX / 2, "bytes", "4G", "most that models and images may take; K, M, G, T", NULL},
+    {"threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_threads), 0, 0, NULL, "auto",
+     "for building tables and encoding, 1 to 256; auto: one per processor", set_threads},
+    {"idle-timeout", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.idle_timeout_s), 0, 10000000, "seconds", "900",
+     "disconnect a client without a request; 0: never", NULL},
+    {"drain-timeout", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.drain_timeout_s), 0, 10000000, "seconds", "30",
+     "after SIGTERM, how long a client may take to read its frames", NULL},
+    {"stuck-after", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.stuck_s), 1, 86400, "seconds", "60",
+     "a thread that is at one piece of work for longer is taken for stuck: /healthz\n"
+     "says so, and the service manager's watchdog is not fed any more",
+     NULL},
+    {"metrics", "ADDRESS", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.metrics), 0, 0, NULL, NULL,
+     "serve GET /metrics, /healthz and /readyz there: unix:PATH or\n"
+     "tcp:HOST:PORT, loopback only (default: nowhere)",
+     set_metrics},
+    {"log-level", "LEVEL", OPTION_OTHER, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.log_level),
+     0, 0, NULL, "info",
+     "error, warn, info (sessions, refused requests) or debug (every request),\n"
+     "on standard error",
+     set_log_level},
+    {"log-format", "FORMAT", OPTION_OTHER, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.log_format), 0, 0, NULL, "logfmt", "logfmt or json", set_log_format},
+    {"config", "FILE", OPTION_TEXT, 0, VALUE(config), 0, 0, NULL, NULL,
+     "lines 'name = value' with the names above; options given here go first", NULL},
+    {"check-config", NULL, OPTION_FLAG, 0, VALUE(check_config), 0, 0, NULL, NULL,
+     "check the options and the file, then exit", NULL},
+    {"session-fd", "N", OPTION_OTHER, 0, VALUE(service.session_fd), 0, 0, NULL, "none",
+     "serve this connected socket alone and end with it", set_session_fd},
+    {"version", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print the version and exit", NULL},
+    {"help", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print this and exit", NULL},
+};
+const size_t N_OPTION_ROWS = sizeof OPTION_ROWS / sizeof *OPTION_ROWS;
+
+static bool set_number(const struct option_row *row, void *value, const char *text,
+                       struct error *error)
+{
+    uint64_t n;
+    bool bytes = row->type == OPTION_BYTES;
+    if (!parse_number(text, bytes, &n) || n < row->min || n > row->max)
+        return error_set(error, ERROR_REQUEST,
+                         "%s is '%s'; it must be a whole number of %s from %llu to %llu%s",
+                         row->name, text, row->unit, (unsigned long long)row->min,
+                         (unsigned long long)row->max, bytes ? ", as 4000000000, 800M or 4G" : "");
+    memcpy(value, &n, sizeof n);
+    return true;
+}
+
+static bool set_text(const struct option_row *row, char *value, const char *text,
+                     struct error *error)
+{
+    if (*text == 0 || strlen(text) >= row->size)
+        return error_set(error, ERROR_REQUEST, "%s must be a text of 1 to %zu bytes", row->name,
+                         row->size - 1);
+    strncpy(value, text, row->size); /* the rest is zeros: values are compared byte by byte */
+    return true;
+}
+
+static bool set_flag(const struct option_row *row, bool *value, const char *text,
+                     struct error *error)
+{
+    bool yes = strcmp(text, "yes") == 0;
+    if (!yes && strcmp(text, "no") != 0)
+        return error_set(error, ERROR_REQUEST, "%s is '%s'; it must be yes or no", row->name, text);
+    *value = yes;
+    return true;
+}
+
+bool option_set(const struct option_row *row, struct settings *settings, const char *text,
+                struct error *error)
+{
+    void *value = (char *)settings + row->offset;
+    switch (row->type) {
+    case OPTION_NUMBER:
+    case OPTION_BYTES:
+        return set_number(row, value, text, error);
+    case OPTION_TEXT:
+        return set_text(row, value, text, error);
+    case OPTION_FLAG:
+        return set_flag(row, value, text, error);
+    case OPTION_LIST:
+    case OPTION_OTHER:
+        return row->set(value, text, error);
+    case OPTION_ACTION:
+        break;
+    }
+    return error_set(error, ERROR_REQUEST, "%s takes no value", row->name);
+}

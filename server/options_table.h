@@ -1,0 +1,46 @@
+/* The rows of the options' table. For options.c and options_table.c alone. */
+#ifndef SHEEN_SERVER_OPTIONS_TABLE_H
+#define SHEEN_SERVER_OPTIONS_TABLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/options.h"
+
+enum option_type {
+    OPTION_NUMBER, /* uint64_t from min to max */
+    OPTION_BYTES,  /* the same; a suffix K, M, G or T multiplies by powers of 1024 */
+    OPTION_TEXT,   /* char[size], not empty */
+    OPTION_FLAG,   /* bool; in a file 'yes' or 'no' */
+    OPTION_LIST,   /* given several times; set() adds. What the command line says replaces all that
+                      the file says */
+    OPTION_OTHER,  /* set() reads the value */
+    OPTION_ACTION, /* --help, --version */
+};
+
+enum option_flags {
+    OPTION_IN_FILE = 1, /* the configuration file may have it */
+    OPTION_RELOADS = 2, /* SIGHUP takes a new value */
+};
+
+struct option_row {
+    const char *name;
+    const char *argument; /* what --help calls the value; NULL: it takes none */
+    enum option_type type;
+    unsigned flags;
+    size_t offset, size; /* of the value in struct settings */
+    uint64_t min, max;
+    const char *unit;    /* of a number, or NULL */
+    const char *initial; /* the default as one would write it, or NULL: zero, or said in `help` */
+    const char *help;    /* '\n' begins a new line */
+    bool (*set)(void *value, const char *text, struct error *error);
+};
+
+extern const struct option_row OPTION_ROWS[];
+extern const size_t N_OPTION_ROWS;
+
+/* Reads `text` into the row's value. ERROR_REQUEST names the option and its range. */
+bool option_set(const struct option_row *row, struct settings *settings, const char *text,
+                struct error *error);
+
+#endif

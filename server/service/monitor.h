@@ -1,0 +1,27 @@
+/* What watches the daemon while it serves: the service manager's watchdog, fed only while the GL
+ * thread and the pool are well, and health and metrics over HTTP. Thread: the loop's. */
+#ifndef SHEEN_SERVICE_MONITOR_H
+#define SHEEN_SERVICE_MONITOR_H
+
+#include "protocol/address.h"
+#include "server/service/session.h"
+
+struct monitor;
+struct listener;
+
+/* stuck_us: a thread that is at one piece of work for longer is taken for stuck. *host and what it
+ * names stay until monitor_destroy(). */
+struct monitor *monitor_create(const struct session_host *host, uint64_t stuck_us,
+                               struct error *error);
+void monitor_destroy(struct monitor *monitor); /* NULL is safe */
+
+/* Serves GET /metrics, /healthz and /readyz at this address (loopback or Unix), or on a listening
+ * socket of the service manager's, which it closes on failure. */
+bool monitor_listen(struct monitor *monitor, const struct address *address, struct error *error);
+bool monitor_adopt(struct monitor *monitor, int fd, struct error *error);
+/* "" without one. */
+const char *monitor_address(const struct monitor *monitor);
+
+void monitor_set_stuck(struct monitor *monitor, uint64_t stuck_us);
+
+#endif

@@ -1,0 +1,496 @@
+"""What the people who run the daemon rely on: service manager, reload, logs, metrics, health."""
+import ctypes
+import fcntl
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+import wire
+from daemon import CUBE, SHEEN, SHEEND, Daemon, run
+from wire import Client
+
+
+def fetch(address, request="GET /metrics HTTP/1.1\r\n\r\n", timeout=10):
+    """(status, body) of a request to a tcp: or unix: address; None when it just closes."""
+    if isinstance(request, str):
+        request = request.encode()
+    if address.startswith("unix:"):
+        connection = socket.socket(socket.AF_UNIX)
+        target = address[5:]
+    else:
+        connection = socket.socket()
+        host, port = address[4:].rsplit(":", 1)
+        target = (host, int(port))
+    with connection:
+        connection.settimeout(timeout)
+        connection.connect(target)
+        connection.sendall(request)
+        answer = b""
+        try:
+            while part := connection.recv(65536):
+                answer += part
+        except ConnectionResetError:
+            pass
+    if not answer:
+        return None
+    head, body = answer.split(b"\r\n\r\n", 1)
+    length = int(re.search(rb"Content-Length: (\d+)", head).group(1))
+    assert length == len(body), (length, len(body))
+    return int(head.split()[1]), body.decode()
+
+
+def get(address, path):
+    return fetch(address, f"GET {path} HTTP/1.1\r\nHost: sheen\r\n\r\n")
+
+
+def metrics_address(daemon):
+    return re.search(r'metrics"?[=:]"?([^"\s}]+)', daemon.errors()).group(1)
+
+
+def read_metrics(text):
+    """{name{labels}: value}, from text that is held to the format's rules."""
+    values, types, helped = {}, {}, set()
+    label = r'[a-z_]+="(?:[^"\\\n]|\\["\\n])*"'
+    sample = re.compile(rf'^([a-z_]+)(\{{{label}(?:,{label})*\}})? (\d+(?:\.\d+)?)$')
+    assert text.endswith("\n")
+    for line in text.splitlines():
+        if line.startswith("# HELP "):
+            helped.add(line.split(" ")[2])
+        elif line.startswith("# TYPE "):
+            _, _, name, kind = line.split(" ")
+            assert name not in types and kind in ("counter", "gauge", "histogram"), line
+            assert (kind == "counter") == name.endswith("_total"), line
+            types[name] = kind
+        else:
+            found = sample.match(line)
+            assert found, line
+            name, labels, value = found.groups()
+            assert re.sub("_(bucket|sum|count)$", "", name) in types or name in types, line
+            assert name + (labels or "") not in values, line
+            values[name + (labels or "")] = float(value)
+    assert helped == set(types), helped ^ set(types)
+    return values
+
+
+class Notify:
+    """A service manager's socket, and the environment that names it."""
+
+    def __init__(self, folder, watchdog_us=0, abstract=False):
+        path = os.path.join(folder, "notify")
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.socket.bind("\0" + path if abstract else path)
+        self.socket.settimeout(10)
+        self.env = {"NOTIFY_SOCKET": ("@" if abstract else "") + path}
+        if watchdog_us:
+            self.env["WATCHDOG_USEC"] = str(watchdog_us)
+
+    def next(self):
+        return self.socket.recv(4096).decode()
+
+    def count(self, seconds):
+        """Pings within so many seconds from now."""
+        self.socket.setblocking(False)
+        try:
+            while True:
+                self.socket.recv(4096)
+        except BlockingIOError:
+            pass
+        n, end = 0, time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            self.socket.settimeout(left)
+            try:
+                n += self.socket.recv(4096) == b"WATCHDOG=1"
+            except TimeoutError:
+                break
+        return n
+
+
+class ServiceManager(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def test_ready_reload_and_stop(self):
+        for abstract in (False, True):
+            manager = Notify(self.folder, abstract=abstract)
+            daemon = Daemon(env=manager.env)
+            self.assertEqual(manager.next().splitlines()[0], "READY=1")
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertEqual([manager.next(), manager.next()], ["RELOADING=1", "READY=1"])
+            daemon.terminate()
+            self.assertEqual(manager.next().splitlines()[0], "STOPPING=1")
+            self.assertEqual(daemon.stop(), 0)
+            manager.socket.close()
+
+    def test_watchdog_is_fed(self):
+        manager = Notify(self.folder, watchdog_us=200000)
+        daemon = Daemon(env=manager.env)
+        self.assertGreaterEqual(manager.count(1), 5)
+        self.assertEqual(daemon.stop(), 0)
+        daemon = Daemon(env={**manager.env, "WATCHDOG_PID": "1"})
+        self.assertEqual(manager.count(0.5), 0)
+        self.assertEqual(daemon.stop(), 0)
+        manager.socket.close()
+
+    def test_watchdog_starves_when_the_gl_thread_hangs(self):
+        """ptrace stops this one thread in the middle of a frame."""
+        libc = ctypes.CDLL(None, use_errno=True)
+        seize, interrupt, detach, any_thread = 0x4206, 0x4207, 17, 0x40000000
+
+        def trace(request, thread):
+            code = libc.ptrace(request, thread, None, None)
+            self.assertEqual(code, 0, os.strerror(ctypes.get_errno()))
+
+        manager = Notify(self.folder, watchdog_us=200000)
+        daemon = Daemon("--stuck-after", "1", "--metrics", f"unix:{self.folder}/metrics",
+                        env=manager.env)
+        address = metrics_address(daemon)
+        tasks = f"/proc/{daemon.process.pid}/task"
+        for task in os.listdir(tasks):
+            with open(f"{tasks}/{task}/comm", encoding="ascii") as file:
+                if file.read() == "sheend-gl\n":
+                    thread = int(task)
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.render(model)
+            trace(seize, thread)
+            client.send(wire.render(50, model, 3000, 3000))
+            busy = 'sheen_thread_busy_seconds{thread="gl"}'
+            while read_metrics(get(address, "/metrics")[1])[busy] == 0:
+                pass
+            trace(interrupt, thread)
+            os.waitpid(thread, any_thread)
+            self.assertEqual(get(address, "/healthz"), (200, "ok\n"))
+            daemon.wait_for("the watchdog is not fed any more")
+            self.assertEqual(manager.count(1), 0)
+            for path in ("/healthz", "/readyz"):
+                status, text = get(address, path)
+                self.assertEqual(status, 503)
+                self.assertIn("the GL thread", text)
+            self.assertGreater(read_metrics(get(address, "/metrics")[1])[busy], 1)
+            trace(detach, thread)
+            client.read_frame(50)
+            daemon.wait_for("not stuck any more")
+            self.assertGreaterEqual(manager.count(1), 5)
+            self.assertEqual(get(address, "/healthz"), (200, "ok\n"))
+        self.assertEqual(daemon.stop(), 0)
+        manager.socket.close()
+
+    def start_activated(self, sockets, names="", pid="os.getpid()", n=None):
+        """As a service manager does it: sockets from descriptor 3 on, and three variables."""
+        high = [fcntl.fcntl(one.fileno(), fcntl.F_DUPFD, 50) for one in sockets]
+        script = ("import os, sys\n"
+                  f"for i, fd in enumerate({high}): os.dup2(fd, 3 + i); os.close(fd)\n"
+                  f"os.environ['LISTEN_PID'] = str({pid})\n"
+                  "os.execv(sys.argv[1], sys.argv[1:])\n")
+        process = subprocess.Popen(
+            ["/usr/bin/python3", "-c", script, SHEEND, "--device", "software"], pass_fds=high,
+            stderr=subprocess.PIPE, text=True,
+            env={**os.environ, "XDG_RUNTIME_DIR": self.folder, "LISTEN_FDNAMES": names,
+                 "LISTEN_FDS": str(len(high) if n is None else n)})
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        for fd in high:
+            os.close(fd)
+        return process
+
+    def test_socket_activation(self):
+        path = os.path.join(self.folder, "given.sock")
+        with socket.socket(socket.AF_UNIX) as unix, socket.socket() as tcp, \
+                socket.socket() as web:
+            unix.bind(path)
+            for one in (tcp, web):
+                one.bind(("127.0.0.1", 0))
+            for one in (unix, tcp, web):
+                one.listen()
+            # A client may connect before there is a daemon: nothing is lost.
+            early = Client("unix:" + path, greet=False)
+            early.send(wire.hello())
+            process = self.start_activated([unix, tcp, web], "sheen:sheen:metrics")
+            early.expect(wire.HELLO_OK, 1)
+            early.socket.close()
+            self.assertIn(path, process.stderr.readline())
+            for address in ("unix:" + path, f"tcp:127.0.0.1:{tcp.getsockname()[1]}"):
+                with Client(address) as client:
+                    client.render(client.upload(CUBE, "cube.obj"))
+            status, _ = get(f"tcp:127.0.0.1:{web.getsockname()[1]}", "/metrics")
+            self.assertEqual(status, 200)
+            process.terminate()
+            self.assertEqual(process.wait(20), 0)
+            self.assertTrue(os.path.exists(path), "the socket is the service manager's")
+            self.assertFalse(os.path.exists(os.path.join(self.folder, "sheen.sock")))
+
+    def test_sockets_for_somebody_else(self):
+        """LISTEN_PID of another process: an inherited environment."""
+        path = os.path.join(self.folder, "given.sock")
+        with socket.socket(socket.AF_UNIX) as unix:
+            unix.bind(path)
+            unix.listen()
+            process = self.start_activated([unix], pid="1")
+            line = process.stderr.readline()
+            self.assertIn("sheen.sock", line)
+            self.assertNotIn(path, line)
+            process.terminate()
+            self.assertEqual(process.wait(20), 0)
+
+    def test_sockets_that_are_none(self):
+        with socket.socket(socket.AF_UNIX) as plain, open("/dev/null", "rb") as file, \
+                socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as datagrams:
+            for words, sockets, n in (("no listening", [plain], None), ("no listening", [file], None),
+                                      ("no listening", [datagrams], None),
+                                      ("LISTEN_FDS", [], "many"), ("LISTEN_FDS", [], 33),
+                                      ("LISTEN_FDS", [], -1)):
+                process = self.start_activated(sockets, n=n)
+                self.assertEqual(process.wait(20), 4)
+                self.assertIn(words, process.stderr.read())
+
+
+class Reload(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = os.path.join(folder.name, "sheend.conf")
+
+    def write(self, *lines):
+        with open(self.path, "w", encoding="ascii") as file:
+            file.write("\n".join(("[sheend]", *lines, "")))
+
+    def test_good_and_bad(self):
+        self.write("idle-timeout = 1")
+        daemon = Daemon("--config", self.path)
+
+        def hang_up(words):
+            before = daemon.errors().count(words)
+            daemon.process.send_signal(signal.SIGHUP)
+            end = time.monotonic() + 10
+            while daemon.errors().count(words) == before:
+                self.assertLess(time.monotonic(), end, daemon.errors())
+                time.sleep(0.02)
+            return daemon.errors().splitlines()[-1]
+
+        for lines, words in ((("idle-timeout = soon",), f"{self.path}:2: idle-timeout is 'soon'"),
+                             (("idle-timeout = 0", "nothing = 1"), f"{self.path}:3: unknown name"),
+                             (("idle-timeout = 0", "[other]"), f"{self.path}:4: unknown section")):
+            self.write(*lines, "threads = 1")
+            self.assertIn(words, hang_up("the old one stays"))
+        os.unlink(self.path)
+        self.assertIn("cannot read", hang_up("the old one stays"))
+        with Client(daemon.unix) as idle:
+            with self.assertRaises(wire.Refused) as caught:
+                idle.receive()
+            self.assertIn("1 s", caught.exception.text)
+
+        self.write("idle-timeout = 0", "threads = 3", "memory-budget = 1G", "log-format = json",
+                   "log-level = debug")
+        daemon.wait_for("session closed")
+        last = json.loads(hang_up("configuration reloaded"))
+        self.assertEqual((last["level"], last["msg"]), ("info", "configuration reloaded"))
+        self.assertIn('level=warn msg="options that wait for the next start" '
+                      'options="memory-budget, threads"', daemon.errors())
+        with Client(daemon.unix) as client:
+            time.sleep(1.5)
+            client.render(client.upload(CUBE, "cube.obj"))
+        lines = daemon.wait_for('"session closed"').splitlines()
+        self.assertIn("request answered", [json.loads(line)["msg"] for line in lines[-4:]])
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_the_command_line_goes_first(self):
+        self.write("idle-timeout = 7")
+        daemon = Daemon("--config", self.path, "--idle-timeout", "1")
+        self.write("idle-timeout = 0")
+        daemon.process.send_signal(signal.SIGHUP)
+        daemon.wait_for("configuration reloaded")
+        with Client(daemon.unix) as idle, self.assertRaises(wire.Refused):
+            idle.receive()
+        self.assertEqual(daemon.stop(), 0)
+
+
+class Log(unittest.TestCase):
+    def test_sessions_and_requests(self):
+        daemon = Daemon("--log-format", "json", "--log-level", "debug")
+        with Client(daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.send(wire.render(77, model, width=0))
+            with self.assertRaises(wire.Refused):
+                client.receive()
+            client.render(model)
+        with Client(daemon.tcp) as client:
+            client.send(b"\n" * 16)
+            with self.assertRaises(wire.Refused):
+                client.receive()
+            self.assertTrue(client.at_end())
+        daemon.wait_for('"reason":"protocol"')
+        lines = [json.loads(line) for line in daemon.errors().splitlines()]
+        opened = [line for line in lines if line["msg"] == "session opened"]
+        closed = [line for line in lines if line["msg"] == "session closed"]
+        refused = [line for line in lines if line["msg"] == "request refused"]
+        answered = [line for line in lines if line["msg"] == "request answered"]
+        self.assertEqual([line["session"] for line in opened], [1, 2])
+        self.assertEqual(opened[0]["peer"],
+                         f"unix uid={os.getuid()} gid={os.getgid()} pid={os.getpid()}")
+        self.assertRegex(opened[1]["peer"], r"^127\.0\.0\.1:\d+$")
+        self.assertEqual([(line["session"], line["reason"]) for line in closed],
+                         [(1, "client"), (2, "protocol")])
+        self.assertEqual((refused[0]["session"], refused[0]["request"], refused[0]["code"]),
+                         (1, 77, "request"))
+        self.assertIn("width", refused[0]["text"])
+        self.assertEqual((refused[1]["session"], refused[1]["code"]), (2, "protocol"))
+        self.assertEqual([(line["session"], line["answer"]) for line in answered],
+                         [(1, "HELLO_OK"), (1, "UPLOAD_STATE"), (1, "UPLOAD_STATE"), (1, "FRAME"),
+                          (2, "HELLO_OK")])
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_levels(self):
+        for level, there in (("error", False), ("warn", False), ("info", True)):
+            path = tempfile.mkdtemp()
+            process = subprocess.Popen([SHEEND, "--device", "software", "--log-level", level,
+                                        "--listen", f"unix:{path}/s"], stderr=subprocess.PIPE,
+                                       text=True)
+            for _ in range(400):
+                if os.path.exists(f"{path}/s"):
+                    break
+                time.sleep(0.05)
+            with Client(f"unix:{path}/s") as client:
+                client.stats()
+            process.terminate()
+            said = process.communicate(timeout=20)[1]
+            os.rmdir(path)
+            self.assertEqual("session opened" in said, there, said)
+            self.assertEqual(said == "", not there, said)
+
+
+class Metrics(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Daemon("--metrics", "tcp:127.0.0.1:0")
+        cls.address = metrics_address(cls.daemon)
+
+    @classmethod
+    def tearDownClass(cls):
+        if cls.daemon.stop() != 0:
+            raise AssertionError("the daemon did not end well")
+
+    def test_what_they_count(self):
+        before = read_metrics(get(self.address, "/metrics")[1])
+        with Client(self.daemon.unix) as client:
+            model = client.upload(CUBE + b"# counted\n", "cube.obj")
+            for _ in range(3):
+                client.render(model)
+            client.send(wire.render(77, bytes(32)))
+            with self.assertRaises(wire.Refused):
+                client.receive()
+            now = read_metrics(get(self.address, "/metrics")[1])
+            self.assertEqual(now["sheen_sessions"], before["sheen_sessions"] + 1)
+        change = {name: value - before[name] for name, value in now.items()}
+        for name, want in (('sheen_answers_total{answer="frame"}', 3),
+                           ('sheen_answers_total{answer="error"}', 1),
+                           ('sheen_errors_total{code="unknown_model"}', 1),
+                           ("sheen_sessions_opened_total", 1),
+                           ('sheen_frame_stage_seconds_count{stage="total"}', 3),
+                           ('sheen_frame_stage_seconds_bucket{stage="total",le="+Inf"}', 3),
+                           ('sheen_frame_stage_seconds_count{stage="tables"}', 1),
+                           ("sheen_model_cache_misses_total", 1),
+                           ("sheen_model_cache_hits_total", 2),
+                           ("sheen_upload_bytes_total", len(CUBE) + 10), ("sheen_models", 1)):
+            self.assertEqual(change[name], want, name)
+        self.assertGreater(change["sheen_sent_bytes_total"], 3 * 64 * 48 * 4)
+        self.assertEqual(now["sheen_gpu_generation"], 1)
+        self.assertLess(abs(now["process_start_time_seconds"] - time.time()), 600)
+        self.assertGreater(now["process_resident_memory_bytes"], 1 << 20)
+
+    def test_buckets_rise(self):
+        with Client(self.daemon.unix) as client:
+            client.render(client.upload(CUBE, "cube.obj"))
+        _, text = get(self.address, "/metrics")
+        for stage in ("tables", "visibility", "evaluate", "shade", "readback", "encode", "total"):
+            found = re.findall(rf'_bucket{{stage="{stage}",le="([^"]+)"}} (\d+)', text)
+            bounds = [float(le) for le, _ in found]
+            counts = [int(n) for _, n in found]
+            self.assertEqual(bounds, sorted(set(bounds)))
+            self.assertEqual(counts, sorted(counts))
+            self.assertEqual(bounds[-1], float("inf"))
+
+    def test_health(self):
+        self.assertEqual(get(self.address, "/healthz"), (200, "ok\n"))
+        self.assertEqual(get(self.address, "/readyz?x=1"), (200, "ok\n"))
+        self.assertEqual(get(self.address, "/other")[0], 404)
+
+    def test_what_is_refused(self):
+        for status, request in ((405, "POST /metrics HTTP/1.1\r\n\r\n"), (400, "hello\r\n\r\n"),
+                                (400, "GET metrics HTTP/1.1\r\n\r\n"), (400, "GET /metrics\r\n\r\n"),
+                                (400, "GET /metrics FTP/1.1\r\n\r\n"), (400, "\r\n\r\n"),
+                                (400, " / HTTP/1.1\0\r\n\r\n"),
+                                (431, "GET /" + 4091 * "a")):
+            with self.subTest(request=request[:40]):
+                self.assertEqual(fetch(self.address, request)[0], status)
+        self.assertEqual(fetch(self.address, "GET /healthz HTTP/1.1\r\nA: b\r\n\r\n")[0], 200)
+
+    def test_a_byte_at_a_time(self):
+        host, port = self.address[4:].rsplit(":", 1)
+        with socket.create_connection((host, int(port))) as slow:
+            for byte in b"GET /healthz HTTP/1.1\r\n\r\n":
+                slow.send(bytes([byte]))
+                time.sleep(0.01)
+            self.assertTrue(slow.recv(100).startswith(b"HTTP/1.1 200 OK\r\n"))
+
+    def test_few_at_once_and_not_for_long(self):
+        host, port = self.address[4:].rsplit(":", 1)
+        silent = [socket.create_connection((host, int(port))) for _ in range(8)]
+        time.sleep(0.2)
+        self.assertIsNone(fetch(self.address))
+        start = time.monotonic()
+        for one in silent:
+            one.settimeout(15)
+            self.assertEqual(one.recv(1), b"")
+            one.close()
+        self.assertGreater(time.monotonic() - start, 4)
+        self.assertEqual(get(self.address, "/healthz")[0], 200)
+
+    def test_not_ready_while_it_drains(self):
+        daemon = Daemon("--metrics", "tcp:127.0.0.1:0")
+        address = metrics_address(daemon)
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.send(wire.render(5, model, width=2000, height=2000))
+            client.expect(wire.FRAME, 5)
+            daemon.terminate()
+            daemon.wait_for("shutting down")
+            self.assertEqual(get(address, "/readyz"), (503, "shutting down\n"))
+            self.assertEqual(get(address, "/healthz"), (200, "ok\n"))
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_loopback_only(self):
+        done = run("--metrics", "tcp:0.0.0.0:0", "--check-config")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("loopback", done.stderr)
+
+
+class Stats(unittest.TestCase):
+    def test_rates_and_percentiles(self):
+        daemon = Daemon()
+        with Client(daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            times = sorted(client.render(model).total_us for _ in range(20))
+        done = subprocess.run([SHEEN, "stats", "--server", daemon.unix, "--json"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        stats = json.loads(done.stdout)
+        self.assertAlmostEqual(stats["p50"]["total_us"], times[9], delta=times[9] * 0.035 + 1)
+        self.assertAlmostEqual(stats["p99"]["total_us"], times[19], delta=times[19] * 0.035 + 1)
+        self.assertLessEqual(stats["p50"]["total_us"], stats["p95"]["total_us"])
+        self.assertLessEqual(stats["p95"]["total_us"], stats["p99"]["total_us"])
+        self.assertAlmostEqual(stats["frames_per_s"] * stats["window_us"] / 1e6, 20, places=6)
+        self.assertGreater(stats["requests_per_s"], stats["frames_per_s"])
+        table = subprocess.run([SHEEN, "stats", "--server", daemon.unix], capture_output=True,
+                               text=True, timeout=60).stdout
+        for words in ("frames/s", "p50", "p95", "p99", "ms a frame"):
+            self.assertIn(words, table)
+        self.assertEqual(daemon.stop(), 0)
