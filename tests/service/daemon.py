@@ -49,14 +49,14 @@ def resident_kb(pid):
 class Daemon:
     """A real sheend on a Unix socket and a TCP port of its own."""
 
-    def __init__(self, *arguments, folder=None, path=None, tcp=True, env=None):
+    def __init__(self, *arguments, folder=None, path=None, tcp=True, env=None, under=()):
         self.folder = folder or tempfile.mkdtemp(prefix="sheen-test-")
         self.owns_folder = folder is None
         self.path = path or os.path.join(self.folder, "sheen.sock")
         self.unix = "unix:" + self.path
         listen = ["--listen", self.unix] + (["--listen", "tcp:127.0.0.1:0"] if tcp else [])
         self.stderr = tempfile.TemporaryFile("w+")
-        self.process = subprocess.Popen([SHEEND, *listen, "--device", "software", *arguments],
+        self.process = subprocess.Popen([*under, SHEEND, *listen, "--device", "software", *arguments],
                                         stdout=subprocess.DEVNULL, stderr=self.stderr,
                                         env={**os.environ, **(env or {})})
         atexit.register(self.process.kill)  # where a test fails before it stops its daemon
