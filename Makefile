@@ -56,8 +56,8 @@ KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
 SERVER_OBJ += $(KEEP_MODULES)
 CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 
-SERVER_LIBS := -lepoxy -lOpenImageIO -lOpenImageIO_Util -ltinygltf -lprotobuf-nanopb -lzstd -lcrypto -linih -lm
-CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lcrypto -lpng -lm
+SERVER_LIBS := -lepoxy -lOpenImageIO -lOpenImageIO_Util -ltinygltf -lprotobuf-nanopb -lzstd -lssl -lcrypto -linih -lm
+CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lssl -lcrypto -lpng -lm
 TEST_LIBS := $(SERVER_LIBS) -lpng
 
 .PHONY: all

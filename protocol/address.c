@@ -14,8 +14,8 @@ static bool is_plain(const char *text)
 static bool refuse(const char *text, const char *why, char *error_text)
 {
     snprintf(error_text, ADDRESS_TEXT_BYTES,
-             "address '%.300s' %s; write unix:PATH or tcp:HOST:PORT", is_plain(text) ? text : "?",
-             why);
+             "address '%.300s' %s; write unix:PATH, tcp:HOST:PORT or tls:HOST:PORT",
+             is_plain(text) ? text : "?", why);
     return false;
 }
 
@@ -74,12 +74,13 @@ bool address_parse(struct address *address, const char *text,
                    char error_text[static ADDRESS_TEXT_BYTES])
 {
     memset(address, 0, sizeof(*address));
-    if (strncmp(text, "tcp:", 4) == 0) {
-        address->kind = ADDRESS_TCP;
+    bool tls = strncmp(text, "tls:", 4) == 0;
+    if (tls || strncmp(text, "tcp:", 4) == 0) {
+        address->kind = tls ? ADDRESS_TLS : ADDRESS_TCP;
         return parse_tcp(address, text, text + 4, error_text);
     }
     if (strncmp(text, "unix:", 5) != 0)
-        return refuse(text, "begins with neither unix: nor tcp:", error_text);
+        return refuse(text, "begins with none of unix:, tcp: and tls:", error_text);
     address->kind = ADDRESS_UNIX;
     const char *path = text + 5;
     size_t length = strlen(path);
@@ -91,4 +92,9 @@ bool address_parse(struct address *address, const char *text,
         return refuse(text, "has a control character in its path", error_text);
     memcpy(address->path, path, length);
     return true;
+}
+
+const char *address_scheme(enum address_kind kind)
+{
+    return kind == ADDRESS_UNIX ? "unix" : kind == ADDRESS_TCP ? "tcp" : "tls";
 }

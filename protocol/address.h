@@ -2,6 +2,7 @@
  *
  *   unix:PATH          a Unix socket, PATH up to 107 bytes
  *   tcp:HOST:PORT      HOST an IPv4 address, a name, or an IPv6 address in brackets: tcp:[::1]:7410
+ *   tls:HOST:PORT      the same with TLS 1.3
  *
  * Parsing only: nothing is resolved or opened here. Pure, any thread, no ownership. */
 #ifndef SHEEN_PROTOCOL_ADDRESS_H
@@ -14,14 +15,17 @@
 #define ADDRESS_HOST_BYTES 254 /* a DNS name is at most 253 */
 #define ADDRESS_TEXT_BYTES 480 /* of an error text, with its 0 */
 
-enum address_kind { ADDRESS_UNIX, ADDRESS_TCP };
+enum address_kind { ADDRESS_UNIX, ADDRESS_TCP, ADDRESS_TLS };
 
 struct address {
     enum address_kind kind;
     char path[ADDRESS_PATH_BYTES]; /* ADDRESS_UNIX: not empty, no control character */
-    char host[ADDRESS_HOST_BYTES]; /* ADDRESS_TCP: without brackets; for getaddrinfo() */
-    uint16_t port;                 /* ADDRESS_TCP: 0 is for listeners: the system chooses */
+    char host[ADDRESS_HOST_BYTES]; /* TCP and TLS: without brackets; for getaddrinfo() */
+    uint16_t port;                 /* TCP and TLS: 0 is for listeners: the system chooses */
 };
+
+/* "unix", "tcp" or "tls". */
+const char *address_scheme(enum address_kind kind);
 
 /* Fills *address. On failure returns false and writes one line to error_text that says what is
  * wrong and what an address looks like; *address is then undefined. */

@@ -1,0 +1,310 @@
+#include "protocol/tls.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <openssl/err.h>
+#include <openssl/ssl.h>
+#include <openssl/x509v3.h>
+
+struct tls_context {
+    SSL_CTX *ctx;
+    BIO_METHOD *method; /* moves bytes through a channel's tls_io */
+    enum tls_side side;
+    unsigned users; /* channels, and who created it */
+};
+
+struct tls_channel {
+    struct tls_context *context;
+    SSL *ssl;
+    struct tls_io io;
+    bool failed;
+    char reason[TLS_TEXT_BYTES];
+};
+
+/* --- the bottom: OpenSSL's own socket layer would raise SIGPIPE */
+
+static int bio_moved(BIO *bio, ssize_t n, int retry)
+{
+    BIO_clear_retry_flags(bio);
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR))
+        BIO_set_flags(bio, retry | BIO_FLAGS_SHOULD_RETRY);
+    return (int)n;
+}
+
+static int bio_read(BIO *bio, char *bytes, int size)
+{
+    const struct tls_channel *channel = BIO_get_data(bio);
+    return bio_moved(bio, channel->io.read(channel->io.owner, bytes, (size_t)size), BIO_FLAGS_READ);
+}
+
+static int bio_write(BIO *bio, const char *bytes, int size)
+{
+    const struct tls_channel *channel = BIO_get_data(bio);
+    return bio_moved(bio, channel->io.write(channel->io.owner, bytes, (size_t)size),
+                     BIO_FLAGS_WRITE);
+}
+
+static long bio_control(BIO *bio, int command, long number, void *pointer)
+{
+    (void)bio;
+    (void)number;
+    (void)pointer;
+    return command == BIO_CTRL_FLUSH;
+}
+
+static BIO_METHOD *make_method(void)
+{
+    int type = BIO_get_new_index();
+    BIO_METHOD *method =
+        type < 0 ? NULL : BIO_meth_new(type | BIO_TYPE_SOURCE_SINK, "sheen connection");
+    if (method) {
+        BIO_meth_set_read(method, bio_read);
+        BIO_meth_set_write(method, bio_write);
+        BIO_meth_set_ctrl(method, bio_control);
+    }
+    return method;
+}
+
+/* --- contexts */
+
+static bool is_set(const char *path)
+{
+    return path && *path;
+}
+
+/* The last error of OpenSSL's queue, which it empties. */
+static const char *last_error(void)
+{
+    unsigned long code = ERR_peek_last_error();
+    const char *reason = code ? ERR_reason_error_string(code) : NULL;
+    if (ERR_SYSTEM_ERROR(code))
+        reason = strerror(ERR_GET_REASON(code));
+    ERR_clear_error();
+    return reason ? reason : "unknown reason";
+}
+
+static bool fail_file(char *text, const char *what, const char *path)
+{
+    snprintf(text, TLS_TEXT_BYTES, "%s %.200s: %s", what, path, last_error());
+    return false;
+}
+
+static bool load_own(SSL_CTX *ctx, const struct tls_files *files, char *text)
+{
+    if (!is_set(files->cert))
+        return true;
+    if (SSL_CTX_use_certificate_chain_file(ctx, files->cert) != 1)
+        return fail_file(text, "certificate", files->cert);
+    if (SSL_CTX_use_PrivateKey_file(ctx, files->key, SSL_FILETYPE_PEM) != 1 ||
+        SSL_CTX_check_private_key(ctx) != 1)
+        return fail_file(text, "key", files->key);
+    return true;
+}
+
+static bool load_authority(struct tls_context *context, const struct tls_files *files, char *text)
+{
+    SSL_CTX *ctx = context->ctx;
+    bool server = context->side == TLS_SERVER;
+    if (is_set(files->ca)) {
+        if (SSL_CTX_load_verify_file(ctx, files->ca) != 1)
+            return fail_file(text, "authority", files->ca);
+        STACK_OF(X509_NAME) *names = server ? SSL_load_client_CA_file(files->ca) : NULL;
+        if (server && !names)
+            return fail_file(text, "authority", files->ca);
+        SSL_CTX_set_client_CA_list(ctx, names);
+    } else if (!server) {
+        SSL_CTX_set_default_verify_paths(ctx);
+    }
+    int mode = server && !is_set(files->ca) ? SSL_VERIFY_NONE : SSL_VERIFY_PEER;
+    if (files->needs_client_cert)
+        mode |= SSL_VERIFY_FAIL_IF_NO_PEER_CERT;
+    SSL_CTX_set_verify(ctx, mode, NULL);
+    return true;
+}
+
+static bool set_up(struct tls_context *context)
+{
+    SSL_CTX *ctx = context->ctx;
+    SSL_CTX_set_mode(ctx, SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER |
+                              SSL_MODE_RELEASE_BUFFERS);
+    SSL_CTX_set_session_cache_mode(ctx, SSL_SESS_CACHE_OFF);
+    return SSL_CTX_set_min_proto_version(ctx, TLS1_3_VERSION) == 1 &&
+           SSL_CTX_set_num_tickets(ctx, 0) == 1 && SSL_CTX_set_max_early_data(ctx, 0) == 1;
+}
+
+struct tls_context *tls_context_create(enum tls_side side, const struct tls_files *files,
+                                       char text[static TLS_TEXT_BYTES])
+{
+    if (is_set(files->cert) != is_set(files->key)) {
+        snprintf(text, TLS_TEXT_BYTES, "a certificate and its key come together");
+        return NULL;
+    }
+    struct tls_context *context = calloc(1, sizeof *context);
+    if (!context) {
+        snprintf(text, TLS_TEXT_BYTES, "no memory for TLS");
+        return NULL;
+    }
+    ERR_clear_error();
+    context->side = side;
+    context->users = 1;
+    context->method = make_method();
+    context->ctx = SSL_CTX_new(side == TLS_SERVER ? TLS_server_method() : TLS_client_method());
+    bool ok = context->method && context->ctx && set_up(context);
+    if (!ok)
+        snprintf(text, TLS_TEXT_BYTES, "TLS cannot be used: %s", last_error());
+    if (!ok || !load_own(context->ctx, files, text) || !load_authority(context, files, text)) {
+        tls_context_destroy(context);
+        return NULL;
+    }
+    return context;
+}
+
+void tls_context_destroy(struct tls_context *context)
+{
+    if (!context || --context->users > 0)
+        return;
+    SSL_CTX_free(context->ctx);
+    BIO_meth_free(context->method);
+    free(context);
+}
+
+/* --- channels */
+
+static bool expect_host(SSL *ssl, const char *host)
+{
+    unsigned char address[16];
+    bool is_address =
+        inet_pton(AF_INET, host, address) == 1 || inet_pton(AF_INET6, host, address) == 1;
+    if (is_address)
+        return X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(ssl), host) == 1;
+    return SSL_set1_host(ssl, host) == 1 && SSL_set_tlsext_host_name(ssl, host) == 1;
+}
+
+struct tls_channel *tls_channel_create(struct tls_context *context, const struct tls_io *io,
+                                       const char *host)
+{
+    struct tls_channel *channel = calloc(1, sizeof *channel);
+    SSL *ssl = SSL_new(context->ctx);
+    BIO *bio = BIO_new(context->method);
+    if (!channel || !ssl || !bio || (host && !expect_host(ssl, host))) {
+        BIO_free(bio);
+        SSL_free(ssl);
+        free(channel);
+        return NULL;
+    }
+    context->users++;
+    *channel = (struct tls_channel){.context = context, .ssl = ssl, .io = *io};
+    BIO_set_data(bio, channel);
+    BIO_set_init(bio, 1);
+    SSL_set_bio(ssl, bio, bio);
+    context->side == TLS_SERVER ? SSL_set_accept_state(ssl) : SSL_set_connect_state(ssl);
+    return channel;
+}
+
+void tls_channel_destroy(struct tls_channel *channel)
+{
+    if (!channel)
+        return;
+    SSL_free(channel->ssl);
+    tls_context_destroy(channel->context);
+    free(channel);
+}
+
+/* What a call that did not return 1 has to say. */
+static enum tls_result explain(struct tls_channel *channel, int code)
+{
+    int number = errno;
+    switch (SSL_get_error(channel->ssl, code)) {
+    case SSL_ERROR_WANT_READ:
+        return TLS_WANTS_READ;
+    case SSL_ERROR_WANT_WRITE:
+        return TLS_WANTS_WRITE;
+    case SSL_ERROR_ZERO_RETURN:
+        return TLS_ENDED;
+    case SSL_ERROR_SYSCALL:
+        snprintf(channel->reason, sizeof channel->reason, "%s",
+                 number ? strerror(number) : "the connection broke");
+        break;
+    default: {
+        long verdict = SSL_get_verify_result(channel->ssl);
+        const char *reason = last_error();
+        if (verdict != X509_V_OK)
+            snprintf(channel->reason, sizeof channel->reason, "%s: %s", reason,
+                     X509_verify_cert_error_string(verdict));
+        else
+            snprintf(channel->reason, sizeof channel->reason, "%s", reason);
+    }
+    }
+    channel->failed = true;
+    return TLS_FAILED;
+}
+
+enum tls_result tls_read(struct tls_channel *channel, void *bytes, size_t size, size_t *moved)
+{
+    *moved = 0;
+    if (channel->failed)
+        return TLS_FAILED;
+    ERR_clear_error();
+    errno = 0;
+    int code = SSL_read_ex(channel->ssl, bytes, size, moved);
+    return code == 1 ? TLS_MOVED : explain(channel, code);
+}
+
+enum tls_result tls_write(struct tls_channel *channel, const void *bytes, size_t size,
+                          size_t *moved)
+{
+    *moved = 0;
+    if (channel->failed)
+        return TLS_FAILED;
+    ERR_clear_error();
+    errno = 0;
+    int code = SSL_write_ex(channel->ssl, bytes, size, moved);
+    return code == 1 ? TLS_MOVED : explain(channel, code);
+}
+
+size_t tls_pending(const struct tls_channel *channel)
+{
+    return channel->failed ? 0 : (size_t)SSL_pending(channel->ssl);
+}
+
+void tls_end(struct tls_channel *channel)
+{
+    ERR_clear_error();
+    if (!channel->failed && SSL_is_init_finished(channel->ssl))
+        SSL_shutdown(channel->ssl);
+    ERR_clear_error();
+}
+
+bool tls_peer(const struct tls_channel *channel, char name[static TLS_NAME_BYTES],
+              int64_t *expires_s)
+{
+    const X509 *cert = SSL_get0_peer_certificate(channel->ssl);
+    BIO *text = cert ? BIO_new(BIO_s_mem()) : NULL;
+    bool ok = false;
+    struct tm expires = {0};
+    char *bytes = NULL;
+    long length = 0;
+    if (text && X509_NAME_print_ex(text, X509_get_subject_name(cert), 0, XN_FLAG_RFC2253) >= 0)
+        length = BIO_get_mem_data(text, &bytes);
+    if (length > 0 && length < TLS_NAME_BYTES &&
+        ASN1_TIME_to_tm(X509_get0_notAfter(cert), &expires) == 1) {
+        memcpy(name, bytes, (size_t)length);
+        name[length] = 0;
+        *expires_s = timegm(&expires);
+        ok = true;
+    }
+    BIO_free(text);
+    ERR_clear_error();
+    return ok;
+}
+
+const char *tls_reason(const struct tls_channel *channel)
+{
+    return channel->reason;
+}
