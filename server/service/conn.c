@@ -19,10 +19,39 @@ struct conn_block {
     uint8_t copy[]; /* of conn_send() */
 };
 
+/* --- the plain socket */
+
+static ssize_t plain_read(struct conn *conn, void *bytes, size_t size)
+{
+    return read(conn->source.fd, bytes, size);
+}
+
+static ssize_t plain_write(struct conn *conn, struct iovec *pieces, size_t n)
+{
+    const struct msghdr message = {.msg_iov = pieces, .msg_iovlen = n};
+    return sendmsg(conn->source.fd, &message, MSG_NOSIGNAL);
+}
+
+static bool plain_pending(const struct conn *conn)
+{
+    (void)conn;
+    return false;
+}
+
+static void plain_nothing(struct conn *conn)
+{
+    (void)conn;
+}
+
+static const struct conn_transport PLAIN = {plain_read, plain_write, plain_pending, plain_nothing,
+                                            plain_nothing};
+
+/* --- output and the end */
+
 static void update_events(struct conn *conn)
 {
     bool reads = !conn->peer_ended && (conn->state != CONN_OPEN || !conn->held);
-    bool writes = conn->out_head != NULL;
+    bool writes = conn->out_head || conn->read_wants_write;
     loop_change(conn->loop, &conn->source, (reads ? EPOLLIN : 0u) | (writes ? EPOLLOUT : 0u));
 }
 
@@ -45,6 +74,7 @@ void conn_close(struct conn *conn)
     conn->state = CONN_CLOSED;
     int fd = conn->source.fd;
     loop_unwatch(conn->loop, &conn->source);
+    conn->transport->finish(conn);
     close(fd);
     while (conn->out_head)
         drop_block(conn);
@@ -64,6 +94,7 @@ static void linger(struct conn *conn)
 {
     conn->state = CONN_LINGERING;
     conn->last_in_us = loop_now_us();
+    conn->transport->end(conn);
     shutdown(conn->source.fd, SHUT_WR);
     if (conn->peer_ended)
         conn_close(conn);
@@ -123,13 +154,13 @@ void conn_send_block(struct conn *conn, const void *bytes, size_t size, void (*r
 static ssize_t write_some(struct conn *conn)
 {
     struct iovec pieces[MAX_PIECES];
-    struct msghdr message = {.msg_iov = pieces};
-    for (struct conn_block *b = conn->out_head; b && message.msg_iovlen < MAX_PIECES; b = b->next) {
-        struct iovec *piece = &pieces[message.msg_iovlen++];
+    size_t n = 0;
+    for (struct conn_block *b = conn->out_head; b && n < MAX_PIECES; b = b->next) {
+        struct iovec *piece = &pieces[n++];
         memcpy(&piece->iov_base, &(const void *){b->bytes + b->sent}, sizeof(void *));
         piece->iov_len = b->size - b->sent;
     }
-    return sendmsg(conn->source.fd, &message, MSG_NOSIGNAL);
+    return conn->transport->write(conn, pieces, n);
 }
 
 static void count_sent(struct conn *conn, size_t n)
@@ -184,7 +215,10 @@ static void refuse_input(struct conn *conn, const struct message_header *header,
     conn->handler->malformed(conn->owner, header, error);
 }
 
-void conn_deliver(struct conn *conn)
+static bool read_more(struct conn *conn);
+
+/* The whole messages that are there. */
+static void deliver(struct conn *conn)
 {
     size_t used = 0;
     while (conn->state == CONN_OPEN && !conn->held &&
@@ -212,34 +246,45 @@ void conn_deliver(struct conn *conn)
         memmove(conn->in, conn->in + used, conn->in_used);
 }
 
-static void read_some(struct conn *conn)
+void conn_deliver(struct conn *conn)
 {
-    bool open = conn->state == CONN_OPEN;
+    do
+        deliver(conn);
+    while (conn->state == CONN_OPEN && !conn->held && conn->transport->pending(conn) &&
+           read_more(conn));
+}
+
+/* Reads once. True when input has come that may hold messages. */
+static bool read_more(struct conn *conn)
+{
+    bool open = conn->state == CONN_OPEN, wanted_write = conn->read_wants_write;
     size_t room = open ? CONN_IN_BYTES - conn->in_used : CONN_IN_BYTES;
-    ssize_t n = read(conn->source.fd, conn->in + (open ? conn->in_used : 0), room);
+    ssize_t n = conn->transport->read(conn, conn->in + (open ? conn->in_used : 0), room);
+    if (conn->read_wants_write != wanted_write)
+        update_events(conn);
     if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR))
-        return;
+        return false;
     if (n < 0 || (n == 0 && conn->state == CONN_LINGERING)) {
         conn_close(conn);
-        return;
+        return false;
     }
     if (n == 0) {
         conn->peer_ended = true;
         update_events(conn);
-        return;
+        return false;
     }
     if (open) {
         conn->last_in_us = loop_now_us();
         conn->in_used += (size_t)n;
-        conn_deliver(conn);
     }
+    return open;
 }
 
 static void conn_ready(struct loop_source *source, uint32_t events)
 {
     struct conn *conn = source->owner;
-    if (events & EPOLLIN)
-        read_some(conn);
+    if ((events & EPOLLIN || (events & EPOLLOUT && conn->read_wants_write)) && read_more(conn))
+        conn_deliver(conn);
     if (conn->state != CONN_CLOSED && (events & EPOLLOUT))
         conn_flush(conn);
     /* Both directions are gone; what could be read has been, unless it was held. */
@@ -256,6 +301,7 @@ bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_h
         .source = {fd, conn_ready, conn},
         .handler = handler,
         .owner = owner,
+        .transport = &PLAIN,
         .sent_bytes = sent_bytes,
         .last_in_us = loop_now_us(),
         .last_out_us = loop_now_us(),

@@ -11,6 +11,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "protocol/frame.h"
 #include "protocol/limits.h"
@@ -19,11 +20,26 @@
 
 #define CONN_IN_BYTES (2 * (MESSAGE_HEADER_BYTES + PROTOCOL_MAX_CHUNK_BYTES))
 
+struct conn;
+struct iovec;
+struct tls_channel;
+
 struct conn_handler {
     void (*message)(void *owner, const struct message_header *header, const uint8_t *body);
     /* The input is no message. It has been thrown away and the conn is held: the owner closes it.
      * Of *header only what the error leaves known is set. */
     void (*malformed)(void *owner, const struct message_header *header, enum header_error error);
+};
+
+/* How bytes move: over the plain socket, or TLS (conn_tls.h). */
+struct conn_transport {
+    /* As read() and sendmsg(). */
+    ssize_t (*read)(struct conn *conn, void *bytes, size_t size);
+    ssize_t (*write)(struct conn *conn, struct iovec *pieces, size_t n);
+    /* Has it bytes for read() of which the socket does not tell any more? */
+    bool (*pending)(const struct conn *conn);
+    void (*end)(struct conn *conn);    /* nothing more is written */
+    void (*finish)(struct conn *conn); /* the socket goes */
 };
 
 enum conn_state {
@@ -41,6 +57,10 @@ struct conn {
     struct loop_source source;
     const struct conn_handler *handler;
     void *owner;
+    const struct conn_transport *transport;
+    struct tls_channel *channel; /* the TLS transport's; NULL: plain */
+    bool read_wants_write;       /* the transport must write before it can read */
+    char reason[160];            /* why the transport broke, "" when there is nothing to say */
 
     uint8_t *in; /* CONN_IN_BYTES */
     size_t in_used;
