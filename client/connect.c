@@ -1,4 +1,5 @@
 /* Opening and closing a session. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -32,29 +33,53 @@ static enum sheen_status open_address(struct sheen_session *session,
                           options->address);
     if (!address_parse(&address, options->address, text))
         return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
-    if (address.kind == ADDRESS_TCP && address.port == 0)
+    if (address.kind != ADDRESS_UNIX && address.port == 0)
         return status_set(error, SHEEN_BAD_ARGUMENT,
                           "address '%s' has port 0; a server has a port from 1 to 65535",
                           options->address);
-    return connection_open(&session->connection, &address, options->timeout_ms, error);
+    const struct tls_files files = {.cert = options->cert, .key = options->key, .ca = options->ca};
+    return connection_open(&session->connection, &address, &files, options->timeout_ms, error);
+}
+
+/* A daemon does not tell a stranger why it closes. */
+static enum sheen_status explain_refusal(enum sheen_status status, struct sheen_error *error)
+{
+    char text[sizeof(error->text)];
+    if (status != SHEEN_LOST_SERVER || !error)
+        return status;
+    snprintf(text, sizeof(text), "%s", error->text);
+    return status_set(error, status,
+                      "%.400s; it may not know this client: see --cert and --key, or --token-file, "
+                      "and the days they are good for",
+                      text);
 }
 
 static enum sheen_status shake_hands(struct sheen_session *session,
-                                     const uint8_t model_id[static SHEEN_ID_BYTES],
+                                     const struct sheen_connect_options *options,
                                      struct sheen_error *error)
 {
-    const sheen_Hello hello = {.minor = PROTOCOL_MINOR, .client = "libsheen " SHEEN_VERSION};
+    sheen_Hello hello = {.minor = PROTOCOL_MINOR, .client = "libsheen " SHEEN_VERSION};
+    bool tls = session->connection.channel != NULL;
+    if (tls && options->token) { /* it is for nobody who could listen */
+        hello.has_token = true;
+        if (strlen(options->token) >= sizeof(hello.token))
+            return status_set(error, SHEEN_BAD_ARGUMENT, "the token is longer than %zu bytes",
+                              sizeof(hello.token) - 1);
+        memcpy(hello.token, options->token, strlen(options->token) + 1);
+    }
     size_t length = 0;
     session->last_seq = 1;
-    if (!message_hello_encode(session->last_seq, model_id, &hello, session->buffer,
+    if (!message_hello_encode(session->last_seq, options->model_id, &hello, session->buffer,
                               sizeof(session->buffer), &length))
         return status_set(error, SHEEN_BAD_ARGUMENT, "HELLO does not fit its buffer");
     enum sheen_status status =
         connection_write(&session->connection, session->buffer, length, error);
     if (status)
-        return session_fail(session, status, error);
-    return session_receive(session, session->last_seq, MESSAGE_HELLO_OK, NULL, &session->hello,
-                           error);
+        status = session_fail(session, status, error);
+    else
+        status = session_receive(session, session->last_seq, MESSAGE_HELLO_OK, NULL,
+                                 &session->hello, error);
+    return tls ? explain_refusal(status, error) : status;
 }
 
 enum sheen_status sheen_connect(struct sheen_session **session,
@@ -72,7 +97,7 @@ enum sheen_status sheen_connect(struct sheen_session **session,
     enum sheen_status status =
         options->address ? open_address(made, options, error) : start_private(made, options, error);
     if (!status)
-        status = shake_hands(made, options->model_id, error);
+        status = shake_hands(made, options, error);
     if (status) {
         sheen_close(made);
         return status;

@@ -82,8 +82,8 @@ static enum sheen_status open_tcp(struct connection *connection, const struct ad
     struct addrinfo *list = NULL;
     int failed = getaddrinfo(address->host, port, &hints, &list);
     if (failed)
-        return status_set(error, SHEEN_NO_SERVER, "no server at tcp:%s:%s: %s", address->host, port,
-                          gai_strerror(failed));
+        return status_set(error, SHEEN_NO_SERVER, "no server at %s:%s:%s: %s",
+                          address_scheme(address->kind), address->host, port, gai_strerror(failed));
     int reason = EADDRNOTAVAIL;
     for (const struct addrinfo *entry = list; entry; entry = entry->ai_next) {
         reason = connect_one(connection, entry->ai_addr, entry->ai_addrlen);
@@ -94,20 +94,84 @@ static enum sheen_status open_tcp(struct connection *connection, const struct ad
     freeaddrinfo(list);
     if (reason)
         return status_set(error, SHEEN_NO_SERVER,
-                          "no server at tcp:%s:%s: %s; is sheend running there?", address->host,
-                          port, strerror(reason));
+                          "no server at %s:%s:%s: %s; is sheend running there?",
+                          address_scheme(address->kind), address->host, port, strerror(reason));
     /* Requests are small and waited for: never hold one back to fill a packet. */
     setsockopt(connection->fd, IPPROTO_TCP, TCP_NODELAY, &(int){1}, sizeof(int));
     return SHEEN_OK;
 }
 
+/* ---- bytes, over the socket or TLS: 0 is the end, -1 errno ---- */
+
+static ssize_t socket_read(void *owner, void *bytes, size_t n_bytes)
+{
+    const struct connection *connection = owner;
+    return recv(connection->fd, bytes, n_bytes, 0);
+}
+
+static ssize_t socket_write(void *owner, const void *bytes, size_t n_bytes)
+{
+    const struct connection *connection = owner;
+    return send(connection->fd, bytes, n_bytes, MSG_NOSIGNAL);
+}
+
+/* As read() or write(); *events is what to wait for after EAGAIN. */
+static ssize_t tls_moved(enum tls_result result, size_t moved, short *events)
+{
+    *events = result == TLS_WANTS_WRITE ? POLLOUT : POLLIN;
+    if (result == TLS_MOVED)
+        return (ssize_t)moved;
+    errno = result == TLS_FAILED ? EPROTO : EAGAIN;
+    return result == TLS_ENDED ? 0 : -1;
+}
+
+static ssize_t read_some(struct connection *connection, void *bytes, size_t n_bytes, short *events)
+{
+    size_t moved;
+    *events = POLLIN;
+    if (!connection->channel)
+        return socket_read(connection, bytes, n_bytes);
+    enum tls_result result = tls_read(connection->channel, bytes, n_bytes, &moved);
+    return tls_moved(result, moved, events);
+}
+
+static ssize_t write_some(struct connection *connection, const void *bytes, size_t n_bytes,
+                          short *events)
+{
+    size_t moved;
+    *events = POLLOUT;
+    if (!connection->channel)
+        return socket_write(connection, bytes, n_bytes);
+    enum tls_result result = tls_write(connection->channel, bytes, n_bytes, &moved);
+    return tls_moved(result, moved, events);
+}
+
+static enum sheen_status start_tls(struct connection *connection, const struct address *address,
+                                   const struct tls_files *files, struct sheen_error *error)
+{
+    char text[TLS_TEXT_BYTES];
+    const struct tls_io io = {socket_read, socket_write, connection};
+    struct tls_context *context = tls_context_create(TLS_CLIENT, files, text);
+    if (!context)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
+    connection->channel = tls_channel_create(context, &io, address->host);
+    tls_context_destroy(context);
+    return connection->channel ? SHEEN_OK : status_set(error, SHEEN_NO_MEMORY, "no memory for TLS");
+}
+
 enum sheen_status connection_open(struct connection *connection, const struct address *address,
-                                  uint32_t timeout_ms, struct sheen_error *error)
+                                  const struct tls_files *files, uint32_t timeout_ms,
+                                  struct sheen_error *error)
 {
     *connection = (struct connection){.fd = -1, .timeout_ms = timeout_ms};
     if (address->kind == ADDRESS_UNIX)
         return open_unix(connection, address->path, error);
-    return open_tcp(connection, address, error);
+    enum sheen_status status = open_tcp(connection, address, error);
+    if (!status && address->kind == ADDRESS_TLS)
+        status = start_tls(connection, address, files, error);
+    if (status)
+        connection_finish(connection);
+    return status;
 }
 
 enum sheen_status connection_pair(struct connection *connection, int *peer_fd, uint32_t timeout_ms,
@@ -136,6 +200,9 @@ static enum sheen_status retry(const struct connection *connection, short events
 {
     if (errno == EINTR)
         return SHEEN_OK;
+    if (connection->channel && *tls_reason(connection->channel))
+        return status_set(error, SHEEN_LOST_SERVER, "lost server: TLS: %s",
+                          tls_reason(connection->channel));
     if (errno != EAGAIN && errno != EWOULDBLOCK)
         return status_set(error, SHEEN_LOST_SERVER, "lost server: %s", strerror(errno));
     int ready = wait_for(connection, events);
@@ -152,13 +219,14 @@ enum sheen_status connection_write(struct connection *connection, const void *by
 {
     const uint8_t *next = bytes;
     while (n_bytes > 0) {
-        ssize_t n = send(connection->fd, next, n_bytes, MSG_NOSIGNAL);
+        short events;
+        ssize_t n = write_some(connection, next, n_bytes, &events);
         if (n > 0) {
             next += n;
             n_bytes -= (size_t)n;
             continue;
         }
-        enum sheen_status status = retry(connection, POLLOUT, error);
+        enum sheen_status status = retry(connection, events, error);
         if (status)
             return status;
     }
@@ -170,7 +238,8 @@ enum sheen_status connection_read(struct connection *connection, void *bytes, si
 {
     uint8_t *next = bytes;
     while (n_bytes > 0) {
-        ssize_t n = recv(connection->fd, next, n_bytes, 0);
+        short events;
+        ssize_t n = read_some(connection, next, n_bytes, &events);
         if (n > 0) {
             next += n;
             n_bytes -= (size_t)n;
@@ -179,7 +248,7 @@ enum sheen_status connection_read(struct connection *connection, void *bytes, si
         if (n == 0)
             return status_set(error, SHEEN_LOST_SERVER,
                               "lost server: it closed the connection before its answer was whole");
-        enum sheen_status status = retry(connection, POLLIN, error);
+        enum sheen_status status = retry(connection, events, error);
         if (status)
             return status;
     }
@@ -188,6 +257,10 @@ enum sheen_status connection_read(struct connection *connection, void *bytes, si
 
 void connection_finish(struct connection *connection)
 {
+    if (connection->channel)
+        tls_end(connection->channel);
+    tls_channel_destroy(connection->channel);
+    connection->channel = NULL;
     if (connection->fd >= 0)
         close(connection->fd);
     connection->fd = -1;

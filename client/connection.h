@@ -1,4 +1,5 @@
-/* A stream socket to a daemon: the one place of the client that makes socket calls.
+/* A stream socket to a daemon, plain or with TLS: the one place of the client that makes socket
+ * calls.
  *
  * Reads and writes are exact, survive signals and raise no SIGPIPE. The owner of the struct closes
  * it with connection_finish(). Thread: one at a time. */
@@ -10,15 +11,20 @@
 
 #include "client/sheen.h"
 #include "protocol/address.h"
+#include "protocol/tls.h"
 
 struct connection {
-    int fd;              /* non-blocking, close-on-exec; -1: closed */
-    uint32_t timeout_ms; /* without a byte moved; 0: for ever */
+    int fd;                      /* non-blocking, close-on-exec; -1: closed */
+    uint32_t timeout_ms;         /* without a byte moved; 0: for ever */
+    struct tls_channel *channel; /* of a tls: address; NULL: plain */
 };
 
-/* Connects. SHEEN_NO_SERVER names the address and the reason; *connection is then closed. */
+/* Connects. `files` are for a tls: address, whose handshake happens in the first write and read.
+ * SHEEN_NO_SERVER names the address and the reason, SHEEN_BAD_ARGUMENT a file that is no good;
+ * *connection is then closed. */
 enum sheen_status connection_open(struct connection *connection, const struct address *address,
-                                  uint32_t timeout_ms, struct sheen_error *error);
+                                  const struct tls_files *files, uint32_t timeout_ms,
+                                  struct sheen_error *error);
 
 /* Makes a pair of connected sockets: one is *connection, the other goes to the caller, who closes
  * it. Both are close-on-exec. SHEEN_NO_SERVER on failure. */

@@ -57,6 +57,23 @@ enum sheen_status file_read(const char *path, enum sheen_status status, uint8_t 
     return result;
 }
 
+enum sheen_status file_read_line(const char *path, char *line, size_t size,
+                                 struct sheen_error *error)
+{
+    FILE *file = fopen(path, "re");
+    if (!file)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "cannot read %s: %s", path, strerror(errno));
+    bool ok = fgets(line, (int)size, file) != NULL;
+    size_t length = ok ? strcspn(line, "\r\n") : 0;
+    bool whole = ok && (line[length] || feof(file));
+    fclose(file);
+    if (length == 0 || !whole)
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          "%s: its first line must be a text of 1 to %zu bytes", path, size - 2);
+    line[length] = 0;
+    return SHEEN_OK;
+}
+
 enum sheen_status file_check_writable(const char *path, struct sheen_error *error)
 {
     struct stat about;

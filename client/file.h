@@ -12,6 +12,11 @@
 enum sheen_status file_read(const char *path, enum sheen_status status, uint8_t **bytes,
                             size_t *n_bytes, struct sheen_error *error);
 
+/* Reads the first line, without its end, which must not be empty. SHEEN_BAD_ARGUMENT when there is
+ * none or it does not fit. */
+enum sheen_status file_read_line(const char *path, char *line, size_t size,
+                                 struct sheen_error *error);
+
 /* False when `path` could not be written: its folder is missing or closed, or it is there and no
  * plain file. Fills *error with SHEEN_BAD_IMAGE. A hint that comes before the work. */
 enum sheen_status file_check_writable(const char *path, struct sheen_error *error);

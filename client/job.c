@@ -8,6 +8,8 @@
 #include "client/lights_text.h"
 #include "client/status.h"
 
+#define TOKEN_BYTES 256
+
 static enum sheen_status upload(struct job *job, enum sheen_file_kind kind, const char *path,
                                 const uint8_t *bytes, size_t n_bytes,
                                 const uint8_t id[SHEEN_ID_BYTES])
@@ -32,8 +34,16 @@ enum sheen_status job_init(struct job *job, const struct options *options)
     struct sheen_connect_options connect = SHEEN_CONNECT_DEFAULTS;
     connect.address = options->server;
     connect.device = options->device;
+    connect.ca = options->ca;
+    connect.cert = options->cert;
+    connect.key = options->key;
+    char token[TOKEN_BYTES];
     enum sheen_status status = SHEEN_OK;
-    if (options->model) {
+    if (options->token_file) {
+        status = file_read_line(options->token_file, token, sizeof(token), &job->error);
+        connect.token = token;
+    }
+    if (!status && options->model) {
         status = file_read(options->model, SHEEN_BAD_MODEL, &bytes, &n_bytes, &job->error);
         if (!status)
             status = identify(job, bytes, n_bytes, job->model_id);

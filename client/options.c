@@ -137,6 +137,11 @@ enum options_result options_parse(const struct command *command, int argc, char 
     const char *server = getenv("SHEEN_SERVER");
     if (!options->server && server && *server)
         options->server = server;
+    const char *token_file = getenv("SHEEN_TOKEN_FILE");
+    if (!options->token_file && token_file && *token_file)
+        options->token_file = token_file;
+    if (!options->cert != !options->key)
+        return wrong(why, "%s", "--cert and --key come together");
     if (options->server && options->device)
         return wrong(why, "--device is for a private daemon; the one at %.120s has its own",
                      options->server);

@@ -28,9 +28,11 @@ enum options_given {
 };
 
 struct options {
-    const char *model;  /* the file, NULL for commands without */
-    const char *server; /* --server, else SHEEN_SERVER, else NULL: a private daemon */
-    const char *device; /* NULL: auto */
+    const char *model;           /* the file, NULL for commands without */
+    const char *server;          /* --server, else SHEEN_SERVER, else NULL: a private daemon */
+    const char *device;          /* NULL: auto */
+    const char *ca, *cert, *key; /* of a tls: server; NULL: none */
+    const char *token_file;      /* --token-file, else SHEEN_TOKEN_FILE, else NULL */
     bool json, quiet;
     unsigned given; /* enum options_given */
     struct sheen_request request;

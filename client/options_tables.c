@@ -19,6 +19,34 @@ static bool apply_server(struct options *options, const char *value, char *why)
     return true;
 }
 
+static bool apply_ca(struct options *options, const char *value, char *why)
+{
+    (void)why;
+    options->ca = value;
+    return true;
+}
+
+static bool apply_cert(struct options *options, const char *value, char *why)
+{
+    (void)why;
+    options->cert = value;
+    return true;
+}
+
+static bool apply_key(struct options *options, const char *value, char *why)
+{
+    (void)why;
+    options->key = value;
+    return true;
+}
+
+static bool apply_token_file(struct options *options, const char *value, char *why)
+{
+    (void)why;
+    options->token_file = value;
+    return true;
+}
+
 static bool apply_device(struct options *options, const char *value, char *why)
 {
     uint32_t number;
@@ -187,9 +215,19 @@ static bool apply_show_range(struct options *options, const char *value, char *w
 
 const struct option_row OPTIONS_COMMON[] = {
     {"server", 0, "ADDRESS",
-     "a running daemon: unix:PATH or tcp:HOST:PORT (default: SHEEN_SERVER\n"
-     "from the environment, else a private daemon for this command)",
+     "a running daemon: unix:PATH, tcp:HOST:PORT or tls:HOST:PORT (default:\n"
+     "SHEEN_SERVER from the environment, else a private daemon for this command)",
      apply_server},
+    {"ca", 0, "FILE",
+     "PEM, the authority of a tls: server's certificate (default: those the system\n"
+     "trusts)",
+     apply_ca},
+    {"cert", 0, "FILE", "PEM, the certificate to show to a tls: server; with --key", apply_cert},
+    {"key", 0, "FILE", "PEM, its key", apply_key},
+    {"token-file", 0, "FILE",
+     "a file whose first line is the token to show to a tls: server (default:\n"
+     "SHEEN_TOKEN_FILE from the environment, else none)",
+     apply_token_file},
     {"device", 0, "DEVICE",
      "of the private daemon: auto, software, or a number from 0 (default: auto,\n"
      "a GPU when there is one)",

@@ -70,17 +70,22 @@ bool sheen_status_is_fatal(enum sheen_status status);
 struct sheen_session;
 
 struct sheen_connect_options {
-    const char *address; /* unix:PATH or tcp:HOST:PORT; NULL: a private daemon, see below */
+    const char *address; /* unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; NULL: a private daemon */
     const char *device;  /* private daemon: "auto", "software" or a number; NULL: auto */
     uint32_t timeout_ms; /* with no byte moved; 0: for ever */
     uint8_t model_id[SHEEN_ID_BYTES]; /* a balancer picks a node by it; zeros: any */
+    /* For tls: addresses; PEM files. The daemon's certificate is checked against `ca`, NULL: what
+     * the system trusts. It may want cert and key, or a token, of the client. */
+    const char *ca, *cert, *key;
+    const char *token; /* sent over TLS only */
 };
 #define SHEEN_CONNECT_DEFAULTS ((struct sheen_connect_options){.timeout_ms = 300000})
 
 /* Connects and shakes hands. On success *session is the caller's, to be given back with
  * sheen_close(); on failure it is NULL: SHEEN_NO_SERVER, SHEEN_LOST_SERVER (it went away, or the
  * private daemon ended at once), SHEEN_BAD_PEER, SHEEN_BAD_VERSION, SHEEN_TIMEOUT,
- * SHEEN_OVERLOADED, SHEEN_DEVICE_FAILED (a private daemon found no device).
+ * SHEEN_OVERLOADED, SHEEN_DEVICE_FAILED (a private daemon found no device), SHEEN_BAD_ARGUMENT
+ * (also a certificate or key that cannot be read).
  *
  * A private daemon is a child process on a socket pair: $SHEEN_DAEMON, else `sheend` beside this
  * program, else `sheend` on the PATH. It ends with the session. It inherits no file but its socket,

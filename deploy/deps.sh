@@ -5,7 +5,7 @@ set -eu
 packages="gcc g++ make pkg-config python3 python3-protobuf protobuf-compiler nanopb libnanopb-dev
  libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri libopenimageio-dev libtinygltf-dev
  nlohmann-json3-dev libzstd-dev libssl-dev libinih-dev libpng-dev
- fonts-dejavu-core libcmocka-dev libosd-dev libembree-dev clang-format cppcheck systemd git"
+ fonts-dejavu-core libcmocka-dev libosd-dev libembree-dev clang-format cppcheck systemd openssl git"
 missing=
 for package in $packages; do
     state=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null || true)

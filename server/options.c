@@ -131,6 +131,8 @@ static enum options_result walk(int argc, char **argv, struct settings *settings
             return OPTIONS_WRONG;
         }
         const struct option_row *row = &OPTION_ROWS[index];
+        if (row->type == OPTION_ACTION && row->set)
+            return row->set(NULL, optarg, error) ? OPTIONS_DONE : OPTIONS_WRONG;
         if (row->type == OPTION_ACTION) {
             strcmp(row->name, "help") == 0 ? print_help() : (void)puts("sheend " SHEEN_VERSION);
             return OPTIONS_DONE;

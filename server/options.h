@@ -11,7 +11,7 @@
 /* Every value that an option sets. Plain data: it can be copied and compared. */
 struct settings {
     struct service_options service;
-    char config[SERVICE_PATH_BYTES]; /* "": none */
+    char config[ACCESS_PATH_BYTES]; /* "": none */
     bool check_config;
 };
 

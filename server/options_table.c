@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "server/service/pool.h"
+#include "server/service/tokens.h"
 
 /* --- values with a form of their own */
 
@@ -81,6 +82,25 @@ static bool set_log_format(void *value, const char *text, struct error *error)
     return set_choice(value, text, "log-format", FORMATS, error);
 }
 
+static bool add_id(void *value, const char *text, struct error *error)
+{
+    struct access_ids *ids = value;
+    uint64_t id;
+    if (!parse_number(text, false, &id) || id >= UINT32_MAX)
+        return error_set(error, ERROR_REQUEST, "'%s' is no number of a user or group", text);
+    if (ids->n == ACCESS_MAX_IDS)
+        return error_set(error, ERROR_REQUEST, "at most %d users and %d groups may be listed",
+                         ACCESS_MAX_IDS, ACCESS_MAX_IDS);
+    ids->id[ids->n++] = id;
+    return true;
+}
+
+static bool hash_token(void *value, const char *text, struct error *error)
+{
+    (void)value;
+    return tokens_print_line(text, error);
+}
+
 static bool set_device(void *value, const char *text, struct error *error)
 {
     uint64_t number;
@@ -132,7 +152,7 @@ static bool set_session_fd(void *value, const char *text, struct error *error)
 
 const struct option_row OPTION_ROWS[] = {
     {"listen", "ADDRESS", OPTION_LIST, OPTION_IN_FILE, VALUE(service.listen), 0, 0, NULL, NULL,
-     "unix:PATH or tcp:HOST:PORT (loopback only); may be given several times\n"
+     "unix:PATH, tcp:HOST:PORT (loopback only) or tls:HOST:PORT; several times\n"
      "(default: unix:$XDG_RUNTIME_DIR/sheen.sock, else unix:/tmp/sheen-UID/sheen.sock)",
      add_listen},
     {"device", "auto|software|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0, NULL,
@@ -147,6 +167,28 @@ const struct option_row OPTION_ROWS[] = {
     {"drain-timeout", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.drain_timeout_s), 0, 10000000, "seconds", "30",
      "after SIGTERM, how long a client may take to read its frames", NULL},
+    {"allow-uid", "UID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.uids),
+     0, 0, NULL, NULL,
+     "a user who may connect to the Unix sockets; several times, up to 64. With\n"
+     "--allow-uid or --allow-gid nobody else may, not the daemon's own user\n"
+     "(default: whoever the socket's file lets in, which is its owner)",
+     add_id},
+    {"allow-gid", "GID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.gids),
+     0, 0, NULL, NULL, "a group whose members may connect to the Unix sockets; several times",
+     add_id},
+    {"tls-cert", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.access.tls_cert), 0, 0, NULL, NULL,
+     "PEM, the certificate of tls: addresses, and of its authorities", NULL},
+    {"tls-key", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tls_key),
+     0, 0, NULL, NULL, "PEM, its key", NULL},
+    {"client-ca", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.access.client_ca), 0, 0, NULL, NULL,
+     "PEM, the authority of client certificates that may come in over TLS", NULL},
+    {"tokens", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tokens),
+     0, 0, NULL, NULL,
+     "lines 'NAME HASH YYYY-MM-DD': tokens that may come in over TLS, each until\n"
+     "the end of its day; with --client-ca too, one of both is enough",
+     NULL},
     {"stuck-after", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.stuck_s), 1, 86400, "seconds", "60",
      "a thread that is at one piece of work for longer is taken for stuck: /healthz\n"
@@ -169,6 +211,10 @@ const struct option_row OPTION_ROWS[] = {
      "check the options and the file, then exit", NULL},
     {"session-fd", "N", OPTION_OTHER, 0, VALUE(service.session_fd), 0, 0, NULL, "none",
      "serve this connected socket alone and end with it", set_session_fd},
+    {"hash-token", "NAME:DAY", OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL,
+     "print the line for --tokens of the token on standard input, good until the\n"
+     "end of YYYY-MM-DD, and exit: openssl rand -base64 32 makes a token",
+     hash_token},
     {"version", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print the version and exit", NULL},
     {"help", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print this and exit", NULL},
 };

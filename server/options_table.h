@@ -15,7 +15,7 @@ enum option_type {
     OPTION_LIST,   /* given several times; set() adds. What the command line says replaces all that
                       the file says */
     OPTION_OTHER,  /* set() reads the value */
-    OPTION_ACTION, /* --help, --version */
+    OPTION_ACTION, /* --help, --version; set() acts */
 };
 
 enum option_flags {

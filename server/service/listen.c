@@ -54,13 +54,15 @@ static bool resolve(const struct address *address, struct addrinfo **found, stru
         return error_set(error, ERROR_SERVER, "cannot find the address of '%s': %s", address->host,
                          gai_strerror(code));
     for (const struct addrinfo *a = *found; a; a = a->ai_next) {
-        if (is_loopback(a->ai_addr))
+        if (address->kind == ADDRESS_TLS || is_loopback(a->ai_addr))
             continue;
         freeaddrinfo(*found);
         return error_set(error, ERROR_REQUEST,
-                         "tcp:%s:%u is not a loopback address: this version listens on TCP only "
-                         "at 127.0.0.1 or [::1], because it has no TLS yet; tunnel to it with ssh",
-                         address->host, (unsigned)address->port);
+                         "tcp:%s:%u is not a loopback address, and everybody on the way could read "
+                         "and change what is sent: use tls:%s:%u with --tls-cert, --tls-key and "
+                         "--client-ca or --tokens",
+                         address->host, (unsigned)address->port, address->host,
+                         (unsigned)address->port);
     }
     return true;
 }
@@ -173,7 +175,8 @@ static void describe_tcp(struct listener *listener, const struct sockaddr *name,
     char host[INET6_ADDRSTRLEN] = "?", port[8] = "?";
     getnameinfo(name, size, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV);
     bool v6 = strchr(host, ':') != NULL;
-    snprintf(listener->text, sizeof listener->text, v6 ? "tcp:[%s]:%s" : "tcp:%s:%s", host, port);
+    snprintf(listener->text, sizeof listener->text, v6 ? "%s:[%s]:%s" : "%s:%s:%s",
+             address_scheme(listener->address.kind), host, port);
 }
 
 static bool open_tcp(struct listener *listener, struct error *error)
@@ -189,7 +192,8 @@ static bool open_tcp(struct listener *listener, struct error *error)
     if (ok && getsockname(listener->fd, (struct sockaddr *)&name, &size) == 0)
         describe_tcp(listener, (const struct sockaddr *)&name, size);
     else
-        error_set(error, ERROR_SERVER, "cannot listen on tcp:%s:%u: %s", listener->address.host,
+        error_set(error, ERROR_SERVER, "cannot listen on %s:%s:%u: %s",
+                  address_scheme(listener->address.kind), listener->address.host,
                   (unsigned)listener->address.port, strerror(errno));
     freeaddrinfo(found);
     return ok;
@@ -210,7 +214,7 @@ static bool accept_one(struct listener *listener)
         return false;
     }
     static const int on = 1;
-    if (listener->address.kind == ADDRESS_TCP)
+    if (listener->address.kind != ADDRESS_UNIX)
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     listener->handler.accepted(listener->handler.owner, listener, fd);
     return true;
@@ -277,7 +281,7 @@ struct listener *listener_open(struct loop *loop, const struct address *address,
     return start(listener, ok, error);
 }
 
-static bool adopt(struct listener *listener, struct error *error)
+static bool adopt(struct listener *listener, bool tls, struct error *error)
 {
     union {
         struct sockaddr any;
@@ -296,23 +300,39 @@ static bool adopt(struct listener *listener, struct error *error)
                  name.local.sun_path[0] ? name.local.sun_path : "@");
         return true;
     }
-    listener->address.kind = ADDRESS_TCP;
+    listener->address.kind = tls || !is_loopback(&name.any) ? ADDRESS_TLS : ADDRESS_TCP;
     describe_tcp(listener, &name.any, size);
-    return is_loopback(&name.any) ||
-           error_set(error, ERROR_SERVER,
-                     "%s, from the service manager, is not a loopback address: "
-                     "this version has no TLS yet",
-                     listener->text);
+    return true;
 }
 
-struct listener *listener_adopt(struct loop *loop, int fd, const struct listener_handler *handler,
-                                struct error *error)
+struct listener *listener_adopt(struct loop *loop, int fd, bool tls,
+                                const struct listener_handler *handler, struct error *error)
 {
     struct listener *listener = create(loop, fd, handler, error);
     if (listener)
-        return start(listener, adopt(listener, error), error);
+        return start(listener, adopt(listener, tls, error), error);
     close(fd);
     return NULL;
+}
+
+enum address_kind listener_kind(const struct listener *listener)
+{
+    return listener->address.kind;
+}
+
+/* Is the Unix socket's file still the one made here? */
+static bool has_file(const struct listener *listener)
+{
+    struct stat file;
+    const struct stat *ours = &listener->file;
+    return ours->st_ino != 0 && lstat(listener->address.path, &file) == 0 &&
+           file.st_dev == ours->st_dev && file.st_ino == ours->st_ino;
+}
+
+void listener_open_to_all(const struct listener *listener, bool open)
+{
+    if (has_file(listener))
+        chmod(listener->address.path, open ? 0666 : 0600);
 }
 
 void listener_close(struct listener *listener)
@@ -320,10 +340,7 @@ void listener_close(struct listener *listener)
     if (!listener)
         return;
     loop_unwatch(listener->loop, &listener->source);
-    struct stat file;
-    const struct stat *ours = &listener->file;
-    if (ours->st_ino != 0 && lstat(listener->address.path, &file) == 0 &&
-        file.st_dev == ours->st_dev && file.st_ino == ours->st_ino)
+    if (has_file(listener))
         unlink(listener->address.path);
     if (listener->fd >= 0)
         close(listener->fd);

@@ -1,5 +1,5 @@
-/* Listening sockets: Unix, TCP on loopback, and those that a service manager has opened. Thread:
- * the loop's. */
+/* Listening sockets: Unix, TCP on loopback, TLS anywhere, and those that a service manager has
+ * opened. Thread: the loop's. */
 #ifndef SHEEN_SERVICE_LISTEN_H
 #define SHEEN_SERVICE_LISTEN_H
 
@@ -31,9 +31,13 @@ struct listener_handler {
 struct listener *listener_open(struct loop *loop, const struct address *address,
                                const struct listener_handler *handler, struct error *error);
 /* Takes over a listening socket that somebody else has opened; its file stays when it closes.
- * Closes fd on failure. */
-struct listener *listener_adopt(struct loop *loop, int fd, const struct listener_handler *handler,
-                                struct error *error);
+ * It is one for TLS if `tls` or if it is TCP beyond loopback. Closes fd on failure. */
+struct listener *listener_adopt(struct loop *loop, int fd, bool tls,
+                                const struct listener_handler *handler, struct error *error);
+enum address_kind listener_kind(const struct listener *listener);
+/* Gives the file of a Unix socket made here mode 0666, for a daemon that looks at each peer itself,
+ * or 0600. */
+void listener_open_to_all(const struct listener *listener, bool open);
 /* Closes and removes the Unix socket's file, if it is still the one made here. NULL is safe. */
 void listener_close(struct listener *listener);
 

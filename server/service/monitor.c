@@ -169,7 +169,7 @@ bool monitor_adopt(struct monitor *monitor, int fd, struct error *error)
         close(fd);
         return false;
     }
-    monitor->listener = listener_adopt(monitor->host->loop, fd, &handler, error);
+    monitor->listener = listener_adopt(monitor->host->loop, fd, false, &handler, error);
     return monitor->listener != NULL;
 }
 

@@ -34,14 +34,14 @@ struct service {
 /* --- sessions */
 
 /* One message and the end, for a client that cannot have a session. It has no buffers: what the
- * socket does not take at once is lost. */
+ * socket does not take at once is lost. Only the end when text is NULL. */
 static void turn_away(int fd, const char *text)
 {
     sheen_Error error = {.code = sheen_ErrorCode_ERROR_OVERLOADED};
     uint8_t buffer[MESSAGE_BUFFER_BYTES];
     size_t length;
-    snprintf(error.text, sizeof error.text, "%s", text);
-    if (message_encode(MESSAGE_ERROR, 0, &error, buffer, sizeof buffer, &length) &&
+    snprintf(error.text, sizeof error.text, "%s", text ? text : "");
+    if (text && message_encode(MESSAGE_ERROR, 0, &error, buffer, sizeof buffer, &length) &&
         send(fd, buffer, length, MSG_NOSIGNAL | MSG_DONTWAIT) > 0)
         shutdown(fd, SHUT_WR);
     close(fd);
@@ -52,18 +52,24 @@ static void accepted(void *owner, const struct listener *listener, int fd)
     struct service *service = owner;
     struct session *session = NULL;
     struct error error = {0};
-    char peer[PEER_TEXT_BYTES];
-    peer_describe(fd, peer);
-    if (service->host.n_sessions >= SERVICE_MAX_SESSIONS) {
+    const enum address_kind kind = listener_kind(listener);
+    struct session_client client = {.kind = kind == ADDRESS_UNIX  ? CLIENT_UNIX
+                                            : kind == ADDRESS_TCP ? CLIENT_TCP
+                                                                  : CLIENT_TLS};
+    peer_describe(fd, client.peer);
+    if (kind != ADDRESS_TLS &&
+        !access_admit_local(service->host.access, fd, kind, &client.identity, &error)) {
+        close(fd); /* a stranger is told nothing */
+    } else if (service->host.n_sessions >= SERVICE_MAX_SESSIONS) {
         error_set(&error, ERROR_SERVER,
                   "the daemon has as many clients as it takes: try again later");
-        turn_away(fd, error.text);
+        turn_away(fd, kind == ADDRESS_TLS ? NULL : error.text);
     } else {
-        session = session_create(&service->host, fd, peer, &error);
+        session = session_create(&service->host, fd, &client, &error);
     }
     if (!session) {
         service->host.stats.refused++;
-        log_event(LOG_WARN, "client turned away", log_text("peer", peer),
+        log_event(LOG_WARN, "client turned away", log_text("peer", client.peer),
                   log_text("listener", listener_text(listener)), log_text("text", error.text));
         return;
     }
@@ -134,14 +140,22 @@ static void drain(struct service *service)
     service->host.draining = true;
     service->host.drain_start_us = loop_now_us();
     close_listeners(service);
-    notify_send("STOPPING=1\nSTATUS=finishing what is in flight");
+    if (!service->single) /* the manager of a private daemon's client is not its own */
+        notify_send("STOPPING=1\nSTATUS=finishing what is in flight");
     log_event(LOG_INFO, "shutting down", log_number("sessions", service->host.n_sessions));
 }
 
-/* What may change while the daemon serves. */
-static void apply(struct service *service, const struct service_options *options)
+/* What may change while the daemon serves. Takes `access` over. */
+static void apply(struct service *service, const struct service_options *options,
+                  struct access *access)
 {
+    access_destroy(service->host.access);
+    service->host.access = access;
     service->options = *options;
+    for (size_t i = 0; i < service->n_listeners; i++)
+        listener_open_to_all(service->listeners[i], access_has_list(access));
+    for (struct session *session = service->sessions; session; session = session->next)
+        session_check_access(session);
     service->host.idle_timeout_us = options->idle_timeout_s * 1000000;
     service->host.drain_timeout_us = options->drain_timeout_s * 1000000;
     /* The client of a private daemon shows its last line when it dies. */
@@ -150,13 +164,36 @@ static void apply(struct service *service, const struct service_options *options
         monitor_set_stuck(service->monitor, options->stuck_s * 1000000);
 }
 
+static bool has_tls_listener(const struct service *service)
+{
+    for (size_t i = 0; i < service->n_listeners; i++)
+        if (listener_kind(service->listeners[i]) == ADDRESS_TLS)
+            return true;
+    return false;
+}
+
+/* The new rules, if those who listen can work by them. */
+static struct access *access_for(const struct service *service,
+                                 const struct service_options *options, struct error *error)
+{
+    struct access *access = access_create(&options->access, error);
+    if (access && has_tls_listener(service) && !access_can_tls(access, error)) {
+        access_destroy(access);
+        return NULL;
+    }
+    return access;
+}
+
 static void reload(struct service *service)
 {
     struct error error = {0};
     struct service_options options;
+    struct access *access = NULL;
     notify_send("RELOADING=1");
-    if (service->reloader.read(service->reloader.owner, &options, &error)) {
-        apply(service, &options);
+    if (service->reloader.read(service->reloader.owner, &options, &error))
+        access = access_for(service, &options, &error);
+    if (access) {
+        apply(service, &options, access);
         log_event(LOG_INFO, "configuration reloaded", log_text("version", SHEEN_VERSION));
     } else {
         log_event(LOG_ERROR, "the new configuration is bad: the old one stays",
@@ -198,14 +235,17 @@ static bool watch_signals(struct service *service, struct error *error)
 /* --- start and stop */
 
 /* Keeps a listener that has been opened; NULL has been explained by who returns it. */
-static bool keep_listener(struct service *service, struct listener *listener)
+static bool keep_listener(struct service *service, struct listener *listener, struct error *error)
 {
-    if (listener)
-        service->listeners[service->n_listeners++] = listener;
-    return listener != NULL;
+    if (!listener)
+        return false;
+    service->listeners[service->n_listeners++] = listener;
+    listener_open_to_all(listener, access_has_list(service->host.access));
+    return listener_kind(listener) != ADDRESS_TLS || access_can_tls(service->host.access, error);
 }
 
-/* The service manager's sockets; one that it calls "metrics" is for those. */
+/* The service manager's sockets; one that it calls "metrics" is for those, one called "tls" for
+ * TLS. */
 static bool adopt_listeners(struct service *service, struct error *error)
 {
     struct notify_fds fds;
@@ -220,7 +260,9 @@ static bool adopt_listeners(struct service *service, struct error *error)
             ok = monitor_adopt(service->monitor, fds.fd[i], error);
         else if (service->n_listeners < SERVICE_MAX_LISTENERS)
             ok = keep_listener(service,
-                               listener_adopt(service->host.loop, fds.fd[i], &handler, error));
+                               listener_adopt(service->host.loop, fds.fd[i],
+                                              strcmp(fds.name[i], "tls") == 0, &handler, error),
+                               error);
         else
             ok = error_set(error, ERROR_SERVER, "more than %d sockets from the service manager",
                            SERVICE_MAX_LISTENERS);
@@ -244,7 +286,8 @@ static bool open_listeners(struct service *service, struct error *error)
             return error_set(error, ERROR_SERVER, "at most %d addresses to listen on",
                              SERVICE_MAX_LISTENERS);
         if (!keep_listener(service,
-                           listener_open(service->host.loop, &listen.address[i], &handler, error)))
+                           listener_open(service->host.loop, &listen.address[i], &handler, error),
+                           error))
             return false;
     }
     const struct service_listen *metrics = &service->options.metrics;
@@ -253,7 +296,9 @@ static bool open_listeners(struct service *service, struct error *error)
 
 static bool open_session(struct service *service, int fd, struct error *error)
 {
-    struct session *session = session_create(&service->host, fd, "private", error);
+    struct session_client client = {.kind = CLIENT_PRIVATE, .peer = "private"};
+    access_admit_private(&client.identity);
+    struct session *session = session_create(&service->host, fd, &client, error);
     service->sessions = session;
     return session != NULL;
 }
@@ -308,10 +353,21 @@ bool service_options_check(const struct service_options *options, struct error *
 {
     if (options->session_fd >= 0 && options->listen.n > 0)
         return error_set(error, ERROR_REQUEST, "--session-fd and --listen exclude each other");
-    for (size_t i = 0; i < options->listen.n; i++)
+    bool tls = false;
+    for (size_t i = 0; i < options->listen.n; i++) {
         if (!listener_check(&options->listen.address[i], error))
             return false;
-    return options->metrics.n == 0 || listener_check(&options->metrics.address[0], error);
+        tls |= options->listen.address[i].kind == ADDRESS_TLS;
+    }
+    if (options->metrics.n > 0 && options->metrics.address[0].kind == ADDRESS_TLS)
+        return error_set(error, ERROR_REQUEST,
+                         "metrics are served at unix:PATH or at tcp:HOST:PORT on loopback");
+    if (options->metrics.n > 0 && !listener_check(&options->metrics.address[0], error))
+        return false;
+    struct access *access = access_create(&options->access, error);
+    bool ok = access && (!tls || access_can_tls(access, error));
+    access_destroy(access);
+    return ok;
 }
 
 struct service *service_create(const struct service_options *options,
@@ -325,8 +381,10 @@ struct service *service_create(const struct service_options *options,
     service->signal_fd = -1;
     service->reloader = *reloader;
     service->single = options->session_fd >= 0;
-    apply(service, options);
-    if (!start(service, error)) {
+    struct access *access = access_create(&options->access, error);
+    if (access)
+        apply(service, options, access);
+    if (!access || !start(service, error)) {
         service_destroy(service);
         return NULL;
     }
@@ -365,5 +423,6 @@ void service_destroy(struct service *service)
     if (service->signal_fd >= 0)
         close(service->signal_fd);
     loop_destroy(host->loop);
+    access_destroy(host->access);
     free(service);
 }

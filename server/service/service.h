@@ -8,11 +8,11 @@
 
 #include "protocol/address.h"
 #include "server/error.h"
+#include "server/service/access.h"
 #include "server/service/log.h"
 
 #define SERVICE_MAX_LISTENERS 16
 #define SERVICE_MAX_SESSIONS 256u
-#define SERVICE_PATH_BYTES 512
 #define SERVICE_DEVICE_BYTES 64
 
 struct service_listen {
@@ -31,7 +31,8 @@ struct service_options {
     uint64_t idle_timeout_s;           /* 0: never */
     uint64_t drain_timeout_s;          /* to read what is in flight when the daemon shuts down */
     uint64_t stuck_s;                  /* as monitor_create() */
-    enum log_level log_level;          /* with a single session: errors only */
+    struct access_options access;
+    enum log_level log_level; /* with a single session: errors only */
     enum log_format log_format;
 };
 
@@ -42,7 +43,7 @@ struct service_reloader {
 };
 
 /* What no single option can know, and what they name in the system: addresses that may be listened
- * on. ERROR_REQUEST, or ERROR_SERVER for a host that is not known. */
+ * on, certificates, tokens. ERROR_REQUEST, or ERROR_SERVER for a host that is not known. */
 bool service_options_check(const struct service_options *options, struct error *error);
 
 struct service;

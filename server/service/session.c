@@ -95,6 +95,16 @@ static void reply_error(struct session *session, uint32_t seq, sheen_ErrorCode c
         session_answer_error(session, answer, code, text);
 }
 
+/* A stranger learns nothing, not even what is wrong; the log does. */
+static void turn_away(struct session *session, const char *why)
+{
+    log_event(LOG_WARN, "client turned away", log_number("session", session->id),
+              log_text("peer", session->client.peer), log_text("text", why));
+    session->end = END_CREDENTIALS;
+    session->refused = true;
+    conn_close(&session->conn);
+}
+
 /* The connection cannot go on: answers what came before, says why, and closes. */
 static void __attribute__((format(printf, 5, 6)))
 refuse(struct session *session, enum stats_end end, uint32_t seq, sheen_ErrorCode code,
@@ -105,6 +115,10 @@ refuse(struct session *session, enum stats_end end, uint32_t seq, sheen_ErrorCod
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    if (!session->admitted) {
+        turn_away(session, text);
+        return;
+    }
     struct answer *answer = session->refused ? NULL : expect_answer(session, seq);
     if (!session->refused)
         session->end = end;
@@ -117,6 +131,22 @@ refuse(struct session *session, enum stats_end end, uint32_t seq, sheen_ErrorCod
 }
 
 /* --- messages */
+
+/* A client behind TLS says who it is. */
+static bool admit(struct session *session, const sheen_Hello *hello)
+{
+    struct error error = {0};
+    struct identity *identity = &session->client.identity;
+    if (!access_admit_tls(session->host->access, &session->conn,
+                          hello->has_token ? hello->token : NULL, identity, &error)) {
+        turn_away(session, error.text);
+        return false;
+    }
+    session->admitted = true;
+    log_event(LOG_INFO, "client admitted", log_number("session", session->id),
+              log_text("identity", identity->name));
+    return true;
+}
 
 static void handle_hello(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
 {
@@ -132,6 +162,8 @@ static void handle_hello(struct session *session, uint32_t seq, const uint8_t *b
         refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
         return;
     }
+    if (!session->admitted && !admit(session, &hello))
+        return;
     const struct renderer_info *info = render_thread_info(session->host->render_thread);
     sheen_HelloOk ok = {
         .minor = PROTOCOL_MINOR,
@@ -368,8 +400,8 @@ static void on_malformed(void *owner, const struct message_header *header, enum 
 
 /* --- its life */
 
-struct session *session_create(struct session_host *host, int fd, const char *peer,
-                               struct error *error)
+struct session *session_create(struct session_host *host, int fd,
+                               const struct session_client *client, struct error *error)
 {
     static const struct conn_handler handler = {on_message, on_malformed};
     struct session *session = calloc(1, sizeof *session);
@@ -383,20 +415,29 @@ struct session *session_create(struct session_host *host, int fd, const char *pe
         free(session);
         return NULL;
     }
+    if (client->kind == CLIENT_TLS && !access_start_tls(host->access, &session->conn, error)) {
+        conn_finish(&session->conn);
+        free(session);
+        return NULL;
+    }
     session->host = host;
+    session->client = *client;
+    session->admitted = client->kind != CLIENT_TLS;
     session->start_us = loop_now_us();
     scheduler_add_queue(&host->scheduler, &session->queue);
     host->n_sessions++;
     host->stats.sessions++;
     session->id = ++host->last_session_id;
     log_event(LOG_INFO, "session opened", log_number("session", session->id),
-              log_text("peer", peer));
+              log_text("peer", client->peer), log_text("identity", client->identity.name));
     return session;
 }
 
 void session_destroy(struct session *session)
 {
     struct session_host *host = session->host;
+    if (session->end == END_CLIENT && !session->admitted)
+        turn_away(session, *session->conn.reason ? session->conn.reason : "it left before HELLO");
     if (session->end == END_CLIENT && !session->conn.peer_ended)
         session->end = END_LOST;
     host->stats.ended[session->end]++;
@@ -469,8 +510,27 @@ static void check_deadlines(struct session *session, uint64_t now)
                (unsigned long long)(idle / 1000000));
 }
 
+void session_check_access(struct session *session)
+{
+    struct error error = {0};
+    struct session_client *client = &session->client;
+    const struct access *access = session->host->access;
+    struct conn *conn = &session->conn;
+    bool ok = true;
+    if (conn->state == CONN_CLOSED || !session->admitted)
+        return;
+    if (client->kind == CLIENT_UNIX)
+        ok = access_admit_local(access, conn->source.fd, ADDRESS_UNIX, &client->identity, &error);
+    else if (client->kind == CLIENT_TLS)
+        ok = access_still_admits(access, &client->identity, &error);
+    if (!ok)
+        turn_away(session, error.text);
+}
+
 void session_tick(struct session *session, uint64_t now_us)
 {
+    if (session->client.identity.expires_s)
+        session_check_access(session);
     check_deadlines(session, now_us);
     if (session->conn.state == CONN_OPEN)
         request_report_progress(session);

@@ -7,8 +7,10 @@
 #define SHEEN_SERVICE_SESSION_H
 
 #include "protocol/message.h"
+#include "server/service/access.h"
 #include "server/service/answer.h"
 #include "server/service/conn.h"
+#include "server/service/peer.h"
 #include "server/service/scheduler.h"
 #include "server/service/stats.h"
 #include "server/service/store.h"
@@ -26,6 +28,7 @@ struct session_host {
     struct pool *pool;
     struct render_thread *render_thread;
     struct store *store;
+    struct access *access; /* another one after a reload */
     struct scheduler scheduler;
     struct stats stats;
     uint32_t n_sessions;
@@ -40,6 +43,13 @@ struct session_host {
 
 struct request;
 
+/* A client as it comes in. */
+struct session_client {
+    enum { CLIENT_PRIVATE, CLIENT_UNIX, CLIENT_TCP, CLIENT_TLS } kind;
+    char peer[PEER_TEXT_BYTES]; /* for the log */
+    struct identity identity;   /* CLIENT_TLS: not before HELLO */
+};
+
 struct session {
     struct session_host *host;
     struct conn conn;
@@ -48,7 +58,9 @@ struct session {
     uint64_t id; /* in the log */
     uint64_t start_us;
     uint64_t n_answers;
-    enum stats_end end;    /* why it ends, once the daemon has decided that it does */
+    enum stats_end end; /* why it ends, once the daemon has decided that it does */
+    struct session_client client;
+    bool admitted;         /* the client is who it says; till then it is told nothing */
     bool greeted;          /* HELLO has been answered */
     bool refused;          /* the last answer is on its way: nothing is read any more */
     struct upload *upload; /* NULL: none under way */
@@ -57,9 +69,9 @@ struct session {
     struct session *next; /* the service's list */
 };
 
-/* Takes the socket over (closes it on failure). `peer` is the client's address for the log. */
-struct session *session_create(struct session_host *host, int fd, const char *peer,
-                               struct error *error);
+/* Takes the socket over (closes it on failure). */
+struct session *session_create(struct session_host *host, int fd,
+                               const struct session_client *client, struct error *error);
 /* Closes at once; requests in flight end unseen. */
 void session_destroy(struct session *session);
 
@@ -68,6 +80,8 @@ void session_destroy(struct session *session);
 bool session_settle(struct session *session);
 /* Deadlines and progress. */
 void session_tick(struct session *session, uint64_t now_us);
+/* The rules of access have changed: closes when the client may not be here any more. */
+void session_check_access(struct session *session);
 
 /* --- for requests: `answer` is the one they owe */
 

@@ -48,7 +48,9 @@ class client
     {
         std::ifstream file(path, std::ios::binary);
         std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-        sheen_connect_options options = {address.c_str(), nullptr, 300000, {}};
+        sheen_connect_options options = {};
+        options.address = address.c_str();
+        options.timeout_ms = 300000;
         check(sheen_connect(&session, &options, &error), error);
         sheen_file_id(bytes.data(), bytes.size(), request.model_id);
         check(sheen_upload(session, SHEEN_FILE_MODEL, request.model_id, bytes.data(), bytes.size(),

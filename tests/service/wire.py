@@ -3,6 +3,7 @@
 Written from protocol/README.md, not from the C code, so that the two check each other."""
 import hashlib
 import socket
+import ssl
 import struct
 
 MAGIC = b"SHEN"
@@ -69,8 +70,9 @@ def message(kind, seq, body=b"", flags=0, magic=MAGIC, major=1, length=None):
     return magic + struct.pack("<BBHII", major, kind, flags, length, seq) + body
 
 
-def hello(seq=1, model=bytes(32)):
-    return message(HELLO, seq, model + field(1, 0) + field(2, "test 1"))
+def hello(seq=1, model=bytes(32), token=None):
+    return message(HELLO, seq, model + field(1, 0) + field(2, "test 1") +
+                   (field(3, token) if token else b""))
 
 
 def render(seq, model, width=64, height=48, encoding=RAW, planes=1, extra=b""):
@@ -102,7 +104,8 @@ class Frame:
 
 
 class Client:
-    def __init__(self, address, greet=True, timeout=30):
+    def __init__(self, address, greet=True, timeout=30, tls=None, token=None):
+        """`tls` is an ssl.SSLContext for a tls: address."""
         if address.startswith("unix:"):
             self.socket = socket.socket(socket.AF_UNIX)
             target = address[5:]
@@ -112,9 +115,11 @@ class Client:
             target = (host, int(port))
         self.socket.settimeout(timeout)
         self.socket.connect(target)
+        if tls:
+            self.socket = tls.wrap_socket(self.socket, server_hostname=target[0])
         self.seq = 1
         if greet:
-            self.send(hello())
+            self.send(hello(token=token))
             self.expect(HELLO_OK, 1)
 
     def __enter__(self):
@@ -162,7 +167,7 @@ class Client:
         """True when the daemon has closed and nothing is left to read."""
         try:
             return self.socket.recv(1) == b""
-        except ConnectionResetError:
+        except (ConnectionResetError, ssl.SSLError):
             return True
 
     def upload(self, data, name, kind=MODEL):

@@ -1,0 +1,502 @@
+"""Who may come in: nobody without credentials, and he learns nothing."""
+import hashlib
+import os
+import re
+import secrets
+import shutil
+import signal
+import socket
+import ssl
+import stat
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+import wire
+from authority import Authority, context
+from daemon import CUBE, MODELS, SHEEN, SHEEND, Daemon, grid, run
+from wire import Client
+
+FENDER = os.path.join(MODELS, "fender.obj")
+LATER, EARLIER = "2099-12-31", "2020-02-29"
+
+
+def token_line(name, token, day=LATER):
+    done = subprocess.run([SHEEND, "--hash-token", f"{name}:{day}"], input=token + "\n",
+                          capture_output=True, text=True, timeout=20)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="sheen-test-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder, name)
+
+    @classmethod
+    def write(cls, name, text):
+        with open(cls.path(name), "w", encoding="ascii") as file:
+            file.write(text)
+        return cls.path(name)
+
+
+def tls_address(daemon):
+    return re.search(r"tls:127\.0\.0\.1:\d+", daemon.errors()).group()
+
+
+class Tls(Case):
+    """One daemon that takes certificates and tokens."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.ours, cls.other = Authority(cls.path("ours")), Authority(cls.path("other"))
+        cls.server = cls.ours.issue("server")
+        cls.anna = cls.ours.issue("anna", "/CN=anna")
+        cls.token, cls.expired = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
+        cls.tokens = cls.write("tokens", "# ours\n\n" + token_line("farm", cls.token) +
+                               token_line("old", cls.expired, EARLIER))
+        cls.daemon = Daemon("--listen", "tls:127.0.0.1:0", "--tls-cert", cls.server[0], "--tls-key",
+                            cls.server[1], "--client-ca", cls.ours.cert, "--tokens", cls.tokens)
+        cls.address = tls_address(cls.daemon)
+
+    @classmethod
+    def tearDownClass(cls):
+        if cls.daemon.stop() != 0:
+            raise AssertionError("the daemon did not end well")
+
+    def client(self, pair=None, token=None, **named):
+        return Client(self.address, tls=context(self.ours, pair), token=token, **named)
+
+    def raw(self):
+        host, port = self.address[4:].rsplit(":", 1)
+        one = socket.create_connection((host, int(port)), timeout=10)
+        self.addCleanup(one.close)
+        return one
+
+    def assert_turned_away(self, words, act):
+        """act() ends without an answer, the log says why, and the daemon serves on."""
+        self.daemon.wait_for("msg=listening")
+        before = len(self.daemon.errors())
+        with self.assertRaises((EOFError, OSError)):
+            act()
+        end = time.monotonic() + 10
+        while "client turned away" not in self.daemon.errors()[before:]:
+            self.assertLess(time.monotonic(), end, self.daemon.errors()[before:])
+            time.sleep(0.02)
+        said = self.daemon.errors()[before:]
+        self.assertRegex(said, "client turned away.*" + words)
+        self.assertNotIn("client admitted", said)
+        with self.client(token=self.token) as client:
+            client.stats()
+
+    # --- who comes in
+
+    def test_certificate(self):
+        with self.client(self.anna) as client:
+            self.assertEqual(client.socket.version(), "TLSv1.3")
+            client.render(client.upload(CUBE, "cube.obj"))
+        self.daemon.wait_for('identity="cert:CN=anna"')
+
+    def test_token(self):
+        with self.client(token=self.token) as client:
+            client.render(client.upload(CUBE, "cube.obj"))
+        self.daemon.wait_for("identity=token:farm")
+
+    def test_the_same_bytes_as_without(self):
+        """Megabytes both ways, with four requests in flight."""
+        sheet = grid(150)
+        with self.client(self.anna) as tls, Client(self.daemon.unix) as plain:
+            model = tls.upload(sheet, "sheet.obj")
+            self.assertEqual(plain.upload(sheet, "sheet.obj"), model)
+            want = plain.render(model, 900, 900, planes=3).data
+            tls.send(b"".join(wire.render(70 + i, model, 900, 900, planes=3) for i in range(4)))
+            for i in range(4):
+                self.assertEqual(tls.read_frame(70 + i).data, want)
+        self.assertGreater(len(want), 10 << 20)
+
+    def test_many_messages_in_one_record(self):
+        with self.client(self.anna) as client:
+            client.send(b"".join(wire.message(wire.STATS_QUERY, 100 + i) for i in range(200)))
+            for i in range(200):
+                client.expect(wire.STATS, 100 + i)
+
+    def test_a_byte_at_a_time(self):
+        with self.client(greet=False) as client:
+            for byte in wire.hello(token=self.token):
+                client.send(bytes([byte]))
+            client.expect(wire.HELLO_OK, 1)
+
+    # --- who does not
+
+    def test_nothing_shown(self):
+        self.assert_turned_away("neither a certificate", self.client)
+
+    def test_wrong_token(self):
+        self.assert_turned_away("not one of the daemon's",
+                                lambda: self.client(token=secrets.token_urlsafe(32)))
+        self.assert_turned_away("not one of the daemon's", lambda: self.client(token=self.token[1:]))
+
+    def test_expired_token(self):
+        self.assert_turned_away("token:old has expired", lambda: self.client(token=self.expired))
+
+    def test_certificate_of_another_authority(self):
+        stranger = self.other.issue("anna", "/CN=anna")
+        self.assert_turned_away("TLS: ", lambda: self.client(stranger))
+        # A right token does not help: what is shown must be true.
+        self.assert_turned_away("TLS: ", lambda: self.client(stranger, token=self.token))
+
+    def test_expired_certificate(self):
+        pair = self.ours.issue("late", seconds=-3600)
+        self.assert_turned_away("certificate has expired", lambda: self.client(pair))
+
+    def test_older_tls(self):
+        tls = context(self.ours, self.anna)
+        tls.maximum_version = ssl.TLSVersion.TLSv1_2
+        self.assert_turned_away("TLS: ", lambda: Client(self.address, tls=tls))
+
+    def test_no_tls(self):
+        for data in (wire.hello(token=self.token), b"GET / HTTP/1.1\r\n\r\n", bytes(100),
+                     b"\x16\x03\x01\xff\xff" + bytes(200)):
+            def act(data=data):
+                with self.raw() as one:
+                    one.sendall(data)
+                    answer = b""
+                    while part := one.recv(1000):
+                        answer += part
+                # At most a TLS alert.
+                self.assertLess(len(answer), 8)
+                raise EOFError
+
+            self.assert_turned_away("TLS: ", act)
+
+    def test_silence(self):
+        for greet in (False, True):
+            def act(greet=greet):
+                start = time.monotonic()
+                with (self.client(greet=False).socket if greet else self.raw()) as one:
+                    self.assertEqual(one.recv(100), b"")
+                self.assertGreater(time.monotonic() - start, 2.5)
+                raise EOFError
+
+            self.assert_turned_away("no HELLO", act)
+
+    def test_a_port_scan(self):
+        def act():
+            self.raw().close()
+            raise EOFError
+
+        self.assert_turned_away("", act)
+
+    def test_nothing_before_hello(self):
+        """Inside TLS, but not one word more to a stranger: no ERROR, no version."""
+        for data in (wire.message(wire.STATS_QUERY, 1), b"\n" * 16, wire.message(99, 1),
+                     wire.message(wire.HELLO, 1, b"short"), wire.hello()[:-3] + b"\xff\xff\xff",
+                     wire.message(wire.HELLO, 1, wire.hello()[16:], major=2)):
+            def act(data=data):
+                with self.client(greet=False) as client:
+                    client.send(data)
+                    client.read(1)
+
+            self.assert_turned_away("", act)
+
+    def test_a_recorded_connection(self):
+        """Every byte of a good client, sent again."""
+        recorded = bytearray()
+        with socket.create_server(("127.0.0.1", 0)) as relay:
+            def pass_on():
+                inner, _ = relay.accept()
+                outer = self.raw()
+
+                def back():
+                    while part := outer.recv(65536):
+                        inner.sendall(part)
+
+                threading.Thread(target=back, daemon=True).start()
+                while part := inner.recv(65536):
+                    recorded.extend(part)
+                    outer.sendall(part)
+                outer.shutdown(socket.SHUT_WR)
+
+            thread = threading.Thread(target=pass_on)
+            thread.start()
+            with Client(f"tls:127.0.0.1:{relay.getsockname()[1]}", tls=context(self.ours),
+                        token=self.token) as client:
+                client.stats()
+            thread.join()
+
+        def act():
+            with self.raw() as one:
+                one.sendall(recorded)
+                while one.recv(65536):
+                    pass
+            raise EOFError
+
+        self.assert_turned_away("TLS: ", act)
+
+
+class Lasting(Case):
+    """Credentials that end, and reloads."""
+
+    def setUp(self):
+        shutil.rmtree(self.path("ca"), ignore_errors=True)
+        self.ca = Authority(self.path("ca"))
+        self.server = self.ca.issue("server")
+        self.token = secrets.token_urlsafe(32)
+        self.tokens = self.write("tokens", token_line("farm", self.token))
+
+    def start(self, *arguments):
+        daemon = Daemon("--listen", "tls:127.0.0.1:0", "--tls-cert", self.server[0], "--tls-key",
+                        self.server[1], *arguments)
+        self.address = tls_address(daemon)
+        return daemon
+
+    def test_a_certificate_ends_its_session(self):
+        daemon = self.start("--client-ca", self.ca.cert)
+        brief = self.ca.issue("brief", seconds=4)
+        with Client(self.address, tls=context(self.ca, brief)) as client:
+            client.stats()
+            client.socket.settimeout(10)
+            self.assertTrue(client.at_end())
+        daemon.wait_for('text="cert:CN=brief has expired"')
+        # Without --tokens the handshake itself asks for a certificate.
+        with self.assertRaises((EOFError, OSError)):
+            Client(self.address, tls=context(self.ca))
+        daemon.wait_for("peer did not return a certificate")
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_tokens_reload(self):
+        daemon = self.start("--tokens", self.tokens)
+        tls = context(self.ca)
+        with Client(self.address, tls=tls, token=self.token) as client:
+            self.write("tokens", "farm\n")
+            daemon.process.send_signal(signal.SIGHUP)
+            daemon.wait_for(f"{self.tokens}:1: a line is")
+            client.stats()
+            fresh = secrets.token_urlsafe(32)
+            self.write("tokens", token_line("farm", fresh))  # the same name, another token
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertTrue(client.at_end())
+            daemon.wait_for('text="token:farm has been taken back"')
+        with self.assertRaises((EOFError, OSError)):
+            Client(self.address, tls=tls, token=self.token)
+        with Client(self.address, tls=tls, token=fresh) as client:
+            client.stats()
+            self.write("tokens", token_line("farm", fresh, EARLIER))
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertTrue(client.at_end())
+            daemon.wait_for('text="token:farm has expired"')
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_certificates_reload(self):
+        daemon = self.start("--tokens", self.tokens)
+
+        def served():
+            with Client(self.address, tls=context(self.ca), token=self.token) as client:
+                return client.socket.getpeercert()["serialNumber"]
+
+        first = served()
+        with Client(self.address, tls=context(self.ca), token=self.token) as client:
+            self.ca.issue("server")
+            daemon.process.send_signal(signal.SIGHUP)
+            daemon.wait_for("configuration reloaded")
+            self.assertNotEqual(served(), first)
+            with open(self.server[0], "w", encoding="ascii") as file:
+                file.write("no certificate\n")
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertIn(self.server[0], daemon.wait_for("the old one stays"))
+            self.assertNotEqual(served(), first)
+            client.stats()  # connections outlive their certificate's file
+        self.assertEqual(daemon.stop(), 0)
+
+
+class Starts(Case):
+    """A daemon that would serve everybody does not start, and says what to set."""
+
+    def assert_refused(self, words, *arguments, check=("--check-config",)):
+        done = run("--device", "software", *arguments, *check)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(words, done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_tls(self):
+        ca = Authority(self.path("ca"))
+        cert, key = ca.issue("server")
+        other_key = ca.issue("other")[1]
+        listen = ("--listen", "tls:0.0.0.0:0")
+        own = ("--tls-cert", cert, "--tls-key", key)
+        self.assert_refused("use tls:0.0.0.0:0 with --tls-cert", "--listen", "tcp:0.0.0.0:0")
+        self.assert_refused("needs --tls-cert and --tls-key", *listen)
+        self.assert_refused("come together", *listen, "--tls-cert", cert)
+        for check in (("--check-config",), ()):
+            self.assert_refused("needs --client-ca", *listen, *own, check=check)
+        self.assert_refused("loopback", "--metrics", "tls:127.0.0.1:0")
+        for words, arguments in (("no-such", ("--tls-cert", self.path("no-such"), "--tls-key", key)),
+                                 ("server.pem", ("--tls-cert", cert, "--tls-key", cert)),
+                                 ("other.key", ("--tls-cert", cert, "--tls-key", other_key)),
+                                 ("no-such", (*own, "--client-ca", self.path("no-such"))),
+                                 ("no-such", (*own, "--tokens", self.path("no-such")))):
+            self.assert_refused(words, *listen, *arguments)
+        os.chmod(key, 0o644)
+        self.assert_refused("chmod", *listen, *own, "--client-ca", ca.cert)
+        os.chmod(key, 0o640)
+        done = run(*listen, *own, "--client-ca", ca.cert, "--check-config")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_token_files(self):
+        good = token_line("a", "x" * 32)
+        for number, text in ((1, "a\n"), (1, "a " + 64 * "0" + "\n"),
+                             (1, "a " + 63 * "0" + " 2030-01-01\n"),
+                             (1, "a " + 64 * "G" + " 2030-01-01\n"),
+                             (1, "a " + 64 * "0" + " 2030-02-30\n"),
+                             (1, "a " + 64 * "0" + " tomorrow\n"),
+                             (1, "a " + 64 * "0" + " 2030-01-01 more\n"),
+                             (1, "a/b " + 64 * "0" + " 2030-01-01\n"), (1, 300 * "a" + "\n"),
+                             (2, good + good), (3, "#\n" + good + "b " + 64 * "0" + "\n")):
+            with self.subTest(text=text):
+                path = self.write("tokens", text)
+                self.assert_refused(f"{path}:{number}: ", "--tokens", path)
+        many = "".join(f"n{i} {'0' * 64} 2030-01-01\n" for i in range(1025))
+        self.assert_refused("tokens:1025: ", "--tokens", self.write("tokens", many))
+
+    def test_hash_token(self):
+        self.assertEqual(
+            token_line("farm", "correct-horse-battery-staple-0123"),
+            "farm " + hashlib.sha256(b"correct-horse-battery-staple-0123").hexdigest() +
+            " 2099-12-31\n")
+        for spec, token in (("farm", "x" * 32), ("farm:soon", "x" * 32), (":2030-01-01", "x" * 32),
+                            ("a b:2030-01-01", "x" * 32), ("farm:2030-01-01", "x" * 31),
+                            ("farm:2030-01-01", "x" * 256), ("farm:2030-01-01", ""),
+                            ("farm:2030-01-01", "x" * 40 + " y")):
+            done = subprocess.run([SHEEND, "--hash-token", spec], input=token, text=True,
+                                  capture_output=True, timeout=20)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), (spec, token))
+            self.assertNotIn("xx", done.stderr)
+
+    def test_lists(self):
+        for value in ("-1", "root", "4294967295", "1.5"):
+            self.assert_refused("no number of a user", "--allow-uid", value)
+        self.assert_refused("at most 64", *(65 * ("--allow-gid", "1")))
+
+
+class Peers(Case):
+    def turned_away(self, daemon):
+        with self.assertRaises((EOFError, OSError)):
+            Client(daemon.unix)
+        daemon.wait_for(f"user {os.getuid()} is in neither allow-uid nor allow-gid")
+
+    def test_lists(self):
+        """With a list, those who are on it and nobody else."""
+        uid, gid = str(os.getuid()), str(os.getgid())
+        for arguments, welcome in ((("--allow-uid", "4242"), False), (("--allow-gid", "4242"), False),
+                                   (("--allow-uid", "4242", "--allow-uid", uid), True),
+                                   (("--allow-uid", "4242", "--allow-gid", gid), True)):
+            with self.subTest(arguments=arguments):
+                daemon = Daemon(*arguments, tcp=False)
+                self.assertEqual(stat.S_IMODE(os.stat(daemon.path).st_mode), 0o666)
+                if welcome:
+                    with Client(daemon.unix) as client:
+                        client.render(client.upload(CUBE, "cube.obj"))
+                else:
+                    self.turned_away(daemon)
+                self.assertEqual(daemon.stop(), 0)
+
+    def test_reload(self):
+        config = self.write("sheend.conf", "")
+        daemon = Daemon("--config", config, tcp=False)
+        with Client(daemon.unix) as client:
+            self.write("sheend.conf", "allow-uid = 4242\n")
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertTrue(client.at_end())
+        self.turned_away(daemon)
+        self.write("sheend.conf", "")
+        daemon.process.send_signal(signal.SIGHUP)
+        end = time.monotonic() + 10
+        while stat.S_IMODE(os.stat(daemon.path).st_mode) != 0o600:
+            self.assertLess(time.monotonic(), end)
+        with Client(daemon.unix) as client:
+            client.stats()
+        self.assertEqual(daemon.stop(), 0)
+
+    @unittest.skipUnless(os.getuid() == 0, "only root can be somebody else")
+    def test_another_user(self):
+        os.chmod(self.folder, 0o755)
+        script = ("import os, socket, sys\n"
+                  "os.setgroups([int(sys.argv[2])]); os.setgid(65534); os.setuid(int(sys.argv[3]))\n"
+                  "s = socket.socket(socket.AF_UNIX); s.connect(sys.argv[1])\n"
+                  "s.sendall(bytes.fromhex(sys.argv[4])); print(len(s.recv(4096)))\n")
+
+        def try_as(uid, group=65534):
+            done = subprocess.run(["/usr/bin/python3", "-c", script, self.path("s"), str(group),
+                                   str(uid), wire.hello().hex()], capture_output=True, text=True,
+                                  timeout=20)
+            return done.stdout.strip() or done.stderr.splitlines()[-1]
+
+        daemon = Daemon(path=self.path("s"), tcp=False)
+        self.assertIn("PermissionError", try_as(1234))
+        self.assertEqual(daemon.stop(), 0)
+        daemon = Daemon("--allow-uid", "1234", "--allow-gid", "777", path=self.path("s"), tcp=False)
+        self.assertGreater(int(try_as(1234)), 16)
+        self.assertGreater(int(try_as(1235, group=777)), 16, "a group that is not its first")
+        self.assertRegex(try_as(1235), "^0$|^ConnectionResetError|^BrokenPipeError")
+        daemon.wait_for("user 1235 is in neither")
+        self.assertEqual(daemon.stop(), 0)
+
+
+class ClientCommand(Case):
+    """sheen itself, over TLS."""
+
+    def test_it(self):
+        ca, other = Authority(self.path("ca")), Authority(self.path("other"))
+        cert, key = ca.issue("server")
+        anna = ca.issue("anna")
+        token = secrets.token_urlsafe(32)
+        token_file = self.write("token", token + "\n")
+        wrong_file = self.write("wrong", secrets.token_urlsafe(32))
+        tokens = self.write("tokens", token_line("farm", token))
+        daemon = Daemon("--listen", "tls:127.0.0.1:0", "--tls-cert", cert, "--tls-key", key,
+                        "--client-ca", ca.cert, "--tokens", tokens)
+        address = tls_address(daemon)
+
+        def sheen(*arguments, env=None):
+            return subprocess.run([SHEEN, "render", FENDER, "-o", self.path("a.png"), "--size",
+                                   "320x240", "-q", *arguments], capture_output=True, text=True,
+                                  timeout=60, env={**os.environ, **(env or {})})
+
+        def assert_fails(code, words, *arguments):
+            done = sheen(*arguments)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+        self.assertEqual(sheen("--server", daemon.unix).returncode, 0)
+        with open(self.path("a.png"), "rb") as file:
+            want = file.read()
+        ours = ("--server", address, "--ca", ca.cert)
+        for arguments, env in ((("--cert", anna[0], "--key", anna[1]), None),
+                               (("--token-file", token_file), None),
+                               ((), {"SHEEN_TOKEN_FILE": token_file})):
+            os.unlink(self.path("a.png"))
+            done = sheen(*ours, *arguments, env=env)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with open(self.path("a.png"), "rb") as file:
+                self.assertEqual(file.read(), want)
+        assert_fails(4, "--token-file", *ours)
+        assert_fails(4, "--token-file", *ours, "--token-file", wrong_file)
+        assert_fails(4, "certificate verify failed", "--server", address, "--ca", other.cert,
+                     "--token-file", token_file)
+        assert_fails(4, "certificate verify failed", "--server", address, "--token-file", token_file)
+        assert_fails(4, "mismatch", "--server",
+                     address.replace("127.0.0.1", "localhost"), "--ca", ca.cert, "--token-file",
+                     token_file)
+        assert_fails(2, "no-such", "--server", address, "--ca", self.path("no-such"))
+        assert_fails(2, "no-such", *ours, "--token-file", self.path("no-such"))
+        assert_fails(2, "come together", *ours, "--cert", anna[0])
+        self.assertEqual(daemon.stop(), 0)
