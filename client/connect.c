@@ -94,6 +94,7 @@ enum sheen_status sheen_connect(struct sheen_session **session,
         return status_set(error, SHEEN_NO_MEMORY, "no memory for a session");
     made->connection.fd = -1;
     made->daemon.stderr_fd = -1;
+    made->share = options->share;
     enum sheen_status status =
         options->address ? open_address(made, options, error) : start_private(made, options, error);
     if (!status)

@@ -9,6 +9,7 @@
 #include "client/status.h"
 
 #define TOKEN_BYTES 256
+#define AT_SERVER "server:" /* a MODEL that is a file below the daemon's --models */
 
 static enum sheen_status upload(struct job *job, enum sheen_file_kind kind, const char *path,
                                 const uint8_t *bytes, size_t n_bytes,
@@ -37,13 +38,19 @@ enum sheen_status job_init(struct job *job, const struct options *options)
     connect.ca = options->ca;
     connect.cert = options->cert;
     connect.key = options->key;
+    connect.share = options->share;
     char token[TOKEN_BYTES];
     enum sheen_status status = SHEEN_OK;
     if (options->token_file) {
         status = file_read_line(options->token_file, token, sizeof(token), &job->error);
         connect.token = token;
     }
-    if (!status && options->model) {
+    const char *at_server =
+        options->model && strncmp(options->model, AT_SERVER, strlen(AT_SERVER)) == 0
+            ? options->model + strlen(AT_SERVER)
+            : NULL;
+    bool local = options->model && !at_server;
+    if (!status && local) {
         status = file_read(options->model, SHEEN_BAD_MODEL, &bytes, &n_bytes, &job->error);
         if (!status)
             status = identify(job, bytes, n_bytes, job->model_id);
@@ -51,7 +58,10 @@ enum sheen_status job_init(struct job *job, const struct options *options)
     }
     if (!status)
         status = sheen_connect(&job->session, &connect, &job->error);
-    if (!status && options->model)
+    if (!status && at_server)
+        status =
+            sheen_find_model(job->session, at_server, &job->report, job->model_id, &job->error);
+    if (!status && local)
         status = upload(job, SHEEN_FILE_MODEL, options->model, bytes, n_bytes, job->model_id);
     free(bytes);
     return status;

@@ -173,6 +173,11 @@ void options_help(const struct command *command, FILE *out)
     fprintf(out, "usage: sheen %s %s\n%s\n\n", command->name, command->arguments, command->summary);
     for (size_t i = 0; i < n; i++)
         help_row(rows[i], out);
+    if (command->takes_model)
+        fputs("\nMODEL is a file, or server:NAME for one below the folder that the daemon at "
+              "--server gives\n"
+              "with --models.\n",
+              out);
     fprintf(out,
             "\nexamples:\n%s\nExit codes: 0 done, 1 the answer is \"no\", 2 wrong usage, "
             "3 bad model or image,\n4 no or lost server, 5 device failed.\n",

@@ -32,6 +32,7 @@ struct options {
     const char *server;          /* --server, else SHEEN_SERVER, else NULL: a private daemon */
     const char *device;          /* NULL: auto */
     const char *ca, *cert, *key; /* of a tls: server; NULL: none */
+    bool share;                  /* what is uploaded */
     const char *token_file;      /* --token-file, else SHEEN_TOKEN_FILE, else NULL */
     bool json, quiet;
     unsigned given; /* enum options_given */

@@ -40,6 +40,13 @@ static bool apply_key(struct options *options, const char *value, char *why)
     return true;
 }
 
+static bool apply_share(struct options *options, const char *value, char *why)
+{
+    (void)value;
+    (void)why;
+    return options->share = true;
+}
+
 static bool apply_token_file(struct options *options, const char *value, char *why)
 {
     (void)why;
@@ -228,6 +235,10 @@ const struct option_row OPTIONS_COMMON[] = {
      "a file whose first line is the token to show to a tls: server (default:\n"
      "SHEEN_TOKEN_FILE from the environment, else none)",
      apply_token_file},
+    {"share", 0, NULL,
+     "whoever knows the SHA-256 of what is uploaded may use it too (default: this\n"
+     "user alone)",
+     apply_share},
     {"device", 0, "DEVICE",
      "of the private daemon: auto, software, or a number from 0 (default: auto,\n"
      "a GPU when there is one)",

@@ -20,6 +20,7 @@ struct session_pending {
 struct sheen_session {
     struct connection connection;
     struct private_daemon daemon;
+    bool share;  /* what it uploads */
     bool broken; /* after a fatal status; only sheen_close() is left */
     uint32_t last_seq;
     size_t n_pending;

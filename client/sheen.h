@@ -78,6 +78,7 @@ struct sheen_connect_options {
      * the system trusts. It may want cert and key, or a token, of the client. */
     const char *ca, *cert, *key;
     const char *token; /* sent over TLS only */
+    bool share;        /* whoever knows its SHA-256 may use what this session uploads */
 };
 #define SHEEN_CONNECT_DEFAULTS ((struct sheen_connect_options){.timeout_ms = 300000})
 
@@ -131,6 +132,12 @@ enum sheen_status sheen_upload(struct sheen_session *session, enum sheen_file_ki
                                const uint8_t id[SHEEN_ID_BYTES], const void *bytes, size_t n_bytes,
                                const char *name, const struct sheen_progress *progress,
                                struct sheen_error *error);
+
+/* The id of a model file that lies at the daemon, below its --models: `name` is its path there.
+ * Builds its tables if that has not happened. SHEEN_BAD_REQUEST when there is none. */
+enum sheen_status sheen_find_model(struct sheen_session *session, const char *name,
+                                   const struct sheen_progress *progress,
+                                   uint8_t id[SHEEN_ID_BYTES], struct sheen_error *error);
 
 #define SHEEN_MAX_VALENCES 64
 struct sheen_model_info {

@@ -68,7 +68,9 @@ enum sheen_status sheen_upload(struct sheen_session *session, enum sheen_file_ki
                           name, n_bytes, (unsigned long long)session->hello.max_upload_bytes);
     sheen_UploadBegin begin = {.kind = kind == SHEEN_FILE_IMAGE ? sheen_UploadKind_UPLOAD_IMAGE
                                                                 : sheen_UploadKind_UPLOAD_MODEL,
-                               .size_bytes = n_bytes};
+                               .size_bytes = n_bytes,
+                               .has_share = session->share,
+                               .share = session->share};
     memcpy(begin.sha256, id, SHEEN_ID_BYTES);
     clean_name(begin.name, sizeof(begin.name), name);
     if (!message_check_upload_begin(&begin, text))
@@ -133,12 +135,42 @@ static void copy_info(struct sheen_model_info *info, const sheen_ModelInfo *body
     }
 }
 
+static enum sheen_status query(struct sheen_session *session, const sheen_ModelQuery *query,
+                               const struct sheen_progress *progress, sheen_ModelInfo *info,
+                               struct sheen_error *error)
+{
+    uint32_t seq;
+    enum sheen_status status = session_send(session, MESSAGE_MODEL_QUERY, query, &seq, error);
+    return status ? status
+                  : session_receive(session, seq, MESSAGE_MODEL_INFO, progress, info, error);
+}
+
+enum sheen_status sheen_find_model(struct sheen_session *session, const char *name,
+                                   const struct sheen_progress *progress,
+                                   uint8_t id[SHEEN_ID_BYTES], struct sheen_error *error)
+{
+    sheen_ModelQuery ask = {.has_file = true};
+    sheen_ModelInfo body;
+    enum sheen_status status = session_check(session, error);
+    if (status)
+        return status;
+    if (!name || !id || session->n_pending || strlen(name) >= sizeof(ask.file))
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          "a file at the server needs a name of at most %zu bytes, and no request "
+                          "in flight",
+                          sizeof(ask.file) - 1);
+    memcpy(ask.file, name, strlen(name) + 1);
+    status = query(session, &ask, progress, &body, error);
+    if (!status)
+        memcpy(id, body.sha256, SHEEN_ID_BYTES);
+    return status;
+}
+
 enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t id[SHEEN_ID_BYTES],
                                     const struct sheen_progress *progress,
                                     struct sheen_model_info *info, struct sheen_error *error)
 {
-    uint32_t seq;
-    sheen_ModelQuery query;
+    sheen_ModelQuery ask = {.has_file = false};
     sheen_ModelInfo body;
     enum sheen_status status = session_check(session, error);
     if (status)
@@ -146,10 +178,8 @@ enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t
     if (!id || !info || session->n_pending)
         return status_set(error, SHEEN_BAD_ARGUMENT,
                           "a model query needs an id and an info, and no request in flight");
-    memcpy(query.sha256, id, SHEEN_ID_BYTES);
-    status = session_send(session, MESSAGE_MODEL_QUERY, &query, &seq, error);
-    if (!status)
-        status = session_receive(session, seq, MESSAGE_MODEL_INFO, progress, &body, error);
+    memcpy(ask.sha256, id, SHEEN_ID_BYTES);
+    status = query(session, &ask, progress, &body, error);
     if (!status)
         copy_info(info, &body);
     return status;

@@ -38,6 +38,7 @@ bool message_hello_decode(const uint8_t *bytes, size_t length,
 bool message_check_hello(const sheen_Hello *hello, char text[static MESSAGE_TEXT_BYTES]);
 bool message_check_upload_begin(const sheen_UploadBegin *begin,
                                 char text[static MESSAGE_TEXT_BYTES]);
+bool message_check_model_query(const sheen_ModelQuery *query, char text[static MESSAGE_TEXT_BYTES]);
 /* Sizes are checked against the device's limits (a client that does not know them says
  * UINT32_MAX). After true every float of the request is finite and in range, enums are known,
  * the planes suit the encoding, and codec_layout_init() takes the request's size and all planes

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "protocol/codec.h"
 
@@ -194,6 +195,16 @@ static bool check_pattern(const sheen_Pattern *pattern, char *text)
     if (pattern->has_image_sha256 != (pattern->kind == sheen_PatternKind_PATTERN_IMAGE))
         return refuse(text, "pattern.image_sha256 belongs to an image pattern and to no other");
     return true;
+}
+
+bool message_check_model_query(const sheen_ModelQuery *query, char text[static MESSAGE_TEXT_BYTES])
+{
+    static const uint8_t zeros[sizeof query->sha256] = {0};
+    if (!query->has_file)
+        return true;
+    if (memcmp(query->sha256, zeros, sizeof zeros) != 0)
+        return refuse(text, "sha256 and file exclude each other: with file, sha256 is zeros");
+    return (*query->file || refuse(text, "file is empty")) && check_text(query->file, "file", text);
 }
 
 static bool check_light(const sheen_Light *light, char *text)

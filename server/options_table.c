@@ -189,6 +189,16 @@ const struct option_row OPTION_ROWS[] = {
      "lines 'NAME HASH YYYY-MM-DD': tokens that may come in over TLS, each until\n"
      "the end of its day; with --client-ca too, one of both is enough",
      NULL},
+    {"share-models", NULL, OPTION_FLAG, OPTION_IN_FILE, VALUE(service.share_models), 0, 0, NULL,
+     NULL,
+     "whoever knows a model's SHA-256 may use it, whoever has uploaded it (default:\n"
+     "only its owner: a user, a certificate's subject, a token's name; or whoever,\n"
+     "where the owner has said --share)",
+     NULL},
+    {"models", "DIR", OPTION_TEXT, OPTION_IN_FILE, VALUE(service.models), 0, 0, NULL, NULL,
+     "clients may name model files below this folder, as server:NAME; no symbolic\n"
+     "links, no other mounts (default: none)",
+     NULL},
     {"stuck-after", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.stuck_s), 1, 86400, "seconds", "60",
      "a thread that is at one piece of work for longer is taken for stuck: /healthz\n"

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "server/service/label.h"
+#include "server/service/model_file.h"
 #include "server/service/show.h"
 #include "server/service/wire.h"
 
@@ -22,6 +23,7 @@ struct request {
     struct request *next, *previous; /* of the session */
     struct answer *answer;           /* valid while there is a session */
     uint32_t seq;
+    uint8_t owner[STORE_OWNER_BYTES]; /* the session's */
     bool is_query;
     uint64_t start_us;
 
@@ -54,6 +56,7 @@ static struct request *request_create(struct session *session, struct answer *an
     request->session = session;
     request->answer = answer;
     request->seq = seq;
+    memcpy(request->owner, session_owner(session), sizeof request->owner);
     request->start_us = loop_now_us();
     atomic_init(&request->abandoned, false);
     request->next = session->requests;
@@ -118,7 +121,7 @@ static void acquire(struct request *request, struct needed *needed, enum asset_k
 {
     needed->request = request;
     needed->waiter = (struct asset_waiter){asset_ready, needed, NULL};
-    needed->asset = store_find(request->host->store, kind, sha256);
+    needed->asset = store_find(request->host->store, request->owner, kind, sha256);
     request->n_awaited++;
     switch (store_acquire(needed->asset, &needed->waiter, &request->failure)) {
     case ACQUIRE_WAIT:
@@ -135,7 +138,7 @@ static void acquire(struct request *request, struct needed *needed, enum asset_k
 /* Answers and returns false when the daemon lacks the file. */
 static bool is_known(struct request *request, enum asset_kind kind, const uint8_t *sha256)
 {
-    if (store_find(request->host->store, kind, sha256))
+    if (store_find(request->host->store, request->owner, kind, sha256))
         return true;
     char hex[2 * MODEL_ID_BYTES + 1], text[160];
     wire_hex(sha256, hex);
@@ -202,15 +205,51 @@ static void answer_query(struct request *request)
     request_end(request);
 }
 
+static void file_loaded(void *owner, const uint8_t *sha256, const struct error *error)
+{
+    struct request *request = owner;
+    request->host->n_file_loads--;
+    if (sha256)
+        acquire(request, &request->model, ASSET_MODEL, sha256);
+    else
+        request->failure = *error;
+    let_go(request);
+}
+
+/* The model is a file at the daemon: waits until it has been read. */
+static void load_file(struct request *request, const char *name)
+{
+    struct session_host *host = request->host;
+    const struct model_file_order order = {
+        .folder_fd = host->models_fd,
+        .name = name,
+        .max_bytes = host->max_upload_bytes,
+        .pool = host->pool,
+        .store = host->store,
+        .loaded = file_loaded,
+        .owner = request,
+    };
+    if (host->models_fd < 0)
+        error_set(&request->failure, ERROR_REQUEST,
+                  "this daemon has no model files of its own; sheend --models gives it some");
+    else if (model_file_load(&order, &request->failure)) {
+        request->n_awaited++;
+        host->n_file_loads++;
+    }
+}
+
 void request_query(struct session *session, struct answer *answer, uint32_t seq,
                    const sheen_ModelQuery *query)
 {
     struct request *request = request_create(session, answer, seq);
-    if (!request || !is_known(request, ASSET_MODEL, query->sha256))
+    if (!request || (!query->has_file && !is_known(request, ASSET_MODEL, query->sha256)))
         return;
     request->is_query = true;
     request->n_awaited = 1; /* until all is asked for */
-    acquire(request, &request->model, ASSET_MODEL, query->sha256);
+    if (query->has_file)
+        load_file(request, query->file);
+    else
+        acquire(request, &request->model, ASSET_MODEL, query->sha256);
     let_go(request);
 }
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "server/service/listen.h"
+#include "server/service/model_file.h"
 #include "server/service/monitor.h"
 #include "server/service/notify.h"
 #include "server/service/peer.h"
@@ -108,7 +109,8 @@ static void after_batch(void *owner)
         return;
     /* Nobody is left to answer; other threads may still be at work. */
     store_cancel_builds(service->host.store);
-    if (!store_is_building(service->host.store) && service->host.scheduler.in_flight == 0)
+    if (!store_is_building(service->host.store) && service->host.scheduler.in_flight == 0 &&
+        service->host.n_file_loads == 0)
         loop_stop(service->host.loop);
     else if (service->single)
         _exit(0); /* a render cannot be stopped, and this one may take long: nobody wants it */
@@ -317,6 +319,9 @@ static bool start(struct service *service, struct error *error)
         !(host->store =
               store_create(host->pool, host->render_thread, options->memory_budget_bytes, error)))
         return false;
+    host->share_models = options->share_models;
+    if (*options->models && (host->models_fd = model_folder_open(options->models, error)) < 0)
+        return false;
     host->gpu_generation = 1;
     host->max_upload_bytes = options->memory_budget_bytes < PROTOCOL_MAX_UPLOAD_BYTES
                                  ? options->memory_budget_bytes
@@ -364,6 +369,11 @@ bool service_options_check(const struct service_options *options, struct error *
                          "metrics are served at unix:PATH or at tcp:HOST:PORT on loopback");
     if (options->metrics.n > 0 && !listener_check(&options->metrics.address[0], error))
         return false;
+    int models_fd = *options->models ? model_folder_open(options->models, error) : -1;
+    if (models_fd >= 0)
+        close(models_fd);
+    else if (*options->models)
+        return false;
     struct access *access = access_create(&options->access, error);
     bool ok = access && (!tls || access_can_tls(access, error));
     access_destroy(access);
@@ -378,7 +388,7 @@ struct service *service_create(const struct service_options *options,
         error_set(error, ERROR_SERVER, "no memory for the daemon");
         return NULL;
     }
-    service->signal_fd = -1;
+    service->signal_fd = service->host.models_fd = -1;
     service->reloader = *reloader;
     service->single = options->session_fd >= 0;
     struct access *access = access_create(&options->access, error);
@@ -424,5 +434,7 @@ void service_destroy(struct service *service)
         close(service->signal_fd);
     loop_destroy(host->loop);
     access_destroy(host->access);
+    if (host->models_fd >= 0)
+        close(host->models_fd);
     free(service);
 }

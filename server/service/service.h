@@ -32,7 +32,9 @@ struct service_options {
     uint64_t drain_timeout_s;          /* to read what is in flight when the daemon shuts down */
     uint64_t stuck_s;                  /* as monitor_create() */
     struct access_options access;
-    enum log_level log_level; /* with a single session: errors only */
+    bool share_models;              /* all uploads are everybody's */
+    char models[ACCESS_PATH_BYTES]; /* folder of model files that clients may name; "": none */
+    enum log_level log_level;       /* with a single session: errors only */
     enum log_format log_format;
 };
 

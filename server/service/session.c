@@ -204,12 +204,15 @@ static void handle_upload_begin(struct session *session, uint32_t seq,
         return;
     }
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
-    if (store_find(host->store, kind, begin->sha256)) {
+    struct asset *known = store_find(host->store, session_owner(session), kind, begin->sha256);
+    if (known) {
+        if (begin->share)
+            store_share(known);
         session->upload_seq = 0; /* no chunk may follow */
         reply_upload_state(session, seq, true, begin->size_bytes);
         return;
     }
-    session->upload = upload_create(host->store, begin, &error);
+    session->upload = upload_create(host->store, session_owner(session), begin, &error);
     if (session->upload)
         reply_upload_state(session, seq, false, 0);
     else
@@ -259,6 +262,11 @@ static void handle_render(struct session *session, uint32_t seq, const sheen_Ren
 
 static void handle_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query)
 {
+    char text[MESSAGE_TEXT_BYTES];
+    if (!message_check_model_query(query, text)) {
+        reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
     struct answer *answer = expect_answer(session, seq);
     if (answer)
         request_query(session, answer, seq, query);
@@ -399,6 +407,11 @@ static void on_malformed(void *owner, const struct message_header *header, enum 
 }
 
 /* --- its life */
+
+const uint8_t *session_owner(const struct session *session)
+{
+    return session->host->share_models ? STORE_SHARED : session->client.identity.owner;
+}
 
 struct session *session_create(struct session_host *host, int fd,
                                const struct session_client *client, struct error *error)

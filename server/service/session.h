@@ -29,6 +29,9 @@ struct session_host {
     struct render_thread *render_thread;
     struct store *store;
     struct access *access; /* another one after a reload */
+    bool share_models;     /* whatever is uploaded is everybody's */
+    int models_fd;         /* the folder of --models; -1: none */
+    unsigned n_file_loads; /* files being read from there */
     struct scheduler scheduler;
     struct stats stats;
     uint32_t n_sessions;
@@ -68,6 +71,9 @@ struct session {
     struct request *requests;
     struct session *next; /* the service's list */
 };
+
+/* Whose the session's uploads are. */
+const uint8_t *session_owner(const struct session *session);
 
 /* Takes the socket over (closes it on failure). */
 struct session *session_create(struct session_host *host, int fd,

@@ -120,18 +120,29 @@ const char *stats_end_name(enum stats_end end)
 
 const char *stats_error_name(sheen_ErrorCode code)
 {
-    static const char *const NAMES[_sheen_ErrorCode_ARRAYSIZE] = {
-        [sheen_ErrorCode_ERROR_NONE] = "none",
-        [sheen_ErrorCode_ERROR_PROTOCOL] = "protocol",
-        [sheen_ErrorCode_ERROR_VERSION] = "version",
-        [sheen_ErrorCode_ERROR_REQUEST] = "request",
-        [sheen_ErrorCode_ERROR_MODEL] = "model",
-        [sheen_ErrorCode_ERROR_IMAGE] = "image",
-        [sheen_ErrorCode_ERROR_UNKNOWN_MODEL] = "unknown_model",
-        [sheen_ErrorCode_ERROR_TOO_BIG] = "too_big",
-        [sheen_ErrorCode_ERROR_OVERLOADED] = "overloaded",
-        [sheen_ErrorCode_ERROR_SHUTTING_DOWN] = "shutting_down",
-        [sheen_ErrorCode_ERROR_DEVICE] = "device",
-    };
-    return NAMES[code];
+    switch (code) { /* without a default, so that the compiler names one that is missing */
+    case sheen_ErrorCode_ERROR_NONE:
+        break;
+    case sheen_ErrorCode_ERROR_PROTOCOL:
+        return "protocol";
+    case sheen_ErrorCode_ERROR_VERSION:
+        return "version";
+    case sheen_ErrorCode_ERROR_REQUEST:
+        return "request";
+    case sheen_ErrorCode_ERROR_MODEL:
+        return "model";
+    case sheen_ErrorCode_ERROR_IMAGE:
+        return "image";
+    case sheen_ErrorCode_ERROR_UNKNOWN_MODEL:
+        return "unknown_model";
+    case sheen_ErrorCode_ERROR_TOO_BIG:
+        return "too_big";
+    case sheen_ErrorCode_ERROR_OVERLOADED:
+        return "overloaded";
+    case sheen_ErrorCode_ERROR_SHUTTING_DOWN:
+        return "shutting_down";
+    case sheen_ErrorCode_ERROR_DEVICE:
+        return "device";
+    }
+    return "none";
 }

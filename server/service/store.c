@@ -19,6 +19,8 @@ struct store {
     struct asset *buckets[N_BUCKETS];
 };
 
+const uint8_t STORE_SHARED[STORE_OWNER_BYTES] = {0};
+
 /* SHA-256 is its own hash. */
 static struct asset **bucket_of(struct store *store, const uint8_t *sha256)
 {
@@ -103,13 +105,28 @@ static bool evict_one(struct store *store)
     return false;
 }
 
-struct asset *store_find(struct store *store, enum asset_kind kind,
-                         const uint8_t sha256[static MODEL_ID_BYTES])
+/* Exactly this owner's. */
+static struct asset *find_owned(struct store *store, const uint8_t *owner, enum asset_kind kind,
+                                const uint8_t *sha256)
 {
     struct asset *asset = *bucket_of(store, sha256);
-    while (asset && (asset->kind != kind || memcmp(asset->sha256, sha256, MODEL_ID_BYTES) != 0))
+    while (asset && (asset->kind != kind || memcmp(asset->sha256, sha256, MODEL_ID_BYTES) != 0 ||
+                     memcmp(asset->owner, owner, STORE_OWNER_BYTES) != 0))
         asset = asset->bucket_next;
     return asset;
+}
+
+struct asset *store_find(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+                         enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES])
+{
+    struct asset *asset = find_owned(store, owner, kind, sha256);
+    return asset ? asset : find_owned(store, STORE_SHARED, kind, sha256);
+}
+
+void store_share(struct asset *asset)
+{
+    if (!find_owned(asset->store, STORE_SHARED, asset->kind, asset->sha256))
+        memcpy(asset->owner, STORE_SHARED, sizeof asset->owner);
 }
 
 bool store_reserve(struct store *store, size_t bytes, const char *what, enum error_kind permanent,
@@ -136,12 +153,12 @@ void store_release(struct store *store, size_t bytes)
     store->used_bytes -= bytes;
 }
 
-bool store_add(struct store *store, enum asset_kind kind,
-               const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
-               size_t file_bytes, struct error *error)
+bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+               enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES], const char *name,
+               uint8_t *file, size_t file_bytes, struct error *error)
 {
     struct asset *asset = NULL;
-    bool known = store_find(store, kind, sha256) != NULL;
+    bool known = find_owned(store, owner, kind, sha256) != NULL;
     if (!known && (store->n_assets < STORE_MAX_ASSETS || evict_one(store)))
         asset = calloc(1, sizeof *asset);
     if (!asset) {
@@ -153,6 +170,7 @@ bool store_add(struct store *store, enum asset_kind kind,
     asset->kind = kind;
     asset->store = store;
     memcpy(asset->sha256, sha256, MODEL_ID_BYTES);
+    memcpy(asset->owner, owner, sizeof asset->owner);
     snprintf(asset->name, sizeof asset->name, "%s", name);
     asset->file = file;
     asset->file_bytes = file_bytes;

@@ -1,5 +1,5 @@
-/* Everything that clients have uploaded, by kind and SHA-256: files that wait to be used, models
- * and light images that are ready on the GPU, and the memory they take.
+/* Everything that clients have uploaded, by owner, kind and SHA-256: files that wait to be used,
+ * models and light images that are ready on the GPU, and the memory they take.
  *
  * An asset is built on first use, once, however many requests wait for it, and a few at a time.
  * What no request uses is evicted, least recently used first, when room is needed; the client is
@@ -16,6 +16,10 @@
 #define STORE_MAX_ASSETS 4096
 #define STORE_MAX_BUILDS 2 /* at once; bounds the queues of the pool and the GL thread */
 #define STORE_NAME_BYTES 256
+#define STORE_OWNER_BYTES 32
+
+/* The owner of what everybody may use. */
+extern const uint8_t STORE_SHARED[STORE_OWNER_BYTES];
 
 enum asset_kind { ASSET_MODEL, ASSET_IMAGE };
 
@@ -33,6 +37,7 @@ struct asset {
     enum asset_kind kind;
     enum asset_state state;
     uint8_t sha256[MODEL_ID_BYTES];
+    uint8_t owner[STORE_OWNER_BYTES]; /* equal files of two owners are two assets */
     char name[STORE_NAME_BYTES];
     uint8_t *file; /* malloc'd, or NULL */
     size_t file_bytes;
@@ -72,9 +77,12 @@ struct store *store_create(struct pool *pool, struct render_thread *render_threa
 /* No build may be running. The GL thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */
 
-/* NULL when there is none. The asset stays at least until the loop's next turn. */
-struct asset *store_find(struct store *store, enum asset_kind kind,
-                         const uint8_t sha256[static MODEL_ID_BYTES]);
+/* The owner's own, else the shared one, else NULL. The asset stays at least until the loop's next
+ * turn. */
+struct asset *store_find(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+                         enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES]);
+/* From now on everybody may use it. */
+void store_share(struct asset *asset);
 
 /* Charges bytes that are about to be allocated for `what` (a file's name), evicting if need be.
  * The error names the need and the budget: `permanent` kind if it can never fit, else
@@ -86,9 +94,9 @@ void store_release(struct store *store, size_t bytes);
 /* Takes over a malloc'd file whose bytes have been charged, and whose hash has been checked. A file
  * that is here already is freed. ERROR_SERVER when there is no room for another entry; the file
  * is freed then too. */
-bool store_add(struct store *store, enum asset_kind kind,
-               const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
-               size_t file_bytes, struct error *error);
+bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+               enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES], const char *name,
+               uint8_t *file, size_t file_bytes, struct error *error);
 
 enum acquire_result { ACQUIRE_READY, ACQUIRE_WAIT, ACQUIRE_FAILED };
 

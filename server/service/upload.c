@@ -9,13 +9,14 @@
 struct upload {
     struct store *store;
     sheen_UploadBegin begin;
+    uint8_t owner[STORE_OWNER_BYTES];
     uint8_t *file; /* grows as bytes come: announcing costs no memory */
     size_t received, capacity;
     EVP_MD_CTX *hash;
 };
 
-struct upload *upload_create(struct store *store, const sheen_UploadBegin *begin,
-                             struct error *error)
+struct upload *upload_create(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+                             const sheen_UploadBegin *begin, struct error *error)
 {
     enum error_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ERROR_MODEL : ERROR_IMAGE;
     if (!store_reserve(store, begin->size_bytes, begin->name, kind, error))
@@ -31,6 +32,7 @@ struct upload *upload_create(struct store *store, const sheen_UploadBegin *begin
     }
     upload->store = store;
     upload->begin = *begin;
+    memcpy(upload->owner, begin->share ? STORE_SHARED : owner, sizeof upload->owner);
     upload->hash = hash;
     return upload;
 }
@@ -80,7 +82,8 @@ static enum upload_state finish(struct upload *upload, struct error *error)
     upload->store = NULL;
     upload->file = NULL;
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
-    bool ok = store_add(store, kind, sha256, begin->name, file, upload->received, error);
+    bool ok =
+        store_add(store, upload->owner, kind, sha256, begin->name, file, upload->received, error);
     return ok ? UPLOAD_STORED : UPLOAD_NO_ROOM;
 }
 

@@ -15,9 +15,10 @@ enum upload_state {
     UPLOAD_NO_ROOM,
 };
 
-/* Charges the announced size to the store. `begin` has passed message_check_upload_begin(). */
-struct upload *upload_create(struct store *store, const sheen_UploadBegin *begin,
-                             struct error *error);
+/* Charges the announced size to the store, where the file will be the owner's, or everybody's if
+ * begin->share. `begin` has passed message_check_upload_begin(). */
+struct upload *upload_create(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+                             const sheen_UploadBegin *begin, struct error *error);
 /* Gives the bytes back to the store, unless it has them. NULL is safe. */
 void upload_destroy(struct upload *upload);
 

@@ -22,7 +22,7 @@ def sheen(*arguments, timeout=120, **options):
 class Client(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.daemon = Daemon()
+        cls.daemon = Daemon("--share-models")
 
     @classmethod
     def tearDownClass(cls):

@@ -421,7 +421,7 @@ class Renders(DaemonCase):
     def test_two_at_once(self):
         data = grid(80)
         with Client(self.daemon.unix) as one, Client(self.daemon.tcp) as two:
-            models = [client.upload(data, "same.obj") for client in (one, two)]
+            models = [client.upload(data, "same.obj", share=True) for client in (one, two)]
             for client, model in zip((one, two), models):
                 client.send(b"".join(wire.render(20 + i, model, width=300, height=200)
                                      for i in range(4)))
@@ -435,7 +435,7 @@ class Renders(DaemonCase):
 
     def test_one_client_does_not_starve_another(self):
         with Client(self.daemon.unix) as busy, Client(self.daemon.tcp) as other:
-            model = busy.upload(CUBE, "cube.obj")
+            model = busy.upload(CUBE, "cube.obj", share=True)
             other.render(model, width=700, height=700)
             busy.send(b"".join(wire.render(50 + i, model, width=700, height=700)
                                for i in range(40)))

@@ -80,9 +80,10 @@ def render(seq, model, width=64, height=48, encoding=RAW, planes=1, extra=b""):
                    field(9, planes) + field(10, encoding))
 
 
-def upload_begin(seq, sha256, size, name, kind=MODEL):
+def upload_begin(seq, sha256, size, name, kind=MODEL, share=False):
     return message(UPLOAD_BEGIN, seq,
-                   field(1, kind) + field(2, sha256) + field(3, size) + field(4, name))
+                   field(1, kind) + field(2, sha256) + field(3, size) + field(4, name) +
+                   (field(5, 1) if share else b""))
 
 
 class Refused(Exception):
@@ -170,10 +171,10 @@ class Client:
         except (ConnectionResetError, ssl.SSLError):
             return True
 
-    def upload(self, data, name, kind=MODEL):
+    def upload(self, data, name, kind=MODEL, share=False):
         sha256 = hashlib.sha256(data).digest()
         seq = self.next_seq()
-        self.send(upload_begin(seq, sha256, len(data), name, kind))
+        self.send(upload_begin(seq, sha256, len(data), name, kind, share))
         state = self.expect(UPLOAD_STATE, seq)
         if not state[1][0]:
             for at in range(0, len(data), 262144):
@@ -186,6 +187,12 @@ class Client:
         seq = self.next_seq()
         self.send(message(MODEL_QUERY, seq, field(1, model)))
         return self.expect(MODEL_INFO, seq)
+
+    def find(self, name, sha256=bytes(32)):
+        """The id of a model file at the daemon."""
+        seq = self.next_seq()
+        self.send(message(MODEL_QUERY, seq, field(1, sha256) + field(2, name)))
+        return self.expect(MODEL_INFO, seq)[1][0]
 
     def stats(self):
         seq = self.next_seq()

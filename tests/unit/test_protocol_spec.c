@@ -120,9 +120,15 @@ static void check_upload_state(const uint8_t *bytes, size_t size)
 
 static void check_model_query(const uint8_t *bytes, size_t size)
 {
-    sheen_ModelQuery query;
+    sheen_ModelQuery query = sheen_ModelQuery_init_zero;
     count_id(query.sha256);
     same_message(MESSAGE_MODEL_QUERY, 3, &query, bytes, size);
+}
+
+static void check_model_query_file(const uint8_t *bytes, size_t size)
+{
+    const sheen_ModelQuery query = {.has_file = true, .file = "cars/hood.obj"};
+    same_message(MESSAGE_MODEL_QUERY, 8, &query, bytes, size);
 }
 
 static void check_model_info(const uint8_t *bytes, size_t size)
@@ -326,6 +332,7 @@ static const struct {
     {"upload-chunk", check_upload_chunk},
     {"upload-state", check_upload_state},
     {"model-query", check_model_query},
+    {"model-query-file", check_model_query_file},
     {"model-info", check_model_info},
     {"render-least", check_render_least},
     {"render-full", check_render_full},
