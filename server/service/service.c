@@ -61,6 +61,9 @@ static void accepted(void *owner, const struct listener *listener, int fd)
     if (kind != ADDRESS_TLS &&
         !access_admit_local(service->host.access, fd, kind, &client.identity, &error)) {
         close(fd); /* a stranger is told nothing */
+    } else if (kind == ADDRESS_TLS && service->host.n_strangers >= SERVICE_MAX_STRANGERS) {
+        error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
+        close(fd);
     } else if (service->host.n_sessions >= SERVICE_MAX_SESSIONS) {
         error_set(&error, ERROR_SERVER,
                   "the daemon has as many clients as it takes: try again later");

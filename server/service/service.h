@@ -13,6 +13,7 @@
 
 #define SERVICE_MAX_LISTENERS 16
 #define SERVICE_MAX_SESSIONS 256u
+#define SERVICE_MAX_STRANGERS 64u /* of them before they have shown who they are */
 #define SERVICE_DEVICE_BYTES 64
 
 struct service_listen {

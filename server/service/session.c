@@ -143,6 +143,7 @@ static bool admit(struct session *session, const sheen_Hello *hello)
         return false;
     }
     session->admitted = true;
+    session->host->n_strangers--;
     log_event(LOG_INFO, "client admitted", log_number("session", session->id),
               log_text("identity", identity->name));
     return true;
@@ -436,6 +437,7 @@ struct session *session_create(struct session_host *host, int fd,
     session->host = host;
     session->client = *client;
     session->admitted = client->kind != CLIENT_TLS;
+    host->n_strangers += !session->admitted;
     session->start_us = loop_now_us();
     scheduler_add_queue(&host->scheduler, &session->queue);
     host->n_sessions++;
@@ -462,6 +464,7 @@ void session_destroy(struct session *session)
     answer_list_finish(&session->answers);
     upload_destroy(session->upload);
     conn_finish(&session->conn);
+    host->n_strangers -= !session->admitted;
     host->n_sessions--;
     free(session);
 }

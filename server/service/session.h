@@ -35,6 +35,7 @@ struct session_host {
     struct scheduler scheduler;
     struct stats stats;
     uint32_t n_sessions;
+    uint32_t n_strangers;     /* of them, not yet admitted */
     uint32_t gpu_generation;  /* how often a device has been opened */
     uint64_t last_session_id; /* sessions are numbered in the log */
     uint64_t max_upload_bytes;

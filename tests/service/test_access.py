@@ -188,6 +188,21 @@ class Tls(Case):
 
             self.assert_turned_away("no HELLO", act)
 
+    def test_many_strangers(self):
+        """They take no room from those who may come in, and not for long."""
+        crowd = [self.raw() for _ in range(64)]
+        time.sleep(0.2)
+        start = time.monotonic()
+        self.assertEqual(self.raw().recv(1), b"")
+        self.assertLess(time.monotonic() - start, 2)
+        self.daemon.wait_for("too many connections that do not say who they are")
+        with Client(self.daemon.unix) as client:
+            client.stats()
+        for one in crowd:
+            self.assertEqual(one.recv(1), b"")
+        with self.client(token=self.token) as client:
+            client.stats()
+
     def test_a_port_scan(self):
         def act():
             self.raw().close()

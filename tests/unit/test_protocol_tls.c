@@ -1,0 +1,263 @@
+/* TLS through pipes in memory that hold few bytes: every want of a channel comes up. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <errno.h>
+#include <time.h>
+
+#include "protocol/tls.h"
+#include "tests/unit/certificates.h"
+
+#define MAX_PIPE 4096
+
+struct pipe {
+    uint8_t bytes[MAX_PIPE];
+    size_t used, capacity;
+    bool closed;
+};
+
+struct end {
+    struct pipe *in, *out;
+    struct tls_channel *channel;
+    unsigned wanted_read, wanted_write;
+};
+
+static struct certificates files;
+static struct tls_context *server_context, *client_context;
+
+static ssize_t pipe_read(void *owner, void *bytes, size_t size)
+{
+    const struct end *end = owner;
+    struct pipe *pipe = end->in;
+    size_t n = size < pipe->used ? size : pipe->used;
+    if (n == 0 && pipe->closed)
+        return 0;
+    if (n == 0) {
+        errno = EAGAIN;
+        return -1;
+    }
+    memcpy(bytes, pipe->bytes, n);
+    memmove(pipe->bytes, pipe->bytes + n, pipe->used -= n);
+    return (ssize_t)n;
+}
+
+static ssize_t pipe_write(void *owner, const void *bytes, size_t size)
+{
+    const struct end *end = owner;
+    struct pipe *pipe = end->out;
+    size_t room = pipe->capacity - pipe->used, n = size < room ? size : room;
+    if (n == 0) {
+        errno = EAGAIN;
+        return -1;
+    }
+    memcpy(pipe->bytes + pipe->used, bytes, n);
+    pipe->used += n;
+    return (ssize_t)n;
+}
+
+struct pair {
+    struct pipe up, down;
+    struct end client, server;
+};
+
+static void pair_init(struct pair *pair, size_t capacity, struct tls_context *client,
+                      const char *host)
+{
+    *pair = (struct pair){.up = {.capacity = capacity}, .down = {.capacity = capacity}};
+    pair->client = (struct end){.in = &pair->down, .out = &pair->up};
+    pair->server = (struct end){.in = &pair->up, .out = &pair->down};
+    const struct tls_io client_io = {pipe_read, pipe_write, &pair->client};
+    const struct tls_io server_io = {pipe_read, pipe_write, &pair->server};
+    pair->client.channel = tls_channel_create(client, &client_io, host);
+    pair->server.channel = tls_channel_create(server_context, &server_io, NULL);
+    assert_non_null(pair->client.channel);
+    assert_non_null(pair->server.channel);
+}
+
+static void pair_finish(struct pair *pair)
+{
+    tls_channel_destroy(pair->client.channel);
+    tls_channel_destroy(pair->server.channel);
+}
+
+static void count_wants(struct end *end, enum tls_result result)
+{
+    end->wanted_read += result == TLS_WANTS_READ;
+    end->wanted_write += result == TLS_WANTS_WRITE;
+}
+
+/* Moves n bytes from one end to the other and checks that they arrive. */
+static enum tls_result move(struct end *from, struct end *to, size_t n)
+{
+    static uint8_t sent[100000], got[100000];
+    size_t written = 0, read = 0;
+    for (size_t i = 0; i < n; i++)
+        sent[i] = (uint8_t)(i * i >> 3);
+    for (unsigned turns = 0; read < n; turns++) {
+        size_t moved;
+        assert_true(turns < 1000000);
+        if (written < n) {
+            enum tls_result result = tls_write(from->channel, sent + written, n - written, &moved);
+            written += moved;
+            count_wants(from, result);
+            if (result == TLS_FAILED)
+                return result;
+        }
+        enum tls_result result = tls_read(to->channel, got + read, n - read, &moved);
+        read += moved;
+        count_wants(to, result);
+        if (result == TLS_FAILED || result == TLS_ENDED)
+            return result;
+    }
+    assert_memory_equal(sent, got, n);
+    return TLS_MOVED;
+}
+
+static void test_narrow_pipes(void **state)
+{
+    (void)state;
+    static struct pair pair;
+    const size_t capacities[] = {1, 7, 100, MAX_PIPE};
+    for (size_t i = 0; i < sizeof capacities / sizeof *capacities; i++) {
+        pair_init(&pair, capacities[i], client_context, "localhost");
+        assert_int_equal(move(&pair.client, &pair.server, 5000), TLS_MOVED);
+        assert_int_equal(move(&pair.server, &pair.client, 100000), TLS_MOVED);
+        assert_int_equal(move(&pair.client, &pair.server, 1), TLS_MOVED);
+        assert_true(pair.server.wanted_read > 0);
+        if (capacities[i] <= 100) /* also in the handshake, which reads */
+            assert_true(pair.server.wanted_write > 0);
+        assert_string_equal(tls_reason(pair.server.channel), "");
+        pair_finish(&pair);
+    }
+}
+
+static void test_end_and_cut(void **state)
+{
+    (void)state;
+    static struct pair pair;
+    uint8_t byte;
+    size_t moved;
+    pair_init(&pair, MAX_PIPE, client_context, "127.0.0.1");
+    assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
+    tls_end(pair.client.channel);
+    assert_int_equal(tls_read(pair.server.channel, &byte, 1, &moved), TLS_ENDED);
+    pair_finish(&pair);
+    /* An end that the peer has not said is no end. */
+    pair_init(&pair, MAX_PIPE, client_context, "127.0.0.1");
+    assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
+    pair.up.closed = true;
+    assert_int_equal(tls_read(pair.server.channel, &byte, 1, &moved), TLS_FAILED);
+    assert_int_equal(tls_read(pair.server.channel, &byte, 1, &moved), TLS_FAILED);
+    assert_int_equal(tls_write(pair.server.channel, &byte, 1, &moved), TLS_FAILED);
+    assert_string_not_equal(tls_reason(pair.server.channel), "");
+    pair_finish(&pair);
+}
+
+static void test_pending(void **state)
+{
+    (void)state;
+    static struct pair pair;
+    uint8_t bytes[100] = {0};
+    size_t moved;
+    pair_init(&pair, MAX_PIPE, client_context, "localhost");
+    assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
+    assert_int_equal(tls_write(pair.client.channel, bytes, 100, &moved), TLS_MOVED);
+    assert_int_equal(tls_read(pair.server.channel, bytes, 30, &moved), TLS_MOVED);
+    assert_int_equal(tls_pending(pair.server.channel), 70);
+    pair_finish(&pair);
+}
+
+static void test_wrong_host(void **state)
+{
+    (void)state;
+    static struct pair pair;
+    const char *const hosts[] = {"example.org", "127.0.0.2", "::1"};
+    for (size_t i = 0; i < sizeof hosts / sizeof *hosts; i++) {
+        pair_init(&pair, MAX_PIPE, client_context, hosts[i]);
+        assert_int_equal(move(&pair.server, &pair.client, 10), TLS_FAILED);
+        assert_non_null(strstr(tls_reason(pair.client.channel), "mismatch"));
+        pair_finish(&pair);
+    }
+}
+
+static void test_peer(void **state)
+{
+    (void)state;
+    static struct pair pair;
+    char name[TLS_NAME_BYTES], text[TLS_TEXT_BYTES];
+    int64_t expires_s, now = time(NULL);
+    pair_init(&pair, MAX_PIPE, client_context, "localhost");
+    assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
+    assert_false(tls_peer(pair.server.channel, name, &expires_s));
+    assert_true(tls_peer(pair.client.channel, name, &expires_s));
+    assert_string_equal(name, "CN=server");
+    pair_finish(&pair);
+
+    const struct tls_files anna = {
+        .cert = files.client_cert, .key = files.client_key, .ca = files.ca};
+    struct tls_context *context = tls_context_create(TLS_CLIENT, &anna, text);
+    assert_non_null(context);
+    pair_init(&pair, MAX_PIPE, context, "localhost");
+    tls_context_destroy(context); /* its channel goes on */
+    assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
+    assert_true(tls_peer(pair.server.channel, name, &expires_s));
+    assert_string_equal(name, "CN=anna");
+    assert_true(expires_s > now + 86400 && expires_s < now + 3 * 86400);
+    pair_finish(&pair);
+}
+
+static void test_bad_files(void **state)
+{
+    (void)state;
+    char text[TLS_TEXT_BYTES];
+    const struct tls_files bad[] = {{.cert = files.cert}, /* its key is missing */
+                                    {.cert = "/no/such", .key = files.key},
+                                    {.cert = files.cert, .key = "/no/such"},
+                                    {.cert = files.cert, .key = files.client_key},
+                                    {.cert = files.key, .key = files.key},
+                                    {.ca = "/no/such"},
+                                    {.ca = files.key}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        for (int side = TLS_SERVER; side <= TLS_CLIENT; side++) {
+            text[0] = 0;
+            assert_null(tls_context_create(side, &bad[i], text));
+            assert_string_not_equal(text, "");
+            assert_null(strchr(text, '\n'));
+        }
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    char text[TLS_TEXT_BYTES];
+    if (certificates_init(&files) != 0)
+        return 1;
+    const struct tls_files server = {.cert = files.cert, .key = files.key, .ca = files.ca};
+    const struct tls_files client = {.ca = files.ca};
+    server_context = tls_context_create(TLS_SERVER, &server, text);
+    client_context = tls_context_create(TLS_CLIENT, &client, text);
+    return !server_context || !client_context;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    tls_context_destroy(server_context);
+    tls_context_destroy(client_context);
+    certificates_finish(&files);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_narrow_pipes), cmocka_unit_test(test_end_and_cut),
+        cmocka_unit_test(test_pending),      cmocka_unit_test(test_wrong_host),
+        cmocka_unit_test(test_peer),         cmocka_unit_test(test_bad_files),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
