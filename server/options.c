@@ -44,6 +44,8 @@ static void print_help(void)
         "  sheend --listen unix:/run/sheen/sheen.sock   at a place of your choice\n"
         "  sheend --listen tcp:127.0.0.1:7410 --device software --memory-budget 2G\n"
         "  sheend --config /etc/sheen/sheend.conf --check-config\n"
+        "  sheend --hash-token farm:2027-12-31 < token >> tokens\n"
+        "  sheend --listen tls:0.0.0.0:7410 --tls-cert a.pem --tls-key a.key --tokens tokens\n"
         "\nSIGHUP reads the configuration again and takes the options marked * from it; a bad one\n"
         "changes nothing and is logged. SIGTERM and SIGINT finish what is in flight; a second\n"
         "one ends at once.\n"

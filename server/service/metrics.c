@@ -36,7 +36,8 @@ static void label(struct text *text, const char *name, const char *value)
 {
     text_add(text, "%s=\"", name);
     for (const char *c = value; *c; c++)
-        text_add(text, *c == '\n' ? "\\n" : *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
+        text_add(text, "%s%c", *c == '"' || *c == '\\' || *c == '\n' ? "\\" : "",
+                 *c == '\n' ? 'n' : *c);
     text_add(text, "\"");
 }
 

@@ -43,6 +43,7 @@ class Options(unittest.TestCase):
                                   ("threads", "--threads", "0"), ("threads", "--threads", "257"),
                                   ("unix:PATH", "--listen", "sheen.sock"),
                                   ("unix:PATH", "--listen", "tcp:localhost"),
+                                  ("models", "--models", ""), ("models", "--models", 512 * "x"),
                                   ("session-fd", "--session-fd", "77"),
                                   ("session-fd", "--session-fd", "1")):
             with self.subTest(arguments=arguments):

@@ -64,6 +64,37 @@ class Readmes(unittest.TestCase):
             self.skipTest("no promtool here")
 
 
+class Tls(unittest.TestCase):
+    def test_the_readme(self):
+        """Certificates, a daemon and its clients, word for word but for the port."""
+        with tempfile.TemporaryDirectory() as folder:
+            def in_folder(line):
+                return f"cd {folder} && PATH={BUILD}:$PATH {line}"
+
+            for line in commands("tls", "make"):
+                done = shell(in_folder(line))
+                self.assertEqual(done.returncode, 0, line + done.stderr)
+            serve, = commands("tls", "serve")
+            self.assertTrue(serve.startswith("sheend --listen tls:127.0.0.1:7410 "))
+            options = serve.split()[3:]
+            old = os.getcwd()
+            os.chdir(folder)
+            try:
+                daemon = Daemon("--listen", "tls:127.0.0.1:0", *options)
+            finally:
+                os.chdir(old)
+            address = re.search(r"tls:127\.0\.0\.1:\d+", daemon.errors()).group()
+            lines = commands("tls", "use")
+            self.assertEqual(len(lines), 2)
+            for line in lines:
+                done = shell(in_folder(line.replace("tls:127.0.0.1:7410", address)))
+                self.assertEqual(done.returncode, 0, done.stderr)
+            said = daemon.errors()
+            self.assertIn('identity="cert:CN=anna,O=Design"', said)
+            self.assertIn("identity=token:farm", said)
+            self.assertEqual(daemon.stop(), 0)
+
+
 class Systemd(unittest.TestCase):
     @unittest.skipUnless(shutil.which("systemd-analyze"), "no systemd-analyze here")
     def test_the_threshold_is_one_that_can_fail(self):

@@ -76,6 +76,20 @@ static void check_hello(const uint8_t *bytes, size_t size)
     assert_string_equal(decoded.client, "sheen 0.1.0");
 }
 
+static void check_hello_token(const uint8_t *bytes, size_t size)
+{
+    const sheen_Hello hello = {.minor = 0,
+                               .client = "sheen 0.1.0",
+                               .has_token = true,
+                               .token = "correct-horse-battery-staple-0123"};
+    const uint8_t id[32] = {0};
+    uint8_t buffer[256];
+    size_t length = 0;
+    assert_true(message_hello_encode(1, id, &hello, buffer, sizeof(buffer), &length));
+    assert_int_equal(length, size);
+    assert_memory_equal(buffer, bytes, size);
+}
+
 static void check_hello_ok(const uint8_t *bytes, size_t size)
 {
     const sheen_HelloOk ok = {.minor = 0,
@@ -327,6 +341,7 @@ static const struct {
     void (*check)(const uint8_t *bytes, size_t size);
 } EXAMPLES[] = {
     {"hello", check_hello},
+    {"hello-token", check_hello_token},
     {"hello-ok", check_hello_ok},
     {"upload-begin", check_upload_begin},
     {"upload-chunk", check_upload_chunk},
