@@ -1,6 +1,7 @@
 #include "server/service/log.h"
 
 #include <inttypes.h>
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -96,7 +97,7 @@ static void put_field(struct line *line, const struct log_field *field)
     }
 }
 
-static void write_line(enum log_level level, const char *message, const struct log_field *fields)
+static bool write_line(enum log_level level, const char *message, const struct log_field *fields)
 {
     static const char *const LEVELS[] = {"error", "warn", "info", "debug"};
     struct line line = {.used = 0};
@@ -115,10 +116,10 @@ static void write_line(enum log_level level, const char *message, const struct l
     if (state.format == LOG_JSON)
         put_text(&line, "}");
     line.text[line.used++] = '\n';
-    /* One write a line, so that lines of several processes do not mix. There is nobody to tell when
-     * it fails. */
-    if (write(STDERR_FILENO, line.text, line.used) < 0)
-        return;
+    /* One write a line, so that lines of several processes do not mix; none while nobody reads a
+     * full pipe, or the daemon would wait for him. There is nobody to tell when it fails. */
+    struct pollfd reader = {.fd = STDERR_FILENO, .events = POLLOUT};
+    return poll(&reader, 1, 0) != 0 && write(STDERR_FILENO, line.text, line.used) > 0;
 }
 
 static bool is_too_much(enum log_level level)
@@ -127,19 +128,16 @@ static bool is_too_much(enum log_level level)
     if (now - state.second_us >= 1000000) {
         state.second_us = now;
         state.lines = 0;
-        if (state.unreported) {
-            uint64_t n = state.unreported;
+        if (state.unreported &&
+            write_line(
+                LOG_WARN, "log lines were left out",
+                (const struct log_field[]){log_number("count", state.unreported), {NULL, NULL, 0}}))
             state.unreported = 0;
-            write_line(LOG_WARN, "log lines were left out",
-                       (const struct log_field[]){log_number("count", n), {NULL, NULL, 0}});
-        }
     }
     if (level == LOG_ERROR || state.lines < LOG_LINES_PER_S) {
         state.lines++;
         return false;
     }
-    state.left_out++;
-    state.unreported++;
     return true;
 }
 
@@ -151,8 +149,10 @@ void log_set(enum log_level level, enum log_format format)
 
 void log_line(enum log_level level, const char *message, const struct log_field *fields)
 {
-    if (level <= state.level && !is_too_much(level))
-        write_line(level, message, fields);
+    if (level > state.level || (!is_too_much(level) && write_line(level, message, fields)))
+        return;
+    state.left_out++;
+    state.unreported++;
 }
 
 uint64_t log_left_out(void)

@@ -65,8 +65,8 @@ class Daemon:
         self.tcp = found.group() if found else None
 
     def errors(self):
-        self.stderr.seek(0)
-        return self.stderr.read()
+        # Not by read(): the daemon writes where this descriptor stands.
+        return os.pread(self.stderr.fileno(), 1 << 24, 0).decode()
 
     def wait_for(self, words, timeout=10):
         """Waits until the log has these words, and returns it."""

@@ -231,7 +231,7 @@ class Shutdown(unittest.TestCase):
         daemon = Daemon()
         size = 2000 * 2000 * 4
         with Client(daemon.unix, timeout=60) as one, Client(daemon.tcp, timeout=60) as two:
-            model = one.upload(CUBE, "cube.obj")
+            model = one.upload(CUBE, "cube.obj", share=True)
             for client in (one, two):
                 client.send(wire.render(5, model, width=2000, height=2000))
             time.sleep(0.3)

@@ -367,6 +367,21 @@ class Log(unittest.TestCase):
             self.assertEqual(said == "", not there, said)
 
 
+    def test_a_reader_that_leaves(self):
+        with tempfile.TemporaryDirectory() as folder:
+            process = subprocess.Popen([SHEEND, "--device", "software", "--listen",
+                                        f"unix:{folder}/s"], stderr=subprocess.PIPE, text=True)
+            self.addCleanup(process.wait)
+            self.addCleanup(process.kill)
+            self.assertIn("listening", process.stderr.readline())
+            process.stderr.close()
+            for _ in range(3):
+                with Client(f"unix:{folder}/s") as client:
+                    client.stats()
+            process.terminate()
+            self.assertEqual(process.wait(20), 0)
+
+
 class Metrics(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

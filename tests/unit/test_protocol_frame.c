@@ -89,14 +89,17 @@ static void good_addresses(void **state)
     static const struct {
         const char *text, *host;
         uint16_t port;
-    } tcp[] = {{"tcp:127.0.0.1:7410", "127.0.0.1", 7410},
-               {"tcp:render-1.example.org:65535", "render-1.example.org", 65535},
-               {"tcp:[::1]:1", "::1", 1},
-               {"tcp:[fe80::1%eth0]:80", "fe80::1%eth0", 80},
-               {"tcp:localhost:0", "localhost", 0}};
+        enum address_kind kind;
+    } tcp[] = {{"tcp:127.0.0.1:7410", "127.0.0.1", 7410, ADDRESS_TCP},
+               {"tcp:render-1.example.org:65535", "render-1.example.org", 65535, ADDRESS_TCP},
+               {"tcp:[::1]:1", "::1", 1, ADDRESS_TCP},
+               {"tcp:[fe80::1%eth0]:80", "fe80::1%eth0", 80, ADDRESS_TCP},
+               {"tcp:localhost:0", "localhost", 0, ADDRESS_TCP},
+               {"tls:node7.example.org:7410", "node7.example.org", 7410, ADDRESS_TLS},
+               {"tls:[::]:1", "::", 1, ADDRESS_TLS}};
     for (size_t i = 0; i < sizeof(tcp) / sizeof(*tcp); i++) {
         assert_true(address_parse(&address, tcp[i].text, text));
-        assert_int_equal(address.kind, ADDRESS_TCP);
+        assert_int_equal(address.kind, tcp[i].kind);
         assert_string_equal(address.host, tcp[i].host);
         assert_int_equal(address.port, tcp[i].port);
     }
@@ -107,13 +110,14 @@ static void bad_addresses_say_why(void **state)
     (void)state;
     static const struct {
         const char *text, *why;
-    } bad[] = {{"", "neither"},
-               {"/run/sheen.sock", "neither"},
-               {"udp:host:1", "neither"},
+    } bad[] = {{"", "none of"},
+               {"/run/sheen.sock", "none of"},
+               {"udp:host:1", "none of"},
                {"unix:", "no path"},
                {"unix:a\nb", "control character"},
                {"tcp:", "no port"},
                {"tcp:host", "no port"},
+               {"tls:host", "no port"},
                {"tcp::80", "no host"},
                {"tcp:host:", "port that is not"},
                {"tcp:host:-1", "port that is not"},

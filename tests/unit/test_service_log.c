@@ -138,6 +138,35 @@ static void test_floods_are_cut_and_counted(void **state)
     assert_ends("msg=after i=0\n");
 }
 
+static void test_a_reader_that_stops(void **state)
+{
+    (void)state;
+    int pipe_fds[2], old = dup(STDERR_FILENO);
+    char words[64];
+    assert_int_equal(pipe(pipe_fds), 0);
+    assert_true(fcntl(pipe_fds[1], F_SETPIPE_SZ, 4096) > 0);
+    log_set(LOG_INFO, LOG_LOGFMT);
+    usleep(1050000);
+    uint64_t before = log_left_out();
+    dup2(pipe_fds[1], STDERR_FILENO);
+    for (unsigned i = 0; i < 1000; i++) /* each would wait for ever in a full pipe */
+        log_event(LOG_ERROR, "to nobody", log_number("i", i));
+    uint64_t left_out = log_left_out() - before;
+    assert_true(left_out > 800);
+    /* When he reads again he is told. */
+    said[read(pipe_fds[0], said, sizeof said - 1)] = 0;
+    assert_int_equal(count('\n') + left_out, 1000);
+    usleep(1050000);
+    log_event(LOG_INFO, "after", log_number("i", 0));
+    dup2(old, STDERR_FILENO);
+    said[read(pipe_fds[0], said, sizeof said - 1)] = 0;
+    snprintf(words, sizeof words, "left out\" count=%u\n", (unsigned)left_out);
+    assert_non_null(strstr(said, words));
+    for (int i = 0; i < 2; i++)
+        close(pipe_fds[i]);
+    close(old);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +175,7 @@ int main(void)
         cmocka_unit_test(test_long_values_are_cut),
         cmocka_unit_test(test_levels),
         cmocka_unit_test(test_floods_are_cut_and_counted),
+        cmocka_unit_test(test_a_reader_that_stops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
