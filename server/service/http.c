@@ -18,7 +18,7 @@ struct http_connection {
     bool answering;
     char head[HEAD_BYTES];
     size_t head_length, sent; /* sent: of head and body together */
-    struct text body;
+    struct report body;
 };
 
 struct http {
@@ -34,7 +34,7 @@ static void drop(struct http_connection *connection)
         return;
     loop_unwatch(connection->http->loop, &connection->source);
     close(fd);
-    text_finish(&connection->body);
+    report_finish(&connection->body);
 }
 
 static const char *reason_of(int status)
@@ -83,12 +83,12 @@ static void send_some(struct http_connection *connection)
 
 static void answer(struct http_connection *connection, int status)
 {
-    struct text *body = &connection->body;
+    struct report *body = &connection->body;
     if (status == 200 && body->failed)
         status = 500; /* half an answer would be a wrong one */
     if (status != 200 && status != 503) {
-        text_finish(body);
-        text_add(body, "%s\n", reason_of(status));
+        report_finish(body);
+        report_add(body, "%s\n", reason_of(status));
     }
     int n =
         snprintf(connection->head, sizeof connection->head,
@@ -189,7 +189,7 @@ void http_accept(struct http *http, int fd)
     connection->start_us = loop_now_us();
     connection->received = connection->sent = connection->head_length = 0;
     connection->answering = false;
-    text_init(&connection->body, HTTP_MAX_ANSWER_BYTES);
+    report_init(&connection->body, HTTP_MAX_ANSWER_BYTES);
     if (!loop_watch(http->loop, &connection->source, EPOLLIN, NULL))
         close(fd);
 }

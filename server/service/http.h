@@ -9,7 +9,7 @@
 
 #include "server/error.h"
 #include "server/service/loop.h"
-#include "server/service/text.h"
+#include "server/service/report.h"
 
 #define HTTP_MAX_REQUEST_BYTES 4096
 #define HTTP_MAX_CONNECTIONS 8
@@ -20,7 +20,7 @@ struct http;
 
 /* Writes the answer to GET `path` and returns its status: 200, 404 or 503. */
 struct http_handler {
-    int (*get)(void *owner, const char *path, struct text *body);
+    int (*get)(void *owner, const char *path, struct report *body);
     void *owner;
 };
 

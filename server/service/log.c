@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <poll.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -16,9 +17,10 @@ static struct {
     enum log_level level;
     enum log_format format;
     uint64_t second_us;            /* when the current second began */
-    unsigned lines;                /* written in it */
+    unsigned lines[LOG_DEBUG + 1]; /* written in it, by level */
     uint64_t left_out, unreported; /* lines: ever, and since the last that said so */
 } state = {.level = LOG_WARN};
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* of state */
 
 struct line {
     char text[LINE_BYTES];
@@ -127,35 +129,38 @@ static bool is_too_much(enum log_level level)
     uint64_t now = loop_now_us();
     if (now - state.second_us >= 1000000) {
         state.second_us = now;
-        state.lines = 0;
+        memset(state.lines, 0, sizeof state.lines);
         if (state.unreported &&
             write_line(
                 LOG_WARN, "log lines were left out",
                 (const struct log_field[]){log_number("count", state.unreported), {NULL, NULL, 0}}))
             state.unreported = 0;
     }
-    if (level == LOG_ERROR || state.lines < LOG_LINES_PER_S) {
-        state.lines++;
-        return false;
-    }
-    return true;
+    return ++state.lines[level] > LOG_LINES_PER_S && level != LOG_ERROR;
 }
 
 void log_set(enum log_level level, enum log_format format)
 {
+    pthread_mutex_lock(&lock);
     state.level = level;
     state.format = format;
+    pthread_mutex_unlock(&lock);
 }
 
 void log_line(enum log_level level, const char *message, const struct log_field *fields)
 {
-    if (level > state.level || (!is_too_much(level) && write_line(level, message, fields)))
-        return;
-    state.left_out++;
-    state.unreported++;
+    pthread_mutex_lock(&lock);
+    if (level <= state.level && (is_too_much(level) || !write_line(level, message, fields))) {
+        state.left_out++;
+        state.unreported++;
+    }
+    pthread_mutex_unlock(&lock);
 }
 
 uint64_t log_left_out(void)
 {
-    return state.left_out;
+    pthread_mutex_lock(&lock);
+    uint64_t n = state.left_out;
+    pthread_mutex_unlock(&lock);
+    return n;
 }

@@ -4,8 +4,8 @@
  *
  * Values come from outside too: they are cut to LOG_VALUE_BYTES and quoted, so that no value can
  * look like another line or field. Lines above LOG_LINES_PER_S a second are left out and counted,
- * errors excepted, so that no client can fill a disk; and so are all while a reader of standard
- * error has stopped reading. Thread: the loop's, and before it main's. */
+ * each level by itself and errors excepted, so that no client can fill a disk or hide in a flood;
+ * and so are all while a reader of standard error has stopped reading. Thread: any. */
 #ifndef SHEEN_SERVICE_LOG_H
 #define SHEEN_SERVICE_LOG_H
 

@@ -5,8 +5,8 @@
 #define SHEEN_SERVICE_METRICS_H
 
 #include "server/service/session.h"
-#include "server/service/text.h"
+#include "server/service/report.h"
 
-void metrics_write(const struct session_host *host, struct text *text);
+void metrics_write(const struct session_host *host, struct report *report);
 
 #endif

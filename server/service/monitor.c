@@ -36,7 +36,7 @@ static const char *who_is_stuck(const struct monitor *monitor)
 
 /* --- HTTP */
 
-static int get(void *owner, const char *path, struct text *body)
+static int get(void *owner, const char *path, struct report *body)
 {
     const struct monitor *monitor = owner;
     const char *stuck = who_is_stuck(monitor);
@@ -48,15 +48,15 @@ static int get(void *owner, const char *path, struct text *body)
     if (!ready && strcmp(path, "/healthz") != 0)
         return 404;
     if (stuck) {
-        text_add(body, "%s has been at one piece of work for more than %llu s\n", stuck,
-                 (unsigned long long)(monitor->stuck_us / 1000000));
+        report_add(body, "%s has been at one piece of work for more than %llu s\n", stuck,
+                   (unsigned long long)(monitor->stuck_us / 1000000));
         return 503;
     }
     if (ready && monitor->host->draining) {
-        text_add(body, "shutting down\n");
+        report_add(body, "shutting down\n");
         return 503;
     }
-    text_add(body, "ok\n");
+    report_add(body, "ok\n");
     return 200;
 }
 

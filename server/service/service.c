@@ -228,7 +228,7 @@ static bool watch_signals(struct service *service, struct error *error)
     sigaddset(&set, SIGINT);
     if (!service->single)
         sigaddset(&set, SIGHUP); /* a private daemon hangs up with its terminal */
-    signal(SIGPIPE, SIG_IGN); /* whoever read the log may have gone */
+    signal(SIGPIPE, SIG_IGN);    /* whoever read the log may have gone */
     /* Before any thread starts: threads inherit the mask. */
     pthread_sigmask(SIG_BLOCK, &set, NULL);
     service->signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "server/service/legend.h"
+#include "server/service/log.h"
 
 #define NO_FACE 0xffffffffu
 #define DEFAULT_DRAFT_DEG 3
@@ -308,8 +309,8 @@ static void add_legend(const struct painting *painting, const struct frame *fram
     add_marks(painting, &legend);
     if (!legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend) &&
         !atomic_flag_test_and_set(&told))
-        fprintf(stderr, "sheend: legends lack their numbers: the font DejaVu Sans is missing "
-                        "(Debian: fonts-dejavu-core)\n");
+        log_event(LOG_WARN, "legends lack their numbers",
+                  log_text("text", "the font DejaVu Sans is missing (Debian: fonts-dejavu-core)"));
 }
 
 void show_paint(const struct frame *frame, sheen_Show *show, double size, const float miss[4],
