@@ -55,10 +55,10 @@ vec4 shade_part(Piece piece, ivec2 p, uint rays, vec4 under)
 
 void main()
 {
-    if (gl_GlobalInvocationID.x >= n_listed)
+    uint index = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
+    if (index >= listed.n)
         return;
-    uint at = listed[gl_GlobalInvocationID.x];
-    ivec2 p = ivec2(at & 0xffffu, at >> 16);
+    ivec2 p = list_place(listed.at[index]);
 
     // The distinct pieces of surface around.
     Piece pieces[PIECES];

@@ -3,12 +3,7 @@
 
 layout(binding = 3, rgba8) uniform image2D colour;
 
-// The pixels to shade: x | y << 16. The first three words are the dispatch.
-layout(std430, binding = 0) readonly buffer Listed {
-    uint groups_x, groups_y, groups_z;
-    uint n_listed;
-    uint listed[];
-};
+LIST(0, Listed, listed);  // the pixels to shade
 
 // Along the ray through its own pixel's centre plus d px, z units beyond its depth, a piece is where
 // a z^2 + b z + c = 0.

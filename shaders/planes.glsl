@@ -15,14 +15,6 @@ layout(binding = TEXTURES_FREE + 1) uniform sampler2D seen_depth;
 
 uniform bool want_ptex;
 
-// Pixels that the first pass of stage 2 leaves to the second: x | y << 16. The first three words
-// are the second pass's dispatch.
-layout(std430, binding = 0) buffer Unsolved {
-    uint groups_x, groups_y, groups_z;
-    uint n_unsolved;
-    uint unsolved[];
-};
-
 float depth_of(float ndc)
 {
     return is_perspective() ? depth.x / ndc : (ndc - depth.y) / depth.z;

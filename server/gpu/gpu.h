@@ -22,7 +22,7 @@ struct bank_set {
 /* The programs that read tables spread over so many banks. */
 struct table_programs {
     int point_banks, node_banks, adjacency_banks;
-    GLuint visibility, evaluate, unsolved;
+    GLuint visibility, evaluate, strays, unsolved;
 };
 
 struct renderer_model {
@@ -50,7 +50,7 @@ struct target {
     GLuint light_change;            /* RGBA32F */
     GLuint coverage;                /* R32F: share of the pixel that shows surface */
     GLuint groups;                  /* buffer: shaders/groups.glsl */
-    GLuint unsolved;                /* buffer: shaders/planes.glsl */
+    GLuint strays, unsolved;        /* buffers: shaders/doubt.glsl */
     GLuint edges, turns;            /* buffers: shaders/edges_find.comp.glsl */
 };
 

@@ -30,7 +30,8 @@ static bool is_at_infinity(enum line_family family)
 static GLuint shade_program(struct renderer *r, const struct frame_request *request,
                             const struct light *light, enum shaded which, struct error *error)
 {
-#define COMMON "view.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
+#define COMMON                                                                                     \
+    "view.glsl", "list.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
     static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
     static const char *const edges[] = {COMMON, "edges.glsl", "pieces.glsl",
                                         "edges_shade.comp.glsl", NULL};
