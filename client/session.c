@@ -64,8 +64,10 @@ static enum sheen_status read_body(struct sheen_session *session,
         connection_read(&session->connection, session->buffer, header->length, error);
     if (status)
         return session_fail(session, status, error);
-    if (!message_decode(header->type, session->buffer, header->length, body))
-        return bad_peer(session, error, header->type, "its body is malformed");
+    if (!message_decode(header->type, session->buffer, header->length, body)) {
+        message_find_fault(header->type, session->buffer, header->length, text);
+        return bad_peer(session, error, header->type, text);
+    }
     if (!message_check_answer(header->type, body, text))
         return bad_peer(session, error, header->type, text);
     return SHEEN_OK;

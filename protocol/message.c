@@ -17,7 +17,7 @@ FITS(sheen_Progress_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Stats_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Error_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 
-static const pb_msgdesc_t *body_fields(uint8_t type)
+const pb_msgdesc_t *message_fields(uint8_t type)
 {
     switch (type) {
     case MESSAGE_HELLO_OK:
@@ -75,7 +75,7 @@ static bool encode(uint8_t type, uint32_t seq, size_t prefix, const pb_msgdesc_t
 bool message_encode(uint8_t type, uint32_t seq, const void *body, uint8_t *buffer, size_t capacity,
                     size_t *length)
 {
-    const pb_msgdesc_t *fields = body_fields(type);
+    const pb_msgdesc_t *fields = message_fields(type);
     if (!fields && type != MESSAGE_STATS_QUERY)
         return false;
     return encode(type, seq, 0, fields, body, buffer, capacity, length);
@@ -100,7 +100,7 @@ static bool decode(const pb_msgdesc_t *fields, const uint8_t *bytes, size_t leng
 
 bool message_decode(uint8_t type, const uint8_t *bytes, size_t length, void *body)
 {
-    const pb_msgdesc_t *fields = body_fields(type);
+    const pb_msgdesc_t *fields = message_fields(type);
     return fields && decode(fields, bytes, length, body);
 }
 

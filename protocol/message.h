@@ -33,6 +33,15 @@ bool message_decode(uint8_t type, const uint8_t *bytes, size_t length, void *bod
 bool message_hello_decode(const uint8_t *bytes, size_t length,
                           uint8_t model_id[static MODEL_ID_BYTES], sheen_Hello *hello);
 
+/* Says why one of these two refused a body, in one line: the field that is over its bound, with the
+ * bound, or the one that is missing, or that the body is not well-formed. Reads no further than
+ * `length`, whatever the bytes are. */
+void message_find_fault(uint8_t type, const uint8_t *bytes, size_t length,
+                        char text[static MESSAGE_TEXT_BYTES]);
+
+/* The schema of a type's struct; NULL for types without, and for HELLO. */
+const pb_msgdesc_t *message_fields(uint8_t type);
+
 /* Checks of decoded requests, for the daemon. False writes to `text` one line that names the field
  * and its range, fit for an ERROR message with ERROR_REQUEST. */
 bool message_check_hello(const sheen_Hello *hello, char text[static MESSAGE_TEXT_BYTES]);

@@ -104,7 +104,8 @@ static void handle_hello(struct session *session, uint32_t seq, const uint8_t *b
     sheen_Hello hello;
     char text[MESSAGE_TEXT_BYTES];
     if (!message_hello_decode(body, length, model_id, &hello)) {
-        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO is not well-formed");
+        message_find_fault(MESSAGE_HELLO, body, length, text);
+        refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
         return;
     }
     if (!message_check_hello(&hello, text)) {
@@ -245,8 +246,10 @@ static void handle_body(struct session *session, const struct message_header *he
         sheen_Render render;
     } body;
     if (!message_decode(header->type, bytes, header->length, &body)) {
-        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s is not well-formed",
-               message_type_name(header->type));
+        char text[MESSAGE_TEXT_BYTES];
+        message_find_fault(header->type, bytes, header->length, text);
+        refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
+               message_type_name(header->type), text);
         return;
     }
     if (session->host->draining) {

@@ -91,11 +91,33 @@ class Hostile(DaemonCase):
     def test_garbage_bodies(self):
         noise = random.Random(1)
         for kind in (wire.UPLOAD_BEGIN, wire.MODEL_QUERY, wire.RENDER):
-            for body in (b"", b"\xff" * 64, b"\x0a\xff\xff\xff\xff\x0f", noise.randbytes(500),
-                         field(1, bytes(31))):
+            for body, words in ((b"", "missing"), (b"\xff" * 64, "well-formed"),
+                                (b"\x0a\xff\xff\xff\xff\x0f", "well-formed"),
+                                (noise.randbytes(500), ""),
+                                (field(1, bytes(31)), "")):
                 for client in self.each():
                     client.send(message(kind, 2, body))
-                    self.assert_closed(client, wire.ERROR_PROTOCOL, "well-formed", 2)
+                    self.assert_closed(client, wire.ERROR_PROTOCOL, words, 2)
+
+    def test_over_a_bound(self):
+        """limits.h: going over a limit costs an ERROR message that names it."""
+        light = field(5, b"")
+        places = field(5, field(6, field(1, 4) + field(12, 0.5) * 17))
+        for extra, words in ((light * 9, "lights has 9 entries; it may have at most 8"),
+                             (places, "lights.pattern.at has 17 entries; it may have at most 16"),
+                             (field(5, field(6, field(1, 3) + field(6, bytes(33)))),
+                              "lights.pattern.image_sha256 has 33 bytes; it must have 32")):
+            for client in self.each():
+                client.send(wire.render(2, bytes(32), extra=extra))
+                self.assert_closed(client, wire.ERROR_PROTOCOL, "RENDER: " + words, 2)
+        for client in self.each():
+            client.send(wire.upload_begin(2, bytes(32), 1, "n" * 256))
+            self.assert_closed(client, wire.ERROR_PROTOCOL,
+                               "UPLOAD_BEGIN: name has 256 bytes; it may have at most 255", 2)
+        for client in self.each(greet=False):
+            client.send(message(wire.HELLO, 1, bytes(32) + field(1, 0) + field(2, "c" * 64)))
+            self.assert_closed(client, wire.ERROR_PROTOCOL,
+                               "HELLO: client has 64 bytes; it may have at most 63", 1)
 
     def test_noise(self):
         noise = random.Random(2)
