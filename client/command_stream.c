@@ -263,8 +263,8 @@ static const struct option_row ROWS[] = {
     {0},
 };
 
-static const struct option_row *const TABLES_LIST[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON,
-                                                       OPTIONS_OUTPUT, NULL};
+static const struct option_row *const TABLES_LIST[] = {
+    ROWS, OPTIONS_SCENE, OPTIONS_SURFACE, OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_STREAM = {
     .name = "stream",

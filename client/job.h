@@ -25,9 +25,6 @@ enum sheen_status job_init(struct job *job, const struct options *options);
 enum sheen_status job_upload_images(struct job *job, const struct options *options,
                                     struct sheen_request *request);
 
-/* The frame's line family and lights as JSON; "light" is the first one. */
-void job_json_lights(struct json *json, const struct sheen_frame *frame);
-
 /* Gives everything back; prints job->error as one line if `status` is a failure. Returns the exit
  * code. */
 int job_finish(struct job *job, enum sheen_status status);

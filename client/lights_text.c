@@ -221,13 +221,14 @@ bool text_line_eye(const char *text, struct sheen_lines *value, char why[static 
            refuse(why, "must be camera, a point X,Y,Z or a direction of view dir:X,Y,Z");
 }
 
+static const struct text_row SHOW_KINDS[] = {
+    {.name = "lines"},  {.name = "curvature"}, {.name = "gaussian"}, {.name = "mean"},
+    {.name = "normal"}, {.name = "ptex"},      {.name = "draft"},    {0}};
+
 bool text_show(const char *text, struct sheen_show *value, char why[static LIGHTS_WHY_BYTES])
 {
-    static const struct text_row kinds[] = {
-        {.name = "lines"},  {.name = "curvature"}, {.name = "gaussian"}, {.name = "mean"},
-        {.name = "normal"}, {.name = "ptex"},      {.name = "draft"},    {0}};
     size_t length = strcspn(text, ":");
-    int kind = find_row(kinds, text, length);
+    int kind = find_row(SHOW_KINDS, text, length);
     if (kind < 0 || (kind != SHEEN_SHOW_DRAFT && text[length]))
         return refuse(why, "must be curvature, gaussian, mean, normal, ptex, draft:X,Y,Z or lines");
     value->kind = (enum sheen_show_kind)kind;
@@ -253,4 +254,9 @@ const char *text_light_kind(enum sheen_light_kind kind)
 const char *text_line_family(enum sheen_line_family family)
 {
     return TEXT_FAMILIES[family].name;
+}
+
+const char *text_show_kind(enum sheen_show_kind kind)
+{
+    return SHOW_KINDS[kind].name;
 }

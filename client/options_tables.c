@@ -262,6 +262,10 @@ const struct option_row OPTIONS_SCENE[] = {
      apply_miss},
     {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa (default: #808080, grey)",
      apply_empty},
+    {0},
+};
+
+const struct option_row OPTIONS_SURFACE[] = {
     {"surface", 0, "KIND",
      "exact (default): the limit surface; for comparison polygon:LEVEL, the cage\n"
      "subdivided LEVEL times (0 to 6), normals interpolated as a graphics card\n"

@@ -327,6 +327,8 @@ struct sheen_frame {
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
     double show_range; /* of false colour, as used; 0: none */
+    bool has_colours;  /* the daemon says what it used: */
+    float miss[4], empty[4], base[4];
     struct sheen_times times;
     char device[128], driver[128], server[32];
     bool software;

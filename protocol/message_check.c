@@ -93,6 +93,15 @@ static bool check_colour(const sheen_Colour *colour, const char *field, char *te
     return true;
 }
 
+/* Those that are there. */
+static bool check_colours(const sheen_Colour *miss, const sheen_Colour *empty,
+                          const sheen_Colour *base, char *text)
+{
+    return (!miss || check_colour(miss, "miss", text)) &&
+           (!empty || check_colour(empty, "empty", text)) &&
+           (!base || check_colour(base, "base", text));
+}
+
 /* |a x b|^2 <= 1e-24 |a|^2 |b|^2 after scaling both to size one, so that nothing overflows. Zero
  * vectors are parallel to everything. */
 static bool is_parallel(const sheen_Vec3 *a, const sheen_Vec3 *b)
@@ -374,10 +383,10 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
     return (!render->has_camera || check_camera(&render->camera, text)) &&
            check_lights(&render->lines, render->lights, render->lights_count, text) &&
-           (!render->has_base || check_colour(&render->base, "base", text)) &&
            check_surface(render, text) &&
-           (!render->has_miss || check_colour(&render->miss, "miss", text)) &&
-           (!render->has_empty || check_colour(&render->empty, "empty", text));
+           check_colours(render->has_miss ? &render->miss : NULL,
+                         render->has_empty ? &render->empty : NULL,
+                         render->has_base ? &render->base : NULL, text);
 }
 
 static bool check_frame(const sheen_Frame *frame, char *text)
@@ -393,6 +402,10 @@ static bool check_frame(const sheen_Frame *frame, char *text)
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
     if (frame->has_show_range &&
         !check_positive(frame->show_range, PROTOCOL_MAX_COORDINATE, "show_range", text))
+        return false;
+    if (!check_colours(frame->has_miss ? &frame->miss : NULL,
+                       frame->has_empty ? &frame->empty : NULL,
+                       frame->has_base ? &frame->base : NULL, text))
         return false;
     if (frame->lights_count == 0)
         return refuse(text, "a frame has a light");

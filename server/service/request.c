@@ -289,6 +289,12 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .software = info->software,
         .has_show_range = request->render.show.has_range,
         .show_range = request->render.show.range,
+        .has_miss = true,
+        .miss = wire_from_colour(asked->miss),
+        .has_empty = true,
+        .empty = wire_from_colour(asked->empty),
+        .has_base = true,
+        .base = wire_from_colour(asked->base),
     };
     for (uint32_t i = 0; i < asked->n_lights; i++)
         frame->lights[i] =

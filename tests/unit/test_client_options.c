@@ -351,9 +351,9 @@ static void the_environment_names_a_server(void **state)
 static void help_shows_every_option(void **state)
 {
     (void)state;
-    static const struct command *const commands[] = {&COMMAND_RENDER, &COMMAND_STREAM,
-                                                     &COMMAND_INFO, &COMMAND_STATS};
-    for (size_t i = 0; i < 4; i++) {
+    static const struct command *const commands[] = {
+        &COMMAND_RENDER, &COMMAND_STREAM, &COMMAND_INFO, &COMMAND_STATS, &COMMAND_FIGURE7};
+    for (size_t i = 0; i < 5; i++) {
         char *text = NULL;
         size_t size = 0;
         FILE *out = open_memstream(&text, &size);

@@ -392,6 +392,12 @@ static void answers_are_checked(void **state)
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     assert_non_null(strstr(text, "show_range"));
     frame.has_show_range = false;
+    frame.has_miss = frame.has_base = true;
+    assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.base.a = 2;
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    assert_non_null(strstr(text, "base.a"));
+    frame.base.a = 1;
     frame.camera.has_up = false; /* a request may leave it out, an answer may not */
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     assert_non_null(strstr(text, "camera"));
