@@ -216,7 +216,8 @@ struct sheen_pattern {
     double period;                      /* in the light's units, > 0; 0: by count */
     double duty;                        /* bright part of a period, [0, 1] */
     double rotation_deg, offset;        /* offset in periods */
-    double soft;                        /* share of a period that each edge takes, [0, 1] */
+    double soft;                        /* share of a period (SHEEN_LINES: of the width) that
+                                           each edge takes, [0, 1] */
     double opacity;                     /* over the shaded base, [0, 1] */
     uint32_t n_at;                      /* SHEEN_LINES: 1 to SHEEN_MAX_LINES, else 0 */
     double at[SHEEN_MAX_LINES], width;  /* places and width, in widths of the light */

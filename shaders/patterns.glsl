@@ -13,17 +13,37 @@
 
 layout(binding = 0) uniform sampler2D picture;
 
-// The wave of duty d, its edges as wide as `soft`: convolved with one more box. The two widest
-// boxes are integrated in closed form, the narrowest by Gauss's rule of three points, under which
-// the result is a piecewise quadratic function.
-float soft_stripe(float phase, vec2 g, float d, float soft)
+// Soft edges are one more box that the pattern is convolved with. The two widest boxes are integrated
+// in closed form, the narrowest by Gauss's rule of three points, under which the result is a
+// piecewise quadratic function: points and weights.
+const vec3 GAUSS = vec3(-0.387298335, 0.0, 0.387298335), WEIGHT = vec3(5.0, 8.0, 5.0) / 18.0;
+
+void sort_boxes(vec2 g, float soft, out vec2 wide, out float narrow)
 {
     g = abs(g);
-    float low = min(min(g.x, g.y), soft), high = max(max(g.x, g.y), soft);
-    vec2 wide = vec2(high, g.x + g.y + soft - low - high);
-    float reach = 0.5 * 0.774596669 * low;
-    return (5.0 * stripe(phase - reach, wide, d) + 8.0 * stripe(phase, wide, d) +
-            5.0 * stripe(phase + reach, wide, d)) / 18.0;
+    narrow = min(min(g.x, g.y), soft);
+    wide.x = max(max(g.x, g.y), soft);
+    wide.y = g.x + g.y + soft - narrow - wide.x;
+}
+
+// The wave of duty d, its edges as wide as `soft`.
+float soft_stripe(float phase, vec2 g, float d, float soft)
+{
+    vec2 wide;
+    float narrow;
+    sort_boxes(g, soft, wide, narrow);
+    vec3 at = phase + narrow * GAUSS;
+    return dot(WEIGHT, vec3(stripe(at.x, wide, d), stripe(at.y, wide, d), stripe(at.z, wide, d)));
+}
+
+// half_plane with an edge as wide as `soft`, in units of z.
+float soft_half_plane(float z, vec2 g, float soft)
+{
+    vec2 wide;
+    float narrow;
+    sort_boxes(g, soft, wide, narrow);
+    vec3 at = z + narrow * GAUSS;
+    return dot(WEIGHT, vec3(half_plane(at.x, wide), half_plane(at.y, wide), half_plane(at.z, wide)));
 }
 
 float wave_at(float phase, vec2 g)
@@ -64,13 +84,22 @@ void turned(Met met, vec2 along, out float a, out vec2 da)
     da = along.x * met.ds + along.y * met.dt;
 }
 
+float line_edge(float z, vec2 g)
+{
+#ifdef SOFT
+    return soft_half_plane(z, g, wave.w * 2.0 * half_width);
+#else
+    return half_plane(z, g);
+#endif
+}
+
 // Single lines: how much of the pixel they cover.
 float lines_at(float a, vec2 da)
 {
     float bright = 0.0;
     for (int i = 0; i < n_single; i++) {
         float z = a - single[i >> 2][i & 3];
-        bright += half_plane(z + half_width, da) - half_plane(z - half_width, da);
+        bright += line_edge(z + half_width, da) - line_edge(z - half_width, da);
     }
     return min(bright, 1.0);
 }
