@@ -117,15 +117,15 @@ Angles angles_of(vec3 r, vec3 dr[2])
 }
 
 // How much of the pixel falls on the rectangle. Where the footprint spans all of it, it is no longer
-// linear (the ray runs along the light's plane): the pixel's centre decides.
+// linear (the ray runs along the light's plane): the pixel's centre decides, as it does for no
+// footprint at all.
 float rectangle_cover(Met met)
 {
     vec2 st = met.q / size.xy, gs = met.ds / size.x, gt = met.dt / size.y;
     vec2 reach = vec2(abs(gs.x) + abs(gs.y), abs(gt.x) + abs(gt.y));
-    if (max(reach.x, reach.y) > 1.0)
+    if (max(reach.x, reach.y) > 1.0 || min(reach.x, reach.y) <= 0.0)
         return max(abs(st.x), abs(st.y)) <= 0.5 ? 1.0 : 0.0;
-    return half_plane(0.5 + st.x, gs) * half_plane(0.5 - st.x, gs) * half_plane(0.5 + st.y, gt) *
-           half_plane(0.5 - st.y, gt);
+    return box_share(-0.5 - st, 0.5 - st, gs, gt);
 }
 
 // Step (6): where x + tau r meets the light's plane, and its change.

@@ -55,6 +55,40 @@ float wave_at(float phase, vec2 g)
 #endif
 }
 
+#if PATTERN == LATTICE
+// Where neither wave has a bright part: the pixel's share of it. The product of both is exact where
+// one wave is constant over the pixel, or neither changes along what the other changes along.
+float lattice_dark(vec2 phase, vec2 da, vec2 db)
+{
+    vec2 dark = 1.0 - vec2(wave_at(phase.x, da), wave_at(phase.y, db));
+    vec2 least = min(abs(da), abs(db)), most = max(abs(da), abs(db));
+    bool is_turned = any(greaterThan(least, 1e-3 * most)) && min(dark.x, dark.y) > 0.0 &&
+                     max(dark.x, dark.y) < 1.0;
+    vec2 reach = 0.5 * (abs(vec2(da.x, db.x)) + abs(vec2(da.y, db.y)));
+    float sum = 0.0;
+#ifdef SOFT
+    // Over parts of the pixel the product is good enough.
+    int side = max(reach.x, reach.y) > 0.75 ? 8 : 4, n = is_turned ? side * side : 0;
+    for (int i = 0; i < n; i++) {
+        vec2 at = (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
+        sum += (1.0 - wave_at(phase.x + dot(da, at), da / float(side))) *
+               (1.0 - wave_at(phase.y + dot(db, at), db / float(side)));
+    }
+    sum /= float(side * side);
+#else
+    // The dark cells that the pixel may touch. Past so many of them the product is good enough.
+    const float most_cells = 64.0;
+    vec2 first = floor(phase - reach), cells = ceil(phase + reach - wave.z) - first;
+    int n = is_turned && cells.x * cells.y <= most_cells ? int(cells.x * cells.y) : 0;
+    for (int i = 0; i < n; i++) {
+        vec2 cell = first + vec2(i % int(cells.x), i / int(cells.x)) - phase;
+        sum += box_share(cell + wave.z, cell + 1.0, da, db);
+    }
+#endif
+    return n > 0 ? sum : dark.x * dark.y;
+}
+#endif
+
 // The image over the pixel's parallelogram: samples along its longer side, each as wide as the
 // shorter. Not textureGrad: software devices take one footprint for neighbouring pixels together.
 vec4 image_colour(vec2 st, vec2 right, vec2 down)
@@ -126,14 +160,13 @@ vec4 pattern_colour(Met met)
     float bright = wave_at(rho * turn.z + turn.w, radial.x * met.ds + radial.y * met.dt);
 #elif PATTERN == LINES
     float bright = lines_at(a, da);
+#elif PATTERN == LATTICE
+    float bright =
+        1.0 - lattice_dark(vec2(a, b) * turn.z + wave.xy, da * turn.z, db * turn.z);
 #elif PATTERN == DISTANCE
     float bright = wave_at(met.tau * turn.z + turn.w, met.dtau * turn.z);
 #else
     float bright = wave_at(a * turn.z + wave.x, da * turn.z);
-#endif
-#if PATTERN == LATTICE
-    float along = wave_at(b * turn.z + wave.y, db * turn.z);
-    bright = 1.0 - (1.0 - bright) * (1.0 - along);
 #endif
     return mix(background, foreground, bright);
 #endif

@@ -86,6 +86,7 @@ oracle() {
         tests/models/creases.obj tests/models/pole.obj "$car"
     run filter "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
+    run patterns "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
     run lines "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/creases.obj tests/models/pole.obj "$car"
     run fine "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj

@@ -2,15 +2,12 @@
  * held against the same view one sample a pixel (--filter off) and many times larger, whose squares
  * of pixels are averaged. */
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <OpenImageIO/imageio.h>
-
-#include "tests/oracle/render.h"
+#include "tests/oracle/samples.h"
 #include "tests/oracle/verdict.h"
 
 namespace
@@ -31,26 +28,6 @@ bool is_car(const std::string &model)
     return model.find("catmark_car") != std::string::npos;
 }
 
-struct picture {
-    int width_px = 0, height_px = 0;
-    std::vector<uint8_t> rgb;
-};
-
-picture read_picture(const std::string &path)
-{
-    auto input = OIIO::ImageInput::open(path);
-    if (!input)
-        throw std::runtime_error(path + ": " + OIIO::geterror());
-    const OIIO::ImageSpec &spec = input->spec();
-    picture picture;
-    picture.width_px = spec.width;
-    picture.height_px = spec.height;
-    picture.rgb.resize((size_t)spec.image_pixels() * 3);
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, picture.rgb.data()))
-        throw std::runtime_error(path + ": " + input->geterror());
-    return picture;
-}
-
 struct scene {
     std::string sheen, model;
     int width_px, height_px;
@@ -59,60 +36,10 @@ struct scene {
 
 picture render(const scene &scene, int scale, bool filtered)
 {
-    temporary_folder folder;
-    std::string file = folder.file("frame.tif");
-    std::vector<std::string> command = {
-        scene.sheen,
-        "render",
-        scene.model,
-        "-o",
-        file,
-        "-q",
-        "--size",
-        std::to_string(scene.width_px * scale) + "x" + std::to_string(scene.height_px * scale),
-        "--filter",
-        filtered ? "exact" : "off"};
-    command.insert(command.end(), scene.options.begin(), scene.options.end());
-    program_result result = run_program(command, folder);
-    if (result.exit_code != 0)
-        throw std::runtime_error(scene.model + ": " + result.errors);
-    return read_picture(file);
-}
-
-/* Each value's mean over scale x scale pixels of the large picture. */
-std::vector<double> averaged(const picture &large, int scale)
-{
-    int width = large.width_px / scale, height = large.height_px / scale;
-    std::vector<double> mean((size_t)width * (size_t)height * 3, 0);
-    for (int y = 0; y < height * scale; y++)
-        for (int x = 0; x < width * scale; x++) {
-            size_t from = ((size_t)y * (size_t)large.width_px + (size_t)x) * 3;
-            size_t to = ((size_t)(y / scale) * (size_t)width + (size_t)(x / scale)) * 3;
-            for (size_t k = 0; k < 3; k++)
-                mean[to + k] += large.rgb[from + k];
-        }
-    for (double &value : mean)
-        value /= scale * scale;
-    return mean;
-}
-
-/* The largest difference of a channel, of every pixel. */
-std::vector<double> differences(const picture &picture, const std::vector<double> &truth)
-{
-    if (picture.rgb.size() != truth.size())
-        throw std::runtime_error("the picture has another size than asked for");
-    std::vector<double> worst(truth.size() / 3, 0);
-    for (size_t i = 0; i < truth.size(); i++)
-        worst[i / 3] = std::fmax(worst[i / 3], std::fabs(picture.rgb[i] - truth[i]));
-    return worst;
-}
-
-double mean_of(const std::vector<double> &values)
-{
-    double sum = 0;
-    for (double value : values)
-        sum += value;
-    return values.empty() ? NAN : sum / (double)values.size();
+    std::vector<std::string> options = scene.options;
+    options.insert(options.end(), {"--filter", filtered ? "exact" : "off"});
+    return render_picture(scene.sheen, scene.model, scene.width_px * scale, scene.height_px * scale,
+                          options);
 }
 
 /* Stripes, with everything else there is: folds, creases, borders, the light's own border. */
