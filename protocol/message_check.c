@@ -335,7 +335,10 @@ uint32_t message_render_planes(const sheen_Render *render)
         [sheen_ShowKind_SHOW_PTEX] = sheen_Plane_PLANE_PTEX,
         [sheen_ShowKind_SHOW_DRAFT] = sheen_Plane_PLANE_NORMAL | sheen_Plane_PLANE_POSITION,
     };
-    return render->planes | painted_from[render->show.kind];
+    bool covers = render->show.kind != sheen_ShowKind_SHOW_LINES && !render->unfiltered &&
+                  render->surface == sheen_SurfaceKind_SURFACE_EXACT;
+    return render->planes | painted_from[render->show.kind] |
+           (covers ? sheen_Plane_PLANE_COVERAGE : sheen_Plane_PLANE_NONE);
 }
 
 static bool check_show(const sheen_Render *render, char *text)

@@ -265,9 +265,15 @@ static void false_colour(void **state)
     char text[MESSAGE_TEXT_BYTES];
     assert_int_equal(message_render_planes(&render), sheen_Plane_PLANE_COLOUR);
     render.show = mean;
-    assert_int_equal(message_render_planes(&render), sheen_Plane_PLANE_COLOUR |
-                                                         sheen_Plane_PLANE_POSITION |
-                                                         sheen_Plane_PLANE_CURVATURE);
+    assert_int_equal(message_render_planes(&render),
+                     sheen_Plane_PLANE_COLOUR | sheen_Plane_PLANE_POSITION |
+                         sheen_Plane_PLANE_CURVATURE | sheen_Plane_PLANE_COVERAGE);
+    render.unfiltered = true;
+    assert_false(message_render_planes(&render) & sheen_Plane_PLANE_COVERAGE);
+    render.unfiltered = false;
+    render.surface = sheen_SurfaceKind_SURFACE_POLYGON;
+    assert_false(message_render_planes(&render) & sheen_Plane_PLANE_COVERAGE);
+    render.surface = sheen_SurfaceKind_SURFACE_EXACT;
     render.planes = sheen_Plane_PLANE_CURVATURE;
     assert_false(check(&render, text));
     assert_non_null(strstr(text, "colour"));
@@ -278,7 +284,7 @@ static void false_colour(void **state)
     render.surface = sheen_SurfaceKind_SURFACE_WIREFRAME;
     assert_false(check(&render, text));
     assert_non_null(strstr(text, "wireframe"));
-    /* The planes that it is painted from count, too: 24 bytes a pixel. */
+    /* The planes that it is painted from count, too: 28 bytes a pixel. */
     render.surface = sheen_SurfaceKind_SURFACE_EXACT;
     render.width_px = render.height_px = 16384;
     assert_false(check(&render, text));

@@ -25,6 +25,7 @@ struct ptex {
 static struct planes {
     uint8_t colour[MAX_PIXELS][4];
     float position[MAX_PIXELS][3], normal[MAX_PIXELS][3], curvature[MAX_PIXELS][2];
+    float coverage[MAX_PIXELS];
     struct ptex ptex[MAX_PIXELS];
 } planes;
 
@@ -112,6 +113,39 @@ static void test_no_surface(void **state)
         assert_colour(0, EMPTIED);
         assert_colour(1, MISSED);
     }
+}
+
+/* Two rows of four, the outline between them: what a pixel's centre misses it takes from a
+ * neighbour. */
+static void test_outline(void **state)
+{
+    (void)state;
+    const float coverage[8] = {1, 0.75f, 0.5f, 0, 0.25f, 0, 0.5f, 0.5f};
+    const float colour_of_x[2] = {1, -1};
+    struct frame frame = frame_of(sheen_ShowKind_SHOW_NORMAL, 4, 2);
+    frame.plane[7] = planes.coverage;
+    memcpy(planes.coverage, coverage, sizeof coverage);
+    for (int i = 0; i < 8; i++)
+        for (int k = 0; k < 3; k++)
+            planes.position[i][k] = planes.normal[i][k] = i < 2 ? 0 : NAN;
+    for (int i = 0; i < 2; i++)
+        planes.normal[i][0] = colour_of_x[i];
+    sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
+    const float black[4] = {0, 0, 0, 1};
+    show_paint(&frame, &show, 1, MISS, black);
+    assert_colour(0, 255, 128, 128, 255);
+    assert_colour(1, 0, 96, 96, 255);
+    assert_colour(2, 0, 64, 64, 255); /* from the left */
+    assert_colour(3, 0, 0, 0, 255);
+    assert_colour(4, 64, 32, 32, 255); /* from above */
+    assert_colour(5, 0, 0, 0, 255);
+    assert_colour(6, 0, 64, 64, 255); /* from the corner */
+    assert_colour(7, 0, 0, 0, 255);   /* nobody knows */
+    show_paint(&frame, &show, 1, MISS, EMPTY);
+    assert_colour(1, 0, 128, 128, 191); /* through to what has no colour */
+    planes.normal[1][0] = NAN;
+    show_paint(&frame, &show, 1, MISS, black);
+    assert_colour(1, 0, 38, 77, 255); /* 3/4 of MISS */
 }
 
 static void test_normals(void **state)
@@ -278,9 +312,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_curvatures), cmocka_unit_test(test_no_surface),
-        cmocka_unit_test(test_normals),    cmocka_unit_test(test_drafts),
-        cmocka_unit_test(test_ptex),       cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_legend),
+        cmocka_unit_test(test_outline),    cmocka_unit_test(test_normals),
+        cmocka_unit_test(test_drafts),     cmocka_unit_test(test_ptex),
+        cmocka_unit_test(test_ranges),     cmocka_unit_test(test_legend),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
