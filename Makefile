@@ -113,7 +113,7 @@ $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SH
 
 # Every benchmark is one bench_NAME.cpp; what is beside them they share.
 BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/bench_*.cpp))
-BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/daemon.cpp tests/bench/scene.cpp \
+BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/daemon.cpp \
                 tests/bench/sheet.cpp) $(ORACLE_SHARED)
 BENCH_LIBS := -losdCPU $(TEST_LIBS)
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_SHARED) $(TEST_LIB)

@@ -1,12 +1,12 @@
-/* A cage, its tables, and the renderer that draws them: sheen's side of a benchmark, without a
- * daemon. */
-#ifndef SHEEN_TESTS_BENCH_SCENE_H
-#define SHEEN_TESTS_BENCH_SCENE_H
+/* A cage, its tables, and the renderer that draws them, in this process, without
+ * a daemon. */
+#ifndef SHEEN_TESTS_ORACLE_SCENE_H
+#define SHEEN_TESTS_ORACLE_SCENE_H
 
 #include <memory>
 #include <string>
 
-#include "tests/bench/renderer.h"
+#include "tests/oracle/renderer.h"
 
 /* As many threads as the daemon builds tables with on the machine of RESULTS.md, and as every peer
  * gets. */

@@ -1,4 +1,4 @@
-#include "tests/bench/scene.h"
+#include "tests/oracle/scene.h"
 
 #include <algorithm>
 #include <atomic>
