@@ -73,11 +73,12 @@ static void describe_vertices(const struct polygon_mesh *mesh)
     }
 }
 
-static struct polygon_mesh *build(struct polygons *p, const struct renderer_model *model,
+static struct polygon_mesh *build(struct renderer *r, const struct renderer_model *model,
                                   uint32_t level, struct error *error)
 {
+    struct polygons *p = &r->polygons;
     struct mesh made;
-    if (!mesh_init(&made, model->tables, level, error))
+    if (!mesh_init(&made, model->tables, level, &r->watch, error))
         return NULL;
     size_t vertex_bytes = made.n_vertices * sizeof *made.vertex;
     size_t index_bytes = made.n_indices * sizeof *made.index;
@@ -107,15 +108,16 @@ static struct polygon_mesh *build(struct polygons *p, const struct renderer_mode
     return NULL;
 }
 
-static struct polygon_mesh *find_or_build(struct polygons *p, const struct renderer_model *model,
+static struct polygon_mesh *find_or_build(struct renderer *r, const struct renderer_model *model,
                                           uint32_t level, struct error *error)
 {
+    struct polygons *p = &r->polygons;
     struct polygon_mesh *found = NULL;
     for (int i = 0; i < MAX_POLYGON_MESHES && !found; i++)
         if (p->mesh[i].model_serial == model->serial && p->mesh[i].level == level)
             found = &p->mesh[i];
     if (!found)
-        found = build(p, model, level, error);
+        found = build(r, model, level, error);
     if (found)
         found->used = ++p->clock;
     return found;
@@ -156,7 +158,7 @@ bool stage_polygons(struct renderer *r, const struct renderer_model *model,
                               r->target.ptex};
     struct polygons *p = &r->polygons;
     struct polygon_mesh *mesh =
-        compile(p, error) ? find_or_build(p, model, request->surface.level, error) : NULL;
+        compile(p, error) ? find_or_build(r, model, request->surface.level, error) : NULL;
     if (!mesh || !pieces_cover_all(&r->pieces, tile, error))
         return false;
     if (!p->framebuffer)
@@ -176,7 +178,7 @@ bool stage_wireframe(struct renderer *r, const struct renderer_model *model,
                      struct error *error)
 {
     struct polygons *p = &r->polygons;
-    struct polygon_mesh *mesh = find_or_build(p, model, request->surface.level, error);
+    struct polygon_mesh *mesh = find_or_build(r, model, request->surface.level, error);
     if (!mesh)
         return false;
     attach(r, &r->target.colour, 1);

@@ -299,7 +299,7 @@ bool stage_shade(struct renderer *r, const struct frame_request *request, struct
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
     clear_planes(r, request);
     for (uint32_t i = request->n_lights; i-- > 0;)
-        if (!shade_light(r, request, i, error))
+        if (!watch_check(&r->watch, error) || !shade_light(r, request, i, error))
             return false;
     return true;
 }
