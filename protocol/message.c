@@ -13,6 +13,7 @@ FITS(sheen_ModelQuery_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_ModelInfo_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Render_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Frame_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
+FITS(sheen_Superseded_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Progress_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Stats_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Error_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
@@ -40,6 +41,8 @@ const pb_msgdesc_t *message_fields(uint8_t type)
         return sheen_Stats_fields;
     case MESSAGE_ERROR:
         return sheen_Error_fields;
+    case MESSAGE_SUPERSEDED:
+        return sheen_Superseded_fields;
     default:
         return NULL;
     }
@@ -76,7 +79,7 @@ bool message_encode(uint8_t type, uint32_t seq, const void *body, uint8_t *buffe
                     size_t *length)
 {
     const pb_msgdesc_t *fields = message_fields(type);
-    if (!fields && type != MESSAGE_STATS_QUERY)
+    if (!fields && type != MESSAGE_STATS_QUERY && type != MESSAGE_CANCEL)
         return false;
     return encode(type, seq, 0, fields, body, buffer, capacity, length);
 }

@@ -367,6 +367,19 @@ static bool check_show(const sheen_Render *render, char *text)
            refuse(text, "show paints surfaces; a wireframe has none");
 }
 
+static bool check_schedule(const sheen_Render *render, char *text)
+{
+    if (!check_enum(render->request_class, sheen_RequestClass_CLASS_BATCH, "request_class", text))
+        return false;
+    if (render->has_view && render->request_class == sheen_RequestClass_CLASS_BATCH)
+        return refuse(text, "view is for interactive requests and stills; a batch is never "
+                            "replaced");
+    return !render->has_deadline_ms ||
+           (render->deadline_ms > 0 && render->deadline_ms <= PROTOCOL_MAX_DEADLINE_MS) ||
+           refuse(text, "deadline_ms (--deadline) is %u; it must be from 1 to %u",
+                  render->deadline_ms, PROTOCOL_MAX_DEADLINE_MS);
+}
+
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES])
 {
@@ -384,7 +397,8 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
         return refuse(text, "%ux%u px with planes %u is over %llu bytes or %u px a side",
                       render->width_px, render->height_px, planes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
-    return (!render->has_camera || check_camera(&render->camera, text)) &&
+    return check_schedule(render, text) &&
+           (!render->has_camera || check_camera(&render->camera, text)) &&
            check_lights(&render->lines, render->lights, render->lights_count, text) &&
            check_surface(render, text) &&
            check_colours(render->has_miss ? &render->miss : NULL,
@@ -434,11 +448,17 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
     switch (type) {
     case MESSAGE_HELLO_OK: {
         const sheen_HelloOk *ok = body;
+        if (ok->credits == 0 || ok->credits > PROTOCOL_MAX_CREDITS)
+            return refuse(text, "credits is %u; it must be from 1 to %u", ok->credits,
+                          PROTOCOL_MAX_CREDITS);
         return check_text(ok->server, "server", text) && check_text(ok->device, "device", text) &&
                check_text(ok->driver, "driver", text);
     }
     case MESSAGE_UPLOAD_STATE:
         return true;
+    case MESSAGE_SUPERSEDED:
+        return ((const sheen_Superseded *)body)->by != 0 ||
+               refuse(text, "by is 0, which is no request's number");
     case MESSAGE_MODEL_INFO:
         return check_model_info(body, text);
     case MESSAGE_FRAME:
@@ -455,7 +475,7 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
         const sheen_Error *error = body;
         if (error->code == sheen_ErrorCode_ERROR_NONE)
             return refuse(text, "code is 0; an error has one");
-        return check_enum(error->code, sheen_ErrorCode_ERROR_DEVICE, "code", text) &&
+        return check_enum(error->code, sheen_ErrorCode_ERROR_DEADLINE, "code", text) &&
                check_text(error->text, "text", text);
     }
     default:

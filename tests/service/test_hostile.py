@@ -39,7 +39,7 @@ class Hostile(DaemonCase):
             self.assert_closed(client, wire.ERROR_VERSION, "version")
 
     def test_unknown_type(self):
-        for kind in (0, 15, 77, 255):
+        for kind in (0, 17, 77, 255):
             for client in self.each():
                 client.send(message(kind, 2))
                 self.assert_closed(client, wire.ERROR_PROTOCOL, "type")

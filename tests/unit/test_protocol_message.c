@@ -364,6 +364,56 @@ static void uploads_are_checked(void **state)
     assert_false(message_check_hello(&hello, text));
 }
 
+static void render_schedules(void **state)
+{
+    (void)state;
+    REFUSED(request_class, (sheen_RequestClass)3, "request_class is 3");
+    ACCEPTED(request_class, sheen_RequestClass_CLASS_INTERACTIVE);
+    sheen_Render render = GOOD;
+    char text[MESSAGE_TEXT_BYTES];
+    render.has_view = render.has_request_class = true;
+    render.view = UINT32_MAX;
+    assert_true(check(&render, text));
+    render.request_class = sheen_RequestClass_CLASS_BATCH;
+    assert_false(check(&render, text));
+    assert_non_null(strstr(text, "view"));
+    render = GOOD;
+    render.has_deadline_ms = true;
+    assert_false(check(&render, text));
+    assert_non_null(strstr(text, "deadline_ms (--deadline) is 0"));
+    render.deadline_ms = PROTOCOL_MAX_DEADLINE_MS;
+    assert_true(check(&render, text));
+    render.deadline_ms++;
+    assert_false(check(&render, text));
+}
+
+static void credits_and_replacements_are_checked(void **state)
+{
+    (void)state;
+    char text[MESSAGE_TEXT_BYTES];
+    sheen_HelloOk ok = {.credits = PROTOCOL_MAX_CREDITS};
+    assert_true(message_check_answer(MESSAGE_HELLO_OK, &ok, text));
+    ok.credits++;
+    assert_false(message_check_answer(MESSAGE_HELLO_OK, &ok, text));
+    assert_non_null(strstr(text, "credits is 65"));
+    ok.credits = 0;
+    assert_false(message_check_answer(MESSAGE_HELLO_OK, &ok, text));
+    sheen_Superseded superseded = {.by = 7};
+    assert_true(message_check_answer(MESSAGE_SUPERSEDED, &superseded, text));
+    superseded.by = 0;
+    assert_false(message_check_answer(MESSAGE_SUPERSEDED, &superseded, text));
+    assert_false(message_check_answer(MESSAGE_CANCEL, NULL, text)); /* no server sends it */
+
+    /* What a server of minor version 0 leaves out. */
+    uint8_t buffer[MESSAGE_BUFFER_BYTES];
+    size_t length;
+    ok = (sheen_HelloOk){.server = "0"};
+    assert_true(message_encode(MESSAGE_HELLO_OK, 1, &ok, buffer, sizeof(buffer), &length));
+    assert_true(message_decode(MESSAGE_HELLO_OK, buffer + MESSAGE_HEADER_BYTES,
+                               length - MESSAGE_HEADER_BYTES, &ok));
+    assert_int_equal(ok.credits, PROTOCOL_MAX_IN_FLIGHT);
+}
+
 static void answers_are_checked(void **state)
 {
     (void)state;
@@ -372,7 +422,9 @@ static void answers_are_checked(void **state)
     assert_true(message_check_answer(MESSAGE_ERROR, &error, text));
     error.code = sheen_ErrorCode_ERROR_NONE;
     assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
-    error.code = (sheen_ErrorCode)11;
+    error.code = sheen_ErrorCode_ERROR_DEADLINE;
+    assert_true(message_check_answer(MESSAGE_ERROR, &error, text));
+    error.code = (sheen_ErrorCode)13;
     assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
     error.code = sheen_ErrorCode_ERROR_MODEL;
     strcpy(error.text, "a\x1b[2J");
@@ -581,6 +633,8 @@ int main(void)
         cmocka_unit_test(left_out_fields_are_not_looked_at),
         cmocka_unit_test(text_is_utf8_without_controls),
         cmocka_unit_test(uploads_are_checked),
+        cmocka_unit_test(render_schedules),
+        cmocka_unit_test(credits_and_replacements_are_checked),
         cmocka_unit_test(answers_are_checked),
         cmocka_unit_test(encoding_stays_within_its_buffer),
         cmocka_unit_test(the_largest_messages_fit),
