@@ -37,29 +37,10 @@ static bool set_listen(struct settings *settings, const char *value, struct erro
     return true;
 }
 
-/* A whole number from low to high; a suffix K, M, G or T multiplies by powers of 1024. */
-static bool parse_number(const char *value, uint64_t low, uint64_t high, bool suffixes,
-                         uint64_t *number)
-{
-    if (*value < '0' || *value > '9')
-        return false;
-    char *end;
-    errno = 0;
-    uint64_t n = strtoull(value, &end, 10);
-    const char *suffix = suffixes && *end ? strchr("KMGT", *end) : NULL;
-    if (suffix) {
-        end++;
-        for (long i = suffix - "KMGT"; errno == 0 && i >= 0; i--)
-            errno = __builtin_mul_overflow(n, 1024, &n) ? ERANGE : 0;
-    }
-    *number = n;
-    return errno == 0 && *end == 0 && n >= low && n <= high;
-}
-
 static bool set_number(const char *name, const char *value, uint64_t low, uint64_t high,
                        uint64_t *number, struct error *error)
 {
-    return parse_number(value, low, high, false, number) ||
+    return number_parse(value, low, high, false, number) ||
            error_set(error, ERROR_REQUEST,
                      "%s is '%s'; it must be a whole number from %llu to %llu", name, value,
                      (unsigned long long)low, (unsigned long long)high);
@@ -69,21 +50,10 @@ static bool set_device(struct settings *settings, const char *value, struct erro
 {
     uint64_t number;
     if (strcmp(value, "auto") != 0 && strcmp(value, "software") != 0 &&
-        !parse_number(value, 0, 1023, false, &number))
+        !number_parse(value, 0, 1023, false, &number))
         return error_set(error, ERROR_REQUEST,
                          "device is '%s'; it must be auto, software or a device's number", value);
     snprintf(settings->device, sizeof settings->device, "%s", value);
-    return true;
-}
-
-static bool set_memory_budget(struct settings *settings, const char *value, struct error *error)
-{
-    uint64_t bytes;
-    if (!parse_number(value, 1, SIZE_MAX / 2, true, &bytes))
-        return error_set(error, ERROR_REQUEST,
-                         "memory-budget is '%s'; it must be bytes, as 4000000000, 800M or 4G",
-                         value);
-    settings->service.memory_budget_bytes = bytes;
     return true;
 }
 
@@ -92,22 +62,6 @@ static bool set_threads(struct settings *settings, const char *value, struct err
     uint64_t n = 0;
     bool ok = set_number("threads", value, 1, POOL_MAX_THREADS, &n, error);
     settings->service.n_threads = (unsigned)n;
-    return ok;
-}
-
-static bool set_idle_timeout(struct settings *settings, const char *value, struct error *error)
-{
-    uint64_t n = 0;
-    bool ok = set_number("idle-timeout", value, 0, 10000000, &n, error);
-    settings->service.idle_timeout_s = (unsigned)n;
-    return ok;
-}
-
-static bool set_drain_timeout(struct settings *settings, const char *value, struct error *error)
-{
-    uint64_t n = 0;
-    bool ok = set_number("drain-timeout", value, 0, 10000000, &n, error);
-    settings->service.drain_timeout_s = (unsigned)n;
     return ok;
 }
 
@@ -138,7 +92,8 @@ static bool set_check_config(struct settings *settings, const char *value, struc
     return true;
 }
 
-/* --- the table of options: getopt, --help and the configuration file all read it */
+/* --- the table of options: getopt, --help and the configuration file all read it, and then the
+ * table of limits (limits.h) */
 
 struct option_row {
     const char *name, *argument; /* argument: NULL when it takes none */
@@ -154,15 +109,8 @@ static const struct option_row OPTIONS[] = {
      set_listen, true},
     {"device", "auto|software|N", "a GPU if there is one, the software device, or the N-th device",
      set_device, true},
-    {"memory-budget", "BYTES", "most that models and images may take; K, M, G (default: 4G)",
-     set_memory_budget, true},
     {"threads", "N", "for building tables and encoding (default: one per processor)", set_threads,
      true},
-    {"idle-timeout", "SECONDS", "disconnect a client without a request; 0: never (default: 900)",
-     set_idle_timeout, true},
-    {"drain-timeout", "SECONDS",
-     "after SIGTERM, how long a client may take to read its frames (default: 30)",
-     set_drain_timeout, true},
     {"config", "FILE", "lines 'name = value' with the names above; options given here go first",
      set_config, false},
     {"check-config", NULL, "check the options and the file, then exit", set_check_config, false},
@@ -172,20 +120,37 @@ static const struct option_row OPTIONS[] = {
 };
 #define N_OPTIONS (sizeof OPTIONS / sizeof *OPTIONS)
 
+/* `help` goes on in a column of its own. */
+static void print_row(const char *name, const char *argument, const char *help)
+{
+    char option[64];
+    snprintf(option, sizeof option, "--%s %s", name, argument ? argument : "");
+    printf("  %-30s", option);
+    for (const char *c = help; *c; c++)
+        *c == '\n' ? (void)printf("\n  %-30s", "") : (void)putchar(*c);
+}
+
+static void print_limits(void)
+{
+    puts("\nlimits; bytes take K, M, G:");
+    for (size_t i = 0; i < N_LIMITS; i++) {
+        char fallback[LIMITS_TEXT_BYTES];
+        limits_format(&LIMITS[i], LIMITS[i].fallback, fallback);
+        print_row(LIMITS[i].name, limits_argument(&LIMITS[i]), LIMITS[i].help);
+        printf(" (default: %s)\n", fallback);
+    }
+}
+
 static void print_help(void)
 {
     puts(
         "sheend renders exact reflection lines on subdivision surfaces for clients of its socket.\n"
         "\nusage: sheend [options]\n");
     for (size_t i = 0; i < N_OPTIONS; i++) {
-        char name[64];
-        snprintf(name, sizeof name, "--%s %s", OPTIONS[i].name,
-                 OPTIONS[i].argument ? OPTIONS[i].argument : "");
-        printf("  %-26s", name);
-        for (const char *c = OPTIONS[i].help; *c; c++)
-            *c == '\n' ? (void)printf("\n  %-26s", "") : (void)putchar(*c);
+        print_row(OPTIONS[i].name, OPTIONS[i].argument, OPTIONS[i].help);
         putchar('\n');
     }
+    print_limits();
     puts("\nexamples:\n"
          "  sheend                                       a daemon for this user alone\n"
          "  sheend --listen unix:/run/sheen/sheen.sock   at a place of your choice\n"
@@ -219,6 +184,9 @@ static int config_value(void *user, const char *section, const char *name, const
             return 1;
         return OPTIONS[i].set(reader->settings, value, reader->error);
     }
+    for (size_t i = 0; i < N_LIMITS; i++)
+        if (strcmp(name, LIMITS[i].name) == 0)
+            return limits_set(&reader->settings->service.limits, &LIMITS[i], value, reader->error);
     return error_set(reader->error, ERROR_REQUEST, "unknown name '%s'; sheend --help lists them",
                      name);
 }
@@ -237,34 +205,54 @@ static bool read_config(struct settings *settings, bool skip_listen, struct erro
                      found.kind != ERROR_NONE ? found.text : "a line must be 'name = value'");
 }
 
+/* getopt's table: OPTIONS, then LIMITS. NULL without memory. */
+static struct option *long_options(void)
+{
+    struct option *options = calloc(N_OPTIONS + N_LIMITS + 1, sizeof *options);
+    for (size_t i = 0; options && i < N_OPTIONS; i++)
+        options[i] = (struct option){
+            OPTIONS[i].name, OPTIONS[i].argument ? required_argument : no_argument, NULL, 0};
+    for (size_t i = 0; options && i < N_LIMITS; i++)
+        options[N_OPTIONS + i] = (struct option){LIMITS[i].name, required_argument, NULL, 0};
+    return options;
+}
+
+/* One option in its turn: --config alone, or all the others. */
+static bool take_option(struct settings *settings, size_t index, bool config_only, bool *has_listen,
+                        struct error *error)
+{
+    if (index >= N_OPTIONS)
+        return config_only ||
+               limits_set(&settings->service.limits, &LIMITS[index - N_OPTIONS], optarg, error);
+    const struct option_row *row = &OPTIONS[index];
+    if (!row->set) {
+        strcmp(row->name, "help") == 0 ? print_help() : (void)puts("sheend " SHEEN_VERSION);
+        exit(EXIT_DONE);
+    }
+    *has_listen |= row->set == set_listen;
+    return (row->set == set_config) != config_only || row->set(settings, optarg, error);
+}
+
 /* Walks the command line: --config alone, or all the others, so that they override the file. */
 static bool walk_options(int argc, char **argv, struct settings *settings, bool config_only,
                          bool *has_listen, struct error *error)
 {
-    struct option long_options[N_OPTIONS + 1] = {{0}};
-    for (size_t i = 0; i < N_OPTIONS; i++)
-        long_options[i] = (struct option){
-            OPTIONS[i].name, OPTIONS[i].argument ? required_argument : no_argument, NULL, 0};
+    struct option *options = long_options();
+    if (!options)
+        return error_set(error, ERROR_SERVER, "no memory for the options");
+    bool ok = true;
     optind = 1;
     opterr = 0;
-    for (int c, index; (c = getopt_long(argc, argv, "", long_options, &index)) != -1;) {
-        if (c != 0)
-            return error_set(error, ERROR_REQUEST,
-                             "'%s' is no option or lacks its value; sheend --help lists them",
-                             argv[optind - 1]);
-        const struct option_row *row = &OPTIONS[index];
-        if (!row->set) {
-            strcmp(row->name, "help") == 0 ? print_help() : (void)puts("sheend " SHEEN_VERSION);
-            exit(EXIT_DONE);
-        }
-        *has_listen |= row->set == set_listen;
-        if ((row->set == set_config) == config_only && !row->set(settings, optarg, error))
-            return false;
-    }
-    return optind == argc || error_set(error, ERROR_REQUEST,
-                                       "'%s' is no option; sheend --help "
-                                       "lists them",
-                                       argv[optind]);
+    for (int c, index; ok && (c = getopt_long(argc, argv, "", options, &index)) != -1;)
+        ok = c == 0 ? take_option(settings, (size_t)index, config_only, has_listen, error)
+                    : error_set(error, ERROR_REQUEST,
+                                "'%s' is no option or lacks its value; sheend --help lists them",
+                                argv[optind - 1]);
+    free(options);
+    if (!ok || optind == argc)
+        return ok;
+    return error_set(error, ERROR_REQUEST, "'%s' is no option; sheend --help lists them",
+                     argv[optind]);
 }
 
 /* --- defaults */
@@ -328,13 +316,10 @@ int main(int argc, char **argv)
     struct error error = {0};
     struct settings settings = {
         .device = "auto",
-        .service = {.session_fd = -1,
-                    .memory_budget_bytes = (size_t)4 << 30,
-                    .n_threads = count_processors(),
-                    .idle_timeout_s = 900,
-                    .drain_timeout_s = 30},
+        .service = {.session_fd = -1, .n_threads = count_processors()},
     };
     struct service_options *options = &settings.service;
+    limits_init(&options->limits);
     if (!read_settings(argc, argv, &settings, &error))
         return fail(&error);
     if (settings.check_config) {
@@ -343,7 +328,7 @@ int main(int argc, char **argv)
     }
     bool single = options->session_fd >= 0;
     if (single)
-        options->n_listen = options->idle_timeout_s = 0;
+        options->n_listen = options->limits.idle_s = 0;
     else if (options->n_listen == 0 && !set_default_listen(&settings, &error))
         return fail(&error);
     options->device = settings.device;

@@ -18,6 +18,7 @@ struct encode_job {
     struct encoded *encoded;
     struct codec_layout layout;
     sheen_Encoding encoding;
+    enum pool_urgency urgency;
     const struct image_attribute *attributes;
     size_t n_attributes;
     void (*finished)(void *owner, struct encoded *encoded, const struct error *error);
@@ -49,6 +50,10 @@ void encoded_destroy(struct encoded *encoded)
 {
     if (!encoded)
         return;
+    if (encoded->unsent)
+        --*encoded->unsent;
+    if (encoded->released)
+        encoded->released(encoded->memory_of);
     frame_finish(&encoded->frame);
     for (size_t i = 0; i < encoded->n_blocks; i++)
         free(encoded->blocks[i]);
@@ -168,7 +173,7 @@ static void start_strips(struct encode_job *job)
         struct strip_work *strip = &job->strips[i];
         *strip = (struct strip_work){.job = job, .index = i};
         strip->work = (struct work){strip_run, strip_done, strip, NULL};
-        pool_submit(job->pool, &strip->work, POOL_URGENT);
+        pool_submit(job->pool, &strip->work, job->urgency);
     }
 }
 
@@ -247,12 +252,12 @@ static void start_file(struct encode_job *job)
         return;
     }
     job->file_work = (struct work){file_run, file_done, job, NULL};
-    pool_submit(job->pool, &job->file_work, POOL_URGENT);
+    pool_submit(job->pool, &job->file_work, job->urgency);
 }
 
 void encode_start(struct pool *pool, struct frame *frame, const struct codec_layout *layout,
-                  sheen_Encoding encoding, const struct image_attribute *attributes,
-                  size_t n_attributes,
+                  sheen_Encoding encoding, enum pool_urgency urgency,
+                  const struct image_attribute *attributes, size_t n_attributes,
                   void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
                   void *owner)
 {
@@ -273,6 +278,7 @@ void encode_start(struct pool *pool, struct frame *frame, const struct codec_lay
         .encoded = encoded,
         .layout = *layout,
         .encoding = encoding,
+        .urgency = urgency,
         .attributes = attributes,
         .n_attributes = n_attributes,
         .finished = finished,

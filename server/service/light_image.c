@@ -74,6 +74,8 @@ bool light_image_build_start(const struct build_order *order, struct error *erro
     build->image = image;
     build->max_px =
         info->max_width_px < info->max_height_px ? info->max_width_px : info->max_height_px;
+    if (build->max_px > order->max_image_px)
+        build->max_px = order->max_image_px;
     order->progress->stage = "reading";
     build->work = (struct work){decode_run, decode_done, build, NULL};
     pool_submit(order->pool, &build->work, POOL_LATER);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -12,6 +13,8 @@
 #include "server/service/listen.h"
 #include "server/service/request.h"
 #include "server/service/session.h"
+
+#define SERVICE_OWN_DESCRIPTORS 128u /* listeners, devices, libraries: more than are used */
 
 struct service {
     struct session_host host;
@@ -43,13 +46,22 @@ static void turn_away(int fd, const char *text)
 static void accepted(void *owner, int fd)
 {
     struct service *service = owner;
+    struct session_host *host = &service->host;
     struct error error = {0};
-    if (service->host.n_sessions >= SERVICE_MAX_SESSIONS) {
+    if (service->host.n_sessions >= service->host.limits.max_connections) {
         service->host.stats.errors++;
         turn_away(fd, "the daemon has as many clients as it takes: try again later");
         return;
     }
-    struct session *session = session_create(&service->host, fd, &error);
+    struct peer *peer = peer_get(&host->memory.peers, fd);
+    if (!peer || peer->n_connections >= host->limits.max_peer_connections) {
+        host->stats.errors++;
+        turn_away(fd, peer ? "this user or address has as many connections as it may: close one"
+                           : "no memory for another client: try again later");
+        peer_put(&host->memory.peers, peer);
+        return;
+    }
+    struct session *session = session_create(host, fd, peer, &error);
     if (!session) {
         fprintf(stderr, "sheend: a client was turned away: %s\n", error.text);
         return;
@@ -89,10 +101,10 @@ static void after_batch(void *owner)
         return;
     /* Nobody is left to answer; other threads may still be at work. */
     store_cancel_builds(service->host.store);
-    if (!store_is_building(service->host.store) && service->host.scheduler.in_flight == 0)
+    if (!store_is_building(service->host.store) && scheduler_is_idle(&service->host.scheduler))
         loop_stop(service->host.loop);
     else if (service->single)
-        _exit(0); /* a render cannot be stopped, and this one may take long: nobody wants it */
+        _exit(0); /* a tile or a table may take long yet: nobody wants them */
 }
 
 static void tick(void *owner)
@@ -161,9 +173,20 @@ static bool open_listeners(struct service *service, const struct service_options
 static bool open_session(struct service *service, int fd, struct error *error)
 {
     service->single = true;
-    struct session *session = session_create(&service->host, fd, error);
+    struct peer *peer = peer_get(&service->host.memory.peers, fd);
+    struct session *session = peer ? session_create(&service->host, fd, peer, error) : NULL;
     service->sessions = session;
-    return session != NULL;
+    return session || (peer ? false : error_set(error, ERROR_SERVER, "no memory for a client"));
+}
+
+/* A descriptor for every client, as far as the system lets us. */
+static void allow_descriptors(uint64_t n)
+{
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) < 0 || files.rlim_cur >= n)
+        return;
+    files.rlim_cur = files.rlim_max < n ? files.rlim_max : n;
+    setrlimit(RLIMIT_NOFILE, &files); /* with fewer, accepting rests when they are used up */
 }
 
 static bool start(struct service *service, const struct service_options *options,
@@ -175,16 +198,17 @@ static bool start(struct service *service, const struct service_options *options
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
         !(service->completions = completions_create(host->loop, error)) ||
         !(host->render_thread = render_thread_create(&renderer, service->completions, error)) ||
-        !(host->pool = pool_create("sheend-pool", options->n_threads, &encode_worker,
+        !(host->pool = pool_create("sheend-pool", options->n_threads, 1, &encode_worker,
                                    service->completions, error)) ||
-        !(host->store =
-              store_create(host->pool, host->render_thread, options->memory_budget_bytes, error)))
+        !(host->store = store_create(host->pool, host->render_thread, options->limits.memory_budget,
+                                     (uint32_t)options->limits.max_image_side, error)))
         return false;
-    host->max_upload_bytes = options->memory_budget_bytes < PROTOCOL_MAX_UPLOAD_BYTES
-                                 ? options->memory_budget_bytes
-                                 : PROTOCOL_MAX_UPLOAD_BYTES;
-    host->idle_timeout_us = options->idle_timeout_s * 1000000ull;
-    host->drain_timeout_us = options->drain_timeout_s * 1000000ull;
+    const struct limits *limits = &options->limits;
+    host->limits = *limits;
+    host->max_upload_bytes =
+        limits->memory_budget < limits->max_upload ? limits->memory_budget : limits->max_upload;
+    host->memory = (struct memory){.store = host->store, .limits = &host->limits};
+    allow_descriptors(limits->max_connections + SERVICE_OWN_DESCRIPTORS);
     stats_init(&host->stats);
     if (options->session_fd >= 0)
         return open_session(service, options->session_fd, error);

@@ -8,19 +8,17 @@
 #include "protocol/address.h"
 #include "server/error.h"
 #include "server/gpu/renderer.h"
+#include "server/service/limits.h"
 
 #define SERVICE_MAX_LISTENERS 16
-#define SERVICE_MAX_SESSIONS 256u
 
 struct service_options {
     struct address listen[SERVICE_MAX_LISTENERS];
     size_t n_listen;
-    int session_fd;             /* serve this connected socket alone; -1: listen */
-    const char *device;         /* as renderer_options.device */
-    size_t memory_budget_bytes; /* as store_create() */
-    unsigned n_threads;         /* of the pool, 1 to POOL_MAX_THREADS */
-    unsigned idle_timeout_s;    /* 0: never */
-    unsigned drain_timeout_s;   /* to read what is in flight when the daemon shuts down */
+    int session_fd;     /* serve this connected socket alone; -1: listen */
+    const char *device; /* as renderer_options.device */
+    unsigned n_threads; /* of the pool, 1 to POOL_MAX_THREADS */
+    struct limits limits;
 };
 
 struct service;

@@ -8,9 +8,11 @@
 
 struct stats {
     uint64_t start_us;
-    uint64_t frames, errors; /* answered with FRAME, with ERROR */
-    uint64_t upload_bytes;   /* of chunks */
-    uint64_t sent_bytes;     /* all that went out */
+    uint64_t frames, errors;              /* answered with FRAME, with ERROR */
+    uint64_t superseded, cancelled, late; /* answered so: ERRORs but for the first */
+    uint64_t disconnected;                /* clients: over a limit, or broke the protocol */
+    uint64_t upload_bytes;                /* of chunks */
+    uint64_t sent_bytes;                  /* all that went out */
     sheen_Times last[STATS_FRAMES];
 };
 

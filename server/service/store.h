@@ -1,5 +1,5 @@
 /* Everything that clients have uploaded, by kind and SHA-256: files that wait to be used, models
- * and light images that are ready on the GPU, and the memory they take.
+ * and light images that are ready on the GPU; and the memory budget for all that the daemon holds.
  *
  * An asset is built on first use, once, however many requests wait for it, and a few at a time.
  * What no request uses is evicted, least recently used first, when room is needed; the client is
@@ -46,6 +46,7 @@ struct asset {
     struct store *store;
     unsigned users; /* requests that wait for it or use it */
     size_t charged_bytes;
+    unsigned polygon_levels; /* bits: levels whose polygons are charged */
     struct asset_waiter *waiters;
     struct asset *next_build;    /* in the queue for a turn */
     struct asset *newer, *older; /* by last use */
@@ -64,9 +65,10 @@ struct store_counts {
     uint64_t model_bytes;    /* tables on the GPU */
 };
 
-/* budget_bytes: the most that files, tables and texels may take together. */
+/* budget_bytes: the most that all who reserve may take together; max_image_px: of a light image,
+ * either way. */
 struct store *store_create(struct pool *pool, struct render_thread *render_thread,
-                           size_t budget_bytes, struct error *error);
+                           size_t budget_bytes, uint32_t max_image_px, struct error *error);
 /* No build may be running. The GL thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */
 
@@ -96,9 +98,14 @@ enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *wait
                                   struct error *error);
 void store_unuse(struct asset *asset);
 
+/* A model in use will be drawn as polygons of this level (0 to 6): they are charged once, until the
+ * model goes. False as store_reserve(). */
+bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *error);
+
 /* From now on every build fails soon: nobody waits for it any more. */
 void store_cancel_builds(struct store *store);
 bool store_is_building(const struct store *store);
+size_t store_used_bytes(const struct store *store); /* of the budget */
 struct store_counts store_count(const struct store *store);
 
 #endif
