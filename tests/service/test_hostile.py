@@ -1,7 +1,6 @@
 """Clients that break the protocol, on purpose or by dying, and what the daemon makes of them.
 
 After every test the daemon must serve others (DaemonCase.tearDown)."""
-import contextlib
 import hashlib
 import os
 import random
@@ -171,22 +170,6 @@ class Hostile(DaemonCase):
         self.assert_serves()
         for client in clients:
             client.socket.close()
-
-    def test_more_clients_than_are_taken(self):
-        clients = []
-        try:
-            with self.assertRaises(wire.Refused) as caught:
-                for _ in range(400):
-                    clients.append(Client(self.daemon.unix, greet=False))
-                    with contextlib.suppress(BrokenPipeError):
-                        clients[-1].send(wire.hello())
-                    clients[-1].expect(wire.HELLO_OK, 1)
-            self.assertEqual(caught.exception.code, wire.ERROR_OVERLOADED)
-            self.assertEqual(len(clients), 257)
-        finally:
-            for client in clients:
-                client.socket.close()
-        time.sleep(0.3)
 
 
 class Uploads(DaemonCase):
