@@ -121,8 +121,8 @@ static const struct option_row ROWS[] = {
     {0},
 };
 
-static const struct option_row *const TABLES[] = {ROWS,           OPTIONS_SCENE,  OPTIONS_SURFACE,
-                                                  OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
+static const struct option_row *const TABLES[] = {
+    ROWS, OPTIONS_SCENE, OPTIONS_SURFACE, OPTIONS_SCHEDULE, OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_RENDER = {
     .name = "render",

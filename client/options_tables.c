@@ -185,6 +185,39 @@ static bool apply_show_range(struct options *options, const char *value, char *w
            options_refuse(why, "must be a number above 0");
 }
 
+static bool apply_class(struct options *options, const char *value, char *why)
+{
+    static const char *const names[] = {
+        [SHEEN_STILL] = "still", [SHEEN_INTERACTIVE] = "interactive", [SHEEN_BATCH] = "batch"};
+    options->given |= GIVEN_CLASS;
+    for (int i = 0; i < 3; i++) {
+        options->request.request_class = (enum sheen_class)i;
+        if (strcmp(value, names[i]) == 0)
+            return true;
+    }
+    return options_refuse(why, "must be interactive, still or batch");
+}
+
+static bool apply_deadline(struct options *options, const char *value, char *why)
+{
+    uint32_t *deadline_ms = &options->request.deadline_ms;
+    return (value_uint32(value, deadline_ms) && *deadline_ms > 0 && *deadline_ms <= 3600000) ||
+           options_refuse(why, "must be milliseconds from 1 to 3600000");
+}
+
+const struct option_row OPTIONS_SCHEDULE[] = {
+    {"class", 0, "CLASS",
+     "what the daemon puts first when it has many: interactive, then still, then\n"
+     "batch, of which the last two keep a fifth of its time each (default: still;\n"
+     "stream: interactive)",
+     apply_class},
+    {"deadline", 0, "MS",
+     "of no use later than this after the daemon has read the request, 1 to\n"
+     "3600000 milliseconds (default: none)",
+     apply_deadline},
+    {0},
+};
+
 const struct option_row OPTIONS_COMMON[] = {
     {"server", 0, "ADDRESS",
      "a running daemon: unix:PATH or tcp:HOST:PORT (default: SHEEN_SERVER\n"
