@@ -3,6 +3,7 @@
 #   make demo       install what is missing, build, render the demo model to a PNG
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
+#   make soak       the service under load, SECONDS of each part (60); prints figures, judges ratios
 #   make bench      how fast, each question by a program of tests/bench; figures to build/bench
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
@@ -126,7 +127,7 @@ $(EMBREE_OBJ): CXXFLAGS += -O3 -march=native -ffp-contract=fast
 $(BUILD)/tests/bench_frame: $(EMBREE_OBJ)
 $(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
 
-.PHONY: tests unit service oracle check bench lint format demo deps install clean
+.PHONY: tests unit service oracle check soak bench lint format demo deps install clean
 tests: all $(UNIT_TESTS) $(ORACLE_TESTS)
 unit: $(UNIT_TESTS)
 	sh tests/run.sh unit $(BUILD)
@@ -139,6 +140,10 @@ check:
 	$(MAKE) lint
 	$(MAKE) tests
 	sh tests/run.sh all $(BUILD)
+
+SECONDS ?= 60
+soak: all
+	SHEEN_SOAK_S=$(SECONDS) /usr/bin/python3 tests/service/run.py $(BUILD) soak_load
 
 # One after the other: each wants the machine for itself.
 bench: all $(BENCH)

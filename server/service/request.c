@@ -91,17 +91,27 @@ void request_answer_superseded(struct request *request, uint32_t by_seq)
     let_go_of_session(request);
 }
 
+static void cancel(struct request *request, const char *why)
+{
+    struct session *session = request->session;
+    session->host->stats.cancelled++;
+    session_answer_error(session, request->answer, sheen_ErrorCode_ERROR_CANCELLED, why);
+    let_go_of_session(request);
+}
+
 void request_cancel(struct session *session, uint32_t seq)
 {
     struct request *request = session->requests;
     while (request && request->seq != seq)
         request = request->next;
-    if (!request)
-        return; /* answered already */
-    session->host->stats.cancelled++;
-    session_answer_error(session, request->answer, sheen_ErrorCode_ERROR_CANCELLED,
-                         "the request was taken back");
-    let_go_of_session(request);
+    if (request) /* else it has been answered */
+        cancel(request, "the request was taken back");
+}
+
+void request_cancel_all(struct session *session)
+{
+    while (session->requests)
+        cancel(session->requests, "the connection ends: it has asked for more than its credits");
 }
 
 bool request_is_late(const struct request *request, uint64_t now_us)

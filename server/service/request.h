@@ -22,6 +22,8 @@ void request_render(struct session *session, struct answer *answer, uint32_t seq
 
 /* Answers the request of this number ERROR_CANCELLED, if it has not been answered. */
 void request_cancel(struct session *session, uint32_t seq);
+/* The same for all of the session's. */
+void request_cancel_all(struct session *session);
 /* Answers those whose time is over ERROR_DEADLINE. */
 void request_end_late(struct session *session, uint64_t now_us);
 /* The session's socket has taken its interactive frame: the next that is ready goes. */

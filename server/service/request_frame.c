@@ -10,16 +10,17 @@
 
 /* Stills and batches are drawn in tiles of so many pixels, so that others wait for one at most. The
  * size depends on the device and the request alone: equal requests give equal bytes. A tile of a
- * software device that the model fills takes 43 ms (fender.obj) to 97 ms (a car of 1,575 faces):
- * medians of `sheen stream --size 512x512 --frames 20` on llvmpipe, with 2 cores that others used
- * too; less would be mostly the choice of what to draw. On hardware the aim is 8 ms or less; that
- * has not been measured. */
-#define SOFTWARE_TILE_PX (512u * 512)
-#define HARDWARE_TILE_PX (1024u * 1024)
+ * software device takes about 11 ms: fender.obj and a car of 1,575 faces at 1600x1000, `sheen
+ * stream
+ * --class still` on llvmpipe, with 2 cores that others used too. There, cut so, they took 1.5
+ * and 1.1 times as long as whole; in tiles of half a megapixel 1.4 and 1.1 times. On hardware the
+ * aim is 8 ms or less; that has not been measured. */
+#define SOFTWARE_TILE_PX (256u * 256)
+#define HARDWARE_TILE_PX (512u * 512)
 #define LIGHTS_OF_A_TILE 2 /* with more of them tiles are smaller, since each light is a pass */
 /* Interactive frames are drawn whole, since a change of light alone then reuses the planes, unless
  * they are larger than this many tiles. */
-#define WHOLE_TILES 8
+#define WHOLE_TILES 32
 
 static uint64_t tile_px(const struct request *request)
 {

@@ -368,10 +368,14 @@ static const char *out_of_order(const struct session *session, const struct mess
         return session->minor > 0 ? NULL : "a message of minor version 1";
     if (session->upload && header->type != MESSAGE_UPLOAD_CHUNK)
         return "an upload is under way and not complete";
-    bool asks = header->type != MESSAGE_UPLOAD_CHUNK;
-    if (asks && session->minor > 0 && session->answers.n >= session->credits)
-        return "more requests unanswered than HELLO_OK's credits allow";
     return NULL;
+}
+
+static bool is_over_credit(const struct session *session, const struct message_header *header)
+{
+    bool asks = header->type != MESSAGE_HELLO && header->type != MESSAGE_CANCEL &&
+                header->type != MESSAGE_UPLOAD_CHUNK;
+    return asks && session->minor > 0 && session->answers.n >= session->credits;
 }
 
 static void on_message(void *owner, const struct message_header *header, const uint8_t *body)
@@ -381,6 +385,13 @@ static void on_message(void *owner, const struct message_header *header, const u
     if (wrong) {
         session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
                        message_type_name(header->type), wrong);
+        return;
+    }
+    if (is_over_credit(session, header)) {
+        session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+                       "%s: more requests unanswered than HELLO_OK's credits allow",
+                       message_type_name(header->type));
+        request_cancel_all(session); /* who floods is not served first */
         return;
     }
     switch (header->type) {

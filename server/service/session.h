@@ -23,6 +23,12 @@
 /* Without input for so long, a connection keeps no memory for long messages. */
 #define SESSION_TRIM_US 1000000u
 
+/* Lines that the log has taken in this second. */
+struct log_rate {
+    uint64_t second;
+    unsigned n;
+};
+
 /* What all sessions share; outlives them. */
 struct session_host {
     struct loop *loop;
@@ -35,6 +41,7 @@ struct session_host {
     struct costs costs;
     struct request *parked; /* they wait for memory that other frames have */
     struct stats stats;
+    struct log_rate disconnect_lines;
     uint32_t n_sessions;
     uint64_t max_upload_bytes;
     bool draining; /* no new request is taken, and answers must be read soon */

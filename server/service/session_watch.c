@@ -3,10 +3,23 @@
 
 #include "server/service/session_inside.h"
 
+/* In a flood the first lines of a second say enough. */
+#define LINES_PER_SECOND 10u
+
 void session_log_disconnect(struct session *session, const char *reason)
 {
+    struct log_rate *rate = &session->host->disconnect_lines;
+    uint64_t second = loop_now_us() / 1000000;
     session->host->stats.disconnected++;
-    fprintf(stderr, "sheend: a client (%s) was disconnected: %s\n", session->peer->name, reason);
+    if (second != rate->second) {
+        if (rate->n > LINES_PER_SECOND)
+            fprintf(stderr, "sheend: %u more clients were disconnected within a second\n",
+                    rate->n - LINES_PER_SECOND);
+        *rate = (struct log_rate){.second = second};
+    }
+    if (++rate->n <= LINES_PER_SECOND)
+        fprintf(stderr, "sheend: a client (%s) was disconnected: %s\n", session->peer->name,
+                reason);
 }
 
 /* The client cannot be told, or not in time: why is for the log. */
