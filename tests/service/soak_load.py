@@ -25,7 +25,7 @@ class Soak(unittest.TestCase):
             model = other.upload(CUBE, "cube.obj")
             other.render(model)
             interactive, batch = make_clients((daemon.unix, daemon.tcp), model, 64, 8)
-            run_load(interactive + batch, 5)  # warm
+            run_load(interactive + batch, 10)  # warm
             for client in interactive + batch:
                 client.latencies = []
             warm_kb, before = resident_kb(daemon.process.pid), other.stats()

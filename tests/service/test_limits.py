@@ -255,6 +255,18 @@ class Output(unittest.TestCase):
         client.socket.close()
         self.assertEqual(daemon.stop(), 0)
 
+    def test_kernels_take_no_frames_ahead(self):
+        """A TCP socket's buffer would hold several of these; they would be out of date there."""
+        daemon = Daemon()
+        with Client(daemon.tcp, minor=1, buffer=4096) as client, Client(daemon.unix) as other:
+            model = client.upload(CUBE, "cube.obj")
+            before = other.stats()[3][0]
+            asked = [client.ask(model, 350, 350, kind=INTERACTIVE, view=i) for i in range(10)]
+            time.sleep(1.5)
+            self.assertEqual(other.stats()[3][0] - before, 1)
+            self.assertEqual([client.answer()[0] for _ in asked], asked)
+        self.assertEqual(daemon.stop(), 0)
+
     def test_a_frame_that_waits_for_the_socket_is_replaced(self):
         daemon = Daemon()
         client = self.deaf(daemon, daemon.unix)

@@ -108,7 +108,7 @@ class Frame:
 
 
 class Client:
-    def __init__(self, address, greet=True, timeout=30, minor=0):
+    def __init__(self, address, greet=True, timeout=30, minor=0, buffer=None):
         if address.startswith("unix:"):
             self.socket = socket.socket(socket.AF_UNIX)
             target = address[5:]
@@ -117,6 +117,8 @@ class Client:
             host, port = address[4:].rsplit(":", 1)
             target = (host, int(port))
         self.socket.settimeout(timeout)
+        if buffer:  # what the kernel takes for a client that does not read
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
         self.socket.connect(target)
         self.seq = 1
         if greet:
