@@ -103,9 +103,10 @@ struct renderer {
     /* In use: as struct planes. */
     struct target target;
     struct kept kept;
-    struct planes resting;    /* the other one */
-    bool in_tiles;            /* those in use are for frames of several tiles */
-    struct frame_watch watch; /* of the frame being drawn */
+    struct planes resting;                /* the other one */
+    bool in_tiles;                        /* those in use are for frames of several tiles */
+    struct frame_watch watch;             /* of the frame being drawn */
+    const struct renderer_polygons *made; /* its polygons, or NULL */
     struct pieces pieces;
     struct polygons polygons;
     struct table_programs programs[MAX_PROGRAM_SETS];

@@ -38,6 +38,29 @@ size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level)
            (size_t)size.quads * 6 * sizeof(uint32_t);
 }
 
+struct renderer_polygons *renderer_polygons_create(const struct limit_tables *tables,
+                                                   uint32_t level, const struct frame_watch *watch,
+                                                   struct error *error)
+{
+    struct renderer_polygons *polygons = malloc(sizeof *polygons);
+    if (!polygons) {
+        error_set(error, ERROR_SERVER, "out of memory for polygons");
+        return NULL;
+    }
+    if (mesh_init(&polygons->mesh, tables, level, watch, error))
+        return polygons;
+    free(polygons);
+    return NULL;
+}
+
+void renderer_polygons_destroy(struct renderer_polygons *polygons)
+{
+    if (!polygons)
+        return;
+    mesh_finish(&polygons->mesh);
+    free(polygons);
+}
+
 static bool refuse(const struct limit_tables *tables, uint32_t level, uint64_t quads,
                    struct error *error)
 {

@@ -36,6 +36,10 @@ struct mesh {
     double centre[3]; /* world */
 };
 
+struct renderer_polygons {
+    struct mesh mesh;
+};
+
 /* ERROR_REQUEST when the level has more than MESH_MAX_VERTICES, naming the finest that has not;
  * ERROR_SERVER when memory is short or the watch says that nobody waits. */
 bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t level,

@@ -73,22 +73,19 @@ static void describe_vertices(const struct polygon_mesh *mesh)
     }
 }
 
-static struct polygon_mesh *build(struct renderer *r, const struct renderer_model *model,
-                                  uint32_t level, struct error *error)
+static struct polygon_mesh *upload(struct polygons *p, const struct mesh *made,
+                                   const struct renderer_model *model, uint32_t level,
+                                   struct error *error)
 {
-    struct polygons *p = &r->polygons;
-    struct mesh made;
-    if (!mesh_init(&made, model->tables, level, &r->watch, error))
-        return NULL;
-    size_t vertex_bytes = made.n_vertices * sizeof *made.vertex;
-    size_t index_bytes = made.n_indices * sizeof *made.index;
+    size_t vertex_bytes = made->n_vertices * sizeof *made->vertex;
+    size_t index_bytes = made->n_indices * sizeof *made->index;
     struct polygon_mesh *mesh = make_room(p, vertex_bytes + index_bytes);
     *mesh = (struct polygon_mesh){
         .model_serial = model->serial,
         .level = level,
-        .n_indices = (GLsizei)made.n_indices,
+        .n_indices = (GLsizei)made->n_indices,
         .bytes = vertex_bytes + index_bytes,
-        .centre = {made.centre[0], made.centre[1], made.centre[2]},
+        .centre = {made->centre[0], made->centre[1], made->centre[2]},
     };
     p->bytes += mesh->bytes;
     glCreateBuffers(2, mesh->buffer);
@@ -97,15 +94,27 @@ static struct polygon_mesh *build(struct renderer *r, const struct renderer_mode
                          GL_DYNAMIC_STORAGE_BIT);
     glNamedBufferStorage(mesh->buffer[1], (GLsizeiptr)index_bytes + 1, NULL,
                          GL_DYNAMIC_STORAGE_BIT);
-    glNamedBufferSubData(mesh->buffer[0], 0, (GLsizeiptr)vertex_bytes, made.vertex);
-    glNamedBufferSubData(mesh->buffer[1], 0, (GLsizeiptr)index_bytes, made.index);
+    glNamedBufferSubData(mesh->buffer[0], 0, (GLsizeiptr)vertex_bytes, made->vertex);
+    glNamedBufferSubData(mesh->buffer[1], 0, (GLsizeiptr)index_bytes, made->index);
     glCreateVertexArrays(1, &mesh->array);
     describe_vertices(mesh);
-    mesh_finish(&made);
     if (gpu_check("polygons", error))
         return mesh;
     drop(p, mesh);
     return NULL;
+}
+
+static struct polygon_mesh *build(struct renderer *r, const struct renderer_model *model,
+                                  uint32_t level, struct error *error)
+{
+    struct mesh made;
+    if (r->made)
+        return upload(&r->polygons, &r->made->mesh, model, level, error);
+    if (!mesh_init(&made, model->tables, level, &r->watch, error))
+        return NULL;
+    struct polygon_mesh *mesh = upload(&r->polygons, &made, model, level, error);
+    mesh_finish(&made);
+    return mesh;
 }
 
 static struct polygon_mesh *find_or_build(struct renderer *r, const struct renderer_model *model,

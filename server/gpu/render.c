@@ -214,6 +214,7 @@ static bool step(struct renderer *r, const struct renderer_model *model, struct 
     place_tile(work, &drawn, &tile);
     use_planes(r, !is_single(work));
     r->watch = work->watch;
+    r->made = work->polygons;
     if (drawn.width > r->target.width || drawn.height > r->target.height)
         r->kept.model_serial = 0;
     view_init(&view, &request->camera, request->width_px, request->height_px,

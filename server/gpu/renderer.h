@@ -15,8 +15,9 @@
 #include "server/limit/tables.h"
 
 struct renderer;
-struct renderer_model; /* one cage's tables on the GPU */
-struct renderer_image; /* one light image on the GPU */
+struct renderer_model;    /* one cage's tables on the GPU */
+struct renderer_image;    /* one light image on the GPU */
+struct renderer_polygons; /* a model's polygons of one level, in main memory */
 
 /* Planes a frame can carry, one bit each. */
 enum renderer_plane {
@@ -102,6 +103,9 @@ struct frame_work {
     const struct frame_request *request; /* stays until the last step, as the model does */
     uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
     struct frame_watch watch;
+    /* Of the request's surface, for the case that the device has them not yet; NULL: they are made
+     * then, which takes as long as many tiles. */
+    const struct renderer_polygons *polygons;
 
     uint32_t tile_width, tile_height; /* the renderer's own from here on */
     uint32_t x, y;                    /* of the next tile */
@@ -133,6 +137,13 @@ void frame_finish(struct frame *frame);
  * until the model goes. 0: they are too many, and their frame fails with the words for it. Any
  * thread. */
 size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level);
+
+/* Makes them for frame_work.polygons; they take as much again here. ERROR_REQUEST when they are too
+ * many, ERROR_SERVER when memory is short or nobody waits (asked for every face). Any thread. */
+struct renderer_polygons *renderer_polygons_create(const struct limit_tables *tables,
+                                                   uint32_t level, const struct frame_watch *watch,
+                                                   struct error *error);
+void renderer_polygons_destroy(struct renderer_polygons *polygons); /* NULL is safe */
 
 /* Bytes of one pixel of a plane (a single bit). */
 size_t renderer_plane_bytes(enum renderer_plane plane);

@@ -63,6 +63,64 @@ static uint64_t cost_key(const struct request *request)
     return costs_key(key, next_tile_px(request) >> 16); /* small tiles cost more by the pixel */
 }
 
+/* --- polygons, which are made on the pool: the GL thread would be away for seconds */
+
+static void polygons_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct request *request = work->owner;
+    const struct frame_watch watch = {is_abandoned, request};
+    request->polygons =
+        renderer_polygons_create(&request->model.asset->model->tables,
+                                 request->frame_request.surface.level, &watch, &request->failure);
+}
+
+static void polygons_done(struct work *work)
+{
+    struct request *request = work->owner;
+    request->is_busy = false;
+    request->frame_work.polygons = request->polygons;
+    if (!request->session)
+        request_end(request);
+    else if (!request->polygons)
+        request_fail(request, &request->failure);
+    else
+        scheduler_ready(&request->entry);
+}
+
+/* Makes them where the device has never had them. */
+static void start_polygons(struct request *request)
+{
+    struct asset *asset = request->model.asset;
+    uint32_t level = request->frame_request.surface.level;
+    size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
+    if (!store_charge_polygons(asset, level, &request->failure) ||
+        !store_reserve(request->host->store, bytes, asset->name, ERROR_REQUEST,
+                       &request->failure)) {
+        request_fail(request, &request->failure);
+        return;
+    }
+    request->polygon_bytes = bytes;
+    request->is_busy = true;
+    request->work = (struct work){polygons_run, polygons_done, request, NULL};
+    pool_submit(request->host->pool, &request->work, POOL_LATER);
+}
+
+static bool needs_polygons(const struct request *request)
+{
+    const struct surface *surface = &request->frame_request.surface;
+    return surface->kind != SURFACE_EXACT &&
+           !(request->model.asset->drawn_levels & 1u << surface->level);
+}
+
+static void drop_polygons(struct request *request)
+{
+    renderer_polygons_destroy(request->polygons);
+    store_release(request->host->store, request->polygon_bytes);
+    request->polygons = NULL;
+    request->polygon_bytes = 0;
+}
+
 void request_queue_frame(struct request *request)
 {
     struct frame_request *asked = &request->frame_request;
@@ -72,22 +130,21 @@ void request_queue_frame(struct request *request)
     for (int i = 0; i < MAX_LIGHTS; i++)
         if (request->images[i].asset)
             asked->lights[i].pattern.image = request->images[i].asset->image->gpu;
-    if (asked->surface.kind != SURFACE_EXACT &&
-        !store_charge_polygons(request->model.asset, asked->surface.level, &request->failure)) {
-        request_fail(request, &request->failure);
-        return;
-    }
     codec_layout_init(&request->layout, render->width_px, render->height_px, render->planes);
     request->frame_work = (struct frame_work){
         .request = asked, .tile_px = tile_px(request), .watch = {is_abandoned, request}};
     request->cost_key = cost_key(request);
     request->entry.estimate_us =
         costs_estimate(&request->host->costs, request->cost_key, next_tile_px(request));
-    scheduler_ready(&request->entry);
+    if (!needs_polygons(request))
+        scheduler_ready(&request->entry);
+    else
+        start_polygons(request);
 }
 
 void request_drop_frame(struct request *request)
 {
+    drop_polygons(request);
     frame_finish(&request->frame);
     encoded_destroy(request->held);
     request->held = NULL;
@@ -286,6 +343,8 @@ static void step_done(struct work *work)
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
                       request->step == FRAME_MORE);
     if (request->step != FRAME_FAILED) {
+        if (request->frame_request.surface.kind != SURFACE_EXACT)
+            request->model.asset->drawn_levels |= 1u << request->frame_request.surface.level;
         costs_learn(&host->costs, request->cost_key, next_tile_px(request), request->step_us);
         request->entry.estimate_us =
             costs_estimate(&host->costs, request->cost_key, next_tile_px(request));

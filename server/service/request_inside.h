@@ -45,7 +45,9 @@ struct request {
     sheen_Times times;
     uint64_t encode_start_us;
     struct label label;
-    struct encoded *held; /* encoded, until the socket can take it */
+    struct renderer_polygons *polygons; /* until the device has them */
+    size_t polygon_bytes;               /* that they are charged with here */
+    struct encoded *held;               /* encoded, until the socket can take it */
 };
 
 /* --- request.c */

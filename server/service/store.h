@@ -47,6 +47,7 @@ struct asset {
     unsigned users; /* requests that wait for it or use it */
     size_t charged_bytes;
     unsigned polygon_levels; /* bits: levels whose polygons are charged */
+    unsigned drawn_levels;   /* bits: levels that the device has had polygons of */
     struct asset_waiter *waiters;
     struct asset *next_build;    /* in the queue for a turn */
     struct asset *newer, *older; /* by last use */

@@ -179,6 +179,19 @@ class Schedule(DaemonCase):
             seq = client.ask(self.model, **named)
             self.assert_refused(client, wire.ERROR_REQUEST, words, seq)
 
+    def test_nobody_waits_while_polygons_are_made(self):
+        slow, other = self.client(), self.client()
+        sheet = slow.upload(grid(38), "sheet.obj")
+        slow.render(sheet)
+        seq = slow.next_seq()
+        slow.send(message(wire.RENDER, seq, field(1, sheet) + field(2, 64) + field(3, 48) +
+                          field(9, 1) + field(10, 0) + field(40, 1) + field(41, 6)))
+        before = slow.stats()[3][0]
+        for _ in range(5):
+            other.render(self.model)
+        self.assertEqual(other.stats()[3][0] - before, 5)  # the polygons' frame is not among them
+        slow.read_frame(seq)
+
     def test_a_client_that_has_gone_leaves_the_device(self):
         """Eight lights over 16 million pixels, or a mesh of millions: the next client does not wait
         until they are done."""
