@@ -20,6 +20,7 @@ struct settings {
     char device[64];
     const char *config; /* path, or NULL */
     bool check_config;
+    void (*show)(void); /* and no more; NULL: go on */
 };
 
 /* --- the values of options */
@@ -160,6 +161,11 @@ static void print_help(void)
          "exit codes: 0 done, 2 wrong usage, 4 cannot serve, 5 no device");
 }
 
+static void print_version(void)
+{
+    puts("sheend " SHEEN_VERSION);
+}
+
 /* --- reading them */
 
 struct config_reader {
@@ -226,8 +232,8 @@ static bool take_option(struct settings *settings, size_t index, bool config_onl
                limits_set(&settings->service.limits, &LIMITS[index - N_OPTIONS], optarg, error);
     const struct option_row *row = &OPTIONS[index];
     if (!row->set) {
-        strcmp(row->name, "help") == 0 ? print_help() : (void)puts("sheend " SHEEN_VERSION);
-        exit(EXIT_DONE);
+        settings->show = strcmp(row->name, "help") == 0 ? print_help : print_version;
+        return true;
     }
     *has_listen |= row->set == set_listen;
     return (row->set == set_config) != config_only || row->set(settings, optarg, error);
@@ -243,13 +249,14 @@ static bool walk_options(int argc, char **argv, struct settings *settings, bool 
     bool ok = true;
     optind = 1;
     opterr = 0;
-    for (int c, index; ok && (c = getopt_long(argc, argv, "", options, &index)) != -1;)
+    for (int c, index;
+         ok && !settings->show && (c = getopt_long(argc, argv, "", options, &index)) != -1;)
         ok = c == 0 ? take_option(settings, (size_t)index, config_only, has_listen, error)
                     : error_set(error, ERROR_REQUEST,
                                 "'%s' is no option or lacks its value; sheend --help lists them",
                                 argv[optind - 1]);
     free(options);
-    if (!ok || optind == argc)
+    if (!ok || settings->show || optind == argc)
         return ok;
     return error_set(error, ERROR_REQUEST, "'%s' is no option; sheend --help lists them",
                      argv[optind]);
@@ -290,8 +297,11 @@ static bool set_default_listen(struct settings *settings, struct error *error)
 static bool read_settings(int argc, char **argv, struct settings *settings, struct error *error)
 {
     bool has_listen = false;
-    if (!walk_options(argc, argv, settings, true, &has_listen, error) ||
-        (settings->config && !read_config(settings, has_listen, error)) ||
+    if (!walk_options(argc, argv, settings, true, &has_listen, error))
+        return false;
+    if (settings->show)
+        return true;
+    if ((settings->config && !read_config(settings, has_listen, error)) ||
         !walk_options(argc, argv, settings, false, &has_listen, error))
         return false;
     struct service_options *service = &settings->service;
@@ -322,6 +332,10 @@ int main(int argc, char **argv)
     limits_init(&options->limits);
     if (!read_settings(argc, argv, &settings, &error))
         return fail(&error);
+    if (settings.show) {
+        settings.show();
+        return EXIT_DONE;
+    }
     if (settings.check_config) {
         puts("the configuration is good");
         return EXIT_DONE;
