@@ -13,7 +13,7 @@ const ivec2 AROUND[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(
 
 bool border_crosses(ivec2 p)
 {
-    vec2 foot = unpackHalf2x16(imageLoad(border, p).x);
+    vec2 foot = border_foot(imageLoad(border, p).x);
     return dot(foot, foot) <= 0.5 * (abs(foot.x) + abs(foot.y));
 }
 

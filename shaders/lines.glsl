@@ -58,9 +58,9 @@ vec3 normal_change(vec3 along, vec3 n, vec3 h)
     return -(e1 * (h.x * a.x + h.y * a.y) + e2 * (h.y * a.x + h.z * a.y));
 }
 
-// Steps (1) to (4) of limit-surface 5.1, at a place on the ray of q (view.glsl), over a square of
-// size_px. The shape operator is that at a normal nearby.
-Sample sample_at(vec2 q, float size_px, vec4 place, vec3 n, vec3 h, vec3 h_normal)
+// Steps (1) to (4) of limit-surface 5.1, at a place on the ray of q (view.glsl), over the parallelogram
+// of the columns of `sides`, px. The shape operator is that at a normal nearby.
+Sample sample_over(vec2 q, mat2 sides, vec4 place, vec3 n, vec3 h, vec3 h_normal)
 {
     Sample at;
     at.x = place.xyz;
@@ -71,12 +71,18 @@ Sample sample_at(vec2 q, float size_px, vec4 place, vec3 n, vec3 h, vec3 h_norma
     float distance = line_eye.w > 0.0 ? length(from_eye) : 1.0;
     at.v = line_eye.w > 0.0 ? from_eye / distance : line_eye.xyz;
     for (int i = 0; i < 2; i++) {
-        vec3 raw = axis[i].xyz * (size_px * pixel_units(place.w));
+        vec3 raw = (axis[0].xyz * sides[i].x + axis[1].xyz * sides[i].y) * pixel_units(place.w);
         at.dx[i] = raw - d * (dot(raw, n) / dot(d, n));
         at.dn[i] = normal_change(at.dx[i], h_normal, h);
         at.dv[i] = line_eye.w / distance * (at.dx[i] - at.v * dot(at.v, at.dx[i]));
     }
     return at;
+}
+
+// Over a square of size_px.
+Sample sample_at(vec2 q, float size_px, vec4 place, vec3 n, vec3 h, vec3 h_normal)
+{
+    return sample_over(q, mat2(size_px), place, n, h, h_normal);
 }
 
 // The family's ray and its change: step (5).

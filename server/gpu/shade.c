@@ -33,10 +33,11 @@ static GLuint shade_program(struct renderer *r, const struct frame_request *requ
 #define COMMON                                                                                     \
     "view.glsl", "list.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
     static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
-    static const char *const edges[] = {COMMON, "edges.glsl", "pieces.glsl",
-                                        "edges_shade.comp.glsl", NULL};
-    static const char *const turns[] = {COMMON, "edges.glsl", "pieces.glsl",
-                                        "turns_shade.comp.glsl", NULL};
+    static const char *const edges[] = {COMMON,        "border.glsl",   "edges.glsl",
+                                        "pieces.glsl", "rounding.glsl", "edges_shade.comp.glsl",
+                                        NULL};
+    static const char *const turns[] = {COMMON,        "border.glsl",           "edges.glsl",
+                                        "pieces.glsl", "turns_shade.comp.glsl", NULL};
 #undef COMMON
     static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns};
     int family = request->lines.family, pattern = light->pattern.kind;

@@ -13,7 +13,7 @@ const struct table_programs *programs_for(struct renderer *r, int point_banks, i
     static const char *const fragment[] = {"visibility.frag.glsl", NULL};
 #define STAGE_2                                                                                    \
     "view.glsl", "list.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "neighbours.glsl",      \
-        "planes.glsl", "newton.glsl", "doubt.glsl"
+        "border.glsl", "planes.glsl", "newton.glsl", "doubt.glsl"
     static const char *const evaluate[] = {STAGE_2, "groups.glsl", "evaluate.comp.glsl", NULL};
     static const char *const strays[] = {STAGE_2, "walk.glsl", "strays.comp.glsl", NULL};
     static const char *const unsolved[] = {STAGE_2, "walk.glsl", "unsolved.comp.glsl", NULL};
