@@ -1,6 +1,6 @@
 // The pixels that one pass of stage 2 leaves to the next, and why.
 
-LIST(0, Strays, strays);      // their guess may lead to another sub-patch
+LIST(0, Listed, listed);      // their guess may lead to another sub-patch; or this pass's own pixels
 LIST(3, Unsolved, unsolved);  // more than one guess must be asked
 
 const ivec2 BESIDE[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));

@@ -2,8 +2,8 @@
 //
 // The rasterised parameters belong to the triangle and would cost up to 0.2 degrees; Newton's method
 // from there makes them the pixel's (limit-surface 3.4). This pass stays inside the guessed
-// sub-patch, which serves nearly all pixels; the others are listed: next to borders of sub-patches for
-// strays.comp.glsl, next to silhouettes and cracks for unsolved.comp.glsl. So no pixel pays for the
+// sub-patch, which serves nearly all pixels; the others are listed for unsolved.comp.glsl: those
+// next to borders of sub-patches, and those next to silhouettes and cracks. So no pixel pays for the
 // rare cases, on devices whose lanes all walk through every branch.
 
 layout(local_size_x = 64) in;
@@ -33,7 +33,7 @@ void main()
     if (solved && !is_doubtful(front, s.s.z))
         store_hit(p, node, ldexp(own.origin + own.st, -own.scale), own.scale, s);
     else if (is_seen && !solved)
-        LIST_ADD(strays, p, 64u)
+        LIST_ADD(listed, p, 64u)
     else if (is_seen || front < FARTHEST)  // empty pixels ask their neighbours too
         LIST_ADD(unsolved, p, 64u)
     else

@@ -32,10 +32,12 @@ static void clear_planes(const struct renderer *r, bool want_ptex)
 }
 
 /* The pixels of a list, once it is complete. */
-static void dispatch_listed(GLuint program, GLuint list, bool want_ptex)
+static void dispatch_listed(GLuint program, GLuint list, bool around, bool want_ptex)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
     set_uniforms(program, want_ptex);
+    glUniform1i(glGetUniformLocation(program, "around"), around);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
     glDispatchComputeIndirect(0);
 }
@@ -53,6 +55,6 @@ void stage_evaluate(struct renderer *r, const struct renderer_model *model, bool
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     set_uniforms(programs->evaluate, want_ptex);
     dispatch_groups(r, programs->evaluate);
-    dispatch_listed(programs->strays, r->target.strays, want_ptex);
-    dispatch_listed(programs->unsolved, r->target.unsolved, want_ptex);
+    dispatch_listed(programs->unsolved, r->target.strays, false, want_ptex);
+    dispatch_listed(programs->unsolved, r->target.unsolved, true, want_ptex);
 }

@@ -22,7 +22,7 @@ struct bank_set {
 /* The programs that read tables spread over so many banks. */
 struct table_programs {
     int point_banks, node_banks, adjacency_banks;
-    GLuint visibility, evaluate, strays, unsolved;
+    GLuint visibility, evaluate, unsolved;
 };
 
 struct renderer_model {

@@ -15,7 +15,6 @@ const struct table_programs *programs_for(struct renderer *r, int point_banks, i
     "view.glsl", "list.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "neighbours.glsl",      \
         "border.glsl", "planes.glsl", "newton.glsl", "doubt.glsl"
     static const char *const evaluate[] = {STAGE_2, "groups.glsl", "evaluate.comp.glsl", NULL};
-    static const char *const strays[] = {STAGE_2, "walk.glsl", "strays.comp.glsl", NULL};
     static const char *const unsolved[] = {STAGE_2, "walk.glsl", "unsolved.comp.glsl", NULL};
 #undef STAGE_2
     for (int i = 0; i < r->n_programs; i++) {
@@ -38,12 +37,10 @@ const struct table_programs *programs_for(struct renderer *r, int point_banks, i
     struct table_programs *p = &r->programs[r->n_programs];
     p->visibility = program_raster(defines, vertex, fragment, error);
     p->evaluate = p->visibility ? program_compute(defines, evaluate, error) : 0;
-    p->strays = p->evaluate ? program_compute(defines, strays, error) : 0;
-    p->unsolved = p->strays ? program_compute(defines, unsolved, error) : 0;
+    p->unsolved = p->evaluate ? program_compute(defines, unsolved, error) : 0;
     if (!p->unsolved) {
         glDeleteProgram(p->visibility);
         glDeleteProgram(p->evaluate);
-        glDeleteProgram(p->strays);
         return NULL;
     }
     p->point_banks = point_banks;
