@@ -21,16 +21,6 @@ static void bind_planes(const struct renderer *r, const struct renderer_model *m
     glBindImageTexture(4, r->target.border, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
 }
 
-/* What lies outside the groups is missed without asking. */
-static void clear_planes(const struct renderer *r, bool want_ptex)
-{
-    static const GLfloat nothing[4] = {0, 0, 0, 0};
-    static const GLuint no_face[4] = {UINT32_MAX, 0, 0, 0};
-    glClearTexImage(r->target.position, 0, GL_RGBA, GL_FLOAT, nothing);
-    if (want_ptex)
-        glClearTexImage(r->target.ptex, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, no_face);
-}
-
 /* The pixels of a list, once it is complete. */
 static void dispatch_listed(GLuint program, GLuint list, bool around, bool want_ptex)
 {
@@ -46,7 +36,6 @@ void stage_evaluate(struct renderer *r, const struct renderer_model *model, bool
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
     const struct table_programs *programs = model->programs;
-    clear_planes(r, want_ptex);
     glNamedBufferSubData(r->target.strays, 0, sizeof no_work, no_work);
     glNamedBufferSubData(r->target.unsolved, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, r->target.strays);

@@ -138,7 +138,7 @@ void target_finish(struct target *target);
 /* The three stages, on the tile that the view block in view_buffer describes. */
 bool stage_visibility_init(struct renderer *renderer, struct error *error);
 void stage_visibility(struct renderer *renderer, const struct renderer_model *model,
-                      const struct tile *tile);
+                      const struct tile *tile, bool want_ptex);
 void stage_evaluate(struct renderer *renderer, const struct renderer_model *model, bool want_ptex);
 /* Lists the pixels that stage 3 looks at more closely; the coverage of all others. */
 bool stage_edges_init(struct renderer *renderer, struct error *error);

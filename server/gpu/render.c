@@ -90,7 +90,7 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
     }
     if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
         return false;
-    stage_visibility(r, model, tile);
+    stage_visibility(r, model, tile, request->planes & PLANE_PTEX);
     stage_gather(r);
     end_stage(&frame->times.visibility_us, &since);
     stage_evaluate(r, model, request->planes & PLANE_PTEX);

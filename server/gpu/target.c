@@ -50,6 +50,8 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
     }
     glCreateFramebuffers(1, &target->framebuffer);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->seen, 0);
+    glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT1, target->position, 0);
+    glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT2, target->ptex, 0);
     glNamedFramebufferTexture(target->framebuffer, GL_DEPTH_ATTACHMENT, target->seen_depth, 0);
     target->width = width;
     target->height = height;
