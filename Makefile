@@ -39,7 +39,7 @@ say = $(if $(V),,@echo '  $(1)')
 
 obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
 PROTOCOL_SRC := $(wildcard protocol/*.c)
-CAGE_SRC := $(wildcard server/cage/*.c server/cage/*.cpp)
+CAGE_SRC := $(wildcard server/cage/*.c server/cage/read/*.c server/cage/read/*.cpp)
 LIMIT_SRC := $(wildcard server/limit/*.c)
 GPU_SRC := $(wildcard server/gpu/*.c)
 IMAGE_SRC := $(wildcard server/image/*.c server/image/*.cpp)

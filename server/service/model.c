@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/cage/read/read.h"
+
 #define MAX_RANGES 256 /* even shares for many cores, and a progress bar that moves */
 #define MIN_FACES_PER_RANGE 16
 

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "server/cage/read/read.h"
 #include "server/gpu/mesh.h"
 #include "server/gpu/renderer.h"
 

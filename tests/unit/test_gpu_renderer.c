@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "server/cage/read/read.h"
 #include "server/gpu/renderer.h"
 
 struct scene {

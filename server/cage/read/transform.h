@@ -1,6 +1,6 @@
 /* The 4x4 matrices of glTF's nodes, in double. Pure; any thread. */
-#ifndef SHEEN_CAGE_TRANSFORM_H
-#define SHEEN_CAGE_TRANSFORM_H
+#ifndef SHEEN_CAGE_READ_TRANSFORM_H
+#define SHEEN_CAGE_READ_TRANSFORM_H
 
 #ifdef __cplusplus
 extern "C" {

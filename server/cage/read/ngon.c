@@ -1,4 +1,4 @@
-#include "server/cage/ngon.h"
+#include "server/cage/read/ngon.h"
 
 /* How many triangles from the first on make one polygon. */
 static size_t fan_length(const struct ngon_triangles *triangles, size_t first, size_t *n_breaks)

@@ -1,4 +1,4 @@
-#include "server/cage/weld.h"
+#include "server/cage/read/weld.h"
 
 #include <stdlib.h>
 #include <string.h>

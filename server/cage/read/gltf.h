@@ -1,12 +1,12 @@
-/* glTF 2.0 and GLB through tinygltf: the one C++ file behind server/cage. Internal to it. */
-#ifndef SHEEN_CAGE_GLTF_H
-#define SHEEN_CAGE_GLTF_H
+/* glTF 2.0 and GLB through tinygltf: the one C++ file behind server/cage/read. Internal to it. */
+#ifndef SHEEN_CAGE_READ_GLTF_H
+#define SHEEN_CAGE_READ_GLTF_H
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#include "server/cage/builder.h"
+#include "server/cage/read/builder.h"
 
 /* Reads the default scene into an empty builder: triangles of all its nodes' meshes, polygons
  * where FB_ngon_encoding marks them, vertices welded by position, subdivision tags from `extras`.

@@ -1,8 +1,8 @@
 /* Polygons out of triangles: glTF's FB_ngon_encoding. Internal to the glTF reader. */
-#ifndef SHEEN_CAGE_NGON_H
-#define SHEEN_CAGE_NGON_H
+#ifndef SHEEN_CAGE_READ_NGON_H
+#define SHEEN_CAGE_READ_NGON_H
 
-#include "server/cage/builder.h"
+#include "server/cage/read/builder.h"
 
 #ifdef __cplusplus
 extern "C" {

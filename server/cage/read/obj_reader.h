@@ -1,11 +1,11 @@
 /* What the parts of the OBJ reader share. Internal to them: obj.c and obj_tags.c. */
-#ifndef SHEEN_CAGE_OBJ_READER_H
-#define SHEEN_CAGE_OBJ_READER_H
+#ifndef SHEEN_CAGE_READ_OBJ_READER_H
+#define SHEEN_CAGE_READ_OBJ_READER_H
 
 #include <locale.h>
 
-#include "server/cage/builder.h"
-#include "server/cage/obj_text.h"
+#include "server/cage/read/builder.h"
+#include "server/cage/read/obj_text.h"
 
 struct obj_reader {
     struct obj_text text;

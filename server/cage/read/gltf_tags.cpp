@@ -1,4 +1,4 @@
-#include "server/cage/gltf_reader.hpp"
+#include "server/cage/read/gltf_reader.hpp"
 
 #include <cmath>
 #include <vector>

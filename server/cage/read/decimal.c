@@ -1,4 +1,4 @@
-#include "server/cage/decimal.h"
+#include "server/cage/read/decimal.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
-/* Wavefront OBJ with OpenSubdiv's "t" tags. Internal to server/cage. */
-#ifndef SHEEN_CAGE_OBJ_H
-#define SHEEN_CAGE_OBJ_H
+/* Wavefront OBJ with OpenSubdiv's "t" tags. Internal to server/cage/read. */
+#ifndef SHEEN_CAGE_READ_OBJ_H
+#define SHEEN_CAGE_READ_OBJ_H
 
-#include "server/cage/builder.h"
+#include "server/cage/read/builder.h"
 
 /* Reads a whole file into an empty builder, in one pass. Indices of faces are in range and
  * coordinates finite on success; the rest is cage_check_lines()'s. Errors: ERROR_MODEL, saying

@@ -1,12 +1,12 @@
-#include "server/cage/obj.h"
+#include "server/cage/read/obj.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "server/cage/decimal.h"
-#include "server/cage/obj_reader.h"
+#include "server/cage/read/decimal.h"
+#include "server/cage/read/obj_reader.h"
 
 bool obj_fail(const struct obj_reader *reader, const char *format, ...)
 {

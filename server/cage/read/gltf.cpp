@@ -1,4 +1,4 @@
-#include "server/cage/gltf_reader.hpp"
+#include "server/cage/read/gltf_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <map>
 #include <vector>
 
-#include "server/cage/gltf_container.h"
-#include "server/cage/ngon.h"
-#include "server/cage/transform.h"
-#include "server/cage/weld.h"
+#include "server/cage/read/gltf_container.h"
+#include "server/cage/read/ngon.h"
+#include "server/cage/read/transform.h"
+#include "server/cage/read/weld.h"
 
 namespace gltf
 {

@@ -1,4 +1,4 @@
-#include "server/cage/builder.h"
+#include "server/cage/read/builder.h"
 
 #include <stdlib.h>
 

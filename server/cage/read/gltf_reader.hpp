@@ -1,12 +1,12 @@
 /* What the parts of the glTF reader share. Internal to them: gltf.cpp and gltf_tags.cpp. */
-#ifndef SHEEN_CAGE_GLTF_READER_HPP
-#define SHEEN_CAGE_GLTF_READER_HPP
+#ifndef SHEEN_CAGE_READ_GLTF_READER_HPP
+#define SHEEN_CAGE_READ_GLTF_READER_HPP
 
 #include <string>
 
 #include <tiny_gltf.h>
 
-#include "server/cage/gltf.h"
+#include "server/cage/read/gltf.h"
 
 namespace gltf
 {

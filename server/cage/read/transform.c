@@ -1,4 +1,4 @@
-#include "server/cage/transform.h"
+#include "server/cage/read/transform.h"
 
 #include <math.h>
 

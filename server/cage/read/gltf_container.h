@@ -3,8 +3,8 @@
  * tinygltf recurses over nested values, copies the binary chunk for each buffer that names no
  * URI, and spends hundreds of bytes on each value in `extras`: a small hostile file could take
  * the stack or the memory. These checks bound all three and give GLB's own header clear errors. */
-#ifndef SHEEN_CAGE_GLTF_CONTAINER_H
-#define SHEEN_CAGE_GLTF_CONTAINER_H
+#ifndef SHEEN_CAGE_READ_GLTF_CONTAINER_H
+#define SHEEN_CAGE_READ_GLTF_CONTAINER_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "server/cage/gltf_container.h"
+#include "server/cage/read/gltf_container.h"
 
 #include <limits.h>
 #include <stdint.h>

@@ -1,9 +1,9 @@
 /* Joining vertices that stand at the same place. Internal to the glTF reader, whose files split
  * vertices where normals or texture coordinates differ. */
-#ifndef SHEEN_CAGE_WELD_H
-#define SHEEN_CAGE_WELD_H
+#ifndef SHEEN_CAGE_READ_WELD_H
+#define SHEEN_CAGE_READ_WELD_H
 
-#include "server/cage/builder.h"
+#include "server/cage/read/builder.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -3,8 +3,8 @@
  * A line ends at LF, CR LF or CR; a backslash before the end of a line joins it with the next;
  * '#' at the start of a field begins a comment, which no backslash lengthens. Fields are slices
  * of the file: nothing is copied. Any thread; no failure but the end. */
-#ifndef SHEEN_CAGE_OBJ_TEXT_H
-#define SHEEN_CAGE_OBJ_TEXT_H
+#ifndef SHEEN_CAGE_READ_OBJ_TEXT_H
+#define SHEEN_CAGE_READ_OBJ_TEXT_H
 
 #include <stdbool.h>
 #include <stddef.h>

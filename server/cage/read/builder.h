@@ -5,8 +5,8 @@
  * it) or drop all with cage_builder_finish(), which must be called in both cases. Every function
  * that returns bool fails with ERROR_SERVER when memory is short and ERROR_MODEL when a count
  * passes its CAGE_MAX_ limit; the builder stays valid. Thread: one at a time. */
-#ifndef SHEEN_CAGE_BUILDER_H
-#define SHEEN_CAGE_BUILDER_H
+#ifndef SHEEN_CAGE_READ_BUILDER_H
+#define SHEEN_CAGE_READ_BUILDER_H
 
 #include "server/cage/cage.h"
 

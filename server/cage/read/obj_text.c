@@ -1,4 +1,4 @@
-#include "server/cage/obj_text.h"
+#include "server/cage/read/obj_text.h"
 
 /* Length of the line ending at `at`: 0 where there is none. */
 static size_t ending_length(const char *at, const char *end)

@@ -1,6 +1,6 @@
 /* Decimal numbers out of a file, correctly rounded and whatever the locale. Pure; any thread. */
-#ifndef SHEEN_CAGE_DECIMAL_H
-#define SHEEN_CAGE_DECIMAL_H
+#ifndef SHEEN_CAGE_READ_DECIMAL_H
+#define SHEEN_CAGE_READ_DECIMAL_H
 
 #include <locale.h>
 #include <stddef.h>

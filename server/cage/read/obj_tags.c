@@ -1,9 +1,9 @@
-#include "server/cage/obj_reader.h"
+#include "server/cage/read/obj_reader.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "server/cage/decimal.h"
+#include "server/cage/read/decimal.h"
 
 /* "t NAME ints/floats/strings ..." */
 struct tag {
