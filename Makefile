@@ -1,5 +1,5 @@
 # sheen's menu:
-#   make            build/sheend and build/sheen
+#   make            build/sheend, its workers build/sheend-cage and build/sheend-image, build/sheen
 #   make demo       install what is missing, build, render the demo model to a PNG
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
@@ -27,7 +27,8 @@ CWARN := $(WARN) -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
 BASE := $(OPT) -g -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(SANITIZE),0,2) \
         -I. -I$(BUILD)/gen -MMD -MP -DSHEEN_VERSION=\"$(VERSION)\" -pthread
 CFLAGS += -std=c11 -D_GNU_SOURCE $(CWARN) $(BASE)
-CXXFLAGS += -std=c++17 $(WARN) $(BASE)
+# The check of vptr makes a pipe, which workers may not.
+CXXFLAGS += -std=c++17 $(WARN) $(BASE) $(if $(SANITIZE),-fno-sanitize=vptr)
 LDFLAGS += $(OPT) -pthread -Wl,-z,relro,-z,now
 
 NANOPB := /usr/bin/python3 /usr/bin/nanopb_generator.py -q
@@ -39,10 +40,16 @@ say = $(if $(V),,@echo '  $(1)')
 
 obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
 PROTOCOL_SRC := $(wildcard protocol/*.c)
-CAGE_SRC := $(wildcard server/cage/*.c server/cage/read/*.c server/cage/read/*.cpp)
+CAGE_SRC := $(wildcard server/cage/*.c)
+CAGE_READ_SRC := $(wildcard server/cage/read/*.c server/cage/read/*.cpp)
 LIMIT_SRC := $(wildcard server/limit/*.c)
 GPU_SRC := $(wildcard server/gpu/*.c)
-IMAGE_SRC := $(wildcard server/image/*.c server/image/*.cpp)
+IMAGE_SRC := $(wildcard server/image/*.c)
+IMAGE_LIBRARY_SRC := $(wildcard server/image/*.cpp)
+# What sheend shares with its workers, and what is theirs alone: each has a main and tasks.
+WORKER_SHARED_SRC := server/worker/stream.c server/worker/job.c server/worker/cage_code.c \
+                     server/worker/image_code.c
+ZYGOTE_SRC := server/worker/zygote.c server/worker/sandbox.c server/worker/threads.c
 SERVICE_SRC := $(wildcard server/service/*.c)
 CLIENT_SRC := $(wildcard client/*.c)
 SHADERS := $(sort $(wildcard shaders/*.glsl))
@@ -51,22 +58,39 @@ PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(LIMIT_SRC) server/error.c)
 RENDER_OBJ := $(call obj,$(GPU_SRC)) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,server/main.c $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
-              $(call obj,$(IMAGE_SRC)) $(PROTOCOL_OBJ)
+              $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
 KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
 SERVER_OBJ += $(KEEP_MODULES)
+# What parses files from strangers: linked into the workers alone.
+CAGE_TASKS_OBJ := $(call obj,$(CAGE_READ_SRC) server/worker/cage_tasks.c)
+IMAGE_TASKS_OBJ := $(call obj,$(IMAGE_LIBRARY_SRC) server/worker/image_tasks.c)
+WORKER_OBJ := $(call obj,server/error.c server/worker/stream.c server/worker/job.c $(ZYGOTE_SRC))
+CAGE_WORKER_OBJ := $(call obj,server/worker/cage_main.c $(CAGE_SRC) server/worker/cage_code.c) \
+                   $(CAGE_TASKS_OBJ) $(WORKER_OBJ)
+IMAGE_WORKER_OBJ := $(call obj,server/worker/image_main.c $(IMAGE_SRC) server/worker/image_code.c) \
+                    $(IMAGE_TASKS_OBJ) $(WORKER_OBJ)
 CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 
-SERVER_LIBS := -lepoxy -lOpenImageIO -lOpenImageIO_Util -ltinygltf -lprotobuf-nanopb -lzstd -lcrypto -linih -lm
+SERVER_LIBS := -lepoxy -lprotobuf-nanopb -lzstd -lcrypto -linih -lm
+CAGE_WORKER_LIBS := -ltinygltf -lm
+IMAGE_WORKER_LIBS := -lOpenImageIO -lOpenImageIO_Util -lm
 CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lcrypto -lpng -lm
-TEST_LIBS := $(SERVER_LIBS) -lpng
+TEST_LIBS := $(SERVER_LIBS) $(CAGE_WORKER_LIBS) $(IMAGE_WORKER_LIBS) -lpng
 
 .PHONY: all
-all: $(BUILD)/sheend $(BUILD)/sheen
+PROGRAMS := $(BUILD)/sheend $(BUILD)/sheend-cage $(BUILD)/sheend-image $(BUILD)/sheen
+all: $(PROGRAMS)
 
 $(BUILD)/sheend: $(SERVER_OBJ)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
+$(BUILD)/sheend-cage: $(CAGE_WORKER_OBJ)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(CAGE_WORKER_LIBS)
+$(BUILD)/sheend-image: $(IMAGE_WORKER_OBJ)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(IMAGE_WORKER_LIBS)
 $(BUILD)/sheen: $(CLIENT_OBJ)
 	$(call say,LD $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CLIENT_LIBS)
@@ -94,7 +118,7 @@ $(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything but the two mains.
 LIB_OBJ := $(filter-out %/server/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
-           $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
+           $(CAGE_TASKS_OBJ) $(IMAGE_TASKS_OBJ) $(call obj,$(ZYGOTE_SRC)) $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
 TEST_LIB := $(BUILD)/libtests.a
 $(TEST_LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && ar rcs $@ $^
@@ -103,10 +127,15 @@ UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/t
 ORACLE_SHARED := $(call obj,$(filter-out tests/oracle/test_%.cpp tests/oracle/fake_sheen.cpp,$(wildcard tests/oracle/*.cpp)))
 ORACLE_TESTS := $(patsubst tests/oracle/%.cpp,$(BUILD)/tests/%,$(wildcard tests/oracle/test_*.cpp) tests/oracle/fake_sheen.cpp)
 
-$(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST_LIB)
+$(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST_LIB) | $(PROGRAMS)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(TEST_LIBS)
+$(BUILD)/tests/test_service_worker: | $(BUILD)/tests/bad_worker
+$(BUILD)/tests/bad_worker: $(call obj,tests/worker/bad_worker.c) $(WORKER_OBJ)
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^
 $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
@@ -129,7 +158,7 @@ $(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
 
 .PHONY: tests unit service oracle check soak bench lint format demo deps install clean
 tests: all $(UNIT_TESTS) $(ORACLE_TESTS)
-unit: $(UNIT_TESTS)
+unit: all $(UNIT_TESTS)
 	sh tests/run.sh unit $(BUILD)
 service: all
 	sh tests/run.sh service $(BUILD)
@@ -166,6 +195,7 @@ deps:
 
 install: all
 	install -Dm755 $(BUILD)/sheend $(DESTDIR)$(PREFIX)/bin/sheend
+	install -Dm755 -t $(DESTDIR)$(PREFIX)/libexec/sheen $(BUILD)/sheend-cage $(BUILD)/sheend-image
 	install -Dm755 $(BUILD)/sheen $(DESTDIR)$(PREFIX)/bin/sheen
 
 clean:

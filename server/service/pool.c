@@ -38,7 +38,7 @@ static struct work *next_work(struct pool *pool, int least_urgent)
 static bool start_worker(struct pool *pool, void **worker, int *least_urgent)
 {
     struct error error = {0};
-    bool ok = pool->worker.start(pool->worker.owner, worker, &error);
+    bool ok = !pool->worker.start || pool->worker.start(pool->worker.owner, worker, &error);
     pthread_mutex_lock(&pool->lock);
     *least_urgent = pool->n_started++ < pool->n_urgent_threads ? POOL_URGENT : POOL_LATER;
     if (!ok && pool->n_failed++ == 0)
@@ -60,7 +60,8 @@ static void *thread_main(void *argument)
         work->run(work, worker);
         completions_post(pool->completions, work);
     }
-    pool->worker.stop(worker);
+    if (pool->worker.stop)
+        pool->worker.stop(worker);
     return NULL;
 }
 

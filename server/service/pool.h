@@ -12,7 +12,7 @@
 #define POOL_MAX_THREADS 256u
 
 /* What every worker thread makes for itself before its first work and takes down after its last;
- * works see it as `worker`. */
+ * works see it as `worker`. All NULL: nothing. */
 struct pool_worker {
     bool (*start)(void *owner, void **worker, struct error *error); /* on the worker's thread */
     void (*stop)(void *worker);                                     /* on the same thread */

@@ -277,6 +277,14 @@ static void enter_queue(struct request *request)
         request_answer_superseded(replaced->owner, request->seq);
 }
 
+/* Is it written as a file, or has it a legend? */
+static bool takes_images(const sheen_Render *render)
+{
+    return (render->encoding != sheen_Encoding_ENCODING_RAW &&
+            render->encoding != sheen_Encoding_ENCODING_ZSTD) ||
+           render->show.kind != sheen_ShowKind_SHOW_LINES;
+}
+
 void request_render(struct session *session, struct answer *answer, uint32_t seq,
                     const sheen_Render *render, uint64_t frame_bytes)
 {
@@ -291,6 +299,8 @@ void request_render(struct session *session, struct answer *answer, uint32_t seq
             return;
     request->render = *render;
     request->frame_bytes = frame_bytes;
+    if (takes_images(render))
+        workers_expect_images(&request->host->workers);
     if (render->has_deadline_ms)
         request->deadline_us = request->start_us + render->deadline_ms * 1000ull;
     enter_queue(request);

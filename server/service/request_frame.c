@@ -265,9 +265,9 @@ static void start_encoding(struct request *request)
 {
     label_init(&request->label, &request->frame_request, &request->render,
                render_thread_info(request->host->render_thread));
-    encode_start(request->host->pool, &request->frame, &request->layout, request->render.encoding,
-                 urgency(request), request->label.attributes, LABEL_ATTRIBUTES, encode_finished,
-                 request);
+    encode_start(request->host->pool, &request->host->workers, &request->frame, &request->layout,
+                 request->render.encoding, urgency(request), request->label.attributes,
+                 LABEL_ATTRIBUTES, encode_finished, request);
 }
 
 static void paint_run(struct work *work, void *worker)
@@ -281,8 +281,8 @@ static void paint_run(struct work *work, void *worker)
     double size = 0;
     for (int i = 0; i < 3; i++)
         size = hypot(size, tables->box_max[i] - tables->box_min[i]);
-    show_paint(frame, &request->render.show, size, request->frame_request.miss,
-               request->frame_request.empty);
+    show_paint(frame, &request->host->workers, &request->render.show, size,
+               request->frame_request.miss, request->frame_request.empty);
     for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
         if (!(request->layout.planes & 1u << plane)) {
             free(frame->plane[plane]);

@@ -101,6 +101,7 @@ static void after_batch(void *owner)
         return;
     /* Nobody is left to answer; other threads may still be at work. */
     store_cancel_builds(service->host.store);
+    workers_stop(&service->host.workers);
     if (!store_is_building(service->host.store) && scheduler_is_idle(&service->host.scheduler))
         loop_stop(service->host.loop);
     else if (service->single)
@@ -133,8 +134,10 @@ static void signal_ready(struct loop_source *source, uint32_t events)
     struct signalfd_siginfo signal;
     if (read(service->signal_fd, &signal, sizeof signal) != (ssize_t)sizeof signal)
         return;
-    if (service->host.draining)
+    if (service->host.draining) {
+        workers_stop(&service->host.workers);
         _exit(0); /* asked twice: at once, with the listeners gone already */
+    }
     service->host.draining = true;
     service->host.drain_start_us = loop_now_us();
     close_listeners(service);
@@ -195,12 +198,17 @@ static bool start(struct service *service, const struct service_options *options
     struct session_host *host = &service->host;
     const struct loop_hooks hooks = {after_batch, tick, service};
     const struct renderer_options renderer = {.device = options->device};
+    /* The reader of cages starts while the device opens. */
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
+        !workers_init(&host->workers, NULL, options->limits.memory_budget, error) ||
         !(service->completions = completions_create(host->loop, error)) ||
         !(host->render_thread = render_thread_create(&renderer, service->completions, error)) ||
         !(host->pool = pool_create("sheend-pool", options->n_threads, 1, &encode_worker,
                                    service->completions, error)) ||
-        !(host->store = store_create(host->pool, host->render_thread, options->limits.memory_budget,
+        !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_worker){0},
+                                      service->completions, error)) ||
+        !(host->store = store_create(host->pool, host->readers, host->render_thread, &host->workers,
+                                     options->limits.memory_budget,
                                      (uint32_t)options->limits.max_image_side, error)))
         return false;
     const struct limits *limits = &options->limits;
@@ -212,6 +220,7 @@ static bool start(struct service *service, const struct service_options *options
     stats_init(&host->stats);
     if (options->session_fd >= 0)
         return open_session(service, options->session_fd, error);
+    workers_expect_images(&host->workers);
     return open_listeners(service, options, error);
 }
 
@@ -251,6 +260,8 @@ void service_destroy(struct service *service)
     store_destroy(host->store);
     render_thread_destroy(host->render_thread);
     pool_destroy(host->pool);
+    pool_destroy(host->readers);
+    workers_finish(&host->workers);
     if (service->completions)
         completions_deliver(service->completions);
     completions_destroy(service->completions);

@@ -169,6 +169,8 @@ static void handle_upload_begin(struct session *session, uint32_t seq,
         reply_upload_state(session, seq, true, begin->size_bytes);
         return;
     }
+    if (kind == ASSET_IMAGE)
+        workers_expect_images(&host->workers);
     session->upload = upload_create(&host->memory, session->peer, begin, &error);
     if (session->upload)
         reply_upload_state(session, seq, false, 0);

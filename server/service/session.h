@@ -14,6 +14,7 @@
 #include "server/service/scheduler.h"
 #include "server/service/stats.h"
 #include "server/service/upload.h"
+#include "server/service/workers.h"
 
 /* While more than this is unsent, nothing is read from the client and no still or batch is begun
  * for it: with those that have begun it bounds what a client that stops reading can cost. */
@@ -32,8 +33,9 @@ struct log_rate {
 /* What all sessions share; outlives them. */
 struct session_host {
     struct loop *loop;
-    struct pool *pool;
+    struct pool *pool, *readers;
     struct render_thread *render_thread;
+    struct workers workers;
     struct store *store;
     struct limits limits;
     struct memory memory;

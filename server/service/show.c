@@ -324,7 +324,8 @@ static void add_marks(const struct painting *painting, struct legend *legend)
     }
 }
 
-static void add_legend(const struct painting *painting, const struct frame *frame)
+static void add_legend(const struct painting *painting, const struct frame *frame,
+                       struct workers *workers)
 {
     static const char *const titles[] = {
         [sheen_ShowKind_SHOW_CURVATURE] = "principal curvature, 1/unit",
@@ -338,14 +339,15 @@ static void add_legend(const struct painting *painting, const struct frame *fram
     struct legend legend = {
         .title = titles[painting->kind], .colour = bar_colour, .context = painting};
     add_marks(painting, &legend);
-    if (!legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend) &&
+    struct error error = {0};
+    if (!legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend, workers,
+                     &error) &&
         !atomic_flag_test_and_set(&told))
-        fprintf(stderr, "sheend: legends lack their numbers: the font DejaVu Sans is missing "
-                        "(Debian: fonts-dejavu-core)\n");
+        fprintf(stderr, "sheend: legends lack their numbers: %s\n", error.text);
 }
 
-void show_paint(const struct frame *frame, sheen_Show *show, double size, const float miss[4],
-                const float empty[4])
+void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *show, double size,
+                const float miss[4], const float empty[4])
 {
     struct painting painting = {
         .kind = show->kind,
@@ -369,5 +371,5 @@ void show_paint(const struct frame *frame, sheen_Show *show, double size, const 
     }
     painting.range = show->range;
     paint_pixels(&painting, frame->plane[0], miss, empty);
-    add_legend(&painting, frame);
+    add_legend(&painting, frame, workers);
 }

@@ -7,8 +7,9 @@
 #define N_BUCKETS 1024
 
 struct store {
-    struct pool *pool;
+    struct pool *pool, *readers;
     struct render_thread *render_thread;
+    struct workers *workers;
     size_t budget_bytes, used_bytes;
     uint32_t max_image_px;
     size_t n_assets;
@@ -25,7 +26,8 @@ static struct asset **bucket_of(struct store *store, const uint8_t *sha256)
     return &store->buckets[(sha256[0] | (size_t)sha256[1] << 8) % N_BUCKETS];
 }
 
-struct store *store_create(struct pool *pool, struct render_thread *render_thread,
+struct store *store_create(struct pool *pool, struct pool *readers,
+                           struct render_thread *render_thread, struct workers *workers,
                            size_t budget_bytes, uint32_t max_image_px, struct error *error)
 {
     struct store *store = calloc(1, sizeof *store);
@@ -35,7 +37,9 @@ struct store *store_create(struct pool *pool, struct render_thread *render_threa
     }
     atomic_init(&store->cancelled, false);
     store->pool = pool;
+    store->readers = readers;
     store->render_thread = render_thread;
+    store->workers = workers;
     store->budget_bytes = budget_bytes;
     store->max_image_px = max_image_px;
     return store;
@@ -250,7 +254,9 @@ static void start_builds(struct store *store)
         store->build_head = asset->next_build;
         const struct build_order order = {
             .pool = store->pool,
+            .readers = store->readers,
             .render_thread = store->render_thread,
+            .workers = store->workers,
             .file = asset->file,
             .file_bytes = asset->file_bytes,
             .name = asset->name,

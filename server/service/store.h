@@ -66,9 +66,10 @@ struct store_counts {
     uint64_t model_bytes;    /* tables on the GPU */
 };
 
-/* budget_bytes: the most that all who reserve may take together; max_image_px: of a light image,
- * either way. */
-struct store *store_create(struct pool *pool, struct render_thread *render_thread,
+/* `readers` has STORE_MAX_BUILDS threads. budget_bytes: the most that all who reserve may take
+ * together; max_image_px: of a light image, either way. */
+struct store *store_create(struct pool *pool, struct pool *readers,
+                           struct render_thread *render_thread, struct workers *workers,
                            size_t budget_bytes, uint32_t max_image_px, struct error *error);
 /* No build may be running. The GL thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */

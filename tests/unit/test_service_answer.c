@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "server/service/answer.h"
+#include "tests/unit/build_folder.h"
 
 enum { WIDTH = 811, HEIGHT = 523 }; /* odd, several strips a plane, several DATA a frame */
 
@@ -18,6 +19,7 @@ struct fixture {
     struct loop *loop;
     struct completions *completions;
     struct pool *pool;
+    struct workers workers;
     struct conn conn;
     struct answer_list answers;
     int peer; /* the client's end */
@@ -43,6 +45,7 @@ static int setup(void **state)
     f->completions = completions_create(f->loop, &error);
     f->pool = pool_create("test", 3, 1, &encode_worker, f->completions, &error);
     assert_non_null(f->pool);
+    assert_true(workers_init(&f->workers, build_folder(), 0, &error));
     assert_true(conn_init(&f->conn, f->loop, ends[0], &handler, NULL, &f->sent_bytes, &error));
     f->peer = ends[1];
     f->answers.is_ordered = true;
@@ -57,6 +60,7 @@ static int teardown(void **state)
     conn_finish(&f->conn);
     close(f->peer);
     pool_destroy(f->pool);
+    workers_finish(&f->workers);
     completions_destroy(f->completions);
     loop_destroy(f->loop);
     free(f);
@@ -94,7 +98,8 @@ static struct encoded *encode(struct fixture *f, uint32_t planes, sheen_Encoding
     struct codec_layout layout;
     assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, planes));
     f->encoded = NULL;
-    encode_start(f->pool, &frame, &layout, encoding, POOL_SOON, NULL, 0, encode_finished, f);
+    encode_start(f->pool, &f->workers, &frame, &layout, encoding, POOL_SOON, NULL, 0,
+                 encode_finished, f);
     assert_null(frame.plane[0]);
     while (!f->encoded)
         completions_deliver(f->completions);

@@ -1,4 +1,5 @@
-/* Files to cages: the one door to the readers beside it. Any thread. */
+/* Files to cages: the one door to the readers beside it. sheend itself never opens it: its worker
+ * process sheend-cage does. Any thread. */
 #ifndef SHEEN_CAGE_READ_READ_H
 #define SHEEN_CAGE_READ_READ_H
 
