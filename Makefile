@@ -3,6 +3,8 @@
 #   make demo       install what is missing, build, render the demo model to a PNG
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
+#   make fuzz       SECONDS=60: fuzz each target of tests/fuzz so long (needs clang-14: sh deploy/deps.sh fuzz)
+#   make fuzz-coverage   lines of protocol/, the readers and the workers' messages that the corpora reach
 #   make soak       the service under load, SECONDS of each part (60); prints figures, judges ratios
 #   make bench      how fast, each question by a program of tests/bench; figures to build/bench
 #   make lint       format, static analysis, dependency rules
@@ -10,21 +12,31 @@
 #   make deps       install Debian packages (needs root or sudo)
 #   make install    PREFIX=/usr/local DESTDIR=
 #   make clean
-# SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize.
+# SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize. FUZZ=1 and
+# COVERAGE=1 are the builds of make fuzz and make fuzz-coverage.
 
 VERSION := 0.1.0
 PREFIX ?= /usr/local
 CC ?= gcc
 CXX ?= g++
 SANITIZE ?=
+FUZZ ?=
+COVERAGE ?=
+SECONDS ?= 60
 
 comma := ,
-BUILD := build$(if $(SANITIZE),/sanitize)
-OPT := $(if $(SANITIZE),-O1 -fsanitize=address$(comma)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer,-O2)
+BUILD := build$(if $(FUZZ),/fuzz,$(if $(COVERAGE),/coverage,$(if $(SANITIZE),/sanitize)))
+CHECKED := -O1 -fsanitize=address$(comma)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+OPT := $(if $(FUZZ)$(SANITIZE),$(CHECKED),$(if $(COVERAGE),-O0 --coverage,-O2))
+ifneq ($(FUZZ),)
+CC := clang-14
+CXX := clang++-14
+OPT += -fsanitize=fuzzer-no-link
+endif
 WARN := -Wall -Wextra -Werror -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-qual
 CWARN := $(WARN) -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
 # No contraction: the tables must not depend on the processor that built them.
-BASE := $(OPT) -g -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(SANITIZE),0,2) \
+BASE := $(OPT) -g -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
         -I. -I$(BUILD)/gen -MMD -MP -DSHEEN_VERSION=\"$(VERSION)\" -pthread
 CFLAGS += -std=c11 -D_GNU_SOURCE $(CWARN) $(BASE)
 # The check of vptr makes a pipe, which workers may not.
@@ -141,6 +153,26 @@ $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SH
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(TEST_LIBS)
 
+# Each target with libFuzzer, or with a main that replays its corpus.
+FUZZ_NAMES := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
+FUZZ_TARGETS := $(patsubst %,$(BUILD)/tests/fuzz_%,$(FUZZ_NAMES))
+FUZZ_SHARED := $(call obj,tests/fuzz/alloc_fail.c tests/fuzz/cage.c tests/fuzz/cplusplus.cpp \
+               $(if $(FUZZ),,tests/fuzz/replay.c))
+TINYGLTF := _ZN8tinygltf8TinyGLTF
+TINYGLTF_LOAD := EPNS_5ModelEPNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEES9_PK
+FUZZ_WRAPPED := malloc calloc realloc strdup strndup $(TINYGLTF)19LoadASCIIFromString$(TINYGLTF_LOAD)cjRKS8_j \
+                $(TINYGLTF)20LoadBinaryFromMemory$(TINYGLTF_LOAD)hjRKS8_j
+FUZZ_LINK := -Wl,--as-needed $(patsubst %,-Wl$(comma)--wrap=%,$(FUZZ_WRAPPED)) \
+             $(if $(FUZZ),-fsanitize=fuzzer)
+FUZZ_ARCHIVE := $(BUILD)/libfuzz.a
+$(FUZZ_ARCHIVE): $(PROTOCOL_OBJ) $(CORE_OBJ) $(CAGE_TASKS_OBJ) \
+                 $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC) $(filter-out client/main.c,$(CLIENT_SRC)))
+	$(Q)rm -f $@ && ar rcs $@ $^
+$(FUZZ_TARGETS): $(BUILD)/tests/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.c.o $(FUZZ_SHARED) $(FUZZ_ARCHIVE)
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) $(FUZZ_LINK) -o $@ $^ $(CAGE_WORKER_LIBS) $(CLIENT_LIBS)
+
 # Every benchmark is one bench_NAME.cpp; what is beside them they share.
 BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/bench_*.cpp))
 BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/daemon.cpp \
@@ -156,9 +188,9 @@ $(EMBREE_OBJ): CXXFLAGS += -O3 -march=native -ffp-contract=fast
 $(BUILD)/tests/bench_frame: $(EMBREE_OBJ)
 $(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
 
-.PHONY: tests unit service oracle check soak bench lint format demo deps install clean
-tests: all $(UNIT_TESTS) $(ORACLE_TESTS)
-unit: all $(UNIT_TESTS)
+.PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench lint format demo deps install clean
+tests: all $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS)
+unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 	sh tests/run.sh unit $(BUILD)
 service: all
 	sh tests/run.sh service $(BUILD)
@@ -170,7 +202,15 @@ check:
 	$(MAKE) tests
 	sh tests/run.sh all $(BUILD)
 
-SECONDS ?= 60
+fuzz-targets: $(FUZZ_TARGETS)
+fuzz:
+	sh deploy/deps.sh fuzz
+	$(MAKE) FUZZ=1 fuzz-targets
+	sh tests/fuzz/fuzz.sh build/fuzz $(SECONDS) $(FUZZ_NAMES)
+fuzz-coverage:
+	$(MAKE) COVERAGE=1 fuzz-targets
+	sh tests/fuzz/coverage.sh build/coverage $(FUZZ_NAMES)
+
 soak: all
 	SHEEN_SOAK_S=$(SECONDS) /usr/bin/python3 tests/service/run.py $(BUILD) soak_load
 
