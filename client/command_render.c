@@ -49,6 +49,7 @@ static void print_json(struct json *json, const struct options *options, const s
     if (info->faces)
         json_uint(json, "faces", info->faces);
     job_json_times(json, &frame->times);
+    job_json_schedule(json, &options->request);
     scene_json(json, &options->request, frame);
     json_lines(json, "warnings", info->warnings);
     json_object_end(json);

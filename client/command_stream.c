@@ -187,6 +187,7 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
     json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
     json_uint(json, "late", stream->n_late);
+    job_json_schedule(json, &stream->request);
     json_array_begin(json, "frames");
     for (uint32_t i = 0; i < n_frames; i++) {
         json_object_begin(json, NULL);

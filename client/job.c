@@ -6,6 +6,7 @@
 
 #include "client/file.h"
 #include "client/status.h"
+#include "client/values.h"
 
 static enum sheen_status upload(struct job *job, enum sheen_file_kind kind, const char *path,
                                 const uint8_t *bytes, size_t n_bytes,
@@ -95,6 +96,13 @@ void job_print_warnings(struct job *job, const char *model, const char *lines)
             fprintf(stderr, "sheen: warning: %s: %.*s\n", model, length, lines);
         lines += length + (lines[length] == '\n');
     }
+}
+
+void job_json_schedule(struct json *json, const struct sheen_request *request)
+{
+    json_string(json, "class", value_class_name(request->request_class));
+    if (request->deadline_ms)
+        json_uint(json, "deadline_ms", request->deadline_ms);
 }
 
 void job_json_times(struct json *json, const struct sheen_times *times)

@@ -35,6 +35,9 @@ enum sheen_status job_finish_json(struct job *job, struct json *json);
 /* "sheen: warning: MODEL: LINE" for each line. */
 void job_print_warnings(struct job *job, const char *model, const char *lines);
 
+/* Key class, and deadline_ms where there is one. */
+void job_json_schedule(struct json *json, const struct sheen_request *request);
+
 /* Keys tables_us to total_us into the object that is open. */
 void job_json_times(struct json *json, const struct sheen_times *times);
 

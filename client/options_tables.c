@@ -187,15 +187,9 @@ static bool apply_show_range(struct options *options, const char *value, char *w
 
 static bool apply_class(struct options *options, const char *value, char *why)
 {
-    static const char *const names[] = {
-        [SHEEN_STILL] = "still", [SHEEN_INTERACTIVE] = "interactive", [SHEEN_BATCH] = "batch"};
     options->given |= GIVEN_CLASS;
-    for (int i = 0; i < 3; i++) {
-        options->request.request_class = (enum sheen_class)i;
-        if (strcmp(value, names[i]) == 0)
-            return true;
-    }
-    return options_refuse(why, "must be interactive, still or batch");
+    return value_class(value, &options->request.request_class) ||
+           options_refuse(why, "must be interactive, still or batch");
 }
 
 static bool apply_deadline(struct options *options, const char *value, char *why)

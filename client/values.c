@@ -152,3 +152,24 @@ bool value_format(const char *path, enum sheen_format *format)
         }
     return false;
 }
+
+static const char *const CLASS_NAMES[] = {
+    [SHEEN_STILL] = "still",
+    [SHEEN_INTERACTIVE] = "interactive",
+    [SHEEN_BATCH] = "batch",
+};
+
+bool value_class(const char *text, enum sheen_class *request_class)
+{
+    for (size_t i = 0; i < sizeof(CLASS_NAMES) / sizeof(*CLASS_NAMES); i++) {
+        *request_class = (enum sheen_class)i;
+        if (strcmp(text, CLASS_NAMES[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+const char *value_class_name(enum sheen_class request_class)
+{
+    return CLASS_NAMES[request_class];
+}

@@ -107,7 +107,8 @@ class Client(unittest.TestCase):
         camera = ("--eye", "1,-8,6", "--target", "0,0,1", "--up", "0,1,0")
         scene = (*camera, "--fov", "30", "--lines", "isophote:0,0,2", "--line-eye", "dir:0,0,-1",
                  *first, "--light", "sphere", "--pattern", "image:" + image, "--base", "#010203",
-                 "--miss", "#040506", "--empty", "#07080940", "--filter", "off")
+                 "--miss", "#040506", "--empty", "#07080940", "--filter", "off", "--class",
+                 "batch", "--deadline", "100000")
         found, _ = self.render("a.exr", "--server", self.daemon.unix, *scene, "--aov", "N,k")
         light = found["lights"][0]
         said = {
@@ -128,7 +129,8 @@ class Client(unittest.TestCase):
             "line-eye": (found["line_eye"], {"kind": "direction", "direction": [0, 0, -1]}),
             "base": (found["base"], "#010203ff"), "miss": (found["miss"], "#040506ff"),
             "empty": (found["empty"], "#07080940"), "filter": (found["filter"], "off"),
-            "server": (found["address"], self.daemon.unix),
+            "server": (found["address"], self.daemon.unix), "class": (found["class"], "batch"),
+            "deadline": (found["deadline_ms"], 100000),
         }
         with open(image, "rb") as file:
             self.assertEqual(found["lights"][1]["pattern"]["image_sha256"],

@@ -5,12 +5,13 @@ import random
 import signal
 import socket
 import subprocess
+import sys
 import threading
 import time
 import unittest
 
 import wire
-from daemon import CUBE, MODELS, SHEEN, Daemon
+from daemon import CUBE, Daemon
 from load import LoadClient, make_clients, run_load
 from wire import INTERACTIVE, Client, message
 
@@ -80,10 +81,12 @@ class Misbehaviour(unittest.TestCase):
                 client.socket.recv(1000)
 
     def is_stopped(self):
+        """By SIGSTOP, while a frame larger than any socket's buffer is due."""
+        ask = ("import wire; client = wire.Client({!r}, minor=1)\n"
+               "while True: client.render({!r}, 1000, 1000, kind=wire.INTERACTIVE)")
         process = subprocess.Popen(
-            [SHEEN, "stream", os.path.join(MODELS, "body.obj"), "--frames", "100000", "--size",
-             "1400x1400", "--server", self.daemon.unix], stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL)
+            [sys.executable, "-c", ask.format(self.daemon.unix, self.model)],
+            cwd=os.path.dirname(os.path.abspath(__file__)), stderr=subprocess.DEVNULL)
         time.sleep(1)
         process.send_signal(signal.SIGSTOP)
         self.gone.wait()

@@ -128,10 +128,10 @@ class Schedule(DaemonCase):
 
     def test_deadline(self):
         client = self.client()
+        model = client.upload(grid(122), "sheet.obj")
         slow = client.ask(self.model, **LARGE, deadline=3600000)
         self.wait_until_begun(client)
-        late, model = client.ask(self.model, deadline=1), client.upload(grid(122), "sheet.obj")
-        unbuilt = client.ask(model, deadline=1)
+        late, unbuilt = client.ask(self.model, deadline=1), client.ask(model, deadline=1)
         answers = dict(client.answer() for _ in range(3))
         for seq in (late, unbuilt):
             self.assert_refused_with(answers[seq], wire.ERROR_DEADLINE, "deadline_ms of 1")
