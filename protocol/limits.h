@@ -35,9 +35,4 @@
 /* Strips of an ENCODING_ZSTD frame hold this many bytes of a plane, or one row if that is more. */
 #define PROTOCOL_STRIP_BYTES (512u * 1024)
 
-/* Times, in milliseconds. */
-#define PROTOCOL_HELLO_TIMEOUT_MS 3000u  /* server: from accept to a whole HELLO */
-#define PROTOCOL_STALL_TIMEOUT_MS 30000u /* server: no byte moved in the middle of a message */
-#define PROTOCOL_PROGRESS_MS 200u        /* server: PROGRESS this often while tables are built */
-
 #endif
