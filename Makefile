@@ -1,32 +1,46 @@
 # sheen's menu:
-#   make            build/sheend and build/sheen
+#   make            build/sheend, its workers build/sheend-cage and build/sheend-image, build/sheen
 #   make demo       install what is missing, build, render the demo model to a PNG
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
+#   make fuzz       SECONDS=60: fuzz each target of tests/fuzz so long (needs clang-14: sh deploy/deps.sh fuzz)
+#   make fuzz-coverage   lines of protocol/, the readers and the workers' messages that the corpora reach
+#   make soak       the service under load, SECONDS of each part (60); prints figures, judges ratios
 #   make bench      how fast, each question by a program of tests/bench; figures to build/bench
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
 #   make deps       install Debian packages (needs root or sudo)
 #   make install    PREFIX=/usr/local DESTDIR=
 #   make clean
-# SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize.
+# SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize. FUZZ=1 and
+# COVERAGE=1 are the builds of make fuzz and make fuzz-coverage.
 
 VERSION := 0.1.0
 PREFIX ?= /usr/local
 CC ?= gcc
 CXX ?= g++
 SANITIZE ?=
+FUZZ ?=
+COVERAGE ?=
+SECONDS ?= 60
 
 comma := ,
-BUILD := build$(if $(SANITIZE),/sanitize)
-OPT := $(if $(SANITIZE),-O1 -fsanitize=address$(comma)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer,-O2)
+BUILD := build$(if $(FUZZ),/fuzz,$(if $(COVERAGE),/coverage,$(if $(SANITIZE),/sanitize)))
+CHECKED := -O1 -fsanitize=address$(comma)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+OPT := $(if $(FUZZ)$(SANITIZE),$(CHECKED),$(if $(COVERAGE),-O0 --coverage,-O2))
+ifneq ($(FUZZ),)
+CC := clang-14
+CXX := clang++-14
+OPT += -fsanitize=fuzzer-no-link
+endif
 WARN := -Wall -Wextra -Werror -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-qual
 CWARN := $(WARN) -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
 # No contraction: the tables must not depend on the processor that built them.
-BASE := $(OPT) -g -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(SANITIZE),0,2) \
+BASE := $(OPT) -g -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
         -I. -I$(BUILD)/gen -MMD -MP -DSHEEN_VERSION=\"$(VERSION)\" -pthread
 CFLAGS += -std=c11 -D_GNU_SOURCE $(CWARN) $(BASE)
-CXXFLAGS += -std=c++17 $(WARN) $(BASE)
+# The check of vptr makes a pipe, which workers may not.
+CXXFLAGS += -std=c++17 $(WARN) $(BASE) $(if $(SANITIZE),-fno-sanitize=vptr)
 LDFLAGS += $(OPT) -pthread -Wl,-z,relro,-z,now
 
 NANOPB := /usr/bin/python3 /usr/bin/nanopb_generator.py -q
@@ -38,10 +52,16 @@ say = $(if $(V),,@echo '  $(1)')
 
 obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
 PROTOCOL_SRC := $(wildcard protocol/*.c)
-CAGE_SRC := $(wildcard server/cage/*.c server/cage/*.cpp)
+CAGE_SRC := $(wildcard server/cage/*.c)
+CAGE_READ_SRC := $(wildcard server/cage/read/*.c server/cage/read/*.cpp)
 LIMIT_SRC := $(wildcard server/limit/*.c)
 GPU_SRC := $(wildcard server/gpu/*.c)
-IMAGE_SRC := $(wildcard server/image/*.c server/image/*.cpp)
+IMAGE_SRC := $(wildcard server/image/*.c)
+IMAGE_LIBRARY_SRC := $(wildcard server/image/*.cpp)
+# What sheend shares with its workers, and what is theirs alone: each has a main and tasks.
+WORKER_SHARED_SRC := server/worker/stream.c server/worker/job.c server/worker/cage_code.c \
+                     server/worker/image_code.c
+ZYGOTE_SRC := server/worker/zygote.c server/worker/sandbox.c server/worker/threads.c
 SERVICE_SRC := $(wildcard server/service/*.c)
 CLIENT_SRC := $(wildcard client/*.c)
 SHADERS := $(sort $(wildcard shaders/*.glsl))
@@ -50,22 +70,39 @@ PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(LIMIT_SRC) server/error.c)
 RENDER_OBJ := $(call obj,$(GPU_SRC)) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,server/main.c $(wildcard server/options*.c) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
-              $(call obj,$(IMAGE_SRC)) $(PROTOCOL_OBJ)
+              $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
 KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
 SERVER_OBJ += $(KEEP_MODULES)
+# What parses files from strangers: linked into the workers alone.
+CAGE_TASKS_OBJ := $(call obj,$(CAGE_READ_SRC) server/worker/cage_tasks.c)
+IMAGE_TASKS_OBJ := $(call obj,$(IMAGE_LIBRARY_SRC) server/worker/image_tasks.c)
+WORKER_OBJ := $(call obj,server/error.c server/worker/stream.c server/worker/job.c $(ZYGOTE_SRC))
+CAGE_WORKER_OBJ := $(call obj,server/worker/cage_main.c $(CAGE_SRC) server/worker/cage_code.c) \
+                   $(CAGE_TASKS_OBJ) $(WORKER_OBJ)
+IMAGE_WORKER_OBJ := $(call obj,server/worker/image_main.c $(IMAGE_SRC) server/worker/image_code.c) \
+                    $(IMAGE_TASKS_OBJ) $(WORKER_OBJ)
 CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 
-SERVER_LIBS := -lepoxy -lOpenImageIO -lOpenImageIO_Util -ltinygltf -lprotobuf-nanopb -lzstd -lssl -lcrypto -linih -lm
+SERVER_LIBS := -lepoxy -lprotobuf-nanopb -lzstd -lssl -lcrypto -linih -lm
+CAGE_WORKER_LIBS := -ltinygltf -lm
+IMAGE_WORKER_LIBS := -lOpenImageIO -lOpenImageIO_Util -lm
 CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lssl -lcrypto -lpng -lm
-TEST_LIBS := $(SERVER_LIBS) -lpng
+TEST_LIBS := $(SERVER_LIBS) $(CAGE_WORKER_LIBS) $(IMAGE_WORKER_LIBS) -lpng
 
 .PHONY: all
-all: $(BUILD)/sheend $(BUILD)/sheen
+PROGRAMS := $(BUILD)/sheend $(BUILD)/sheend-cage $(BUILD)/sheend-image $(BUILD)/sheen
+all: $(PROGRAMS)
 
 $(BUILD)/sheend: $(SERVER_OBJ)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
+$(BUILD)/sheend-cage: $(CAGE_WORKER_OBJ)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(CAGE_WORKER_LIBS)
+$(BUILD)/sheend-image: $(IMAGE_WORKER_OBJ)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(IMAGE_WORKER_LIBS)
 $(BUILD)/sheen: $(CLIENT_OBJ)
 	$(call say,LD $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CLIENT_LIBS)
@@ -93,7 +130,7 @@ $(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything but the two mains.
 LIB_OBJ := $(filter-out %/server/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
-           $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
+           $(CAGE_TASKS_OBJ) $(IMAGE_TASKS_OBJ) $(call obj,$(ZYGOTE_SRC)) $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
 TEST_LIB := $(BUILD)/libtests.a
 $(TEST_LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && ar rcs $@ $^
@@ -102,18 +139,43 @@ UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/t
 ORACLE_SHARED := $(call obj,$(filter-out tests/oracle/test_%.cpp tests/oracle/fake_sheen.cpp,$(wildcard tests/oracle/*.cpp)))
 ORACLE_TESTS := $(patsubst tests/oracle/%.cpp,$(BUILD)/tests/%,$(wildcard tests/oracle/test_*.cpp) tests/oracle/fake_sheen.cpp)
 
-$(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST_LIB)
+$(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST_LIB) | $(PROGRAMS)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(TEST_LIBS)
+$(BUILD)/tests/test_service_worker: | $(BUILD)/tests/bad_worker
+$(BUILD)/tests/bad_worker: $(call obj,tests/worker/bad_worker.c) $(WORKER_OBJ)
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^
 $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(TEST_LIBS)
 
+# Each target with libFuzzer, or with a main that replays its corpus.
+FUZZ_NAMES := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
+FUZZ_TARGETS := $(patsubst %,$(BUILD)/tests/fuzz_%,$(FUZZ_NAMES))
+FUZZ_SHARED := $(call obj,tests/fuzz/alloc_fail.c tests/fuzz/cage.c tests/fuzz/cplusplus.cpp \
+               $(if $(FUZZ),,tests/fuzz/replay.c))
+TINYGLTF := _ZN8tinygltf8TinyGLTF
+TINYGLTF_LOAD := EPNS_5ModelEPNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEES9_PK
+FUZZ_WRAPPED := malloc calloc realloc strdup strndup $(TINYGLTF)19LoadASCIIFromString$(TINYGLTF_LOAD)cjRKS8_j \
+                $(TINYGLTF)20LoadBinaryFromMemory$(TINYGLTF_LOAD)hjRKS8_j
+FUZZ_LINK := -Wl,--as-needed $(patsubst %,-Wl$(comma)--wrap=%,$(FUZZ_WRAPPED)) \
+             $(if $(FUZZ),-fsanitize=fuzzer)
+FUZZ_ARCHIVE := $(BUILD)/libfuzz.a
+$(FUZZ_ARCHIVE): $(PROTOCOL_OBJ) $(CORE_OBJ) $(CAGE_TASKS_OBJ) \
+                 $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC) $(filter-out client/main.c,$(CLIENT_SRC)))
+	$(Q)rm -f $@ && ar rcs $@ $^
+$(FUZZ_TARGETS): $(BUILD)/tests/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.c.o $(FUZZ_SHARED) $(FUZZ_ARCHIVE)
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) $(FUZZ_LINK) -o $@ $^ $(CAGE_WORKER_LIBS) $(CLIENT_LIBS)
+
 # Every benchmark is one bench_NAME.cpp; what is beside them they share.
 BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/bench_*.cpp))
-BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/daemon.cpp tests/bench/scene.cpp \
+BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/daemon.cpp \
                 tests/bench/sheet.cpp) $(ORACLE_SHARED)
 BENCH_LIBS := -losdCPU $(TEST_LIBS)
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_SHARED) $(TEST_LIB)
@@ -126,9 +188,9 @@ $(EMBREE_OBJ): CXXFLAGS += -O3 -march=native -ffp-contract=fast
 $(BUILD)/tests/bench_frame: $(EMBREE_OBJ)
 $(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
 
-.PHONY: tests unit service oracle check bench lint format demo deps install clean
-tests: all $(UNIT_TESTS) $(ORACLE_TESTS)
-unit: $(UNIT_TESTS)
+.PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench lint format demo deps install clean
+tests: all $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS)
+unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 	sh tests/run.sh unit $(BUILD)
 service: all
 	sh tests/run.sh service $(BUILD)
@@ -139,6 +201,18 @@ check:
 	$(MAKE) lint
 	$(MAKE) tests
 	sh tests/run.sh all $(BUILD)
+
+fuzz-targets: $(FUZZ_TARGETS)
+fuzz:
+	sh deploy/deps.sh fuzz
+	$(MAKE) FUZZ=1 fuzz-targets
+	sh tests/fuzz/fuzz.sh build/fuzz $(SECONDS) $(FUZZ_NAMES)
+fuzz-coverage:
+	$(MAKE) COVERAGE=1 fuzz-targets
+	sh tests/fuzz/coverage.sh build/coverage $(FUZZ_NAMES)
+
+soak: all
+	SHEEN_SOAK_S=$(SECONDS) /usr/bin/python3 tests/service/run.py $(BUILD) soak_load
 
 # One after the other: each wants the machine for itself.
 bench: all $(BENCH)
@@ -161,6 +235,7 @@ deps:
 
 install: all
 	install -Dm755 $(BUILD)/sheend $(DESTDIR)$(PREFIX)/bin/sheend
+	install -Dm755 -t $(DESTDIR)$(PREFIX)/libexec/sheen $(BUILD)/sheend-cage $(BUILD)/sheend-image
 	install -Dm755 $(BUILD)/sheen $(DESTDIR)$(PREFIX)/bin/sheen
 
 clean:

@@ -44,10 +44,6 @@ static bool check(struct options *options, char *why)
     struct sheen_request *request = &options->request;
     if (!options->output)
         return options_refuse(why, "-o FILE is missing");
-    if (request->surface != SHEEN_SURFACE_EXACT)
-        return options_refuse(why, "--surface is what it compares: leave it out");
-    if (request->show.kind != SHEEN_SHOW_LINES)
-        return options_refuse(why, "--show: figure7 compares lines: leave it out");
     if (!(options->given & GIVEN_SIZE)) {
         request->width_px = 480;
         request->height_px = 360;

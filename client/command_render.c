@@ -5,6 +5,7 @@
 #include "client/commands.h"
 #include "client/file.h"
 #include "client/job.h"
+#include "client/scene_json.h"
 #include "client/values.h"
 
 static bool apply_output(struct options *options, const char *value, char *why)
@@ -42,23 +43,14 @@ static void print_json(struct json *json, const struct options *options, const s
     json_string(json, "driver", frame->driver);
     json_bool(json, "software", frame->software);
     json_string(json, "server", frame->server);
+    json_string(json, "address", options->server ? options->server : "private");
     json_string(json, "model", options->model);
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
     if (info->faces)
         json_uint(json, "faces", info->faces);
     job_json_times(json, &frame->times);
-    json_object_begin(json, "camera");
-    json_vec3(json, "eye", frame->camera.eye);
-    json_vec3(json, "target", frame->camera.target);
-    json_vec3(json, "up", frame->camera.up);
-    if (frame->camera.projection == SHEEN_PROJECTION_ORTHOGRAPHIC)
-        json_double(json, "ortho_height", frame->camera.ortho_height);
-    else
-        json_double(json, "fov_deg", frame->camera.fov_deg);
-    json_object_end(json);
-    job_json_lights(json, frame);
-    if (frame->show_range > 0)
-        json_double(json, "show_range", frame->show_range);
+    job_json_schedule(json, &options->request);
+    scene_json(json, &options->request, frame);
     json_lines(json, "warnings", info->warnings);
     json_object_end(json);
 }
@@ -130,8 +122,8 @@ static const struct option_row ROWS[] = {
     {0},
 };
 
-static const struct option_row *const TABLES[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON,
-                                                  OPTIONS_OUTPUT, NULL};
+static const struct option_row *const TABLES[] = {
+    ROWS, OPTIONS_SCENE, OPTIONS_SURFACE, OPTIONS_SCHEDULE, OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_RENDER = {
     .name = "render",

@@ -29,6 +29,14 @@ static void print_json(struct json *json, const struct sheen_stats *stats)
     json_uint(json, "queued", stats->queued);
     json_uint(json, "frames", stats->frames);
     json_uint(json, "errors", stats->errors);
+    json_uint(json, "superseded", stats->superseded);
+    json_uint(json, "cancelled", stats->cancelled);
+    json_uint(json, "late", stats->late);
+    json_uint(json, "disconnected", stats->disconnected);
+    json_uint(json, "interactive_us", stats->interactive_us);
+    json_uint(json, "still_us", stats->still_us);
+    json_uint(json, "batch_us", stats->batch_us);
+    json_uint(json, "memory_bytes", stats->memory_bytes);
     json_uint(json, "models", stats->models);
     json_uint(json, "model_bytes", stats->model_bytes);
     json_uint(json, "images", stats->images);
@@ -62,6 +70,13 @@ static void print_table(const struct sheen_stats *stats)
            stats->software ? ", software" : "");
     printf("%-10s %u, %u requests queued\n", "sessions", stats->sessions, stats->queued);
     printf("%-10s %" PRIu64 " sent, %" PRIu64 " errors\n", "frames", stats->frames, stats->errors);
+    printf("%-10s %" PRIu64 " superseded, %" PRIu64 " cancelled, %" PRIu64 " late; %" PRIu64
+           " clients disconnected\n",
+           "", stats->superseded, stats->cancelled, stats->late, stats->disconnected);
+    printf("%-10s interactive %.1f, still %.1f, batch %.1f s\n", "renderer",
+           (double)stats->interactive_us / 1e6, (double)stats->still_us / 1e6,
+           (double)stats->batch_us / 1e6);
+    printf("%-10s %" PRIu64 " bytes of the budget in use\n", "memory", stats->memory_bytes);
     printf("%-10s %u, %" PRIu64 " bytes on the GPU; %u images\n", "models", stats->models,
            stats->model_bytes, stats->images);
     printf("%-10s %" PRIu64 " bytes in, %" PRIu64 " bytes out\n", "traffic", stats->uploads_bytes,

@@ -31,7 +31,8 @@ struct stream {
     struct sheen_light light;     /* the first: the one that moves */
     struct sheen_frame frame;
     struct record *records;                /* [frames] */
-    uint64_t sent_us[SHEEN_MAX_IN_FLIGHT]; /* by frame number modulo its size */
+    uint32_t n_records, n_late;            /* frames that came, and that were not drawn in time */
+    uint64_t sent_us[SHEEN_MAX_IN_FLIGHT]; /* by the request's number modulo its size */
     uint64_t elapsed_us; /* of all frames but the first, which may wait for tables */
 };
 
@@ -66,6 +67,9 @@ static void move(struct stream *stream, const struct options *options, uint32_t 
 {
     const double degree = 3.14159265358979323846 / 180;
     double angle = number * options->orbit_deg * degree;
+    /* Every frame is wanted: none may take the place of another. */
+    stream->request.has_view = stream->request.request_class != SHEEN_BATCH;
+    stream->request.view = number;
     stream->request.camera = stream->camera;
     stream->request.lights[0] = stream->light;
     if (!options->light_only) {
@@ -76,21 +80,27 @@ static void move(struct stream *stream, const struct options *options, uint32_t 
         stream->request.lights[0].centre[i] += LIGHT_SWING * sin(angle) * stream->light.u[i];
 }
 
-static enum sheen_status send_one(struct job *job, struct stream *stream, uint32_t number)
+static enum sheen_status send_one(struct job *job, struct stream *stream)
 {
-    stream->sent_us[number % SHEEN_MAX_IN_FLIGHT] = now_us();
-    return sheen_send(job->session, &stream->request, &job->error);
+    uint64_t now = now_us();
+    enum sheen_status status = sheen_send(job->session, &stream->request, &job->error);
+    stream->sent_us[sheen_last_number(job->session) % SHEEN_MAX_IN_FLIGHT] = now;
+    return status;
 }
 
-static enum sheen_status receive_one(struct job *job, struct stream *stream, uint32_t number)
+static enum sheen_status receive_one(struct job *job, struct stream *stream)
 {
     enum sheen_status status =
         sheen_receive(job->session, &job->report, &stream->frame, &job->error);
+    if (status == SHEEN_LATE) {
+        stream->n_late++;
+        return SHEEN_OK;
+    }
     if (status)
         return status;
     const struct sheen_times *times = &stream->frame.times;
-    uint64_t round_trip_us = now_us() - stream->sent_us[number % SHEEN_MAX_IN_FLIGHT];
-    stream->records[number] = (struct record){
+    uint64_t round_trip_us = now_us() - stream->sent_us[stream->frame.number % SHEEN_MAX_IN_FLIGHT];
+    stream->records[stream->n_records++] = (struct record){
         .stage_us = {times->tables_us, times->visibility_us, times->evaluate_us, times->shade_us,
                      times->readback_us, times->encode_us, times->total_us, round_trip_us},
         .data_bytes = stream->frame.data_bytes,
@@ -101,12 +111,15 @@ static enum sheen_status receive_one(struct job *job, struct stream *stream, uin
 static enum sheen_status run_frames(struct job *job, struct stream *stream,
                                     const struct options *options)
 {
-    /* The first frame goes alone: its answer tells the camera and the light that move. */
-    enum sheen_status status = send_one(job, stream, 0);
+    /* The first frame goes alone, and has time: its answer tells the camera and the light that
+     * move. */
+    stream->request.deadline_ms = 0;
+    enum sheen_status status = send_one(job, stream);
     if (!status)
-        status = receive_one(job, stream, 0);
+        status = receive_one(job, stream);
     if (status)
         return status;
+    stream->request.deadline_ms = options->request.deadline_ms;
     progress_clear(&job->progress);
     stream->camera = stream->frame.camera;
     stream->light = stream->frame.lights[0];
@@ -115,9 +128,11 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
     while (!status && n_received < options->frames) {
         if (n_sent < options->frames && n_sent - n_received < IN_FLIGHT) {
             move(stream, options, n_sent);
-            status = send_one(job, stream, n_sent++);
+            status = send_one(job, stream);
+            n_sent++;
         } else {
-            status = receive_one(job, stream, n_received++);
+            status = receive_one(job, stream);
+            n_received++;
             job->report.report(job->report.context, "frames", n_received, options->frames);
         }
     }
@@ -154,6 +169,8 @@ static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t
     }
     printf("%.1f frames per second%s\n", frames_per_second(stream, n_frames),
            n_frames > 1 ? ", the first left out" : "");
+    if (stream->n_late > 0)
+        printf("%u more were late\n", stream->n_late);
 }
 
 static void print_json(struct json *json, const struct stream *stream, uint32_t n_frames,
@@ -169,6 +186,8 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
     json_string(json, "server", frame->server);
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
     json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
+    json_uint(json, "late", stream->n_late);
+    job_json_schedule(json, &stream->request);
     json_array_begin(json, "frames");
     for (uint32_t i = 0; i < n_frames; i++) {
         json_object_begin(json, NULL);
@@ -197,11 +216,11 @@ static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_
     if (status)
         return status;
     if (!options->json) {
-        print_table(stream, options->frames, sorted);
+        print_table(stream, stream->n_records, sorted);
         return SHEEN_OK;
     }
     struct json json = {.out = stdout};
-    print_json(&json, stream, options->frames, job);
+    print_json(&json, stream, stream->n_records, job);
     return job_finish_json(job, &json);
 }
 
@@ -210,6 +229,8 @@ static int run(const struct options *options)
     struct job job = {0};
     struct stream stream = {.request = options->request};
     stream.request.format = SHEEN_PLANES_ZSTD;
+    if (!(options->given & GIVEN_CLASS))
+        stream.request.request_class = SHEEN_INTERACTIVE;
     stream.records = calloc(options->frames, sizeof(*stream.records));
     uint64_t *sorted = calloc(options->frames, sizeof(*sorted));
     enum sheen_status status = stream.records && sorted
@@ -263,8 +284,8 @@ static const struct option_row ROWS[] = {
     {0},
 };
 
-static const struct option_row *const TABLES_LIST[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON,
-                                                       OPTIONS_OUTPUT, NULL};
+static const struct option_row *const TABLES_LIST[] = {
+    ROWS, OPTIONS_SCENE, OPTIONS_SURFACE, OPTIONS_SCHEDULE, OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_STREAM = {
     .name = "stream",
@@ -274,6 +295,7 @@ const struct command COMMAND_STREAM = {
     .tables = TABLES_LIST,
     .examples = "  sheen stream hood.obj --frames 100\n"
                 "  sheen stream hood.obj --frames 100 --light-only --size 1920x1080\n"
+                "  sheen stream hood.obj --frames 100 --class batch --deadline 500\n"
                 "  sheen stream hood.obj --frames 360 --server unix:/run/sheen.sock --json\n",
     .takes_model = true,
     .check = check,

@@ -127,5 +127,6 @@ struct sheen_server sheen_server(const struct sheen_session *session)
         .max_width_px = session->hello.max_width_px,
         .max_height_px = session->hello.max_height_px,
         .max_upload_bytes = session->hello.max_upload_bytes,
+        .max_in_flight = session->hello.credits,
     };
 }

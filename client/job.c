@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "client/file.h"
-#include "client/lights_text.h"
 #include "client/status.h"
+#include "client/values.h"
 
 #define TOKEN_BYTES 256
 #define AT_SERVER "server:" /* a MODEL that is a file below the daemon's --models */
@@ -118,6 +118,13 @@ void job_print_warnings(struct job *job, const char *model, const char *lines)
     }
 }
 
+void job_json_schedule(struct json *json, const struct sheen_request *request)
+{
+    json_string(json, "class", value_class_name(request->request_class));
+    if (request->deadline_ms)
+        json_uint(json, "deadline_ms", request->deadline_ms);
+}
+
 void job_json_times(struct json *json, const struct sheen_times *times)
 {
     json_uint(json, "tables_us", times->tables_us);
@@ -127,41 +134,4 @@ void job_json_times(struct json *json, const struct sheen_times *times)
     json_uint(json, "readback_us", times->readback_us);
     json_uint(json, "encode_us", times->encode_us);
     json_uint(json, "total_us", times->total_us);
-}
-
-static void json_pattern(struct json *json, const struct sheen_pattern *pattern)
-{
-    json_object_begin(json, "pattern");
-    json_string(json, "kind", text_pattern_kind(pattern->kind));
-    json_double(json, "count", pattern->count);
-    if (pattern->period > 0)
-        json_double(json, "period", pattern->period);
-    json_double(json, "duty", pattern->duty);
-    json_double(json, "rotation_deg", pattern->rotation_deg);
-    json_double(json, "offset", pattern->offset);
-    json_double(json, "soft", pattern->soft);
-    json_double(json, "opacity", pattern->opacity);
-    json_object_end(json);
-}
-
-static void json_light(struct json *json, const char *name, const struct sheen_light *light)
-{
-    json_object_begin(json, name);
-    json_string(json, "kind", text_light_kind(light->kind));
-    json_bool(json, "one_sided", light->one_sided);
-    json_vec3(json, "center", light->centre);
-    json_vec3(json, "u", light->u);
-    json_vec3(json, "v", light->v);
-    json_pattern(json, &light->pattern);
-    json_object_end(json);
-}
-
-void job_json_lights(struct json *json, const struct sheen_frame *frame)
-{
-    json_string(json, "lines", text_line_family(frame->lines.family));
-    json_light(json, "light", &frame->lights[0]);
-    json_array_begin(json, "lights");
-    for (uint32_t i = 0; i < frame->n_lights; i++)
-        json_light(json, NULL, &frame->lights[i]);
-    json_array_end(json);
 }

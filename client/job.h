@@ -25,9 +25,6 @@ enum sheen_status job_init(struct job *job, const struct options *options);
 enum sheen_status job_upload_images(struct job *job, const struct options *options,
                                     struct sheen_request *request);
 
-/* The frame's line family and lights as JSON; "light" is the first one. */
-void job_json_lights(struct json *json, const struct sheen_frame *frame);
-
 /* Gives everything back; prints job->error as one line if `status` is a failure. Returns the exit
  * code. */
 int job_finish(struct job *job, enum sheen_status status);
@@ -37,6 +34,9 @@ enum sheen_status job_finish_json(struct job *job, struct json *json);
 
 /* "sheen: warning: MODEL: LINE" for each line. */
 void job_print_warnings(struct job *job, const char *model, const char *lines);
+
+/* Key class, and deadline_ms where there is one. */
+void job_json_schedule(struct json *json, const struct sheen_request *request);
 
 /* Keys tables_us to total_us into the object that is open. */
 void job_json_times(struct json *json, const struct sheen_times *times);

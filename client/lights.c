@@ -147,6 +147,10 @@ void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
     message_get_vec3(frame->lines.direction, &lines->direction);
     message_get_vec3(frame->lines.eye, lines->has_eye ? &lines->eye : &lines->eye_direction);
     frame->show_range = body->has_show_range ? body->show_range : 0;
+    frame->has_colours = body->has_miss && body->has_empty && body->has_base;
+    get_colour(frame->miss, &body->miss);
+    get_colour(frame->empty, &body->empty);
+    get_colour(frame->base, &body->base);
     frame->n_lights = body->lights_count;
     for (uint32_t i = 0; i < frame->n_lights; i++) {
         const sheen_Light *from = &body->lights[i];

@@ -37,7 +37,7 @@ const struct text_row TEXT_PATTERNS[] = {
     {"lattice", "stripes both ways", "--pattern lattice:count=40,duty=0.15"},
     {"circles", "rings about the light's centre", "--pattern circles:count=40"},
     {"lines", "single lines at places across the light, 0 to 1",
-     "--pattern lines:at=0.4/0.5/0.6,width=0.01"},
+     "--pattern lines:at=0.4/0.5/0.6,width=0.01,soft=0.3"},
     {"rainbow", "hue instead of bright and dark", "--pattern rainbow:count=5"},
     {"distance", "bands by the length of the ray to the light", "--pattern distance:period=50"},
     {"image", "a picture on the light; HDR pictures are linear light", "--pattern image:grid.png"},
@@ -71,7 +71,7 @@ const struct text_row TEXT_PATTERN_KEYS[] = {
     {"duty", "bright share of a period", "0 to 1; default 0.5"},
     {"rotation", "of the pattern on the light", "degrees; default 0"},
     {"offset", "shift of the pattern", "periods; default 0"},
-    {"soft", "share of a period that each edge takes", "0 to 1; default 0"},
+    {"soft", "share of a period (lines: of the width) that each edge takes", "0 to 1; default 0"},
     {"opacity", "over the shaded base (--base)", "0 to 1; default 1"},
     {"fg, bg", "colours of bright and dark", "#rrggbb or #rrggbbaa; default white and black"},
     {"at", "lines: where, with slashes between", "up to 16 places from 0 to 1; default 0.5"},
@@ -221,13 +221,14 @@ bool text_line_eye(const char *text, struct sheen_lines *value, char why[static 
            refuse(why, "must be camera, a point X,Y,Z or a direction of view dir:X,Y,Z");
 }
 
+static const struct text_row SHOW_KINDS[] = {
+    {.name = "lines"},  {.name = "curvature"}, {.name = "gaussian"}, {.name = "mean"},
+    {.name = "normal"}, {.name = "ptex"},      {.name = "draft"},    {0}};
+
 bool text_show(const char *text, struct sheen_show *value, char why[static LIGHTS_WHY_BYTES])
 {
-    static const struct text_row kinds[] = {
-        {.name = "lines"},  {.name = "curvature"}, {.name = "gaussian"}, {.name = "mean"},
-        {.name = "normal"}, {.name = "ptex"},      {.name = "draft"},    {0}};
     size_t length = strcspn(text, ":");
-    int kind = find_row(kinds, text, length);
+    int kind = find_row(SHOW_KINDS, text, length);
     if (kind < 0 || (kind != SHEEN_SHOW_DRAFT && text[length]))
         return refuse(why, "must be curvature, gaussian, mean, normal, ptex, draft:X,Y,Z or lines");
     value->kind = (enum sheen_show_kind)kind;
@@ -253,4 +254,9 @@ const char *text_light_kind(enum sheen_light_kind kind)
 const char *text_line_family(enum sheen_line_family family)
 {
     return TEXT_FAMILIES[family].name;
+}
+
+const char *text_show_kind(enum sheen_show_kind kind)
+{
+    return SHOW_KINDS[kind].name;
 }

@@ -32,6 +32,7 @@ bool text_show(const char *text, struct sheen_show *value, char why[static LIGHT
 const char *text_pattern_kind(enum sheen_pattern_kind kind);
 const char *text_light_kind(enum sheen_light_kind kind);
 const char *text_line_family(enum sheen_line_family family);
+const char *text_show_kind(enum sheen_show_kind kind);
 
 /* One line of what there is. Tables end with name NULL. */
 struct text_row {

@@ -25,6 +25,7 @@ enum options_given {
     GIVEN_FRAMES = 1 << 8,
     GIVEN_LIGHT = 1 << 9,
     GIVEN_SIZE = 1 << 10,
+    GIVEN_CLASS = 1 << 11,
 };
 
 struct options {
@@ -69,9 +70,11 @@ struct command {
 
 enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };
 
-extern const struct option_row OPTIONS_COMMON[]; /* server, device, quiet */
-extern const struct option_row OPTIONS_OUTPUT[]; /* json, help: of every command */
-extern const struct option_row OPTIONS_SCENE[];  /* size, camera, light, pattern, colours */
+extern const struct option_row OPTIONS_COMMON[];   /* server, device, quiet */
+extern const struct option_row OPTIONS_OUTPUT[];   /* json, help: of every command */
+extern const struct option_row OPTIONS_SCENE[];    /* size, camera, light, pattern, colours */
+extern const struct option_row OPTIONS_SURFACE[];  /* surface, show, show-range */
+extern const struct option_row OPTIONS_SCHEDULE[]; /* class, deadline */
 
 /* Parses argv, whose [0] is the command's name. OPTIONS_WRONG leaves one line in `why` that names
  * the option, OPTIONS_HELP asks for options_help(). */

@@ -220,6 +220,33 @@ static bool apply_show_range(struct options *options, const char *value, char *w
            options_refuse(why, "must be a number above 0");
 }
 
+static bool apply_class(struct options *options, const char *value, char *why)
+{
+    options->given |= GIVEN_CLASS;
+    return value_class(value, &options->request.request_class) ||
+           options_refuse(why, "must be interactive, still or batch");
+}
+
+static bool apply_deadline(struct options *options, const char *value, char *why)
+{
+    uint32_t *deadline_ms = &options->request.deadline_ms;
+    return (value_uint32(value, deadline_ms) && *deadline_ms > 0 && *deadline_ms <= 3600000) ||
+           options_refuse(why, "must be milliseconds from 1 to 3600000");
+}
+
+const struct option_row OPTIONS_SCHEDULE[] = {
+    {"class", 0, "CLASS",
+     "what the daemon puts first when it has many: interactive, then still, then\n"
+     "batch, of which the last two keep a fifth of its time each (default: still;\n"
+     "stream: interactive)",
+     apply_class},
+    {"deadline", 0, "MS",
+     "of no use later than this after the daemon has read the request, 1 to\n"
+     "3600000 milliseconds (default: none)",
+     apply_deadline},
+    {0},
+};
+
 const struct option_row OPTIONS_COMMON[] = {
     {"server", 0, "ADDRESS",
      "a running daemon: unix:PATH, tcp:HOST:PORT or tls:HOST:PORT (default:\n"
@@ -311,6 +338,10 @@ const struct option_row OPTIONS_SCENE[] = {
      apply_miss},
     {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa (default: #808080, grey)",
      apply_empty},
+    {0},
+};
+
+const struct option_row OPTIONS_SURFACE[] = {
     {"surface", 0, "KIND",
      "exact (default): the limit surface; for comparison polygon:LEVEL, the cage\n"
      "subdivided LEVEL times (0 to 6), normals interpolated as a graphics card\n"

@@ -7,7 +7,8 @@
 #include "client/status.h"
 #include "client/times.h"
 
-_Static_assert((int)SHEEN_MAX_IN_FLIGHT <= (int)PROTOCOL_MAX_IN_FLIGHT, "the daemon's limit");
+_Static_assert((int)SHEEN_MAX_IN_FLIGHT == (int)PROTOCOL_MAX_CREDITS, "what a daemon may grant");
+_Static_assert((int)SHEEN_BATCH == (int)sheen_RequestClass_CLASS_BATCH, "same order");
 _Static_assert((int)SHEEN_FILE_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
 _Static_assert((int)SHEEN_COVERAGE == (int)sheen_Plane_PLANE_COVERAGE, "same bits");
 
@@ -58,6 +59,12 @@ static void fill_render(sheen_Render *render, const struct sheen_request *reques
         .surface = (sheen_SurfaceKind)request->surface,
         .has_surface_level = request->surface_level != 0,
         .surface_level = request->surface_level,
+        .has_request_class = request->request_class != SHEEN_STILL,
+        .request_class = (sheen_RequestClass)request->request_class,
+        .has_view = request->has_view,
+        .view = request->view,
+        .has_deadline_ms = request->deadline_ms != 0,
+        .deadline_ms = request->deadline_ms,
     };
     memcpy(render->model_sha256, request->model_id, SHEEN_ID_BYTES);
     fill_camera(render, &request->camera);
@@ -74,9 +81,9 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
         return status;
     if (!request)
         return status_set(error, SHEEN_BAD_ARGUMENT, "request is NULL");
-    if (session->n_pending == SHEEN_MAX_IN_FLIGHT)
-        return status_set(error, SHEEN_BAD_ARGUMENT, "%d requests are in flight: receive one",
-                          SHEEN_MAX_IN_FLIGHT);
+    if (session->n_pending == session->hello.credits)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "%u requests are in flight: receive one",
+                          session->hello.credits);
     if (request->n_lights < 1 || request->n_lights > SHEEN_MAX_LIGHTS)
         return status_set(error, SHEEN_BAD_ARGUMENT, "%u lights; there must be 1 to %d",
                           request->n_lights, SHEEN_MAX_LIGHTS);
@@ -92,9 +99,39 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
         .encoding = render.encoding,
     };
     status = session_send(session, MESSAGE_RENDER, &render, &pending->seq, error);
+    session->last_sent = pending->seq;
     if (!status)
         session->n_pending++;
     return status;
+}
+
+uint32_t sheen_last_number(const struct sheen_session *session)
+{
+    return session ? session->last_sent : 0;
+}
+
+/* The pending request of this number; n_pending when there is none. */
+static size_t find_pending(const struct sheen_session *session, uint32_t seq)
+{
+    size_t i = 0;
+    while (i < session->n_pending && session->pending[i].seq != seq)
+        i++;
+    return i;
+}
+
+enum sheen_status sheen_cancel(struct sheen_session *session, uint32_t number,
+                               struct sheen_error *error)
+{
+    enum sheen_status status = session_check(session, error);
+    if (status)
+        return status;
+    if (find_pending(session, number) == session->n_pending)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "no request %u is in flight", number);
+    if (session->hello.minor < 1)
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          "the daemon is too old to take requests back: install sheen %s there",
+                          SHEEN_VERSION);
+    return session_send_raw(session, MESSAGE_CANCEL, number, NULL, 0, error);
 }
 
 static enum sheen_status broken(struct sheen_session *session, struct sheen_error *error,
@@ -158,6 +195,7 @@ static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
     struct sheen_frame_memory *memory = frame->memory;
     *frame = (struct sheen_frame){
         .memory = memory,
+        .number = frame->number,
         .width_px = body->width_px,
         .height_px = body->height_px,
         .planes = body->planes,
@@ -222,39 +260,65 @@ static const char *frame_mismatch(const sheen_Frame *body, const struct session_
     return NULL;
 }
 
+/* The rest of a frame whose FRAME has been read. */
 static enum sheen_status receive_frame(struct sheen_session *session,
                                        const struct session_pending *pending,
-                                       const struct sheen_progress *progress,
-                                       struct sheen_frame *frame, struct sheen_error *error)
+                                       const sheen_Frame *body, struct sheen_frame *frame,
+                                       struct sheen_error *error)
 {
-    sheen_Frame body;
     struct codec_layout layout;
-    enum sheen_status status =
-        session_receive(session, pending->seq, MESSAGE_FRAME, progress, &body, error);
-    if (status == SHEEN_TOO_BIG) /* of a request, not of a file */
-        return error ? error->status = SHEEN_BAD_REQUEST : SHEEN_BAD_REQUEST;
-    if (status)
-        return status;
     const char *mismatch = "FRAME has no size";
-    if (codec_layout_init(&layout, body.width_px, body.height_px, body.planes))
-        mismatch = frame_mismatch(&body, pending, &layout);
+    if (codec_layout_init(&layout, body->width_px, body->height_px, body->planes))
+        mismatch = frame_mismatch(body, pending, &layout);
     if (mismatch)
         return broken(session, error, mismatch);
-    status = read_data(session, pending->seq, (size_t)body.data_bytes, frame->memory, error);
+    enum sheen_status status =
+        read_data(session, pending->seq, (size_t)body->data_bytes, frame->memory, error);
     if (status)
         return status;
-    fill_frame(frame, &body);
+    fill_frame(frame, body);
     if (frame->format == SHEEN_PLANES_RAW || frame->format == SHEEN_PLANES_ZSTD)
         return unpack_planes(session, frame, &layout, error);
     frame->file = frame->memory->data;
-    frame->file_bytes = (size_t)body.data_bytes;
+    frame->file_bytes = (size_t)body->data_bytes;
     return SHEEN_OK;
+}
+
+/* The answer to a request, whose header has been read. */
+static enum sheen_status receive_answer(struct sheen_session *session,
+                                        const struct session_pending *pending,
+                                        const struct message_header *header,
+                                        struct sheen_frame *frame, struct sheen_error *error)
+{
+    sheen_Frame body;
+    sheen_Superseded superseded;
+    enum sheen_status status;
+    switch (header->type) {
+    case MESSAGE_ERROR:
+        status = session_read_error(session, header, error);
+        if (status == SHEEN_TOO_BIG) /* of a request, not of a file */
+            return error ? error->status = SHEEN_BAD_REQUEST : SHEEN_BAD_REQUEST;
+        return status;
+    case MESSAGE_SUPERSEDED:
+        status = session_read_body(session, header, &superseded, error);
+        if (status)
+            return status;
+        frame->superseded_by = superseded.by;
+        return status_set(error, SHEEN_SUPERSEDED, "request %u has taken the place of %u",
+                          superseded.by, pending->seq);
+    case MESSAGE_FRAME:
+        status = session_read_body(session, header, &body, error);
+        return status ? status : receive_frame(session, pending, &body, frame, error);
+    default:
+        return session_bad_peer(session, error, header->type, "another answer was due");
+    }
 }
 
 enum sheen_status sheen_receive(struct sheen_session *session,
                                 const struct sheen_progress *progress, struct sheen_frame *frame,
                                 struct sheen_error *error)
 {
+    struct message_header header;
     enum sheen_status status = session_check(session, error);
     if (status)
         return status;
@@ -265,11 +329,21 @@ enum sheen_status sheen_receive(struct sheen_session *session,
         frame->memory = calloc(1, sizeof(*frame->memory));
     if (!frame->memory)
         return no_memory(session, error, sizeof(*frame->memory));
-    const struct session_pending pending = session->pending[0];
+    status = session_next(session, progress, &header, error);
+    if (status)
+        return status;
+    if (header.type == MESSAGE_ERROR && header.seq == 0)
+        return session_read_error(session, &header, error);
+    size_t i = find_pending(session, header.seq);
+    if (i == session->n_pending)
+        return session_bad_peer(session, error, header.type, "it answers no request in flight");
+    const struct session_pending pending = session->pending[i];
     session->n_pending--;
-    memmove(session->pending, session->pending + 1,
-            session->n_pending * sizeof(session->pending[0]));
-    return receive_frame(session, &pending, progress, frame, error);
+    memmove(session->pending + i, session->pending + i + 1,
+            (session->n_pending - i) * sizeof(session->pending[0]));
+    frame->number = pending.seq;
+    frame->superseded_by = 0;
+    return receive_answer(session, &pending, &header, frame, error);
 }
 
 enum sheen_status sheen_render(struct sheen_session *session, const struct sheen_request *request,

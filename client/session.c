@@ -24,8 +24,8 @@ enum sheen_status session_check(const struct sheen_session *session, struct shee
     return SHEEN_OK;
 }
 
-static enum sheen_status bad_peer(struct sheen_session *session, struct sheen_error *error,
-                                  uint8_t type, const char *what)
+enum sheen_status session_bad_peer(struct sheen_session *session, struct sheen_error *error,
+                                   uint8_t type, const char *what)
 {
     status_set(error, SHEEN_BAD_PEER, "the server broke the protocol: %s: %s",
                message_type_name(type), what);
@@ -50,24 +50,26 @@ static enum sheen_status read_header(struct sheen_session *session, struct messa
                    (unsigned)header->major, (unsigned)PROTOCOL_MAJOR);
         return session_fail(session, SHEEN_BAD_VERSION, error);
     }
-    return bad_peer(session, error, header->type, header_error_text(wrong));
+    return session_bad_peer(session, error, header->type, header_error_text(wrong));
 }
 
-static enum sheen_status read_body(struct sheen_session *session,
-                                   const struct message_header *header, void *body,
-                                   struct sheen_error *error)
+enum sheen_status session_read_body(struct sheen_session *session,
+                                    const struct message_header *header, void *body,
+                                    struct sheen_error *error)
 {
     char text[MESSAGE_TEXT_BYTES];
     if (header->length > sizeof(session->buffer))
-        return bad_peer(session, error, header->type, "its body is too long");
+        return session_bad_peer(session, error, header->type, "its body is too long");
     enum sheen_status status =
         connection_read(&session->connection, session->buffer, header->length, error);
     if (status)
         return session_fail(session, status, error);
-    if (!message_decode(header->type, session->buffer, header->length, body))
-        return bad_peer(session, error, header->type, "its body is malformed");
+    if (!message_decode(header->type, session->buffer, header->length, body)) {
+        message_find_fault(header->type, session->buffer, header->length, text);
+        return session_bad_peer(session, error, header->type, text);
+    }
     if (!message_check_answer(header->type, body, text))
-        return bad_peer(session, error, header->type, text);
+        return session_bad_peer(session, error, header->type, text);
     return SHEEN_OK;
 }
 
@@ -92,17 +94,20 @@ static enum sheen_status status_of_code(sheen_ErrorCode code)
         return SHEEN_SHUTTING_DOWN;
     case sheen_ErrorCode_ERROR_DEVICE:
         return SHEEN_DEVICE_FAILED;
+    case sheen_ErrorCode_ERROR_CANCELLED:
+        return SHEEN_CANCELLED;
+    case sheen_ErrorCode_ERROR_DEADLINE:
+        return SHEEN_LATE;
     default:
         return SHEEN_BAD_PEER;
     }
 }
 
-/* Reads the body of an ERROR and turns it into its status. */
-static enum sheen_status read_error(struct sheen_session *session,
-                                    const struct message_header *header, struct sheen_error *error)
+enum sheen_status session_read_error(struct sheen_session *session,
+                                     const struct message_header *header, struct sheen_error *error)
 {
     sheen_Error body;
-    enum sheen_status status = read_body(session, header, &body, error);
+    enum sheen_status status = session_read_body(session, header, &body, error);
     if (status)
         return status;
     status = status_of_code(body.code);
@@ -126,7 +131,7 @@ static enum sheen_status last_words(struct sheen_session *session, enum sheen_st
         if (!said && header.type != MESSAGE_ERROR)
             return session_fail(session, status, error);
         if (!said)
-            said = read_error(session, &header, &words);
+            said = session_read_error(session, &header, &words);
     } while (!sheen_status_is_fatal(said) && said != SHEEN_DEVICE_FAILED);
     if (said == SHEEN_TIMEOUT)
         return session_fail(session, status, error);
@@ -169,9 +174,21 @@ static enum sheen_status read_progress(struct sheen_session *session,
                                        struct sheen_error *error)
 {
     sheen_Progress body;
-    enum sheen_status status = read_body(session, header, &body, error);
+    enum sheen_status status = session_read_body(session, header, &body, error);
     if (!status && progress && progress->report)
         progress->report(progress->context, body.stage, body.done, body.total);
+    return status;
+}
+
+enum sheen_status session_next(struct sheen_session *session, const struct sheen_progress *progress,
+                               struct message_header *header, struct sheen_error *error)
+{
+    enum sheen_status status;
+    do {
+        status = read_header(session, header, error);
+        if (!status && header->type == MESSAGE_PROGRESS)
+            status = read_progress(session, header, progress, error);
+    } while (!status && header->type == MESSAGE_PROGRESS);
     return status;
 }
 
@@ -179,23 +196,16 @@ enum sheen_status session_expect(struct sheen_session *session, uint32_t seq, ui
                                  const struct sheen_progress *progress,
                                  struct message_header *header, struct sheen_error *error)
 {
-    for (;;) {
-        enum sheen_status status = read_header(session, header, error);
-        if (status)
-            return status;
-        if (header->type == MESSAGE_ERROR && (header->seq == seq || header->seq == 0))
-            return read_error(session, header, error);
-        if (header->seq != seq)
-            return bad_peer(session, error, header->type, "it answers no request in flight");
-        if (header->type != MESSAGE_PROGRESS) {
-            if (header->type != type)
-                return bad_peer(session, error, header->type, "another answer was due");
-            return SHEEN_OK;
-        }
-        status = read_progress(session, header, progress, error);
-        if (status)
-            return status;
-    }
+    enum sheen_status status = session_next(session, progress, header, error);
+    if (status)
+        return status;
+    if (header->type == MESSAGE_ERROR && (header->seq == seq || header->seq == 0))
+        return session_read_error(session, header, error);
+    if (header->seq != seq)
+        return session_bad_peer(session, error, header->type, "it answers no request in flight");
+    if (header->type != type)
+        return session_bad_peer(session, error, header->type, "another answer was due");
+    return SHEEN_OK;
 }
 
 enum sheen_status session_receive(struct sheen_session *session, uint32_t seq, uint8_t type,
@@ -204,5 +214,5 @@ enum sheen_status session_receive(struct sheen_session *session, uint32_t seq, u
 {
     struct message_header header;
     enum sheen_status status = session_expect(session, seq, type, progress, &header, error);
-    return status ? status : read_body(session, &header, body, error);
+    return status ? status : session_read_body(session, &header, body, error);
 }

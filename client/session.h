@@ -20,9 +20,9 @@ struct session_pending {
 struct sheen_session {
     struct connection connection;
     struct private_daemon daemon;
-    bool share;  /* what it uploads */
-    bool broken; /* after a fatal status; only sheen_close() is left */
-    uint32_t last_seq;
+    bool share;                   /* what it uploads */
+    bool broken;                  /* after a fatal status; only sheen_close() is left */
+    uint32_t last_seq, last_sent; /* of all messages, of requests for frames */
     size_t n_pending;
     struct session_pending pending[SHEEN_MAX_IN_FLIGHT]; /* oldest first */
     sheen_HelloOk hello;
@@ -46,9 +46,26 @@ enum sheen_status session_send_raw(struct sheen_session *session, uint8_t type, 
                                    const uint8_t *bytes, uint32_t n_bytes,
                                    struct sheen_error *error);
 
-/* Reads the next header that answers request `seq`, passing over PROGRESS (reported to `progress`,
- * which may be NULL). An ERROR becomes its status; another type or number is SHEEN_BAD_PEER. The
- * body, header->length bytes, is the caller's to read. */
+/* Reads the next header that is not PROGRESS (which is reported to `progress`, which may be NULL).
+ * The body, header->length bytes, is the caller's to read. */
+enum sheen_status session_next(struct sheen_session *session, const struct sheen_progress *progress,
+                               struct message_header *header, struct sheen_error *error);
+
+/* Reads a body and checks it into the type's struct. */
+enum sheen_status session_read_body(struct sheen_session *session,
+                                    const struct message_header *header, void *body,
+                                    struct sheen_error *error);
+/* Reads the body of an ERROR and turns it into its status. */
+enum sheen_status session_read_error(struct sheen_session *session,
+                                     const struct message_header *header,
+                                     struct sheen_error *error);
+/* SHEEN_BAD_PEER, by a message of this type. */
+enum sheen_status session_bad_peer(struct sheen_session *session, struct sheen_error *error,
+                                   uint8_t type, const char *what);
+
+/* Reads the next header, which must answer request `seq`, passing over PROGRESS. An ERROR becomes
+ * its status; another type or number is SHEEN_BAD_PEER. The body, header->length bytes, is the
+ * caller's to read. */
 enum sheen_status session_expect(struct sheen_session *session, uint32_t seq, uint8_t type,
                                  const struct sheen_progress *progress,
                                  struct message_header *header, struct sheen_error *error);

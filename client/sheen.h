@@ -35,7 +35,7 @@
 
 #define SHEEN_ID_BYTES 32 /* SHA-256 of a file's bytes */
 #define SHEEN_PLANES 8
-#define SHEEN_MAX_IN_FLIGHT 4 /* requests sent and not yet received, per session */
+#define SHEEN_MAX_IN_FLIGHT 64 /* requests sent and not yet received: the most any daemon takes */
 
 enum sheen_status {
     SHEEN_OK,
@@ -46,6 +46,9 @@ enum sheen_status {
     SHEEN_TOO_BIG,       /* the file is over the daemon's limit          exit code 3 */
     SHEEN_UNKNOWN_MODEL, /* the daemon lacks the file: upload it (again) exit code 4 */
     SHEEN_OVERLOADED,    /* the daemon is full: try later                exit code 4 */
+    SHEEN_SUPERSEDED,    /* a newer request of its view took its place   exit code 4 */
+    SHEEN_CANCELLED,     /* by sheen_cancel()                            exit code 4 */
+    SHEEN_LATE,          /* not drawn within its deadline                exit code 4 */
     SHEEN_SHUTTING_DOWN, /* fatal                                        exit code 4 */
     SHEEN_NO_SERVER,     /* fatal: cannot connect, or start a daemon     exit code 4 */
     SHEEN_LOST_SERVER,   /* fatal: the connection broke                  exit code 4 */
@@ -105,6 +108,7 @@ struct sheen_server {
     bool software;
     uint32_t max_width_px, max_height_px;
     uint64_t max_upload_bytes;
+    uint32_t max_in_flight; /* requests sent and not yet received, 1 to SHEEN_MAX_IN_FLIGHT */
 };
 struct sheen_server sheen_server(const struct sheen_session *session);
 
@@ -228,7 +232,8 @@ struct sheen_pattern {
     double period;                      /* in the light's units, > 0; 0: by count */
     double duty;                        /* bright part of a period, [0, 1] */
     double rotation_deg, offset;        /* offset in periods */
-    double soft;                        /* share of a period that each edge takes, [0, 1] */
+    double soft;                        /* share of a period (SHEEN_LINES: of the width) that
+                                           each edge takes, [0, 1] */
     double opacity;                     /* over the shaded base, [0, 1] */
     uint32_t n_at;                      /* SHEEN_LINES: 1 to SHEEN_MAX_LINES, else 0 */
     double at[SHEEN_MAX_LINES], width;  /* places and width, in widths of the light */
@@ -290,6 +295,13 @@ struct sheen_show {
     double range;        /* the colours' ends, > 0, DRAFT <= 90; 0: from the frame, DRAFT 3 */
 };
 
+/* How the daemon treats a request when it has many. */
+enum sheen_class {
+    SHEEN_STILL,       /* somebody waits for it */
+    SHEEN_INTERACTIVE, /* somebody drags: first, and only the newest of a view counts */
+    SHEEN_BATCH,       /* nobody waits; never replaced */
+};
+
 struct sheen_request {
     uint8_t model_id[SHEEN_ID_BYTES]; /* an uploaded model */
     uint32_t width_px, height_px;     /* 1 to the daemon's limit */
@@ -307,6 +319,10 @@ struct sheen_request {
     enum sheen_format format;
     enum sheen_surface surface;
     uint32_t surface_level; /* 0 to 6; exact: 0 */
+    enum sheen_class request_class;
+    bool has_view;        /* STILL: may be replaced too; INTERACTIVE without: view 0 */
+    uint32_t view;        /* which of the program's pictures this is */
+    uint32_t deadline_ms; /* from when the daemon has read it, at most 3600000; 0: none */
 };
 #define SHEEN_REQUEST_DEFAULTS                                                                     \
     ((struct sheen_request){.width_px = 1280,                                                      \
@@ -326,6 +342,8 @@ struct sheen_times {
  * memory, and at last to sheen_frame_finish(). After a failure its fields are undefined, but it may
  * still be reused and must still be finished. */
 struct sheen_frame {
+    uint32_t number;        /* of its request: sheen_last_number(); set whatever the answer is */
+    uint32_t superseded_by; /* SHEEN_SUPERSEDED: the request that took its place */
     uint32_t width_px, height_px;
     uint32_t planes;
     enum sheen_format format;
@@ -339,6 +357,8 @@ struct sheen_frame {
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
     double show_range; /* of false colour, as used; 0: none */
+    bool has_colours;  /* the daemon says what it used: */
+    float miss[4], empty[4], base[4];
     struct sheen_times times;
     char device[128], driver[128], server[32];
     bool software;
@@ -350,14 +370,24 @@ enum sheen_status sheen_render(struct sheen_session *session, const struct sheen
                                const struct sheen_progress *progress, struct sheen_frame *frame,
                                struct sheen_error *error);
 
-/* Sends a request without waiting, up to SHEEN_MAX_IN_FLIGHT of them (SHEEN_BAD_ARGUMENT beyond),
- * and receives their answers in the order sent. A request that the daemon refuses fails in its
- * sheen_receive(). */
+/* Sends a request without waiting, up to sheen_server().max_in_flight of them (SHEEN_BAD_ARGUMENT
+ * beyond), and receives the next answer: frames of a class in the order sent, failures as soon as
+ * the daemon knows; frame->number tells whose it is. A request that the daemon refuses, replaces or
+ * gives up fails in its sheen_receive(). */
 enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_request *request,
                              struct sheen_error *error);
 enum sheen_status sheen_receive(struct sheen_session *session,
                                 const struct sheen_progress *progress, struct sheen_frame *frame,
                                 struct sheen_error *error);
+
+/* The number of the request sent last; never 0 after a sheen_send(). */
+uint32_t sheen_last_number(const struct sheen_session *session);
+
+/* Takes back a request that has been sent and not yet received. Its answer still comes, as
+ * SHEEN_CANCELLED or as whatever was on its way. SHEEN_BAD_ARGUMENT when no such request is in
+ * flight, or the daemon is too old to know cancelling. */
+enum sheen_status sheen_cancel(struct sheen_session *session, uint32_t number,
+                               struct sheen_error *error);
 
 void sheen_frame_finish(struct sheen_frame *frame); /* frees and zeroes it; a zeroed one is safe */
 
@@ -370,7 +400,11 @@ struct sheen_stats {
     uint32_t models, images;   /* held now */
     uint64_t model_bytes;      /* tables on the GPU */
     uint64_t uploads_bytes, sent_bytes;
-    struct sheen_times mean; /* over the last 64 frames */
+    uint64_t superseded, cancelled, late;        /* requests answered so, since the start */
+    uint64_t disconnected;                       /* clients: over a limit, broke the protocol */
+    uint64_t interactive_us, still_us, batch_us; /* of the renderer's time, by class */
+    uint64_t memory_bytes;                       /* of the budget, in use now */
+    struct sheen_times mean;                     /* over the last 64 frames */
     /* The last minute, or what of it there has been; window_us is 0 when the daemon is too old to
      * say. Percentiles are of each stage by itself, to 3 %; 0: no frame needed it. */
     uint64_t window_us, window_requests, window_frames;

@@ -81,15 +81,24 @@ bool value_colour(const char *text, float value[static 4])
     return true;
 }
 
+static const struct {
+    const char *name;
+    uint32_t plane;
+} PLANES[] = {{"P", SHEEN_POSITION},       {"N", SHEEN_NORMAL},    {"ptex", SHEEN_PTEX},
+              {"light", SHEEN_LIGHT},      {"k", SHEEN_CURVATURE}, {"dlight", SHEEN_LIGHT_CHANGE},
+              {"coverage", SHEEN_COVERAGE}};
+#define N_PLANES (sizeof(PLANES) / sizeof(*PLANES))
+
+const char *value_plane_name(uint32_t plane)
+{
+    for (size_t i = 0; i < N_PLANES; i++)
+        if (PLANES[i].plane == plane)
+            return PLANES[i].name;
+    return NULL;
+}
+
 bool value_planes(const char *text, uint32_t *planes)
 {
-    static const struct {
-        const char *name;
-        uint32_t plane;
-    } names[] = {{"P", SHEEN_POSITION},       {"N", SHEEN_NORMAL},
-                 {"ptex", SHEEN_PTEX},        {"light", SHEEN_LIGHT},
-                 {"k", SHEEN_CURVATURE},      {"dlight", SHEEN_LIGHT_CHANGE},
-                 {"coverage", SHEEN_COVERAGE}};
     char part[16];
     *planes = 0;
     size_t length = strlen(text);
@@ -99,11 +108,11 @@ bool value_planes(const char *text, uint32_t *planes)
         if (!next_part(&text, ',', part, sizeof(part)))
             return false;
         size_t i = 0;
-        while (i < sizeof(names) / sizeof(*names) && strcmp(names[i].name, part) != 0)
+        while (i < N_PLANES && strcmp(PLANES[i].name, part) != 0)
             i++;
-        if (i == sizeof(names) / sizeof(*names))
+        if (i == N_PLANES)
             return false;
-        *planes |= names[i].plane;
+        *planes |= PLANES[i].plane;
     }
     return true;
 }
@@ -142,4 +151,25 @@ bool value_format(const char *path, enum sheen_format *format)
             return true;
         }
     return false;
+}
+
+static const char *const CLASS_NAMES[] = {
+    [SHEEN_STILL] = "still",
+    [SHEEN_INTERACTIVE] = "interactive",
+    [SHEEN_BATCH] = "batch",
+};
+
+bool value_class(const char *text, enum sheen_class *request_class)
+{
+    for (size_t i = 0; i < sizeof(CLASS_NAMES) / sizeof(*CLASS_NAMES); i++) {
+        *request_class = (enum sheen_class)i;
+        if (strcmp(text, CLASS_NAMES[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+const char *value_class_name(enum sheen_class request_class)
+{
+    return CLASS_NAMES[request_class];
 }

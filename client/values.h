@@ -16,11 +16,17 @@ bool value_vec3(const char *text, double value[static 3]);            /* X,Y,Z *
 bool value_size(const char *text, uint32_t *width, uint32_t *height); /* 1280x720, not 0 */
 bool value_colour(const char *text, float value[static 4]);           /* #rrggbb or #rrggbbaa */
 bool value_planes(const char *text, uint32_t *planes); /* P,N,ptex,light,k,dlight,coverage */
+/* The name of a plane beside colour, one bit of those; NULL when `plane` is none. */
+const char *value_plane_name(uint32_t plane);
 
 /* exact, polygon:LEVEL or wireframe:LEVEL, LEVEL 0 to 6. */
 bool value_surface(const char *text, enum sheen_surface *surface, uint32_t *level);
 
 /* The format of a file by its ending, in any case: .png .exr .jpg .jpeg .tif .tiff. */
 bool value_format(const char *path, enum sheen_format *format);
+
+/* interactive, still or batch. */
+bool value_class(const char *text, enum sheen_class *request_class);
+const char *value_class_name(enum sheen_class request_class);
 
 #endif

@@ -1,11 +1,12 @@
 #!/bin/sh
 # Installs the Debian packages that building, running and testing sheen take. Does nothing when all
-# are there, so that it needs root only once.
+# are there, so that it needs root only once. `deps.sh fuzz` adds what make fuzz takes.
 set -eu
 packages="gcc g++ make pkg-config python3 python3-protobuf protobuf-compiler nanopb libnanopb-dev
  libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri libopenimageio-dev libtinygltf-dev
  nlohmann-json3-dev libzstd-dev libssl-dev libinih-dev libpng-dev
  fonts-dejavu-core libcmocka-dev libosd-dev libembree-dev clang-format cppcheck systemd openssl git"
+[ "${1:-}" = fuzz ] && packages="$packages clang-14 libclang-rt-14-dev"
 missing=
 for package in $packages; do
     state=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null || true)

@@ -2,7 +2,7 @@
 
 #include "protocol/limits.h"
 
-#define N_TYPES (MESSAGE_ERROR + 1)
+#define N_TYPES (MESSAGE_CANCEL + 1)
 
 static const struct {
     const char *name;
@@ -22,6 +22,8 @@ static const struct {
     [MESSAGE_STATS_QUERY] = {"STATS_QUERY", 0},
     [MESSAGE_STATS] = {"STATS", PROTOCOL_MAX_SMALL_BODY_BYTES},
     [MESSAGE_ERROR] = {"ERROR", PROTOCOL_MAX_SMALL_BODY_BYTES},
+    [MESSAGE_SUPERSEDED] = {"SUPERSEDED", PROTOCOL_MAX_SMALL_BODY_BYTES},
+    [MESSAGE_CANCEL] = {"CANCEL", 0},
 };
 
 static const uint8_t MAGIC[4] = {'S', 'H', 'E', 'N'};

@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 #define PROTOCOL_MAJOR 1
-#define PROTOCOL_MINOR 0
+#define PROTOCOL_MINOR 1
 #define MESSAGE_HEADER_BYTES 16
 #define MODEL_ID_BYTES 32 /* SHA-256; first in HELLO's body, so at offset 16 of the stream */
 #define MESSAGE_END 1u    /* flags: last DATA of this frame */
@@ -36,6 +36,8 @@ enum message_type {
     MESSAGE_STATS_QUERY = 12, /* client: empty */
     MESSAGE_STATS = 13,       /* server: Stats */
     MESSAGE_ERROR = 14,       /* server: Error, instead of the answer */
+    MESSAGE_SUPERSEDED = 15,  /* server: Superseded, instead of FRAME; minor version 1 */
+    MESSAGE_CANCEL = 16,      /* client: empty, the number of a request; minor version 1 */
 };
 
 struct message_header {

@@ -19,21 +19,20 @@
 #define PROTOCOL_MAX_FRAME_BYTES (4096ull * 1024 * 1024)  /* one frame: its planes, or its file */
 #define PROTOCOL_MAX_SIZE_PX 65536u /* width and height; the device's limit is lower */
 
-/* Requests sent and not yet answered, per connection. More is left in the socket's buffer. */
+/* Requests sent and not yet answered, per connection. A peer of minor version 0 has the first, and
+ * more is left in the socket's buffer; to others HELLO_OK grants some, and more breaks the
+ * protocol. */
 #define PROTOCOL_MAX_IN_FLIGHT 4u
+#define PROTOCOL_MAX_CREDITS 64u
 
 /* Ranges of numbers in requests. */
 #define PROTOCOL_MAX_SURFACE_LEVEL 6
 #define PROTOCOL_MAX_COORDINATE 1e30 /* absolute; squares stay finite in double */
 #define PROTOCOL_MAX_PATTERN_COUNT 100000.0
+#define PROTOCOL_MAX_DEADLINE_MS 3600000u
 #define PROTOCOL_MAX_PATTERN_TURNS 1e6 /* absolute: degrees of rotation, periods of offset */
 
 /* Strips of an ENCODING_ZSTD frame hold this many bytes of a plane, or one row if that is more. */
 #define PROTOCOL_STRIP_BYTES (512u * 1024)
-
-/* Times, in milliseconds. */
-#define PROTOCOL_HELLO_TIMEOUT_MS 3000u  /* server: from accept to a whole HELLO */
-#define PROTOCOL_STALL_TIMEOUT_MS 30000u /* server: no byte moved in the middle of a message */
-#define PROTOCOL_PROGRESS_MS 200u        /* server: PROGRESS this often while tables are built */
 
 #endif

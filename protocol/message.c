@@ -13,11 +13,12 @@ FITS(sheen_ModelQuery_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_ModelInfo_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Render_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Frame_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
+FITS(sheen_Superseded_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Progress_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Stats_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Error_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 
-static const pb_msgdesc_t *body_fields(uint8_t type)
+const pb_msgdesc_t *message_fields(uint8_t type)
 {
     switch (type) {
     case MESSAGE_HELLO_OK:
@@ -40,6 +41,8 @@ static const pb_msgdesc_t *body_fields(uint8_t type)
         return sheen_Stats_fields;
     case MESSAGE_ERROR:
         return sheen_Error_fields;
+    case MESSAGE_SUPERSEDED:
+        return sheen_Superseded_fields;
     default:
         return NULL;
     }
@@ -75,8 +78,8 @@ static bool encode(uint8_t type, uint32_t seq, size_t prefix, const pb_msgdesc_t
 bool message_encode(uint8_t type, uint32_t seq, const void *body, uint8_t *buffer, size_t capacity,
                     size_t *length)
 {
-    const pb_msgdesc_t *fields = body_fields(type);
-    if (!fields && type != MESSAGE_STATS_QUERY)
+    const pb_msgdesc_t *fields = message_fields(type);
+    if (!fields && type != MESSAGE_STATS_QUERY && type != MESSAGE_CANCEL)
         return false;
     return encode(type, seq, 0, fields, body, buffer, capacity, length);
 }
@@ -100,7 +103,7 @@ static bool decode(const pb_msgdesc_t *fields, const uint8_t *bytes, size_t leng
 
 bool message_decode(uint8_t type, const uint8_t *bytes, size_t length, void *body)
 {
-    const pb_msgdesc_t *fields = body_fields(type);
+    const pb_msgdesc_t *fields = message_fields(type);
     return fields && decode(fields, bytes, length, body);
 }
 

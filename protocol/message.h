@@ -1,6 +1,7 @@
 /* Messages whose body is a nanopb struct: to bytes, from bytes, and the checks nanopb leaves out.
  *
- * Types with a body struct: all but UPLOAD_CHUNK, DATA (raw bytes) and STATS_QUERY (empty).
+ * Types with a body struct: all but UPLOAD_CHUNK, DATA (raw bytes), STATS_QUERY and CANCEL
+ * (empty).
  * HELLO's struct stands behind the 32-byte model id and has functions of its own.
  * Pure: caller's buffers, no allocation, no state, any thread. */
 #ifndef SHEEN_PROTOCOL_MESSAGE_H
@@ -19,7 +20,7 @@
 #define MESSAGE_TEXT_BYTES 240 /* of a check's text, with its 0 */
 
 /* Writes header and body of a message to `buffer` and its whole length to *length. `body` points
- * to the type's struct: sheen_Render for MESSAGE_RENDER and so on; NULL for STATS_QUERY. False when
+ * to the type's struct: sheen_Render for MESSAGE_RENDER and so on; NULL for empty ones. False when
  * it does not fit, a string has no end, or the type has no struct. */
 bool message_encode(uint8_t type, uint32_t seq, const void *body, uint8_t *buffer, size_t capacity,
                     size_t *length);
@@ -32,6 +33,15 @@ bool message_hello_encode(uint32_t seq, const uint8_t model_id[static MODEL_ID_B
 bool message_decode(uint8_t type, const uint8_t *bytes, size_t length, void *body);
 bool message_hello_decode(const uint8_t *bytes, size_t length,
                           uint8_t model_id[static MODEL_ID_BYTES], sheen_Hello *hello);
+
+/* Says why one of these two refused a body, in one line: the field that is over its bound, with the
+ * bound, or the one that is missing, or that the body is not well-formed. Reads no further than
+ * `length`, whatever the bytes are. */
+void message_find_fault(uint8_t type, const uint8_t *bytes, size_t length,
+                        char text[static MESSAGE_TEXT_BYTES]);
+
+/* The schema of a type's struct; NULL for types without, and for HELLO. */
+const pb_msgdesc_t *message_fields(uint8_t type);
 
 /* Checks of decoded requests, for the daemon. False writes to `text` one line that names the field
  * and its range, fit for an ERROR message with ERROR_REQUEST. */

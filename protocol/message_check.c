@@ -94,6 +94,15 @@ static bool check_colour(const sheen_Colour *colour, const char *field, char *te
     return true;
 }
 
+/* Those that are there. */
+static bool check_colours(const sheen_Colour *miss, const sheen_Colour *empty,
+                          const sheen_Colour *base, char *text)
+{
+    return (!miss || check_colour(miss, "miss", text)) &&
+           (!empty || check_colour(empty, "empty", text)) &&
+           (!base || check_colour(base, "base", text));
+}
+
 /* |a x b|^2 <= 1e-24 |a|^2 |b|^2 after scaling both to size one, so that nothing overflows. Zero
  * vectors are parallel to everything. */
 static bool is_parallel(const sheen_Vec3 *a, const sheen_Vec3 *b)
@@ -337,7 +346,10 @@ uint32_t message_render_planes(const sheen_Render *render)
         [sheen_ShowKind_SHOW_PTEX] = sheen_Plane_PLANE_PTEX,
         [sheen_ShowKind_SHOW_DRAFT] = sheen_Plane_PLANE_NORMAL | sheen_Plane_PLANE_POSITION,
     };
-    return render->planes | painted_from[render->show.kind];
+    bool covers = render->show.kind != sheen_ShowKind_SHOW_LINES && !render->unfiltered &&
+                  render->surface == sheen_SurfaceKind_SURFACE_EXACT;
+    return render->planes | painted_from[render->show.kind] |
+           (covers ? sheen_Plane_PLANE_COVERAGE : sheen_Plane_PLANE_NONE);
 }
 
 static bool check_show(const sheen_Render *render, char *text)
@@ -366,6 +378,19 @@ static bool check_show(const sheen_Render *render, char *text)
            refuse(text, "show paints surfaces; a wireframe has none");
 }
 
+static bool check_schedule(const sheen_Render *render, char *text)
+{
+    if (!check_enum(render->request_class, sheen_RequestClass_CLASS_BATCH, "request_class", text))
+        return false;
+    if (render->has_view && render->request_class == sheen_RequestClass_CLASS_BATCH)
+        return refuse(text, "view is for interactive requests and stills; a batch is never "
+                            "replaced");
+    return !render->has_deadline_ms ||
+           (render->deadline_ms > 0 && render->deadline_ms <= PROTOCOL_MAX_DEADLINE_MS) ||
+           refuse(text, "deadline_ms (--deadline) is %u; it must be from 1 to %u",
+                  render->deadline_ms, PROTOCOL_MAX_DEADLINE_MS);
+}
+
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES])
 {
@@ -383,12 +408,13 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
         return refuse(text, "%ux%u px with planes %u is over %llu bytes or %u px a side",
                       render->width_px, render->height_px, planes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
-    return (!render->has_camera || check_camera(&render->camera, text)) &&
+    return check_schedule(render, text) &&
+           (!render->has_camera || check_camera(&render->camera, text)) &&
            check_lights(&render->lines, render->lights, render->lights_count, text) &&
-           (!render->has_base || check_colour(&render->base, "base", text)) &&
            check_surface(render, text) &&
-           (!render->has_miss || check_colour(&render->miss, "miss", text)) &&
-           (!render->has_empty || check_colour(&render->empty, "empty", text));
+           check_colours(render->has_miss ? &render->miss : NULL,
+                         render->has_empty ? &render->empty : NULL,
+                         render->has_base ? &render->base : NULL, text);
 }
 
 static bool check_frame(const sheen_Frame *frame, char *text)
@@ -404,6 +430,10 @@ static bool check_frame(const sheen_Frame *frame, char *text)
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
     if (frame->has_show_range &&
         !check_positive(frame->show_range, PROTOCOL_MAX_COORDINATE, "show_range", text))
+        return false;
+    if (!check_colours(frame->has_miss ? &frame->miss : NULL,
+                       frame->has_empty ? &frame->empty : NULL,
+                       frame->has_base ? &frame->base : NULL, text))
         return false;
     if (frame->lights_count == 0)
         return refuse(text, "a frame has a light");
@@ -429,11 +459,17 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
     switch (type) {
     case MESSAGE_HELLO_OK: {
         const sheen_HelloOk *ok = body;
+        if (ok->credits == 0 || ok->credits > PROTOCOL_MAX_CREDITS)
+            return refuse(text, "credits is %u; it must be from 1 to %u", ok->credits,
+                          PROTOCOL_MAX_CREDITS);
         return check_text(ok->server, "server", text) && check_text(ok->device, "device", text) &&
                check_text(ok->driver, "driver", text);
     }
     case MESSAGE_UPLOAD_STATE:
         return true;
+    case MESSAGE_SUPERSEDED:
+        return ((const sheen_Superseded *)body)->by != 0 ||
+               refuse(text, "by is 0, which is no request's number");
     case MESSAGE_MODEL_INFO:
         return check_model_info(body, text);
     case MESSAGE_FRAME:
@@ -450,7 +486,7 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
         const sheen_Error *error = body;
         if (error->code == sheen_ErrorCode_ERROR_NONE)
             return refuse(text, "code is 0; an error has one");
-        return check_enum(error->code, sheen_ErrorCode_ERROR_DEVICE, "code", text) &&
+        return check_enum(error->code, sheen_ErrorCode_ERROR_DEADLINE, "code", text) &&
                check_text(error->text, "text", text);
     }
     default:

@@ -10,7 +10,6 @@
 #include "server/options_table.h"
 #include "server/service/listen.h"
 
-#define MAX_ROWS 64
 #define HELP_COLUMN 28
 
 /* --- --help */
@@ -36,8 +35,13 @@ static void print_help(void)
     puts(
         "sheend renders exact reflection lines on subdivision surfaces for clients of its socket.\n"
         "\nusage: sheend [options]\n");
-    for (size_t i = 0; i < N_OPTION_ROWS; i++)
-        print_row(&OPTION_ROWS[i]);
+    size_t n;
+    const struct option_row *rows = option_rows(&n);
+    for (size_t i = 0; i < n; i++) {
+        if (rows[i].type == OPTION_LIMIT && rows[i - 1].type != OPTION_LIMIT)
+            puts("\nlimits; bytes take K, M, G, T:");
+        print_row(&rows[i]);
+    }
     puts(
         "\nexamples:\n"
         "  sheend                                       a daemon for this user alone\n"
@@ -56,9 +60,11 @@ static void print_help(void)
 
 static const struct option_row *find_row(const char *name)
 {
-    for (size_t i = 0; i < N_OPTION_ROWS; i++)
-        if (strcmp(name, OPTION_ROWS[i].name) == 0)
-            return &OPTION_ROWS[i];
+    size_t n;
+    const struct option_row *rows = option_rows(&n);
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(name, rows[i].name) == 0)
+            return &rows[i];
     return NULL;
 }
 
@@ -117,12 +123,13 @@ static bool is_config(const struct option_row *row)
 static enum options_result walk(int argc, char **argv, struct settings *settings, bool first,
                                 struct error *error)
 {
-    struct option longs[MAX_ROWS + 1] = {{0}};
-    bool seen[MAX_ROWS] = {false};
-    for (size_t i = 0; i < N_OPTION_ROWS; i++)
-        longs[i] =
-            (struct option){OPTION_ROWS[i].name,
-                            OPTION_ROWS[i].argument ? required_argument : no_argument, NULL, 0};
+    struct option longs[OPTION_MAX_ROWS + 1] = {{0}};
+    bool seen[OPTION_MAX_ROWS] = {false};
+    size_t n;
+    const struct option_row *rows = option_rows(&n);
+    for (size_t i = 0; i < n; i++)
+        longs[i] = (struct option){rows[i].name, rows[i].argument ? required_argument : no_argument,
+                                   NULL, 0};
     optind = 1;
     opterr = 0;
     for (int c, index; (c = getopt_long(argc, argv, "", longs, &index)) != -1;) {
@@ -132,7 +139,7 @@ static enum options_result walk(int argc, char **argv, struct settings *settings
                       argv[optind - 1]);
             return OPTIONS_WRONG;
         }
-        const struct option_row *row = &OPTION_ROWS[index];
+        const struct option_row *row = &rows[index];
         if (row->type == OPTION_ACTION && row->set)
             return row->set(NULL, optarg, error) ? OPTIONS_DONE : OPTIONS_WRONG;
         if (row->type == OPTION_ACTION) {
@@ -151,9 +158,10 @@ static enum options_result walk(int argc, char **argv, struct settings *settings
 static bool set_defaults(struct settings *settings, struct error *error)
 {
     memset(settings, 0, sizeof *settings);
-    for (size_t i = 0; i < N_OPTION_ROWS; i++)
-        if (OPTION_ROWS[i].initial &&
-            !option_set(&OPTION_ROWS[i], settings, OPTION_ROWS[i].initial, error))
+    size_t n;
+    const struct option_row *rows = option_rows(&n);
+    for (size_t i = 0; i < n; i++)
+        if (rows[i].initial && !option_set(&rows[i], settings, rows[i].initial, error))
             return false;
     return true;
 }
@@ -162,7 +170,7 @@ enum options_result options_read(int argc, char **argv, struct settings *setting
                                  struct error *error)
 {
     _Static_assert(sizeof(bool) == 1, "flags are compared as bytes");
-    if (N_OPTION_ROWS > MAX_ROWS || !set_defaults(settings, error))
+    if (!set_defaults(settings, error))
         return OPTIONS_WRONG;
     enum options_result result = walk(argc, argv, settings, true, error);
     if (result != OPTIONS_SERVE)
@@ -180,8 +188,10 @@ void options_reload(struct settings *settings, const struct settings *fresh,
 {
     size_t used = 0;
     kept[0] = 0;
-    for (size_t i = 0; i < N_OPTION_ROWS; i++) {
-        const struct option_row *row = &OPTION_ROWS[i];
+    size_t n;
+    const struct option_row *rows = option_rows(&n);
+    for (size_t i = 0; i < n; i++) {
+        const struct option_row *row = &rows[i];
         char *value = (char *)settings + row->offset;
         const char *other = (const char *)fresh + row->offset;
         if (row->size == 0 || memcmp(value, other, row->size) == 0)

@@ -1,10 +1,8 @@
 /* The table of options, and how their values are read. */
 #include "server/options_table.h"
 
-#include <errno.h>
 #include <sched.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -12,23 +10,6 @@
 #include "server/service/tokens.h"
 
 /* --- values with a form of their own */
-
-static bool parse_number(const char *text, bool suffixes, uint64_t *number)
-{
-    if (*text < '0' || *text > '9')
-        return false;
-    char *end;
-    errno = 0;
-    uint64_t n = strtoull(text, &end, 10);
-    const char *suffix = suffixes && *end ? strchr("KMGT", *end) : NULL;
-    if (suffix) {
-        end++;
-        for (long i = suffix - "KMGT"; errno == 0 && i >= 0; i--)
-            errno = __builtin_mul_overflow(n, 1024, &n) ? ERANGE : 0;
-    }
-    *number = n;
-    return errno == 0 && *end == 0;
-}
 
 static bool add_listen(void *value, const char *text, struct error *error)
 {
@@ -86,7 +67,7 @@ static bool add_id(void *value, const char *text, struct error *error)
 {
     struct access_ids *ids = value;
     uint64_t id;
-    if (!parse_number(text, false, &id) || id >= UINT32_MAX)
+    if (!number_parse(text, 0, UINT32_MAX - 1, false, &id))
         return error_set(error, ERROR_REQUEST, "'%s' is no number of a user or group", text);
     if (ids->n == ACCESS_MAX_IDS)
         return error_set(error, ERROR_REQUEST, "at most %d users and %d groups may be listed",
@@ -105,7 +86,7 @@ static bool set_device(void *value, const char *text, struct error *error)
 {
     uint64_t number;
     if (strcmp(text, "auto") != 0 && strcmp(text, "software") != 0 &&
-        !(parse_number(text, false, &number) && number <= 1023))
+        !number_parse(text, 0, 1023, false, &number))
         return error_set(error, ERROR_REQUEST,
                          "device is '%s'; it must be auto, software or a device's number", text);
     snprintf(value, SERVICE_DEVICE_BYTES, "%s", text);
@@ -119,7 +100,7 @@ static bool set_threads(void *value, const char *text, struct error *error)
     cpu_set_t set;
     if (strcmp(text, "auto") == 0)
         n = sched_getaffinity(0, sizeof set, &set) == 0 ? (uint64_t)CPU_COUNT(&set) : 1;
-    else if (!parse_number(text, false, &n) || n < 1 || n > POOL_MAX_THREADS)
+    else if (!number_parse(text, 1, POOL_MAX_THREADS, false, &n))
         return error_set(error, ERROR_REQUEST,
                          "threads is '%s'; it must be auto or a whole number from 1 to %u", text,
                          POOL_MAX_THREADS);
@@ -134,7 +115,7 @@ static bool set_session_fd(void *value, const char *text, struct error *error)
     struct stat file;
     int fd = -1;
     if (strcmp(text, "none") != 0) {
-        if (!parse_number(text, false, &number) || number > 1000000)
+        if (!number_parse(text, 0, 1000000, false, &number))
             return error_set(error, ERROR_REQUEST,
                              "session-fd is '%s'; it must be a whole number from 0 to 1000000",
                              text);
@@ -150,23 +131,15 @@ static bool set_session_fd(void *value, const char *text, struct error *error)
 
 #define VALUE(member) offsetof(struct settings, member), sizeof(((struct settings *)0)->member)
 
-const struct option_row OPTION_ROWS[] = {
+static const struct option_row OWN_ROWS[] = {
     {"listen", "ADDRESS", OPTION_LIST, OPTION_IN_FILE, VALUE(service.listen), 0, 0, NULL, NULL,
      "unix:PATH, tcp:HOST:PORT (loopback only) or tls:HOST:PORT; several times\n"
      "(default: unix:$XDG_RUNTIME_DIR/sheen.sock, else unix:/tmp/sheen-UID/sheen.sock)",
      add_listen},
     {"device", "auto|software|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0, NULL,
      "auto", "a GPU if there is one, the software device, or the N-th device", set_device},
-    {"memory-budget", "BYTES", OPTION_BYTES, OPTION_IN_FILE, VALUE(service.memory_budget_bytes), 1,
-     SIZE_MAX / 2, "bytes", "4G", "most that models and images may take; K, M, G, T", NULL},
     {"threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_threads), 0, 0, NULL, "auto",
      "for building tables and encoding, 1 to 256; auto: one per processor", set_threads},
-    {"idle-timeout", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
-     VALUE(service.idle_timeout_s), 0, 10000000, "seconds", "900",
-     "disconnect a client without a request; 0: never", NULL},
-    {"drain-timeout", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
-     VALUE(service.drain_timeout_s), 0, 10000000, "seconds", "30",
-     "after SIGTERM, how long a client may take to read its frames", NULL},
     {"allow-uid", "UID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.uids),
      0, 0, NULL, NULL,
      "a user who may connect to the Unix sockets; several times, up to 64. With\n"
@@ -228,18 +201,54 @@ const struct option_row OPTION_ROWS[] = {
     {"version", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print the version and exit", NULL},
     {"help", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print this and exit", NULL},
 };
-const size_t N_OPTION_ROWS = sizeof OPTION_ROWS / sizeof *OPTION_ROWS;
+#define N_OWN_ROWS (sizeof OWN_ROWS / sizeof *OWN_ROWS)
+
+/* A reload takes over times; the rest has been counted on since the start. */
+static void fill_limit(struct option_row *row, const struct limits_row *limit,
+                       char initial[static LIMITS_TEXT_BYTES])
+{
+    limits_format(limit, limit->fallback, initial);
+    *row = (struct option_row){
+        .name = limit->name,
+        .argument = limits_argument(limit),
+        .type = OPTION_LIMIT,
+        .flags = OPTION_IN_FILE | (limit->unit == UNIT_SECONDS ? OPTION_RELOADS : 0u),
+        .offset = offsetof(struct settings, service.limits) + limit->offset,
+        .size = sizeof(uint64_t),
+        .min = limit->low,
+        .max = limit->high,
+        .initial = initial,
+        .help = limit->help,
+    };
+}
+
+static struct option_row rows[OPTION_MAX_ROWS]; /* own, then limits; filled once */
+
+static const struct limits_row *limit_of(const struct option_row *row)
+{
+    return &LIMITS[row - rows - N_OWN_ROWS];
+}
+
+const struct option_row *option_rows(size_t *n)
+{
+    static char initial[OPTION_MAX_ROWS][LIMITS_TEXT_BYTES];
+    *n = N_OWN_ROWS + N_LIMITS;
+    if (rows[0].name)
+        return rows;
+    for (size_t i = 0; i < N_LIMITS; i++)
+        fill_limit(&rows[N_OWN_ROWS + i], &LIMITS[i], initial[i]);
+    memcpy(rows, OWN_ROWS, sizeof OWN_ROWS);
+    return rows;
+}
 
 static bool set_number(const struct option_row *row, void *value, const char *text,
                        struct error *error)
 {
     uint64_t n;
-    bool bytes = row->type == OPTION_BYTES;
-    if (!parse_number(text, bytes, &n) || n < row->min || n > row->max)
-        return error_set(error, ERROR_REQUEST,
-                         "%s is '%s'; it must be a whole number of %s from %llu to %llu%s",
-                         row->name, text, row->unit, (unsigned long long)row->min,
-                         (unsigned long long)row->max, bytes ? ", as 4000000000, 800M or 4G" : "");
+    if (!number_parse(text, row->min, row->max, false, &n))
+        return error_set(
+            error, ERROR_REQUEST, "%s is '%s'; it must be a whole number of %s from %llu to %llu",
+            row->name, text, row->unit, (unsigned long long)row->min, (unsigned long long)row->max);
     memcpy(value, &n, sizeof n);
     return true;
 }
@@ -270,8 +279,9 @@ bool option_set(const struct option_row *row, struct settings *settings, const c
     void *value = (char *)settings + row->offset;
     switch (row->type) {
     case OPTION_NUMBER:
-    case OPTION_BYTES:
         return set_number(row, value, text, error);
+    case OPTION_LIMIT:
+        return limits_set(&settings->service.limits, limit_of(row), text, error);
     case OPTION_TEXT:
         return set_text(row, value, text, error);
     case OPTION_FLAG:

@@ -7,9 +7,11 @@
 
 #include "server/options.h"
 
+#define OPTION_MAX_ROWS 64
+
 enum option_type {
     OPTION_NUMBER, /* uint64_t from min to max */
-    OPTION_BYTES,  /* the same; a suffix K, M, G or T multiplies by powers of 1024 */
+    OPTION_LIMIT,  /* a row of limits.h */
     OPTION_TEXT,   /* char[size], not empty */
     OPTION_FLAG,   /* bool; in a file 'yes' or 'no' */
     OPTION_LIST,   /* given several times; set() adds. What the command line says replaces all that
@@ -36,8 +38,8 @@ struct option_row {
     bool (*set)(void *value, const char *text, struct error *error);
 };
 
-extern const struct option_row OPTION_ROWS[];
-extern const size_t N_OPTION_ROWS;
+/* All rows: those of this table, then the limits. */
+const struct option_row *option_rows(size_t *n);
 
 /* Reads `text` into the row's value. ERROR_REQUEST names the option and its range. */
 bool option_set(const struct option_row *row, struct settings *settings, const char *text,

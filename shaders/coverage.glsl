@@ -44,3 +44,34 @@ float stripe(float phase, vec2 g, float d)
                 twice_integrated(phase - diff, d) + twice_integrated(phase - reach, d);
     return clamp(d + sum / (g.x * g.y), 0.0, 1.0);
 }
+
+// Share of the pixel where two linear functions, both 0 at its centre, lie between low and high: the
+// area of a parallelogram within a box. By Green's theorem the sum over the parallelogram's edges of
+// the integral of clamp(p) dq over what lies between q's bounds. Neither gradient is 0.
+float box_share(vec2 low, vec2 high, vec2 gp, vec2 gq)
+{
+    // A parallelogram that is next to a line is widened to a thousandth of its sides.
+    float area = gp.x * gq.y - gp.y * gq.x, qq = dot(gq, gq);
+    float lacking = max(1e-3 * sqrt(dot(gp, gp) * qq) - abs(area), 0.0);
+    gp += (area < 0.0 ? -lacking : lacking) / qq * vec2(gq.y, -gq.x);
+    float reach = 0.5 * (abs(gp.x) + abs(gp.y)), sum = 0.0;
+    // p's bounds, no further than it reaches: no large numbers to cancel.
+    float p0 = clamp(low.x, -reach, reach), p1 = clamp(high.x, -reach, reach);
+    for (int i = 0; i < 2; i++) {  // the edges along x, the edges along y
+        float dp = gp[i], dq = gq[i];
+        bool is_flat = abs(dp) < 1e-3 * reach;
+        float slope = dq / (is_flat ? 1.0 : dp), per_q = 1.0 / (abs(dq) < 1e-20 ? 1e-20 : dq);
+        for (float side = -1.0; side < 2.0; side += 2.0) {
+            float p = 0.5 * (side * gp[1 - i] - dp), q = 0.5 * (side * gq[1 - i] - dq);
+            vec2 within = clamp(vec2(q, q + dq), low.y, high.y);
+            vec2 ends = p + clamp((within - q) * per_q, 0.0, 1.0) * dp;
+            vec2 inside = clamp(ends, p0, p1), below = min(ends, p0), above = max(ends, p1);
+            float mean = 0.5 * (inside.x + inside.y);
+            float whole = mean * (inside.y - inside.x) + p0 * (below.y - below.x) +
+                          p1 * (above.y - above.x);
+            float part = is_flat ? mean * (within.y - within.x) : whole * slope;
+            sum += i == 0 ? -side * part : side * part;
+        }
+    }
+    return clamp(sum / (gp.x * gq.y - gp.y * gq.x), 0.0, 1.0);
+}

@@ -6,23 +6,14 @@ layout(local_size_x = 64) in;
 
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
 
-// The pixels listed: x | y << 16. The first three words are the dispatch that shades them.
-layout(std430, binding = 0) buffer Edges {
-    uint groups_x, groups_y, groups_z;
-    uint n_edges;
-    uint edges[];
-};
-layout(std430, binding = 2) buffer Turns {
-    uint turns_groups_x, turns_groups_y, turns_groups_z;
-    uint n_turns;
-    uint turns[];
-};
+LIST(0, Edges, edges);
+LIST(2, Turns, turns);
 
 const ivec2 AROUND[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
 bool border_crosses(ivec2 p)
 {
-    vec2 foot = unpackHalf2x16(imageLoad(border, p).x);
+    vec2 foot = border_foot(imageLoad(border, p).x);
     return dot(foot, foot) <= 0.5 * (abs(foot.x) + abs(foot.y));
 }
 
@@ -57,16 +48,8 @@ void main()
         at_edge = at_edge || is_hit != other || (is_hit && off_paraboloid(own, place.xyz) > SAME_PX);
     }
     imageStore(coverage, p, vec4(is_hit));
-    uint at = uint(p.x) | uint(p.y) << 16;
-    if (at_edge) {
-        uint slot = atomicAdd(n_edges, 1u);
-        if ((slot & 63u) == 0u)
-            atomicAdd(groups_x, 1u);
-        edges[slot] = at;
-    } else if (is_hit && turn_over_pixel(p, own) > MOST_TURN) {
-        uint slot = atomicAdd(n_turns, 1u);
-        if ((slot & 63u) == 0u)
-            atomicAdd(turns_groups_x, 1u);
-        turns[slot] = at;
-    }
+    if (at_edge)
+        LIST_ADD(edges, p, 64u)
+    else if (is_hit && turn_over_pixel(p, own) > MOST_TURN)
+        LIST_ADD(turns, p, 64u)
 }

@@ -53,12 +53,24 @@ vec4 shade_part(Piece piece, ivec2 p, uint rays, vec4 under)
                                        under));
 }
 
+Piece piece_at(Piece pieces[PIECES], int k)
+{
+    Piece piece = pieces[0];
+    for (int i = 1; i < PIECES; i++)
+        if (k == i)
+            piece = pieces[i];
+    return piece;
+}
+
+// As far off the paraboloid of one side, the other side of a crease may be a pixel from it.
+const float MEETS_PX = 6.0;
+
 void main()
 {
-    if (gl_GlobalInvocationID.x >= n_listed)
+    uint index = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
+    if (index >= listed.n)
         return;
-    uint at = listed[gl_GlobalInvocationID.x];
-    ivec2 p = ivec2(at & 0xffffu, at >> 16);
+    ivec2 p = list_place(listed.at[index]);
 
     // The distinct pieces of surface around.
     Piece pieces[PIECES];
@@ -90,9 +102,6 @@ void main()
     if (n == 0)
         return;
 
-    if (n == 0)
-        return;
-
     // Which rays see which piece.
     uint seen[PIECES] = uint[PIECES](0u, 0u, 0u, 0u);
     float covered = 0.0;
@@ -114,6 +123,25 @@ void main()
     if (covered == 0.0 && open == 0.0)
         return;
 
+    // What of it is the rounding of a crease.
+    float rounded[PIECES];
+    vec3 beyond[PIECES];
+    uint creases = 0u;
+    for (int k = 0; k < PIECES; k++) {
+        float nearest = MEETS_PX, seen_by = float(bitCount(seen[k]));
+        for (int j = 0; j < PIECES; j++) {
+            float off = off_paraboloid(pieces[k].hit, pieces[j].hit.x);
+            if (max(j, k) < n && j != k && off < nearest) {
+                nearest = off;
+                beyond[k] = pieces[j].hit.n;
+            }
+        }
+        bool is_crease = k < n && nearest < MEETS_PX && pieces[k].rounding > 0.0 && seen_by > 0.0;
+        float share = float(SIDE * SIDE) * rounding_share(pieces[k]);
+        rounded[k] = is_crease ? min(share, seen_by) / seen_by : 0.0;
+        creases |= uint(rounded[k] > 0.0) << k;
+    }
+
     vec4 under = is_hindmost ? miss : imageLoad(colour, p), sum = vec4(0.0);
     uvec4 left = uvec4(seen[0], seen[1], seen[2], seen[3]);
     while (left != uvec4(0u)) {  // a part each turn, of whatever piece has one left
@@ -122,11 +150,13 @@ void main()
         int first = findLSB(rays);
         uint quarter = QUARTER << ((first & 2) | (first & 8));
         left &= ~(quarter * uvec4(equal(ivec4(k), ivec4(0, 1, 2, 3))));
-        Piece piece = pieces[0];
-        for (int i = 1; i < PIECES; i++)
-            if (k == i)
-                piece = pieces[i];
-        sum += shade_part(piece, p, rays & quarter, under);
+        float plain = 1.0 - (k == 0 ? rounded[0] : k == 1 ? rounded[1] : k == 2 ? rounded[2] : rounded[3]);
+        sum += plain * shade_part(piece_at(pieces, k), p, rays & quarter, under);
+    }
+    for (; creases != 0u; creases &= creases - 1u) {
+        int k = findLSB(creases);
+        float rays = rounded[k] * float(bitCount(seen[k]));
+        sum += rays * shade_rounding(piece_at(pieces, k), beyond[k], p, under);
     }
     if (is_foremost)
         sum += open * premultiplied(empty);

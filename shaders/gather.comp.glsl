@@ -19,9 +19,9 @@ bool is_seen(ivec2 p)
 
 void main()
 {
-    uint i = gl_WorkGroupID.y * GROUPS_PER_ROW * 64u + gl_GlobalInvocationID.x;
+    uint i = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
     uint block = blocks[min(i / 8u, n_blocks - 1u)];
-    ivec2 group = ivec2(block & 0xffffu, block >> 16) * ivec2(2, 4) + ivec2(i % 2u, i / 2u % 4u);
+    ivec2 group = list_place(block) * ivec2(2, 4) + ivec2(i % 2u, i / 2u % 4u);
     ivec2 first = group * ivec2(4, 2);
     bool any_seen = false;
     for (int y = -1; y <= 2; y++)
@@ -29,10 +29,5 @@ void main()
             any_seen = any_seen || is_seen(first + ivec2(x, y));
     if (i / 8u >= n_blocks || !any_seen || any(greaterThanEqual(first, tile.zw)))
         return;
-    uint slot = atomicAdd(groups.n, 1u);
-    if ((slot & 7u) == 0u) {
-        atomicMax(groups.x, min(slot / 8u + 1u, GROUPS_PER_ROW));
-        atomicMax(groups.y, slot / 8u / GROUPS_PER_ROW + 1u);
-    }
-    groups.at[slot] = uint(group.x) | uint(group.y) << 16;
+    LIST_ADD(groups, group, 8u)
 }

@@ -58,9 +58,9 @@ vec3 normal_change(vec3 along, vec3 n, vec3 h)
     return -(e1 * (h.x * a.x + h.y * a.y) + e2 * (h.y * a.x + h.z * a.y));
 }
 
-// Steps (1) to (4) of limit-surface 5.1, at a place on the ray of q (view.glsl), over a square of
-// size_px. The shape operator is that at a normal nearby.
-Sample sample_at(vec2 q, float size_px, vec4 place, vec3 n, vec3 h, vec3 h_normal)
+// Steps (1) to (4) of limit-surface 5.1, at a place on the ray of q (view.glsl), over the parallelogram
+// of the columns of `sides`, px. The shape operator is that at a normal nearby.
+Sample sample_over(vec2 q, mat2 sides, vec4 place, vec3 n, vec3 h, vec3 h_normal)
 {
     Sample at;
     at.x = place.xyz;
@@ -71,12 +71,18 @@ Sample sample_at(vec2 q, float size_px, vec4 place, vec3 n, vec3 h, vec3 h_norma
     float distance = line_eye.w > 0.0 ? length(from_eye) : 1.0;
     at.v = line_eye.w > 0.0 ? from_eye / distance : line_eye.xyz;
     for (int i = 0; i < 2; i++) {
-        vec3 raw = axis[i].xyz * (size_px * pixel_units(place.w));
+        vec3 raw = (axis[0].xyz * sides[i].x + axis[1].xyz * sides[i].y) * pixel_units(place.w);
         at.dx[i] = raw - d * (dot(raw, n) / dot(d, n));
         at.dn[i] = normal_change(at.dx[i], h_normal, h);
         at.dv[i] = line_eye.w / distance * (at.dx[i] - at.v * dot(at.v, at.dx[i]));
     }
     return at;
+}
+
+// Over a square of size_px.
+Sample sample_at(vec2 q, float size_px, vec4 place, vec3 n, vec3 h, vec3 h_normal)
+{
+    return sample_over(q, mat2(size_px), place, n, h, h_normal);
 }
 
 // The family's ray and its change: step (5).
@@ -117,15 +123,15 @@ Angles angles_of(vec3 r, vec3 dr[2])
 }
 
 // How much of the pixel falls on the rectangle. Where the footprint spans all of it, it is no longer
-// linear (the ray runs along the light's plane): the pixel's centre decides.
+// linear (the ray runs along the light's plane): the pixel's centre decides, as it does for no
+// footprint at all.
 float rectangle_cover(Met met)
 {
     vec2 st = met.q / size.xy, gs = met.ds / size.x, gt = met.dt / size.y;
     vec2 reach = vec2(abs(gs.x) + abs(gs.y), abs(gt.x) + abs(gt.y));
-    if (max(reach.x, reach.y) > 1.0)
+    if (max(reach.x, reach.y) > 1.0 || min(reach.x, reach.y) <= 0.0)
         return max(abs(st.x), abs(st.y)) <= 0.5 ? 1.0 : 0.0;
-    return half_plane(0.5 + st.x, gs) * half_plane(0.5 - st.x, gs) * half_plane(0.5 + st.y, gt) *
-           half_plane(0.5 - st.y, gt);
+    return box_share(-0.5 - st, 0.5 - st, gs, gt);
 }
 
 // Step (6): where x + tau r meets the light's plane, and its change.

@@ -32,9 +32,9 @@ FlatNet project(Node node, mat3 frame, Net p, float scale, Ray r)
     return net;
 }
 
-// One step from st; returns f there. The step is cut at half a sub-patch: beyond it the linear
-// model says little. Where the ray touches the surface (no inverse) the step is 0.
-vec2 newton_step(FlatNet net, vec2 st, out vec2 step_st)
+// One step from st, cut at `most` sub-patches; returns f there. Where the ray touches the surface (no
+// inverse) the step is 0.
+vec2 newton_step(FlatNet net, vec2 st, float most, out vec2 step_st)
 {
     vec4 bu, du, bv, dv, unused;
     blends(st.x, bu, du, unused);
@@ -50,7 +50,7 @@ vec2 newton_step(FlatNet net, vec2 st, out vec2 step_st)
     bool touches = !(abs(det) > 1e-7 * (dot(fu, fu) + dot(fv, fv)));
     step_st = vec2(f.y * fv.x - f.x * fv.y, f.x * fu.y - f.y * fu.x) / (touches ? 1.0 : det);
     float longest = max(abs(step_st.x), abs(step_st.y));
-    step_st *= touches ? 0.0 : min(1.0, 0.5 / max(longest, 1e-30));
+    step_st *= touches ? 0.0 : min(1.0, most / max(longest, 1e-30));
     return f;
 }
 
@@ -68,7 +68,8 @@ float solve_patch(FlatNet net, float px_per_scale, inout vec2 st)
     float residual = 1e30, enough = close_enough(px_per_scale);
     for (int i = 0; i < 5; i++) {
         vec2 step_st;
-        residual = length(newton_step(net, st, step_st)) * px_per_scale;
+        // Beyond half a sub-patch the linear model says little.
+        residual = length(newton_step(net, st, 0.5, step_st)) * px_per_scale;
         if (residual < enough)
             break;
         st += step_st;

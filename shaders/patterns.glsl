@@ -13,17 +13,37 @@
 
 layout(binding = 0) uniform sampler2D picture;
 
-// The wave of duty d, its edges as wide as `soft`: convolved with one more box. The two widest
-// boxes are integrated in closed form, the narrowest by Gauss's rule of three points, under which
-// the result is a piecewise quadratic function.
-float soft_stripe(float phase, vec2 g, float d, float soft)
+// Soft edges are one more box that the pattern is convolved with. The two widest boxes are integrated
+// in closed form, the narrowest by Gauss's rule of three points, under which the result is a
+// piecewise quadratic function: points and weights.
+const vec3 GAUSS = vec3(-0.387298335, 0.0, 0.387298335), WEIGHT = vec3(5.0, 8.0, 5.0) / 18.0;
+
+void sort_boxes(vec2 g, float soft, out vec2 wide, out float narrow)
 {
     g = abs(g);
-    float low = min(min(g.x, g.y), soft), high = max(max(g.x, g.y), soft);
-    vec2 wide = vec2(high, g.x + g.y + soft - low - high);
-    float reach = 0.5 * 0.774596669 * low;
-    return (5.0 * stripe(phase - reach, wide, d) + 8.0 * stripe(phase, wide, d) +
-            5.0 * stripe(phase + reach, wide, d)) / 18.0;
+    narrow = min(min(g.x, g.y), soft);
+    wide.x = max(max(g.x, g.y), soft);
+    wide.y = g.x + g.y + soft - narrow - wide.x;
+}
+
+// The wave of duty d, its edges as wide as `soft`.
+float soft_stripe(float phase, vec2 g, float d, float soft)
+{
+    vec2 wide;
+    float narrow;
+    sort_boxes(g, soft, wide, narrow);
+    vec3 at = phase + narrow * GAUSS;
+    return dot(WEIGHT, vec3(stripe(at.x, wide, d), stripe(at.y, wide, d), stripe(at.z, wide, d)));
+}
+
+// half_plane with an edge as wide as `soft`, in units of z.
+float soft_half_plane(float z, vec2 g, float soft)
+{
+    vec2 wide;
+    float narrow;
+    sort_boxes(g, soft, wide, narrow);
+    vec3 at = z + narrow * GAUSS;
+    return dot(WEIGHT, vec3(half_plane(at.x, wide), half_plane(at.y, wide), half_plane(at.z, wide)));
 }
 
 float wave_at(float phase, vec2 g)
@@ -34,6 +54,40 @@ float wave_at(float phase, vec2 g)
     return stripe(phase, g, wave.z);
 #endif
 }
+
+#if PATTERN == LATTICE
+// Where neither wave has a bright part: the pixel's share of it. The product of both is exact where
+// one wave is constant over the pixel, or neither changes along what the other changes along.
+float lattice_dark(vec2 phase, vec2 da, vec2 db)
+{
+    vec2 dark = 1.0 - vec2(wave_at(phase.x, da), wave_at(phase.y, db));
+    vec2 least = min(abs(da), abs(db)), most = max(abs(da), abs(db));
+    bool is_turned = any(greaterThan(least, 1e-3 * most)) && min(dark.x, dark.y) > 0.0 &&
+                     max(dark.x, dark.y) < 1.0;
+    vec2 reach = 0.5 * (abs(vec2(da.x, db.x)) + abs(vec2(da.y, db.y)));
+    float sum = 0.0;
+#ifdef SOFT
+    // Over parts of the pixel the product is good enough.
+    int side = max(reach.x, reach.y) > 0.75 ? 8 : 4, n = is_turned ? side * side : 0;
+    for (int i = 0; i < n; i++) {
+        vec2 at = (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
+        sum += (1.0 - wave_at(phase.x + dot(da, at), da / float(side))) *
+               (1.0 - wave_at(phase.y + dot(db, at), db / float(side)));
+    }
+    sum /= float(side * side);
+#else
+    // The dark cells that the pixel may touch. Past so many of them the product is good enough.
+    const float most_cells = 64.0;
+    vec2 first = floor(phase - reach), cells = ceil(phase + reach - wave.z) - first;
+    int n = is_turned && cells.x * cells.y <= most_cells ? int(cells.x * cells.y) : 0;
+    for (int i = 0; i < n; i++) {
+        vec2 cell = first + vec2(i % int(cells.x), i / int(cells.x)) - phase;
+        sum += box_share(cell + wave.z, cell + 1.0, da, db);
+    }
+#endif
+    return n > 0 ? sum : dark.x * dark.y;
+}
+#endif
 
 // The image over the pixel's parallelogram: samples along its longer side, each as wide as the
 // shorter. Not textureGrad: software devices take one footprint for neighbouring pixels together.
@@ -64,13 +118,22 @@ void turned(Met met, vec2 along, out float a, out vec2 da)
     da = along.x * met.ds + along.y * met.dt;
 }
 
+float line_edge(float z, vec2 g)
+{
+#ifdef SOFT
+    return soft_half_plane(z, g, wave.w * 2.0 * half_width);
+#else
+    return half_plane(z, g);
+#endif
+}
+
 // Single lines: how much of the pixel they cover.
 float lines_at(float a, vec2 da)
 {
     float bright = 0.0;
     for (int i = 0; i < n_single; i++) {
         float z = a - single[i >> 2][i & 3];
-        bright += half_plane(z + half_width, da) - half_plane(z - half_width, da);
+        bright += line_edge(z + half_width, da) - line_edge(z - half_width, da);
     }
     return min(bright, 1.0);
 }
@@ -97,14 +160,13 @@ vec4 pattern_colour(Met met)
     float bright = wave_at(rho * turn.z + turn.w, radial.x * met.ds + radial.y * met.dt);
 #elif PATTERN == LINES
     float bright = lines_at(a, da);
+#elif PATTERN == LATTICE
+    float bright =
+        1.0 - lattice_dark(vec2(a, b) * turn.z + wave.xy, da * turn.z, db * turn.z);
 #elif PATTERN == DISTANCE
     float bright = wave_at(met.tau * turn.z + turn.w, met.dtau * turn.z);
 #else
     float bright = wave_at(a * turn.z + wave.x, da * turn.z);
-#endif
-#if PATTERN == LATTICE
-    float along = wave_at(b * turn.z + wave.y, db * turn.z);
-    bright = 1.0 - (1.0 - bright) * (1.0 - along);
 #endif
     return mix(background, foreground, bright);
 #endif

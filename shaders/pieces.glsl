@@ -3,12 +3,7 @@
 
 layout(binding = 3, rgba8) uniform image2D colour;
 
-// The pixels to shade: x | y << 16. The first three words are the dispatch.
-layout(std430, binding = 0) readonly buffer Listed {
-    uint groups_x, groups_y, groups_z;
-    uint n_listed;
-    uint listed[];
-};
+LIST(0, Listed, listed);  // the pixels to shade
 
 // Along the ray through its own pixel's centre plus d px, z units beyond its depth, a piece is where
 // a z^2 + b z + c = 0.
@@ -20,6 +15,7 @@ struct Piece {
     vec2 c;      // dot(c, d) + dot(cc, (dx dx, dx dy, dy dy))
     vec3 cc;
     vec2 foot;   // where it ends: at the line across this, px
+    float rounding;  // how wide it is rounded towards there, px
 };
 
 Piece piece_of(Hit hit, ivec2 p, ivec2 at)
@@ -40,7 +36,9 @@ Piece piece_of(Hit hit, ivec2 p, ivec2 at)
     piece.b = vec3(dot(hit.n, ahead), ray.x * facing - px * vec2(dot(r, h * t), dot(s, h * t)));
     piece.c = px * facing;
     piece.cc = -0.5 * px * px * vec3(dot(r, h * r), 2.0 * dot(r, h * s), dot(s, h * s));
-    piece.foot = unpackHalf2x16(imageLoad(border, p + at).x);
+    uint packed_border = imageLoad(border, p + at).x;
+    piece.foot = border_foot(packed_border);
+    piece.rounding = border_rounding(packed_border);
     return piece;
 }
 
@@ -60,11 +58,17 @@ float depth_at(Piece piece, vec2 place)
     return there ? z : NOWHERE;
 }
 
+// From a hit to depth z on the ray of q, which is d px from its own.
+vec3 move_to(Hit hit, vec2 d, vec2 q, float z)
+{
+    vec3 across = (axis[0].xyz * d.x + axis[1].xyz * d.y) * pixel_units(hit.depth);
+    return across + to_world(vec3(q * ray.x, 1.0)) * (z - hit.depth);
+}
+
 // d: from the hit's own pixel, px; size: of its square.
 vec4 shade_ray(Hit hit, vec2 q, vec2 d, float size, float z, vec4 under)
 {
-    vec3 across = (axis[0].xyz * d.x + axis[1].xyz * d.y) * pixel_units(hit.depth);
-    vec3 move = across + to_world(vec3(q * ray.x, 1.0)) * (z - hit.depth);
+    vec3 move = move_to(hit, d, q, z);
     vec4 place = vec4(hit.x + move, z);
     Sample at = sample_at(q, size, place, normal_at(hit, move), hit.h, hit.n);
     return lay_over(under, at, meet(at), q);

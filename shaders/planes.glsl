@@ -7,21 +7,13 @@ layout(binding = 1, rgba32f) writeonly uniform image2D normal;
 // Shape operator entries (1,1) and (1,2) in the basis tangent_basis(normal), 1/unit.
 layout(binding = 2, rg32f) writeonly uniform image2D shape;
 layout(binding = 3, rgba32ui) writeonly uniform uimage2D ptex;
-// Two halves: from the pixel's centre to the nearest border of the piece seen, px (edges.glsl).
+// border.glsl
 layout(binding = 4, r32ui) writeonly uniform uimage2D border;
 
 layout(binding = TEXTURES_FREE) uniform usampler2D seen;
 layout(binding = TEXTURES_FREE + 1) uniform sampler2D seen_depth;
 
 uniform bool want_ptex;
-
-// Pixels that the first pass of stage 2 leaves to the second: x | y << 16. The first three words
-// are the second pass's dispatch.
-layout(std430, binding = 0) buffer Unsolved {
-    uint groups_x, groups_y, groups_z;
-    uint n_unsolved;
-    uint unsolved[];
-};
 
 float depth_of(float ndc)
 {
@@ -48,11 +40,8 @@ vec3 shape_operator(Surface s, vec3 n_world)
 
 // From the pixel's centre to the nearest border of the Ptex face, px: the foot of the perpendicular on
 // the border's line in the picture, to first order. A crease counts where its rounding is narrower
-// than THIN px; inside the rounding the foot is 0. NO_BORDER when there is none.
-const vec2 NO_BORDER = vec2(1000.0);
-const float THIN = 0.5;
-
-vec2 border_foot(Node node, vec2 xy, ivec2 steps, Surface s)
+// than THIN px; inside the rounding the foot is 0.
+uint border_of(Node node, vec2 xy, ivec2 steps, Surface s)
 {
     // How the picture moves along x and y, px.
     vec2 slope = is_perspective() ? s.s.xy / s.s.z : vec2(0.0);
@@ -70,16 +59,19 @@ vec2 border_foot(Node node, vec2 xy, ivec2 steps, Surface s)
     cells = k == 0u ? cells : k == 1u ? cells.yzwx : k == 2u ? cells.zwxy : cells.wxyz;
     vec4 away = cells + vec4(xy.y, 1.0 - xy.x, 1.0 - xy.y, xy.x);
     vec2 nearest = NO_BORDER;
+    float width = 0.0;
     for (int e = 0; e < 4; e++) {
         uint border = node.borders >> 4 * e & 15u;
         vec2 to = e == 0 ? -to_y : e == 1 ? to_x : e == 2 ? to_y : -to_x;
         float rounding = border == BORDER_SHARP ? 0.0 : ldexp(1.0, int(node.depth) - int(border));
-        bool counts = border != 0u && rounding * rounding * dot(to, to) < THIN * THIN;
+        float rounding_px = rounding * length(to);
         vec2 foot = (away[e] < rounding ? 0.0 : away[e]) * to;
-        if (counts && dot(foot, foot) < dot(nearest, nearest))
+        if (border != 0u && rounding_px < THIN && dot(foot, foot) < dot(nearest, nearest)) {
             nearest = foot;
+            width = rounding_px;
+        }
     }
-    return nearest;
+    return pack_border(nearest, width);
 }
 
 void store_miss(ivec2 p)
@@ -97,7 +89,7 @@ void store_hit(ivec2 p, Node node, vec2 xy, ivec2 steps, Surface s)
     imageStore(position, p, vec4(to_world(s.s), s.s.z));
     imageStore(normal, p, vec4(n, h.z));
     imageStore(shape, p, vec4(h.xy, 0.0, 0.0));
-    imageStore(border, p, uvec4(packHalf2x16(border_foot(node, xy, steps, s))));
+    imageStore(border, p, uvec4(border_of(node, xy, steps, s)));
     if (want_ptex)
         imageStore(ptex, p, uvec4(node.face, floatBitsToUint(ptex_uv(node, xy)), 0u));
 }

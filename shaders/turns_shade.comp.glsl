@@ -7,10 +7,10 @@ const int SIDE = 2;
 
 void main()
 {
-    if (gl_GlobalInvocationID.x >= n_listed)
+    uint index = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
+    if (index >= listed.n)
         return;
-    uint at = listed[gl_GlobalInvocationID.x];
-    ivec2 p = ivec2(at & 0xffffu, at >> 16);
+    ivec2 p = list_place(listed.at[index]);
     Piece piece = piece_of(hit_at(p), p, ivec2(0));
     vec4 under = is_hindmost ? miss : imageLoad(colour, p), sum = vec4(0.0);
     float n = 0.0;

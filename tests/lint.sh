@@ -35,19 +35,25 @@ clang-format --dry-run -Werror $files 2>&1 | grep -m 20 'error:' && fail "run ma
 
 no_include protocol 'server/|client/|shaders/'
 no_include client 'server/'
-no_include server/cage 'server/(limit|gpu|image|service)|protocol/|client/'
+no_include server/cage 'server/(limit|gpu|image|service|worker)|protocol/|client/'
+no_include server/worker 'server/(limit|gpu|service)|protocol/|client/'
+# What parses files from strangers is for the worker programs alone.
+no_include server/service 'server/cage/read/|server/worker/([a-z]*_tasks|sandbox)\.h'
+no_include server/gpu 'server/(cage/read|worker)/'
+no_include server/limit 'server/(cage/read|worker)/'
 no_include server/limit 'server/(gpu|image|service)|protocol/|client/'
-no_include server/image 'server/(cage|limit|gpu|service)|protocol/|client/'
+no_include server/image 'server/(cage|limit|gpu|service|worker)|protocol/|client/'
 no_include server/gpu 'server/service|protocol/|client/'
 no_include server/service 'client/|server/gpu/([^r]|r[^e]|re[^n]|render[^e])'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/gpu/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
-    'socket calls' 'server client protocol' server/service/ client/connection.c client/private_daemon.c
+    'socket calls' 'server client protocol' server/service/ server/worker/zygote.c client/connection.c client/private_daemon.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
-only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/limit server/gpu server/image protocol'
+only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/limit server/gpu server/image server/worker protocol'
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
     'server client protocol'
-only_in 'OpenImageIO|OIIO' 'OpenImageIO code' 'server client protocol' server/image/
+only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp
+only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf
 
 cppcheck --quiet --std=c11 --language=c --inline-suppr --error-exitcode=1 -I. \
     --enable=warning,performance,portability --suppress=missingInclude \

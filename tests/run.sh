@@ -1,5 +1,5 @@
 #!/bin/sh
-# run.sh unit|service|oracle|all BUILD: runs the tests of one kind, or all, and ends with their sum,
+# run.sh unit|fuzz|service|oracle|all BUILD: runs the tests of one kind, or all, and ends with their sum,
 # "N passed, N failed". Each program's full output is kept in BUILD/tests/NAME.log.
 set -u
 kind=$1 build=$2
@@ -55,6 +55,14 @@ unit() {
     done
 }
 
+# Every input that fuzzing has left, over the code of this build.
+fuzz() {
+    for corpus in tests/fuzz/corpus/*; do
+        name=fuzz_$(basename "$corpus")
+        run "$name" "$build/tests/$name" "$corpus"
+    done
+}
+
 service() {
     run service /usr/bin/python3 tests/service/run.py "$build"
     run same sh tests/oracle/test_same.sh "$build/sheen" "$build/sheend" tests/models/fender.gltf \
@@ -86,6 +94,7 @@ oracle() {
         tests/models/creases.obj tests/models/pole.obj "$car"
     run filter "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
+    run patterns "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
     run lines "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/creases.obj tests/models/pole.obj "$car"
     run fine "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
@@ -96,12 +105,13 @@ oracle() {
 case $kind in
 all)
     unit
+    fuzz
     service
     oracle
     ;;
-unit | service | oracle) "$kind" ;;
+unit | fuzz | service | oracle) "$kind" ;;
 *)
-    echo "usage: run.sh unit|service|oracle|all BUILD" >&2
+    echo "usage: run.sh unit|fuzz|service|oracle|all BUILD" >&2
     exit 2
     ;;
 esac

@@ -4,16 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-
-#include "server/cage/builder.h"
-#include "server/cage/check.h"
-#include "server/cage/gltf.h"
-#include "server/cage/obj.h"
-
-#define WARNINGS_BYTES 4096
-/* Messages have room for what is wrong only if the name leaves it. */
-#define SHOWN_NAME_BYTES 160
 
 static const char MORE_WARNINGS[] = "more warnings followed";
 
@@ -32,12 +22,12 @@ void cage_finish(struct cage *cage)
 static bool ends_with(const char *text, const char *ending)
 {
     size_t length = strlen(text), n = strlen(ending);
-    return length >= n && strcasecmp(text + length - n, ending) == 0;
+    return length >= n && memcmp(text + length - n, ending, n) == 0;
 }
 
 void cage_warn(struct cage *cage, const char *format, ...)
 {
-    if (!cage->warnings && !(cage->warnings = calloc(1, WARNINGS_BYTES)))
+    if (!cage->warnings && !(cage->warnings = calloc(1, CAGE_WARNINGS_BYTES)))
         return; /* a warning is not worth failing for */
     if (ends_with(cage->warnings, MORE_WARNINGS))
         return;
@@ -53,54 +43,6 @@ void cage_warn(struct cage *cage, const char *format, ...)
     if (used > 0)
         cage->warnings[used++] = '\n';
     /* Room for the closing line and the newline before it stays free. */
-    bool fits = used + strlen(line) + 1 + sizeof MORE_WARNINGS <= WARNINGS_BYTES;
-    snprintf(cage->warnings + used, WARNINGS_BYTES - used, "%s", fits ? line : MORE_WARNINGS);
-}
-
-typedef bool (*reader)(struct cage_builder *builder, const void *bytes, size_t size,
-                       const char *name, struct error *error);
-
-static reader choose_reader(const char *name, const char *bytes, size_t size)
-{
-    if (ends_with(name, ".obj"))
-        return obj_read;
-    if (ends_with(name, ".gltf") || ends_with(name, ".glb"))
-        return gltf_read;
-    if (size >= 4 && memcmp(bytes, "glTF", 4) == 0)
-        return gltf_read;
-    size_t at = 0;
-    while (at < size && strchr(" \t\r\n", bytes[at]) && bytes[at])
-        at++;
-    return at < size && bytes[at] == '{' ? gltf_read : obj_read;
-}
-
-/* The file's own name is what people know it by; of an overlong one they know the end. */
-static const char *shown_name(const char *name)
-{
-    if (!name || !*name)
-        return "cage";
-    size_t length = strlen(name);
-    return length > SHOWN_NAME_BYTES ? name + length - SHOWN_NAME_BYTES : name;
-}
-
-bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *name,
-               struct error *error)
-{
-    *cage = (struct cage){0};
-    name = shown_name(name);
-    if (size == 0)
-        return error_set(error, ERROR_MODEL, "%s: the file is empty", name);
-    struct cage_builder builder = {0};
-    bool ok = choose_reader(name, bytes, size)(&builder, bytes, size, name, error);
-    if (ok) {
-        const struct cage_lines lines = {builder.face_line, builder.crease_line,
-                                         builder.corner_line, builder.hole_line};
-        ok = cage_check_lines(&builder.cage, &lines, name, error);
-    }
-    if (ok) {
-        *cage = builder.cage;
-        builder.cage = (struct cage){0};
-    }
-    cage_builder_finish(&builder);
-    return ok;
+    bool fits = used + strlen(line) + 1 + sizeof MORE_WARNINGS <= CAGE_WARNINGS_BYTES;
+    snprintf(cage->warnings + used, CAGE_WARNINGS_BYTES - used, "%s", fits ? line : MORE_WARNINGS);
 }

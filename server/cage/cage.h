@@ -21,6 +21,8 @@
 /* Largest absolute coordinate, in file units: squares and cubes of it stay finite in double and
  * differences stay finite in single precision. */
 #define CAGE_MAX_COORDINATE 1e30
+/* Of cage.warnings, with its end. */
+#define CAGE_WARNINGS_BYTES 4096
 
 /* Boundary interpolation (OpenSubdiv Sdc::Options::VtxBoundaryInterpolation). */
 enum cage_boundary {
@@ -66,15 +68,9 @@ struct cage {
     uint32_t *hole; /* face indices */
 
     /* Things the user should know (ignored tags, a plain triangle mesh): lines joined by '\n',
-     * or NULL. Bounded to 4 kB; owned by the cage. */
+     * or NULL. At most CAGE_WARNINGS_BYTES; owned by the cage. */
     char *warnings;
 };
-
-/* Reads a cage from the bytes of a file. `name` is used to choose the format (.obj, .gltf, .glb;
- * the content decides when the name has no known ending) and in messages. The result has passed
- * cage_check(). On failure *cage is empty and needs no cage_finish(). */
-bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *name,
-               struct error *error);
 
 /* Frees what the cage owns and zeroes it. Safe on a zeroed cage. */
 void cage_finish(struct cage *cage);
@@ -84,7 +80,7 @@ void cage_finish(struct cage *cage);
  * creases on existing edges, corners and holes in range. Error texts name `name`. */
 bool cage_check(const struct cage *cage, const char *name, struct error *error);
 
-/* Appends one line to cage->warnings (dropped silently once 4 kB are full, the last line then says
+/* Appends one line to cage->warnings (dropped silently once they are full, the last line then says
  * that more followed). */
 void cage_warn(struct cage *cage, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -1,4 +1,4 @@
-/* Stage 2: the pixel's ray against the limit surface, in two passes. */
+/* Stage 2: the pixel's ray against the limit surface, in three passes. */
 #include "server/gpu/gpu.h"
 
 static void set_uniforms(GLuint program, bool want_ptex)
@@ -21,29 +21,29 @@ static void bind_planes(const struct renderer *r, const struct renderer_model *m
     glBindImageTexture(4, r->target.border, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
 }
 
-/* What lies outside the groups is missed without asking. */
-static void clear_planes(const struct renderer *r, bool want_ptex)
+/* The pixels of a list, once it is complete. */
+static void dispatch_listed(GLuint program, GLuint list, bool around, bool want_ptex)
 {
-    static const GLfloat nothing[4] = {0, 0, 0, 0};
-    static const GLuint no_face[4] = {UINT32_MAX, 0, 0, 0};
-    glClearTexImage(r->target.position, 0, GL_RGBA, GL_FLOAT, nothing);
-    if (want_ptex)
-        glClearTexImage(r->target.ptex, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, no_face);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    set_uniforms(program, want_ptex);
+    glUniform1i(glGetUniformLocation(program, "around"), around);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+    glDispatchComputeIndirect(0);
 }
 
 void stage_evaluate(struct renderer *r, const struct renderer_model *model, bool want_ptex)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
-    clear_planes(r, want_ptex);
+    const struct table_programs *programs = model->programs;
+    glNamedBufferSubData(r->target.strays, 0, sizeof no_work, no_work);
     glNamedBufferSubData(r->target.unsolved, 0, sizeof no_work, no_work);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, r->target.unsolved);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, r->target.strays);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.unsolved);
     bind_planes(r, model);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    set_uniforms(model->programs->evaluate, want_ptex);
-    dispatch_groups(r, model->programs->evaluate);
-
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    set_uniforms(model->programs->unsolved, want_ptex);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->target.unsolved);
-    glDispatchComputeIndirect(0);
+    set_uniforms(programs->evaluate, want_ptex);
+    dispatch_groups(r, programs->evaluate);
+    dispatch_listed(programs->unsolved, r->target.strays, false, want_ptex);
+    dispatch_listed(programs->unsolved, r->target.unsolved, true, want_ptex);
 }

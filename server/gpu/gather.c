@@ -5,7 +5,8 @@
 
 bool stage_gather_init(struct renderer *r, struct error *error)
 {
-    static const char *const files[] = {"view.glsl", "groups.glsl", "gather.comp.glsl", NULL};
+    static const char *const files[] = {"view.glsl", "list.glsl", "groups.glsl", "gather.comp.glsl",
+                                        NULL};
     r->gather = program_compute("", files, error);
     glCreateBuffers(1, &r->block_buffer);
     return r->gather;

@@ -50,7 +50,7 @@ struct target {
     GLuint light_change;            /* RGBA32F */
     GLuint coverage;                /* R32F: share of the pixel that shows surface */
     GLuint groups;                  /* buffer: shaders/groups.glsl */
-    GLuint unsolved;                /* buffer: shaders/planes.glsl */
+    GLuint strays, unsolved;        /* buffers: shaders/doubt.glsl */
     GLuint edges, turns;            /* buffers: shaders/edges_find.comp.glsl */
 };
 
@@ -85,6 +85,13 @@ struct kept {
     bool ptex, edges;
 };
 
+/* What drawing a tile fills. There are two: planes that are kept must outlive the tiles of larger
+ * frames that are drawn in between. */
+struct planes {
+    struct target target;
+    struct kept kept;
+};
+
 enum { MAX_PROGRAM_SETS = 16 };
 
 /* Which pixels a program of stage 3 shades: all, all by one sample each, those listed. */
@@ -93,8 +100,13 @@ enum shaded { SHADED_ALL, SHADED_UNFILTERED, SHADED_EDGES, SHADED_TURNS, SHADED_
 struct renderer {
     struct egl egl;
     struct renderer_info info;
+    /* In use: as struct planes. */
     struct target target;
     struct kept kept;
+    struct planes resting;                /* the other one */
+    bool in_tiles;                        /* those in use are for frames of several tiles */
+    struct frame_watch watch;             /* of the frame being drawn */
+    const struct renderer_polygons *made; /* its polygons, or NULL */
     struct pieces pieces;
     struct polygons polygons;
     struct table_programs programs[MAX_PROGRAM_SETS];
@@ -126,7 +138,7 @@ void target_finish(struct target *target);
 /* The three stages, on the tile that the view block in view_buffer describes. */
 bool stage_visibility_init(struct renderer *renderer, struct error *error);
 void stage_visibility(struct renderer *renderer, const struct renderer_model *model,
-                      const struct tile *tile);
+                      const struct tile *tile, bool want_ptex);
 void stage_evaluate(struct renderer *renderer, const struct renderer_model *model, bool want_ptex);
 /* Lists the pixels that stage 3 looks at more closely; the coverage of all others. */
 bool stage_edges_init(struct renderer *renderer, struct error *error);
@@ -159,9 +171,13 @@ bool stage_gather_init(struct renderer *renderer, struct error *error);
 void stage_gather(struct renderer *renderer);
 void dispatch_groups(const struct renderer *renderer, GLuint program);
 
-/* Copies the planes asked for from the target into the frame. */
+/* Copies the planes asked for from the target into the frame: `tile`, which lies in `drawn`. */
 bool readback(struct renderer *renderer, const struct frame_request *request,
-              const struct tile *tile, struct frame *frame, struct error *error);
+              const struct tile *drawn, const struct tile *tile, struct frame *frame,
+              struct error *error);
+
+/* False, with ERROR_SERVER, once nobody waits for the frame being drawn. */
+bool watch_check(const struct frame_watch *watch, struct error *error);
 
 /* Turns a pending GL error into ERROR_DEVICE; `doing` names what was tried. */
 bool gpu_check(const char *doing, struct error *error);

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "server/gpu/gpu.h"
 #include "server/limit/evaluate.h"
 
 /* Quads along an edge of a Ptex face. */
@@ -26,6 +27,38 @@ static struct mesh_size measure(const struct limit_tables *tables, uint32_t leve
         size.quads += cells * cells;
     }
     return size;
+}
+
+size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level)
+{
+    struct mesh_size size = measure(tables, level);
+    if (size.vertices > MESH_MAX_VERTICES)
+        return 0;
+    return (size_t)size.vertices * sizeof(struct mesh_vertex) +
+           (size_t)size.quads * 6 * sizeof(uint32_t);
+}
+
+struct renderer_polygons *renderer_polygons_create(const struct limit_tables *tables,
+                                                   uint32_t level, const struct frame_watch *watch,
+                                                   struct error *error)
+{
+    struct renderer_polygons *polygons = malloc(sizeof *polygons);
+    if (!polygons) {
+        error_set(error, ERROR_SERVER, "out of memory for polygons");
+        return NULL;
+    }
+    if (mesh_init(&polygons->mesh, tables, level, watch, error))
+        return polygons;
+    free(polygons);
+    return NULL;
+}
+
+void renderer_polygons_destroy(struct renderer_polygons *polygons)
+{
+    if (!polygons)
+        return;
+    mesh_finish(&polygons->mesh);
+    free(polygons);
 }
 
 static bool refuse(const struct limit_tables *tables, uint32_t level, uint64_t quads,
@@ -121,7 +154,7 @@ static void add_fan(struct mesh *mesh, const struct limit_tables *tables, uint32
 }
 
 bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t level,
-               struct error *error)
+               const struct frame_watch *watch, struct error *error)
 {
     *mesh = (struct mesh){0};
     struct mesh_size size = measure(tables, level);
@@ -140,6 +173,10 @@ bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t le
         const struct limit_node *root = &tables->nodes[face];
         if (root->kind == LIMIT_HOLE)
             continue;
+        if (!watch_check(watch, error)) {
+            mesh_finish(mesh);
+            return false;
+        }
         if (level > 0 || !root->ngon_size)
             add_face(mesh, tables, face, cells_of(root, level));
         else if (root->ngon_corner == 0)

@@ -14,8 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/error.h"
-#include "server/limit/tables.h"
+#include "server/gpu/renderer.h"
 
 enum { MESH_MAX_LEVEL = 6 };
 #define MESH_MAX_VERTICES ((uint64_t)8 << 20) /* of one mesh: 256 MiB, and 192 MiB of indices */
@@ -37,10 +36,14 @@ struct mesh {
     double centre[3]; /* world */
 };
 
+struct renderer_polygons {
+    struct mesh mesh;
+};
+
 /* ERROR_REQUEST when the level has more than MESH_MAX_VERTICES, naming the finest that has not;
- * ERROR_SERVER when memory is short. */
+ * ERROR_SERVER when memory is short or the watch says that nobody waits. */
 bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t level,
-               struct error *error);
+               const struct frame_watch *watch, struct error *error);
 void mesh_finish(struct mesh *mesh);
 
 #endif

@@ -73,21 +73,19 @@ static void describe_vertices(const struct polygon_mesh *mesh)
     }
 }
 
-static struct polygon_mesh *build(struct polygons *p, const struct renderer_model *model,
-                                  uint32_t level, struct error *error)
+static struct polygon_mesh *upload(struct polygons *p, const struct mesh *made,
+                                   const struct renderer_model *model, uint32_t level,
+                                   struct error *error)
 {
-    struct mesh made;
-    if (!mesh_init(&made, model->tables, level, error))
-        return NULL;
-    size_t vertex_bytes = made.n_vertices * sizeof *made.vertex;
-    size_t index_bytes = made.n_indices * sizeof *made.index;
+    size_t vertex_bytes = made->n_vertices * sizeof *made->vertex;
+    size_t index_bytes = made->n_indices * sizeof *made->index;
     struct polygon_mesh *mesh = make_room(p, vertex_bytes + index_bytes);
     *mesh = (struct polygon_mesh){
         .model_serial = model->serial,
         .level = level,
-        .n_indices = (GLsizei)made.n_indices,
+        .n_indices = (GLsizei)made->n_indices,
         .bytes = vertex_bytes + index_bytes,
-        .centre = {made.centre[0], made.centre[1], made.centre[2]},
+        .centre = {made->centre[0], made->centre[1], made->centre[2]},
     };
     p->bytes += mesh->bytes;
     glCreateBuffers(2, mesh->buffer);
@@ -96,26 +94,39 @@ static struct polygon_mesh *build(struct polygons *p, const struct renderer_mode
                          GL_DYNAMIC_STORAGE_BIT);
     glNamedBufferStorage(mesh->buffer[1], (GLsizeiptr)index_bytes + 1, NULL,
                          GL_DYNAMIC_STORAGE_BIT);
-    glNamedBufferSubData(mesh->buffer[0], 0, (GLsizeiptr)vertex_bytes, made.vertex);
-    glNamedBufferSubData(mesh->buffer[1], 0, (GLsizeiptr)index_bytes, made.index);
+    glNamedBufferSubData(mesh->buffer[0], 0, (GLsizeiptr)vertex_bytes, made->vertex);
+    glNamedBufferSubData(mesh->buffer[1], 0, (GLsizeiptr)index_bytes, made->index);
     glCreateVertexArrays(1, &mesh->array);
     describe_vertices(mesh);
-    mesh_finish(&made);
     if (gpu_check("polygons", error))
         return mesh;
     drop(p, mesh);
     return NULL;
 }
 
-static struct polygon_mesh *find_or_build(struct polygons *p, const struct renderer_model *model,
+static struct polygon_mesh *build(struct renderer *r, const struct renderer_model *model,
+                                  uint32_t level, struct error *error)
+{
+    struct mesh made;
+    if (r->made)
+        return upload(&r->polygons, &r->made->mesh, model, level, error);
+    if (!mesh_init(&made, model->tables, level, &r->watch, error))
+        return NULL;
+    struct polygon_mesh *mesh = upload(&r->polygons, &made, model, level, error);
+    mesh_finish(&made);
+    return mesh;
+}
+
+static struct polygon_mesh *find_or_build(struct renderer *r, const struct renderer_model *model,
                                           uint32_t level, struct error *error)
 {
+    struct polygons *p = &r->polygons;
     struct polygon_mesh *found = NULL;
     for (int i = 0; i < MAX_POLYGON_MESHES && !found; i++)
         if (p->mesh[i].model_serial == model->serial && p->mesh[i].level == level)
             found = &p->mesh[i];
     if (!found)
-        found = build(p, model, level, error);
+        found = build(r, model, level, error);
     if (found)
         found->used = ++p->clock;
     return found;
@@ -156,7 +167,7 @@ bool stage_polygons(struct renderer *r, const struct renderer_model *model,
                               r->target.ptex};
     struct polygons *p = &r->polygons;
     struct polygon_mesh *mesh =
-        compile(p, error) ? find_or_build(p, model, request->surface.level, error) : NULL;
+        compile(p, error) ? find_or_build(r, model, request->surface.level, error) : NULL;
     if (!mesh || !pieces_cover_all(&r->pieces, tile, error))
         return false;
     if (!p->framebuffer)
@@ -176,7 +187,7 @@ bool stage_wireframe(struct renderer *r, const struct renderer_model *model,
                      struct error *error)
 {
     struct polygons *p = &r->polygons;
-    struct polygon_mesh *mesh = find_or_build(p, model, request->surface.level, error);
+    struct polygon_mesh *mesh = find_or_build(r, model, request->surface.level, error);
     if (!mesh)
         return false;
     attach(r, &r->target.colour, 1);

@@ -18,22 +18,28 @@ static struct rows tile_rows(const struct frame *frame, int plane, const struct 
     return (struct rows){first, stride, pixel};
 }
 
+/* A part of a texture, px of the tile that was drawn. */
+static void read_part(GLuint texture, GLenum format, GLenum type, const struct tile *part,
+                      size_t bytes, void *texels)
+{
+    glGetTextureSubImage(texture, 0, (GLint)part->x, (GLint)part->y, 0, (GLsizei)part->width,
+                         (GLsizei)part->height, 1, format, type, (GLsizei)bytes, texels);
+}
+
 /* Planes that the target holds as they are read. */
 static void read_direct(GLuint texture, GLenum format, GLenum type, const struct rows *rows,
-                        uint32_t frame_width, const struct tile *tile)
+                        uint32_t frame_width, const struct tile *part)
 {
     glPixelStorei(GL_PACK_ROW_LENGTH, (GLint)frame_width);
-    glGetTextureSubImage(
-        texture, 0, 0, 0, 0, (GLsizei)tile->width, (GLsizei)tile->height, 1, format, type,
-        (GLsizei)((tile->height - 1) * rows->stride + tile->width * rows->pixel), rows->first);
+    read_part(texture, format, type, part,
+              (part->height - 1) * rows->stride + part->width * rows->pixel, rows->first);
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);
 }
 
-static void read_four(GLuint texture, GLenum format, GLenum type, const struct tile *tile,
+static void read_four(GLuint texture, GLenum format, GLenum type, const struct tile *part,
                       void *texels)
 {
-    glGetTextureSubImage(texture, 0, 0, 0, 0, (GLsizei)tile->width, (GLsizei)tile->height, 1,
-                         format, type, (GLsizei)(tile->width * tile->height * 16), texels);
+    read_part(texture, format, type, part, (size_t)part->width * part->height * 16, texels);
 }
 
 /* World positions are formed here, in double: the target holds them relative to the eye. */
@@ -76,7 +82,8 @@ static void pack_ptex(const uint32_t (*texels)[4], const struct rows *rows, cons
 }
 
 static bool read_packed(struct renderer *r, const struct frame_request *request,
-                        const struct tile *tile, struct frame *frame, struct error *error)
+                        const struct tile *part, const struct tile *tile, struct frame *frame,
+                        struct error *error)
 {
     enum { NEED_POSITION = PLANE_POSITION | PLANE_NORMAL };
     if (!(request->planes & (NEED_POSITION | PLANE_PTEX)))
@@ -85,19 +92,19 @@ static bool read_packed(struct renderer *r, const struct frame_request *request,
     void *position = malloc(bytes), *other = malloc(bytes);
     bool ok = position && other;
     if (ok && request->planes & NEED_POSITION)
-        read_four(r->target.position, GL_RGBA, GL_FLOAT, tile, position);
+        read_four(r->target.position, GL_RGBA, GL_FLOAT, part, position);
     if (ok && request->planes & PLANE_POSITION) {
         struct rows rows = tile_rows(frame, 1, tile);
         pack_position(position, request->camera.eye, &rows, tile);
     }
     if (ok && request->planes & PLANE_NORMAL) {
         struct rows rows = tile_rows(frame, 2, tile);
-        read_four(r->target.normal, GL_RGBA, GL_FLOAT, tile, other);
+        read_four(r->target.normal, GL_RGBA, GL_FLOAT, part, other);
         pack_normal(other, position, &rows, tile);
     }
     if (ok && request->planes & PLANE_PTEX) {
         struct rows rows = tile_rows(frame, 3, tile);
-        read_four(r->target.ptex, GL_RGBA_INTEGER, GL_UNSIGNED_INT, tile, other);
+        read_four(r->target.ptex, GL_RGBA_INTEGER, GL_UNSIGNED_INT, part, other);
         pack_ptex(other, &rows, tile);
     }
     free(position);
@@ -106,9 +113,10 @@ static bool read_packed(struct renderer *r, const struct frame_request *request,
                            "out of memory: reading a tile back needs %zu bytes", 2 * bytes);
 }
 
-bool readback(struct renderer *r, const struct frame_request *request, const struct tile *tile,
-              struct frame *frame, struct error *error)
+bool readback(struct renderer *r, const struct frame_request *request, const struct tile *drawn,
+              const struct tile *tile, struct frame *frame, struct error *error)
 {
+    const struct tile part = {tile->x - drawn->x, tile->y - drawn->y, tile->width, tile->height};
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     const struct {
         int plane;
@@ -126,9 +134,10 @@ bool readback(struct renderer *r, const struct frame_request *request, const str
             continue;
         struct rows rows = tile_rows(frame, direct[i].plane, tile);
         read_direct(direct[i].texture, direct[i].format, direct[i].type, &rows, frame->width_px,
-                    tile);
+                    &part);
     }
-    return read_packed(r, request, tile, frame, error) && gpu_check("reading a frame back", error);
+    return read_packed(r, request, &part, tile, frame, error) &&
+           gpu_check("reading a frame back", error);
 }
 
 size_t renderer_plane_bytes(enum renderer_plane plane)

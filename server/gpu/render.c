@@ -7,6 +7,10 @@
 
 /* Larger frames are drawn in tiles: about 80 bytes a pixel live on the device. */
 enum { TILE_MAX_PX = 4096 };
+/* Smaller tiles would be mostly margin. */
+enum { TILE_MIN_PX = 128 };
+/* Drawn around a tile and not kept: stages look at neighbours, and these at theirs. */
+enum { MARGIN_PX = COVER_BLOCK_PX };
 
 static uint64_t now_us(void)
 {
@@ -63,83 +67,192 @@ static bool frame_init(struct frame *frame, const struct frame_request *request,
     return true;
 }
 
-static bool render_tile(struct renderer *r, const struct renderer_model *model,
-                        const struct frame_request *request, const struct view *view,
-                        const struct tile *tile, struct frame *frame, struct error *error)
+bool watch_check(const struct frame_watch *watch, struct error *error)
 {
-    struct view_block block;
-    view_block_fill(&block, view, tile);
-    glNamedBufferSubData(r->view_buffer, 0, sizeof block, &block);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
+    return !watch->is_abandoned || !watch->is_abandoned(watch->owner) ||
+           error_set(error, ERROR_SERVER, "nobody waits for this frame any more");
+}
+
+/* Stages 1 and 2, unless the target holds their planes already. */
+static bool draw_surface(struct renderer *r, const struct renderer_model *model,
+                         const struct frame_request *request, const struct view *view,
+                         const struct tile *tile, struct frame *frame, struct error *error)
+{
     uint64_t since = now_us();
-    bool exact = request->surface.kind == SURFACE_EXACT;
-    if (!is_kept(&r->kept, model, request) && !exact) {
+    if (is_kept(&r->kept, model, request))
+        return true;
+    if (request->surface.kind != SURFACE_EXACT) {
         if (!stage_polygons(r, model, request, tile, error))
             return false;
         stage_gather(r);
         end_stage(&frame->times.visibility_us, &since);
-    } else if (!is_kept(&r->kept, model, request)) {
-        if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
-            return false;
-        stage_visibility(r, model, tile);
-        stage_gather(r);
-        end_stage(&frame->times.visibility_us, &since);
-        stage_evaluate(r, model, request->planes & PLANE_PTEX);
-        if (edges_wanted(request))
-            stage_edges(r);
-        end_stage(&frame->times.evaluate_us, &since);
+        return true;
     }
+    if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
+        return false;
+    stage_visibility(r, model, tile, request->planes & PLANE_PTEX);
+    stage_gather(r);
+    end_stage(&frame->times.visibility_us, &since);
+    stage_evaluate(r, model, request->planes & PLANE_PTEX);
+    if (edges_wanted(request))
+        stage_edges(r);
+    end_stage(&frame->times.evaluate_us, &since);
+    return true;
+}
+
+/* `drawn` is the tile with its margin. */
+static bool render_tile(struct renderer *r, const struct renderer_model *model,
+                        const struct frame_request *request, const struct view *view,
+                        const struct tile *drawn, const struct tile *tile, struct frame *frame,
+                        struct error *error)
+{
+    struct view_block block;
+    view_block_fill(&block, view, drawn);
+    glNamedBufferSubData(r->view_buffer, 0, sizeof block, &block);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
+    if (!draw_surface(r, model, request, view, drawn, frame, error))
+        return false;
+    uint64_t since = now_us();
     if (!stage_shade(r, request, error))
         return false;
     if (request->surface.kind == SURFACE_WIREFRAME &&
-        !stage_wireframe(r, model, request, tile, error))
+        !stage_wireframe(r, model, request, drawn, error))
         return false;
     end_stage(&frame->times.shade_us, &since);
-    bool ok = readback(r, request, tile, frame, error);
+    bool ok = readback(r, request, drawn, tile, frame, error);
     end_stage(&frame->times.readback_us, &since);
     return ok;
 }
 
-bool renderer_render(struct renderer *r, struct renderer_model *model,
-                     const struct frame_request *request, struct frame *frame, struct error *error)
+static uint32_t at_most(uint32_t value, uint32_t limit)
 {
-    *frame = (struct frame){0};
-    if (!request_check(&r->info, request, error) || !frame_init(frame, request, error))
-        return false;
-    uint32_t width = request->width_px < TILE_MAX_PX ? request->width_px : TILE_MAX_PX;
-    uint32_t height = request->height_px < TILE_MAX_PX ? request->height_px : TILE_MAX_PX;
-    if (width > r->target.width || height > r->target.height)
-        r->kept.model_serial = 0;
-    if (!target_reserve(&r->target, width, height, error))
-        goto fail;
-    struct view view;
-    view_init(&view, &request->camera, request->width_px, request->height_px,
-              model->tables->hull_min, model->tables->hull_max);
-    for (uint32_t y = 0; y < request->height_px; y += TILE_MAX_PX) {
-        for (uint32_t x = 0; x < request->width_px; x += TILE_MAX_PX) {
-            struct tile tile = {x, y, request->width_px - x, request->height_px - y};
-            tile.width = tile.width < TILE_MAX_PX ? tile.width : TILE_MAX_PX;
-            tile.height = tile.height < TILE_MAX_PX ? tile.height : TILE_MAX_PX;
-            if (!render_tile(r, model, request, &view, &tile, frame, error))
-                goto fail;
-        }
-    }
-    bool single = request->width_px <= TILE_MAX_PX && request->height_px <= TILE_MAX_PX;
-    bool still_kept = is_kept(&r->kept, model, request) && r->kept.ptex;
-    bool edges = edges_wanted(request) || (is_kept(&r->kept, model, request) && r->kept.edges);
+    return value < limit ? value : limit;
+}
+
+/* The whole frame where that is allowed, else tiles about square. */
+static void cut(struct frame_work *work)
+{
+    const struct frame_request *request = work->request;
+    uint32_t side = TILE_MAX_PX;
+    work->tile_width = at_most(request->width_px, side);
+    work->tile_height = at_most(request->height_px, side);
+    if (!work->tile_px || (uint64_t)work->tile_width * work->tile_height <= work->tile_px)
+        return;
+    while (side > TILE_MIN_PX && (uint64_t)side * side > work->tile_px)
+        side -= TILE_MIN_PX;
+    work->tile_width = at_most(request->width_px, side);
+    uint64_t rows = work->tile_px / work->tile_width;
+    work->tile_height = at_most(request->height_px, rows < side ? side : (uint32_t)rows);
+    work->tile_height = at_most(work->tile_height, TILE_MAX_PX);
+}
+
+static bool is_single(const struct frame_work *work)
+{
+    return work->tile_width == work->request->width_px &&
+           work->tile_height == work->request->height_px;
+}
+
+/* The next tile, and what must be drawn for it. */
+static void place_tile(const struct frame_work *work, struct tile *drawn, struct tile *tile)
+{
+    const struct frame_request *request = work->request;
+    *tile = (struct tile){work->x, work->y, at_most(request->width_px - work->x, work->tile_width),
+                          at_most(request->height_px - work->y, work->tile_height)};
+    uint32_t left = at_most(tile->x, MARGIN_PX), above = at_most(tile->y, MARGIN_PX);
+    uint32_t right = at_most(request->width_px - tile->x - tile->width, MARGIN_PX);
+    uint32_t below = at_most(request->height_px - tile->y - tile->height, MARGIN_PX);
+    *drawn = (struct tile){tile->x - left, tile->y - above, left + tile->width + right,
+                           above + tile->height + below};
+}
+
+/* Takes the planes for frames of one tile or those for frames of several into use. */
+static void use_planes(struct renderer *r, bool in_tiles)
+{
+    if (r->in_tiles == in_tiles)
+        return;
+    const struct planes used = {r->target, r->kept};
+    r->target = r->resting.target;
+    r->kept = r->resting.kept;
+    r->resting = used;
+    r->in_tiles = in_tiles;
+}
+
+/* What the target holds after a frame of one tile. */
+static void keep(struct renderer *r, const struct renderer_model *model,
+                 const struct frame_request *request)
+{
+    bool again = is_kept(&r->kept, model, request);
     bool drawn = request->surface.kind != SURFACE_EXACT; /* polygons always write ptex */
-    bool ptex = request->planes & PLANE_PTEX || still_kept || drawn;
-    r->kept = (struct kept){single ? model->serial : 0,
+    bool ptex = request->planes & PLANE_PTEX || (again && r->kept.ptex) || drawn;
+    bool edges = edges_wanted(request) || (again && r->kept.edges);
+    r->kept = (struct kept){model->serial,
                             request->width_px,
                             request->height_px,
                             request->camera,
                             request->surface,
                             ptex,
                             edges};
-    return true;
+}
 
-fail:
-    r->kept.model_serial = 0;
-    frame_finish(frame);
-    return false;
+bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *frame,
+                    struct error *error)
+{
+    *frame = (struct frame){0};
+    work->x = work->y = 0;
+    if (!request_check(&r->info, work->request, error) || !frame_init(frame, work->request, error))
+        return false;
+    cut(work);
+    return true;
+}
+
+static bool step(struct renderer *r, const struct renderer_model *model, struct frame_work *work,
+                 struct frame *frame, struct error *error)
+{
+    const struct frame_request *request = work->request;
+    struct view view;
+    struct tile drawn, tile;
+    place_tile(work, &drawn, &tile);
+    use_planes(r, !is_single(work));
+    r->watch = work->watch;
+    r->made = work->polygons;
+    if (drawn.width > r->target.width || drawn.height > r->target.height)
+        r->kept.model_serial = 0;
+    view_init(&view, &request->camera, request->width_px, request->height_px,
+              model->tables->hull_min, model->tables->hull_max);
+    bool ok = watch_check(&work->watch, error) &&
+              target_reserve(&r->target, drawn.width, drawn.height, error) &&
+              render_tile(r, model, request, &view, &drawn, &tile, frame, error);
+    if (ok && is_single(work))
+        keep(r, model, request);
+    else
+        r->kept.model_serial = 0;
+    return ok;
+}
+
+enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
+                              struct frame_work *work, struct frame *frame, struct error *error)
+{
+    if (!step(r, model, work, frame, error)) {
+        frame_finish(frame);
+        return FRAME_FAILED;
+    }
+    work->x += work->tile_width;
+    if (work->x >= work->request->width_px) {
+        work->x = 0;
+        work->y += work->tile_height;
+    }
+    return work->y < work->request->height_px ? FRAME_MORE : FRAME_DONE;
+}
+
+bool renderer_render(struct renderer *r, struct renderer_model *model,
+                     const struct frame_request *request, struct frame *frame, struct error *error)
+{
+    struct frame_work work = {.request = request};
+    if (!renderer_begin(r, &work, frame, error))
+        return false;
+    enum frame_step next;
+    do
+        next = renderer_step(r, model, &work, frame, error);
+    while (next == FRAME_MORE);
+    return next == FRAME_DONE;
 }

@@ -15,8 +15,9 @@
 #include "server/limit/tables.h"
 
 struct renderer;
-struct renderer_model; /* one cage's tables on the GPU */
-struct renderer_image; /* one light image on the GPU */
+struct renderer_model;    /* one cage's tables on the GPU */
+struct renderer_image;    /* one light image on the GPU */
+struct renderer_polygons; /* a model's polygons of one level, in main memory */
 
 /* Planes a frame can carry, one bit each. */
 enum renderer_plane {
@@ -88,12 +89,61 @@ struct renderer_image *renderer_image_create(struct renderer *renderer, const st
                                              struct error *error);
 void renderer_image_destroy(struct renderer *renderer, struct renderer_image *image);
 
-/* Renders one frame. The request is checked here too: ERROR_REQUEST names the field and its range.
- * A second request that differs from the last in light, pattern or colours only, on the same
- * model, reuses the evaluated planes. */
+/* Who waits for a frame: asked between its tiles, its lights and the faces of its mesh. Once nobody
+ * does the frame fails, so that a client that has gone holds nobody up. */
+struct frame_watch {
+    bool (*is_abandoned)(void *owner); /* NULL: never; called on the GL thread */
+    void *owner;
+};
+
+/* A frame in the making, one tile a step, so that the GL thread can turn to other frames in
+ * between. Fill in the first group and call renderer_begin(), then renderer_step() until it says
+ * something else than FRAME_MORE. */
+struct frame_work {
+    const struct frame_request *request; /* stays until the last step, as the model does */
+    uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
+    struct frame_watch watch;
+    /* Of the request's surface, for the case that the device has them not yet; NULL: they are made
+     * then, which takes as long as many tiles. */
+    const struct renderer_polygons *polygons;
+
+    uint32_t tile_width, tile_height; /* the renderer's own from here on */
+    uint32_t x, y;                    /* of the next tile */
+};
+
+enum frame_step {
+    FRAME_MORE,   /* tiles are left */
+    FRAME_DONE,   /* the frame is whole */
+    FRAME_FAILED, /* *error says why; the frame is empty */
+};
+
+/* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and
+ * makes its planes. A frame that is given up between two steps needs frame_finish() alone. */
+bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct frame *frame,
+                    struct error *error);
+/* Draws the next tile. A frame of one tile that differs from the last such frame in light, pattern
+ * or colours only, on the same model, reuses the evaluated planes, whatever was drawn in tiles
+ * meanwhile. Cut otherwise, a frame is the same but for single precision's rounding: so a tile's
+ * size must depend on the request alone where equal requests shall give equal bytes. */
+enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *model,
+                              struct frame_work *work, struct frame *frame, struct error *error);
+
+/* Begin and all steps at once. */
 bool renderer_render(struct renderer *renderer, struct renderer_model *model,
                      const struct frame_request *request, struct frame *frame, struct error *error);
 void frame_finish(struct frame *frame);
+
+/* What the polygons of a model at a level (0 to 6) take on the device, kept from their first frame
+ * until the model goes. 0: they are too many, and their frame fails with the words for it. Any
+ * thread. */
+size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level);
+
+/* Makes them for frame_work.polygons; they take as much again here. ERROR_REQUEST when they are too
+ * many, ERROR_SERVER when memory is short or nobody waits (asked for every face). Any thread. */
+struct renderer_polygons *renderer_polygons_create(const struct limit_tables *tables,
+                                                   uint32_t level, const struct frame_watch *watch,
+                                                   struct error *error);
+void renderer_polygons_destroy(struct renderer_polygons *polygons); /* NULL is safe */
 
 /* Bytes of one pixel of a plane (a single bit). */
 size_t renderer_plane_bytes(enum renderer_plane plane);

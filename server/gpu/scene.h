@@ -36,7 +36,8 @@ struct pattern {
     double duty;                        /* [0, 1]: bright part of a period */
     double rotation_deg;                /* on the light */
     double offset;                      /* periods */
-    double soft;                        /* [0, 1]: share of a period that an edge takes */
+    double soft;                        /* [0, 1]: share of a period that an edge takes; of
+                                           PATTERN_LINES, of the width */
     double opacity;                     /* [0, 1]: over the shaded base */
     double at[MAX_LINES];               /* LINES: places, in widths of the light */
     uint32_t n_at;                      /* 1 to MAX_LINES */

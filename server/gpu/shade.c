@@ -30,12 +30,14 @@ static bool is_at_infinity(enum line_family family)
 static GLuint shade_program(struct renderer *r, const struct frame_request *request,
                             const struct light *light, enum shaded which, struct error *error)
 {
-#define COMMON "view.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
+#define COMMON                                                                                     \
+    "view.glsl", "list.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
     static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
-    static const char *const edges[] = {COMMON, "edges.glsl", "pieces.glsl",
-                                        "edges_shade.comp.glsl", NULL};
-    static const char *const turns[] = {COMMON, "edges.glsl", "pieces.glsl",
-                                        "turns_shade.comp.glsl", NULL};
+    static const char *const edges[] = {COMMON,        "border.glsl",   "edges.glsl",
+                                        "pieces.glsl", "rounding.glsl", "edges_shade.comp.glsl",
+                                        NULL};
+    static const char *const turns[] = {COMMON,        "border.glsl",           "edges.glsl",
+                                        "pieces.glsl", "turns_shade.comp.glsl", NULL};
 #undef COMMON
     static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns};
     int family = request->lines.family, pattern = light->pattern.kind;
@@ -298,7 +300,7 @@ bool stage_shade(struct renderer *r, const struct frame_request *request, struct
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
     clear_planes(r, request);
     for (uint32_t i = request->n_lights; i-- > 0;)
-        if (!shade_light(r, request, i, error))
+        if (!watch_check(&r->watch, error) || !shade_light(r, request, i, error))
             return false;
     return true;
 }

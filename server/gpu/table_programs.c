@@ -12,10 +12,10 @@ const struct table_programs *programs_for(struct renderer *r, int point_banks, i
                                          "visibility.vert.glsl", NULL};
     static const char *const fragment[] = {"visibility.frag.glsl", NULL};
 #define STAGE_2                                                                                    \
-    "view.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "neighbours.glsl", "planes.glsl",    \
-        "newton.glsl"
+    "view.glsl", "list.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "neighbours.glsl",      \
+        "border.glsl", "planes.glsl", "newton.glsl", "doubt.glsl"
     static const char *const evaluate[] = {STAGE_2, "groups.glsl", "evaluate.comp.glsl", NULL};
-    static const char *const unsolved[] = {STAGE_2, "unsolved.comp.glsl", NULL};
+    static const char *const unsolved[] = {STAGE_2, "walk.glsl", "unsolved.comp.glsl", NULL};
 #undef STAGE_2
     for (int i = 0; i < r->n_programs; i++) {
         const struct table_programs *p = &r->programs[i];

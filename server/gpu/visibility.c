@@ -77,15 +77,30 @@ void raster_begin(GLuint framebuffer, const struct tile *tile)
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
 }
 
-void stage_visibility(struct renderer *r, const struct renderer_model *model,
-                      const struct tile *tile)
+/* What stage 1 draws on; and what stage 2 leaves alone where nothing is seen, since a framebuffer
+ * is cleared by all of a software device's threads. */
+static void clear(const struct renderer *r, bool want_ptex)
 {
+    static const GLenum planes[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                                     GL_COLOR_ATTACHMENT2};
     static const GLuint none[4] = {UINT32_MAX, 0, 0, 0};
-    static const GLfloat farthest = 0; /* reversed depth */
-    raster_begin(r->target.framebuffer, tile);
+    static const GLfloat nothing[4] = {0, 0, 0, 0}; /* a depth of 0 is farthest: reversed */
+    GLuint framebuffer = r->target.framebuffer;
+    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
+    glNamedFramebufferDrawBuffers(framebuffer, want_ptex ? 3 : 2, planes);
     glClearBufferuiv(GL_COLOR, 0, none);
-    glClearBufferfv(GL_DEPTH, 0, &farthest);
+    glClearBufferfv(GL_COLOR, 1, nothing);
+    if (want_ptex)
+        glClearBufferuiv(GL_COLOR, 2, none);
+    glClearBufferfv(GL_DEPTH, 0, nothing);
+    glNamedFramebufferDrawBuffers(framebuffer, 1, planes);
+}
 
+void stage_visibility(struct renderer *r, const struct renderer_model *model,
+                      const struct tile *tile, bool want_ptex)
+{
+    raster_begin(r->target.framebuffer, tile);
+    clear(r, want_ptex);
     GLuint program = model->programs->visibility;
     glUseProgram(program);
     banks_bind(&model->nodes, banks_bind(&model->points, 0));

@@ -100,6 +100,17 @@ std::string reason(std::string text)
     return text.empty() ? "the file is damaged" : text.substr(0, end);
 }
 
+// What a reader has to say. OpenEXR puts a lack of memory into words.
+bool fail_reading(const OIIO::ImageInput &reader, const char *name, const char *what,
+                  struct error *error)
+{
+    std::string why = reason(reader.geterror());
+    if (why.find("bad_alloc") != why.npos)
+        return error_set(error, ERROR_SERVER, "%s: no memory for the image", name);
+    return error_set(error, ERROR_IMAGE, "%s: %s %s image: %s", name, what, reader.format_name(),
+                     why.c_str());
+}
+
 bool open_reader(std::unique_ptr<OIIO::ImageInput> &reader, OIIO::Filesystem::IOMemReader &proxy,
                  OIIO::ImageSpec &spec, const std::string &format, const char *name,
                  struct error *error)
@@ -122,8 +133,7 @@ bool open_reader(std::unique_ptr<OIIO::ImageInput> &reader, OIIO::Filesystem::IO
     config.attribute("oiio:UnassociatedAlpha", 1); // values as stored, alpha not multiplied in
     reader->set_ioproxy(&proxy);
     if (!reader->open("image." + format, spec, config))
-        return error_set(error, ERROR_IMAGE, "%s: not a readable %s image: %s", name,
-                         reader->format_name(), reason(reader->geterror()).c_str());
+        return fail_reading(*reader, name, "not a readable", error);
     return true;
 }
 
@@ -180,8 +190,7 @@ bool read_pixels(struct image *image, OIIO::ImageInput &reader, const OIIO::Imag
     OIIO::TypeDesc type(is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     if (!reader.read_image(0, 0, 0, channels, type, pixels.get(),
                            static_cast<OIIO::stride_t>(4 * sample_bytes)))
-        return error_set(error, ERROR_IMAGE, "%s: damaged %s image: %s", name, reader.format_name(),
-                         reason(reader.geterror()).c_str());
+        return fail_reading(reader, name, "damaged", error);
     bool has_alpha = channels == 2 || (channels == 4 && (spec.alpha_channel == 3));
     if (is_float) {
         spread(static_cast<float *>(pixels.get()), n, channels, has_alpha, 1.0f);
@@ -408,42 +417,26 @@ bool encode(enum image_format kind, uint32_t width, uint32_t height,
 
 constexpr const char *FONT = "DejaVuSans";
 
-// Puts a colour of some coverage over a pixel of straight alpha.
-void blend(uint8_t *pixel, const float colour[4], float coverage)
+bool draw_text(struct text *text, const char *line, int size, struct error *error)
 {
-    float over = colour[3] * coverage, under = static_cast<float>(pixel[3]) / 255.0f * (1 - over);
-    if (over + under <= 0)
-        return;
-    for (int k = 0; k < 3; k++) {
-        float mixed = over * colour[k] * 255.0f + under * static_cast<float>(pixel[k]);
-        pixel[k] = static_cast<uint8_t>(std::lround(mixed / (over + under)));
-    }
-    pixel[3] = static_cast<uint8_t>(std::lround((over + under) * 255.0f));
-}
-
-bool draw_text(uint8_t *rgba, uint32_t width, uint32_t height, int x, int y, int size,
-               enum image_align align, const char *text, const float colour[4])
-{
-    OIIO::ROI box = OIIO::ImageBufAlgo::text_size(text, size, FONT);
+    OIIO::ROI box = OIIO::ImageBufAlgo::text_size(line, size, FONT);
     if (!box.defined()) {
         OIIO::geterror(); // or it would be told with the next error of another
-        return false;
+        return error_set(error, ERROR_SERVER,
+                         "the font DejaVu Sans is missing (Debian: fonts-dejavu-core)");
     }
-    int w = box.xend - box.xbegin, h = box.yend - box.ybegin;
-    OIIO::ImageBuf coverage(OIIO::ImageSpec(w, h, 1, OIIO::TypeDesc::FLOAT),
-                            OIIO::InitializePixels::Yes);
-    if (!OIIO::ImageBufAlgo::render_text(coverage, -box.xbegin, -box.ybegin, text, size, FONT,
-                                         1.0f))
-        return false;
-    int left = x + box.xbegin - (align == IMAGE_LEFT ? 0 : align == IMAGE_RIGHT ? w : w / 2);
-    int top = y + box.ybegin;
-    for (int row = std::max(0, -top); row < h && top + row < static_cast<int>(height); row++)
-        for (int column = std::max(0, -left); column < w && left + column < static_cast<int>(width);
-             column++) {
-            size_t pixel =
-                static_cast<size_t>(top + row) * width + static_cast<size_t>(left + column);
-            blend(rgba + 4 * pixel, colour, coverage.getchannel(column, row, 0, 0));
-        }
+    const int width = box.width(), height = box.height();
+    OIIO::ImageBuf mask(OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT),
+                        OIIO::InitializePixels::Yes);
+    const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
+    std::unique_ptr<float, void (*)(void *)> coverage(
+        static_cast<float *>(std::malloc(n * sizeof(float))), std::free);
+    if (!coverage ||
+        !OIIO::ImageBufAlgo::render_text(mask, -box.xbegin, -box.ybegin, line, size, FONT, 1.0f) ||
+        !mask.get_pixels(mask.roi(), OIIO::TypeDesc::FLOAT, coverage.get()))
+        return error_set(error, ERROR_SERVER, "a line of text cannot be drawn");
+    *text = {box.xbegin, box.ybegin, static_cast<uint32_t>(width), static_cast<uint32_t>(height),
+             coverage.release()};
     return true;
 }
 
@@ -470,10 +463,10 @@ extern "C" bool image_decode(struct image *image, const void *bytes, size_t size
     return guarded(name, error, [&] { return decode(image, bytes, size, name, max_px, error); });
 }
 
-extern "C" void image_finish(struct image *image)
+extern "C" void image_use_one_thread(void)
 {
-    std::free(image->pixels);
-    *image = {};
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
 }
 
 extern "C" bool image_encode(enum image_format format, uint32_t width_px, uint32_t height_px,
@@ -489,11 +482,8 @@ extern "C" bool image_encode(enum image_format format, uint32_t width_px, uint32
     });
 }
 
-extern "C" bool image_draw_text(uint8_t *rgba, uint32_t width_px, uint32_t height_px, int x_px,
-                                int y_px, int size_px, enum image_align align, const char *text,
-                                const float colour[4])
+extern "C" bool text_create(struct text *text, const char *line, int size_px, struct error *error)
 {
-    return guarded("text", nullptr, [&] {
-        return draw_text(rgba, width_px, height_px, x_px, y_px, size_px, align, text, colour);
-    });
+    *text = {};
+    return guarded("text", error, [&] { return draw_text(text, line, size_px, error); });
 }

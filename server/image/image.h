@@ -1,6 +1,7 @@
-/* Images in and out, and text on them, through OpenImageIO, behind a C header: the one file that
- * includes OpenImageIO is image.cpp. Thread: every function may be called from any thread, on
- * different data. */
+/* Images in and out, and text, through OpenImageIO, behind a C header: the one file that includes
+ * OpenImageIO is image.cpp, and sheend itself is not linked with it; its worker process
+ * sheend-image is. What holds and checks results is in pixels.c and known to both. Thread: every
+ * function may be called from any thread, on different data. */
 #ifndef SHEEN_IMAGE_IMAGE_H
 #define SHEEN_IMAGE_IMAGE_H
 
@@ -32,6 +33,14 @@ bool image_decode(struct image *image, const void *bytes, size_t size, const cha
                   uint32_t max_px, struct error *error);
 void image_finish(struct image *image);
 
+/* What every decoded image keeps to: sides from 1 to max_px, at most IMAGE_MAX_BYTES, pixels there
+ * and finite. ERROR_IMAGE, saying `name`. */
+bool image_check(const struct image *image, const char *name, uint32_t max_px, struct error *error);
+size_t image_bytes(const struct image *image); /* of its pixels; the sides are at most 2^20 */
+
+/* OpenImageIO from now on starts no thread of its own. Before its first use, and for good. */
+void image_use_one_thread(void);
+
 enum image_type { IMAGE_UINT8, IMAGE_FLOAT, IMAGE_UINT32 };
 
 /* One channel of an image to be written: name as in EXR ("R", "P.X", "ptex.face"), samples at
@@ -61,13 +70,28 @@ bool image_encode(enum image_format format, uint32_t width_px, uint32_t height_p
                   const struct image_attribute *attributes, size_t n_attributes, uint8_t **bytes,
                   size_t *size, struct error *error);
 
-enum image_align { IMAGE_LEFT, IMAGE_CENTRE, IMAGE_RIGHT };
+/* A line of text as a mask: its baseline begins at (0, 0), y goes down. Owned by the caller; free
+ * with text_finish(). */
+struct text {
+    int left_px, top_px; /* of the mask's first pixel */
+    uint32_t width_px, height_px;
+    float *coverage; /* [height_px][width_px], 0 to 1 */
+};
+/* Sides of a mask, and its distance from the baseline's begin. */
+#define TEXT_MAX_PX (1u << 15)
 
-/* Writes one line of ASCII (OpenImageIO 2.4 misreads more) over 8-bit RGBA pixels (straight alpha,
- * rows contiguous, top first), in DejaVu Sans of size_px: its baseline begins, has its middle or
- * ends at (x_px, y_px). What lies outside of the picture is left out. False when the font or memory
- * is missing; nothing is drawn then. */
-bool image_draw_text(uint8_t *rgba, uint32_t width_px, uint32_t height_px, int x_px, int y_px,
-                     int size_px, enum image_align align, const char *text, const float colour[4]);
+/* One line of ASCII (OpenImageIO 2.4 misreads more) in DejaVu Sans of size_px. On failure *text is
+ * empty: ERROR_SERVER when the font or memory is missing. */
+bool text_create(struct text *text, const char *line, int size_px, struct error *error);
+void text_finish(struct text *text);
+/* Within TEXT_MAX_PX, coverage there and from 0 to 1. */
+bool text_check(const struct text *text);
+
+enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT };
+
+/* Writes text over 8-bit RGBA pixels (straight alpha, rows contiguous, top first): its baseline
+ * begins, has its middle or ends at (x_px, y_px). What lies outside of the picture is left out. */
+void text_draw(const struct text *text, uint8_t *rgba, uint32_t width_px, uint32_t height_px,
+               int x_px, int y_px, enum text_align align, const float colour[4]);
 
 #endif

@@ -243,7 +243,8 @@ bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena,
         struct net *fine = &net[(n + 1) & 1];
         next_net(&net[n & 1], &modes, fine);
         scales[n] = texels_write_level(fine->grid, texels + n * LIMIT_LEVEL_TEXELS);
-        bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true);
+        bounds[n] =
+            bound_of_grid(&fine->grid[0][0], 5, true, bound_normal(&fine->grid[0][0], 5, true));
     }
     origin[0] = limit.x;
     origin[1] = limit.y;

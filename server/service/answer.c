@@ -6,18 +6,21 @@
 struct answer {
     struct answer *next;
     uint32_t seq;
+    enum request_class request_class;
     bool ready, last;
     uint8_t *message; /* header and body */
     size_t length;
     struct encoded *encoded; /* of a frame, or NULL */
 };
 
-struct answer *answer_expect(struct answer_list *list, uint32_t seq)
+struct answer *answer_expect(struct answer_list *list, uint32_t seq,
+                             enum request_class request_class)
 {
     struct answer *answer = calloc(1, sizeof *answer);
     if (!answer)
         return NULL;
     answer->seq = seq;
+    answer->request_class = request_class;
     if (list->tail)
         list->tail->next = answer;
     else
@@ -32,12 +35,13 @@ uint32_t answer_seq(const struct answer *answer)
     return answer->seq;
 }
 
-static void drop_head(struct answer_list *list)
+/* Takes out the answer behind `before` (NULL: the first). */
+static void drop(struct answer_list *list, struct answer *before)
 {
-    struct answer *answer = list->head;
-    list->head = answer->next;
-    if (!list->head)
-        list->tail = NULL;
+    struct answer **link = before ? &before->next : &list->head, *answer = *link;
+    *link = answer->next;
+    if (list->tail == answer)
+        list->tail = before;
     list->n--;
     encoded_destroy(answer->encoded);
     free(answer->message);
@@ -47,7 +51,7 @@ static void drop_head(struct answer_list *list)
 void answer_list_finish(struct answer_list *list)
 {
     while (list->head)
-        drop_head(list);
+        drop(list, NULL);
 }
 
 bool answer_fill(struct answer *answer, uint8_t type, const void *body)
@@ -116,21 +120,53 @@ static void send_data(struct conn *conn, uint32_t seq, struct encoded *encoded)
     }
 }
 
+static void send_answer(struct answer_list *list, struct answer *answer, struct conn *conn)
+{
+    conn_send(conn, answer->message, answer->length);
+    if (!answer->encoded)
+        return;
+    if (answer->request_class == CLASS_INTERACTIVE) {
+        answer->encoded->unsent = &list->unsent;
+        list->unsent++;
+    }
+    send_data(conn, answer->seq, answer->encoded);
+    answer->encoded = NULL; /* the connection's now */
+}
+
+/* Whether an answer may go out when those before it, of the classes in `owed`, have not. */
+static bool is_due(const struct answer_list *list, const struct answer *answer,
+                   const bool owed[static N_CLASSES])
+{
+    if (!answer->ready)
+        return false;
+    if (list->is_ordered || answer->last)
+        return answer == list->head;
+    if (!answer->encoded)
+        return true;
+    bool is_clear = answer->request_class != CLASS_INTERACTIVE || list->unsent == 0;
+    return is_clear && !owed[answer->request_class];
+}
+
 void answer_send_due(struct answer_list *list, struct conn *conn)
 {
-    if (!list->head || !list->head->ready)
-        return;
-    bool last = false;
-    while (list->head && list->head->ready && !last) {
-        struct answer *answer = list->head;
-        last = answer->last;
-        conn_send(conn, answer->message, answer->length);
-        if (answer->encoded)
-            send_data(conn, answer->seq, answer->encoded);
-        answer->encoded = NULL; /* the connection's now */
-        drop_head(list);
+    bool owed[N_CLASSES] = {false}, sent = false, closes = false, is_over = false;
+    struct answer *before = NULL;
+    for (struct answer *answer = list->head, *next; answer && !is_over; answer = next) {
+        next = answer->next;
+        is_over = answer->last; /* nothing after it */
+        if (is_due(list, answer, owed)) {
+            closes = answer->last;
+            send_answer(list, answer, conn);
+            drop(list, before);
+            sent = true;
+        } else {
+            owed[answer->request_class] = true;
+            before = answer;
+            is_over |= list->is_ordered; /* nothing overtakes */
+        }
     }
-    conn_flush(conn);
-    if (last)
+    if (sent)
+        conn_flush(conn);
+    if (closes)
         conn_close_after_flush(conn);
 }

@@ -1,22 +1,27 @@
-/* The answers that one connection owes, sent in the order of its requests, whatever order they
- * become ready in. Thread: the loop's. */
+/* The answers that one connection owes. Frames of a class go out in the order of their requests,
+ * everything else as soon as it is ready; to a peer of minor version 0 all goes out in order.
+ * Thread: the loop's. */
 #ifndef SHEEN_SERVICE_ANSWER_H
 #define SHEEN_SERVICE_ANSWER_H
 
 #include "protocol/message.h"
 #include "server/service/conn.h"
 #include "server/service/encode.h"
+#include "server/service/scheduler.h"
 
 struct answer; /* one that is owed; lives in its list until it is sent */
 
 struct answer_list {
-    struct answer *head, *tail;
-    unsigned n; /* owed */
+    struct answer *head, *tail; /* in the order of their requests */
+    unsigned n;                 /* owed */
+    bool is_ordered;            /* as minor version 0 has it */
+    unsigned unsent;            /* interactive frames handed to the connection: at most 1 */
 };
 
-/* A request has come; its answer will follow those of the requests before. NULL when memory is
- * short: the connection cannot go on then. */
-struct answer *answer_expect(struct answer_list *list, uint32_t seq);
+/* A request has come; `request_class` is that of its frame, CLASS_STILL for what has none. NULL
+ * when memory is short: the connection cannot go on then. */
+struct answer *answer_expect(struct answer_list *list, uint32_t seq,
+                             enum request_class request_class);
 /* The number of the request. */
 uint32_t answer_seq(const struct answer *answer);
 /* Gives up all that is owed. */
@@ -27,7 +32,8 @@ void answer_list_finish(struct answer_list *list);
 bool answer_fill(struct answer *answer, uint8_t type, const void *body);
 /* As answer_fill() for a FRAME and the DATA behind it. Takes `encoded` over in any case. */
 bool answer_fill_frame(struct answer *answer, const sheen_Frame *frame, struct encoded *encoded);
-/* Nothing comes after this answer: the connection closes behind it. */
+/* Nothing comes after this answer, and it comes after all others: the connection closes behind
+ * it. */
 void answer_mark_last(struct answer *answer);
 
 /* Hands all answers that are due to the connection, and closes it behind the last. */

@@ -11,6 +11,7 @@
 #include "server/error.h"
 #include "server/service/pool.h"
 #include "server/service/render_thread.h"
+#include "server/service/workers.h"
 
 /* How far a build is; written by the build, read by the loop's thread. */
 struct build_progress {
@@ -21,12 +22,15 @@ struct build_progress {
 
 /* What a build reads and whom it tells. Everything here stays until finished() is called. */
 struct build_order {
-    struct pool *pool;
+    struct pool *pool;    /* fills tables */
+    struct pool *readers; /* wait for the workers: nobody's frame waits for a slow file */
     struct render_thread *render_thread;
+    struct workers *workers;
     const uint8_t *file;
     size_t file_bytes;
     const char *name; /* the file's, for messages and to tell the format */
     struct build_progress *progress;
+    uint32_t max_image_px;        /* either way */
     const atomic_bool *cancelled; /* soon ends with a failure once this is true */
 
     /* May this much memory be kept until the result is destroyed? Called once, before it is

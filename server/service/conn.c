@@ -204,6 +204,7 @@ void conn_hold(struct conn *conn, bool held)
     if (conn->held == held || conn->state == CONN_CLOSED)
         return;
     conn->held = held;
+    conn->message_since_us = loop_now_us();
     update_events(conn);
 }
 
@@ -215,12 +216,22 @@ static void refuse_input(struct conn *conn, const struct message_header *header,
     conn->handler->malformed(conn->owner, header, error);
 }
 
+static bool resize(struct conn *conn, size_t capacity)
+{
+    uint8_t *in = realloc(conn->in, capacity);
+    if (!in)
+        return false;
+    conn->in = in;
+    conn->in_capacity = capacity;
+    return true;
+}
+
 static bool read_more(struct conn *conn);
 
 /* The whole messages that are there. */
 static void deliver(struct conn *conn)
 {
-    size_t used = 0;
+    size_t used = 0, wanted = 0;
     while (conn->state == CONN_OPEN && !conn->held &&
            conn->in_used - used >= MESSAGE_HEADER_BYTES) {
         struct message_header header = {0};
@@ -230,20 +241,32 @@ static void deliver(struct conn *conn)
             return;
         }
         size_t size = MESSAGE_HEADER_BYTES + (size_t)header.length;
-        if (size > CONN_IN_BYTES) { /* a type that only servers send */
+        if (size > CONN_MOST_IN_BYTES) { /* a type that only servers send */
             refuse_input(conn, &header, HEADER_TOO_LONG);
             return;
         }
-        if (conn->in_used - used < size)
+        if (conn->in_used - used < size) {
+            wanted = size;
             break;
+        }
         conn->handler->message(conn->owner, &header, conn->in + used + MESSAGE_HEADER_BYTES);
         used += size;
     }
     if (conn->state != CONN_OPEN)
         return;
     conn->in_used -= used;
-    if (used > 0)
+    if (used > 0) {
         memmove(conn->in, conn->in + used, conn->in_used);
+        conn->message_since_us = loop_now_us();
+    }
+    if (wanted > conn->in_capacity && !resize(conn, wanted))
+        conn_close(conn);
+}
+
+void conn_trim(struct conn *conn)
+{
+    if (conn->state == CONN_OPEN && conn->in_used == 0 && conn->in_capacity > CONN_IN_BYTES)
+        resize(conn, CONN_IN_BYTES); /* without memory for less it keeps more */
 }
 
 void conn_deliver(struct conn *conn)
@@ -258,7 +281,9 @@ void conn_deliver(struct conn *conn)
 static bool read_more(struct conn *conn)
 {
     bool open = conn->state == CONN_OPEN, wanted_write = conn->read_wants_write;
-    size_t room = open ? CONN_IN_BYTES - conn->in_used : CONN_IN_BYTES;
+    size_t room = open ? conn->in_capacity - conn->in_used : conn->in_capacity;
+    if (room == 0)
+        return false; /* whole messages that wait for conn_deliver() */
     ssize_t n = conn->transport->read(conn, conn->in + (open ? conn->in_used : 0), room);
     if (conn->read_wants_write != wanted_write)
         update_events(conn);
@@ -275,6 +300,8 @@ static bool read_more(struct conn *conn)
     }
     if (open) {
         conn->last_in_us = loop_now_us();
+        if (conn->in_used == 0)
+            conn->message_since_us = conn->last_in_us;
         conn->in_used += (size_t)n;
     }
     return open;
@@ -306,6 +333,7 @@ bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_h
         .last_in_us = loop_now_us(),
         .last_out_us = loop_now_us(),
         .in = malloc(CONN_IN_BYTES),
+        .in_capacity = CONN_IN_BYTES,
     };
     int flags = fcntl(fd, F_GETFL);
     if (!conn->in)

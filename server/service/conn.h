@@ -1,7 +1,7 @@
 /* One connected socket: messages in, bytes out, both bounded, neither blocking.
  *
- * Input lies in one buffer that holds the longest message a client may send twice over; whole
- * messages are handed to the owner. Output is a list of blocks, some borrowed (pixels), that is
+ * Input lies in one buffer, small until a long message comes; whole messages are handed to the
+ * owner. Output is a list of blocks, some borrowed (pixels), that is
  * written as the socket takes it. How much may pile up is the owner's business: it asks
  * conn_unsent_bytes() before it produces more.
  * Thread: the loop's. Callbacks come from the loop or from conn_deliver(); a callback must not
@@ -18,7 +18,8 @@
 #include "server/error.h"
 #include "server/service/loop.h"
 
-#define CONN_IN_BYTES (2 * (MESSAGE_HEADER_BYTES + PROTOCOL_MAX_CHUNK_BYTES))
+#define CONN_IN_BYTES 4096u /* of the buffer at first and again when the client is idle */
+#define CONN_MOST_IN_BYTES (MESSAGE_HEADER_BYTES + PROTOCOL_MAX_CHUNK_BYTES)
 
 struct conn;
 struct iovec;
@@ -62,8 +63,8 @@ struct conn {
     bool read_wants_write;       /* the transport must write before it can read */
     char reason[160];            /* why the transport broke, "" when there is nothing to say */
 
-    uint8_t *in; /* CONN_IN_BYTES */
-    size_t in_used;
+    uint8_t *in;
+    size_t in_used, in_capacity;
     bool held;       /* no message is delivered and nothing read */
     bool peer_ended; /* the peer will send no more */
 
@@ -72,7 +73,8 @@ struct conn {
     uint64_t *sent_bytes; /* everybody's; counted up here */
 
     uint64_t last_in_us, last_out_us; /* when bytes last moved; loop_now_us() */
-    uint64_t sending_since_us;        /* since when there has always been something unsent */
+    uint64_t message_since_us; /* when the oldest byte in the buffer came, or input resumed */
+    uint64_t sending_since_us; /* since when there has always been something unsent */
 };
 
 /* Takes the socket over, makes it non-blocking and watches it. On failure the fd is closed.
@@ -94,6 +96,8 @@ void conn_flush(struct conn *conn);
 /* Stops and resumes input. After resuming, messages already read wait for conn_deliver(). */
 void conn_hold(struct conn *conn, bool held);
 void conn_deliver(struct conn *conn);
+/* Gives back the memory that long messages took, if there is none in it. */
+void conn_trim(struct conn *conn);
 
 void conn_close_after_flush(struct conn *conn);
 void conn_close(struct conn *conn); /* now; unsent output is dropped */

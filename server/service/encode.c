@@ -4,6 +4,7 @@
 
 #define ZSTD_LEVEL 1
 #define MAX_CHANNELS 22 /* of all planes together */
+_Static_assert(MAX_CHANNELS <= PICTURE_MAX_CHANNELS, "a picture holds all channels");
 
 struct encode_job;
 
@@ -18,11 +19,13 @@ struct encode_job {
     struct encoded *encoded;
     struct codec_layout layout;
     sheen_Encoding encoding;
+    enum pool_urgency urgency;
     const struct image_attribute *attributes;
     size_t n_attributes;
     void (*finished)(void *owner, struct encoded *encoded, const struct error *error);
     void *owner;
     struct pool *pool;
+    struct workers *workers;
 
     struct work file_work;
     size_t file_size;
@@ -49,6 +52,10 @@ void encoded_destroy(struct encoded *encoded)
 {
     if (!encoded)
         return;
+    if (encoded->unsent)
+        --*encoded->unsent;
+    if (encoded->released)
+        encoded->released(encoded->memory_of);
     frame_finish(&encoded->frame);
     for (size_t i = 0; i < encoded->n_blocks; i++)
         free(encoded->blocks[i]);
@@ -168,7 +175,7 @@ static void start_strips(struct encode_job *job)
         struct strip_work *strip = &job->strips[i];
         *strip = (struct strip_work){.job = job, .index = i};
         strip->work = (struct work){strip_run, strip_done, strip, NULL};
-        pool_submit(job->pool, &strip->work, POOL_URGENT);
+        pool_submit(job->pool, &strip->work, job->urgency);
     }
 }
 
@@ -208,24 +215,38 @@ static enum image_format file_format(sheen_Encoding encoding)
     }
 }
 
-static void file_run(struct work *work, void *worker)
+static void add_channels(const struct encode_job *job, struct picture *picture)
 {
-    (void)worker;
-    struct encode_job *job = work->owner;
-    struct image_channel channels[MAX_CHANNELS];
-    size_t n = 0;
     for (size_t i = 0; i < MAX_CHANNELS; i++) {
         unsigned plane = CHANNELS[i].plane;
         size_t stride = codec_pixel_bytes(plane);
         if (job->layout.planes & (1u << plane))
-            channels[n++] = (struct image_channel){
+            picture->channels[picture->n_channels++] = (struct image_channel){
                 CHANNELS[i].name, CHANNELS[i].type,
                 (const uint8_t *)job->encoded->frame.plane[plane] + CHANNELS[i].offset_bytes,
                 stride, stride * job->layout.width_px};
     }
-    image_encode(file_format(job->encoding), job->layout.width_px, job->layout.height_px, channels,
-                 n, job->attributes, job->n_attributes, &job->encoded->blocks[0], &job->file_size,
-                 &job->error);
+}
+
+static void file_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct encode_job *job = work->owner;
+    struct picture picture = {.format = file_format(job->encoding),
+                              .width_px = job->layout.width_px,
+                              .height_px = job->layout.height_px,
+                              .n_attributes = job->n_attributes};
+    for (size_t i = 0; i < job->n_attributes; i++)
+        picture.attributes[i] = job->attributes[i];
+    add_channels(job, &picture);
+    struct picture_block planes[CODEC_PLANES];
+    size_t n_planes = 0;
+    for (unsigned plane = 0; plane < CODEC_PLANES; plane++)
+        if (job->layout.planes & (1u << plane))
+            planes[n_planes++] = (struct picture_block){job->encoded->frame.plane[plane],
+                                                        codec_plane_bytes(&job->layout, plane)};
+    workers_write_image(job->workers, &picture, planes, n_planes, &job->encoded->blocks[0],
+                        &job->file_size, &job->error);
 }
 
 static void file_done(struct work *work)
@@ -247,11 +268,12 @@ static void start_file(struct encode_job *job)
         return;
     }
     job->file_work = (struct work){file_run, file_done, job, NULL};
-    pool_submit(job->pool, &job->file_work, POOL_URGENT);
+    pool_submit(job->pool, &job->file_work, job->urgency);
 }
 
-void encode_start(struct pool *pool, struct frame *frame, const struct codec_layout *layout,
-                  sheen_Encoding encoding, const struct image_attribute *attributes,
+void encode_start(struct pool *pool, struct workers *workers, struct frame *frame,
+                  const struct codec_layout *layout, sheen_Encoding encoding,
+                  enum pool_urgency urgency, const struct image_attribute *attributes,
                   size_t n_attributes,
                   void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
                   void *owner)
@@ -273,11 +295,13 @@ void encode_start(struct pool *pool, struct frame *frame, const struct codec_lay
         .encoded = encoded,
         .layout = *layout,
         .encoding = encoding,
+        .urgency = urgency,
         .attributes = attributes,
         .n_attributes = n_attributes,
         .finished = finished,
         .owner = owner,
         .pool = pool,
+        .workers = workers,
     };
     if (encoding == sheen_Encoding_ENCODING_RAW)
         start_raw(job);

@@ -1,4 +1,5 @@
-/* A rendered frame turned into the bytes that the client asked for, on the pool.
+/* A rendered frame turned into the bytes that the client asked for: on the pool, files by a worker
+ * process.
  * Thread: the loop's, for all functions here. */
 #ifndef SHEEN_SERVICE_ENCODE_H
 #define SHEEN_SERVICE_ENCODE_H
@@ -6,8 +7,8 @@
 #include "protocol/codec.h"
 #include "protocol/message.h"
 #include "server/gpu/renderer.h"
-#include "server/image/image.h"
 #include "server/service/pool.h"
+#include "server/service/workers.h"
 
 /* The bytes of a frame's DATA messages, in pieces that follow one another. */
 struct encoded_piece {
@@ -22,6 +23,10 @@ struct encoded {
     struct frame frame; /* RAW: the planes themselves */
     uint8_t **blocks;   /* what the pieces lie in, if not in the frame */
     size_t n_blocks;
+
+    unsigned *unsent;                  /* counted down at the end; may be NULL */
+    void (*released)(void *memory_of); /* what its memory was charged to; may be NULL */
+    void *memory_of;
 };
 
 /* Worker of the pool's threads: what encoding needs of its own in each. */
@@ -29,8 +34,9 @@ extern const struct pool_worker encode_worker;
 
 /* Takes *frame over in any case and zeroes it. finished() gets the bytes, or NULL and why; it may
  * be called before this returns. `layout` fits the frame; `attributes` stay until finished(). */
-void encode_start(struct pool *pool, struct frame *frame, const struct codec_layout *layout,
-                  sheen_Encoding encoding, const struct image_attribute *attributes,
+void encode_start(struct pool *pool, struct workers *workers, struct frame *frame,
+                  const struct codec_layout *layout, sheen_Encoding encoding,
+                  enum pool_urgency urgency, const struct image_attribute *attributes,
                   size_t n_attributes,
                   void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
                   void *owner);

@@ -7,7 +7,7 @@
 #include "server/gpu/renderer.h"
 #include "server/image/image.h"
 
-#define LABEL_ATTRIBUTES 11
+#define LABEL_ATTRIBUTES 11 /* at most PICTURE_MAX_ATTRIBUTES */
 #define LABEL_VALUE_BYTES 8192
 
 /* Attributes point into the struct itself: it must not be moved once filled in. */

@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "server/image/image.h"
-
 /* Lengths in sizes of the font, that is 1/45 of the picture's height. */
 #define FONT_SHARE 45
 #define MIN_FONT_PX 8
@@ -54,8 +52,28 @@ static void draw_bar(uint8_t *rgba, uint32_t width_px, const struct box *box,
         }
 }
 
-bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend)
+struct canvas {
+    uint8_t *rgba;
+    uint32_t width_px, height_px;
+    struct workers *workers;
+    struct error *error;
+};
+
+static bool write_text(const struct canvas *canvas, int x, int y, int size_px,
+                       enum text_align align, const char *line)
 {
+    struct text text;
+    if (!workers_draw_text(canvas->workers, &text, line, size_px, canvas->error))
+        return false;
+    text_draw(&text, canvas->rgba, canvas->width_px, canvas->height_px, x, y, align, TEXT_COLOUR);
+    text_finish(&text);
+    return true;
+}
+
+bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
+                 struct workers *workers, struct error *error)
+{
+    const struct canvas canvas = {rgba, width_px, height_px, workers, error};
     int font = (int)(height_px / FONT_SHARE);
     font = font < MIN_FONT_PX ? MIN_FONT_PX : font;
     struct box panel = {.width = PANEL_WIDTH * font, .height = (int)(PANEL_HEIGHT * font)};
@@ -68,17 +86,15 @@ bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const str
                             panel.width - 2 * margin, (int)(BAR_HEIGHT * font)};
     darken(rgba, width_px, &panel);
     draw_bar(rgba, width_px, &bar, legend);
-    bool ok =
-        image_draw_text(rgba, width_px, height_px, bar.x, panel.y + (int)(TITLE_BASELINE * font),
-                        font, IMAGE_LEFT, legend->title, TEXT_COLOUR);
-    for (unsigned i = 0; i < legend->n_marks; i++) {
+    bool ok = write_text(&canvas, bar.x, panel.y + (int)(TITLE_BASELINE * font), font, TEXT_LEFT,
+                         legend->title);
+    for (unsigned i = 0; ok && i < legend->n_marks; i++) {
         const struct legend_mark *mark = &legend->marks[i];
-        enum image_align align = mark->at <= 0   ? IMAGE_LEFT
-                                 : mark->at >= 1 ? IMAGE_RIGHT
-                                                 : IMAGE_CENTRE;
-        ok &= image_draw_text(rgba, width_px, height_px, bar.x + (int)(mark->at * bar.width),
-                              panel.y + (int)(MARKS_BASELINE * font), font, align, mark->text,
-                              TEXT_COLOUR);
+        enum text_align align = mark->at <= 0   ? TEXT_LEFT
+                                : mark->at >= 1 ? TEXT_RIGHT
+                                                : TEXT_CENTRE;
+        ok = write_text(&canvas, bar.x + (int)(mark->at * bar.width),
+                        panel.y + (int)(MARKS_BASELINE * font), font, align, mark->text);
     }
     return ok;
 }

@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "server/service/workers.h"
+
 /* Pictures that are lower have no legend, nor have those that it is too wide for. */
 #define LEGEND_MIN_HEIGHT_PX 120
 #define LEGEND_MAX_MARKS 5
@@ -24,7 +26,9 @@ struct legend {
     struct legend_mark marks[LEGEND_MAX_MARKS];
 };
 
-/* Draws over the pixels of a colour plane. False when the texts cannot be drawn; the bar is. */
-bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend);
+/* Draws over the pixels of a colour plane. False, saying why, when a text cannot be drawn; the bar
+ * is. */
+bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
+                 struct workers *workers, struct error *error);
 
 #endif

@@ -38,8 +38,8 @@ static void decode_run(struct work *work, void *worker)
     (void)worker;
     struct image_build *build = work->owner;
     const struct build_order *order = &build->order;
-    build->ok = image_decode(&build->pixels, order->file, order->file_bytes, order->name,
-                             build->max_px, &build->error);
+    build->ok = workers_read_image(order->workers, &build->pixels, order->file, order->file_bytes,
+                                   order->name, build->max_px, &build->error);
 }
 
 static void decode_done(struct work *work)
@@ -47,8 +47,7 @@ static void decode_done(struct work *work)
     struct image_build *build = work->owner;
     const struct build_order *order = &build->order;
     if (build->ok) {
-        build->image->reserved_bytes = (size_t)build->pixels.width_px * build->pixels.height_px *
-                                       (build->pixels.is_float ? 16 : 4);
+        build->image->reserved_bytes = image_bytes(&build->pixels);
         build->ok = order->reserve(order->owner, build->image->reserved_bytes, &build->error);
     }
     if (!build->ok) {
@@ -74,9 +73,11 @@ bool light_image_build_start(const struct build_order *order, struct error *erro
     build->image = image;
     build->max_px =
         info->max_width_px < info->max_height_px ? info->max_width_px : info->max_height_px;
+    if (build->max_px > order->max_image_px)
+        build->max_px = order->max_image_px;
     order->progress->stage = "reading";
     build->work = (struct work){decode_run, decode_done, build, NULL};
-    pool_submit(order->pool, &build->work, POOL_LATER);
+    pool_submit(order->readers, &build->work, POOL_LATER);
     return true;
 }
 

@@ -213,9 +213,13 @@ static bool accept_one(struct listener *listener)
         }
         return false;
     }
-    static const int on = 1;
-    if (listener->address.kind != ADDRESS_UNIX)
+    /* What has not left for the network stays here, where a newer frame may still replace it. */
+    static const int on = 1, most_unsent_bytes = 128 * 1024;
+    if (listener->address.kind != ADDRESS_UNIX) {
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+        setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &most_unsent_bytes,
+                   sizeof most_unsent_bytes);
+    }
     listener->handler.accepted(listener->handler.owner, listener, fd);
     return true;
 }

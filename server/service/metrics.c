@@ -69,14 +69,34 @@ static void write_sessions(const struct session_host *host, struct report *repor
                    stats_end_name(i), stats->ended[i]);
 }
 
+static void write_classes(const struct scheduler *scheduler, struct report *report)
+{
+    static const char *const NAMES[N_CLASSES] = {
+        [CLASS_INTERACTIVE] = "interactive", [CLASS_STILL] = "still", [CLASS_BATCH] = "batch"};
+    head(report, "frames_in_flight", "gauge", "Frames being rendered or encoded.");
+    for (unsigned i = 0; i < N_CLASSES; i++)
+        report_add(report, "sheen_frames_in_flight{class=\"%s\"} %u\n", NAMES[i],
+                   scheduler->classes[i].begun);
+    head(report, "gpu_seconds_total", "counter", "Time of the renderer, by class of request.");
+    for (unsigned i = 0; i < N_CLASSES; i++) {
+        report_add(report, "sheen_gpu_seconds_total{class=\"%s\"} ", NAMES[i]);
+        seconds(report, scheduler->classes[i].spent_us);
+        report_add(report, "\n");
+    }
+}
+
 static void write_requests(const struct session_host *host, struct report *report)
 {
     static const struct {
         uint8_t type;
         const char *name;
-    } ANSWERS[] = {{MESSAGE_HELLO_OK, "hello"},   {MESSAGE_UPLOAD_STATE, "upload"},
-                   {MESSAGE_MODEL_INFO, "model"}, {MESSAGE_FRAME, "frame"},
-                   {MESSAGE_STATS, "stats"},      {MESSAGE_ERROR, "error"}};
+    } ANSWERS[] = {{MESSAGE_HELLO_OK, "hello"},
+                   {MESSAGE_UPLOAD_STATE, "upload"},
+                   {MESSAGE_MODEL_INFO, "model"},
+                   {MESSAGE_FRAME, "frame"},
+                   {MESSAGE_SUPERSEDED, "superseded"},
+                   {MESSAGE_STATS, "stats"},
+                   {MESSAGE_ERROR, "error"}};
     const struct stats *stats = &host->stats;
     head(report, "answers_total", "counter", "Answers, by what they are.");
     for (size_t i = 0; i < sizeof ANSWERS / sizeof *ANSWERS; i++)
@@ -88,8 +108,7 @@ static void write_requests(const struct session_host *host, struct report *repor
                    stats->error_codes[i]);
     put(report, "queue_depth", "gauge", host->scheduler.waiting,
         "Frames that wait for their turn.");
-    put(report, "frames_in_flight", "gauge", host->scheduler.in_flight,
-        "Frames being rendered or encoded.");
+    write_classes(&host->scheduler, report);
     put(report, "upload_bytes_total", "counter", stats->upload_bytes, "Bytes of files received.");
     put(report, "sent_bytes_total", "counter", stats->sent_bytes, "Bytes sent to clients.");
 }
@@ -124,7 +143,7 @@ static void write_store(const struct session_host *host, struct report *report)
     put(report, "models", "gauge", counts.models, "Models ready to be rendered.");
     put(report, "images", "gauge", counts.images, "Light images ready to be used.");
     put(report, "model_cache_bytes", "gauge", counts.used_bytes,
-        "Memory of files, tables and texels.");
+        "Memory of files, tables, texels and frames.");
     put(report, "model_cache_limit_bytes", "gauge", counts.budget_bytes, "The most they may take.");
     put(report, "model_cache_hits_total", "counter", counts.hits,
         "Uses of a model or image that was ready.");

@@ -152,7 +152,8 @@ static bool read_cage(struct model_build *build)
     const struct build_order *order = &build->order;
     struct model *model = build->model;
     struct error error = {0};
-    if (!cage_read(&build->cage, order->file, order->file_bytes, order->name, &build->error))
+    if (!workers_read_cage(order->workers, &build->cage, order->file, order->file_bytes,
+                           order->name, &build->error))
         return false;
     model->n_vertices = build->cage.n_vertices;
     model->n_faces = build->cage.n_faces;
@@ -199,7 +200,7 @@ bool model_build_start(const struct build_order *order, struct error *error)
     build->start_us = loop_now_us();
     order->progress->stage = "reading";
     build->work = (struct work){read_run, read_done, build, NULL};
-    pool_submit(order->pool, &build->work, POOL_LATER);
+    pool_submit(order->readers, &build->work, POOL_LATER);
     return true;
 }
 

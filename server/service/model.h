@@ -1,7 +1,7 @@
 /* A model: a cage's limit tables in memory and on the GPU, and what `sheen info` says about it.
  *
- * Built once: the cage is read and measured in one work, the tables are filled in many works over
- * the whole pool, and the GL thread uploads them. Thread: the loop's. */
+ * Built once: the cage is read by a worker process and measured in one work, the tables are filled
+ * in many works over the whole pool, and the GL thread uploads them. Thread: the loop's. */
 #ifndef SHEEN_SERVICE_MODEL_H
 #define SHEEN_SERVICE_MODEL_H
 

@@ -17,31 +17,37 @@ struct pool {
     struct pool_worker worker;
     struct completions *completions;
     pthread_mutex_t lock;
-    pthread_cond_t changed;    /* works, a start, the end */
-    struct work_list lists[2]; /* by enum pool_urgency */
+    pthread_cond_t changed; /* works, a start, the end */
+    struct work_list lists[POOL_URGENCIES];
     bool ending;
+    unsigned n_urgent_threads; /* the first to start */
     unsigned n_threads, n_started, n_failed;
     struct error start_error; /* the first thread's that failed */
     struct pool_thread threads[];
 };
 
-static struct work *next_work(struct pool *pool)
+static struct work *next_work(struct pool *pool, int least_urgent)
 {
+    struct work *work = NULL;
     pthread_mutex_lock(&pool->lock);
-    struct work *work;
-    while (!(work = work_list_pop(&pool->lists[POOL_URGENT])) &&
-           !(work = work_list_pop(&pool->lists[POOL_LATER])) && !pool->ending)
+    for (;;) {
+        for (int urgency = POOL_URGENT; urgency <= least_urgent && !work; urgency++)
+            work = work_list_pop(&pool->lists[urgency]);
+        if (work || pool->ending)
+            break;
         pthread_cond_wait(&pool->changed, &pool->lock);
+    }
     pthread_mutex_unlock(&pool->lock);
     return work;
 }
 
-static bool start_worker(struct pool *pool, void **worker)
+/* Starts the calling thread's worker; *least_urgent says which works it takes. */
+static bool start_worker(struct pool *pool, void **worker, int *least_urgent)
 {
     struct error error = {0};
-    bool ok = pool->worker.start(pool->worker.owner, worker, &error);
+    bool ok = !pool->worker.start || pool->worker.start(pool->worker.owner, worker, &error);
     pthread_mutex_lock(&pool->lock);
-    pool->n_started++;
+    *least_urgent = pool->n_started++ < pool->n_urgent_threads ? POOL_URGENT : POOL_LATER;
     if (!ok && pool->n_failed++ == 0)
         pool->start_error = error;
     pthread_cond_broadcast(&pool->changed);
@@ -55,15 +61,17 @@ static void *thread_main(void *argument)
     struct pool *pool = self->pool;
     pthread_setname_np(pthread_self(), pool->name);
     void *worker = NULL;
-    if (!start_worker(pool, &worker))
+    int least_urgent;
+    if (!start_worker(pool, &worker, &least_urgent))
         return NULL;
-    for (struct work *work; (work = next_work(pool));) {
+    for (struct work *work; (work = next_work(pool, least_urgent));) {
         atomic_store(&self->busy_since_us, loop_now_us());
         work->run(work, worker);
         atomic_store(&self->busy_since_us, 0);
         completions_post(pool->completions, work);
     }
-    pool->worker.stop(worker);
+    if (pool->worker.stop)
+        pool->worker.stop(worker);
     return NULL;
 }
 
@@ -88,9 +96,11 @@ static bool start_threads(struct pool *pool, unsigned n_threads, struct error *e
     return true;
 }
 
-struct pool *pool_create(const char *name, unsigned n_threads, const struct pool_worker *worker,
-                         struct completions *completions, struct error *error)
+struct pool *pool_create(const char *name, unsigned n_threads, unsigned n_urgent_threads,
+                         const struct pool_worker *worker, struct completions *completions,
+                         struct error *error)
 {
+    n_threads += n_urgent_threads;
     struct pool *pool = calloc(1, sizeof *pool + n_threads * sizeof pool->threads[0]);
     if (!pool) {
         error_set(error, ERROR_SERVER, "no memory for %u threads", n_threads);
@@ -98,6 +108,7 @@ struct pool *pool_create(const char *name, unsigned n_threads, const struct pool
     }
     snprintf(pool->name, sizeof pool->name, "%s", name);
     pool->worker = *worker;
+    pool->n_urgent_threads = n_urgent_threads;
     pool->completions = completions;
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->changed, NULL);
@@ -138,6 +149,8 @@ void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency
 {
     pthread_mutex_lock(&pool->lock);
     work_list_push(&pool->lists[urgency], work);
-    pthread_cond_signal(&pool->changed);
+    /* One that is woken may not take this work. */
+    pool->n_urgent_threads ? pthread_cond_broadcast(&pool->changed)
+                           : pthread_cond_signal(&pool->changed);
     pthread_mutex_unlock(&pool->lock);
 }

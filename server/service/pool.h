@@ -13,7 +13,7 @@
 #define POOL_MAX_THREADS 256u
 
 /* What every worker thread makes for itself before its first work and takes down after its last;
- * works see it as `worker`. */
+ * works see it as `worker`. All NULL: nothing. */
 struct pool_worker {
     bool (*start)(void *owner, void **worker, struct error *error); /* on the worker's thread */
     void (*stop)(void *worker);                                     /* on the same thread */
@@ -21,17 +21,21 @@ struct pool_worker {
 };
 
 enum pool_urgency {
-    POOL_URGENT, /* a frame waits for it: before all that is not urgent */
+    POOL_URGENT, /* an interactive frame waits for it: before all others */
+    POOL_SOON,   /* another frame does */
     POOL_LATER,  /* building tables, decoding images */
 };
+enum { POOL_URGENCIES = 3 };
 
 struct pool;
 
-/* Starts n_threads (1 to POOL_MAX_THREADS) and waits until each has started its worker. NULL with
- * the first worker's error, or ERROR_SERVER. `name` shows in ps and debuggers (at most 12 bytes).
- */
-struct pool *pool_create(const char *name, unsigned n_threads, const struct pool_worker *worker,
-                         struct completions *completions, struct error *error);
+/* Starts n_threads (1 to POOL_MAX_THREADS) for all works, and n_urgent_threads beside them for
+ * urgent ones alone (those need not wait until a long work ends), and waits until each has started
+ * its worker. NULL with the first worker's error, or ERROR_SERVER. `name` shows in ps and debuggers
+ * (at most 12 bytes). */
+struct pool *pool_create(const char *name, unsigned n_threads, unsigned n_urgent_threads,
+                         const struct pool_worker *worker, struct completions *completions,
+                         struct error *error);
 
 /* Finishes every submitted work, then ends the threads. The works' done() calls are still to be
  * delivered then. NULL is safe. */

@@ -36,7 +36,7 @@ struct render_thread *render_thread_create(const struct renderer_options *option
     }
     thread->options = *options;
     const struct pool_worker worker = {open_device, close_device, thread};
-    thread->pool = pool_create("sheend-gl", 1, &worker, completions, error);
+    thread->pool = pool_create("sheend-gl", 1, 0, &worker, completions, error);
     if (!thread->pool) {
         free(thread);
         return NULL;

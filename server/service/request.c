@@ -1,48 +1,12 @@
 #include "server/service/request.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/service/label.h"
 #include "server/service/model_file.h"
-#include "server/service/show.h"
+#include "server/service/request_inside.h"
 #include "server/service/wire.h"
-
-/* Something from the store that a request works with. */
-struct needed {
-    struct request *request;
-    struct asset *asset; /* in use, or waited for; NULL: not */
-    struct asset_waiter waiter;
-};
-
-struct request {
-    struct session_host *host;
-    struct session *session;         /* NULL once it has gone */
-    struct request *next, *previous; /* of the session */
-    struct answer *answer;           /* valid while there is a session */
-    uint32_t seq;
-    uint8_t owner[STORE_OWNER_BYTES]; /* the session's */
-    bool is_query;
-    uint64_t start_us;
-
-    struct needed model, images[MAX_LIGHTS];
-    unsigned n_awaited;
-    struct error failure; /* kind ERROR_NONE: none yet */
-
-    sheen_Render render;
-    struct frame_request frame_request;
-    struct codec_layout layout;
-    struct schedule_entry entry;
-    struct work work;      /* on the GL thread, then on the pool to paint false colour */
-    atomic_bool abandoned; /* read by the GL thread and the pool's */
-    bool rendered;
-    struct frame frame;
-    sheen_Times times;
-    uint64_t encode_start_us;
-    struct label label;
-};
 
 static struct request *request_create(struct session *session, struct answer *answer, uint32_t seq)
 {
@@ -77,9 +41,22 @@ static void leave_session(struct request *request)
     request->session = NULL;
 }
 
-static void request_end(struct request *request)
+static void unpark(struct request *request)
+{
+    struct request **link = &request->host->parked;
+    while (request->is_parked && *link != request)
+        link = &(*link)->next_parked;
+    if (request->is_parked)
+        *link = request->next_parked;
+    request->is_parked = false;
+}
+
+void request_end(struct request *request)
 {
     leave_session(request);
+    unpark(request);
+    scheduler_finished(&request->host->scheduler, &request->entry);
+    request_drop_frame(request);
     if (request->model.asset)
         store_unuse(request->model.asset);
     for (int i = 0; i < MAX_LIGHTS; i++)
@@ -88,12 +65,80 @@ static void request_end(struct request *request)
     free(request);
 }
 
-static void request_fail(struct request *request, const struct error *error)
+void request_fail(struct request *request, const struct error *error)
 {
     if (request->session)
         session_answer_error(request->session, request->answer, wire_error_code(error->kind),
                              error->text);
     request_end(request);
+}
+
+/* The request goes on without a session, if it must: nobody waits for what it makes. */
+static void let_go_of_session(struct request *request)
+{
+    atomic_store(&request->abandoned, true);
+    leave_session(request);
+    scheduler_leave(&request->host->scheduler, &request->entry);
+    if (request->n_awaited == 0 && !request->is_busy)
+        request_end(request);
+}
+
+/* --- answers before their time */
+
+void request_answer_superseded(struct request *request, uint32_t by_seq)
+{
+    const sheen_Superseded superseded = {.by = by_seq};
+    request->host->stats.superseded++;
+    session_answer(request->session, request->answer, MESSAGE_SUPERSEDED, &superseded);
+    let_go_of_session(request);
+}
+
+static void cancel(struct request *request, const char *why)
+{
+    struct session *session = request->session;
+    session->host->stats.cancelled++;
+    session_answer_error(session, request->answer, sheen_ErrorCode_ERROR_CANCELLED, why);
+    let_go_of_session(request);
+}
+
+void request_cancel(struct session *session, uint32_t seq)
+{
+    struct request *request = session->requests;
+    while (request && request->seq != seq)
+        request = request->next;
+    if (request) /* else it has been answered */
+        cancel(request, "the request was taken back");
+}
+
+void request_cancel_all(struct session *session)
+{
+    while (session->requests)
+        cancel(session->requests, "the connection ends: it has asked for more than its credits");
+}
+
+bool request_is_late(const struct request *request, uint64_t now_us)
+{
+    return request->deadline_us > 0 && now_us > request->deadline_us;
+}
+
+void request_answer_late(struct request *request)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    snprintf(text, sizeof text, "not drawn within its deadline_ms of %u: the daemon is busy",
+             request->render.deadline_ms);
+    request->host->stats.late++;
+    session_answer_error(request->session, request->answer, sheen_ErrorCode_ERROR_DEADLINE, text);
+    let_go_of_session(request);
+}
+
+/* Frames that are drawn already are sent all the same. */
+void request_end_late(struct session *session, uint64_t now_us)
+{
+    for (struct request *request = session->requests, *next; request; request = next) {
+        next = request->next;
+        if (request->entry.state < SCHEDULE_DRAWING && request_is_late(request, now_us))
+            request_answer_late(request);
+    }
 }
 
 /* --- what it needs from the store */
@@ -255,8 +300,31 @@ void request_query(struct session *session, struct answer *answer, uint32_t seq,
 
 /* --- renders */
 
+/* From here on a newer request of its view replaces it. */
+static void enter_queue(struct request *request)
+{
+    struct schedule_entry *entry = &request->entry;
+    const sheen_Render *render = &request->render;
+    entry->owner = request;
+    entry->request_class = wire_request_class(render->request_class);
+    entry->has_view = render->has_view || entry->request_class == CLASS_INTERACTIVE;
+    entry->view = render->view;
+    struct schedule_entry *replaced =
+        scheduler_enter(&request->host->scheduler, &request->session->queue, entry);
+    if (replaced)
+        request_answer_superseded(replaced->owner, request->seq);
+}
+
+/* Is it written as a file, or has it a legend? */
+static bool takes_images(const sheen_Render *render)
+{
+    return (render->encoding != sheen_Encoding_ENCODING_RAW &&
+            render->encoding != sheen_Encoding_ENCODING_ZSTD) ||
+           render->show.kind != sheen_ShowKind_SHOW_LINES;
+}
+
 void request_render(struct session *session, struct answer *answer, uint32_t seq,
-                    const sheen_Render *render)
+                    const sheen_Render *render, uint64_t frame_bytes)
 {
     struct request *request = request_create(session, answer, seq);
     if (!request)
@@ -268,6 +336,12 @@ void request_render(struct session *session, struct answer *answer, uint32_t seq
             !is_known(request, ASSET_IMAGE, render->lights[i].pattern.image_sha256))
             return;
     request->render = *render;
+    request->frame_bytes = frame_bytes;
+    if (takes_images(render))
+        workers_expect_images(&request->host->workers);
+    if (render->has_deadline_ms)
+        request->deadline_us = request->start_us + render->deadline_ms * 1000ull;
+    enter_queue(request);
     request->n_awaited = 1; /* until all is asked for */
     acquire(request, &request->model, ASSET_MODEL, render->model_sha256);
     for (pb_size_t i = 0; i < render->lights_count; i++)
@@ -291,175 +365,15 @@ static void assets_ready(struct request *request)
         answer_query(request);
         return;
     }
-    const struct limit_tables *tables = &request->model.asset->model->tables;
-    wire_to_frame_request(&request->render, tables->box_min, tables->box_max,
-                          &request->frame_request);
-    for (int i = 0; i < MAX_LIGHTS; i++)
-        if (request->images[i].asset)
-            request->frame_request.lights[i].pattern.image = request->images[i].asset->image->gpu;
-    request->entry.owner = request;
-    scheduler_push(&request->host->scheduler, &request->session->queue, &request->entry);
-}
-
-static void render_run(struct work *work, void *worker)
-{
-    struct request *request = work->owner;
-    if (!atomic_load(&request->abandoned))
-        request->rendered =
-            renderer_render(worker, request->model.asset->model->gpu, &request->frame_request,
-                            &request->frame, &request->failure);
-}
-
-static void fill_frame(const struct request *request, const struct encoded *encoded,
-                       sheen_Frame *frame)
-{
-    const struct frame_request *asked = &request->frame_request;
-    const struct renderer_info *info = render_thread_info(request->host->render_thread);
-    *frame = (sheen_Frame){
-        .width_px = asked->width_px,
-        .height_px = asked->height_px,
-        .planes = request->render.planes,
-        .encoding = request->render.encoding,
-        .data_bytes = encoded->size,
-        .times = request->times,
-        .camera = wire_from_camera(&asked->camera),
-        .lights_count = (pb_size_t)asked->n_lights,
-        .lines = wire_from_lines(&asked->lines),
-        .software = info->software,
-        .has_show_range = request->render.show.has_range,
-        .show_range = request->render.show.range,
-    };
-    for (uint32_t i = 0; i < asked->n_lights; i++)
-        frame->lights[i] =
-            wire_from_light(&asked->lights[i],
-                            i < request->render.lights_count ? &request->render.lights[i] : NULL);
-    snprintf(frame->device, sizeof frame->device, "%s", info->device);
-    snprintf(frame->driver, sizeof frame->driver, "%s", info->driver);
-    snprintf(frame->server, sizeof frame->server, "%s", SHEEN_VERSION);
-}
-
-static void answer_frame(struct request *request, struct encoded *encoded)
-{
-    uint64_t now = loop_now_us();
-    request->times.encode_us = now - request->encode_start_us;
-    request->times.tables_us = request->model.asset->unreported_us;
-    request->times.total_us = now - request->start_us;
-    request->model.asset->unreported_us = 0;
-    stats_frame(&request->host->stats, &request->times, now);
-    sheen_Frame frame;
-    fill_frame(request, encoded, &frame);
-    session_answer_frame(request->session, request->answer, &frame, encoded);
-    request_end(request);
-}
-
-static void encode_finished(void *owner, struct encoded *encoded, const struct error *error)
-{
-    struct request *request = owner;
-    scheduler_finished(&request->host->scheduler, &request->entry);
-    if (error) {
-        request_fail(request, error);
-    } else if (!request->session) {
-        encoded_destroy(encoded);
-        request_end(request);
-    } else {
-        answer_frame(request, encoded);
-    }
-}
-
-static void start_encoding(struct request *request)
-{
-    label_init(&request->label, &request->frame_request, &request->render,
-               render_thread_info(request->host->render_thread));
-    encode_start(request->host->pool, &request->frame, &request->layout, request->render.encoding,
-                 request->label.attributes, LABEL_ATTRIBUTES, encode_finished, request);
-}
-
-/* There is no frame, or nobody to take it. */
-static void end_unencoded(struct request *request)
-{
-    if (request->rendered)
-        frame_finish(&request->frame);
-    scheduler_finished(&request->host->scheduler, &request->entry);
-    request_fail(request, &request->failure);
-}
-
-static void paint_run(struct work *work, void *worker)
-{
-    (void)worker;
-    struct request *request = work->owner;
-    struct frame *frame = &request->frame;
-    const struct limit_tables *tables = &request->model.asset->model->tables;
-    if (atomic_load(&request->abandoned))
-        return;
-    double size = 0;
-    for (int i = 0; i < 3; i++)
-        size = hypot(size, tables->box_max[i] - tables->box_min[i]);
-    show_paint(frame, &request->render.show, size, request->frame_request.miss,
-               request->frame_request.empty);
-    for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
-        if (!(request->layout.planes & 1u << plane)) {
-            free(frame->plane[plane]);
-            frame->plane[plane] = NULL;
-        }
-}
-
-static void paint_done(struct work *work)
-{
-    struct request *request = work->owner;
-    if (request->session)
-        start_encoding(request);
-    else
-        end_unencoded(request);
-}
-
-static void render_done(struct work *work)
-{
-    struct request *request = work->owner;
-    if (!request->rendered || !request->session) {
-        end_unencoded(request);
-        return;
-    }
-    const struct frame_times *times = &request->frame.times;
-    request->times.visibility_us = times->visibility_us;
-    request->times.evaluate_us = times->evaluate_us;
-    request->times.shade_us = times->shade_us;
-    request->times.readback_us = times->readback_us;
-    request->encode_start_us = loop_now_us();
-    if (request->render.show.kind == sheen_ShowKind_SHOW_LINES) {
-        start_encoding(request);
-        return;
-    }
-    request->work = (struct work){paint_run, paint_done, request, NULL};
-    pool_submit(request->host->pool, &request->work, POOL_URGENT);
-}
-
-void request_start_next(struct session_host *host)
-{
-    for (struct schedule_entry *entry; (entry = scheduler_next(&host->scheduler));) {
-        struct request *request = entry->owner;
-        const sheen_Render *render = &request->render;
-        codec_layout_init(&request->layout, render->width_px, render->height_px, render->planes);
-        request->work = (struct work){render_run, render_done, request, NULL};
-        render_thread_submit(host->render_thread, &request->work);
-    }
+    request_queue_frame(request);
 }
 
 /* --- when the session goes */
 
-static void drop_waiting(struct schedule_entry *entry)
-{
-    request_end(entry->owner);
-}
-
 void request_abandon_all(struct session *session)
 {
-    scheduler_remove_queue(&session->host->scheduler, &session->queue, drop_waiting);
-    while (session->requests) {
-        struct request *request = session->requests;
-        request->entry.queue = NULL;
-        atomic_store(&request->abandoned, true);
-        leave_session(request);
-    }
+    while (session->requests)
+        let_go_of_session(session->requests);
 }
 
 void request_report_progress(struct session *session)

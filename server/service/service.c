@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -13,10 +14,11 @@
 #include "server/service/model_file.h"
 #include "server/service/monitor.h"
 #include "server/service/notify.h"
-#include "server/service/peer.h"
 #include "server/service/pool.h"
 #include "server/service/request.h"
 #include "server/service/session.h"
+
+#define SERVICE_OWN_DESCRIPTORS 128u /* listeners, devices, libraries: more than are used */
 
 struct service {
     struct service_options options; /* those in force */
@@ -48,9 +50,29 @@ static void turn_away(int fd, const char *text)
     close(fd);
 }
 
+/* The peer of a connection that there is room for, with another reference; else NULL. */
+static struct peer *find_peer(struct session_host *host, int fd, struct error *error)
+{
+    struct peer *peer = NULL;
+    if (host->n_sessions >= host->limits.max_connections)
+        error_set(error, ERROR_SERVER,
+                  "the daemon has as many clients as it takes: try again later");
+    else if (!(peer = peer_get(&host->memory.peers, fd)))
+        error_set(error, ERROR_SERVER, "no memory for another client: try again later");
+    else if (peer->n_connections >= host->limits.max_peer_connections)
+        error_set(error, ERROR_SERVER,
+                  "this user or address has as many connections as it may: close one");
+    else
+        return peer;
+    host->stats.errors++;
+    peer_put(&host->memory.peers, peer);
+    return NULL;
+}
+
 static void accepted(void *owner, const struct listener *listener, int fd)
 {
     struct service *service = owner;
+    struct session_host *host = &service->host;
     struct session *session = NULL;
     struct error error = {0};
     const enum address_kind kind = listener_kind(listener);
@@ -58,18 +80,18 @@ static void accepted(void *owner, const struct listener *listener, int fd)
                                             : kind == ADDRESS_TCP ? CLIENT_TCP
                                                                   : CLIENT_TLS};
     peer_describe(fd, client.peer);
-    if (kind != ADDRESS_TLS &&
-        !access_admit_local(service->host.access, fd, kind, &client.identity, &error)) {
+    bool stranger = kind == ADDRESS_TLS ||
+                    !access_admit_local(host->access, fd, kind, &client.identity, &error);
+    if (stranger && (kind != ADDRESS_TLS || host->n_strangers >= SERVICE_MAX_STRANGERS)) {
+        if (kind == ADDRESS_TLS)
+            error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
         close(fd); /* a stranger is told nothing */
-    } else if (kind == ADDRESS_TLS && service->host.n_strangers >= SERVICE_MAX_STRANGERS) {
-        error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
-        close(fd);
-    } else if (service->host.n_sessions >= SERVICE_MAX_SESSIONS) {
-        error_set(&error, ERROR_SERVER,
-                  "the daemon has as many clients as it takes: try again later");
-        turn_away(fd, kind == ADDRESS_TLS ? NULL : error.text);
     } else {
-        session = session_create(&service->host, fd, &client, &error);
+        struct peer *peer = find_peer(host, fd, &error);
+        if (peer)
+            session = session_create(host, fd, &client, peer, &error);
+        else
+            turn_away(fd, stranger ? NULL : error.text);
     }
     if (!session) {
         service->host.stats.refused++;
@@ -112,11 +134,12 @@ static void after_batch(void *owner)
         return;
     /* Nobody is left to answer; other threads may still be at work. */
     store_cancel_builds(service->host.store);
-    if (!store_is_building(service->host.store) && service->host.scheduler.in_flight == 0 &&
+    workers_stop(&service->host.workers);
+    if (!store_is_building(service->host.store) && scheduler_is_idle(&service->host.scheduler) &&
         service->host.n_file_loads == 0)
         loop_stop(service->host.loop);
     else if (service->single)
-        _exit(0); /* a render cannot be stopped, and this one may take long: nobody wants it */
+        _exit(0); /* a tile or a table may take long yet: nobody wants them */
 }
 
 static void tick(void *owner)
@@ -140,8 +163,10 @@ static void close_listeners(struct service *service)
 
 static void drain(struct service *service)
 {
-    if (service->host.draining)
+    if (service->host.draining) {
+        workers_stop(&service->host.workers);
         _exit(0); /* asked twice: at once, with the listeners gone already */
+    }
     service->host.draining = true;
     service->host.drain_start_us = loop_now_us();
     close_listeners(service);
@@ -161,8 +186,7 @@ static void apply(struct service *service, const struct service_options *options
         listener_open_to_all(service->listeners[i], access_has_list(access));
     for (struct session *session = service->sessions; session; session = session->next)
         session_check_access(session);
-    service->host.idle_timeout_us = options->idle_timeout_s * 1000000;
-    service->host.drain_timeout_us = options->drain_timeout_s * 1000000;
+    service->host.limits = options->limits;
     /* The client of a private daemon shows its last line when it dies. */
     log_set(service->single ? LOG_ERROR : options->log_level, options->log_format);
     if (service->monitor)
@@ -304,9 +328,21 @@ static bool open_session(struct service *service, int fd, struct error *error)
 {
     struct session_client client = {.kind = CLIENT_PRIVATE, .peer = "private"};
     access_admit_private(&client.identity);
-    struct session *session = session_create(&service->host, fd, &client, error);
+    struct peer *peer = peer_get(&service->host.memory.peers, fd);
+    struct session *session =
+        peer ? session_create(&service->host, fd, &client, peer, error) : NULL;
     service->sessions = session;
-    return session != NULL;
+    return session || (peer ? false : error_set(error, ERROR_SERVER, "no memory for a client"));
+}
+
+/* A descriptor for every client, as far as the system lets us. */
+static void allow_descriptors(uint64_t n)
+{
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) < 0 || files.rlim_cur >= n)
+        return;
+    files.rlim_cur = files.rlim_max < n ? files.rlim_max : n;
+    setrlimit(RLIMIT_NOFILE, &files); /* with fewer, accepting rests when they are used up */
 }
 
 static bool start(struct service *service, struct error *error)
@@ -315,24 +351,32 @@ static bool start(struct service *service, struct error *error)
     const struct service_options *options = &service->options;
     const struct loop_hooks hooks = {after_batch, tick, service};
     const struct renderer_options renderer = {.device = options->device};
+    /* The reader of cages starts while the device opens. */
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
+        !workers_init(&host->workers, NULL, options->limits.memory_budget, error) ||
         !(service->completions = completions_create(host->loop, error)) ||
         !(host->render_thread = render_thread_create(&renderer, service->completions, error)) ||
-        !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, &encode_worker,
+        !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1, &encode_worker,
                                    service->completions, error)) ||
-        !(host->store =
-              store_create(host->pool, host->render_thread, options->memory_budget_bytes, error)))
+        !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_worker){0},
+                                      service->completions, error)) ||
+        !(host->store = store_create(host->pool, host->readers, host->render_thread, &host->workers,
+                                     options->limits.memory_budget,
+                                     (uint32_t)options->limits.max_image_side, error)))
         return false;
+    const struct limits *limits = &options->limits;
     host->share_models = options->share_models;
     if (*options->models && (host->models_fd = model_folder_open(options->models, error)) < 0)
         return false;
     host->gpu_generation = 1;
-    host->max_upload_bytes = options->memory_budget_bytes < PROTOCOL_MAX_UPLOAD_BYTES
-                                 ? options->memory_budget_bytes
-                                 : PROTOCOL_MAX_UPLOAD_BYTES;
+    host->max_upload_bytes =
+        limits->memory_budget < limits->max_upload ? limits->memory_budget : limits->max_upload;
+    host->memory = (struct memory){.store = host->store, .limits = &host->limits};
+    allow_descriptors(limits->max_connections + SERVICE_OWN_DESCRIPTORS);
     stats_init(&host->stats);
     if (service->single)
         return open_session(service, options->session_fd, error);
+    workers_expect_images(&host->workers);
     service->monitor = monitor_create(host, options->stuck_s * 1000000, error);
     return service->monitor && open_listeners(service, error);
 }
@@ -403,7 +447,7 @@ struct service *service_create(const struct service_options *options,
         return NULL;
     }
     if (service->single)
-        service->host.idle_timeout_us = 0;
+        service->host.limits.idle_s = 0;
     else
         tell_ready(service);
     return service;
@@ -431,6 +475,8 @@ void service_destroy(struct service *service)
     store_destroy(host->store);
     render_thread_destroy(host->render_thread);
     pool_destroy(host->pool);
+    pool_destroy(host->readers);
+    workers_finish(&host->workers);
     if (service->completions)
         completions_deliver(service->completions);
     completions_destroy(service->completions);

@@ -9,11 +9,11 @@
 #include "protocol/address.h"
 #include "server/error.h"
 #include "server/service/access.h"
+#include "server/service/limits.h"
 #include "server/service/log.h"
 
 #define SERVICE_MAX_LISTENERS 16
-#define SERVICE_MAX_SESSIONS 256u
-#define SERVICE_MAX_STRANGERS 64u /* of them before they have shown who they are */
+#define SERVICE_MAX_STRANGERS 64u /* clients over TLS that have not shown who they are */
 #define SERVICE_DEVICE_BYTES 64
 
 struct service_listen {
@@ -27,11 +27,9 @@ struct service_options {
     struct service_listen metrics;     /* of health and metrics: none or one */
     int session_fd;                    /* serve this connected socket alone; -1: listen */
     char device[SERVICE_DEVICE_BYTES]; /* as renderer_options.device */
-    uint64_t memory_budget_bytes;      /* as store_create() */
     uint64_t n_threads;                /* of the pool, 1 to POOL_MAX_THREADS */
-    uint64_t idle_timeout_s;           /* 0: never */
-    uint64_t drain_timeout_s;          /* to read what is in flight when the daemon shuts down */
-    uint64_t stuck_s;                  /* as monitor_create() */
+    struct limits limits;
+    uint64_t stuck_s; /* as monitor_create() */
     struct access_options access;
     bool share_models;              /* all uploads are everybody's */
     char models[ACCESS_PATH_BYTES]; /* folder of model files that clients may name; "": none */

@@ -1,4 +1,4 @@
-#include "server/service/session.h"
+#include "server/service/session_inside.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -51,11 +51,15 @@ void session_answer_error(struct session *session, struct answer *answer, sheen_
     after_fill(session, answer_fill(answer, MESSAGE_ERROR, &error));
 }
 
-void session_answer_frame(struct session *session, struct answer *answer, const sheen_Frame *frame,
+void session_answer_frame(struct session *session, struct answer *answer,
+                          enum request_class request_class, const sheen_Frame *frame,
                           struct encoded *encoded)
 {
+    session->output_class = request_class;
     count_answer(session, answer, MESSAGE_FRAME, sheen_ErrorCode_ERROR_NONE);
-    after_fill(session, answer_fill_frame(answer, frame, encoded));
+    bool filled = answer_fill_frame(answer, frame, encoded);
+    if (session_may_send(session))
+        after_fill(session, filled);
 }
 
 void session_report_progress(struct session *session, const struct answer *answer, uint32_t seq,
@@ -63,7 +67,8 @@ void session_report_progress(struct session *session, const struct answer *answe
 {
     uint8_t buffer[MESSAGE_HEADER_BYTES + PROTOCOL_MAX_LARGE_BODY_BYTES];
     size_t length;
-    if (answer != session->answers.head ||
+    bool in_turn = answer == session->answers.head || !session->answers.is_ordered;
+    if (!in_turn || conn_unsent_bytes(&session->conn) > 0 ||
         !message_encode(MESSAGE_PROGRESS, seq, progress, buffer, sizeof buffer, &length))
         return;
     conn_send(&session->conn, buffer, length);
@@ -71,9 +76,10 @@ void session_report_progress(struct session *session, const struct answer *answe
 }
 
 /* NULL without memory; the connection is closed then. */
-static struct answer *expect_answer(struct session *session, uint32_t seq)
+static struct answer *expect_answer(struct session *session, uint32_t seq,
+                                    enum request_class request_class)
 {
-    struct answer *answer = answer_expect(&session->answers, seq);
+    struct answer *answer = answer_expect(&session->answers, seq, request_class);
     if (!answer)
         conn_close(&session->conn);
     return answer;
@@ -82,7 +88,7 @@ static struct answer *expect_answer(struct session *session, uint32_t seq)
 /* Answers at once what takes no time. */
 static void reply(struct session *session, uint32_t seq, uint8_t type, const void *body)
 {
-    struct answer *answer = expect_answer(session, seq);
+    struct answer *answer = expect_answer(session, seq, CLASS_STILL);
     if (answer)
         session_answer(session, answer, type, body);
 }
@@ -90,7 +96,7 @@ static void reply(struct session *session, uint32_t seq, uint8_t type, const voi
 static void reply_error(struct session *session, uint32_t seq, sheen_ErrorCode code,
                         const char *text)
 {
-    struct answer *answer = expect_answer(session, seq);
+    struct answer *answer = expect_answer(session, seq, CLASS_STILL);
     if (answer)
         session_answer_error(session, answer, code, text);
 }
@@ -105,10 +111,8 @@ static void turn_away(struct session *session, const char *why)
     conn_close(&session->conn);
 }
 
-/* The connection cannot go on: answers what came before, says why, and closes. */
-static void __attribute__((format(printf, 5, 6)))
-refuse(struct session *session, enum stats_end end, uint32_t seq, sheen_ErrorCode code,
-       const char *format, ...)
+void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code, const char *format,
+                    ...)
 {
     char text[sizeof((sheen_Error *)0)->text];
     va_list arguments;
@@ -119,9 +123,11 @@ refuse(struct session *session, enum stats_end end, uint32_t seq, sheen_ErrorCod
         turn_away(session, text);
         return;
     }
-    struct answer *answer = session->refused ? NULL : expect_answer(session, seq);
-    if (!session->refused)
-        session->end = end;
+    if (session->end == END_CLIENT)
+        session->end = code == sheen_ErrorCode_ERROR_SHUTTING_DOWN ? END_DRAIN : END_PROTOCOL;
+    struct answer *answer = session->refused ? NULL : expect_answer(session, seq, CLASS_STILL);
+    if (!session->refused && code != sheen_ErrorCode_ERROR_SHUTTING_DOWN)
+        session_log_disconnect(session, text);
     session->refused = true;
     conn_hold(&session->conn, true);
     if (!answer)
@@ -155,19 +161,24 @@ static void handle_hello(struct session *session, uint32_t seq, const uint8_t *b
     sheen_Hello hello;
     char text[MESSAGE_TEXT_BYTES];
     if (!message_hello_decode(body, length, model_id, &hello)) {
-        refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL,
-               "HELLO is not well-formed");
+        message_find_fault(MESSAGE_HELLO, body, length, text);
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
         return;
     }
     if (!message_check_hello(&hello, text)) {
-        refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
         return;
     }
     if (!session->admitted && !admit(session, &hello))
         return;
     const struct renderer_info *info = render_thread_info(session->host->render_thread);
+    session->minor = hello.minor < PROTOCOL_MINOR ? hello.minor : PROTOCOL_MINOR;
+    session->answers.is_ordered = session->minor == 0;
+    session->credits = (uint32_t)session->host->limits.credits;
     sheen_HelloOk ok = {
         .minor = PROTOCOL_MINOR,
+        .has_credits = true,
+        .credits = session->credits,
         .software = info->software,
         .max_width_px = info->max_width_px,
         .max_height_px = info->max_height_px,
@@ -213,7 +224,10 @@ static void handle_upload_begin(struct session *session, uint32_t seq,
         reply_upload_state(session, seq, true, begin->size_bytes);
         return;
     }
-    session->upload = upload_create(host->store, session_owner(session), begin, &error);
+    if (kind == ASSET_IMAGE)
+        workers_expect_images(&host->workers);
+    session->upload =
+        upload_create(&host->memory, session->peer, session_owner(session), begin, &error);
     if (session->upload)
         reply_upload_state(session, seq, false, 0);
     else
@@ -224,8 +238,8 @@ static void handle_upload_chunk(struct session *session, uint32_t seq, const uin
                                 size_t length)
 {
     if (seq != session->upload_seq || length == 0) {
-        refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL, "UPLOAD_CHUNK %s",
-               length == 0 ? "without a byte" : "of no upload under way");
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "UPLOAD_CHUNK %s",
+                       length == 0 ? "without a byte" : "of no upload under way");
         return;
     }
     if (!session->upload)
@@ -242,23 +256,75 @@ static void handle_upload_chunk(struct session *session, uint32_t seq, const uin
         session->upload_seq = 0;
         reply_upload_state(session, seq, true, received);
     } else if (state == UPLOAD_TOO_MUCH) {
-        refuse(session, END_PROTOCOL, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
     } else {
         reply_error(session, seq, wire_error_code(error.kind), error.text);
     }
 }
 
-static void handle_render(struct session *session, uint32_t seq, const sheen_Render *render)
+/* What a frame takes at most: its planes, and what they are encoded to. */
+static uint64_t frame_bytes(const sheen_Render *render)
+{
+    struct codec_layout all, sent;
+    codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
+    codec_layout_init(&sent, render->width_px, render->height_px, render->planes);
+    return all.raw_bytes + (render->encoding == sheen_Encoding_ENCODING_RAW ? 0 : sent.raw_bytes);
+}
+
+/* Answers and returns false when the frame could never be made here. */
+static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render *render)
+{
+    const struct limits *limits = &session->host->limits;
+    struct codec_layout all;
+    codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
+    uint64_t bytes = frame_bytes(render);
+    const struct {
+        const char *what, *name;
+        uint64_t needed, limit;
+    } checks[] = {
+        {"planes", "max-frame", all.raw_bytes, limits->max_frame},
+        {"planes and their encoding", "memory-budget", bytes, limits->memory_budget},
+        {"planes and their encoding", "peer-memory", bytes, limits->peer_memory},
+    };
+    for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
+        char text[MESSAGE_TEXT_BYTES];
+        if (checks[i].needed <= checks[i].limit)
+            continue;
+        snprintf(text, sizeof text,
+                 "%ux%u px: %s take %llu bytes, over this daemon's --%s of %llu: ask for a smaller "
+                 "frame or fewer planes",
+                 render->width_px, render->height_px, checks[i].what,
+                 (unsigned long long)checks[i].needed, checks[i].name,
+                 (unsigned long long)checks[i].limit);
+        reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
+        return false;
+    }
+    return true;
+}
+
+/* What a client of this minor version cannot have meant. */
+static void drop_newer_fields(const struct session *session, sheen_Render *render)
+{
+    if (session->minor > 0)
+        return;
+    render->has_view = render->has_deadline_ms = false;
+    render->request_class = sheen_RequestClass_CLASS_STILL;
+}
+
+static void handle_render(struct session *session, uint32_t seq, sheen_Render *render)
 {
     char text[MESSAGE_TEXT_BYTES];
     const struct renderer_info *info = render_thread_info(session->host->render_thread);
+    drop_newer_fields(session, render);
     if (!message_check_render(render, info->max_width_px, info->max_height_px, text)) {
         reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
         return;
     }
-    struct answer *answer = expect_answer(session, seq);
+    if (!frame_fits(session, seq, render))
+        return;
+    struct answer *answer = expect_answer(session, seq, wire_request_class(render->request_class));
     if (answer)
-        request_render(session, answer, seq, render);
+        request_render(session, answer, seq, render, frame_bytes(render));
 }
 
 static void handle_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query)
@@ -268,7 +334,7 @@ static void handle_query(struct session *session, uint32_t seq, const sheen_Mode
         reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
         return;
     }
-    struct answer *answer = expect_answer(session, seq);
+    struct answer *answer = expect_answer(session, seq, CLASS_STILL);
     if (answer)
         request_query(session, answer, seq, query);
 }
@@ -306,6 +372,22 @@ static void reply_stats(struct session *session, uint32_t seq)
         .software = info->software,
         .mean = stats_mean(&host->stats),
         .queued = host->scheduler.waiting,
+        .has_superseded = true,
+        .superseded = host->stats.superseded,
+        .has_cancelled = true,
+        .cancelled = host->stats.cancelled,
+        .has_late = true,
+        .late = host->stats.late,
+        .has_disconnected = true,
+        .disconnected = host->stats.disconnected,
+        .has_interactive_us = true,
+        .interactive_us = host->scheduler.classes[CLASS_INTERACTIVE].spent_us,
+        .has_still_us = true,
+        .still_us = host->scheduler.classes[CLASS_STILL].spent_us,
+        .has_batch_us = true,
+        .batch_us = host->scheduler.classes[CLASS_BATCH].spent_us,
+        .has_memory_bytes = true,
+        .memory_bytes = store_used_bytes(host->store),
     };
     add_recent(&stats, &host->stats);
     snprintf(stats.device, sizeof stats.device, "%s", info->device);
@@ -323,12 +405,14 @@ static void handle_body(struct session *session, const struct message_header *he
         sheen_Render render;
     } body;
     if (!message_decode(header->type, bytes, header->length, &body)) {
-        refuse(session, END_PROTOCOL, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
-               "%s is not well-formed", message_type_name(header->type));
+        char text[MESSAGE_TEXT_BYTES];
+        message_find_fault(header->type, bytes, header->length, text);
+        session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
+                       message_type_name(header->type), text);
         return;
     }
     if (session->host->draining) {
-        refuse(session, END_DRAIN, header->seq, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
+        session_refuse(session, header->seq, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
         return;
     }
     if (header->type == MESSAGE_UPLOAD_BEGIN)
@@ -343,9 +427,11 @@ static void handle_body(struct session *session, const struct message_header *he
 static void update_hold(struct session *session)
 {
     bool clogged = conn_unsent_bytes(&session->conn) > SESSION_MAX_UNSENT_BYTES;
-    session->queue.held = clogged;
-    conn_hold(&session->conn,
-              clogged || session->refused || session->answers.n >= PROTOCOL_MAX_IN_FLIGHT);
+    bool full = session->minor == 0 && session->answers.n >= PROTOCOL_MAX_IN_FLIGHT;
+    struct schedule_flow *flow = session->queue.flow;
+    flow[CLASS_INTERACTIVE].held = session_is_sending_interactive(session);
+    flow[CLASS_STILL].held = flow[CLASS_BATCH].held = clogged;
+    conn_hold(&session->conn, clogged || full || session->refused);
 }
 
 /* NULL, or what is wrong with a message of this type now. */
@@ -357,9 +443,18 @@ static const char *out_of_order(const struct session *session, const struct mess
         return header->type == MESSAGE_HELLO ? NULL : "the first message must be HELLO";
     if (header->type == MESSAGE_HELLO)
         return "a second HELLO";
+    if (header->type == MESSAGE_CANCEL)
+        return session->minor > 0 ? NULL : "a message of minor version 1";
     if (session->upload && header->type != MESSAGE_UPLOAD_CHUNK)
         return "an upload is under way and not complete";
     return NULL;
+}
+
+static bool is_over_credit(const struct session *session, const struct message_header *header)
+{
+    bool asks = header->type != MESSAGE_HELLO && header->type != MESSAGE_CANCEL &&
+                header->type != MESSAGE_UPLOAD_CHUNK;
+    return asks && session->minor > 0 && session->answers.n >= session->credits;
 }
 
 static void on_message(void *owner, const struct message_header *header, const uint8_t *body)
@@ -367,8 +462,15 @@ static void on_message(void *owner, const struct message_header *header, const u
     struct session *session = owner;
     const char *wrong = out_of_order(session, header);
     if (wrong) {
-        refuse(session, END_PROTOCOL, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
-               message_type_name(header->type), wrong);
+        session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
+                       message_type_name(header->type), wrong);
+        return;
+    }
+    if (is_over_credit(session, header)) {
+        session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+                       "%s: more requests unanswered than HELLO_OK's credits allow",
+                       message_type_name(header->type));
+        request_cancel_all(session); /* who floods is not served first */
         return;
     }
     switch (header->type) {
@@ -381,14 +483,17 @@ static void on_message(void *owner, const struct message_header *header, const u
     case MESSAGE_STATS_QUERY:
         reply_stats(session, header->seq);
         break;
+    case MESSAGE_CANCEL:
+        request_cancel(session, header->seq);
+        break;
     case MESSAGE_UPLOAD_BEGIN:
     case MESSAGE_MODEL_QUERY:
     case MESSAGE_RENDER:
         handle_body(session, header, body);
         break;
     default:
-        refuse(session, END_PROTOCOL, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
-               "%s is a message that only servers send", message_type_name(header->type));
+        session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+                       "%s is a message that only servers send", message_type_name(header->type));
     }
     update_hold(session);
 }
@@ -397,14 +502,15 @@ static void on_malformed(void *owner, const struct message_header *header, enum 
 {
     struct session *session = owner;
     if (error == HEADER_TOO_LONG)
-        refuse(session, END_PROTOCOL, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
-               "%s of %u bytes is longer than its type allows (%u)",
-               message_type_name(header->type), header->length, message_max_length(header->type));
+        session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
+                       "%s of %u bytes is longer than its type allows (%u)",
+                       message_type_name(header->type), header->length,
+                       message_max_length(header->type));
     else
-        refuse(session, END_PROTOCOL, header->seq,
-               error == HEADER_BAD_MAJOR ? sheen_ErrorCode_ERROR_VERSION
-                                         : sheen_ErrorCode_ERROR_PROTOCOL,
-               "%s", header_error_text(error));
+        session_refuse(session, header->seq,
+                       error == HEADER_BAD_MAJOR ? sheen_ErrorCode_ERROR_VERSION
+                                                 : sheen_ErrorCode_ERROR_PROTOCOL,
+                       "%s", header_error_text(error));
 }
 
 /* --- its life */
@@ -415,31 +521,34 @@ const uint8_t *session_owner(const struct session *session)
 }
 
 struct session *session_create(struct session_host *host, int fd,
-                               const struct session_client *client, struct error *error)
+                               const struct session_client *client, struct peer *peer,
+                               struct error *error)
 {
     static const struct conn_handler handler = {on_message, on_malformed};
     struct session *session = calloc(1, sizeof *session);
     if (!session) {
         close(fd);
+        peer_put(&host->memory.peers, peer);
         error_set(error, ERROR_SERVER, "no memory for another session");
         return NULL;
     }
     if (!conn_init(&session->conn, host->loop, fd, &handler, session, &host->stats.sent_bytes,
-                   error)) {
-        free(session);
-        return NULL;
-    }
-    if (client->kind == CLIENT_TLS && !access_start_tls(host->access, &session->conn, error)) {
+                   error) ||
+        (client->kind == CLIENT_TLS && !access_start_tls(host->access, &session->conn, error))) {
         conn_finish(&session->conn);
+        peer_put(&host->memory.peers, peer);
         free(session);
         return NULL;
     }
     session->host = host;
+    session->peer = peer;
     session->client = *client;
     session->admitted = client->kind != CLIENT_TLS;
     host->n_strangers += !session->admitted;
+    session->output_class = CLASS_STILL;
     session->start_us = loop_now_us();
-    scheduler_add_queue(&host->scheduler, &session->queue);
+    scheduler_add_queue(&session->queue);
+    peer->n_connections++;
     host->n_sessions++;
     host->stats.sessions++;
     session->id = ++host->last_session_id;
@@ -465,6 +574,8 @@ void session_destroy(struct session *session)
     upload_destroy(session->upload);
     conn_finish(&session->conn);
     host->n_strangers -= !session->admitted;
+    session->peer->n_connections--;
+    peer_put(&host->memory.peers, session->peer);
     host->n_sessions--;
     free(session);
 }
@@ -472,6 +583,10 @@ void session_destroy(struct session *session)
 bool session_settle(struct session *session)
 {
     struct conn *conn = &session->conn;
+    if (conn->state == CONN_OPEN && !session_is_sending_interactive(session)) {
+        request_send_held(session);
+        answer_send_due(&session->answers, conn);
+    }
     update_hold(session);
     if (conn->state == CONN_OPEN && !conn->held)
         conn_deliver(conn);
@@ -479,51 +594,9 @@ bool session_settle(struct session *session)
         if (conn->peer_ended)
             conn_close_after_flush(conn);
         else if (session->host->draining)
-            refuse(session, END_DRAIN, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
+            session_refuse(session, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
     }
     return conn->state != CONN_CLOSED;
-}
-
-/* Is the daemon shutting down, and has the client had its time to read the answers in flight? */
-static bool drains_too_long(const struct session *session, uint64_t now)
-{
-    const struct session_host *host = session->host;
-    uint64_t since = session->conn.sending_since_us;
-    since = since > host->drain_start_us ? since : host->drain_start_us;
-    return host->draining && now - since > host->drain_timeout_us;
-}
-
-/* It does not read: there is no telling it. */
-static void close_unread(struct session *session)
-{
-    session->end = session->host->draining ? END_DRAIN : END_UNREAD;
-    conn_close(&session->conn);
-}
-
-static void check_deadlines(struct session *session, uint64_t now)
-{
-    struct conn *conn = &session->conn;
-    const uint64_t stall = PROTOCOL_STALL_TIMEOUT_MS * 1000ull;
-    uint64_t idle = session->host->idle_timeout_us;
-    uint64_t since_in = now - conn->last_in_us, since_out = now - conn->last_out_us;
-    bool sending = conn_unsent_bytes(conn) > 0;
-    bool receiving = !conn->held && (conn->in_used > 0 || session->upload);
-    if (conn->state == CONN_LINGERING && since_in > SESSION_LINGER_US)
-        conn_close(conn);
-    else if (sending && (since_out > stall || drains_too_long(session, now)))
-        close_unread(session);
-    else if (conn->state != CONN_OPEN)
-        return;
-    else if (!session->greeted && now - session->start_us > PROTOCOL_HELLO_TIMEOUT_MS * 1000ull)
-        refuse(session, END_HELLO, 0, sheen_ErrorCode_ERROR_PROTOCOL, "no HELLO within %u ms",
-               PROTOCOL_HELLO_TIMEOUT_MS);
-    else if (receiving && since_in > stall)
-        refuse(session, END_STALLED, 0, sheen_ErrorCode_ERROR_PROTOCOL,
-               "a message or an upload stopped in the middle for %u ms", PROTOCOL_STALL_TIMEOUT_MS);
-    else if (idle > 0 && !sending && session->answers.n == 0 && since_in > idle && since_out > idle)
-        refuse(session, END_IDLE, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN,
-               "no request for %llu s: connect again when there is one",
-               (unsigned long long)(idle / 1000000));
 }
 
 void session_check_access(struct session *session)
@@ -547,7 +620,11 @@ void session_tick(struct session *session, uint64_t now_us)
 {
     if (session->client.identity.expires_s)
         session_check_access(session);
-    check_deadlines(session, now_us);
-    if (session->conn.state == CONN_OPEN)
-        request_report_progress(session);
+    session_check_limits(session, now_us);
+    if (session->conn.state != CONN_OPEN)
+        return;
+    if (now_us - session->conn.last_in_us > SESSION_TRIM_US)
+        conn_trim(&session->conn);
+    request_end_late(session, now_us);
+    request_report_progress(session);
 }

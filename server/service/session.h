@@ -10,39 +10,45 @@
 #include "server/service/access.h"
 #include "server/service/answer.h"
 #include "server/service/conn.h"
-#include "server/service/peer.h"
+#include "server/service/costs.h"
+#include "server/service/memory.h"
 #include "server/service/scheduler.h"
 #include "server/service/stats.h"
-#include "server/service/store.h"
 #include "server/service/upload.h"
+#include "server/service/workers.h"
 
-/* While more than this is unsent, nothing is read from the client and no render is started for it:
- * with two renders in flight it bounds what a client that stops reading can cost. */
+/* While more than this is unsent, nothing is read from the client and no still or batch is begun
+ * for it: with those that have begun it bounds what a client that stops reading can cost. */
 #define SESSION_MAX_UNSENT_BYTES (4u * 1024 * 1024)
 /* The end of a connection: from shutdown() until the peer has closed too. */
 #define SESSION_LINGER_US 2000000u
+/* Without input for so long, a connection keeps no memory for long messages. */
+#define SESSION_TRIM_US 1000000u
 
 /* What all sessions share; outlives them. */
 struct session_host {
     struct loop *loop;
-    struct pool *pool;
+    struct pool *pool, *readers;
     struct render_thread *render_thread;
+    struct workers workers;
     struct store *store;
     struct access *access; /* another one after a reload */
     bool share_models;     /* whatever is uploaded is everybody's */
     int models_fd;         /* the folder of --models; -1: none */
     unsigned n_file_loads; /* files being read from there */
+    struct limits limits;
+    struct memory memory;
     struct scheduler scheduler;
+    struct costs costs;
+    struct request *parked; /* they wait for memory that other frames have */
     struct stats stats;
     uint32_t n_sessions;
     uint32_t n_strangers;     /* of them, not yet admitted */
     uint32_t gpu_generation;  /* how often a device has been opened */
     uint64_t last_session_id; /* sessions are numbered in the log */
     uint64_t max_upload_bytes;
-    uint64_t idle_timeout_us; /* 0: never */
-    bool draining;            /* no new request is taken, and answers must be read soon */
+    bool draining; /* no new request is taken, and answers must be read soon */
     uint64_t drain_start_us;
-    uint64_t drain_timeout_us; /* how long clients may take to read what is in flight */
 };
 
 struct request;
@@ -56,6 +62,7 @@ struct session_client {
 
 struct session {
     struct session_host *host;
+    struct peer *peer;
     struct conn conn;
     struct schedule_queue queue;
     struct answer_list answers;
@@ -64,11 +71,15 @@ struct session {
     uint64_t n_answers;
     enum stats_end end; /* why it ends, once the daemon has decided that it does */
     struct session_client client;
-    bool admitted;         /* the client is who it says; till then it is told nothing */
-    bool greeted;          /* HELLO has been answered */
-    bool refused;          /* the last answer is on its way: nothing is read any more */
-    struct upload *upload; /* NULL: none under way */
-    uint32_t upload_seq;   /* of the upload, or of the last one that failed */
+    bool admitted;  /* the client is who it says; till then it is told nothing */
+    bool greeted;   /* HELLO has been answered */
+    uint32_t minor; /* version spoken with the client */
+    uint32_t credits;
+    enum request_class output_class; /* of the latest frame: whose output limits hold */
+    uint64_t over_soft_since_us;     /* 0: no more is unsent than the soft limit allows */
+    bool refused;                    /* the last answer is on its way: nothing is read any more */
+    struct upload *upload;           /* NULL: none under way */
+    uint32_t upload_seq;             /* of the upload, or of the last one that failed */
     struct request *requests;
     struct session *next; /* the service's list */
 };
@@ -76,9 +87,10 @@ struct session {
 /* Whose the session's uploads are. */
 const uint8_t *session_owner(const struct session *session);
 
-/* Takes the socket over (closes it on failure). */
+/* Takes the socket over (closes it on failure), and the reference to its peer. */
 struct session *session_create(struct session_host *host, int fd,
-                               const struct session_client *client, struct error *error);
+                               const struct session_client *client, struct peer *peer,
+                               struct error *error);
 /* Closes at once; requests in flight end unseen. */
 void session_destroy(struct session *session);
 
@@ -96,9 +108,15 @@ void session_answer(struct session *session, struct answer *answer, uint8_t type
 void session_answer_error(struct session *session, struct answer *answer, sheen_ErrorCode code,
                           const char *text);
 /* FRAME and its DATA. Takes `encoded` over. */
-void session_answer_frame(struct session *session, struct answer *answer, const sheen_Frame *frame,
+void session_answer_frame(struct session *session, struct answer *answer,
+                          enum request_class request_class, const sheen_Frame *frame,
                           struct encoded *encoded);
-/* Before its answer, if it is the next one that is due. */
+/* An interactive frame of the session is on its way to the socket: the next has to wait. */
+static inline bool session_is_sending_interactive(const struct session *session)
+{
+    return session->answers.unsent > 0;
+}
+/* Before its answer, unless another is due first or the client does not read. */
 void session_report_progress(struct session *session, const struct answer *answer, uint32_t seq,
                              const sheen_Progress *progress);
 

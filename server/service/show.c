@@ -25,7 +25,8 @@ struct ptex {
 /* A picture being painted. Planes that its kind does without are NULL. */
 struct painting {
     sheen_ShowKind kind;
-    size_t n_pixels;
+    size_t width_px, n_pixels;
+    const float *coverage; /* NULL: one sample a pixel */
     const float (*position)[3], (*normal)[3], (*curvature)[2];
     const struct ptex *ptex;
     double pull[3]; /* DRAFT: unit */
@@ -218,20 +219,51 @@ static void to_bytes(const float colour[4], uint8_t rgba[4])
         rgba[k] = (uint8_t)(255 * fminf(1, fmaxf(0, colour[k])) + 0.5f);
 }
 
+/* The pixel whose surface a partly covered one shows: itself, or where its centre sees none the
+ * first neighbour whose centre does. n_pixels when there is none. */
+static size_t surface_near(const struct painting *painting, size_t i)
+{
+    static const int around[9][2] = {{0, 0},   {-1, 0}, {1, 0},  {0, -1}, {0, 1},
+                                     {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+    size_t width = painting->width_px, height = painting->n_pixels / width;
+    for (int k = 0; k < 9; k++) {
+        size_t x = i % width + (size_t)around[k][0], y = i / width + (size_t)around[k][1];
+        if (x < width && y < height && !is_empty(painting, y * width + x)) /* -1 is large */
+            return y * width + x;
+    }
+    return painting->n_pixels;
+}
+
+/* Straight alpha; `share` is a's, the rest is b's. */
+static void blend(const float a[4], const float b[4], float share, float mixed[4])
+{
+    float of_a = share * a[3], of_b = (1 - share) * b[3];
+    mixed[3] = of_a + of_b;
+    for (int k = 0; k < 3; k++)
+        mixed[k] = mixed[3] > 0 ? (of_a * a[k] + of_b * b[k]) / mixed[3] : 0;
+}
+
+static void paint_pixel(const struct painting *painting, size_t i, const float miss[4],
+                        const float empty[4], float painted[4])
+{
+    float share = painting->coverage ? painting->coverage[i] : !is_empty(painting, i);
+    size_t from = share > 0 ? surface_near(painting, i) : painting->n_pixels;
+    float shown[4] = {0, 0, 0, 1};
+    if (from == painting->n_pixels)
+        memcpy(painted, empty, sizeof shown);
+    else if (colour_at(painting, from, shown))
+        blend(shown, empty, share, painted);
+    else
+        blend(miss, empty, share, painted);
+}
+
 static void paint_pixels(const struct painting *painting, uint8_t (*rgba)[4], const float miss[4],
                          const float empty[4])
 {
-    uint8_t missed[4], emptied[4];
-    to_bytes(miss, missed);
-    to_bytes(empty, emptied);
     for (size_t i = 0; i < painting->n_pixels; i++) {
-        float shown[4] = {0, 0, 0, 1};
-        if (is_empty(painting, i))
-            memcpy(rgba[i], emptied, sizeof emptied);
-        else if (colour_at(painting, i, shown))
-            to_bytes(shown, rgba[i]);
-        else
-            memcpy(rgba[i], missed, sizeof missed);
+        float painted[4];
+        paint_pixel(painting, i, miss, empty, painted);
+        to_bytes(painted, rgba[i]);
     }
 }
 
@@ -293,7 +325,8 @@ static void add_marks(const struct painting *painting, struct legend *legend)
     }
 }
 
-static void add_legend(const struct painting *painting, const struct frame *frame)
+static void add_legend(const struct painting *painting, const struct frame *frame,
+                       struct workers *workers)
 {
     static const char *const titles[] = {
         [sheen_ShowKind_SHOW_CURVATURE] = "principal curvature, 1/unit",
@@ -307,18 +340,21 @@ static void add_legend(const struct painting *painting, const struct frame *fram
     struct legend legend = {
         .title = titles[painting->kind], .colour = bar_colour, .context = painting};
     add_marks(painting, &legend);
-    if (!legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend) &&
+    struct error error = {0};
+    if (!legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend, workers,
+                     &error) &&
         !atomic_flag_test_and_set(&told))
-        log_event(LOG_WARN, "legends lack their numbers",
-                  log_text("text", "the font DejaVu Sans is missing (Debian: fonts-dejavu-core)"));
+        log_event(LOG_WARN, "legends lack their numbers", log_text("text", error.text));
 }
 
-void show_paint(const struct frame *frame, sheen_Show *show, double size, const float miss[4],
-                const float empty[4])
+void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *show, double size,
+                const float miss[4], const float empty[4])
 {
     struct painting painting = {
         .kind = show->kind,
+        .width_px = frame->width_px,
         .n_pixels = (size_t)frame->width_px * frame->height_px,
+        .coverage = frame->plane[7],
         .position = frame->plane[1],
         .normal = frame->plane[2],
         .ptex = frame->plane[3],
@@ -336,5 +372,5 @@ void show_paint(const struct frame *frame, sheen_Show *show, double size, const 
     }
     painting.range = show->range;
     paint_pixels(&painting, frame->plane[0], miss, empty);
-    add_legend(&painting, frame);
+    add_legend(&painting, frame, workers);
 }

@@ -3,23 +3,25 @@
  * curvature, gaussian, mean   blue below 0, light grey at 0, red above, ending at -range and range
  * normal                      0.5 + 0.5 N as red, green, blue
  * ptex                        a colour for each face, brighter with u and richer with v
- * draft                       90 degrees - angle(N, direction): green from range up, red from
- * -range down, deeper with the angle; yellow between, amber below 0
+ * draft                       90 degrees - angle(N, direction): green from range up, red from minus
+ *                             range down, deeper with the angle; yellow between, amber below 0
  *
- * One sample a pixel, at its centre, as the planes are. Pure but for one line of the log when there
- * is no font. Any thread. */
+ * One sample a pixel, at its centre, as the planes are; but where the frame has the coverage plane,
+ * pixels that the surface covers in part show what is empty behind it: at outlines. A worker draws
+ * the legend's texts; without them there is one line of the log, once. Any thread. */
 #ifndef SHEEN_SERVICE_SHOW_H
 #define SHEEN_SERVICE_SHOW_H
 
 #include "protocol/message.h"
 #include "server/gpu/renderer.h"
+#include "server/service/workers.h"
 
 /* Paints frame->plane[0]; the frame has the planes of message_render_planes(). `empty` is for
- * pixels without a surface, `miss` for those where the surface has no such value. A scale whose
+ * what no surface covers, `miss` for where it has no such value. A scale whose
  * range is left out gets it: the magnitude that 98 of 100 values do not exceed, rounded up to two
  * digits, and no less than a turn of 1e-5 over a model of this size (above 0), so that a flat one's
  * rounding is not magnified; DRAFT: 3 degrees. */
-void show_paint(const struct frame *frame, sheen_Show *show, double size, const float miss[4],
-                const float empty[4]);
+void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *show, double size,
+                const float miss[4], const float empty[4]);
 
 #endif

@@ -143,6 +143,10 @@ const char *stats_error_name(sheen_ErrorCode code)
         return "shutting_down";
     case sheen_ErrorCode_ERROR_DEVICE:
         return "device";
+    case sheen_ErrorCode_ERROR_CANCELLED:
+        return "cancelled";
+    case sheen_ErrorCode_ERROR_DEADLINE:
+        return "deadline";
     }
     return "none";
 }

@@ -7,9 +7,11 @@
 #define N_BUCKETS 1024
 
 struct store {
-    struct pool *pool;
+    struct pool *pool, *readers;
     struct render_thread *render_thread;
+    struct workers *workers;
     size_t budget_bytes, used_bytes;
+    uint32_t max_image_px;
     size_t n_assets;
     uint64_t n_hits, n_misses, n_evictions;
     unsigned n_building;
@@ -27,8 +29,9 @@ static struct asset **bucket_of(struct store *store, const uint8_t *sha256)
     return &store->buckets[(sha256[0] | (size_t)sha256[1] << 8) % N_BUCKETS];
 }
 
-struct store *store_create(struct pool *pool, struct render_thread *render_thread,
-                           size_t budget_bytes, struct error *error)
+struct store *store_create(struct pool *pool, struct pool *readers,
+                           struct render_thread *render_thread, struct workers *workers,
+                           size_t budget_bytes, uint32_t max_image_px, struct error *error)
 {
     struct store *store = calloc(1, sizeof *store);
     if (!store) {
@@ -37,8 +40,11 @@ struct store *store_create(struct pool *pool, struct render_thread *render_threa
     }
     atomic_init(&store->cancelled, false);
     store->pool = pool;
+    store->readers = readers;
     store->render_thread = render_thread;
+    store->workers = workers;
     store->budget_bytes = budget_bytes;
+    store->max_image_px = max_image_px;
     return store;
 }
 
@@ -93,16 +99,35 @@ void store_destroy(struct store *store)
     free(store);
 }
 
+static bool is_evictable(const struct asset *asset)
+{
+    return asset->users == 0 && asset->state != ASSET_BUILDING;
+}
+
 static bool evict_one(struct store *store)
 {
     for (struct asset *asset = store->oldest; asset; asset = asset->newer) {
-        if (asset->users > 0 || asset->state == ASSET_BUILDING)
+        if (!is_evictable(asset))
             continue;
         asset_destroy(asset);
         store->n_evictions++;
         return true;
     }
     return false;
+}
+
+/* Evicts only if that is enough. */
+static bool make_room(struct store *store, size_t bytes)
+{
+    size_t room = store->budget_bytes - store->used_bytes, evictable = 0;
+    for (const struct asset *asset = store->oldest; asset && room + evictable < bytes;
+         asset = asset->newer)
+        evictable += is_evictable(asset) ? asset->charged_bytes : 0;
+    if (room + evictable < bytes)
+        return false;
+    while (bytes > store->budget_bytes - store->used_bytes && evict_one(store))
+        ;
+    return true;
 }
 
 /* Exactly this owner's. */
@@ -137,9 +162,7 @@ bool store_reserve(struct store *store, size_t bytes, const char *what, enum err
                          "%s needs %zu bytes and the daemon's memory budget is %zu: start sheend "
                          "with a larger --memory-budget",
                          what, bytes, store->budget_bytes);
-    while (bytes > store->budget_bytes - store->used_bytes && evict_one(store))
-        ;
-    if (bytes > store->budget_bytes - store->used_bytes)
+    if (bytes > store->budget_bytes - store->used_bytes && !make_room(store, bytes))
         return error_set(error, ERROR_SERVER,
                          "%s needs %zu bytes; of the daemon's memory budget of %zu, %zu are in use "
                          "now: try again later",
@@ -251,11 +274,14 @@ static void start_builds(struct store *store)
         store->build_head = asset->next_build;
         const struct build_order order = {
             .pool = store->pool,
+            .readers = store->readers,
             .render_thread = store->render_thread,
+            .workers = store->workers,
             .file = asset->file,
             .file_bytes = asset->file_bytes,
             .name = asset->name,
             .progress = &asset->progress,
+            .max_image_px = store->max_image_px,
             .cancelled = &store->cancelled,
             .reserve = build_reserve,
             .finished = build_finished,
@@ -307,6 +333,18 @@ enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *wait
     return ACQUIRE_WAIT;
 }
 
+bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *error)
+{
+    if (asset->polygon_levels & 1u << level)
+        return true;
+    size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
+    if (!store_reserve(asset->store, bytes, asset->name, ERROR_REQUEST, error))
+        return false;
+    asset->charged_bytes += bytes;
+    asset->polygon_levels |= 1u << level;
+    return true;
+}
+
 void store_unuse(struct asset *asset)
 {
     asset->users--;
@@ -320,6 +358,11 @@ void store_cancel_builds(struct store *store)
 bool store_is_building(const struct store *store)
 {
     return store->n_building > 0 || store->build_head;
+}
+
+size_t store_used_bytes(const struct store *store)
+{
+    return store->used_bytes;
 }
 
 struct store_counts store_count(const struct store *store)

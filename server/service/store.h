@@ -1,5 +1,6 @@
 /* Everything that clients have uploaded, by owner, kind and SHA-256: files that wait to be used,
- * models and light images that are ready on the GPU, and the memory they take.
+ * models and light images that are ready on the GPU; and the memory budget for all that the daemon
+ * holds.
  *
  * An asset is built on first use, once, however many requests wait for it, and a few at a time.
  * What no request uses is evicted, least recently used first, when room is needed; the client is
@@ -51,6 +52,8 @@ struct asset {
     struct store *store;
     unsigned users; /* requests that wait for it or use it */
     size_t charged_bytes;
+    unsigned polygon_levels; /* bits: levels whose polygons are charged */
+    unsigned drawn_levels;   /* bits: levels that the device has had polygons of */
     struct asset_waiter *waiters;
     struct asset *next_build;    /* in the queue for a turn */
     struct asset *newer, *older; /* by last use */
@@ -71,9 +74,11 @@ struct store_counts {
     uint64_t hits, misses, evictions; /* ever: uses of what was ready, uses that had to wait */
 };
 
-/* budget_bytes: the most that files, tables and texels may take together. */
-struct store *store_create(struct pool *pool, struct render_thread *render_thread,
-                           size_t budget_bytes, struct error *error);
+/* `readers` has STORE_MAX_BUILDS threads. budget_bytes: the most that all who reserve may take
+ * together; max_image_px: of a light image, either way. */
+struct store *store_create(struct pool *pool, struct pool *readers,
+                           struct render_thread *render_thread, struct workers *workers,
+                           size_t budget_bytes, uint32_t max_image_px, struct error *error);
 /* No build may be running. The GL thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */
 
@@ -106,9 +111,14 @@ enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *wait
                                   struct error *error);
 void store_unuse(struct asset *asset);
 
+/* A model in use will be drawn as polygons of this level (0 to 6): they are charged once, until the
+ * model goes. False as store_reserve(). */
+bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *error);
+
 /* From now on every build fails soon: nobody waits for it any more. */
 void store_cancel_builds(struct store *store);
 bool store_is_building(const struct store *store);
+size_t store_used_bytes(const struct store *store); /* of the budget */
 struct store_counts store_count(const struct store *store);
 
 #endif

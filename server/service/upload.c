@@ -7,30 +7,34 @@
 #define FIRST_CAPACITY (256u * 1024)
 
 struct upload {
-    struct store *store;
+    struct memory *memory;
+    struct peer *peer;
     sheen_UploadBegin begin;
     uint8_t owner[STORE_OWNER_BYTES];
-    uint8_t *file; /* grows as bytes come: announcing costs no memory */
+    uint8_t *file; /* grows, and is charged, as bytes come: announcing costs nothing */
     size_t received, capacity;
     EVP_MD_CTX *hash;
 };
 
-struct upload *upload_create(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+static enum error_kind kind_of_error(const sheen_UploadBegin *begin)
+{
+    return begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ERROR_MODEL : ERROR_IMAGE;
+}
+
+struct upload *upload_create(struct memory *memory, struct peer *peer,
+                             const uint8_t owner[static STORE_OWNER_BYTES],
                              const sheen_UploadBegin *begin, struct error *error)
 {
-    enum error_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ERROR_MODEL : ERROR_IMAGE;
-    if (!store_reserve(store, begin->size_bytes, begin->name, kind, error))
-        return NULL;
     struct upload *upload = calloc(1, sizeof *upload);
     EVP_MD_CTX *hash = EVP_MD_CTX_new();
     if (!upload || !hash || !EVP_DigestInit_ex(hash, EVP_sha256(), NULL)) {
         EVP_MD_CTX_free(hash);
         free(upload);
-        store_release(store, begin->size_bytes);
         error_set(error, ERROR_SERVER, "%s: no memory to receive it", begin->name);
         return NULL;
     }
-    upload->store = store;
+    upload->memory = memory;
+    upload->peer = peer;
     upload->begin = *begin;
     memcpy(upload->owner, begin->share ? STORE_SHARED : owner, sizeof upload->owner);
     upload->hash = hash;
@@ -41,25 +45,32 @@ void upload_destroy(struct upload *upload)
 {
     if (!upload)
         return;
-    if (upload->store)
-        store_release(upload->store, upload->begin.size_bytes);
+    memory_release_upload(upload->memory, upload->peer, upload->capacity, false);
     EVP_MD_CTX_free(upload->hash);
     free(upload->file);
     free(upload);
 }
 
-static bool grow(struct upload *upload, size_t needed)
+static bool grow(struct upload *upload, size_t needed, struct error *error)
 {
+    const sheen_UploadBegin *begin = &upload->begin;
     if (needed <= upload->capacity)
         return true;
     size_t capacity = upload->capacity ? upload->capacity : FIRST_CAPACITY;
     while (capacity < needed)
         capacity *= 2; /* needed is at most PROTOCOL_MAX_UPLOAD_BYTES */
-    if (capacity > upload->begin.size_bytes)
-        capacity = upload->begin.size_bytes;
-    uint8_t *file = realloc(upload->file, capacity);
-    if (!file)
+    if (capacity > begin->size_bytes)
+        capacity = begin->size_bytes;
+    size_t more = capacity - upload->capacity;
+    if (!memory_charge_upload(upload->memory, upload->peer, more, begin->name, kind_of_error(begin),
+                              error))
         return false;
+    uint8_t *file = realloc(upload->file, capacity);
+    if (!file) {
+        memory_release_upload(upload->memory, upload->peer, more, false);
+        return error_set(error, ERROR_SERVER, "%s: no memory for its %llu bytes", begin->name,
+                         (unsigned long long)begin->size_bytes);
+    }
     upload->file = file;
     upload->capacity = capacity;
     return true;
@@ -77,13 +88,13 @@ static enum upload_state finish(struct upload *upload, struct error *error)
                   begin->name);
         return UPLOAD_BAD;
     }
-    struct store *store = upload->store;
     uint8_t *file = upload->file;
-    upload->store = NULL;
+    memory_release_upload(upload->memory, upload->peer, upload->capacity, true);
+    upload->capacity = 0;
     upload->file = NULL;
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
-    bool ok =
-        store_add(store, upload->owner, kind, sha256, begin->name, file, upload->received, error);
+    bool ok = store_add(upload->memory->store, upload->owner, kind, sha256, begin->name, file,
+                        upload->received, error);
     return ok ? UPLOAD_STORED : UPLOAD_NO_ROOM;
 }
 
@@ -95,10 +106,11 @@ enum upload_state upload_add(struct upload *upload, const uint8_t *bytes, size_t
                   upload->begin.name, (unsigned long long)upload->begin.size_bytes);
         return UPLOAD_TOO_MUCH;
     }
-    if (!grow(upload, upload->received + size) || !EVP_DigestUpdate(upload->hash, bytes, size)) {
-        error_set(error, ERROR_SERVER, "%s: no memory for its %llu bytes", upload->begin.name,
-                  (unsigned long long)upload->begin.size_bytes);
+    if (!grow(upload, upload->received + size, error))
         return UPLOAD_NO_ROOM;
+    if (!EVP_DigestUpdate(upload->hash, bytes, size)) {
+        error_set(error, ERROR_SERVER, "%s: its SHA-256 cannot be computed", upload->begin.name);
+        return UPLOAD_BAD;
     }
     if (size > 0)
         memcpy(upload->file + upload->received, bytes, size);

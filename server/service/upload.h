@@ -3,7 +3,7 @@
 #define SHEEN_SERVICE_UPLOAD_H
 
 #include "protocol/message.h"
-#include "server/service/store.h"
+#include "server/service/memory.h"
 
 struct upload;
 
@@ -12,14 +12,16 @@ enum upload_state {
     UPLOAD_STORED,   /* complete, its hash is right, the store has it */
     UPLOAD_BAD,      /* complete, its hash is wrong */
     UPLOAD_TOO_MUCH, /* more bytes than were announced */
-    UPLOAD_NO_ROOM,
+    UPLOAD_NO_ROOM,  /* more than memory, the budget or the peer's part of it has room for */
 };
 
-/* Charges the announced size to the store, where the file will be the owner's, or everybody's if
- * begin->share. `begin` has passed message_check_upload_begin(). */
-struct upload *upload_create(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+/* Nothing is charged yet: what has come counts, not what is announced. In the end the file is the
+ * owner's, or everybody's if begin->share. `begin` has passed message_check_upload_begin(); `peer`
+ * stays as long as the upload. */
+struct upload *upload_create(struct memory *memory, struct peer *peer,
+                             const uint8_t owner[static STORE_OWNER_BYTES],
                              const sheen_UploadBegin *begin, struct error *error);
-/* Gives the bytes back to the store, unless it has them. NULL is safe. */
+/* Gives the bytes back, unless the store has them. NULL is safe. */
 void upload_destroy(struct upload *upload);
 
 /* After anything but UPLOAD_MORE the upload can only be destroyed. *error says why it was bad. */

@@ -117,6 +117,13 @@ void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
     wire_to_colour(render->has_base ? &render->base : &DEFAULT_BASE, request->base);
 }
 
+enum request_class wire_request_class(sheen_RequestClass request_class)
+{
+    return request_class == sheen_RequestClass_CLASS_INTERACTIVE ? CLASS_INTERACTIVE
+           : request_class == sheen_RequestClass_CLASS_BATCH     ? CLASS_BATCH
+                                                                 : CLASS_STILL;
+}
+
 sheen_ErrorCode wire_error_code(enum error_kind kind)
 {
     switch (kind) {

@@ -6,6 +6,7 @@
 #include "protocol/message.h"
 #include "server/error.h"
 #include "server/gpu/renderer.h"
+#include "server/service/scheduler.h"
 
 /* A frame request from a message that has passed message_check_render(). What it leaves out comes
  * from the model's box; the patterns' images are left to the caller. */
@@ -25,6 +26,8 @@ void wire_to_light(const sheen_Light *from, const double box_min[3], const doubl
                    const struct camera *camera, struct light *to);
 sheen_Lines wire_from_lines(const struct lines *lines);
 sheen_Light wire_from_light(const struct light *light, const sheen_Light *asked);
+
+enum request_class wire_request_class(sheen_RequestClass request_class);
 
 sheen_ErrorCode wire_error_code(enum error_kind kind);
 

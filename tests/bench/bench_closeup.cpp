@@ -3,7 +3,7 @@
  * is of pixels that show a face with such a vertex. */
 #include "tests/bench/bench.h"
 
-#include "tests/bench/scene.h"
+#include "tests/oracle/scene.h"
 #include "tests/bench/sheet.h"
 
 namespace

@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "tests/bench/embree.h"
-#include "tests/bench/scene.h"
+#include "tests/oracle/scene.h"
 #include "tests/oracle/model.h"
 
 namespace

@@ -2,7 +2,7 @@
  * picture read back, in turn, on the same view. */
 #include "tests/bench/bench.h"
 
-#include "tests/bench/scene.h"
+#include "tests/oracle/scene.h"
 #include "tests/oracle/model.h"
 
 namespace

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tests/bench/scene.h"
+#include "tests/oracle/scene.h"
 #include "tests/bench/sheet.h"
 
 namespace

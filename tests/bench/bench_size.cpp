@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "tests/bench/scene.h"
+#include "tests/oracle/scene.h"
 #include "tests/bench/sheet.h"
 #include "tests/oracle/model.h"
 #include "tests/oracle/render.h"

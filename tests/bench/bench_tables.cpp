@@ -8,7 +8,7 @@
 #include <opensubdiv/far/patchTableFactory.h>
 #include <opensubdiv/far/stencilTable.h>
 
-#include "tests/bench/scene.h"
+#include "tests/oracle/scene.h"
 #include "tests/oracle/model.h"
 #include "tests/oracle/osd_refiner.h"
 

@@ -18,7 +18,7 @@ extern "C" {
 }
 #pragma GCC diagnostic pop
 #include "tests/bench/daemon.h"
-#include "tests/bench/scene.h"
+#include "tests/oracle/scene.h"
 #include "tests/oracle/model.h"
 
 namespace

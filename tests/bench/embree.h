@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/renderer.h"
+#include "tests/oracle/renderer.h"
 
 struct embree_picture {
     std::vector<uint8_t> rgba;

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "tests/bench/renderer.h"
+#include "tests/oracle/renderer.h"
 #include "tests/oracle/cage_file.h"
 
 class sheet

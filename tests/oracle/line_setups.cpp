@@ -101,6 +101,7 @@ void add_highlights(const model &model, const view &view, std::vector<named_setu
     add("highlight rectangle", line_light_kind::rectangle, lines);
     add("highlight plane", line_light_kind::plane, soft);
     add("highlight tunnel", line_light_kind::tunnel, soft);
+    lines.soft = 0.4;
     add("highlight sphere", line_light_kind::sphere, lines);
 }
 

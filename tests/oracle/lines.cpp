@@ -150,6 +150,13 @@ double wave(double phase, const line_pattern &pattern)
     return (bright_until(high, pattern.duty) - bright_until(low, pattern.duty)) / pattern.soft;
 }
 
+/* How bright a line is so far from its middle. */
+double single_line(double distance, const line_pattern &pattern)
+{
+    double soft = pattern.soft * pattern.width, inside = pattern.width / 2 - distance;
+    return soft > 0 ? std::clamp(inside / soft + 0.5, 0.0, 1.0) : inside > 0;
+}
+
 /* Full saturation and value. */
 rgba hue_colour(double hue)
 {
@@ -194,10 +201,12 @@ double bright_share(const line_pattern &p, const light_hit &hit)
         if (!(p.period > 0))
             period = std::min(hit.width, hit.height) / (2 * p.count);
         return wave(std::hypot(x, y) / period + p.offset, p);
-    case line_pattern_kind::lines:
-        return std::any_of(p.at.begin(), p.at.end(), [&](double at) {
-            return std::fabs(a / hit.width + 0.5 - at) < p.width / 2;
-        });
+    case line_pattern_kind::lines: {
+        double sum = 0;
+        for (double at : p.at)
+            sum += single_line(std::fabs(a / hit.width + 0.5 - at), p);
+        return std::min(sum, 1.0);
+    }
     case line_pattern_kind::distance:
         return wave(hit.tau / period + p.offset, p);
     case line_pattern_kind::rainbow:

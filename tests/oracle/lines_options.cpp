@@ -60,10 +60,9 @@ std::string pattern_option(const line_pattern &p)
         return text;
     part("fg", colour_name(p.foreground));
     part("bg", colour_name(p.background));
-    if (p.kind != line_pattern_kind::lines) {
+    part("soft", number(p.soft));
+    if (p.kind != line_pattern_kind::lines)
         part("duty", number(p.duty));
-        part("soft", number(p.soft));
-    }
     return text;
 }
 

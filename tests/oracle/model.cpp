@@ -7,6 +7,10 @@
 #include <iterator>
 #include <stdexcept>
 
+extern "C" {
+#include "server/cage/read/read.h"
+}
+
 namespace fs = std::filesystem;
 
 namespace

@@ -1,157 +1,210 @@
-/* test_filter SHEEN [MODEL.obj]...: the colour of a pixel is the mean over the pixel. Each frame is
- * held against the same view one sample a pixel (--filter off) and many times larger, whose squares
- * of pixels are averaged. */
+/* test_filter SHEEN MODEL.obj...: the colour of a pixel is the mean over the pixel. Frames are held
+ * against 16 x 16 samples a pixel, and beside them frames of one sample a pixel (--filter off). */
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <OpenImageIO/imageio.h>
-
-#include "tests/oracle/render.h"
+#include "tests/oracle/light_samples.h"
+#include "tests/oracle/model.h"
+#include "tests/oracle/samples.h"
+#include "tests/oracle/scene.h"
 #include "tests/oracle/verdict.h"
 
 namespace
 {
 
-const int samples = 16; /* a pixel, each way */
 /* Over all pixels of a frame, in 1/255. */
 const double max_mean = 1, max_p99 = 8;
-/* The car is the exception: at 640 x 480 many of its parts are narrower than two pixels, and what
- * no pixel's centre sees cannot be known from the pixels around. */
-const double max_p99_car = 11;
+/* The small car is the exception: at 640 x 480 many of its parts are narrower than two pixels, and
+ * what no pixel's centre sees cannot be known from the pixels around. */
+const double max_p99_small_car = 11;
 /* Over the pixels that an outline runs through, as measured: of 16 rays one more or less is 16/255,
  * and corners of borders, of which only the nearest side is known, cost more. */
 const double max_outline_mean = 20, min_outline_mean_off = 40;
 
-bool is_car(const std::string &model)
+const uint8_t miss[3] = {0x29, 0x30, 0x3b}, empty[3] = {0x80, 0x80, 0x80};
+const std::vector<std::string> colour_options = {"--miss", "#29303b", "--empty", "#808080"};
+const int compared_count = 100; /* of stripes: also drawn by the program itself, but for rounding */
+
+void fill(float colour[4], const uint8_t rgb[3])
 {
-    return model.find("catmark_car") != std::string::npos;
+    for (int k = 0; k < 3; k++)
+        colour[k] = (float)rgb[k] / 255;
+    colour[3] = 1;
 }
 
-struct picture {
-    int width_px = 0, height_px = 0;
-    std::vector<uint8_t> rgb;
-};
-
-picture read_picture(const std::string &path)
+picture draw(drawing *drawing, frame_request request, bool filtered)
 {
-    auto input = OIIO::ImageInput::open(path);
-    if (!input)
-        throw std::runtime_error(path + ": " + OIIO::geterror());
-    const OIIO::ImageSpec &spec = input->spec();
+    request.unfiltered = !filtered;
+    frame frame = drawing->render(request);
+    auto *rgba = static_cast<const uint8_t(*)[4]>(frame.plane[0]);
     picture picture;
-    picture.width_px = spec.width;
-    picture.height_px = spec.height;
-    picture.rgb.resize((size_t)spec.image_pixels() * 3);
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, picture.rgb.data()))
-        throw std::runtime_error(path + ": " + input->geterror());
+    picture.width_px = (int)frame.width_px;
+    picture.height_px = (int)frame.height_px;
+    for (size_t i = 0; i < (size_t)frame.width_px * frame.height_px; i++)
+        picture.rgb.insert(picture.rgb.end(), rgba[i], rgba[i] + 3);
+    frame_finish(&frame);
     return picture;
 }
 
-struct scene {
-    std::string sheen, model;
+/* One model in one size. */
+struct view_judge {
+    std::string sheen, model, name;
+    scene *shown;
+    drawing *device;
+    verdict *found;
     int width_px, height_px;
-    std::vector<std::string> options;
+    double max_p99;
+
+    frame_request request() const
+    {
+        frame_request request = shown->request((uint32_t)width_px, (uint32_t)height_px);
+        fill(request.miss, miss);
+        fill(request.empty, empty);
+        return request;
+    }
+
+    /* A white surface before black. */
+    frame_request outline_request() const
+    {
+        frame_request all = request();
+        const uint8_t white[3] = {255, 255, 255}, black[3] = {0, 0, 0};
+        fill(all.miss, white);
+        fill(all.empty, black);
+        fill(all.lights[0].pattern.background, white);
+        return all;
+    }
+
+    /* The smallest part that holds all that is not black, and a pixel around it. */
+    middle_part part_of(const picture &outline) const
+    {
+        int half_width = 0, half_height = 0;
+        for (int y = 0; y < height_px; y++)
+            for (int x = 0; x < width_px; x++)
+                if (outline.rgb[3 * ((size_t)y * (size_t)width_px + (size_t)x)] > 0) {
+                    int right = std::max(x + 1 - width_px / 2, width_px / 2 - x);
+                    int down = std::max(y + 1 - height_px / 2, height_px / 2 - y);
+                    half_width = std::max(half_width, right);
+                    half_height = std::max(half_height, down);
+                }
+        half_width = std::min(half_width + 1, width_px / 2);
+        half_height = std::min(half_height + 1, height_px / 2);
+        return {width_px / 2 - half_width, height_px / 2 - half_height, 2 * half_width,
+                2 * half_height};
+    }
+
+    /* A frame of what is sampled, `outside` where nothing is. */
+    template <typename colour_of>
+    std::vector<double> truth(const middle_part &part, const uint8_t outside[3],
+                              colour_of colour) const
+    {
+        std::vector<double> rgb;
+        for (int i = 0; i < width_px * height_px; i++) {
+            int x = i % width_px - part.x0_px, y = i / width_px - part.y0_px;
+            bool inside = x >= 0 && x < part.width_px && y >= 0 && y < part.height_px;
+            for (int k = 0; k < 3; k++)
+                rgb.push_back(inside ? colour((size_t)(y * part.width_px + x), k) : outside[k]);
+        }
+        return rgb;
+    }
+
+    void judge_outline(const light_samples &samples, const middle_part &part,
+                       const picture &filtered) const
+    {
+        const uint8_t black[3] = {0, 0, 0};
+        std::vector<double> truth = this->truth(part, black, [&](size_t i, int) {
+            return 255 - 255.0 * samples.n_empty[i] / light_samples::per_pixel;
+        });
+        std::vector<double> error = differences(filtered, truth), outline, outline_off;
+        std::vector<double> error_off = differences(draw(device, outline_request(), false), truth);
+        for (size_t i = 0; i < error.size(); i++)
+            if (truth[3 * i] > 0 && truth[3 * i] < 255) {
+                outline.push_back(error[i]);
+                outline_off.push_back(error_off[i]);
+            }
+        double mean = mean_of(outline), off = mean_of(outline_off);
+        std::printf("%-34s  %zu px of outline: mean error %.2f, one sample a pixel %.2f\n",
+                    name.c_str(), outline.size(), mean, off);
+        found->check(outline.size() > 100, name + ": no outline");
+        found->at_most(mean, max_outline_mean, name + ", outline, mean error in 1/255");
+        found->check(off > min_outline_mean_off, name + ": the outline tells nothing");
+    }
+
+    /* Stripes, with everything else there is: folds, creases, borders, the light's own border. */
+    void judge_stripes(const light_samples &samples, const middle_part &part, int count) const
+    {
+        std::vector<uint16_t> bright = samples.bright(count);
+        std::vector<double> truth = this->truth(part, empty, [&](size_t i, int k) {
+            return (255.0 * bright[i] + miss[k] * samples.n_miss[i] +
+                    empty[k] * samples.n_empty[i]) /
+                   light_samples::per_pixel;
+        });
+        frame_request stripes = request();
+        stripes.lights[0].pattern.count = count;
+        picture filtered = draw(device, stripes, true);
+        std::vector<double> error = differences(filtered, truth);
+        std::vector<double> error_off = differences(draw(device, stripes, false), truth);
+        double mean = mean_of(error), off = mean_of(error_off);
+        double p99 = quantile(error, 0.99), p99_off = quantile(error_off, 0.99);
+        std::printf("%-34s %4d | %7.3f %6.1f | %7.3f %6.1f\n", name.c_str(), count, mean, p99, off,
+                    p99_off);
+        std::fflush(stdout);
+        std::string what = name + ", " + std::to_string(count) + " stripes, ";
+        found->at_most(mean, max_mean, what + "mean error in 1/255");
+        found->at_most(p99, max_p99, what + "99th percentile of the error in 1/255");
+        found->check(p99_off > max_p99, what + "one sample a pixel would do as well");
+        if (count != compared_count)
+            return;
+        std::vector<std::string> options = colour_options;
+        options.insert(options.end(), {"--pattern", "stripes:count=" + std::to_string(count)});
+        picture drawn = render_picture(sheen, model, width_px, height_px, options);
+        std::vector<double> apart =
+            differences(drawn, std::vector<double>(filtered.rgb.begin(), filtered.rgb.end()));
+        found->at_most(quantile(apart, 1), 1,
+                       what + "sheen render draws another picture, by as many 1/255");
+    }
+
+    void judge() const
+    {
+        picture outline = draw(device, outline_request(), true);
+        middle_part part = part_of(outline);
+        light_samples samples(device, request(), part);
+        bool cut = false;
+        for (int i = 0; i < part.width_px * part.height_px; i++) {
+            int x = i % part.width_px, y = i / part.width_px;
+            bool rim = x == 0 || y == 0 || x == part.width_px - 1 || y == part.height_px - 1;
+            cut |= rim && samples.n_empty[(size_t)i] < light_samples::per_pixel;
+        }
+        found->check(!cut, name + ": the model reaches further than what is sampled");
+        judge_outline(samples, part, outline);
+        for (int count : {20, compared_count, 400})
+            judge_stripes(samples, part, count);
+    }
 };
 
-picture render(const scene &scene, int scale, bool filtered)
+void judge_model(const std::string &sheen, const std::string &path, verdict *verdict)
 {
-    temporary_folder folder;
-    std::string file = folder.file("frame.tif");
-    std::vector<std::string> command = {
-        scene.sheen,
-        "render",
-        scene.model,
-        "-o",
-        file,
-        "-q",
-        "--size",
-        std::to_string(scene.width_px * scale) + "x" + std::to_string(scene.height_px * scale),
-        "--filter",
-        filtered ? "exact" : "off"};
-    command.insert(command.end(), scene.options.begin(), scene.options.end());
-    program_result result = run_program(command, folder);
-    if (result.exit_code != 0)
-        throw std::runtime_error(scene.model + ": " + result.errors);
-    return read_picture(file);
-}
-
-/* Each value's mean over scale x scale pixels of the large picture. */
-std::vector<double> averaged(const picture &large, int scale)
-{
-    int width = large.width_px / scale, height = large.height_px / scale;
-    std::vector<double> mean((size_t)width * (size_t)height * 3, 0);
-    for (int y = 0; y < height * scale; y++)
-        for (int x = 0; x < width * scale; x++) {
-            size_t from = ((size_t)y * (size_t)large.width_px + (size_t)x) * 3;
-            size_t to = ((size_t)(y / scale) * (size_t)width + (size_t)(x / scale)) * 3;
-            for (size_t k = 0; k < 3; k++)
-                mean[to + k] += large.rgb[from + k];
-        }
-    for (double &value : mean)
-        value /= scale * scale;
-    return mean;
-}
-
-/* The largest difference of a channel, of every pixel. */
-std::vector<double> differences(const picture &picture, const std::vector<double> &truth)
-{
-    if (picture.rgb.size() != truth.size())
-        throw std::runtime_error("the picture has another size than asked for");
-    std::vector<double> worst(truth.size() / 3, 0);
-    for (size_t i = 0; i < truth.size(); i++)
-        worst[i / 3] = std::fmax(worst[i / 3], std::fabs(picture.rgb[i] - truth[i]));
-    return worst;
-}
-
-double mean_of(const std::vector<double> &values)
-{
-    double sum = 0;
-    for (double value : values)
-        sum += value;
-    return values.empty() ? NAN : sum / (double)values.size();
-}
-
-/* Stripes, with everything else there is: folds, creases, borders, the light's own border. */
-void judge_stripes(scene scene, int count, verdict *verdict)
-{
-    scene.options = {"--pattern", "stripes:count=" + std::to_string(count)};
-    std::vector<double> truth = averaged(render(scene, samples, false), samples);
-    std::vector<double> error = differences(render(scene, 1, true), truth);
-    std::vector<double> error_off = differences(render(scene, 1, false), truth);
-    double mean = mean_of(error), off = mean_of(error_off);
-    double p99 = quantile(error, 0.99), p99_off = quantile(error_off, 0.99);
-    std::printf("%-36s %4d | %7.3f %6.1f | %7.3f %6.1f\n", scene.model.c_str(), count, mean, p99,
-                off, p99_off);
-    std::string what = scene.model + ", " + std::to_string(count) + " stripes, ";
-    verdict->at_most(mean, max_mean, what + "mean error in 1/255");
-    verdict->at_most(p99, is_car(scene.model) ? max_p99_car : max_p99,
-                     what + "99th percentile of the error in 1/255");
-    verdict->check(p99_off > max_p99, what + "one sample a pixel would do as well");
-}
-
-/* A white surface before black: the share of the pixel that it covers, and nothing else. */
-void judge_outline(scene scene, verdict *verdict)
-{
-    scene.options = {"--pattern", "stripes:fg=#ffffff,bg=#ffffff", "--miss", "#ffffff", "--empty",
-                     "#000000"};
-    std::vector<double> truth = averaged(render(scene, samples, false), samples);
-    std::vector<double> error = differences(render(scene, 1, true), truth), outline;
-    std::vector<double> error_off = differences(render(scene, 1, false), truth), outline_off;
-    for (size_t i = 0; i < error.size(); i++)
-        if (truth[3 * i] > 0 && truth[3 * i] < 255) {
-            outline.push_back(error[i]);
-            outline_off.push_back(error_off[i]);
-        }
-    double mean = mean_of(outline), off = mean_of(outline_off);
-    std::printf("%-36s  %zu px of outline: mean error %.2f, one sample a pixel %.2f\n",
-                scene.model.c_str(), outline.size(), mean, off);
-    verdict->check(outline.size() > 100, scene.model + ": no outline");
-    verdict->at_most(mean, max_outline_mean, scene.model + ", outline, mean error in 1/255");
-    verdict->check(off > min_outline_mean_off, scene.model + ": the outline tells nothing");
+    bool is_car = path.find("catmark_car") != std::string::npos;
+    scene scene(read_cage_file(path));
+    drawing drawing(scene, "auto");
+    struct size {
+        int width_px, height_px;
+        double max_p99;
+    };
+    std::vector<size> sizes = {{640, 480, is_car ? max_p99_small_car : max_p99}};
+    if (is_car)
+        sizes.insert(sizes.end(), {{1280, 720, max_p99}, {1920, 1080, max_p99}});
+    for (const size &size : sizes) {
+        std::string name = path.substr(path.rfind('/') + 1) + " " + std::to_string(size.width_px) +
+                           "x" + std::to_string(size.height_px);
+        view_judge{sheen,   path,          name,           &scene,      &drawing,
+                   verdict, size.width_px, size.height_px, size.max_p99}
+            .judge();
+    }
 }
 
 } // namespace
@@ -163,17 +216,13 @@ int main(int argc, char **argv)
         return 2;
     }
     verdict verdict;
-    std::printf("%-36s %4s | %7s %6s | %7s %6s\n", "error in 1/255", "", "mean", "p99", "off",
+    std::printf("%-34s %4s | %7s %6s | %7s %6s\n", "error in 1/255", "", "mean", "p99", "off",
                 "p99");
-    for (int i = 2; i < argc; i++) {
-        scene scene = {argv[1], argv[i], 640, 480, {}};
+    for (int i = 2; i < argc; i++)
         try {
-            judge_outline(scene, &verdict);
-            for (int count : {20, 100, 400})
-                judge_stripes(scene, count, &verdict);
+            judge_model(argv[1], argv[i], &verdict);
         } catch (const std::exception &failure) {
             verdict.check(false, failure.what());
         }
-    }
     return verdict.finish();
 }

@@ -1,6 +1,8 @@
 """The real client against the real daemon, over every way to reach it."""
+import hashlib
 import json
 import os
+import re
 import socket
 import subprocess
 import tempfile
@@ -94,6 +96,63 @@ class Client(unittest.TestCase):
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertRegex(done.stderr, name + ": not a glTF file.*" + words)
             self.assertNotIn("exception", done.stderr)
+
+    def test_json_names_every_option(self):
+        """What is given comes back as used, and render --help has no option that does not."""
+        image = self.path("light.png")
+        self.render("light.png", "--server", self.daemon.unix)
+        first = ("--light", "plane:one-sided", "--light-center", "0,0,9", "--light-u", "8,0,0",
+                 "--light-v", "0,6,0", "--pattern",
+                 "lines:at=0.25/0.5,width=0.125,rotation=30,soft=0.5,fg=#102030,bg=#40506080")
+        camera = ("--eye", "1,-8,6", "--target", "0,0,1", "--up", "0,1,0")
+        scene = (*camera, "--fov", "30", "--lines", "isophote:0,0,2", "--line-eye", "dir:0,0,-1",
+                 *first, "--light", "sphere", "--pattern", "image:" + image, "--base", "#010203",
+                 "--miss", "#040506", "--empty", "#07080940", "--filter", "off", "--class",
+                 "batch", "--deadline", "100000")
+        found, _ = self.render("a.exr", "--server", self.daemon.unix, *scene, "--aov", "N,k")
+        light = found["lights"][0]
+        said = {
+            "output": (found["file"], self.path("a.exr")), "aov": (found["aov"], ["N", "k"]),
+            "size": ((found["width"], found["height"]), (320, 240)),
+            "eye": (found["camera"]["eye"], [1, -8, 6]),
+            "target": (found["camera"]["target"], [0, 0, 1]),
+            "up": (found["camera"]["up"], [0, 1, 0]), "fov": (found["camera"]["fov_deg"], 30),
+            "lines": ((found["lines"], found["lines_direction"]), ("isophote", [0, 0, 2])),
+            "light": ((light["kind"], light["one_sided"], found["lights"][1]["kind"]),
+                      ("plane", True, "sphere")),
+            "light-center": (light["center"], [0, 0, 9]), "light-u": (light["u"], [8, 0, 0]),
+            "light-v": (light["v"], [0, 6, 0]),
+            "pattern": (light["pattern"], {
+                "kind": "lines", "count": 40, "duty": 0.5, "rotation_deg": 30, "offset": 0,
+                "soft": 0.5, "opacity": 1, "at": [0.25, 0.5], "width": 0.125, "fg": "#102030ff",
+                "bg": "#40506080"}),
+            "line-eye": (found["line_eye"], {"kind": "direction", "direction": [0, 0, -1]}),
+            "base": (found["base"], "#010203ff"), "miss": (found["miss"], "#040506ff"),
+            "empty": (found["empty"], "#07080940"), "filter": (found["filter"], "off"),
+            "server": (found["address"], self.daemon.unix), "class": (found["class"], "batch"),
+            "deadline": (found["deadline_ms"], 100000),
+        }
+        with open(image, "rb") as file:
+            self.assertEqual(found["lights"][1]["pattern"]["image_sha256"],
+                             hashlib.sha256(file.read()).hexdigest())
+        found, _ = self.render("a.png", "--device", "software", *camera, "--ortho", "3",
+                               "--surface", "polygon:2", "--show", "draft:0,1,0", "--show-range",
+                               "5")
+        self.assertEqual((found["filter"], found["line_eye"]), ("exact", {"kind": "camera"}))
+        self.assertEqual((found["miss"], found["empty"], found["base"]),
+                         ("#29303bff", "#808080ff", "#b3b8bfff"))
+        said.update({
+            "ortho": (found["camera"]["ortho_height"], 3),
+            "surface": ((found["surface"], found["surface_level"]), ("polygon", 2)),
+            "show": ((found["show"], found["show_direction"]), ("draft", [0, 1, 0])),
+            "show-range": (found["show_range"], 5),
+            "device": ((found["address"], found["software"]), ("private", True)),
+        })
+        for name, (value, wanted) in said.items():
+            self.assertEqual(value, wanted, name)
+        options = set(re.findall(r"^ +(?:-., )?--([a-z-]+)", sheen("render", "--help").stdout, re.M))
+        not_of_the_frame = {"quiet", "json", "help", "ca", "cert", "key", "token-file", "share"}
+        self.assertEqual(options - not_of_the_frame, set(said))
 
     def test_cameras_in_part(self):
         """--fov, --ortho and --up alone change the camera that frames the model."""

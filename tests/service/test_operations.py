@@ -294,7 +294,7 @@ class Reload(unittest.TestCase):
         last = json.loads(hang_up("configuration reloaded"))
         self.assertEqual((last["level"], last["msg"]), ("info", "configuration reloaded"))
         self.assertIn('level=warn msg="options that wait for the next start" '
-                      'options="memory-budget, threads"', daemon.errors())
+                      'options="threads, memory-budget"', daemon.errors())
         with Client(daemon.unix) as client:
             time.sleep(1.5)
             client.render(client.upload(CUBE, "cube.obj"))

@@ -8,7 +8,7 @@ from daemon import MODELS, SHEEN, DaemonCase
 from test_client import sheen
 
 CURVATURE, GAUSSIAN, MEAN, NORMAL, PTEX, DRAFT = range(1, 7)
-COLOUR, K = 1, 32
+COLOUR, K, COVERAGE = 1, 32, 128
 WIDTH, HEIGHT = 160, 110  # low enough for no legend
 EMPTY = bytes((128, 128, 128, 255))
 BODY, PLANE = os.path.join(MODELS, "body.obj"), os.path.join(MODELS, "plane.obj")
@@ -36,6 +36,13 @@ def pixels(data):
     return [data[i:i + 4] for i in range(0, 4 * WIDTH * HEIGHT, 4)]
 
 
+def whole(data):
+    """The pixels that one thing covers, surface or emptiness; and how many were left out."""
+    cover = struct.unpack(f"<{WIDTH * HEIGHT}f", data[-4 * WIDTH * HEIGHT:])
+    found = [pixel for pixel, share in zip(pixels(data), cover) if share in (0, 1)]
+    return found, WIDTH * HEIGHT - len(found)
+
+
 class Show(DaemonCase):
     def render(self, path, extra, planes=COLOUR):
         with wire.Client(self.daemon.unix) as client:
@@ -49,8 +56,10 @@ class Show(DaemonCase):
         curvature = data[4 * WIDTH * HEIGHT:]
         self.assertEqual(curvature, self.render(BODY, b"", K))
         n_blue = 0
-        for pixel, (low, high) in zip(pixels(data), struct.iter_unpack("<2f", curvature)):
-            if low != low:
+        cover = struct.iter_unpack("<f", self.render(BODY, b"", COVERAGE))
+        for pixel, (low, high), (share,) in zip(pixels(data), struct.iter_unpack("<2f", curvature),
+                                                cover):
+            if share == 0:
                 self.assertEqual(pixel, EMPTY)
             elif low + high < -0.1:
                 self.assertGreater(pixel[2], pixel[0], (low, high))
@@ -65,14 +74,43 @@ class Show(DaemonCase):
                                   ((1, 0, 0.03), (255, 224, 64)), ((1, 0, -0.03), (237, 173, 26))):
             for surface in (b"", wire.field(40, 1) + wire.field(41, 1)):
                 with self.subTest(direction=direction, polygon=bool(surface)):
-                    found = set(pixels(self.render(PLANE, show(DRAFT, direction,
-                                                               surface=surface))))
-                    self.assertEqual(found, {EMPTY, bytes((*colour, 255))})
+                    extra = show(DRAFT, direction, surface=surface)
+                    if surface:
+                        found = pixels(self.render(PLANE, extra))
+                    else:
+                        found, n_mixed = whole(self.render(PLANE, extra, COLOUR | COVERAGE))
+                        self.assertTrue(100 < n_mixed < 1000, n_mixed)
+                    self.assertEqual(set(found), {EMPTY, bytes((*colour, 255))})
 
     def test_faces_and_normals(self):
-        found = set(pixels(self.render(PLANE, show(NORMAL))))
-        self.assertEqual(found, {EMPTY, bytes((128, 128, 255, 255))})
+        found, _ = whole(self.render(PLANE, show(NORMAL), COLOUR | COVERAGE))
+        self.assertEqual(set(found), {EMPTY, bytes((128, 128, 255, 255))})
         self.assertGreater(len(set(pixels(self.render(PLANE, show(PTEX))))), 36)
+
+    def test_outlines_are_antialiased(self):
+        """As a picture of eight times the size shows them, and better than one sample a pixel."""
+        scale, one_sample = 8, wire.field(12, 1)
+        with wire.Client(self.daemon.unix) as client:
+            model = client.upload(read(BODY), "body.obj")
+            big = client.render(model, WIDTH * scale, HEIGHT * scale,
+                                extra=one_sample + show(NORMAL)).data
+            cover = struct.unpack(f"<{WIDTH * HEIGHT}f",
+                                  client.render(model, WIDTH, HEIGHT, planes=COVERAGE).data)
+        smooth, rough = (pixels(self.render(BODY, extra + show(NORMAL)))
+                         for extra in (b"", one_sample))
+        errors, n = [0, 0], 0
+        for i, share in enumerate(cover):
+            x, y = i % WIDTH * scale, i // WIDTH * scale
+            if share in (0, 1) or y > HEIGHT * scale * 2 // 3:  # the large one has a legend
+                continue
+            n += 1
+            for k in range(3):
+                mean = sum(sum(big[4 * (row * WIDTH * scale + x) + k:][:4 * scale:4])
+                           for row in range(y, y + scale)) / scale**2
+                errors[0] += abs(smooth[i][k] - mean)
+                errors[1] += abs(rough[i][k] - mean)
+        self.assertGreater(n, 50)
+        self.assertLess(errors[0], errors[1] / 2, n)
 
     def test_bad_values(self):
         with wire.Client(self.daemon.unix) as client:

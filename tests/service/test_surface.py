@@ -184,8 +184,9 @@ class Surface(DaemonCase):
                 file.write(CUBE + b"f 1 2 99\n")
             for code, words, *arguments in (
                     (2, "-o FILE", BODY), (2, ".png", BODY, "-o", path + ".exr"),
-                    (2, "leave it out", BODY, "-o", path, "--surface", "polygon:1"),
-                    (2, "LEVEL 0 to 6", BODY, "-o", path, "--surface", "polygon:9"),
+                    (2, "--surface is no option", BODY, "-o", path, "--surface", "polygon:1"),
+                    (2, "--show is no option", BODY, "-o", path, "--show", "mean"),
+                    (2, "--show-range is no", BODY, "-o", path, "--show-range", "2"),
                     (3, "cube.obj", cube, "-o", path),
                     (3, "nowhere", BODY, "-o", os.path.join(folder, "nowhere", "x.png"))):
                 with self.subTest(words=words):

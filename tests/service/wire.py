@@ -8,9 +8,11 @@ import struct
 
 MAGIC = b"SHEN"
 (HELLO, HELLO_OK, UPLOAD_BEGIN, UPLOAD_CHUNK, UPLOAD_STATE, MODEL_QUERY, MODEL_INFO, RENDER, FRAME,
- DATA, PROGRESS, STATS_QUERY, STATS, ERROR) = range(1, 15)
+ DATA, PROGRESS, STATS_QUERY, STATS, ERROR, SUPERSEDED, CANCEL) = range(1, 17)
 (ERROR_PROTOCOL, ERROR_VERSION, ERROR_REQUEST, ERROR_MODEL, ERROR_IMAGE, ERROR_UNKNOWN_MODEL,
- ERROR_TOO_BIG, ERROR_OVERLOADED, ERROR_SHUTTING_DOWN, ERROR_DEVICE) = range(1, 11)
+ ERROR_TOO_BIG, ERROR_OVERLOADED, ERROR_SHUTTING_DOWN, ERROR_DEVICE, ERROR_CANCELLED,
+ ERROR_DEADLINE) = range(1, 13)
+STILL, INTERACTIVE, BATCH = range(3)
 RAW, ZSTD, PNG, EXR, JPEG, TIFF = range(6)
 MODEL, IMAGE = 0, 1
 ONE_STRIPES = 0
@@ -70,14 +72,17 @@ def message(kind, seq, body=b"", flags=0, magic=MAGIC, major=1, length=None):
     return magic + struct.pack("<BBHII", major, kind, flags, length, seq) + body
 
 
-def hello(seq=1, model=bytes(32), token=None):
-    return message(HELLO, seq, model + field(1, 0) + field(2, "test 1") +
+def hello(seq=1, model=bytes(32), minor=0, token=None):
+    return message(HELLO, seq, model + field(1, minor) + field(2, "test 1") +
                    (field(3, token) if token else b""))
 
 
-def render(seq, model, width=64, height=48, encoding=RAW, planes=1, extra=b""):
+def render(seq, model, width=64, height=48, encoding=RAW, planes=1, extra=b"", kind=None,
+           view=None, deadline=None):
+    later = b"".join(field(number, value) for number, value in
+                     ((14, kind), (15, view), (16, deadline)) if value is not None)
     return message(RENDER, seq, field(1, model) + field(2, width) + field(3, height) + extra +
-                   field(9, planes) + field(10, encoding))
+                   field(9, planes) + field(10, encoding) + later)
 
 
 def upload_begin(seq, sha256, size, name, kind=MODEL, share=False):
@@ -101,11 +106,12 @@ class Frame:
         self.size = fields[5][0]
         times = decode(fields[6][0])
         self.tables_us, self.total_us = times[1][0], times[7][0]
+        self.visibility_us, self.evaluate_us = times[2][0], times[3][0]
         self.data = data
 
 
 class Client:
-    def __init__(self, address, greet=True, timeout=30, tls=None, token=None):
+    def __init__(self, address, greet=True, timeout=30, minor=0, buffer=None, tls=None, token=None):
         """`tls` is an ssl.SSLContext for a tls: address."""
         if address.startswith("unix:"):
             self.socket = socket.socket(socket.AF_UNIX)
@@ -115,13 +121,15 @@ class Client:
             host, port = address[4:].rsplit(":", 1)
             target = (host, int(port))
         self.socket.settimeout(timeout)
+        if buffer:  # what the kernel takes for a client that does not read
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
         self.socket.connect(target)
         if tls:
             self.socket = tls.wrap_socket(self.socket, server_hostname=target[0])
         self.seq = 1
         if greet:
-            self.send(hello(token=token))
-            self.expect(HELLO_OK, 1)
+            self.send(hello(minor=minor, token=token))
+            self.credits = self.expect(HELLO_OK, 1)[9][0]
 
     def __enter__(self):
         return self
@@ -200,7 +208,9 @@ class Client:
         return self.expect(STATS, seq)
 
     def read_frame(self, seq):
-        fields = self.expect(FRAME, seq)
+        return self.read_rest(seq, self.expect(FRAME, seq))
+
+    def read_rest(self, seq, fields):
         data, end = bytearray(), False
         while not end:
             kind, flags, got_seq, body = self.receive()
@@ -210,6 +220,24 @@ class Client:
         frame = Frame(fields, bytes(data))
         assert frame.size == len(data)
         return frame
+
+    def answer(self):
+        """The next answer to a RENDER: (number, what): a Frame, the number that superseded it, or
+        the Refused."""
+        try:
+            kind, _, seq, body = self.receive()
+        except Refused as refused:
+            return refused.seq, refused
+        if kind == SUPERSEDED:
+            return seq, decode(body)[1][0]
+        assert kind == FRAME, kind
+        return seq, self.read_rest(seq, decode(body))
+
+    def ask(self, model, *args, **named):
+        """Sends a RENDER and returns its number."""
+        seq = self.next_seq()
+        self.send(render(seq, model, *args, **named))
+        return seq
 
     def render(self, model, *args, **named):
         seq = self.next_seq()

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/cage/cage.h"
+#include "server/cage/read/read.h"
 
 /* The parts of a small file; NULL takes the usual, which is one quad pair:
  *   3 - 4 - 5

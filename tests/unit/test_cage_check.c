@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/cage/cage.h"
+#include "server/cage/read/read.h"
 
 /* Two quads side by side, with a crease between them, a corner and a hole. */
 struct sample {

@@ -1,4 +1,5 @@
 /* The glTF reader: polygons, welding, nodes, index types, and our own model. */
+#include "server/cage/read/read.h"
 #include "tests/unit/gltf_sample.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 /* Every way in which a glTF file can lie to its reader. */
+#include "server/cage/read/read.h"
 #include "tests/unit/gltf_sample.h"
 
 #include <math.h>

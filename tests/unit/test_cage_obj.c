@@ -13,7 +13,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "server/cage/cage.h"
+#include "server/cage/read/read.h"
 
 #define SHAPES "../shared/shapes"
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" /* lines 1 to 4 */

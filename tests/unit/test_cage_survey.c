@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "server/cage/read/read.h"
 #include "server/cage/survey.h"
 
 static struct cage_survey survey_of(const char *obj)

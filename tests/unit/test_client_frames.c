@@ -205,13 +205,15 @@ static void requests_in_flight(void **state)
     struct sheen_request request = small_request(SHEEN_PLANES_ZSTD);
     assert_int_equal(open_session(&fake, serve_packed, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
-    for (int i = 0; i < SHEEN_MAX_IN_FLIGHT; i++)
+    const int most = (int)sheen_server(session).max_in_flight;
+    assert_int_equal(most, 4); /* of a server that grants nothing else */
+    for (int i = 0; i < most; i++)
         assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
     assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
     assert_int_equal(sheen_query_model(session, request.model_id, NULL, &info, &error),
                      SHEEN_BAD_ARGUMENT);
     void *memory = NULL;
-    for (int i = 0; i < SHEEN_MAX_IN_FLIGHT; i++) {
+    for (int i = 0; i < most; i++) {
         assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OK);
         const uint8_t *plane = frame.plane[0];
         for (int byte = 0; byte < WIDTH * HEIGHT * 4; byte++)
@@ -227,12 +229,128 @@ static void requests_in_flight(void **state)
     fake_finish(&fake);
 }
 
+/* Grants three requests; of those, the second comes first, the first has been superseded by it, and
+ * the third is taken back. */
+static void serve_out_of_order(int fd)
+{
+    struct message_header hello = read_message(fd, NULL, 0);
+    sheen_HelloOk ok = HELLO_OK;
+    ok.minor = 1;
+    ok.has_credits = true;
+    ok.credits = 3;
+    send_message(fd, MESSAGE_HELLO_OK, hello.seq, &ok);
+    uint8_t body[3][200] = {{0}};
+    uint32_t seq[3];
+    for (int i = 0; i < 3; i++)
+        seq[i] = read_message(fd, body[i], sizeof body[i]).seq;
+    struct message_header cancel = read_message(fd, NULL, 0);
+    if (cancel.type != MESSAGE_CANCEL || cancel.seq != seq[2] || cancel.length != 0)
+        return;
+    uint8_t pixels[WIDTH * HEIGHT * 4] = {0};
+    sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_RAW, sizeof pixels);
+    send_message(fd, MESSAGE_FRAME, seq[1], &frame);
+    send_data(fd, seq[1], pixels, sizeof pixels, MESSAGE_END);
+    sheen_Superseded superseded = {.by = seq[1]};
+    send_message(fd, MESSAGE_SUPERSEDED, seq[0], &superseded);
+    send_error(fd, seq[2], sheen_ErrorCode_ERROR_CANCELLED, "taken back");
+}
+
+static void answers_out_of_order(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_frame frame = {0};
+    struct sheen_request request = small_request(SHEEN_PLANES_RAW);
+    request.request_class = SHEEN_INTERACTIVE;
+    uint32_t number[3];
+    assert_int_equal(open_session(&fake, serve_out_of_order, &session, &error), SHEEN_OK);
+    assert_int_equal(sheen_server(session).max_in_flight, 3);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
+        number[i] = sheen_last_number(session);
+    }
+    assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
+    assert_int_equal(sheen_cancel(session, number[2] + 1, &error), SHEEN_BAD_ARGUMENT);
+    assert_int_equal(sheen_cancel(session, number[2], &error), SHEEN_OK);
+    assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OK);
+    assert_int_equal(frame.number, number[1]);
+    assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_SUPERSEDED);
+    assert_int_equal(frame.number, number[0]);
+    assert_int_equal(frame.superseded_by, number[1]);
+    assert_int_equal(sheen_status_exit_code(SHEEN_SUPERSEDED), 4);
+    assert_false(sheen_status_is_fatal(SHEEN_SUPERSEDED));
+    assert_int_equal(sheen_cancel(session, number[0], &error), SHEEN_BAD_ARGUMENT); /* answered */
+    assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_CANCELLED);
+    assert_int_equal(frame.number, number[2]);
+    assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+static void serve_unknown_number(int fd)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    sheen_Superseded superseded = {.by = seq};
+    send_message(fd, MESSAGE_SUPERSEDED, seq + 1, &superseded);
+}
+
+static void answers_to_nothing_are_refused(void **state)
+{
+    (void)state;
+    render_ends_with(serve_unknown_number, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "no request in flight");
+}
+
+/* What the options say stands in the message. */
+static sheen_Render seen_render;
+
+static void serve_and_keep(int fd)
+{
+    greet(fd);
+    uint8_t body[4096];
+    struct message_header header = read_message(fd, body, sizeof body);
+    message_decode(MESSAGE_RENDER, body, header.length, &seen_render);
+    send_error(fd, header.seq, sheen_ErrorCode_ERROR_OVERLOADED, "later");
+}
+
+static void classes_travel(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_frame frame = {0};
+    struct sheen_request request = small_request(SHEEN_PLANES_RAW);
+    request.request_class = SHEEN_INTERACTIVE;
+    request.has_view = true;
+    request.view = 9;
+    request.deadline_ms = 250;
+    assert_int_equal(open_session(&fake, serve_and_keep, &session, &error), SHEEN_OK);
+    assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
+    assert_int_equal(sheen_cancel(session, sheen_last_number(session), &error),
+                     SHEEN_BAD_ARGUMENT); /* minor version 0 knows no cancelling */
+    assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OVERLOADED);
+    assert_int_equal(seen_render.request_class, sheen_RequestClass_CLASS_INTERACTIVE);
+    assert_true(seen_render.has_view && seen_render.has_deadline_ms);
+    assert_int_equal(seen_render.view, 9);
+    assert_int_equal(seen_render.deadline_ms, 250);
+    request.request_class = SHEEN_BATCH; /* which has no view */
+    assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
+    assert_non_null(strstr(error.text, "view"));
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
 /* ---- errors ---- */
 
 static void serve_every_error(int fd)
 {
     greet(fd);
-    for (int code = sheen_ErrorCode_ERROR_REQUEST; code <= sheen_ErrorCode_ERROR_DEVICE; code++) {
+    for (int code = sheen_ErrorCode_ERROR_REQUEST; code <= sheen_ErrorCode_ERROR_DEADLINE; code++) {
         if (code == sheen_ErrorCode_ERROR_SHUTTING_DOWN)
             continue;
         uint32_t seq = read_message(fd, NULL, 0).seq;
@@ -250,7 +368,8 @@ static void every_error_has_its_status(void **state)
         int exit_code;
     } expected[] = {{SHEEN_BAD_REQUEST, 2},   {SHEEN_BAD_MODEL, 3},     {SHEEN_BAD_IMAGE, 3},
                     {SHEEN_UNKNOWN_MODEL, 4}, {SHEEN_BAD_REQUEST, 2}, /* TOO_BIG of a RENDER */
-                    {SHEEN_OVERLOADED, 4},    {SHEEN_DEVICE_FAILED, 5}, {SHEEN_SHUTTING_DOWN, 4}};
+                    {SHEEN_OVERLOADED, 4},    {SHEEN_DEVICE_FAILED, 5}, {SHEEN_CANCELLED, 4},
+                    {SHEEN_LATE, 4},          {SHEEN_SHUTTING_DOWN, 4}};
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
@@ -307,6 +426,9 @@ int main(void)
         cmocka_unit_test(lying_frames),
         cmocka_unit_test(packed_planes),
         cmocka_unit_test(requests_in_flight),
+        cmocka_unit_test(answers_out_of_order),
+        cmocka_unit_test(answers_to_nothing_are_refused),
+        cmocka_unit_test(classes_travel),
         cmocka_unit_test(every_error_has_its_status),
         cmocka_unit_test(bad_arguments_send_nothing),
     };

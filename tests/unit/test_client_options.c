@@ -234,6 +234,16 @@ static void good_command_lines(void **state)
         parse(&COMMAND_STREAM, "m.obj --frames 10 --orbit -3 --light-only", &options, why),
         OPTIONS_RUN);
     assert_true(options.frames == 10 && options.orbit_deg == -3 && options.light_only);
+    assert_false(options.given & GIVEN_CLASS); /* then the command chooses */
+    assert_int_equal(
+        parse(&COMMAND_STREAM, "m.obj --frames 10 --class batch --deadline 250", &options, why),
+        OPTIONS_RUN);
+    assert_true(options.given & GIVEN_CLASS);
+    assert_int_equal(options.request.request_class, SHEEN_BATCH);
+    assert_int_equal(options.request.deadline_ms, 250);
+    assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --class interactive", &options, why),
+                     OPTIONS_RUN);
+    assert_int_equal(options.request.request_class, SHEEN_INTERACTIVE);
     assert_int_equal(parse(&COMMAND_INFO, "m.obj --server unix:/tmp/s", &options, why),
                      OPTIONS_RUN);
     assert_string_equal(options.server, "unix:/tmp/s");
@@ -308,6 +318,10 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png --show draft:0,0,0", "not 0,0,0"},
         {&COMMAND_RENDER, "m.obj -o a.png --show-range 0", "--show-range '0'"},
         {&COMMAND_RENDER, "m.obj -o a.png --show-range nan", "above 0"},
+        {&COMMAND_RENDER, "m.obj -o a.png --class urgent", "interactive, still or batch"},
+        {&COMMAND_STREAM, "m.obj --frames 5 --deadline 0", "--deadline '0'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --deadline 3600001", "1 to 3600000"},
+        {&COMMAND_FIGURE7, "m.obj -o a.png --class batch", "--class"},
         {&COMMAND_RENDER, "m.obj -o a.png --pattern dots", "--pattern 'dots'"},
         {&COMMAND_RENDER, "m.obj -o a.png --empty red", "#rrggbb"},
         {&COMMAND_RENDER, "m.obj -o a.png --nonsense", "--nonsense"},
@@ -351,9 +365,9 @@ static void the_environment_names_a_server(void **state)
 static void help_shows_every_option(void **state)
 {
     (void)state;
-    static const struct command *const commands[] = {&COMMAND_RENDER, &COMMAND_STREAM,
-                                                     &COMMAND_INFO, &COMMAND_STATS};
-    for (size_t i = 0; i < 4; i++) {
+    static const struct command *const commands[] = {
+        &COMMAND_RENDER, &COMMAND_STREAM, &COMMAND_INFO, &COMMAND_STATS, &COMMAND_FIGURE7};
+    for (size_t i = 0; i < 5; i++) {
         char *text = NULL;
         size_t size = 0;
         FILE *out = open_memstream(&text, &size);

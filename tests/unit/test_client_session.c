@@ -92,7 +92,7 @@ static void bad_handshakes(void **state)
     connect_ends_with(serve_unknown_type, SHEEN_BAD_PEER, "unknown");
     connect_ends_with(serve_other_answer, SHEEN_BAD_PEER, "another answer");
     connect_ends_with(serve_other_number, SHEEN_BAD_PEER, "no request in flight");
-    connect_ends_with(serve_garbage_body, SHEEN_BAD_PEER, "malformed");
+    connect_ends_with(serve_garbage_body, SHEEN_BAD_PEER, "not well-formed");
     connect_ends_with(serve_terminal_escape, SHEEN_BAD_PEER, "device");
     connect_ends_with(serve_overloaded, SHEEN_OVERLOADED, "64 sessions");
     connect_ends_with(serve_nothing, SHEEN_LOST_SERVER, "lost server");

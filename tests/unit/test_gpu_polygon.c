@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "server/cage/read/read.h"
 #include "server/gpu/mesh.h"
 #include "server/gpu/renderer.h"
 
@@ -351,7 +352,7 @@ static void test_ngons(void **state)
     assert_true(n_parts > 0);
     for (uint32_t level = 0; level < 3; level++) {
         size_t quads = (n_quads << 2 * level) + (level ? n_parts << 2 * (level - 1) : n_parts);
-        assert_true(mesh_init(&mesh, &scene.tables, level, &error));
+        assert_true(mesh_init(&mesh, &scene.tables, level, &(struct frame_watch){0}, &error));
         assert_int_equal(mesh.n_indices, 6 * quads);
         for (size_t k = 0; k < mesh.n_vertices; k++)
             assert_true(

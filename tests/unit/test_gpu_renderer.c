@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "server/cage/read/read.h"
 #include "server/gpu/renderer.h"
 
 struct scene {
@@ -214,6 +215,182 @@ static void test_tiles(void **state)
         }
     }
     frame_finish(&frame);
+    renderer_model_destroy(renderer, model);
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+}
+
+static struct frame render_in_tiles(struct renderer *renderer, struct renderer_model *model,
+                                    const struct frame_request *request, uint64_t tile_px,
+                                    unsigned *n_steps)
+{
+    struct error error = {0};
+    struct frame frame;
+    struct frame_work work = {.request = request, .tile_px = tile_px};
+    enum frame_step step = FRAME_MORE;
+    if (!renderer_begin(renderer, &work, &frame, &error))
+        fail_msg("%s", error.text);
+    for (*n_steps = 0; step == FRAME_MORE; ++*n_steps)
+        step = renderer_step(renderer, model, &work, &frame, &error);
+    if (step != FRAME_DONE)
+        fail_msg("%s", error.text);
+    return frame;
+}
+
+/* How far two frames are apart in a float plane where both show something. Only a pixel or two,
+ * which look at a place without a normal, may show it in one of them alone. */
+static double largest_difference(const struct frame *a, const struct frame *b, int plane)
+{
+    enum { MOST_ALONE = 6 };
+    size_t n = (size_t)a->width_px * a->height_px *
+               renderer_plane_bytes((enum renderer_plane)(1 << plane)) / sizeof(float);
+    const float *x = a->plane[plane], *y = b->plane[plane];
+    double largest = 0;
+    size_t n_alone = 0;
+    for (size_t k = 0; k < n; k++) {
+        n_alone += isnan(x[k]) != isnan(y[k]);
+        if (!isnan(x[k]) && !isnan(y[k]))
+            largest = fmax(largest, fabs((double)x[k] - (double)y[k]));
+    }
+    assert_true(n_alone <= MOST_ALONE);
+    return largest;
+}
+
+/* Polygons are interpolated: there the device's rounding shows more. */
+static void assert_same_picture(const struct frame *a, const struct frame *b, bool exact,
+                                double size)
+{
+    const uint8_t *x = a->plane[0], *y = b->plane[0];
+    for (size_t k = 0; k < (size_t)a->width_px * a->height_px * 4; k++)
+        if (abs(x[k] - y[k]) > 1)
+            fail_msg("pixel %zu is %u and %u", k / 4, x[k], y[k]);
+    assert_true(largest_difference(a, b, 1) < (exact ? 5e-6 : 2e-5) * size);
+    assert_true(largest_difference(a, b, 2) < (exact ? 5e-5 : 1e-4));
+    if (a->plane[7])
+        assert_true(largest_difference(a, b, 7) < 1e-5);
+}
+
+/* However a frame is cut, every pixel shows the same but for rounding: at silhouettes, creases and
+ * borders too, whose pixels look at their neighbours. */
+static void test_cuts_do_not_show(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"tests/models/body.obj", "tests/models/creases.obj",
+                                        "tests/models/fender.obj"};
+    struct renderer *renderer = open_renderer(0);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        struct scene scene;
+        scene_init(&scene, files[i]);
+        struct renderer_model *model = upload(renderer, &scene);
+        double size = 0;
+        for (int k = 0; k < 3; k++)
+            size = hypot(size, scene.tables.box_max[k] - scene.tables.box_min[k]);
+        for (int kind = SURFACE_EXACT; kind <= SURFACE_WIREFRAME; kind++) {
+            struct frame_request request = request_for(&scene, 701, 433);
+            request.surface = (struct surface){(enum surface_kind)kind, kind ? 2 : 0};
+            request.planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL;
+            request.planes |= kind == SURFACE_EXACT ? PLANE_COVERAGE : 0;
+            struct frame whole = render(renderer, model, &request);
+            static const uint64_t sizes[] = {1, 100000, 250000};
+            for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
+                unsigned n_steps;
+                struct frame cut = render_in_tiles(renderer, model, &request, sizes[k], &n_steps);
+                assert_int_equal(n_steps, k == 0 ? 24 : k == 1 ? 6 : 2);
+                assert_same_picture(&whole, &cut, kind == SURFACE_EXACT, size);
+                frame_finish(&cut);
+            }
+            frame_finish(&whole);
+        }
+        renderer_model_destroy(renderer, model);
+        scene_finish(&scene);
+    }
+    renderer_destroy(renderer);
+}
+
+/* Planes that are kept for a change of light outlive the tiles of another frame drawn in between,
+ * and tiles are not taken for them. */
+static void test_frames_interleave(void **state)
+{
+    (void)state;
+    struct scene scene, other;
+    scene_init(&scene, "tests/models/body.obj");
+    scene_init(&other, "tests/models/fender.obj");
+    struct renderer *renderer = open_renderer(0);
+    struct renderer_model *model = upload(renderer, &scene), *large = upload(renderer, &other);
+    struct frame_request moving = request_for(&scene, 320, 200);
+    struct frame_request batch = request_for(&other, 700, 500);
+    unsigned n_steps;
+    struct frame alone = render_in_tiles(renderer, large, &batch, 1, &n_steps);
+    struct frame before = render(renderer, model, &moving);
+    struct error error = {0};
+    struct frame cut;
+    struct frame_work work = {.request = &batch, .tile_px = 1};
+    assert_true(renderer_begin(renderer, &work, &cut, &error));
+    for (unsigned k = 0; k < n_steps; k++) {
+        enum frame_step step = renderer_step(renderer, large, &work, &cut, &error);
+        assert_int_equal(step, k + 1 < n_steps ? FRAME_MORE : FRAME_DONE);
+        struct frame same = render(renderer, model, &moving);
+        assert_int_equal(same.times.evaluate_us, 0);
+        assert_same_frames(&before, &same);
+        frame_finish(&same);
+    }
+    assert_same_frames(&alone, &cut);
+    frame_finish(&cut);
+    frame_finish(&alone);
+    frame_finish(&before);
+    renderer_model_destroy(renderer, model);
+    renderer_model_destroy(renderer, large);
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+    scene_finish(&other);
+}
+
+struct countdown {
+    int left;
+};
+
+static bool is_over(void *owner)
+{
+    struct countdown *countdown = owner;
+    return countdown->left-- == 0;
+}
+
+/* A frame that nobody waits for ends between tiles, between lights, and in the middle of a mesh;
+ * the renderer serves the next. */
+static void test_abandoned(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene, "tests/models/body.obj");
+    struct renderer *renderer = open_renderer(0);
+    struct renderer_model *model = upload(renderer, &scene);
+    for (int k = 0; k < 3; k++) {
+        struct frame_request request = request_for(&scene, 300, 300);
+        struct countdown countdown = {k == 0 ? 4 : k == 1 ? 2 : 30};
+        if (k == 1) { /* asked at the start, and before the second of eight lights */
+            request.n_lights = MAX_LIGHTS;
+            for (int i = 1; i < MAX_LIGHTS; i++)
+                request.lights[i] = request.lights[0];
+        }
+        if (k == 2)
+            request.surface = (struct surface){SURFACE_POLYGON, 3};
+        struct frame_work work = {
+            .request = &request, .tile_px = k == 0 ? 1 : 0, .watch = {is_over, &countdown}};
+        struct frame frame;
+        struct error error = {0};
+        enum frame_step step = FRAME_MORE;
+        assert_true(renderer_begin(renderer, &work, &frame, &error));
+        while (step == FRAME_MORE)
+            step = renderer_step(renderer, model, &work, &frame, &error);
+        assert_int_equal(step, FRAME_FAILED);
+        assert_int_equal(error.kind, ERROR_SERVER);
+        assert_int_equal(countdown.left, -1); /* and nobody was asked again */
+        assert_null(frame.plane[0]);
+        request.surface = (struct surface){SURFACE_EXACT, 0};
+        frame = render(renderer, model, &request);
+        assert_true(hits(&frame) > 1000);
+        frame_finish(&frame);
+    }
     renderer_model_destroy(renderer, model);
     renderer_destroy(renderer);
     scene_finish(&scene);
@@ -427,15 +604,12 @@ static void test_unknown_devices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_point_banks),
-        cmocka_unit_test(test_node_banks),
-        cmocka_unit_test(test_too_few_texels),
-        cmocka_unit_test(test_tiles),
-        cmocka_unit_test(test_light_only),
-        cmocka_unit_test(test_image_pattern),
-        cmocka_unit_test(test_no_ghost_of_the_light),
-        cmocka_unit_test(test_collapsed_edges),
-        cmocka_unit_test(test_refused_requests),
+        cmocka_unit_test(test_point_banks),      cmocka_unit_test(test_node_banks),
+        cmocka_unit_test(test_too_few_texels),   cmocka_unit_test(test_tiles),
+        cmocka_unit_test(test_cuts_do_not_show), cmocka_unit_test(test_frames_interleave),
+        cmocka_unit_test(test_abandoned),        cmocka_unit_test(test_light_only),
+        cmocka_unit_test(test_image_pattern),    cmocka_unit_test(test_no_ghost_of_the_light),
+        cmocka_unit_test(test_collapsed_edges),  cmocka_unit_test(test_refused_requests),
         cmocka_unit_test(test_unknown_devices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

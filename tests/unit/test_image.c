@@ -1,5 +1,6 @@
 /* server/image: every format there and back, the same bytes at any time, and files that are none.
  */
+#include <limits.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -309,14 +310,18 @@ static void test_text(void **state)
     static const float orange[4] = {1, 0.5f, 0, 1};
     static uint8_t rgba[HEIGHT * WIDTH][4];
     int box[4];
+    struct error error = {0};
+    struct text text;
+    if (!text_create(&text, "H0", 20, &error))
+        fail_msg("%s", error.text);
+    assert_true(text_check(&text));
     const struct {
-        enum image_align align;
+        enum text_align align;
         int low, high; /* of the text's first column less the point, and of its last one */
-    } cases[] = {{IMAGE_LEFT, 0, 30}, {IMAGE_CENTRE, -15, 15}, {IMAGE_RIGHT, -30, 0}};
+    } cases[] = {{TEXT_LEFT, 0, 30}, {TEXT_CENTRE, -15, 15}, {TEXT_RIGHT, -30, 0}};
     for (int i = 0; i < 3; i++) {
         memset(rgba, 0, sizeof rgba);
-        assert_true(
-            image_draw_text(rgba[0], WIDTH, HEIGHT, 33, 60, 20, cases[i].align, "H0", orange));
+        text_draw(&text, rgba[0], WIDTH, HEIGHT, 33, 60, cases[i].align, orange);
         assert_true(touched(rgba, box));
         assert_in_range(box[0], 33 + cases[i].low, 33 + cases[i].low + 5);
         assert_in_range(box[1], 33 + cases[i].high - 8, 33 + cases[i].high);
@@ -335,12 +340,13 @@ static void test_text(void **state)
     assert_true(solid);
     /* Over the border, and far outside. */
     for (int at = -40; at < 200; at += 7)
-        assert_true(
-            image_draw_text(rgba[0], WIDTH, HEIGHT, at, at, 20, IMAGE_CENTRE, "H0", orange));
+        text_draw(&text, rgba[0], WIDTH, HEIGHT, at, at, TEXT_CENTRE, orange);
     memset(rgba, 0, sizeof rgba);
-    assert_true(image_draw_text(rgba[0], WIDTH, HEIGHT, 10, 5000, 20, IMAGE_LEFT, "H0", orange));
-    assert_true(image_draw_text(rgba[0], WIDTH, HEIGHT, -5000, 60, 20, IMAGE_LEFT, "H0", orange));
+    text_draw(&text, rgba[0], WIDTH, HEIGHT, 10, 5000, TEXT_LEFT, orange);
+    text_draw(&text, rgba[0], WIDTH, HEIGHT, -5000, 60, TEXT_LEFT, orange);
+    text_draw(&text, rgba[0], WIDTH, HEIGHT, INT_MAX, INT_MIN, TEXT_LEFT, orange);
     assert_false(touched(rgba, box));
+    text_finish(&text);
 }
 
 int main(void)

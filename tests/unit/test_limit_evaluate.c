@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "server/cage/read/read.h"
 #include "server/limit/evaluate.h"
 
 #define CUBE                                                                                       \

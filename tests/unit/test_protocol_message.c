@@ -265,9 +265,15 @@ static void false_colour(void **state)
     char text[MESSAGE_TEXT_BYTES];
     assert_int_equal(message_render_planes(&render), sheen_Plane_PLANE_COLOUR);
     render.show = mean;
-    assert_int_equal(message_render_planes(&render), sheen_Plane_PLANE_COLOUR |
-                                                         sheen_Plane_PLANE_POSITION |
-                                                         sheen_Plane_PLANE_CURVATURE);
+    assert_int_equal(message_render_planes(&render),
+                     sheen_Plane_PLANE_COLOUR | sheen_Plane_PLANE_POSITION |
+                         sheen_Plane_PLANE_CURVATURE | sheen_Plane_PLANE_COVERAGE);
+    render.unfiltered = true;
+    assert_false(message_render_planes(&render) & sheen_Plane_PLANE_COVERAGE);
+    render.unfiltered = false;
+    render.surface = sheen_SurfaceKind_SURFACE_POLYGON;
+    assert_false(message_render_planes(&render) & sheen_Plane_PLANE_COVERAGE);
+    render.surface = sheen_SurfaceKind_SURFACE_EXACT;
     render.planes = sheen_Plane_PLANE_CURVATURE;
     assert_false(check(&render, text));
     assert_non_null(strstr(text, "colour"));
@@ -278,7 +284,7 @@ static void false_colour(void **state)
     render.surface = sheen_SurfaceKind_SURFACE_WIREFRAME;
     assert_false(check(&render, text));
     assert_non_null(strstr(text, "wireframe"));
-    /* The planes that it is painted from count, too: 24 bytes a pixel. */
+    /* The planes that it is painted from count, too: 28 bytes a pixel. */
     render.surface = sheen_SurfaceKind_SURFACE_EXACT;
     render.width_px = render.height_px = 16384;
     assert_false(check(&render, text));
@@ -358,6 +364,56 @@ static void uploads_are_checked(void **state)
     assert_false(message_check_hello(&hello, text));
 }
 
+static void render_schedules(void **state)
+{
+    (void)state;
+    REFUSED(request_class, (sheen_RequestClass)3, "request_class is 3");
+    ACCEPTED(request_class, sheen_RequestClass_CLASS_INTERACTIVE);
+    sheen_Render render = GOOD;
+    char text[MESSAGE_TEXT_BYTES];
+    render.has_view = render.has_request_class = true;
+    render.view = UINT32_MAX;
+    assert_true(check(&render, text));
+    render.request_class = sheen_RequestClass_CLASS_BATCH;
+    assert_false(check(&render, text));
+    assert_non_null(strstr(text, "view"));
+    render = GOOD;
+    render.has_deadline_ms = true;
+    assert_false(check(&render, text));
+    assert_non_null(strstr(text, "deadline_ms (--deadline) is 0"));
+    render.deadline_ms = PROTOCOL_MAX_DEADLINE_MS;
+    assert_true(check(&render, text));
+    render.deadline_ms++;
+    assert_false(check(&render, text));
+}
+
+static void credits_and_replacements_are_checked(void **state)
+{
+    (void)state;
+    char text[MESSAGE_TEXT_BYTES];
+    sheen_HelloOk ok = {.credits = PROTOCOL_MAX_CREDITS};
+    assert_true(message_check_answer(MESSAGE_HELLO_OK, &ok, text));
+    ok.credits++;
+    assert_false(message_check_answer(MESSAGE_HELLO_OK, &ok, text));
+    assert_non_null(strstr(text, "credits is 65"));
+    ok.credits = 0;
+    assert_false(message_check_answer(MESSAGE_HELLO_OK, &ok, text));
+    sheen_Superseded superseded = {.by = 7};
+    assert_true(message_check_answer(MESSAGE_SUPERSEDED, &superseded, text));
+    superseded.by = 0;
+    assert_false(message_check_answer(MESSAGE_SUPERSEDED, &superseded, text));
+    assert_false(message_check_answer(MESSAGE_CANCEL, NULL, text)); /* no server sends it */
+
+    /* What a server of minor version 0 leaves out. */
+    uint8_t buffer[MESSAGE_BUFFER_BYTES];
+    size_t length;
+    ok = (sheen_HelloOk){.server = "0"};
+    assert_true(message_encode(MESSAGE_HELLO_OK, 1, &ok, buffer, sizeof(buffer), &length));
+    assert_true(message_decode(MESSAGE_HELLO_OK, buffer + MESSAGE_HEADER_BYTES,
+                               length - MESSAGE_HEADER_BYTES, &ok));
+    assert_int_equal(ok.credits, PROTOCOL_MAX_IN_FLIGHT);
+}
+
 static void answers_are_checked(void **state)
 {
     (void)state;
@@ -366,7 +422,9 @@ static void answers_are_checked(void **state)
     assert_true(message_check_answer(MESSAGE_ERROR, &error, text));
     error.code = sheen_ErrorCode_ERROR_NONE;
     assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
-    error.code = (sheen_ErrorCode)11;
+    error.code = sheen_ErrorCode_ERROR_DEADLINE;
+    assert_true(message_check_answer(MESSAGE_ERROR, &error, text));
+    error.code = (sheen_ErrorCode)13;
     assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
     error.code = sheen_ErrorCode_ERROR_MODEL;
     strcpy(error.text, "a\x1b[2J");
@@ -392,6 +450,12 @@ static void answers_are_checked(void **state)
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     assert_non_null(strstr(text, "show_range"));
     frame.has_show_range = false;
+    frame.has_miss = frame.has_base = true;
+    assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.base.a = 2;
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    assert_non_null(strstr(text, "base.a"));
+    frame.base.a = 1;
     frame.camera.has_up = false; /* a request may leave it out, an answer may not */
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     assert_non_null(strstr(text, "camera"));
@@ -473,6 +537,89 @@ static void malformed_bodies_are_refused(void **state)
         assert_false(message_hello_decode(buffer + 16, n, id, &hello));
 }
 
+#define NOT_WELL_FORMED "it is not well-formed"
+
+/* What is wrong with the request GOOD when `n` bytes of fields follow it. */
+static const char *fault_with(const void *fields, size_t n)
+{
+    static uint8_t buffer[2 * MESSAGE_BUFFER_BYTES];
+    static char text[MESSAGE_TEXT_BYTES];
+    sheen_Render render;
+    size_t length = 0;
+    assert_true(message_encode(MESSAGE_RENDER, 9, &GOOD, buffer, MESSAGE_BUFFER_BYTES, &length));
+    memcpy(buffer + length, fields, n);
+    length += n - MESSAGE_HEADER_BYTES;
+    assert_false(message_decode(MESSAGE_RENDER, buffer + MESSAGE_HEADER_BYTES, length, &render));
+    message_find_fault(MESSAGE_RENDER, buffer + MESSAGE_HEADER_BYTES, length, text);
+    return text;
+}
+
+static const char *fault_of(uint8_t type, const void *body, size_t n)
+{
+    static char text[MESSAGE_TEXT_BYTES];
+    message_find_fault(type, body, n, text);
+    return text;
+}
+
+/* limits.h: going over a limit names it. */
+static void faults_are_named(void **state)
+{
+    (void)state;
+    uint8_t lights[2 * 8], bytes[400] = {0};
+    for (int i = 0; i < 16; i++)
+        lights[i] = i % 2 ? 0 : 0x2a; /* a light with nothing in it */
+    assert_string_equal(fault_with(lights, 16), "lights has 9 entries; it may have at most 8");
+    /* A light, its pattern, which is lines, and 17 places, packed and one by one. */
+    memcpy(bytes, "\x2a\x90\x01\x32\x8d\x01\x08\x04\x62\x88\x01", 11);
+    assert_string_equal(fault_with(bytes, 11 + 17 * 8),
+                        "lights.pattern.at has 17 entries; it may have at most 16");
+    memcpy(bytes, "\x2a\x9e\x01\x32\x9b\x01\x08\x04", 8);
+    for (int i = 0; i < 17; i++)
+        bytes[8 + 9 * i] = 0x61;
+    assert_string_equal(fault_with(bytes, 8 + 17 * 9),
+                        "lights.pattern.at has 17 entries; it may have at most 16");
+    assert_string_equal(fault_with("\x2a\x02\x32\x00", 4), "lights.pattern.kind is missing");
+    assert_string_equal(fault_with("\x10\x80\x80\x80\x80\x10", 6),
+                        "width_px is 4294967296; it must be at most 4294967295");
+    assert_string_equal(fault_with("\x22\xff", 2), NOT_WELL_FORMED);
+    assert_string_equal(fault_of(MESSAGE_RENDER, "", 0), "model_sha256 is missing");
+    assert_string_equal(fault_of(MESSAGE_MODEL_QUERY, "\x0a\x02xy", 4),
+                        "sha256 has 2 bytes; it must have 32");
+    memset(bytes, 'n', sizeof(bytes));
+    memcpy(bytes, "\x22\x80\x02", 3);
+    assert_string_equal(fault_of(MESSAGE_UPLOAD_BEGIN, bytes, 3 + 256),
+                        "name has 256 bytes; it may have at most 255");
+    memcpy(bytes + MODEL_ID_BYTES, "\x08\x00\x12\x40", 4);
+    assert_string_equal(fault_of(MESSAGE_HELLO, bytes, MODEL_ID_BYTES + 4 + 64),
+                        "client has 64 bytes; it may have at most 63");
+    assert_string_equal(fault_of(MESSAGE_HELLO, bytes, 31), NOT_WELL_FORMED);
+    assert_string_equal(fault_of(MESSAGE_STATS_QUERY, bytes, 4), NOT_WELL_FORMED);
+}
+
+/* Changes bytes of a request at random: what can be read has no fault, whatever else is said. */
+static void faults_are_found_only_where_they_are(void **state)
+{
+    (void)state;
+    uint8_t good[MESSAGE_BUFFER_BYTES], bytes[MESSAGE_BUFFER_BYTES];
+    size_t length = 0, n_named = 0;
+    uint32_t noise = 1;
+    assert_true(message_encode(MESSAGE_RENDER, 9, &GOOD, good, sizeof(good), &length));
+    length -= MESSAGE_HEADER_BYTES;
+    for (int i = 0; i < 50000; i++) {
+        memcpy(bytes, good + MESSAGE_HEADER_BYTES, length);
+        for (int k = 0; k < 1 + i % 4; k++) {
+            noise = noise * 1664525 + 1013904223;
+            bytes[(noise >> 8) % length] = (uint8_t)(noise >> 24);
+        }
+        sheen_Render render;
+        bool reads = message_decode(MESSAGE_RENDER, bytes, length, &render);
+        bool named = strcmp(fault_of(MESSAGE_RENDER, bytes, length), NOT_WELL_FORMED) != 0;
+        assert_false(reads && named);
+        n_named += named;
+    }
+    assert_true(n_named > 1000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -486,10 +633,14 @@ int main(void)
         cmocka_unit_test(left_out_fields_are_not_looked_at),
         cmocka_unit_test(text_is_utf8_without_controls),
         cmocka_unit_test(uploads_are_checked),
+        cmocka_unit_test(render_schedules),
+        cmocka_unit_test(credits_and_replacements_are_checked),
         cmocka_unit_test(answers_are_checked),
         cmocka_unit_test(encoding_stays_within_its_buffer),
         cmocka_unit_test(the_largest_messages_fit),
         cmocka_unit_test(malformed_bodies_are_refused),
+        cmocka_unit_test(faults_are_named),
+        cmocka_unit_test(faults_are_found_only_where_they_are),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,13 +32,14 @@ static void same_message(uint8_t type, uint32_t seq, const void *body, const uin
         sheen_Render render;
         sheen_Stats stats;
         sheen_Error error;
+        sheen_Superseded superseded;
     } decoded;
     assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
     assert_int_equal(header.type, type);
     assert_int_equal(header.flags, 0);
     assert_int_equal(header.seq, seq);
     assert_int_equal(header.length, size - MESSAGE_HEADER_BYTES);
-    if (type == MESSAGE_STATS_QUERY)
+    if (type == MESSAGE_STATS_QUERY || type == MESSAGE_CANCEL)
         return;
     assert_true(message_decode(type, bytes + MESSAGE_HEADER_BYTES, header.length, &decoded));
     assert_true(message_encode(type, seq, &decoded, buffer, sizeof(buffer), &length));
@@ -57,7 +58,7 @@ static void count_id(uint8_t id[32])
 
 static void check_hello(const uint8_t *bytes, size_t size)
 {
-    const sheen_Hello hello = {.minor = 0, .client = "sheen 0.1.0"};
+    const sheen_Hello hello = {.minor = 1, .client = "sheen 0.1.0"};
     uint8_t id[32], buffer[256], decoded_id[32];
     size_t length = 0;
     count_id(id);
@@ -72,7 +73,7 @@ static void check_hello(const uint8_t *bytes, size_t size)
     assert_int_equal(header.type, MESSAGE_HELLO);
     assert_true(message_hello_decode(bytes + 16, header.length, decoded_id, &decoded));
     assert_memory_equal(decoded_id, id, 32);
-    assert_int_equal(decoded.minor, 0);
+    assert_int_equal(decoded.minor, 1);
     assert_string_equal(decoded.client, "sheen 0.1.0");
 }
 
@@ -92,14 +93,16 @@ static void check_hello_token(const uint8_t *bytes, size_t size)
 
 static void check_hello_ok(const uint8_t *bytes, size_t size)
 {
-    const sheen_HelloOk ok = {.minor = 0,
+    const sheen_HelloOk ok = {.minor = 1,
                               .server = "0.1.0",
                               .device = "llvmpipe",
                               .driver = "Mesa",
                               .software = true,
                               .max_width_px = 16384,
                               .max_height_px = 16384,
-                              .max_upload_bytes = 1073741824};
+                              .max_upload_bytes = 1073741824,
+                              .has_credits = true,
+                              .credits = 16};
     same_message(MESSAGE_HELLO_OK, 1, &ok, bytes, size);
 }
 
@@ -216,6 +219,33 @@ static void check_render_full(const uint8_t *bytes, size_t size)
                            .encoding = sheen_Encoding_ENCODING_ZSTD};
     count_id(render.model_sha256);
     same_message(MESSAGE_RENDER, 5, &render, bytes, size);
+}
+
+static void check_render_interactive(const uint8_t *bytes, size_t size)
+{
+    sheen_Render render = {.width_px = 1280,
+                           .height_px = 720,
+                           .planes = sheen_Plane_PLANE_COLOUR,
+                           .encoding = sheen_Encoding_ENCODING_PNG,
+                           .has_request_class = true,
+                           .request_class = sheen_RequestClass_CLASS_INTERACTIVE,
+                           .has_view = true,
+                           .view = 3,
+                           .has_deadline_ms = true,
+                           .deadline_ms = 200};
+    count_id(render.model_sha256);
+    same_message(MESSAGE_RENDER, 8, &render, bytes, size);
+}
+
+static void check_superseded(const uint8_t *bytes, size_t size)
+{
+    const sheen_Superseded superseded = {.by = 9};
+    same_message(MESSAGE_SUPERSEDED, 8, &superseded, bytes, size);
+}
+
+static void check_cancel(const uint8_t *bytes, size_t size)
+{
+    same_message(MESSAGE_CANCEL, 9, NULL, bytes, size);
 }
 
 static void check_frame(const uint8_t *bytes, size_t size)
@@ -351,6 +381,9 @@ static const struct {
     {"model-info", check_model_info},
     {"render-least", check_render_least},
     {"render-full", check_render_full},
+    {"render-interactive", check_render_interactive},
+    {"superseded", check_superseded},
+    {"cancel", check_cancel},
     {"frame", check_frame},
     {"data", check_data},
     {"zstd-data", check_zstd_data},

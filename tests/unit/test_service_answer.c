@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "server/service/answer.h"
+#include "tests/unit/build_folder.h"
 
 enum { WIDTH = 811, HEIGHT = 523 }; /* odd, several strips a plane, several DATA a frame */
 
@@ -18,6 +19,7 @@ struct fixture {
     struct loop *loop;
     struct completions *completions;
     struct pool *pool;
+    struct workers workers;
     struct conn conn;
     struct answer_list answers;
     int peer; /* the client's end */
@@ -41,10 +43,12 @@ static int setup(void **state)
     assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
     f->loop = loop_create(&hooks, &error);
     f->completions = completions_create(f->loop, &error);
-    f->pool = pool_create("test", 3, &encode_worker, f->completions, &error);
+    f->pool = pool_create("test", 3, 1, &encode_worker, f->completions, &error);
     assert_non_null(f->pool);
+    assert_true(workers_init(&f->workers, build_folder(), 0, &error));
     assert_true(conn_init(&f->conn, f->loop, ends[0], &handler, NULL, &f->sent_bytes, &error));
     f->peer = ends[1];
+    f->answers.is_ordered = true;
     *state = f;
     return 0;
 }
@@ -56,6 +60,7 @@ static int teardown(void **state)
     conn_finish(&f->conn);
     close(f->peer);
     pool_destroy(f->pool);
+    workers_finish(&f->workers);
     completions_destroy(f->completions);
     loop_destroy(f->loop);
     free(f);
@@ -93,7 +98,8 @@ static struct encoded *encode(struct fixture *f, uint32_t planes, sheen_Encoding
     struct codec_layout layout;
     assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, planes));
     f->encoded = NULL;
-    encode_start(f->pool, &frame, &layout, encoding, NULL, 0, encode_finished, f);
+    encode_start(f->pool, &f->workers, &frame, &layout, encoding, POOL_SOON, NULL, 0,
+                 encode_finished, f);
     assert_null(frame.plane[0]);
     while (!f->encoded)
         completions_deliver(f->completions);
@@ -175,7 +181,7 @@ static void test_frame_is_cut_into_data(void **state)
     struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_RAW);
     uint64_t size = encoded->size, seen = 0;
     assert_true(size > 5ull * PROTOCOL_MAX_DATA_BYTES);
-    struct answer *answer = answer_expect(&f->answers, 7);
+    struct answer *answer = answer_expect(&f->answers, 7, CLASS_STILL);
     sheen_Frame message = frame_message(encoded);
     assert_true(answer_fill_frame(answer, &message, encoded));
     answer_send_due(&f->answers, &f->conn);
@@ -211,7 +217,7 @@ static void test_order_of_requests(void **state)
     struct answer *a[3];
     const sheen_UploadState done = {true, 1};
     for (uint32_t i = 0; i < 3; i++)
-        a[i] = answer_expect(&f->answers, 10 + i);
+        a[i] = answer_expect(&f->answers, 10 + i, CLASS_STILL);
     assert_int_equal(f->answers.n, 3);
     for (int i = 2; i > 0; i--) {
         assert_true(answer_fill(a[i], MESSAGE_UPLOAD_STATE, &done));
@@ -230,8 +236,9 @@ static void test_nothing_after_the_last(void **state)
     struct fixture *f = *state;
     uint8_t body[PROTOCOL_MAX_SMALL_BODY_BYTES];
     const sheen_UploadState done = {true, 1};
-    struct answer *first = answer_expect(&f->answers, 1), *last = answer_expect(&f->answers, 2),
-                  *late = answer_expect(&f->answers, 3);
+    struct answer *first = answer_expect(&f->answers, 1, CLASS_STILL),
+                  *last = answer_expect(&f->answers, 2, CLASS_STILL),
+                  *late = answer_expect(&f->answers, 3, CLASS_STILL);
     answer_mark_last(last);
     assert_true(answer_fill(last, MESSAGE_UPLOAD_STATE, &done));
     assert_true(answer_fill(late, MESSAGE_UPLOAD_STATE, &done));
@@ -252,14 +259,14 @@ static void test_closed_with_a_frame_unsent(void **state)
     struct fixture *f = *state;
     struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_RAW);
     sheen_Frame message = frame_message(encoded);
-    assert_true(answer_fill_frame(answer_expect(&f->answers, 1), &message, encoded));
+    assert_true(answer_fill_frame(answer_expect(&f->answers, 1, CLASS_STILL), &message, encoded));
     answer_send_due(&f->answers, &f->conn);
     assert_true(conn_unsent_bytes(&f->conn) > 0);
     conn_close(&f->conn);
     assert_int_equal(conn_unsent_bytes(&f->conn), 0);
     encoded = encode(f, 1, sheen_Encoding_ENCODING_PNG);
     message = frame_message(encoded);
-    assert_true(answer_fill_frame(answer_expect(&f->answers, 2), &message, encoded));
+    assert_true(answer_fill_frame(answer_expect(&f->answers, 2, CLASS_STILL), &message, encoded));
     answer_send_due(&f->answers, &f->conn);
 }
 

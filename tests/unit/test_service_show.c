@@ -11,8 +11,11 @@
 
 #include "server/service/legend.h"
 #include "server/service/show.h"
+#include "tests/unit/build_folder.h"
 
 enum { MAX_PIXELS = 320 * 240 };
+
+static struct workers workers; /* draw the legend */
 
 static const float MISS[4] = {0, 0.2f, 0.4f, 1}, EMPTY[4] = {1, 0, 1, 0};
 
@@ -25,6 +28,7 @@ struct ptex {
 static struct planes {
     uint8_t colour[MAX_PIXELS][4];
     float position[MAX_PIXELS][3], normal[MAX_PIXELS][3], curvature[MAX_PIXELS][2];
+    float coverage[MAX_PIXELS];
     struct ptex ptex[MAX_PIXELS];
 } planes;
 
@@ -64,7 +68,7 @@ static void paint_curvatures(sheen_ShowKind kind, double range, const float (*k)
     struct frame frame = frame_of(kind, (uint32_t)n, 1);
     memcpy(planes.curvature, k, n * sizeof *k);
     sheen_Show show = {.kind = kind, .has_range = true, .range = range};
-    show_paint(&frame, &show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
     assert_true(show.range == range);
 }
 
@@ -108,10 +112,43 @@ static void test_no_surface(void **state)
         for (int k = 0; k < 2; k++)
             planes.curvature[0][k] = planes.curvature[1][k] = NAN;
         sheen_Show show = {.kind = kinds[i], .has_direction = true, .direction = {0, 0, 1}};
-        show_paint(&frame, &show, 1, MISS, EMPTY);
+        show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
         assert_colour(0, EMPTIED);
         assert_colour(1, MISSED);
     }
+}
+
+/* Two rows of four, the outline between them: what a pixel's centre misses it takes from a
+ * neighbour. */
+static void test_outline(void **state)
+{
+    (void)state;
+    const float coverage[8] = {1, 0.75f, 0.5f, 0, 0.25f, 0, 0.5f, 0.5f};
+    const float colour_of_x[2] = {1, -1};
+    struct frame frame = frame_of(sheen_ShowKind_SHOW_NORMAL, 4, 2);
+    frame.plane[7] = planes.coverage;
+    memcpy(planes.coverage, coverage, sizeof coverage);
+    for (int i = 0; i < 8; i++)
+        for (int k = 0; k < 3; k++)
+            planes.position[i][k] = planes.normal[i][k] = i < 2 ? 0 : NAN;
+    for (int i = 0; i < 2; i++)
+        planes.normal[i][0] = colour_of_x[i];
+    sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
+    const float black[4] = {0, 0, 0, 1};
+    show_paint(&frame, &workers, &show, 1, MISS, black);
+    assert_colour(0, 255, 128, 128, 255);
+    assert_colour(1, 0, 96, 96, 255);
+    assert_colour(2, 0, 64, 64, 255); /* from the left */
+    assert_colour(3, 0, 0, 0, 255);
+    assert_colour(4, 64, 32, 32, 255); /* from above */
+    assert_colour(5, 0, 0, 0, 255);
+    assert_colour(6, 0, 64, 64, 255); /* from the corner */
+    assert_colour(7, 0, 0, 0, 255);   /* nobody knows */
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
+    assert_colour(1, 0, 128, 128, 191); /* through to what has no colour */
+    planes.normal[1][0] = NAN;
+    show_paint(&frame, &workers, &show, 1, MISS, black);
+    assert_colour(1, 0, 38, 77, 255); /* 3/4 of MISS */
 }
 
 static void test_normals(void **state)
@@ -121,7 +158,7 @@ static void test_normals(void **state)
     planes.normal[0][2] = 1;
     planes.normal[1][0] = -1;
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
-    show_paint(&frame, &show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
     assert_colour(0, 128, 128, 255, 255);
     assert_colour(1, 0, 128, 128, 255);
     assert_false(show.has_range);
@@ -135,7 +172,7 @@ static void paint_drafts(sheen_Show *show, const double *deg, size_t n)
         planes.normal[i][0] = (float)cos(deg[i] * M_PI / 180);
         planes.normal[i][1] = -(float)sin(deg[i] * M_PI / 180);
     }
-    show_paint(&frame, show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, show, 1, MISS, EMPTY);
 }
 
 #define YELLOW 255, 224, 64, 255
@@ -185,7 +222,7 @@ static void test_ptex(void **state)
         planes.ptex[N + i] = (struct ptex){5, i & 1 ? 1 : 0, i & 2 ? 1 : 0};
     planes.ptex[N + 4] = (struct ptex){UINT32_MAX, 0, 0};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_PTEX};
-    show_paint(&frame, &show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
     for (int i = 0; i < N; i++) /* neighbours in number differ widely, all differ */
         for (int j = 0; j < i; j++) {
             int apart = 0;
@@ -208,7 +245,7 @@ static double range_of(sheen_ShowKind kind, double size, double scale, size_t n)
         planes.curvature[2 * i + 1][0] = NAN;
     }
     sheen_Show show = {.kind = kind};
-    show_paint(&frame, &show, size, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, size, MISS, EMPTY);
     assert_true(show.has_range);
     return show.range;
 }
@@ -244,7 +281,7 @@ static void test_legend(void **state)
         planes.position[i][0] = NAN;
     const float black[4] = {0, 0, 0, 1};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_MEAN, .has_range = true, .range = 0.25};
-    show_paint(&frame, &show, 1, MISS, black);
+    show_paint(&frame, &workers, &show, 1, MISS, black);
     size_t n_white = 0, blue = 0, red = 0, outside = 0;
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
@@ -263,24 +300,40 @@ static void test_legend(void **state)
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, width, LEGEND_MIN_HEIGHT_PX - 1);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    show_paint(&frame, &show, 1, MISS, black);
+    show_paint(&frame, &workers, &show, 1, MISS, black);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, 100, 240);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    show_paint(&frame, &show, 1, MISS, black);
+    show_paint(&frame, &workers, &show, 1, MISS, black);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
+}
+
+static int start_workers(void **state)
+{
+    (void)state;
+    struct error error = {0};
+    if (!workers_init(&workers, build_folder(), 0, &error))
+        fail_msg("%s", error.text);
+    return 0;
+}
+
+static int end_workers(void **state)
+{
+    (void)state;
+    workers_finish(&workers);
+    return 0;
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_curvatures), cmocka_unit_test(test_no_surface),
-        cmocka_unit_test(test_normals),    cmocka_unit_test(test_drafts),
-        cmocka_unit_test(test_ptex),       cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_legend),
+        cmocka_unit_test(test_outline),    cmocka_unit_test(test_normals),
+        cmocka_unit_test(test_drafts),     cmocka_unit_test(test_ptex),
+        cmocka_unit_test(test_ranges),     cmocka_unit_test(test_legend),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, start_workers, end_workers);
 }

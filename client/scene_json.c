@@ -1,0 +1,129 @@
+#include "client/scene_json.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "client/lights_text.h"
+#include "client/values.h"
+
+/* As options take it. */
+static void json_colour(struct json *json, const char *key, const float colour[4])
+{
+    char text[10];
+    unsigned byte[4];
+    for (int k = 0; k < 4; k++)
+        byte[k] = (unsigned)lroundf(255 * colour[k]);
+    snprintf(text, sizeof(text), "#%02x%02x%02x%02x", byte[0], byte[1], byte[2], byte[3]);
+    json_string(json, key, text);
+}
+
+static void json_camera(struct json *json, const struct sheen_camera *camera)
+{
+    json_object_begin(json, "camera");
+    json_vec3(json, "eye", camera->eye);
+    json_vec3(json, "target", camera->target);
+    json_vec3(json, "up", camera->up);
+    if (camera->projection == SHEEN_PROJECTION_ORTHOGRAPHIC)
+        json_double(json, "ortho_height", camera->ortho_height);
+    else
+        json_double(json, "fov_deg", camera->fov_deg);
+    json_object_end(json);
+}
+
+static void json_family(struct json *json, const struct sheen_lines *lines)
+{
+    static const char *const eyes[] = {"camera", "point", "direction"};
+    json_string(json, "lines", text_line_family(lines->family));
+    if (lines->has_direction)
+        json_vec3(json, "lines_direction", lines->direction);
+    json_object_begin(json, "line_eye");
+    json_string(json, "kind", eyes[lines->eye_kind]);
+    if (lines->eye_kind != SHEEN_EYE_CAMERA)
+        json_vec3(json, eyes[lines->eye_kind], lines->eye);
+    json_object_end(json);
+}
+
+static void json_pattern(struct json *json, const struct sheen_pattern *pattern)
+{
+    json_object_begin(json, "pattern");
+    json_string(json, "kind", text_pattern_kind(pattern->kind));
+    json_double(json, "count", pattern->count);
+    if (pattern->period > 0)
+        json_double(json, "period", pattern->period);
+    json_double(json, "duty", pattern->duty);
+    json_double(json, "rotation_deg", pattern->rotation_deg);
+    json_double(json, "offset", pattern->offset);
+    json_double(json, "soft", pattern->soft);
+    json_double(json, "opacity", pattern->opacity);
+    if (pattern->kind == SHEEN_LINES) {
+        json_array_begin(json, "at");
+        for (uint32_t i = 0; i < pattern->n_at; i++)
+            json_double(json, NULL, pattern->at[i]);
+        json_array_end(json);
+        json_double(json, "width", pattern->width);
+    }
+    if (pattern->kind == SHEEN_IMAGE)
+        json_hex(json, "image_sha256", pattern->image_id, SHEEN_ID_BYTES);
+    json_colour(json, "fg", pattern->foreground);
+    json_colour(json, "bg", pattern->background);
+    json_object_end(json);
+}
+
+static void json_light(struct json *json, const char *name, const struct sheen_light *light)
+{
+    json_object_begin(json, name);
+    json_string(json, "kind", text_light_kind(light->kind));
+    json_bool(json, "one_sided", light->one_sided);
+    json_vec3(json, "center", light->centre);
+    json_vec3(json, "u", light->u);
+    json_vec3(json, "v", light->v);
+    json_pattern(json, &light->pattern);
+    json_object_end(json);
+}
+
+static void json_lights(struct json *json, const struct sheen_frame *frame)
+{
+    json_light(json, "light", &frame->lights[0]);
+    json_array_begin(json, "lights");
+    for (uint32_t i = 0; i < frame->n_lights; i++)
+        json_light(json, NULL, &frame->lights[i]);
+    json_array_end(json);
+}
+
+static void json_show(struct json *json, const struct sheen_show *show, double range)
+{
+    json_string(json, "show", text_show_kind(show->kind));
+    if (show->kind == SHEEN_SHOW_DRAFT)
+        json_vec3(json, "show_direction", show->direction);
+    if (range > 0)
+        json_double(json, "show_range", range);
+}
+
+static void json_planes(struct json *json, uint32_t planes)
+{
+    json_array_begin(json, "aov");
+    for (uint32_t plane = SHEEN_COLOUR << 1; plane < 1u << SHEEN_PLANES; plane <<= 1)
+        if (planes & plane)
+            json_string(json, NULL, value_plane_name(plane));
+    json_array_end(json);
+}
+
+void scene_json(struct json *json, const struct sheen_request *request,
+                const struct sheen_frame *frame)
+{
+    static const char *const surfaces[] = {"exact", "polygon", "wireframe"};
+    json_camera(json, &frame->camera);
+    json_family(json, &frame->lines);
+    json_lights(json, frame);
+    if (frame->has_colours) {
+        json_colour(json, "miss", frame->miss);
+        json_colour(json, "empty", frame->empty);
+        json_colour(json, "base", frame->base);
+    }
+    json_string(json, "filter", request->unfiltered ? "off" : "exact");
+    json_string(json, "surface", surfaces[request->surface]);
+    if (request->surface != SHEEN_SURFACE_EXACT)
+        json_uint(json, "surface_level", request->surface_level);
+    json_show(json, &request->show, frame->show_range);
+    json_planes(json, frame->planes);
+}

@@ -1,0 +1,18 @@
+/* Decimal numbers out of a file, correctly rounded and whatever the locale. Pure; any thread. */
+#ifndef SHEEN_CAGE_READ_DECIMAL_H
+#define SHEEN_CAGE_READ_DECIMAL_H
+
+#include <locale.h>
+#include <stddef.h>
+
+enum decimal_result {
+    DECIMAL_OK,
+    DECIMAL_BAD,        /* not of the form [+-]digits[.digits][e[+-]digits] */
+    DECIMAL_NOT_FINITE, /* nan, inf, or too large for a double */
+};
+
+/* Reads all of text[0, length) into *value, which is the double nearest to it and is only written
+ * on DECIMAL_OK. `c_locale` is a newlocale() of "C". */
+enum decimal_result decimal_read(const char *text, size_t length, locale_t c_locale, double *value);
+
+#endif

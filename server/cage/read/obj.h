@@ -1,0 +1,13 @@
+/* Wavefront OBJ with OpenSubdiv's "t" tags. Internal to server/cage/read. */
+#ifndef SHEEN_CAGE_READ_OBJ_H
+#define SHEEN_CAGE_READ_OBJ_H
+
+#include "server/cage/read/builder.h"
+
+/* Reads a whole file into an empty builder, in one pass. Indices of faces are in range and
+ * coordinates finite on success; the rest is cage_check_lines()'s. Errors: ERROR_MODEL, saying
+ * `name` and the line; ERROR_SERVER when memory is short. Any thread. */
+bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, const char *name,
+              struct error *error);
+
+#endif

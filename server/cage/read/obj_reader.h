@@ -1,0 +1,32 @@
+/* What the parts of the OBJ reader share. Internal to them: obj.c and obj_tags.c. */
+#ifndef SHEEN_CAGE_READ_OBJ_READER_H
+#define SHEEN_CAGE_READ_OBJ_READER_H
+
+#include <locale.h>
+
+#include "server/cage/read/builder.h"
+#include "server/cage/read/obj_text.h"
+
+struct obj_reader {
+    struct obj_text text;
+    struct cage_builder *builder;
+    const char *name;
+    locale_t c_locale;
+    uint32_t line; /* where the current statement starts */
+    bool warned_keyword, warned_facevarying;
+    struct error *error;
+};
+
+/* How much of a field a message shows. */
+#define OBJ_SHOWN(field) (int)((field)->length < 40 ? (field)->length : 40), (field)->text
+
+/* Fails with ERROR_MODEL and "name:line: ...". */
+bool obj_fail(const struct obj_reader *reader, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Reads the rest of a line that began with "t": an OpenSubdiv tag. The superset of its grammar
+ * that is accepted: any blanks, any length, one sharpness for all edges of a crease or one for
+ * each, or OpenSubdiv's own indexing of one for each vertex. Ends before the line's end. */
+bool obj_read_tag(struct obj_reader *reader);
+
+#endif

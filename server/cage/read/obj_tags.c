@@ -1,0 +1,231 @@
+#include "server/cage/read/obj_reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "server/cage/read/decimal.h"
+
+/* "t NAME ints/floats/strings ..." */
+struct tag {
+    struct obj_field name;
+    uint32_t n_ints, n_floats, n_strings;
+};
+
+static bool scan_count(const char **at, const char *end, uint32_t *count)
+{
+    const char *p = *at;
+    if (p == end || *p < '0' || *p > '9')
+        return false;
+    *count = 0;
+    for (; p < end && *p >= '0' && *p <= '9'; p++) {
+        if (*count > CAGE_MAX_CORNERS / 10)
+            return false;
+        *count = *count * 10 + (uint32_t)(*p - '0');
+    }
+    *at = p;
+    return true;
+}
+
+static bool read_counts(struct obj_reader *reader, struct tag *tag)
+{
+    struct obj_field field;
+    if (!obj_text_field(&reader->text, &tag->name))
+        return obj_fail(reader, "t has no tag name");
+    if (!obj_text_field(&reader->text, &field))
+        return obj_fail(reader, "t %.*s has no counts, for example 2/1/0", OBJ_SHOWN(&tag->name));
+    const char *p = field.text, *end = p + field.length;
+    if (!(scan_count(&p, end, &tag->n_ints) && p < end && *p++ == '/' &&
+          scan_count(&p, end, &tag->n_floats) && p < end && *p++ == '/' &&
+          scan_count(&p, end, &tag->n_strings) && p == end))
+        return obj_fail(reader,
+                        "t %.*s needs its counts as ints/floats/strings, for example 2/1/0, "
+                        "not '%.*s'",
+                        OBJ_SHOWN(&tag->name), OBJ_SHOWN(&field));
+    return true;
+}
+
+static bool missing(const struct obj_reader *reader, const struct tag *tag, const char *what)
+{
+    return obj_fail(reader, "t %.*s ends before its last %s: it announces %u/%u/%u",
+                    OBJ_SHOWN(&tag->name), what, tag->n_ints, tag->n_floats, tag->n_strings);
+}
+
+/* A zero-based index: tags count from 0 where faces count from 1. */
+static bool read_index(struct obj_reader *reader, const struct tag *tag, uint32_t *index)
+{
+    struct obj_field field;
+    if (!obj_text_field(&reader->text, &field))
+        return missing(reader, tag, "integer");
+    const char *p = field.text;
+    if (!scan_count(&p, field.text + field.length, index) || p != field.text + field.length)
+        return obj_fail(reader, "t %.*s: not an index: '%.*s'", OBJ_SHOWN(&tag->name),
+                        OBJ_SHOWN(&field));
+    return true;
+}
+
+/* As OpenSubdiv's reader does, negative sharpness is smooth. */
+static bool read_sharpness(struct obj_reader *reader, const struct tag *tag, float *sharpness)
+{
+    struct obj_field field;
+    double value;
+    if (!obj_text_field(&reader->text, &field))
+        return missing(reader, tag, "sharpness");
+    if (decimal_read(field.text, field.length, reader->c_locale, &value) != DECIMAL_OK ||
+        !isfinite((float)value))
+        return obj_fail(reader, "t %.*s: not a sharpness: '%.*s'", OBJ_SHOWN(&tag->name),
+                        OBJ_SHOWN(&field));
+    *sharpness = value > 0 ? (float)value : 0;
+    return true;
+}
+
+static bool read_crease(struct obj_reader *reader, const struct tag *tag)
+{
+    struct cage *cage = &reader->builder->cage;
+    uint32_t n_edges = tag->n_ints / 2;
+    if (tag->n_ints < 2 || tag->n_ints % 2 != 0)
+        return obj_fail(reader, "t crease needs pairs of vertices, not %u", tag->n_ints);
+    if (tag->n_floats != 1 && tag->n_floats != n_edges && tag->n_floats != tag->n_ints)
+        return obj_fail(reader, "t crease has %u sharpnesses for %u edges: give one, or one each",
+                        tag->n_floats, n_edges);
+    size_t first = cage->n_creases;
+    for (uint32_t i = 0; i < n_edges; i++) {
+        struct cage_crease crease = {.sharpness = 0};
+        if (!read_index(reader, tag, &crease.vertex[0]) ||
+            !read_index(reader, tag, &crease.vertex[1]) ||
+            !cage_builder_crease(reader->builder, &crease, reader->line, reader->error))
+            return false;
+    }
+    /* With one for each vertex OpenSubdiv takes every other one: the one of the edge's start. */
+    uint32_t step = tag->n_floats == n_edges ? 1 : 2;
+    for (uint32_t i = 0; i < tag->n_floats; i++) {
+        float sharpness;
+        if (!read_sharpness(reader, tag, &sharpness))
+            return false;
+        if (tag->n_floats == 1)
+            for (size_t e = first; e < cage->n_creases; e++)
+                cage->crease[e].sharpness = sharpness;
+        else if (i % step == 0)
+            cage->crease[first + i / step].sharpness = sharpness;
+    }
+    return true;
+}
+
+static bool read_corner(struct obj_reader *reader, const struct tag *tag)
+{
+    struct cage *cage = &reader->builder->cage;
+    if (tag->n_ints < 1)
+        return obj_fail(reader, "t corner names no vertex");
+    if (tag->n_floats != 1 && tag->n_floats != tag->n_ints)
+        return obj_fail(reader,
+                        "t corner has %u sharpnesses for %u vertices: give one, or one each",
+                        tag->n_floats, tag->n_ints);
+    size_t first = cage->n_corners;
+    for (uint32_t i = 0; i < tag->n_ints; i++) {
+        struct cage_corner corner = {.sharpness = 0};
+        if (!read_index(reader, tag, &corner.vertex) ||
+            !cage_builder_corner(reader->builder, &corner, reader->line, reader->error))
+            return false;
+    }
+    float sharpness = 0;
+    for (uint32_t i = 0; i < tag->n_ints; i++) {
+        if (i < tag->n_floats && !read_sharpness(reader, tag, &sharpness))
+            return false;
+        cage->corner[first + i].sharpness = sharpness;
+    }
+    return true;
+}
+
+static bool read_hole(struct obj_reader *reader, const struct tag *tag)
+{
+    if (tag->n_ints < 1)
+        return obj_fail(reader, "t hole names no face");
+    for (uint32_t i = 0; i < tag->n_ints; i++) {
+        uint32_t face;
+        if (!read_index(reader, tag, &face) ||
+            !cage_builder_hole(reader->builder, face, reader->line, reader->error))
+            return false;
+    }
+    return true;
+}
+
+static bool read_interpolate_boundary(struct obj_reader *reader, const struct tag *tag)
+{
+    static const enum cage_boundary modes[] = {CAGE_BOUNDARY_NONE, CAGE_BOUNDARY_EDGE_AND_CORNER,
+                                               CAGE_BOUNDARY_EDGE_ONLY};
+    uint32_t mode;
+    if (tag->n_ints != 1)
+        return obj_fail(reader, "t interpolateboundary needs one number, 1/0/0");
+    if (!read_index(reader, tag, &mode))
+        return false;
+    if (mode >= sizeof modes / sizeof *modes)
+        return obj_fail(
+            reader, "t interpolateboundary is %u: 0 is none, 1 edge and corner, 2 edge only", mode);
+    reader->builder->cage.boundary = modes[mode];
+    return true;
+}
+
+/* A tag that chooses between two words, of which the second sets *flag. */
+static bool read_choice(struct obj_reader *reader, const struct tag *tag, const char *off,
+                        const char *on, bool *flag)
+{
+    struct obj_field field;
+    if (tag->n_strings != 1 || tag->n_ints != 0 || tag->n_floats != 0)
+        return obj_fail(reader, "t %.*s needs one word, 0/0/1", OBJ_SHOWN(&tag->name));
+    if (!obj_text_field(&reader->text, &field))
+        return missing(reader, tag, "word");
+    if (!obj_field_is(&field, on) && !obj_field_is(&field, off))
+        return obj_fail(reader, "t %.*s is '%.*s', needs %s or %s", OBJ_SHOWN(&tag->name),
+                        OBJ_SHOWN(&field), off, on);
+    *flag = obj_field_is(&field, on);
+    return true;
+}
+
+/* Tags that say nothing about positions, hierarchical edits (which nobody evaluates any more) and
+ * names nobody knows. */
+static void pass_over(struct obj_reader *reader, const struct tag *tag)
+{
+    struct cage *cage = &reader->builder->cage;
+    struct obj_field field;
+    if (tag->name.length > 11 && memcmp(tag->name.text, "facevarying", 11) == 0) {
+        if (!reader->warned_facevarying)
+            cage_warn(cage, "%s:%u: t %.*s is about textures and passed over", reader->name,
+                      reader->line, OBJ_SHOWN(&tag->name));
+        reader->warned_facevarying = true;
+    } else {
+        cage_warn(cage, "%s:%u: t %.*s is not read: the surface is drawn as if it were not there",
+                  reader->name, reader->line, OBJ_SHOWN(&tag->name));
+    }
+    while (obj_text_field(&reader->text, &field))
+        ;
+}
+
+bool obj_read_tag(struct obj_reader *reader)
+{
+    struct tag tag;
+    struct cage *cage = &reader->builder->cage;
+    if (!read_counts(reader, &tag))
+        return false;
+    bool ok;
+    if (obj_field_is(&tag.name, "crease"))
+        ok = read_crease(reader, &tag);
+    else if (obj_field_is(&tag.name, "corner"))
+        ok = read_corner(reader, &tag);
+    else if (obj_field_is(&tag.name, "hole"))
+        ok = read_hole(reader, &tag);
+    else if (obj_field_is(&tag.name, "interpolateboundary"))
+        ok = read_interpolate_boundary(reader, &tag);
+    else if (obj_field_is(&tag.name, "creasemethod"))
+        ok = read_choice(reader, &tag, "normal", "chaikin", &cage->chaikin);
+    else if (obj_field_is(&tag.name, "smoothtriangles"))
+        ok = read_choice(reader, &tag, "catmark", "smooth", &cage->smooth_triangles);
+    else {
+        pass_over(reader, &tag);
+        ok = true;
+    }
+    struct obj_field field;
+    if (ok && obj_text_field(&reader->text, &field))
+        return obj_fail(reader, "t %.*s has more than it announces (%u/%u/%u): '%.*s'",
+                        OBJ_SHOWN(&tag.name), tag.n_ints, tag.n_floats, tag.n_strings,
+                        OBJ_SHOWN(&field));
+    return ok;
+}

@@ -1,0 +1,66 @@
+#include "server/cage/read/read.h"
+
+#include <string.h>
+#include <strings.h>
+
+#include "server/cage/check.h"
+#include "server/cage/read/builder.h"
+#include "server/cage/read/gltf.h"
+#include "server/cage/read/obj.h"
+
+/* Messages have room for what is wrong only if the name leaves it. */
+#define SHOWN_NAME_BYTES 160
+
+static bool ends_with(const char *text, const char *ending)
+{
+    size_t length = strlen(text), n = strlen(ending);
+    return length >= n && strcasecmp(text + length - n, ending) == 0;
+}
+
+typedef bool (*reader)(struct cage_builder *builder, const void *bytes, size_t size,
+                       const char *name, struct error *error);
+
+static reader choose_reader(const char *name, const char *bytes, size_t size)
+{
+    if (ends_with(name, ".obj"))
+        return obj_read;
+    if (ends_with(name, ".gltf") || ends_with(name, ".glb"))
+        return gltf_read;
+    if (size >= 4 && memcmp(bytes, "glTF", 4) == 0)
+        return gltf_read;
+    size_t at = 0;
+    while (at < size && strchr(" \t\r\n", bytes[at]) && bytes[at])
+        at++;
+    return at < size && bytes[at] == '{' ? gltf_read : obj_read;
+}
+
+/* The file's own name is what people know it by; of an overlong one they know the end. */
+static const char *shown_name(const char *name)
+{
+    if (!name || !*name)
+        return "cage";
+    size_t length = strlen(name);
+    return length > SHOWN_NAME_BYTES ? name + length - SHOWN_NAME_BYTES : name;
+}
+
+bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *name,
+               struct error *error)
+{
+    *cage = (struct cage){0};
+    name = shown_name(name);
+    if (size == 0)
+        return error_set(error, ERROR_MODEL, "%s: the file is empty", name);
+    struct cage_builder builder = {0};
+    bool ok = choose_reader(name, bytes, size)(&builder, bytes, size, name, error);
+    if (ok) {
+        const struct cage_lines lines = {builder.face_line, builder.crease_line,
+                                         builder.corner_line, builder.hole_line};
+        ok = cage_check_lines(&builder.cage, &lines, name, error);
+    }
+    if (ok) {
+        *cage = builder.cage;
+        builder.cage = (struct cage){0};
+    }
+    cage_builder_finish(&builder);
+    return ok;
+}

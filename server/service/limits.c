@@ -1,0 +1,138 @@
+#include "server/service/limits.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "protocol/limits.h"
+
+#define KIB ((uint64_t)1 << 10)
+#define MIB ((uint64_t)1 << 20)
+#define GIB ((uint64_t)1 << 30)
+#define MOST_BYTES (UINT64_MAX / 4) /* sums of a few stay in range */
+#define MOST_SECONDS 10000000u
+
+#define AT(member) offsetof(struct limits, member)
+
+const struct limits_row LIMITS[] = {
+    {"memory-budget", UNIT_BYTES, "most that files, models, images and frames may take together", 1,
+     MOST_BYTES, 4 * GIB, AT(memory_budget)},
+    {"peer-memory", UNIT_BYTES,
+     "most that uploads under way and frames of one user (Unix socket) or address\nmay take", 1,
+     MOST_BYTES, 2 * GIB, AT(peer_memory)},
+    {"max-upload", UNIT_BYTES, "largest model or image file", 1, PROTOCOL_MAX_UPLOAD_BYTES,
+     PROTOCOL_MAX_UPLOAD_BYTES, AT(max_upload)},
+    {"max-frame", UNIT_BYTES, "largest frame: width x height x bytes of all its planes", 1,
+     PROTOCOL_MAX_FRAME_BYTES, GIB, AT(max_frame)},
+    {"max-image-side", UNIT_PX, "largest width and height of a light image", 1,
+     PROTOCOL_MAX_SIZE_PX, 16384, AT(max_image_side)},
+    {"max-connections", UNIT_COUNT, "clients at the same time", 1, 1000000, 4096,
+     AT(max_connections)},
+    {"max-peer-connections", UNIT_COUNT, "of one user (Unix socket) or address", 1, 1000000, 2048,
+     AT(max_peer_connections)},
+    {"credits", UNIT_COUNT, "requests of one client that wait for their answers", 1,
+     PROTOCOL_MAX_CREDITS, 16, AT(credits)},
+    {"interactive-hard", UNIT_BYTES,
+     "a client with more than this unsent when another interactive frame comes is\n"
+     "disconnected",
+     1, MOST_BYTES, 32 * MIB, AT(interactive_hard)},
+    {"interactive-soft", UNIT_BYTES, "and so is one with more than this unsent for", 1, MOST_BYTES,
+     8 * MIB, AT(interactive_soft)},
+    {"interactive-seconds", UNIT_SECONDS, "so long", 1, MOST_SECONDS, 5, AT(interactive_s)},
+    {"output-hard", UNIT_BYTES, "the same for stills, batches and all else", 1, MOST_BYTES,
+     256 * MIB, AT(output_hard)},
+    {"output-soft", UNIT_BYTES, "the same for stills, batches and all else", 1, MOST_BYTES,
+     64 * MIB, AT(output_soft)},
+    {"output-seconds", UNIT_SECONDS, "the same for stills, batches and all else", 1, MOST_SECONDS,
+     60, AT(output_s)},
+    {"handshake-timeout", UNIT_SECONDS, "from connecting to HELLO", 1, MOST_SECONDS, 3,
+     AT(handshake_s)},
+    {"message-timeout", UNIT_SECONDS, "from the first byte of a message to its last", 1,
+     MOST_SECONDS, 30, AT(message_s)},
+    {"stall-timeout", UNIT_SECONDS, "without a byte read of an answer, or sent of an upload", 1,
+     MOST_SECONDS, 30, AT(stall_s)},
+    {"idle-timeout", UNIT_SECONDS, "without a request; 0: for ever", 0, MOST_SECONDS, 900,
+     AT(idle_s)},
+    {"drain-timeout", UNIT_SECONDS, "after SIGTERM, for a client to read its frames", 0,
+     MOST_SECONDS, 30, AT(drain_s)},
+};
+const size_t N_LIMITS = sizeof LIMITS / sizeof *LIMITS;
+
+static void put(struct limits *limits, const struct limits_row *row, uint64_t value)
+{
+    memcpy((char *)limits + row->offset, &value, sizeof value);
+}
+
+uint64_t limits_get(const struct limits *limits, const struct limits_row *row)
+{
+    uint64_t value;
+    memcpy(&value, (const char *)limits + row->offset, sizeof value);
+    return value;
+}
+
+void limits_init(struct limits *limits)
+{
+    for (size_t i = 0; i < N_LIMITS; i++)
+        put(limits, &LIMITS[i], LIMITS[i].fallback);
+}
+
+bool number_parse(const char *value, uint64_t low, uint64_t high, bool suffixes, uint64_t *number)
+{
+    if (*value < '0' || *value > '9')
+        return false;
+    char *end;
+    errno = 0;
+    uint64_t n = strtoull(value, &end, 10);
+    const char *suffix = suffixes && *end ? strchr("KMGT", *end) : NULL;
+    if (suffix) {
+        end++;
+        for (long i = suffix - "KMGT"; errno == 0 && i >= 0; i--)
+            errno = __builtin_mul_overflow(n, 1024, &n) ? ERANGE : 0;
+    }
+    *number = n;
+    return errno == 0 && *end == 0 && n >= low && n <= high;
+}
+
+bool limits_set(struct limits *limits, const struct limits_row *row, const char *value,
+                struct error *error)
+{
+    uint64_t number = 0;
+    if (number_parse(value, row->low, row->high, row->unit == UNIT_BYTES, &number)) {
+        put(limits, row, number);
+        return true;
+    }
+    if (row->unit == UNIT_BYTES)
+        return error_set(error, ERROR_REQUEST,
+                         "%s is '%s'; it must be bytes from %" PRIu64 " to %" PRIu64
+                         ", as 4000000000, 800M or 4G",
+                         row->name, value, row->low, row->high);
+    return error_set(error, ERROR_REQUEST,
+                     "%s is '%s'; it must be a whole number from %" PRIu64 " to %" PRIu64,
+                     row->name, value, row->low, row->high);
+}
+
+const char *limits_argument(const struct limits_row *row)
+{
+    static const char *const names[] = {
+        [UNIT_COUNT] = "N",
+        [UNIT_BYTES] = "BYTES",
+        [UNIT_PX] = "PX",
+        [UNIT_SECONDS] = "SECONDS",
+    };
+    return names[row->unit];
+}
+
+void limits_format(const struct limits_row *row, uint64_t value,
+                   char text[static LIMITS_TEXT_BYTES])
+{
+    static const char suffixes[] = "KMGT";
+    unsigned n = 0;
+    while (row->unit == UNIT_BYTES && n < 4 && value >= KIB && value % KIB == 0) {
+        value /= KIB;
+        n++;
+    }
+    snprintf(text, LIMITS_TEXT_BYTES, n ? "%" PRIu64 "%c" : "%" PRIu64, value,
+             n ? suffixes[n - 1] : 0);
+}

@@ -1,0 +1,106 @@
+#include "server/service/memory.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+struct memory_charge {
+    struct memory *memory;
+    struct peer *peer;
+    uint64_t bytes;
+    bool is_patient;
+};
+
+static bool fits_peer(const struct memory *memory, const struct peer *peer, uint64_t bytes)
+{
+    uint64_t limit = memory->limits->peer_memory;
+    return peer->memory_bytes <= limit && bytes <= limit - peer->memory_bytes;
+}
+
+static bool refuse_peer(const struct memory *memory, const struct peer *peer, const char *what,
+                        uint64_t bytes, struct error *error)
+{
+    return error_set(error, ERROR_SERVER,
+                     "%s needs %" PRIu64 " bytes; of the %" PRIu64 " that uploads and frames of %s "
+                     "may take (--peer-memory), %" PRIu64 " are in use now: try again later",
+                     what, bytes, memory->limits->peer_memory, peer->name, peer->memory_bytes);
+}
+
+/* Stills and batches leave room for interactive frames. */
+static bool fits_patient(const struct memory *memory, uint64_t bytes)
+{
+    return memory->patient_bytes == 0 ||
+           memory->patient_bytes + bytes <= memory->limits->memory_budget / 2;
+}
+
+static bool take(struct memory *memory, struct peer *peer, bool is_patient, uint64_t bytes,
+                 struct error *error)
+{
+    if (is_patient && !fits_patient(memory, bytes))
+        return false; /* there are others: later */
+    if (!fits_peer(memory, peer, bytes))
+        return refuse_peer(memory, peer, "a frame", bytes, error);
+    return store_reserve(memory->store, bytes, "a frame", ERROR_REQUEST, error);
+}
+
+enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
+                                       enum request_class request_class, uint64_t bytes,
+                                       struct memory_charge **charge, struct error *error)
+{
+    bool is_patient = request_class != CLASS_INTERACTIVE;
+    struct memory_charge *made = malloc(sizeof *made);
+    if (!made) {
+        error_set(error, ERROR_SERVER, "no memory for a frame: try again later");
+        return MEMORY_FAILED;
+    }
+    if (!take(memory, peer, is_patient, bytes, error)) {
+        free(made);
+        return memory->frame_bytes > 0 ? MEMORY_LATER : MEMORY_FAILED;
+    }
+    *made = (struct memory_charge){memory, peer_reference(peer), bytes, is_patient};
+    peer->memory_bytes += bytes;
+    memory->frame_bytes += bytes;
+    memory->patient_bytes += is_patient ? bytes : 0;
+    *charge = made;
+    return MEMORY_CHARGED;
+}
+
+void memory_charge_shrink(struct memory_charge *charge, uint64_t bytes)
+{
+    if (bytes >= charge->bytes)
+        return;
+    struct memory *memory = charge->memory;
+    uint64_t less = charge->bytes - bytes;
+    charge->bytes = bytes;
+    charge->peer->memory_bytes -= less;
+    memory->frame_bytes -= less;
+    memory->patient_bytes -= charge->is_patient ? less : 0;
+    store_release(memory->store, less);
+}
+
+void memory_charge_release(void *owner)
+{
+    struct memory_charge *charge = owner;
+    if (!charge)
+        return;
+    memory_charge_shrink(charge, 0);
+    peer_put(&charge->memory->peers, charge->peer);
+    free(charge);
+}
+
+bool memory_charge_upload(struct memory *memory, struct peer *peer, uint64_t bytes,
+                          const char *name, enum error_kind permanent, struct error *error)
+{
+    if (!fits_peer(memory, peer, bytes))
+        return refuse_peer(memory, peer, name, bytes, error);
+    if (!store_reserve(memory->store, bytes, name, permanent, error))
+        return false;
+    peer->memory_bytes += bytes;
+    return true;
+}
+
+void memory_release_upload(struct memory *memory, struct peer *peer, uint64_t bytes, bool stored)
+{
+    peer->memory_bytes -= bytes;
+    if (!stored)
+        store_release(memory->store, bytes);
+}

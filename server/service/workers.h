@@ -1,0 +1,53 @@
+/* What sheend has others do, in processes that can harm nobody: reading cages and images, writing
+ * images, drawing text. Neither tinygltf nor OpenImageIO is in the daemon itself.
+ *
+ * What comes back has been checked as if a stranger had sent it. Each call blocks until it is done;
+ * any thread may make it. */
+#ifndef SHEEN_SERVICE_WORKERS_H
+#define SHEEN_SERVICE_WORKERS_H
+
+#include "server/cage/cage.h"
+#include "server/image/image.h"
+#include "server/service/worker.h"
+#include "server/worker/image_code.h"
+
+/* What a process may take: its own memory beyond what it starts with, time, and what it answers.
+ * The memory budget, but never less than the least, caps memory and answer. */
+#define WORKERS_LEAST_MEMORY_BYTES (256ull << 20)
+#define WORKERS_CAGE_MEMORY_PER_BYTE 24 /* of the file */
+#define WORKERS_IMAGE_MEMORY_BYTES (IMAGE_MAX_BYTES + (512ull << 20))
+#define WORKERS_CPU_S 60u
+#define WORKERS_WALL_S 120u
+
+struct workers {
+    struct worker *cages, *images;
+    size_t memory_budget_bytes;
+};
+
+/* Finds sheend-cage and sheend-image in `folder`; NULL: in the folder of the running program, or in
+ * ../libexec/sheen beside it; and starts the first. ERROR_SERVER on failure; workers_finish() is
+ * due in both cases. */
+bool workers_init(struct workers *workers, const char *folder, size_t memory_budget_bytes,
+                  struct error *error);
+void workers_finish(struct workers *workers);
+/* An image or a text will come. Loading its libraries keeps a processor busy for 0.2 s, so that a
+ * daemon which is about to make its first frame does it only then. */
+void workers_expect_images(struct workers *workers);
+/* As worker_stop(), for all. */
+void workers_stop(struct workers *workers);
+
+/* As cage_read(). */
+bool workers_read_cage(struct workers *workers, struct cage *cage, const void *bytes, size_t size,
+                       const char *name, struct error *error);
+/* As image_decode(). */
+bool workers_read_image(struct workers *workers, struct image *image, const void *bytes,
+                        size_t size, const char *name, uint32_t max_px, struct error *error);
+/* As image_encode(); the picture's channels lie in the blocks. */
+bool workers_write_image(struct workers *workers, const struct picture *picture,
+                         const struct picture_block *blocks, size_t n_blocks, uint8_t **bytes,
+                         size_t *size, struct error *error);
+/* As text_create(). */
+bool workers_draw_text(struct workers *workers, struct text *text, const char *line, int size_px,
+                       struct error *error);
+
+#endif

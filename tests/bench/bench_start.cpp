@@ -1,0 +1,88 @@
+/* bench_start [--sheend PROGRAM] [MODEL]: from nothing to the first pixel, as a command sees it
+ * that starts a daemon of its own: connect, upload, a frame of 640x480. Planes, which sheend packs
+ * itself, and a PNG file, for which sheend-image loads its libraries first, in turn. The caches of
+ * the system and of the driver are warm: an unmeasured pair goes first. */
+#include "tests/bench/bench.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow" /* sheen_server is a struct and a function */
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers" /* the defaults are C's */
+extern "C" {
+#include "client/sheen.h"
+}
+#include "tests/oracle/model.h"
+
+namespace
+{
+
+const sheen_request defaults = SHEEN_REQUEST_DEFAULTS;
+#pragma GCC diagnostic pop
+
+void check(sheen_status status, const sheen_error &error)
+{
+    if (status != SHEEN_OK)
+        throw std::runtime_error(error.text);
+}
+
+/* Milliseconds to the first frame; the daemon's end is not counted. */
+double first_frame(const std::string &path, const std::string &file, sheen_format format,
+                   const char *device)
+{
+    const double start = now_ms();
+    sheen_error error;
+    sheen_session *session;
+    sheen_connect_options options = {nullptr, device, 300000, {}};
+    check(sheen_connect(&session, &options, &error), error);
+    sheen_request request = defaults;
+    sheen_frame frame = {};
+    request.width_px = 640;
+    request.height_px = 480;
+    request.format = format;
+    sheen_file_id(file.data(), file.size(), request.model_id);
+    check(sheen_upload(session, SHEEN_FILE_MODEL, request.model_id, file.data(), file.size(),
+                       path.c_str(), nullptr, &error),
+          error);
+    check(sheen_render(session, &request, nullptr, &frame, &error), error);
+    const double taken = now_ms() - start;
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    return taken;
+}
+
+void measure(report *report, table *table, const std::string &path, const char *device)
+{
+    std::ifstream stream(path, std::ios::binary);
+    const std::string file((std::istreambuf_iterator<char>(stream)),
+                           std::istreambuf_iterator<char>());
+    pair_of_samples pair = measure_pairs(
+        report->given().runs,
+        [&](int) { return first_frame(path, file, SHEEN_PLANES_ZSTD, device); },
+        [&](int) { return first_frame(path, file, SHEEN_FILE_PNG, device); });
+    const std::string name = model_name(path);
+    table->row({name, count((double)read_cage_file(path)->n_faces), number(pair.a.median(), 0),
+                number(pair.a.least(), 0), number(pair.b.median(), 0), number(pair.b.least(), 0)});
+    report->figure(name + " first_planes_ms", pair.a.median());
+    report->figure(name + " first_png_ms", pair.b.median());
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    return bench_main("bench_start", [&] {
+        report report("bench_start", argc, argv, {"device", "sheend"});
+        const options &given = report.given();
+        setenv("SHEEN_DAEMON", given.other("sheend", "build/sheend").c_str(), 1);
+        table table({"start", "faces", "planes ms", "least", "PNG ms", "least"});
+        std::string device = given.other("device", "software");
+        for (const std::string &path : bench_models(given))
+            measure(&report, &table, path, device.c_str());
+        table.print();
+        report.finish();
+    });
+}

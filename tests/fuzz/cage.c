@@ -1,0 +1,76 @@
+#include "tests/fuzz/cage.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "server/cage/read/read.h"
+#include "server/cage/survey.h"
+#include "server/limit/tables.h"
+#include "server/worker/cage_code.h"
+#include "tests/fuzz/fuzz.h"
+
+#define MOST_FACES 40 /* more costs time and finds nothing more */
+
+static void build_tables(const struct cage *cage)
+{
+    struct error error = {0};
+    struct cage_survey survey;
+    struct limit_tables tables = {0};
+    struct limit_plan *plan = NULL;
+    bool ok = cage_survey(cage, &survey, &error) && (plan = limit_plan_create(cage, &error)) &&
+              limit_tables_init(&tables, plan, &error) &&
+              limit_build_faces(&tables, plan, 0, tables.n_faces, &error);
+    MUST(ok || error.kind == ERROR_MODEL || (error.kind == ERROR_SERVER && fuzz_memory_failed()));
+    limit_plan_destroy(plan);
+    limit_tables_finish(&tables);
+}
+
+static void check_same(const struct cage *a, const struct cage *b)
+{
+    MUST(a->n_vertices == b->n_vertices && a->n_faces == b->n_faces);
+    MUST(a->n_creases == b->n_creases && a->n_corners == b->n_corners && a->n_holes == b->n_holes);
+    MUST(a->scheme == b->scheme && a->boundary == b->boundary && a->chaikin == b->chaikin);
+    MUST(memcmp(a->position, b->position, a->n_vertices * sizeof *a->position) == 0);
+    MUST(memcmp(a->face_vertex, b->face_vertex,
+                a->face_start[a->n_faces] * sizeof *a->face_vertex) == 0);
+}
+
+/* Through a file, as from a worker. */
+static void hand_over(const struct cage *cage)
+{
+    struct error error = {0};
+    struct cage taken;
+    struct sink sink;
+    sink_init(&sink, memfd_create("fuzz", MFD_CLOEXEC));
+    cage_write(&sink, cage);
+    MUST(sink_flush(&sink));
+    size_t size = (size_t)lseek(sink.fd, 0, SEEK_END);
+    void *bytes = mmap(NULL, size, PROT_READ, MAP_SHARED, sink.fd, 0);
+    MUST(bytes != MAP_FAILED);
+    struct source source = {bytes, size, true};
+    if (cage_take(&source, &taken, "fuzz", &error)) {
+        check_same(cage, &taken);
+        cage_finish(&taken);
+    } else {
+        MUST(error.kind == ERROR_SERVER && fuzz_memory_failed());
+    }
+    munmap(bytes, size);
+    close(sink.fd);
+}
+
+void fuzz_cage(const void *bytes, size_t size, const char *name)
+{
+    struct error error = {0};
+    struct cage cage;
+    if (!cage_read(&cage, bytes, size, name, &error)) {
+        MUST(error.text[0]);
+        MUST(error.kind == ERROR_MODEL || (error.kind == ERROR_SERVER && fuzz_memory_failed()));
+        return;
+    }
+    hand_over(&cage);
+    if (cage.n_faces <= MOST_FACES)
+        build_tables(&cage);
+    cage_finish(&cage);
+}

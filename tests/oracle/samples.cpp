@@ -1,0 +1,71 @@
+#include "tests/oracle/samples.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <OpenImageIO/imageio.h>
+
+#include "tests/oracle/render.h"
+
+static picture read_picture(const std::string &path)
+{
+    auto input = OIIO::ImageInput::open(path);
+    if (!input)
+        throw std::runtime_error(path + ": " + OIIO::geterror());
+    const OIIO::ImageSpec &spec = input->spec();
+    picture picture;
+    picture.width_px = spec.width;
+    picture.height_px = spec.height;
+    picture.rgb.resize((size_t)spec.image_pixels() * 3);
+    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, picture.rgb.data()))
+        throw std::runtime_error(path + ": " + input->geterror());
+    return picture;
+}
+
+picture render_picture(const std::string &sheen, const std::string &model, int width_px,
+                       int height_px, const std::vector<std::string> &options)
+{
+    temporary_folder folder;
+    std::string file = folder.file("frame.tif");
+    std::string size = std::to_string(width_px) + "x" + std::to_string(height_px);
+    std::vector<std::string> command = {sheen, "render", model, "-o", file, "-q", "--size", size};
+    command.insert(command.end(), options.begin(), options.end());
+    program_result result = run_program(command, folder);
+    if (result.exit_code != 0)
+        throw std::runtime_error(model + ": " + result.errors);
+    return read_picture(file);
+}
+
+std::vector<double> averaged(const picture &large, int scale)
+{
+    int width = large.width_px / scale, height = large.height_px / scale;
+    std::vector<double> mean((size_t)width * (size_t)height * 3, 0);
+    for (int y = 0; y < height * scale; y++)
+        for (int x = 0; x < width * scale; x++) {
+            size_t from = ((size_t)y * (size_t)large.width_px + (size_t)x) * 3;
+            size_t to = ((size_t)(y / scale) * (size_t)width + (size_t)(x / scale)) * 3;
+            for (size_t k = 0; k < 3; k++)
+                mean[to + k] += large.rgb[from + k];
+        }
+    for (double &value : mean)
+        value /= scale * scale;
+    return mean;
+}
+
+std::vector<double> differences(const picture &picture, const std::vector<double> &truth)
+{
+    if (picture.rgb.size() != truth.size())
+        throw std::runtime_error("the picture has another size than asked for");
+    std::vector<double> worst(truth.size() / 3, 0);
+    for (size_t i = 0; i < truth.size(); i++)
+        worst[i / 3] = std::fmax(worst[i / 3], std::fabs(picture.rgb[i] - truth[i]));
+    return worst;
+}
+
+double mean_of(const std::vector<double> &values)
+{
+    double sum = 0;
+    for (double value : values)
+        sum += value;
+    return values.empty() ? NAN : sum / (double)values.size();
+}

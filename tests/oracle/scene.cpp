@@ -1,0 +1,142 @@
+#include "tests/oracle/scene.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "tests/oracle/vec.h"
+
+namespace
+{
+
+void check(bool ok, const error &error)
+{
+    if (!ok)
+        throw std::runtime_error(error.text);
+}
+
+/* Ranges of 16 faces to whoever is free, as the daemon's pool does with them. */
+void build(limit_tables *tables, const limit_plan *plan, int n_threads)
+{
+    const size_t range = 16;
+    std::vector<error> errors((size_t)n_threads);
+    std::vector<char> built((size_t)n_threads, true);
+    std::atomic<size_t> next{0};
+    auto work = [&](size_t k) {
+        for (size_t first; built[k] && (first = next.fetch_add(range)) < tables->n_faces;)
+            built[k] = limit_build_faces(tables, plan, first,
+                                         std::min(first + range, tables->n_faces), &errors[k]);
+    };
+    std::vector<std::thread> others;
+    for (size_t k = 1; k < errors.size(); k++)
+        others.emplace_back(work, k);
+    work(0);
+    for (std::thread &thread : others)
+        thread.join();
+    for (size_t k = 0; k < errors.size(); k++)
+        check(built[k], errors[k]);
+}
+
+vec3 from(const double a[3])
+{
+    return {a[0], a[1], a[2]};
+}
+
+} // namespace
+
+scene::scene(std::shared_ptr<const struct cage> whose, int n_threads) : cage(std::move(whose))
+{
+    error error;
+    std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(limit_plan_create(cage.get(), &error),
+                                                             limit_plan_destroy);
+    check(plan != nullptr, error);
+    check(limit_tables_init(&tables, plan.get(), &error), error);
+    build(&tables, plan.get(), n_threads);
+}
+
+scene::~scene()
+{
+    limit_tables_finish(&tables);
+}
+
+frame_request scene::request(uint32_t width_px, uint32_t height_px) const
+{
+    frame_request request = {};
+    request.width_px = width_px;
+    request.height_px = height_px;
+    request.n_lights = 1;
+    pattern &pattern = request.lights[0].pattern;
+    pattern.kind = PATTERN_STRIPES;
+    pattern.count = 40;
+    pattern.duty = 0.5;
+    pattern.opacity = 1;
+    for (int i = 0; i < 4; i++)
+        pattern.foreground[i] = 1;
+    pattern.background[3] = 1;
+    request.planes = PLANE_COLOUR;
+    renderer_default_camera(tables.box_min, tables.box_max, width_px, height_px, &request.camera);
+    renderer_default_light(tables.box_min, tables.box_max, &request.camera, &request.lights[0]);
+    return request;
+}
+
+drawing::drawing(const scene &scene, const char *device) : renderer(nullptr), model(nullptr)
+{
+    error error;
+    renderer_options options = {device, 0};
+    renderer = renderer_create(&options, &error);
+    check(renderer != nullptr, error);
+    model = renderer_model_create(renderer, &scene.tables, &error);
+    if (!model)
+        renderer_destroy(renderer);
+    check(model != nullptr, error);
+}
+
+drawing::~drawing()
+{
+    renderer_model_destroy(renderer, model);
+    renderer_destroy(renderer);
+}
+
+frame drawing::render(const frame_request &request)
+{
+    error error;
+    frame frame;
+    check(renderer_render(renderer, model, &request, &frame, &error), error);
+    return frame;
+}
+
+frame_times drawing::times(const frame_request &request)
+{
+    frame frame = render(request);
+    frame_times times = frame.times; /* finishing forgets them */
+    frame_finish(&frame);
+    return times;
+}
+
+double stages_ms(const frame_times &times)
+{
+    return (double)(times.visibility_us + times.evaluate_us + times.shade_us) / 1000;
+}
+
+void orbit(camera *camera, double degrees)
+{
+    vec3 axis = normalized(from(camera->up)), arm = from(camera->eye) - from(camera->target);
+    double angle = degrees * M_PI / 180, along = dot(axis, arm) * (1 - std::cos(angle));
+    vec3 eye = from(camera->target) + std::cos(angle) * arm + std::sin(angle) * cross(axis, arm) +
+               along * axis;
+    camera->eye[0] = eye.x;
+    camera->eye[1] = eye.y;
+    camera->eye[2] = eye.z;
+}
+
+size_t covered_pixels(const frame &frame)
+{
+    const float *normals = (const float *)frame.plane[2];
+    size_t pixels = (size_t)frame.width_px * frame.height_px, covered = 0;
+    for (size_t i = 0; i < pixels; i++)
+        covered += !std::isnan(normals[3 * i]);
+    return covered;
+}

@@ -1,0 +1,69 @@
+/* A cage, its tables, and the renderer that draws them, in this process, without
+ * a daemon. */
+#ifndef SHEEN_TESTS_ORACLE_SCENE_H
+#define SHEEN_TESTS_ORACLE_SCENE_H
+
+#include <memory>
+#include <string>
+
+#include "tests/oracle/renderer.h"
+
+/* As many threads as the daemon builds tables with on the machine of RESULTS.md, and as every peer
+ * gets. */
+const int bench_threads = 2;
+
+/* A cage's tables. */
+class scene
+{
+  public:
+    /* Throws std::runtime_error when the cage is refused. */
+    explicit scene(std::shared_ptr<const struct cage> whose, int n_threads = bench_threads);
+    ~scene();
+    scene(const scene &) = delete;
+    scene &operator=(const scene &) = delete;
+
+    /* The camera and the light that sheen chooses, 40 stripes, colour only. */
+    frame_request request(uint32_t width_px, uint32_t height_px) const;
+    size_t bytes() const
+    {
+        return limit_tables_bytes(&tables);
+    }
+
+    const std::shared_ptr<const struct cage> cage;
+    limit_tables tables = {};
+};
+
+/* The renderer with one scene's tables on its device. */
+class drawing
+{
+  public:
+    drawing(const scene &scene, const char *device);
+    ~drawing();
+    drawing(const drawing &) = delete;
+    drawing &operator=(const drawing &) = delete;
+
+    /* What the device calls itself. */
+    std::string device() const
+    {
+        return renderer_info(renderer)->device;
+    }
+    /* The caller gives the frame back with frame_finish(). */
+    frame render(const frame_request &request);
+    /* Renders and drops the picture. */
+    frame_times times(const frame_request &request);
+
+  private:
+    struct renderer *renderer;
+    struct renderer_model *model;
+};
+
+/* Visibility, evaluate and shade, in milliseconds. */
+double stages_ms(const frame_times &times);
+
+/* The eye goes about the target along up. Frames of different cameras share no planes. */
+void orbit(camera *camera, double degrees);
+
+/* Pixels that show the surface, by the frame's normals. */
+size_t covered_pixels(const frame &frame);
+
+#endif

@@ -1,0 +1,116 @@
+/* test_patterns SHEEN PLANE.obj: patterns whose edges run across one another, and lights that end
+ * within the picture, against many samples a pixel. The plane mirrors them without a bend, so that
+ * what is left is the filter's own error: below one in a hundred. */
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/oracle/samples.h"
+#include "tests/oracle/vec.h"
+#include "tests/oracle/verdict.h"
+#include "tests/oracle/view.h"
+
+namespace
+{
+
+const int width_px = 96, height_px = 64, samples = 32; /* a pixel, each way */
+/* In 1/255: a hundredth, and half a step of the colour. */
+const double max_error = 2.55 + 0.5;
+const double px = 1.0 / height_px; /* in units: the camera sees one from top to bottom */
+
+struct scene {
+    std::string name;
+    std::vector<std::string> options;
+};
+
+/* From straight above: a pixel is a square of the plane, and the mirrored ray goes straight up. */
+const std::vector<std::string> camera = {"--eye", "0,0,1", "--target", "0,0,0",
+                                         "--up",  "0,1,0", "--ortho",  "1"};
+
+void add_light(std::vector<std::string> *options, vec3 centre, vec3 u, vec3 v,
+               const std::string &pattern)
+{
+    options->insert(options->end(),
+                    {"--light", "rectangle", "--light-center", comma_separated(centre), "--light-u",
+                     comma_separated(u), "--light-v", comma_separated(v), "--pattern", pattern});
+}
+
+/* A pattern on a light that fills the picture, whose sides are not at right angles with `shear`. */
+scene pattern_scene(const std::string &pattern, double shear)
+{
+    scene scene = {pattern + (shear > 0 ? ", sheared" : ""), camera};
+    add_light(&scene.options, {0.003, 0.001, 2}, {4, 0, 0}, {4 * shear, 4, 0}, pattern);
+    return scene;
+}
+
+/* White lights on black, so small that their corners are most of them, but wider than a pixel.
+ */
+scene corner_scene()
+{
+    const double deg = M_PI / 180;
+    scene scene = {"lights of few pixels", camera};
+    int n = 0;
+    for (vec3 size : {vec3{7, 5, 90}, vec3{4, 4, 90}, vec3{3, 2, 90}, vec3{2.4, 2, 60},
+                      vec3{12, 1.6, 90}, vec3{16, 4, 30}, vec3{5, 3, 130}, vec3{1.5, 1.5, 90}}) {
+        double a = (17 + 23 * n) * deg, b = a + size.z * deg;
+        vec3 centre = {px * (-36.3 + 24.2 * (n % 4)), px * (-14.6 + 27.3 * (n / 4)), 2};
+        add_light(&scene.options, centre, (size.x * px) * vec3{std::cos(a), std::sin(a), 0},
+                  (size.y * px) * vec3{std::cos(b), std::sin(b), 0}, "stripes:bg=#ffffff");
+        n++;
+    }
+    scene.options.insert(scene.options.end(), {"--miss", "#000000"});
+    return scene;
+}
+
+std::vector<scene> scenes()
+{
+    return {
+        corner_scene(),
+        pattern_scene("lattice:count=40,rotation=30", 0),
+        pattern_scene("lattice:count=120,rotation=20,duty=0.2", 0.8),
+        pattern_scene("lattice:count=250,rotation=30", 0),
+        pattern_scene("lattice:count=600,rotation=20,duty=0.2", 0.8),
+        pattern_scene("lattice:count=120,rotation=45,soft=0.3", 0),
+        pattern_scene("lattice:count=600,rotation=45,soft=0.3", 0.8),
+        pattern_scene("lines:at=0.46/0.5/0.52,rotation=20,width=0.006,soft=0.3", 0),
+        pattern_scene("lines:at=0.46/0.5/0.52,rotation=20,width=0.02,soft=1", 0),
+    };
+}
+
+void judge(const std::string &sheen, const std::string &model, scene scene, verdict *verdict)
+{
+    picture filtered = render_picture(sheen, model, width_px, height_px, scene.options);
+    scene.options.insert(scene.options.end(), {"--filter", "off"});
+    std::vector<double> truth = averaged(
+        render_picture(sheen, model, width_px * samples, height_px * samples, scene.options),
+        samples);
+    std::vector<double> error = differences(filtered, truth);
+    size_t mixed = 0;
+    for (size_t i = 0; i < error.size(); i++)
+        mixed += truth[3 * i] > 0.5 && truth[3 * i] < 254.5;
+    double worst = quantile(error, 1), mean = mean_of(error);
+    std::printf("%-66s %5zu mixed pixels, error %.3f on average, %.2f at most\n",
+                scene.name.c_str(), mixed, mean, worst);
+    verdict->check(mixed > 50, scene.name + ": no pixel shows both colours");
+    verdict->at_most(worst, max_error, scene.name + ": error in 1/255");
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc != 3) {
+        std::fprintf(stderr, "usage: test_patterns SHEEN PLANE.obj\n");
+        return 2;
+    }
+    verdict verdict;
+    for (const scene &scene : scenes())
+        try {
+            judge(argv[1], argv[2], scene, &verdict);
+        } catch (const std::exception &failure) {
+            verdict.check(false, failure.what());
+        }
+    return verdict.finish();
+}

@@ -1,0 +1,96 @@
+"""What the service must show under load for a while: make soak. SHEEN_SOAK_S says how long each part
+takes (default 60). Prints the figures; judges them by ratios within the run."""
+import os
+import resource
+import sys
+import time
+import unittest
+
+import test_load
+from daemon import CUBE, Daemon, grid, resident_kb
+from load import make_clients, percentile, run_load
+from wire import INTERACTIVE, Client
+
+SECONDS = int(os.environ.get("SHEEN_SOAK_S", "60"))
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+class Soak(unittest.TestCase):
+    def test_64_that_drag_and_8_that_queue(self):
+        daemon = Daemon()
+        with Client(daemon.unix) as other:
+            model = other.upload(CUBE, "cube.obj", share=True)
+            other.render(model)
+            interactive, batch = make_clients((daemon.unix, daemon.tcp), model, 64, 8)
+            run_load(interactive + batch, 10)  # warm
+            for client in interactive + batch:
+                client.latencies = []
+            warm_kb, before = resident_kb(daemon.process.pid), other.stats()
+            run_load(interactive + batch, SECONDS)
+            end_kb, after = resident_kb(daemon.process.pid), other.stats()
+        used = [after[field][0] - before[field][0] for field in (20, 22)]
+        latencies = [latency for client in interactive for latency in client.latencies]
+        p50, p99 = percentile(latencies, 0.5), percentile(latencies, 0.99)
+        say(f"{len(latencies)} interactive frames, p50 {p50 * 1e3:.0f} ms, p99 {p99 * 1e3:.0f} ms "
+            f"({p99 / p50:.2f} x); {sum(len(c.latencies) for c in batch)} batch frames, "
+            f"{100 * used[1] / sum(used):.1f} % of the renderer's time; "
+            f"{after[16][0] - before[16][0]} superseded; memory {warm_kb} to {end_kb} kB")
+        self.assertEqual([client.errors for client in interactive + batch], [[]] * 72)
+        self.assertLessEqual(p99, 4 * p50)
+        self.assertGreater(used[1] / sum(used), 0.19)
+        self.assertLess(end_kb - warm_kb, 16 * 1024)
+        counts = [len(client.latencies) for client in interactive]
+        self.assertLess(max(counts), 2 * min(counts))
+        for client in interactive + batch:
+            client.socket.close()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_a_thousand_idle_and_a_65th(self):
+        daemon = Daemon()
+        hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+        resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 4096), hard))
+
+        def median(client, model):
+            times = []
+            for _ in range(200):
+                start = time.monotonic()
+                client.render(model, kind=INTERACTIVE)
+                times.append(time.monotonic() - start)
+            return percentile(times, 0.5)
+
+        with Client(daemon.unix, minor=1) as client:
+            model = client.upload(grid(20), "sheet.obj", share=True)
+            client.render(model)
+            alone = median(client, model)
+            before = resident_kb(daemon.process.pid)
+            idle = [Client(daemon.tcp if i % 2 else daemon.unix, minor=1) for i in range(1000)]
+            each_kb = (resident_kb(daemon.process.pid) - before) / 1000
+            beside = median(client, model)
+            again = []
+            for one in idle:
+                one.socket.close()
+            time.sleep(1)
+            again = median(client, model)
+        say(f"one active client: median {alone * 1e3:.2f} ms alone, {beside * 1e3:.2f} ms beside "
+            f"1,000 idle ones, {again * 1e3:.2f} ms alone again; {each_kb:.1f} kB an idle one")
+        self.assertLess(each_kb, 64)
+        self.assertLess(beside, 1.25 * max(alone, again))
+        self.assertEqual(daemon.stop(), 0)
+
+
+class SoakMisbehaviour(test_load.Misbehaviour):
+    def test_each_costs_only_itself(self):
+        """The others' p99 within 1.5 times of what it is without."""
+        seconds = max(5, SECONDS // 6)
+        for misbehave, _, _ in self.CASES:
+            quiet = self.run_beside(None, seconds)
+            times = self.run_beside(lambda: misbehave(self), seconds)
+            quiet += self.run_beside(None, seconds)
+            ratio = percentile(times, 0.99) / percentile(quiet, 0.99)
+            say(f"a client that {misbehave.__name__.replace('_', ' ')}: others' p99 "
+                f"{percentile(times, 0.99) * 1e3:.1f} ms, {ratio:.2f} x")
+            with self.subTest(misbehave.__name__):
+                self.assertLess(ratio, 1.5)

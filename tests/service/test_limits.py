@@ -1,0 +1,351 @@
+"""Every limit of `sheend --help`, hit: what is over it is refused in words that name it, or ends the
+connection with the reason in the log, and costs nobody else anything."""
+import contextlib
+import os
+import re
+import resource
+import tempfile
+import time
+import unittest
+
+import wire
+from daemon import CUBE, Daemon, DaemonCase, grid, resident_kb, run
+from wire import BATCH, INTERACTIVE, Client, field, message
+
+MIB = 1 << 20
+
+
+class Table(unittest.TestCase):
+    """What the table's values mean is in tests/unit/test_service_limits.c."""
+
+    def test_help_and_file_have_the_same_limits(self):
+        text = run("--help").stdout
+        rows = re.findall(r"^[ *] --([a-z-]+) (?:BYTES|PX|N|SECONDS)\b.*?\(default: (\w+)\)",
+                          text[text.index("limits;"):], re.S | re.M)
+        self.assertEqual(len(rows), 19, rows)
+        with tempfile.NamedTemporaryFile("w", suffix=".conf") as file:
+            file.write("".join(f"{name} = {fallback}\n" for name, fallback in rows))
+            file.flush()
+            done = run("--config", file.name, "--check-config")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            file.write("credits = 65\n")
+            file.flush()
+            done = run("--config", file.name, "--check-config")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"{file.name}:20: credits is '65'", done.stderr)
+
+
+class Memory(DaemonCase):
+    arguments = ("--memory-budget", "24M", "--peer-memory", "12M", "--max-upload", "4M",
+                 "--max-frame", "8M", "--max-image-side", "100")
+
+    def client(self, address=None):
+        client = Client(address or self.daemon.unix, minor=1)
+        self.addCleanup(client.socket.close)
+        return client
+
+    def begin(self, client, size, name="x.obj"):
+        seq = client.next_seq()
+        client.send(wire.upload_begin(seq, os.urandom(32), size, name))
+        return seq
+
+    def test_max_upload(self):
+        client = self.client()
+        seq = self.begin(client, 4 * MIB + 1)
+        self.assert_refused(client, wire.ERROR_TOO_BIG, str(4 * MIB), seq)
+
+    def test_max_frame(self):
+        client = self.client()
+        model = client.upload(CUBE, "cube.obj")
+        seq = client.ask(model, 1500, 1500)
+        self.assert_refused(client, wire.ERROR_TOO_BIG, f"--max-frame of {8 * MIB}", seq)
+        seq = client.ask(model, 500, 500, planes=63)  # 56 bytes a pixel
+        self.assert_refused(client, wire.ERROR_TOO_BIG, "14000000 bytes", seq)
+        client.render(model, 1400, 1400)
+
+    def test_frames_count_what_they_are_encoded_to(self):
+        client = self.client()
+        model = client.upload(CUBE, "cube.obj")
+        seq = client.ask(model, 1400, 1400, encoding=wire.ZSTD)
+        self.assert_refused(client, wire.ERROR_TOO_BIG, f"--peer-memory of {12 * MIB}", seq)
+
+    def test_max_image_side(self):
+        client = self.client()
+        model = client.upload(CUBE, "cube.obj")
+        light = lambda image: field(5, field(6, field(1, wire.PATTERN_IMAGE) + field(6, image)))
+        wide = client.upload(b"P6\n101 1\n255\n" + bytes(303), "wide.ppm", wire.IMAGE)
+        seq = client.ask(model, extra=light(wide))
+        self.assert_refused(client, wire.ERROR_IMAGE, "100", seq)
+        good = client.upload(b"P6\n100 1\n255\n" + bytes(300), "good.ppm", wire.IMAGE)
+        client.render(model, extra=light(good))
+
+    def test_announcing_takes_nothing(self):
+        """Eight announce all that there is: what has not come leaves room for who comes next."""
+        for _ in range(8):
+            client = self.client()
+            client.expect(wire.UPLOAD_STATE, self.begin(client, 4 * MIB))
+        other = self.client()
+        before = other.stats()[23][0]
+        other.render(other.upload(os.urandom(0) + b"#" * 3 * MIB + b"\n" + CUBE, "long.obj"))
+        self.assertLess(before, MIB)
+
+    def test_peer_memory(self):
+        """Uploads under way of one user: 12 MB, then no more until some are given up. Another
+        address has its own."""
+        holders = []
+        for _ in range(3):
+            client = self.client()
+            seq = self.begin(client, 4 * MIB)
+            client.expect(wire.UPLOAD_STATE, seq)
+            client.send(b"".join(message(wire.UPLOAD_CHUNK, seq, bytes(262144))
+                                 for _ in range(15)))
+            holders.append(client)
+        other = self.client()
+        deadline = time.monotonic() + 10
+        while other.stats()[23][0] < 12 * MIB and time.monotonic() < deadline:
+            time.sleep(0.01)
+        seq = self.begin(other, MIB, "late.obj")
+        other.expect(wire.UPLOAD_STATE, seq)
+        other.send(message(wire.UPLOAD_CHUNK, seq, bytes(262144)))
+        self.assert_refused(other, wire.ERROR_OVERLOADED, "--peer-memory", seq)
+        far = self.client(self.daemon.tcp)
+        far.render(far.upload(CUBE + b"# far\n", "far.obj"))
+        for client in holders:
+            client.socket.close()
+        time.sleep(0.1)
+        other.render(other.upload(CUBE + b"# late\n", "late.obj"))
+
+    def test_frames_wait_for_memory(self):
+        """More frames at once than the budget holds: all of them come in the end."""
+        clients = [self.client(address) for address in self.addresses() for _ in range(4)]
+        model = clients[0].upload(CUBE, "cube.obj")
+        asked = [(client, client.ask(model, 1000, 1000, encoding=wire.ZSTD, kind=kind))
+                 for client in clients for kind in (BATCH, INTERACTIVE)]
+        for client in clients:
+            answers = dict(client.answer() for _ in range(2))
+            for seq in answers:
+                self.assertIsInstance(answers[seq], wire.Frame, answers[seq])
+                self.assertIn((client, seq), asked)
+        self.assertLess(clients[0].stats()[23][0], MIB)  # all given back
+
+    def test_polygons_count(self):
+        client = self.client()
+        model = client.upload(grid(20), "sheet.obj")
+        polygons = lambda level: client.send(
+            message(wire.RENDER, client.next_seq(), field(1, model) + field(2, 64) + field(3, 48) +
+                    field(9, 1) + field(10, 0) + field(40, 1) + field(41, level)))
+        before = client.stats()[23][0]
+        polygons(4)  # 400 faces x 17 x 17 vertices of 32 bytes, and their indices
+        client.read_frame(client.seq)
+        self.assertGreater(client.stats()[23][0] - before, 400 * 17 * 17 * 32)
+        polygons(6)
+        self.assert_refused(client, wire.ERROR_REQUEST, "--memory-budget", client.seq)
+
+
+class Connections(unittest.TestCase):
+    def turned_away(self, address):
+        client = Client(address, greet=False)
+        self.addCleanup(client.socket.close)
+        with self.assertRaises(wire.Refused) as caught:
+            client.receive()
+        self.assertEqual(caught.exception.code, wire.ERROR_OVERLOADED)
+        self.assertTrue(client.at_end())
+        return caught.exception.text
+
+    def test_max_connections(self):
+        daemon = Daemon("--max-connections", "3", "--max-peer-connections", "2")
+        first = Client(daemon.unix)
+        with first, Client(daemon.unix):
+            self.assertIn("this user or address", self.turned_away(daemon.unix))
+            with Client(daemon.tcp) as other:
+                self.assertIn("as many clients", self.turned_away(daemon.tcp))
+                other.stats()
+                first.socket.close()
+                time.sleep(0.1)
+                with Client(daemon.unix) as again:
+                    again.stats()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_credits(self):
+        daemon = Daemon("--credits", "2")
+        with Client(daemon.unix, minor=1) as client:
+            self.assertEqual(client.credits, 2)
+            model = client.upload(CUBE, "cube.obj")
+            client.send(b"".join(wire.render(50 + i, model, 400, 400) for i in range(3)))
+            self.assertEqual({client.answer()[0] for _ in range(3)}, {50, 51, 52})
+            self.assertTrue(client.at_end())
+        self.assertIn("credits", daemon.errors())
+        self.assertEqual(daemon.stop(), 0)
+
+
+class Output(unittest.TestCase):
+    """Clients that do not read."""
+
+    def assert_disconnected(self, daemon, words, within):
+        end = time.monotonic() + within
+        while words not in daemon.errors():
+            self.assertLess(time.monotonic(), end, daemon.errors())
+            time.sleep(0.02)
+        self.assertRegex(daemon.errors(), r'msg="client disconnected" session=\d+ '
+                                          r'peer=("user \d+"|127\.0\.0\.1) ')
+        with Client(daemon.unix) as client:
+            self.assertEqual(client.stats()[19], [1])
+            self.assertEqual(client.stats()[2], [1])  # sessions
+            client.render(client.upload(CUBE, "cube.obj"))
+        self.assertEqual(daemon.stop(), 0)
+
+    def frames(self, daemon):
+        with Client(daemon.unix) as client:
+            return client.stats()[3][0]
+
+    def deaf(self, daemon, address, *requests):
+        """A client that asks and reads nothing."""
+        client = Client(address, minor=1)
+        self.addCleanup(client.socket.close)
+        model = client.upload(CUBE, "cube.obj")
+        client.render(model)
+        for i, (width, named) in enumerate(requests):
+            while i and self.frames(daemon) < 1 + i:
+                time.sleep(0.02)  # an interactive one would overtake
+            client.ask(model, width, width, **named)
+        return client
+
+    def test_output_hard(self):
+        daemon = Daemon("--output-hard", "1M")
+        self.deaf(daemon, daemon.unix, *[(900, {"kind": BATCH})] * 2)
+        self.assert_disconnected(daemon, "over the output-hard limit of 1048576", 10)
+
+    def test_output_soft(self):
+        daemon = Daemon("--output-soft", "1M", "--output-seconds", "1")
+        self.deaf(daemon, daemon.tcp, (2000, {}))
+        self.assert_disconnected(daemon, "over output-soft for output-seconds", 15)
+
+    def test_interactive_hard(self):
+        daemon = Daemon("--interactive-hard", "1M")
+        self.deaf(daemon, daemon.unix, (1000, {}), (100, {"kind": INTERACTIVE}))
+        self.assert_disconnected(daemon, "over the interactive-hard limit of 1048576", 10)
+
+    def test_interactive_soft(self):
+        daemon = Daemon("--interactive-soft", "1M", "--interactive-seconds", "1")
+        self.deaf(daemon, daemon.unix, (900, {"kind": INTERACTIVE}))
+        self.assert_disconnected(daemon, "over interactive-soft for interactive-seconds", 15)
+
+    def test_stall_of_output(self):
+        daemon = Daemon("--stall-timeout", "1")
+        self.deaf(daemon, daemon.unix, (400, {}))
+        self.assert_disconnected(daemon, "no byte read for stall-timeout", 10)
+
+    def test_one_unsent_interactive_frame(self):
+        """However many it asks for, one frame waits for the socket, one behind it for its turn."""
+        daemon = Daemon()
+        pid = daemon.process.pid
+        client = self.deaf(daemon, daemon.unix)
+        model = client.upload(CUBE, "cube.obj")
+        client.render(model, 1000, 1000, kind=INTERACTIVE)  # the device has its planes
+        asked = []
+        before = resident_kb(pid)
+        for view in range(12):
+            asked.append(client.ask(model, 1000, 1000, kind=INTERACTIVE, view=view))
+        with Client(daemon.unix) as other:
+            time.sleep(1.5)
+            stats = other.stats()
+            self.assertLess(stats[3][0], 6)  # frames: a few of this size, no twelve
+            self.assertLess(stats[23][0], 3 * 4 * 1000 * 1000)
+        self.assertLess(resident_kb(pid) - before, 64 * 1024)
+        self.assertEqual([client.answer()[0] for _ in asked], asked)
+        client.socket.close()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_kernels_take_no_frames_ahead(self):
+        """A TCP socket's buffer would hold several of these; they would be out of date there."""
+        daemon = Daemon()
+        with Client(daemon.tcp, minor=1, buffer=4096) as client, Client(daemon.unix) as other:
+            model = client.upload(CUBE, "cube.obj")
+            before = other.stats()[3][0]
+            asked = [client.ask(model, 350, 350, kind=INTERACTIVE, view=i) for i in range(10)]
+            time.sleep(1.5)
+            self.assertEqual(other.stats()[3][0] - before, 1)
+            self.assertEqual([client.answer()[0] for _ in asked], asked)
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_a_frame_that_waits_for_the_socket_is_replaced(self):
+        daemon = Daemon()
+        client = self.deaf(daemon, daemon.unix)
+        model = client.upload(CUBE, "cube.obj")
+        asked = []
+        for _ in range(8):
+            asked.append(client.ask(model, 1000, 1000, kind=INTERACTIVE, view=1))
+            time.sleep(0.25)
+        answers = [client.answer() for _ in asked]
+        self.assertEqual({seq for seq, _ in answers}, set(asked))
+        frames = [seq for seq, what in answers if isinstance(what, wire.Frame)]
+        self.assertEqual((frames[0], frames[-1]), (asked[0], asked[-1]))
+        self.assertLess(len(frames), 5)
+        for seq, by in answers:
+            if seq not in frames:
+                self.assertGreater(by, seq)
+        client.socket.close()
+        self.assertEqual(daemon.stop(), 0)
+
+
+class Input(unittest.TestCase):
+    def refused(self, client, words):
+        with self.assertRaises(wire.Refused) as caught:
+            client.receive()
+        self.assertEqual(caught.exception.code, wire.ERROR_PROTOCOL)
+        self.assertIn(words, caught.exception.text)
+        self.assertTrue(client.at_end())
+
+    def test_handshake(self):
+        daemon = Daemon("--handshake-timeout", "1")
+        with Client(daemon.unix, greet=False) as silent:
+            self.refused(silent, "no HELLO within 1 s")
+        self.assertIn("no HELLO within 1 s", daemon.errors())
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_a_byte_a_second_is_no_message(self):
+        """Each byte is in time for stall-timeout, the message is not."""
+        daemon = Daemon("--message-timeout", "1")
+        with Client(daemon.unix) as slow, Client(daemon.tcp) as other:
+            whole = message(wire.STATS_QUERY, 2)
+            with contextlib.suppress(BrokenPipeError):
+                for byte in whole:
+                    slow.send(bytes([byte]))
+                    time.sleep(0.15)
+            self.refused(slow, "not come to its end within 1 s")
+            other.stats()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_an_upload_that_stops(self):
+        daemon = Daemon("--stall-timeout", "1")
+        with Client(daemon.unix) as client:
+            client.send(wire.upload_begin(2, bytes(32), 100, "a.obj"))
+            client.expect(wire.UPLOAD_STATE, 2)
+            client.send(message(wire.UPLOAD_CHUNK, 2, b"abc"))
+            self.refused(client, "an upload stopped in the middle for 1 s")
+        self.assertEqual(daemon.stop(), 0)
+
+
+class Idle(unittest.TestCase):
+    def test_a_thousand(self):
+        """Connections that only stay cost little memory, and a client beside them nothing."""
+        daemon = Daemon()
+        pid = daemon.process.pid
+        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 4096), hard))
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_NOFILE, (soft, hard))
+        with Client(daemon.unix) as client:
+            model = client.upload(grid(200), "sheet.obj")  # chunks of 256 KiB went through
+            client.render(model)
+            before = resident_kb(pid)
+            clients = []
+            for i in range(1000):
+                clients.append(Client(daemon.tcp if i % 2 else daemon.unix, minor=1))
+            for idle in clients[:100]:
+                idle.upload(grid(200), "sheet.obj")
+            self.assertEqual(client.stats()[2], [1001])
+            self.assertLess(resident_kb(pid) - before, 1000 * 64)
+            client.render(model)
+            for idle in clients:
+                idle.socket.close()
+        self.assertEqual(daemon.stop(), 0)

@@ -1,0 +1,217 @@
+"""Who is served when: classes, views, credits, cancelling and deadlines, through real sockets."""
+import time
+
+import wire
+from daemon import CUBE, DaemonCase, grid
+from wire import BATCH, INTERACTIVE, STILL, Client, field, message
+
+LARGE = {"width": 1600, "height": 1600}  # many tiles
+
+
+class Schedule(DaemonCase):
+    def client(self, **named):
+        client = Client(self.daemon.unix, minor=1, **named)
+        self.addCleanup(client.socket.close)
+        self.model = client.upload(CUBE, "cube.obj")
+        client.render(self.model)  # its tables are there
+        return client
+
+    def stats(self):
+        with Client(self.daemon.unix) as client:
+            return client.stats()
+
+    def wait_until_begun(self, client):
+        """What it has asked for is being drawn."""
+        client.stats()  # answered before the frame, and after the request has been read
+        while self.stats()[15][0] > 0:
+            time.sleep(0.005)
+
+    def assert_refused_with(self, what, code, words):
+        self.assertIsInstance(what, wire.Refused)
+        self.assertEqual(what.code, code, what)
+        self.assertIn(words, what.text)
+
+    def test_newest_of_a_view_wins(self):
+        client = self.client()
+        before = self.stats()[16][0]
+        first = client.ask(self.model, **LARGE, kind=INTERACTIVE, view=3)
+        self.wait_until_begun(client)
+        others = [client.ask(self.model, kind=INTERACTIVE, view=3) for _ in range(4)]
+        still = client.ask(self.model, kind=STILL, view=3)
+        answers = [client.answer() for _ in range(6)]
+        # The replaced are told at once, before the frame that is being drawn; each by its next.
+        self.assertEqual(answers[:4], list(zip(others, others[1:] + [still])))
+        self.assertEqual({seq for seq, what in answers[4:] if isinstance(what, wire.Frame)},
+                         {first, still})
+        self.assertEqual(self.stats()[16][0] - before, 4)
+
+    def test_what_is_not_replaced(self):
+        """Other views, stills without a view, batches, and another connection's same view."""
+        client, other = self.client(), self.client()
+        busy = client.ask(self.model, **LARGE, kind=INTERACTIVE, view=1)
+        self.wait_until_begun(client)
+        asked = [client.ask(self.model, **named) for named in (
+            {"kind": INTERACTIVE, "view": 2}, {"kind": INTERACTIVE},
+            {"kind": STILL}, {"kind": STILL}, {},
+            {"kind": BATCH}, {"kind": BATCH}, {"kind": STILL, "view": 4})]
+        theirs = other.ask(self.model, kind=INTERACTIVE, view=2)
+        answers = dict(client.answer() for _ in range(9))
+        self.assertEqual(set(answers), {busy, *asked})
+        for seq, what in (*answers.items(), other.answer()):
+            self.assertIsInstance(what, wire.Frame, (seq, what))
+        self.assertEqual(theirs, other.seq)
+
+    def test_replaced_while_tables_are_built(self):
+        client = self.client()
+        model = client.upload(grid(120), "sheet.obj")
+        asked = [client.ask(model, kind=INTERACTIVE) for _ in range(5)]
+        answers = [client.answer() for _ in range(5)]
+        self.assertEqual(answers[:4], list(zip(asked, asked[1:])))
+        self.assertIsInstance(answers[4][1], wire.Frame)
+
+    def test_frames_of_a_class_keep_their_order(self):
+        client = self.client()
+        asked = {kind: [client.ask(self.model, **LARGE, kind=kind),
+                        client.ask(self.model, kind=kind),
+                        client.ask(self.model, 300, 200, kind=kind)] for kind in (STILL, BATCH)}
+        got = [client.answer()[0] for _ in range(6)]
+        for seqs in asked.values():
+            self.assertEqual([seq for seq in got if seq in seqs], seqs)
+
+    def test_interactive_does_not_wait_for_a_batch(self):
+        batch, drag = self.client(), self.client()
+        slow = batch.ask(self.model, 2500, 2500, kind=BATCH)
+        self.wait_until_begun(batch)
+        frames = self.stats()[3][0]
+        for _ in range(5):
+            drag.render(self.model, kind=INTERACTIVE)
+        self.assertEqual(self.stats()[3][0] - frames, 5)  # and no frame of the batch
+        self.assertEqual(batch.answer()[0], slow)
+
+    def test_a_change_of_light_stays_cheap_beside_a_batch(self):
+        batch, drag = self.client(), self.client()
+        light = lambda x: field(5, field(1, field(1, x) + field(2, 0.0) + field(3, 4.0)) +
+                                field(2, field(1, 4.0) + field(2, 0.0) + field(3, 0.0)) +
+                                field(3, field(1, 0.0) + field(2, 4.0) + field(3, 0.0)))
+        drag.render(self.model, 200, 150, kind=INTERACTIVE, extra=light(0.0))
+        slow = batch.ask(self.model, 2000, 2000, kind=BATCH)
+        self.wait_until_begun(batch)
+        for i in range(5):
+            frame = drag.render(self.model, 200, 150, kind=INTERACTIVE, extra=light(0.1 * i))
+            self.assertEqual((frame.visibility_us, frame.evaluate_us), (0, 0))
+        self.assertEqual(batch.answer()[0], slow)
+
+    def test_cancel(self):
+        client = self.client()
+        begun = client.ask(self.model, **LARGE)
+        self.wait_until_begun(client)
+        waiting = [client.ask(self.model) for _ in range(3)]
+        for seq in (waiting[1], begun):
+            client.send(message(wire.CANCEL, seq))
+            got, what = client.answer()
+            self.assertEqual(got, seq)
+            self.assert_refused_with(what, wire.ERROR_CANCELLED, "taken back")
+        self.assertEqual([client.answer()[0] for _ in range(2)], [waiting[0], waiting[2]])
+        for seq in (waiting[0], 12345):  # answered, unknown: nothing happens
+            client.send(message(wire.CANCEL, seq))
+        client.stats()
+
+    def test_cancel_while_tables_are_built(self):
+        client = self.client()
+        model = client.upload(grid(121), "sheet.obj")
+        seq = client.ask(model)
+        client.send(message(wire.CANCEL, seq))
+        got, what = client.answer()
+        self.assertEqual(got, seq)
+        self.assert_refused_with(what, wire.ERROR_CANCELLED, "taken back")
+        client.render(model)
+
+    def test_deadline(self):
+        client = self.client()
+        model = client.upload(grid(122), "sheet.obj")
+        slow = client.ask(self.model, **LARGE, deadline=3600000)
+        self.wait_until_begun(client)
+        late, unbuilt = client.ask(self.model, deadline=1), client.ask(model, deadline=1)
+        answers = dict(client.answer() for _ in range(3))
+        for seq in (late, unbuilt):
+            self.assert_refused_with(answers[seq], wire.ERROR_DEADLINE, "deadline_ms of 1")
+        self.assertIsInstance(answers[slow], wire.Frame)
+        self.assertIsInstance(client.render(self.model, deadline=60000), wire.Frame)
+
+    def test_deadline_ends_a_frame_between_its_tiles(self):
+        client = self.client()
+        seq = client.ask(self.model, 6000, 6000, deadline=300)
+        got, what = client.answer()
+        self.assertEqual(got, seq)
+        self.assert_refused_with(what, wire.ERROR_DEADLINE, "deadline_ms of 300")
+
+    def test_credits(self):
+        client = self.client()
+        self.assertEqual(client.credits, 16)
+        for _ in range(2):  # they come back with the answers
+            asked = [client.ask(self.model, 100, 100, kind=BATCH) for _ in range(16)]
+            self.assertEqual([client.answer()[0] for _ in asked], asked)
+        asked = range(100, 117)
+        client.send(b"".join(wire.render(seq, self.model, 300, 300, kind=BATCH) for seq in asked))
+        answers = dict(client.answer() for _ in asked)
+        self.assertEqual(set(answers), set(asked))
+        self.assert_refused_with(answers.pop(116), wire.ERROR_PROTOCOL, "credits")
+        for what in answers.values():
+            self.assert_refused_with(what, wire.ERROR_CANCELLED, "credits")
+        self.assertTrue(client.at_end())
+
+    def test_minor_version_0(self):
+        """Sees neither class nor view nor deadline, gets everything in order, and may have sent as
+        much as it likes."""
+        with Client(self.daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            asked = [client.ask(model, kind=INTERACTIVE, view=1, deadline=1) for _ in range(40)]
+            for seq in asked:
+                client.read_frame(seq)
+            client.send(message(wire.CANCEL, asked[0]))
+            self.assert_refused(client, wire.ERROR_PROTOCOL, "minor version 1")
+
+    def test_values_out_of_range(self):
+        client = self.client()
+        for named, words in (({"kind": 3}, "request_class"), ({"deadline": 0}, "deadline_ms"),
+                             ({"deadline": 3600001}, "deadline_ms"),
+                             ({"kind": BATCH, "view": 1}, "view")):
+            seq = client.ask(self.model, **named)
+            self.assert_refused(client, wire.ERROR_REQUEST, words, seq)
+
+    def test_nobody_waits_while_polygons_are_made(self):
+        slow, other = self.client(), self.client()
+        sheet = slow.upload(grid(38), "sheet.obj")
+        slow.render(sheet)
+        seq = slow.next_seq()
+        slow.send(message(wire.RENDER, seq, field(1, sheet) + field(2, 64) + field(3, 48) +
+                          field(9, 1) + field(10, 0) + field(40, 1) + field(41, 6)))
+        before = slow.stats()[3][0]
+        for _ in range(5):
+            other.render(self.model)
+        self.assertEqual(other.stats()[3][0] - before, 5)  # the polygons' frame is not among them
+        slow.read_frame(seq)
+
+    def test_a_client_that_has_gone_leaves_the_device(self):
+        """Eight lights over 16 million pixels, or a mesh of millions: the next client does not wait
+        until they are done."""
+        lights = b"".join(field(5, field(6, field(1, 0) + field(2, 30.0))) for _ in range(8))
+        polygons = field(40, 1) + field(41, 6)
+        model, extra = None, None
+        for extra in (lights, polygons):
+            with self.subTest(extra=extra[:4]):
+                with Client(self.daemon.unix, minor=1) as gone, \
+                        Client(self.daemon.unix, minor=1) as other:
+                    model = gone.upload(grid(40), "sheet.obj")
+                    gone.render(model)
+                    seq = gone.next_seq()
+                    # Fields in rising order: the surface comes last.
+                    gone.send(message(wire.RENDER, seq, field(1, model) + field(2, 4096) +
+                                      field(3, 4096) + (extra if extra is lights else b"") +
+                                      field(9, 1) + field(10, 0) + field(14, INTERACTIVE) +
+                                      (extra if extra is polygons else b"")))
+                    self.wait_until_begun(gone)
+                    gone.socket.close()
+                    start = time.monotonic()
+                    other.render(model)
+                    self.assertLess(time.monotonic() - start, 5)

@@ -1,0 +1,124 @@
+/* The table of limits: names, ranges, defaults, and values as people write them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "protocol/limits.h"
+#include "server/service/limits.h"
+
+static const struct limits_row *row_of(const char *name)
+{
+    for (size_t i = 0; i < N_LIMITS; i++)
+        if (strcmp(LIMITS[i].name, name) == 0)
+            return &LIMITS[i];
+    fail_msg("no limit is called %s", name);
+    return NULL;
+}
+
+static void test_rows(void **state)
+{
+    (void)state;
+    struct limits limits;
+    memset(&limits, 0xff, sizeof limits);
+    limits_init(&limits);
+    assert_int_equal(N_LIMITS * sizeof(uint64_t), sizeof limits); /* a row for every member */
+    for (size_t i = 0; i < N_LIMITS; i++) {
+        const struct limits_row *row = &LIMITS[i];
+        assert_true(row->low <= row->fallback && row->fallback <= row->high);
+        assert_int_equal(limits_get(&limits, row), row->fallback);
+        for (size_t k = 0; k < i; k++) {
+            assert_string_not_equal(row->name, LIMITS[k].name);
+            assert_int_not_equal(row->offset, LIMITS[k].offset);
+        }
+    }
+    assert_int_equal(limits.idle_s, 900);
+    assert_int_equal(limits.max_upload, PROTOCOL_MAX_UPLOAD_BYTES);
+    assert_true(limits.interactive_soft < limits.interactive_hard);
+    assert_true(limits.output_soft < limits.output_hard);
+}
+
+static void test_values(void **state)
+{
+    (void)state;
+    struct limits limits;
+    struct error error = {0};
+    const struct limits_row *budget = row_of("memory-budget"), *credits = row_of("credits");
+    limits_init(&limits);
+    static const struct {
+        const char *text;
+        uint64_t bytes;
+    } good[] = {{"1", 1},
+                {"4000000000", 4000000000},
+                {"3K", 3 << 10},
+                {"800M", (uint64_t)800 << 20},
+                {"4G", (uint64_t)4 << 30},
+                {"2T", (uint64_t)2 << 40}};
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        assert_true(limits_set(&limits, budget, good[i].text, &error));
+        assert_int_equal(limits.memory_budget, good[i].bytes);
+    }
+    static const char *const bad[] = {"",
+                                      "-1",
+                                      "+1",
+                                      " 1",
+                                      "1 ",
+                                      "x",
+                                      "1x",
+                                      "4g",
+                                      "0",
+                                      "4GB",
+                                      "1.5G",
+                                      "0x1",
+                                      "99999999999T",
+                                      "99999999999999999999"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_false(limits_set(&limits, budget, bad[i], &error));
+        assert_int_equal(error.kind, ERROR_REQUEST);
+        assert_non_null(strstr(error.text, "memory-budget is '"));
+        assert_non_null(strstr(error.text, bad[i]));
+        assert_int_equal(limits.memory_budget, (uint64_t)2 << 40);
+    }
+    assert_true(limits_set(&limits, credits, "64", &error));
+    assert_false(limits_set(&limits, credits, "65", &error));
+    assert_non_null(strstr(error.text, "credits is '65'; it must be a whole number from 1 to 64"));
+    assert_false(limits_set(&limits, credits, "1K", &error)); /* no bytes */
+    assert_int_equal(limits.credits, 64);
+}
+
+static void test_formats(void **state)
+{
+    (void)state;
+    char text[LIMITS_TEXT_BYTES];
+    const struct limits_row *budget = row_of("memory-budget");
+    static const struct {
+        uint64_t bytes;
+        const char *text;
+    } cases[] = {{0, "0"},
+                 {1023, "1023"},
+                 {1024, "1K"},
+                 {1536, "1536"},
+                 {(uint64_t)3 << 30, "3G"},
+                 {(uint64_t)5 << 50, "5120T"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        limits_format(budget, cases[i].bytes, text);
+        assert_string_equal(text, cases[i].text);
+    }
+    limits_format(row_of("credits"), 1024, text);
+    assert_string_equal(text, "1024");
+    assert_string_equal(limits_argument(budget), "BYTES");
+    assert_string_equal(limits_argument(row_of("idle-timeout")), "SECONDS");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_formats),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
