@@ -101,16 +101,6 @@ static void reply_error(struct session *session, uint32_t seq, sheen_ErrorCode c
         session_answer_error(session, answer, code, text);
 }
 
-/* A stranger learns nothing, not even what is wrong; the log does. */
-static void turn_away(struct session *session, const char *why)
-{
-    log_event(LOG_WARN, "client turned away", log_number("session", session->id),
-              log_text("peer", session->client.peer), log_text("text", why));
-    session->end = END_CREDENTIALS;
-    session->refused = true;
-    conn_close(&session->conn);
-}
-
 void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code, const char *format,
                     ...)
 {
@@ -120,7 +110,7 @@ void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code,
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     if (!session->admitted) {
-        turn_away(session, text);
+        session_turn_away(session, text);
         return;
     }
     if (session->end == END_CLIENT)
@@ -138,23 +128,6 @@ void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code,
 
 /* --- messages */
 
-/* A client behind TLS says who it is. */
-static bool admit(struct session *session, const sheen_Hello *hello)
-{
-    struct error error = {0};
-    struct identity *identity = &session->client.identity;
-    if (!access_admit_tls(session->host->access, &session->conn,
-                          hello->has_token ? hello->token : NULL, identity, &error)) {
-        turn_away(session, error.text);
-        return false;
-    }
-    session->admitted = true;
-    session->host->n_strangers--;
-    log_event(LOG_INFO, "client admitted", log_number("session", session->id),
-              log_text("identity", identity->name));
-    return true;
-}
-
 static void handle_hello(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
 {
     uint8_t model_id[MODEL_ID_BYTES]; /* for balancers; here any model may be named later */
@@ -169,7 +142,7 @@ static void handle_hello(struct session *session, uint32_t seq, const uint8_t *b
         session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
         return;
     }
-    if (!session->admitted && !admit(session, &hello))
+    if (!session->admitted && !session_admit(session, &hello))
         return;
     const struct renderer_info *info = render_thread_info(session->host->render_thread);
     session->minor = hello.minor < PROTOCOL_MINOR ? hello.minor : PROTOCOL_MINOR;
@@ -515,11 +488,6 @@ static void on_malformed(void *owner, const struct message_header *header, enum 
 
 /* --- its life */
 
-const uint8_t *session_owner(const struct session *session)
-{
-    return session->host->share_models ? STORE_SHARED : session->client.identity.owner;
-}
-
 struct session *session_create(struct session_host *host, int fd,
                                const struct session_client *client, struct peer *peer,
                                struct error *error)
@@ -561,7 +529,8 @@ void session_destroy(struct session *session)
 {
     struct session_host *host = session->host;
     if (session->end == END_CLIENT && !session->admitted)
-        turn_away(session, *session->conn.reason ? session->conn.reason : "it left before HELLO");
+        session_turn_away(session,
+                          *session->conn.reason ? session->conn.reason : "it left before HELLO");
     if (session->end == END_CLIENT && !session->conn.peer_ended)
         session->end = END_LOST;
     host->stats.ended[session->end]++;
@@ -597,23 +566,6 @@ bool session_settle(struct session *session)
             session_refuse(session, 0, sheen_ErrorCode_ERROR_SHUTTING_DOWN, SHUTTING_DOWN);
     }
     return conn->state != CONN_CLOSED;
-}
-
-void session_check_access(struct session *session)
-{
-    struct error error = {0};
-    struct session_client *client = &session->client;
-    const struct access *access = session->host->access;
-    struct conn *conn = &session->conn;
-    bool ok = true;
-    if (conn->state == CONN_CLOSED || !session->admitted)
-        return;
-    if (client->kind == CLIENT_UNIX)
-        ok = access_admit_local(access, conn->source.fd, ADDRESS_UNIX, &client->identity, &error);
-    else if (client->kind == CLIENT_TLS)
-        ok = access_still_admits(access, &client->identity, &error);
-    if (!ok)
-        turn_away(session, error.text);
 }
 
 void session_tick(struct session *session, uint64_t now_us)

@@ -1,5 +1,6 @@
-/* What the files of sessions share: session.c has the protocol's order, session_watch.c what
- * clients may not do too long or too much of. Private to them. Thread: the loop's. */
+/* What the files of sessions share: session.c has the protocol's order, session_access.c who the
+ * client is, session_watch.c what clients may not do too long or too much of. Private to them.
+ * Thread: the loop's. */
 #ifndef SHEEN_SERVICE_SESSION_INSIDE_H
 #define SHEEN_SERVICE_SESSION_INSIDE_H
 
@@ -10,6 +11,13 @@
 /* The connection cannot go on: answers what came before, says why, and closes. */
 void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code, const char *format,
                     ...) __attribute__((format(printf, 4, 5)));
+
+/* --- session_access.c */
+
+/* A stranger learns nothing, not even what is wrong; the log does. Closes. */
+void session_turn_away(struct session *session, const char *why);
+/* A client behind TLS says who it is. False when it has been turned away. */
+bool session_admit(struct session *session, const sheen_Hello *hello);
 
 /* --- session_watch.c */
 
