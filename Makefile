@@ -133,7 +133,7 @@ LIB_OBJ := $(filter-out %/server/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
            $(CAGE_TASKS_OBJ) $(IMAGE_TASKS_OBJ) $(call obj,$(ZYGOTE_SRC)) $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
 TEST_LIB := $(BUILD)/libtests.a
 $(TEST_LIB): $(LIB_OBJ)
-	$(Q)rm -f $@ && ar rcs $@ $^
+	$(Q)rm -f $@ && ar rcsP $@ $^
 
 UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 ORACLE_SHARED := $(call obj,$(filter-out tests/oracle/test_%.cpp tests/oracle/fake_sheen.cpp,$(wildcard tests/oracle/*.cpp)))
@@ -165,13 +165,14 @@ FUZZ_WRAPPED := malloc calloc realloc strdup strndup $(TINYGLTF)19LoadASCIIFromS
 FUZZ_LINK := -Wl,--as-needed $(patsubst %,-Wl$(comma)--wrap=%,$(FUZZ_WRAPPED)) \
              $(if $(FUZZ),-fsanitize=fuzzer)
 FUZZ_ARCHIVE := $(BUILD)/libfuzz.a
-$(FUZZ_ARCHIVE): $(PROTOCOL_OBJ) $(CORE_OBJ) $(CAGE_TASKS_OBJ) \
-                 $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC) $(filter-out client/main.c,$(CLIENT_SRC)))
-	$(Q)rm -f $@ && ar rcs $@ $^
+$(FUZZ_ARCHIVE): $(filter-out %/server/main.c.o,$(SERVER_OBJ)) $(CAGE_TASKS_OBJ) \
+                 $(call obj,$(filter-out client/main.c,$(CLIENT_SRC)))
+	$(Q)rm -f $@ && ar rcsP $@ $^
 $(FUZZ_TARGETS): $(BUILD)/tests/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.c.o $(FUZZ_SHARED) $(FUZZ_ARCHIVE)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) $(FUZZ_LINK) -o $@ $^ $(CAGE_WORKER_LIBS) $(CLIENT_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) $(FUZZ_LINK) -o $@ $^ $(CAGE_WORKER_LIBS) $(SERVER_LIBS) $(CLIENT_LIBS)
+$(BUILD)/tests/fuzz_config: FUZZ_LINK += -Wl,--wrap=getaddrinfo
 
 # Every benchmark is one bench_NAME.cpp; what is beside them they share.
 BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/bench_*.cpp))
