@@ -36,16 +36,18 @@ FlatNet project(Node node, mat3 frame, Net p, float scale, Ray r)
 // inverse) the step is 0.
 vec2 newton_step(FlatNet net, vec2 st, float most, out vec2 step_st)
 {
-    vec4 bu, du, bv, dv, unused;
-    blends(st.x, bu, du, unused);
-    blends(st.y, bv, dv, unused);
-    vec2 f = vec2(0.0), fu = vec2(0.0), fv = vec2(0.0);
+    vec4 bu, bv;
+    vec3 du, dv;
+    blends(st.x, bu, du);
+    blends(st.y, bv, dv);
+    vec2 f = vec2(0.0), fu = vec2(0.0), c[4];
     for (int j = 0; j < 4; j++) {
-        vec2 c = vec2(dot(bu, net.x[j]), dot(bu, net.y[j]));
-        f += bv[j] * c;
-        fv += dv[j] * c;
-        fu += bv[j] * vec2(dot(du, net.x[j]), dot(du, net.y[j]));
+        vec4 x = net.x[j], y = net.y[j];
+        c[j] = vec2(dot(bu, x), dot(bu, y));
+        f += bv[j] * c[j];
+        fu += bv[j] * vec2(dot(du, x.yzw - x.xyz), dot(du, y.yzw - y.xyz));
     }
+    vec2 fv = dv.x * (c[1] - c[0]) + dv.y * (c[2] - c[1]) + dv.z * (c[3] - c[2]);
     float det = fu.x * fv.y - fu.y * fv.x;
     bool touches = !(abs(det) > 1e-7 * (dot(fu, fu) + dot(fv, fv)));
     step_st = vec2(f.y * fv.x - f.x * fv.y, f.x * fu.y - f.y * fu.x) / (touches ? 1.0 : det);

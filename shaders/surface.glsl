@@ -12,13 +12,15 @@ struct Surface {
     float scale;          // power of two
 };
 
-void blends(float t, out vec4 b, out vec4 d, out vec4 dd)
+// The values of the four at t; and the blends of the three differences of neighbouring points that make
+// the first derivative. (The second is that of their differences, linear in t. Differences first: in
+// single precision they keep what sums of points lose where the surface is flat.)
+void blends(float t, out vec4 value, out vec3 first)
 {
     float r = 1.0 - t;
-    b = vec4(r * r * r, 4.0 + t * t * (3.0 * t - 6.0), 4.0 + r * r * (3.0 * r - 6.0), t * t * t) *
-        (1.0 / 6.0);
-    d = vec4(-r * r, t * (3.0 * t - 4.0), -r * (3.0 * r - 4.0), t * t) * 0.5;
-    dd = vec4(r, 3.0 * t - 2.0, 3.0 * r - 2.0, t);
+    value = vec4(r * r * r, 4.0 + t * t * (3.0 * t - 6.0), 4.0 + r * r * (3.0 * r - 6.0), t * t * t) *
+            (1.0 / 6.0);
+    first = vec3(0.5 * r * r, 0.5 + r * t, 0.5 * t * t);
 }
 
 // Columns: the frame's axes in camera space.
@@ -96,11 +98,6 @@ void fetch_points(SubPatch patch_, out Net p, out float scale)
     }
 }
 
-vec3 along_row(Net p, int j, vec4 blend)
-{
-    return vec3(dot(blend, p.x[j]), dot(blend, p.y[j]), dot(blend, p.z[j]));
-}
-
 // The normal of derivatives at st, and |su x sv|^2. Where a derivative vanishes or both are parallel
 // (a collapsed edge, a pole, a smooth corner of one quad) it is the limit from inside the patch, by
 // the second derivatives; zero where there is none. To be taken in the node's own frame: there each
@@ -119,23 +116,36 @@ vec3 limit_normal(vec3 su, vec3 sv, vec3 suu, vec3 suv, vec3 svv, vec2 st, out f
     return largest > 0.0 ? normalize(n / largest) : vec3(0.0);
 }
 
+// A row of points along s: the curve at s with its first two derivatives.
+void along_row(Net p, int j, float s, vec4 value, vec3 first, out vec3 c, out vec3 d, out vec3 e)
+{
+    vec4 x = p.x[j], y = p.y[j], z = p.z[j];
+    vec3 p0 = vec3(x.x, y.x, z.x), p1 = vec3(x.y, y.y, z.y);
+    vec3 p2 = vec3(x.z, y.z, z.z), p3 = vec3(x.w, y.w, z.w);
+    vec3 a = p1 - p0, b = p2 - p1, g = p3 - p2;
+    c = value.x * p0 + value.y * p1 + value.z * p2 + value.w * p3;
+    d = first.x * a + first.y * b + first.z * g;
+    e = (1.0 - s) * (b - a) + s * (g - b);
+}
+
 // The patch of 16 points at st, with first and second derivatives.
 Surface patch_at(Node node, mat3 frame, Net p, float scale, vec2 st)
 {
-    vec4 bu, du, ddu, bv, dv, ddv;
-    blends(st.x, bu, du, ddu);
-    blends(st.y, bv, dv, ddv);
-    vec3 s = vec3(0.0), su = vec3(0.0), sv = vec3(0.0);
-    vec3 suu = vec3(0.0), suv = vec3(0.0), svv = vec3(0.0);
+    vec4 bu, bv;
+    vec3 du, dv, c[4], d[4], e;
+    blends(st.x, bu, du);
+    blends(st.y, bv, dv);
+    vec3 s = vec3(0.0), su = vec3(0.0), suu = vec3(0.0);
     for (int j = 0; j < 4; j++) {
-        vec3 c = along_row(p, j, bu), d = along_row(p, j, du);
-        s += bv[j] * c;
-        su += bv[j] * d;
-        sv += dv[j] * c;
-        suu += bv[j] * along_row(p, j, ddu);
-        suv += dv[j] * d;
-        svv += ddv[j] * c;
+        along_row(p, j, st.x, bu, du, c[j], d[j], e);
+        s += bv[j] * c[j];
+        su += bv[j] * d[j];
+        suu += bv[j] * e;
     }
+    vec3 a = c[1] - c[0], b = c[2] - c[1], g = c[3] - c[2];
+    vec3 sv = dv.x * a + dv.y * b + dv.z * g;
+    vec3 svv = (1.0 - st.y) * (b - a) + st.y * (g - b);
+    vec3 suv = dv.x * (d[1] - d[0]) + dv.y * (d[2] - d[1]) + dv.z * (d[3] - d[2]);
     float area2;
     vec3 n = limit_normal(su, sv, suu, suv, svv, st, area2);
     return Surface(node.origin + frame * (s * scale), frame * su, frame * sv, frame * suu,
