@@ -190,7 +190,7 @@ $(BUILD)/tests/bench_frame: $(EMBREE_OBJ)
 $(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
 
 .PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench lint format demo deps install clean
-tests: all $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS)
+tests: all $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH)
 unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 	sh tests/run.sh unit $(BUILD)
 service: all

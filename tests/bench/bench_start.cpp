@@ -36,7 +36,9 @@ double first_frame(const std::string &path, const std::string &file, sheen_forma
     const double start = now_ms();
     sheen_error error;
     sheen_session *session;
-    sheen_connect_options options = {nullptr, device, 300000, {}};
+    sheen_connect_options options = {};
+    options.device = device;
+    options.timeout_ms = 300000;
     check(sheen_connect(&session, &options, &error), error);
     sheen_request request = defaults;
     sheen_frame frame = {};
