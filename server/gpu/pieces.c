@@ -183,7 +183,7 @@ static struct extent square_extent(const struct chooser *c, const struct piece *
     for (int k = 0; k < 16; k++)
         grid[k] = vec_sub(grid[k], middle);
     const struct limit_node *node = &c->tables->nodes[piece->node];
-    struct limit_bound bound = bound_of_grid(grid, 4, false, bound_normal(grid, 4, false));
+    struct limit_bound bound = bound_of_grid(grid, 4, false, true);
     if (!c->view->perspective) {
         /* What runs along the view does not show. */
         struct vec forward = {c->view->axis[2][0], c->view->axis[2][1], c->view->axis[2][2]};
@@ -191,8 +191,7 @@ static struct extent square_extent(const struct chooser *c, const struct piece *
             struct vec p = limit_frame_to_world(c->tables, node, grid[k]);
             grid[k] = vec_mad(p, -vec_dot(p, forward), forward);
         }
-        const struct vec all = {0, 0, 0};
-        bound.bend = fminf(bound.bend, bound_of_grid(grid, 4, false, all).bend);
+        bound.bend = fminf(bound.bend, bound_of_grid(grid, 4, false, false).bend);
     }
     struct vec at = limit_frame_to_world(c->tables, node, middle);
     const double world[3] = {node->origin[0] + at.x, node->origin[1] + at.y,

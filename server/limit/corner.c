@@ -221,6 +221,10 @@ unsigned corner_levels(const struct ring *ring)
     return (unsigned)fmin(fmax(levels, LIMIT_MIN_LEVELS), LIMIT_MAX_LEVELS);
 }
 
+/* Weighing bends costs more than the levels themselves, and pays where they are larger than pixels.
+ */
+enum { WEIGHED_LEVELS = 6 };
+
 bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[4],
                   struct limit_bound *bounds, double origin[3])
 {
@@ -243,8 +247,7 @@ bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena,
         struct net *fine = &net[(n + 1) & 1];
         next_net(&net[n & 1], &modes, fine);
         scales[n] = texels_write_level(fine->grid, texels + n * LIMIT_LEVEL_TEXELS);
-        bounds[n] =
-            bound_of_grid(&fine->grid[0][0], 5, true, bound_normal(&fine->grid[0][0], 5, true));
+        bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true, n < WEIGHED_LEVELS);
     }
     origin[0] = limit.x;
     origin[1] = limit.y;

@@ -24,8 +24,7 @@ static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4
         out->origin[2] = centre.z;
         out->first = b->next.texel;
         texels_write_patch(&grid[0][0], b->tables->texels + b->next.texel);
-        b->tables->bounds[b->next.bound] =
-            bound_of_grid(&grid[0][0], 4, false, bound_normal(&grid[0][0], 4, false));
+        b->tables->bounds[b->next.bound] = bound_of_grid(&grid[0][0], 4, false, true);
     }
     b->next.texel += LIMIT_PATCH_TEXELS;
     b->next.bound += 1;

@@ -53,7 +53,7 @@ static void refine_rows(struct vec rows[4][4], double crease, struct vec fine[5]
 static void write_patch(const struct vec *points, float (**texels)[4], struct limit_bound **bounds)
 {
     texels_write_patch(points, *texels);
-    **bounds = bound_of_grid(points, 4, false, bound_normal(points, 4, false));
+    **bounds = bound_of_grid(points, 4, false, true);
     *texels += LIMIT_PATCH_TEXELS;
     *bounds += 1;
 }
@@ -67,7 +67,7 @@ void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
         centre = vec_mad(centre, 1.0 / 16, rows[k / 4][k % 4]);
     for (int k = 0; k < 16; k++)
         rows[k / 4][k % 4] = vec_sub(rows[k / 4][k % 4], centre);
-    *bounds++ = bound_of_grid(&rows[0][0], 4, false, bound_normal(&rows[0][0], 4, false));
+    *bounds++ = bound_of_grid(&rows[0][0], 4, false, true);
     float sharpness = straight_crease(&quad->corner[0], 0);
     for (unsigned n = 0; n < levels; n++) {
         refine_rows(rows, sharpness < 1 ? (double)sharpness : 1, fine);
