@@ -69,7 +69,7 @@ SHADERS := $(sort $(wildcard shaders/*.glsl))
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(LIMIT_SRC) server/error.c)
 RENDER_OBJ := $(call obj,$(GPU_SRC)) $(BUILD)/obj/gen/shaders.c.o
-SERVER_OBJ := $(call obj,server/main.c $(wildcard server/options*.c) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
+SERVER_OBJ := $(call obj,server/main.c server/fault.c $(wildcard server/options*.c) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
 KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
@@ -126,6 +126,11 @@ $(BUILD)/gen/sheen.pb.c $(BUILD)/gen/sheen.pb.h &: protocol/sheen.proto protocol
 $(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
 	@mkdir -p $(@D)
 	$(Q)sh shaders/embed.sh $(SHADERS) > $@
+
+# sheend that fails where $SHEEN_FAULTS asks it to: what is installed cannot.
+$(BUILD)/sheend-faults: $(call obj,tests/service/faults.c) $(filter-out %/server/fault.c.o,$(SERVER_OBJ))
+	$(call say,LD $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
 
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything but the two mains.
@@ -190,10 +195,10 @@ $(BUILD)/tests/bench_frame: $(EMBREE_OBJ)
 $(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
 
 .PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench lint format demo deps install clean
-tests: all $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH)
+tests: all $(BUILD)/sheend-faults $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH)
 unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 	sh tests/run.sh unit $(BUILD)
-service: all
+service: all $(BUILD)/sheend-faults
 	sh tests/run.sh service $(BUILD)
 oracle: all $(ORACLE_TESTS)
 	sh tests/run.sh oracle $(BUILD)
@@ -212,7 +217,7 @@ fuzz-coverage:
 	$(MAKE) COVERAGE=1 fuzz-targets
 	sh tests/fuzz/coverage.sh build/coverage $(FUZZ_NAMES)
 
-soak: all
+soak: all $(BUILD)/sheend-faults
 	SHEEN_SOAK_S=$(SECONDS) /usr/bin/python3 tests/service/run.py $(BUILD) soak_load
 
 # One after the other: each wants the machine for itself.

@@ -486,7 +486,7 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
         const sheen_Error *error = body;
         if (error->code == sheen_ErrorCode_ERROR_NONE)
             return refuse(text, "code is 0; an error has one");
-        return check_enum(error->code, sheen_ErrorCode_ERROR_DEADLINE, "code", text) &&
+        return check_enum(error->code, sheen_ErrorCode_ERROR_GPU_LOST, "code", text) &&
                check_text(error->text, "text", text);
     }
     default:

@@ -15,6 +15,7 @@ enum error_kind {
     ERROR_IMAGE,   /* an image is bad or cannot be written: client exit code 3 */
     ERROR_SERVER,  /* the service cannot do it now (no memory, shutting down): client exit code 4 */
     ERROR_DEVICE,  /* EGL, OpenGL or the GPU failed: client exit code 5 */
+    ERROR_GPU_LOST, /* the GPU went away under a frame; it may be asked for again: exit code 4 */
 };
 
 struct error {

@@ -41,6 +41,40 @@ int banks_bind(const struct bank_set *set, int unit)
     return unit;
 }
 
+/* What there is of it. */
+static void take_down(struct renderer_model *model)
+{
+    banks_finish(&model->points);
+    banks_finish(&model->nodes);
+    banks_finish(&model->adjacency);
+}
+
+bool model_upload(struct renderer *renderer, struct renderer_model *model, struct error *error)
+{
+    if (is_current(renderer, model->context))
+        return true;
+    const struct limit_tables *tables = model->tables;
+    size_t max = renderer->info.max_texels;
+    /* A node's three texels stay in one bank. */
+    size_t node_max = max / 3 * 3;
+    model->points = model->nodes = model->adjacency = (struct bank_set){0};
+    model->programs = NULL;
+    if (upload(&model->points, MAX_POINT_BANKS, GL_RGBA32F, tables->texels, tables->n_texels,
+               sizeof *tables->texels, max, "points", error) &&
+        upload(&model->nodes, MAX_NODE_BANKS, GL_RGBA32UI, tables->nodes, 3 * tables->n_nodes, 16,
+               node_max, "nodes", error) &&
+        upload(&model->adjacency, MAX_ADJACENCY_BANKS, GL_RGBA32UI, tables->adjacency,
+               tables->n_faces, 16, max, "adjacency", error))
+        model->programs =
+            programs_for(renderer, model->points.n, model->nodes.n, model->adjacency.n, error);
+    if (!model->programs) {
+        take_down(model);
+        return false;
+    }
+    model->context = renderer->context;
+    return true;
+}
+
 struct renderer_model *renderer_model_create(struct renderer *renderer,
                                              const struct limit_tables *tables, struct error *error)
 {
@@ -51,31 +85,21 @@ struct renderer_model *renderer_model_create(struct renderer *renderer,
     }
     model->tables = tables;
     model->serial = ++renderer->next_serial;
-    size_t max = renderer->info.max_texels;
-    /* A node's three texels stay in one bank. */
-    size_t node_max = max / 3 * 3;
-    if (upload(&model->points, MAX_POINT_BANKS, GL_RGBA32F, tables->texels, tables->n_texels,
-               sizeof *tables->texels, max, "points", error) &&
-        upload(&model->nodes, MAX_NODE_BANKS, GL_RGBA32UI, tables->nodes, 3 * tables->n_nodes, 16,
-               node_max, "nodes", error) &&
-        upload(&model->adjacency, MAX_ADJACENCY_BANKS, GL_RGBA32UI, tables->adjacency,
-               tables->n_faces, 16, max, "adjacency", error))
-        model->programs =
-            programs_for(renderer, model->points.n, model->nodes.n, model->adjacency.n, error);
-    if (!model->programs) {
-        renderer_model_destroy(renderer, model);
-        return NULL;
-    }
-    return model;
+    /* On a device that is lost meanwhile it comes with its first frame. */
+    if (!renderer_ready(renderer, error) || model_upload(renderer, model, error) ||
+        renderer_check_lost(renderer))
+        return model;
+    free(model);
+    return NULL;
 }
 
 void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model)
 {
     if (!model)
         return;
-    polygons_forget(&renderer->polygons, model->serial);
-    banks_finish(&model->points);
-    banks_finish(&model->nodes);
-    banks_finish(&model->adjacency);
+    if (is_current(renderer, model->context)) {
+        polygons_forget(&renderer->polygons, model->serial);
+        take_down(model);
+    }
     free(model);
 }

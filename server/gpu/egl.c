@@ -22,7 +22,12 @@ static bool is_software(EGLDeviceEXT device)
 
 static bool open_context(struct egl *egl)
 {
-    static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+    /* The last three pairs are common to all tries, so they come at the end. */
+    static const EGLint attributes[] = {EGL_CONTEXT_OPENGL_ROBUST_ACCESS,
+                                        EGL_TRUE,
+                                        EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                        EGL_LOSE_CONTEXT_ON_RESET,
+                                        EGL_CONTEXT_MAJOR_VERSION,
                                         4,
                                         EGL_CONTEXT_MINOR_VERSION,
                                         5,
@@ -31,7 +36,10 @@ static bool open_context(struct egl *egl)
                                         EGL_NONE};
     if (!eglBindAPI(EGL_OPENGL_API))
         return false;
-    egl->context = eglCreateContext(egl->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    /* Robust and telling of resets; telling alone; neither. */
+    for (int from = 0; from <= 4 && egl->context == EGL_NO_CONTEXT; from += 2)
+        egl->context =
+            eglCreateContext(egl->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes + from);
     if (egl->context == EGL_NO_CONTEXT)
         return false;
     return eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
@@ -40,6 +48,7 @@ static bool open_context(struct egl *egl)
 static bool open_device(struct egl *egl, EGLDeviceEXT device)
 {
     egl->context = EGL_NO_CONTEXT;
+    egl->device = device;
     egl->software = is_software(device);
     egl->display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL);
     if (egl->display == EGL_NO_DISPLAY || !eglInitialize(egl->display, NULL, NULL))
@@ -82,7 +91,7 @@ static int choose_devices(const char *wanted, const EGLDeviceEXT *all, int n, EG
 
 bool egl_init(struct egl *egl, const char *device, struct error *error)
 {
-    *egl = (struct egl){EGL_NO_DISPLAY, EGL_NO_CONTEXT, false};
+    *egl = (struct egl){.display = EGL_NO_DISPLAY, .context = EGL_NO_CONTEXT};
     EGLDeviceEXT all[MAX_DEVICES], chosen[MAX_DEVICES];
     EGLint n = 0;
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
@@ -104,6 +113,12 @@ bool egl_init(struct egl *egl, const char *device, struct error *error)
                      n_chosen, device);
 }
 
+bool egl_reopen(struct egl *egl)
+{
+    egl_finish(egl);
+    return open_device(egl, egl->device);
+}
+
 void egl_finish(struct egl *egl)
 {
     if (egl->display == EGL_NO_DISPLAY)
@@ -112,5 +127,6 @@ void egl_finish(struct egl *egl)
     if (egl->context != EGL_NO_CONTEXT)
         eglDestroyContext(egl->display, egl->context);
     eglTerminate(egl->display);
-    *egl = (struct egl){EGL_NO_DISPLAY, EGL_NO_CONTEXT, false};
+    *egl =
+        (struct egl){.display = EGL_NO_DISPLAY, .context = EGL_NO_CONTEXT, .device = egl->device};
 }

@@ -25,16 +25,22 @@ struct table_programs {
     GLuint visibility, evaluate, unsolved;
 };
 
+/* Which context of the renderer an object's GL names are of. Those of an earlier one went with it:
+ * they are dropped, never deleted, since they may be another object's by now. */
+typedef uint32_t context_number; /* from 1; 0: of none, the object is not on the device */
+
 struct renderer_model {
     const struct limit_tables *tables;
+    context_number context;
     struct bank_set points, nodes, adjacency;
     const struct table_programs *programs;
     uint64_t serial; /* never reused: tells whose planes are kept */
 };
 
 struct renderer_image {
+    const struct image *pixels;
+    context_number context;
     GLuint texture;
-    bool is_linear;
 };
 
 /* The images of one tile, grown to the largest tile asked for. */
@@ -99,7 +105,11 @@ enum shaded { SHADED_ALL, SHADED_UNFILTERED, SHADED_EDGES, SHADED_TURNS, SHADED_
 
 struct renderer {
     struct egl egl;
+    struct renderer_options options;
     struct renderer_info info;
+    char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES]; /* of info */
+    context_number context;
+    bool is_lost; /* the context: nothing but opening another one makes a GL call */
     /* In use: as struct planes. */
     struct target target;
     struct kept kept;
@@ -123,6 +133,23 @@ struct renderer {
     GLuint blank_texture;              /* stands in where a pattern has no image */
     uint64_t next_serial;
 };
+
+/* Makes sure that there is a context: opens another one in place of one that is lost, as the first
+ * was. ERROR_GPU_LOST when the device gives none yet. */
+bool renderer_ready(struct renderer *renderer, struct error *error);
+/* Has the context been lost? Once so, always, until another is opened. */
+bool renderer_check_lost(struct renderer *renderer);
+/* Are these names of the context that there is? */
+static inline bool is_current(const struct renderer *renderer, context_number context)
+{
+    return context == renderer->context && !renderer->is_lost;
+}
+/* Waits for the device. False when it is lost, as one is that does not come back in time. */
+bool renderer_wait(struct renderer *renderer);
+
+/* Puts on the device what is not there. */
+bool model_upload(struct renderer *renderer, struct renderer_model *model, struct error *error);
+bool image_upload(struct renderer *renderer, struct renderer_image *image, struct error *error);
 
 /* Every bank of a set bound to texture units from `unit`; returns the next free unit. */
 int banks_bind(const struct bank_set *set, int unit);

@@ -19,13 +19,14 @@ static uint64_t now_us(void)
     return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
 }
 
-/* Waits for the device and adds what passed since *since to *stage. */
-static void end_stage(uint64_t *stage, uint64_t *since)
+/* Waits for the device and adds what passed since *since to *stage. False when it is lost. */
+static bool end_stage(struct renderer *r, uint64_t *stage, uint64_t *since)
 {
-    glFinish();
+    bool ok = renderer_wait(r);
     uint64_t now = now_us();
     *stage += now - *since;
     *since = now;
+    return ok;
 }
 
 static bool same_camera(const struct camera *a, const struct camera *b)
@@ -85,19 +86,18 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
         if (!stage_polygons(r, model, request, tile, error))
             return false;
         stage_gather(r);
-        end_stage(&frame->times.visibility_us, &since);
-        return true;
+        return end_stage(r, &frame->times.visibility_us, &since);
     }
     if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
         return false;
     stage_visibility(r, model, tile, request->planes & PLANE_PTEX);
     stage_gather(r);
-    end_stage(&frame->times.visibility_us, &since);
+    if (!end_stage(r, &frame->times.visibility_us, &since))
+        return false;
     stage_evaluate(r, model, request->planes & PLANE_PTEX);
     if (edges_wanted(request))
         stage_edges(r);
-    end_stage(&frame->times.evaluate_us, &since);
-    return true;
+    return end_stage(r, &frame->times.evaluate_us, &since);
 }
 
 /* `drawn` is the tile with its margin. */
@@ -118,10 +118,9 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
     if (request->surface.kind == SURFACE_WIREFRAME &&
         !stage_wireframe(r, model, request, drawn, error))
         return false;
-    end_stage(&frame->times.shade_us, &since);
-    bool ok = readback(r, request, drawn, tile, frame, error);
-    end_stage(&frame->times.readback_us, &since);
-    return ok;
+    return end_stage(r, &frame->times.shade_us, &since) &&
+           readback(r, request, drawn, tile, frame, error) &&
+           end_stage(r, &frame->times.readback_us, &since);
 }
 
 static uint32_t at_most(uint32_t value, uint32_t limit)
@@ -205,12 +204,26 @@ bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *f
     return true;
 }
 
-static bool step(struct renderer *r, const struct renderer_model *model, struct frame_work *work,
+/* All that the frame shows, where it is not on the device: new, or the device was lost. */
+static bool upload_all(struct renderer *r, struct renderer_model *model,
+                       const struct frame_request *request, struct error *error)
+{
+    bool ok = model_upload(r, model, error);
+    for (uint32_t i = 0; ok && i < request->n_lights; i++) {
+        struct renderer_image *image = request->lights[i].pattern.image;
+        ok = !image || image_upload(r, image, error);
+    }
+    return ok;
+}
+
+static bool step(struct renderer *r, struct renderer_model *model, struct frame_work *work,
                  struct frame *frame, struct error *error)
 {
     const struct frame_request *request = work->request;
     struct view view;
     struct tile drawn, tile;
+    if (!renderer_ready(r, error) || !upload_all(r, model, request, error))
+        return false;
     place_tile(work, &drawn, &tile);
     use_planes(r, !is_single(work));
     r->watch = work->watch;
@@ -233,6 +246,10 @@ enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error)
 {
     if (!step(r, model, work, frame, error)) {
+        /* Whatever failed then, this is why. */
+        if (renderer_check_lost(r))
+            error_set(error, ERROR_GPU_LOST,
+                      "the GPU was lost while it drew this frame: ask again");
         frame_finish(frame);
         return FRAME_FAILED;
     }

@@ -35,7 +35,12 @@ enum renderer_plane {
 struct renderer_options {
     const char *device; /* "auto", "software" or a number: the n-th EGL device */
     size_t max_texels;  /* tests only: pretend that buffer textures hold no more; 0: ask */
+    /* Told on the GL thread of every context that is lost, and of every try to open another one
+     * that fails. NULL: nobody is. */
+    void (*lost)(void *owner);
+    void *owner;
 };
+#define RENDERER_NAME_BYTES 256
 
 /* What the device is, in its own words. Strings live as long as the renderer. */
 struct renderer_info {
@@ -73,18 +78,24 @@ struct frame {
 };
 
 /* EGL by device enumeration, surfaceless, OpenGL 4.5 core. NULL with ERROR_DEVICE when there is
- * none, saying what was found. */
+ * none, saying what was found.
+ *
+ * The device may go: a reset, or work that does not end (2 s; a software device has all time). The
+ * tile that it was at fails with ERROR_GPU_LOST. What is called next opens the same device again;
+ * models and images are put there again when they are drawn next, and frames go on with their next
+ * tile. */
 struct renderer *renderer_create(const struct renderer_options *options, struct error *error);
 void renderer_destroy(struct renderer *renderer); /* NULL is safe */
 const struct renderer_info *renderer_info(const struct renderer *renderer);
 
 /* Uploads tables. The tables must stay until the model is destroyed (their bounds choose the
- * grids every frame). */
+ * grids every frame, and a device that was lost gets them again). */
 struct renderer_model *renderer_model_create(struct renderer *renderer,
                                              const struct limit_tables *tables,
                                              struct error *error);
 void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model);
 
+/* Uploads an image, which must stay as tables do. */
 struct renderer_image *renderer_image_create(struct renderer *renderer, const struct image *image,
                                              struct error *error);
 void renderer_image_destroy(struct renderer *renderer, struct renderer_image *image);
@@ -114,7 +125,7 @@ struct frame_work {
 enum frame_step {
     FRAME_MORE,   /* tiles are left */
     FRAME_DONE,   /* the frame is whole */
-    FRAME_FAILED, /* *error says why; the frame is empty */
+    FRAME_FAILED, /* *error says why; ERROR_GPU_LOST: ask again. The frame is empty */
 };
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and

@@ -31,20 +31,20 @@ enum pattern_kind {
 /* What a light shows. Colours are RGBA in [0,1], as displayed. */
 struct pattern {
     enum pattern_kind kind;
-    double count;                       /* (0, 100000]: periods over the light's width */
-    double period;                      /* the light's units; 0: by count */
-    double duty;                        /* [0, 1]: bright part of a period */
-    double rotation_deg;                /* on the light */
-    double offset;                      /* periods */
-    double soft;                        /* [0, 1]: share of a period that an edge takes; of
-                                           PATTERN_LINES, of the width */
-    double opacity;                     /* [0, 1]: over the shaded base */
-    double at[MAX_LINES];               /* LINES: places, in widths of the light */
-    uint32_t n_at;                      /* 1 to MAX_LINES */
-    double width;                       /* LINES: (0, 1], in widths of the light */
-    float foreground[4];                /* bright part */
-    float background[4];                /* dark part */
-    const struct renderer_image *image; /* IMAGE; must outlive the frame */
+    double count;                 /* (0, 100000]: periods over the light's width */
+    double period;                /* the light's units; 0: by count */
+    double duty;                  /* [0, 1]: bright part of a period */
+    double rotation_deg;          /* on the light */
+    double offset;                /* periods */
+    double soft;                  /* [0, 1]: share of a period that an edge takes; of
+                                     PATTERN_LINES, of the width */
+    double opacity;               /* [0, 1]: over the shaded base */
+    double at[MAX_LINES];         /* LINES: places, in widths of the light */
+    uint32_t n_at;                /* 1 to MAX_LINES */
+    double width;                 /* LINES: (0, 1], in widths of the light */
+    float foreground[4];          /* bright part */
+    float background[4];          /* dark part */
+    struct renderer_image *image; /* IMAGE; must outlive the frame */
 };
 
 enum light_kind { LIGHT_RECTANGLE, LIGHT_PLANE, LIGHT_TUNNEL, LIGHT_SPHERE };

@@ -193,7 +193,7 @@ static void fill_pattern(struct light_block *block, const struct pattern *patter
     block->n_single = (int32_t)pattern->n_at;
     block->half_width = (float)(0.5 * pattern->width * w);
     block->opacity = (float)pattern->opacity;
-    block->is_linear = pattern->image && pattern->image->is_linear;
+    block->is_linear = pattern->image && pattern->image->pixels->is_linear;
     put4(pattern->foreground, block->foreground);
     put4(pattern->background, block->background);
 }

@@ -6,17 +6,21 @@ struct image_build {
     struct build_order order;
     struct work work; /* decoding, later uploading */
     uint32_t max_px;
-    struct image pixels;
     struct light_image *image;
     bool ok;
     struct error error;
 };
 
+static void image_free(struct light_image *image)
+{
+    image_finish(&image->pixels);
+    free(image);
+}
+
 static void end_build(struct image_build *build, bool ok)
 {
-    image_finish(&build->pixels);
     if (!ok)
-        free(build->image);
+        image_free(build->image);
     build->order.finished(build->order.owner, ok ? build->image : NULL, ok ? NULL : &build->error);
     free(build);
 }
@@ -24,7 +28,7 @@ static void end_build(struct image_build *build, bool ok)
 static void upload_run(struct work *work, void *worker)
 {
     struct image_build *build = work->owner;
-    build->image->gpu = renderer_image_create(worker, &build->pixels, &build->error);
+    build->image->gpu = renderer_image_create(worker, &build->image->pixels, &build->error);
 }
 
 static void upload_done(struct work *work)
@@ -38,8 +42,8 @@ static void decode_run(struct work *work, void *worker)
     (void)worker;
     struct image_build *build = work->owner;
     const struct build_order *order = &build->order;
-    build->ok = workers_read_image(order->workers, &build->pixels, order->file, order->file_bytes,
-                                   order->name, build->max_px, &build->error);
+    build->ok = workers_read_image(order->workers, &build->image->pixels, order->file,
+                                   order->file_bytes, order->name, build->max_px, &build->error);
 }
 
 static void decode_done(struct work *work)
@@ -47,7 +51,7 @@ static void decode_done(struct work *work)
     struct image_build *build = work->owner;
     const struct build_order *order = &build->order;
     if (build->ok) {
-        build->image->reserved_bytes = image_bytes(&build->pixels);
+        build->image->reserved_bytes = image_bytes(&build->image->pixels);
         build->ok = order->reserve(order->owner, build->image->reserved_bytes, &build->error);
     }
     if (!build->ok) {
@@ -89,7 +93,7 @@ static void destroy_run(struct work *work, void *worker)
 
 static void destroy_done(struct work *work)
 {
-    free(work->owner);
+    image_free(work->owner);
 }
 
 void light_image_destroy(struct light_image *image, struct render_thread *render_thread)

@@ -5,6 +5,7 @@
 #include "server/service/build.h"
 
 struct light_image {
+    struct image pixels;        /* stay as long as `gpu` */
     struct renderer_image *gpu; /* for the GL thread only */
     size_t reserved_bytes;      /* what order->reserve() was asked for: its texels */
     struct work destroy_work;

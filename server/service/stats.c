@@ -147,6 +147,8 @@ const char *stats_error_name(sheen_ErrorCode code)
         return "cancelled";
     case sheen_ErrorCode_ERROR_DEADLINE:
         return "deadline";
+    case sheen_ErrorCode_ERROR_GPU_LOST:
+        return "gpu_lost";
     }
     return "none";
 }

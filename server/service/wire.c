@@ -135,6 +135,8 @@ sheen_ErrorCode wire_error_code(enum error_kind kind)
         return sheen_ErrorCode_ERROR_IMAGE;
     case ERROR_DEVICE:
         return sheen_ErrorCode_ERROR_DEVICE;
+    case ERROR_GPU_LOST:
+        return sheen_ErrorCode_ERROR_GPU_LOST;
     case ERROR_NONE:
     case ERROR_SERVER:
         break;

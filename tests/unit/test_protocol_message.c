@@ -422,9 +422,9 @@ static void answers_are_checked(void **state)
     assert_true(message_check_answer(MESSAGE_ERROR, &error, text));
     error.code = sheen_ErrorCode_ERROR_NONE;
     assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
-    error.code = sheen_ErrorCode_ERROR_DEADLINE;
+    error.code = sheen_ErrorCode_ERROR_GPU_LOST;
     assert_true(message_check_answer(MESSAGE_ERROR, &error, text));
-    error.code = (sheen_ErrorCode)13;
+    error.code = (sheen_ErrorCode)14;
     assert_false(message_check_answer(MESSAGE_ERROR, &error, text));
     error.code = sheen_ErrorCode_ERROR_MODEL;
     strcpy(error.text, "a\x1b[2J");

@@ -1,0 +1,52 @@
+/* fault_at() of build/sheend-faults, as $SHEEN_FAULTS asks: "NAME:FIRST:TIMES,..." makes NAME fail
+ * at its FIRST-th place and at each FIRST-th after it, TIMES times in all. The faults that happen
+ * are told on standard error. */
+#include "server/fault.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_FAULTS = 8 };
+
+static struct fault {
+    char name[32];
+    unsigned every, times;
+    atomic_uint n;
+} faults[MAX_FAULTS];
+static int n_faults;
+
+/* Before main(): no thread runs yet. */
+__attribute__((constructor)) static void read_faults(void)
+{
+    const char *at = getenv("SHEEN_FAULTS");
+    while (at && *at) {
+        struct fault *fault = &faults[n_faults];
+        int length = 0;
+        if (n_faults == MAX_FAULTS ||
+            sscanf(at, "%31[^:,]:%u:%u%n", fault->name, &fault->every, &fault->times, &length) !=
+                3 ||
+            fault->every == 0) {
+            fprintf(stderr, "SHEEN_FAULTS: '%s' is not NAME:EVERY:TIMES\n", at);
+            exit(2);
+        }
+        n_faults++;
+        at += length + (at[length] == ',');
+    }
+}
+
+bool fault_at(const char *name)
+{
+    for (int i = 0; i < n_faults; i++) {
+        struct fault *fault = &faults[i];
+        if (strcmp(fault->name, name) != 0)
+            continue;
+        unsigned n = atomic_fetch_add(&fault->n, 1) + 1;
+        if (n % fault->every != 0 || n / fault->every > fault->times)
+            return false;
+        fprintf(stderr, "fault: %s\n", name);
+        return true;
+    }
+    return false;
+}
