@@ -53,7 +53,7 @@ int main(int argc, char **argv)
     struct service *service = service_create(&program.settings.service, &reloader, &error);
     if (!service)
         return fail(&error);
-    service_run(service);
+    enum service_end end = service_run(service);
     service_destroy(service);
-    return EXIT_DONE;
+    return end;
 }

@@ -53,7 +53,8 @@ static void print_help(void)
         "\nSIGHUP reads the configuration again and takes the options marked * from it; a bad one\n"
         "changes nothing and is logged. SIGTERM and SIGINT finish what is in flight; a second\n"
         "one ends at once.\n"
-        "exit codes: 0 done, 2 wrong usage, 4 cannot serve, 5 no device");
+        "exit codes: 0 done, 2 wrong usage, 4 cannot serve, 5 no device, 75 the GPU was lost too "
+        "often");
 }
 
 /* --- reading */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "protocol/limits.h"
+#include "server/service/losses.h"
 
 #define KIB ((uint64_t)1 << 10)
 #define MIB ((uint64_t)1 << 20)
@@ -57,6 +58,10 @@ const struct limits_row LIMITS[] = {
      AT(idle_s)},
     {"drain-timeout", UNIT_SECONDS, "after SIGTERM, for a client to read its frames", 0,
      MOST_SECONDS, 30, AT(drain_s)},
+    {"gpu-losses", UNIT_COUNT,
+     "so often may the GPU be lost in ten minutes; then the daemon ends with exit code\n75, to be "
+     "started anew; 0: as often as it likes",
+     0, LOSSES_MAX, 3, AT(gpu_losses)},
 };
 const size_t N_LIMITS = sizeof LIMITS / sizeof *LIMITS;
 

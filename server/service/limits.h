@@ -35,6 +35,8 @@ struct limits {
     uint64_t stall_s;     /* without a byte sent or of an upload received */
     uint64_t idle_s;      /* without a request; 0: for ever */
     uint64_t drain_s;     /* for a client to read its frames when the daemon ends */
+
+    uint64_t gpu_losses; /* in ten minutes (losses.h) end the daemon; 0: none do */
 };
 
 enum limits_unit { UNIT_COUNT, UNIT_BYTES, UNIT_PX, UNIT_SECONDS };

@@ -53,7 +53,7 @@ static void write_build(const struct session_host *host, struct report *report)
     label(report, "driver", info->driver);
     report_add(report, ",software=\"%s\"} 1\n", info->software ? "true" : "false");
     put(report, "gpu_generation", "gauge", host->gpu_generation,
-        "How often a device has been opened.");
+        "1, and one more for each time that the GPU was lost.");
 }
 
 static void write_sessions(const struct session_host *host, struct report *report)

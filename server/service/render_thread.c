@@ -1,5 +1,6 @@
 #include "server/service/render_thread.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "server/service/pool.h"
@@ -8,7 +9,14 @@ struct render_thread {
     struct renderer_options options;
     struct renderer_info info;
     struct pool *pool; /* of one thread */
+    atomic_uint losses;
 };
+
+static void device_lost(void *owner)
+{
+    struct render_thread *thread = owner;
+    atomic_fetch_add(&thread->losses, 1);
+}
 
 static bool open_device(void *owner, void **worker, struct error *error)
 {
@@ -35,6 +43,9 @@ struct render_thread *render_thread_create(const struct renderer_options *option
         return NULL;
     }
     thread->options = *options;
+    thread->options.lost = device_lost;
+    thread->options.owner = thread;
+    atomic_init(&thread->losses, 0);
     const struct pool_worker worker = {open_device, close_device, thread};
     thread->pool = pool_create("sheend-gl", 1, 0, &worker, completions, error);
     if (!thread->pool) {
@@ -60,6 +71,11 @@ void render_thread_submit(struct render_thread *thread, struct work *work)
 const struct renderer_info *render_thread_info(const struct render_thread *thread)
 {
     return &thread->info;
+}
+
+uint32_t render_thread_losses(const struct render_thread *thread)
+{
+    return atomic_load(&thread->losses);
 }
 
 uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us)

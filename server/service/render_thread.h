@@ -1,6 +1,8 @@
 /* The one thread that owns the renderer, and with it the GL context, for the daemon's life.
  * Works submitted here see their `worker` as `struct renderer *` and run in order; nobody else
- * calls renderer_*() with a renderer. Thread: the functions here are for the loop's thread. */
+ * calls renderer_*() with a renderer. A device that is lost is opened again there (renderer.h); the
+ * loop's thread is told of it by the work that fails. Thread: the functions here are for the loop's
+ * thread. */
 #ifndef SHEEN_SERVICE_RENDER_THREAD_H
 #define SHEEN_SERVICE_RENDER_THREAD_H
 
@@ -17,6 +19,9 @@ struct render_thread *render_thread_create(const struct renderer_options *option
 void render_thread_destroy(struct render_thread *thread);
 
 void render_thread_submit(struct render_thread *thread, struct work *work);
+
+/* How often the device has been lost, or could not be opened again. */
+uint32_t render_thread_losses(const struct render_thread *thread);
 
 /* As pool_busy_us(). */
 uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us);

@@ -109,8 +109,10 @@ static void start_polygons(struct request *request)
 static bool needs_polygons(const struct request *request)
 {
     const struct surface *surface = &request->frame_request.surface;
-    return surface->kind != SURFACE_EXACT &&
-           !(request->model.asset->drawn_levels & 1u << surface->level);
+    const struct asset *asset = request->model.asset;
+    bool has = asset->drawn_on == request->host->gpu_generation &&
+               asset->drawn_levels & 1u << surface->level;
+    return surface->kind != SURFACE_EXACT && !has;
 }
 
 static void drop_polygons(struct request *request)
@@ -335,6 +337,19 @@ static void step_run(struct work *work, void *worker)
     request->step_us = loop_now_us() - start_us;
 }
 
+/* The device has the polygons that the frame shows. */
+static void note_polygons(const struct request *request)
+{
+    const struct surface *surface = &request->frame_request.surface;
+    struct asset *asset = request->model.asset;
+    if (surface->kind == SURFACE_EXACT)
+        return;
+    if (asset->drawn_on != request->host->gpu_generation)
+        asset->drawn_levels = 0;
+    asset->drawn_on = request->host->gpu_generation;
+    asset->drawn_levels |= 1u << surface->level;
+}
+
 static void step_done(struct work *work)
 {
     struct request *request = work->owner;
@@ -343,8 +358,7 @@ static void step_done(struct work *work)
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
                       request->step == FRAME_MORE);
     if (request->step != FRAME_FAILED) {
-        if (request->frame_request.surface.kind != SURFACE_EXACT)
-            request->model.asset->drawn_levels |= 1u << request->frame_request.surface.level;
+        note_polygons(request);
         costs_learn(&host->costs, request->cost_key, next_tile_px(request), request->step_us);
         request->entry.estimate_us =
             costs_estimate(&host->costs, request->cost_key, next_tile_px(request));

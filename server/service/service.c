@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "server/service/listen.h"
+#include "server/service/losses.h"
 #include "server/service/model_file.h"
 #include "server/service/monitor.h"
 #include "server/service/notify.h"
@@ -31,6 +32,8 @@ struct service {
     struct loop_source signals;
     int signal_fd;
     struct session *sessions;
+    struct losses losses; /* of the GPU */
+    enum service_end end;
     bool single; /* ends with its session */
 };
 
@@ -124,9 +127,29 @@ static bool any_paused(const struct service *service)
     return false;
 }
 
+static void drain(struct service *service);
+
+/* The frames that it took with it have been answered. */
+static void count_losses(struct service *service)
+{
+    struct session_host *host = &service->host;
+    while (service->losses.n < render_thread_losses(host->render_thread)) {
+        bool often = losses_add(&service->losses, loop_now_us(), host->limits.gpu_losses);
+        host->gpu_generation++;
+        log_event(LOG_ERROR, "the GPU was lost", log_number("generation", host->gpu_generation));
+        if (!often || host->draining)
+            continue;
+        service->end = SERVICE_GPU_LOST;
+        log_event(LOG_ERROR, "the GPU was lost too often: ending with exit code 75",
+                  log_number("gpu_losses", host->limits.gpu_losses));
+        drain(service);
+    }
+}
+
 static void after_batch(void *owner)
 {
     struct service *service = owner;
+    count_losses(service);
     settle_sessions(service);
     request_start_next(&service->host);
     loop_set_ticking(service->host.loop, service->sessions || any_paused(service));
@@ -139,7 +162,7 @@ static void after_batch(void *owner)
         service->host.n_file_loads == 0)
         loop_stop(service->host.loop);
     else if (service->single)
-        _exit(0); /* a tile or a table may take long yet: nobody wants them */
+        _exit(service->end); /* a tile or a table may take long yet: nobody wants them */
 }
 
 static void tick(void *owner)
@@ -165,7 +188,7 @@ static void drain(struct service *service)
 {
     if (service->host.draining) {
         workers_stop(&service->host.workers);
-        _exit(0); /* asked twice: at once, with the listeners gone already */
+        _exit(service->end); /* asked twice: at once, with the listeners gone already */
     }
     service->host.draining = true;
     service->host.drain_start_us = loop_now_us();
@@ -453,9 +476,10 @@ struct service *service_create(const struct service_options *options,
     return service;
 }
 
-void service_run(struct service *service)
+enum service_end service_run(struct service *service)
 {
     loop_run(service->host.loop);
+    return service->end;
 }
 
 /* The store frees its models through the GL thread, so that ends last; what both threads finish is

@@ -58,7 +58,10 @@ struct service *service_create(const struct service_options *options,
 void service_destroy(struct service *service); /* NULL is safe */
 
 /* Serves until SIGTERM or SIGINT (what is in flight is finished and sent; a second signal ends at
- * once), or until the one session has closed: then the process ends, if need be here and now. */
-void service_run(struct service *service);
+ * once), or until the one session has closed: then the process ends, if need be here and now. It
+ * also ends, as after SIGTERM, once the GPU has been lost too often (limits.gpu_losses). Returns
+ * the process's exit code. */
+enum service_end { SERVICE_ENDED = 0, SERVICE_GPU_LOST = 75 /* EX_TEMPFAIL: start another */ };
+enum service_end service_run(struct service *service);
 
 #endif

@@ -44,7 +44,7 @@ struct session_host {
     struct stats stats;
     uint32_t n_sessions;
     uint32_t n_strangers;     /* of them, not yet admitted */
-    uint32_t gpu_generation;  /* how often a device has been opened */
+    uint32_t gpu_generation;  /* 1, and one more for each time that the GPU was lost */
     uint64_t last_session_id; /* sessions are numbered in the log */
     uint64_t max_upload_bytes;
     bool draining; /* no new request is taken, and answers must be read soon */

@@ -54,6 +54,7 @@ struct asset {
     size_t charged_bytes;
     unsigned polygon_levels; /* bits: levels whose polygons are charged */
     unsigned drawn_levels;   /* bits: levels that the device has had polygons of */
+    uint32_t drawn_on;       /* the generation of the device that drawn_levels is of */
     struct asset_waiter *waiters;
     struct asset *next_build;    /* in the queue for a turn */
     struct asset *newer, *older; /* by last use */

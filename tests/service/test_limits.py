@@ -22,7 +22,7 @@ class Table(unittest.TestCase):
         text = run("--help").stdout
         rows = re.findall(r"^[ *] --([a-z-]+) (?:BYTES|PX|N|SECONDS)\b.*?\(default: (\w+)\)",
                           text[text.index("limits;"):], re.S | re.M)
-        self.assertEqual(len(rows), 19, rows)
+        self.assertEqual(len(rows), 20, rows)
         with tempfile.NamedTemporaryFile("w", suffix=".conf") as file:
             file.write("".join(f"{name} = {fallback}\n" for name, fallback in rows))
             file.flush()
@@ -32,7 +32,7 @@ class Table(unittest.TestCase):
             file.flush()
             done = run("--config", file.name, "--check-config")
             self.assertEqual(done.returncode, 2)
-            self.assertIn(f"{file.name}:20: credits is '65'", done.stderr)
+            self.assertIn(f"{file.name}:21: credits is '65'", done.stderr)
 
 
 class Memory(DaemonCase):
