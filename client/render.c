@@ -74,7 +74,6 @@ static void fill_render(sheen_Render *render, const struct sheen_request *reques
 enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_request *request,
                              struct sheen_error *error)
 {
-    sheen_Render render;
     char text[MESSAGE_TEXT_BYTES];
     enum sheen_status status = session_check(session, error);
     if (status)
@@ -87,18 +86,13 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
     if (request->n_lights < 1 || request->n_lights > SHEEN_MAX_LIGHTS)
         return status_set(error, SHEEN_BAD_ARGUMENT, "%u lights; there must be 1 to %d",
                           request->n_lights, SHEEN_MAX_LIGHTS);
-    fill_render(&render, request);
-    if (!message_check_render(&render, session->hello.max_width_px, session->hello.max_height_px,
-                              text))
-        return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
     struct session_pending *pending = &session->pending[session->n_pending];
-    *pending = (struct session_pending){
-        .width_px = render.width_px,
-        .height_px = render.height_px,
-        .planes = render.planes,
-        .encoding = render.encoding,
-    };
-    status = session_send(session, MESSAGE_RENDER, &render, &pending->seq, error);
+    pending->n_retries = 0;
+    fill_render(&pending->render, request);
+    if (!message_check_render(&pending->render, session->hello.max_width_px,
+                              session->hello.max_height_px, text))
+        return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
+    status = session_send(session, MESSAGE_RENDER, &pending->render, &pending->seq, error);
     session->last_sent = pending->seq;
     if (!status)
         session->n_pending++;
@@ -249,8 +243,9 @@ static enum sheen_status unpack_planes(struct sheen_session *session, struct she
 static const char *frame_mismatch(const sheen_Frame *body, const struct session_pending *pending,
                                   const struct codec_layout *layout)
 {
-    if (body->width_px != pending->width_px || body->height_px != pending->height_px ||
-        body->planes != pending->planes || body->encoding != pending->encoding)
+    const sheen_Render *asked = &pending->render;
+    if (body->width_px != asked->width_px || body->height_px != asked->height_px ||
+        body->planes != asked->planes || body->encoding != asked->encoding)
         return "FRAME is not of the size, planes and encoding that were asked for";
     if (body->encoding == sheen_Encoding_ENCODING_RAW && body->data_bytes != layout->raw_bytes)
         return "FRAME has another number of bytes than its planes";
@@ -314,11 +309,71 @@ static enum sheen_status receive_answer(struct sheen_session *session,
     }
 }
 
+/* The newer request of the same view that is in flight, and makes `pending` not worth another try;
+ * NULL: none. Batches neither replace nor are replaced. */
+static const struct session_pending *find_newer(const struct sheen_session *session,
+                                                const struct session_pending *pending)
+{
+    const sheen_Render *old = &pending->render;
+    if (!old->has_view && old->request_class != sheen_RequestClass_CLASS_INTERACTIVE)
+        return NULL;
+    for (size_t i = session->n_pending; i > 0; i--) {
+        const struct session_pending *other = &session->pending[i - 1];
+        const sheen_Render *new = &other->render;
+        bool has_view = new->has_view || new->request_class == sheen_RequestClass_CLASS_INTERACTIVE;
+        if (has_view && new->view == old->view && (int32_t)(other->seq - pending->seq) > 0 &&
+            old->request_class != sheen_RequestClass_CLASS_BATCH &&new->request_class !=
+                sheen_RequestClass_CLASS_BATCH)
+            return other;
+    }
+    return NULL;
+}
+
+/* The daemon's GPU was lost under the frame: sends its request again, which is in flight then. */
+static enum sheen_status retry(struct sheen_session *session, const struct session_pending *lost,
+                               struct sheen_frame *frame, struct sheen_error *error)
+{
+    const struct session_pending *newer = find_newer(session, lost);
+    if (newer) {
+        frame->superseded_by = newer->seq;
+        return status_set(error, SHEEN_SUPERSEDED, "request %u has taken the place of %u",
+                          newer->seq, lost->seq);
+    }
+    struct session_pending *again = &session->pending[session->n_pending++];
+    *again = *lost;
+    again->n_retries++;
+    return session_send_again(session, MESSAGE_RENDER, &again->render, again->seq, error);
+}
+
+/* The next answer to any request in flight, which it ends. */
+static enum sheen_status receive_next(struct sheen_session *session,
+                                      const struct sheen_progress *progress,
+                                      struct session_pending *pending, struct sheen_frame *frame,
+                                      struct sheen_error *error)
+{
+    struct message_header header;
+    enum sheen_status status = session_next(session, progress, &header, error);
+    if (status)
+        return status;
+    if (header.type == MESSAGE_ERROR && header.seq == 0)
+        return session_read_error(session, &header, error);
+    size_t i = find_pending(session, header.seq);
+    if (i == session->n_pending)
+        return session_bad_peer(session, error, header.type, "it answers no request in flight");
+    *pending = session->pending[i];
+    session->n_pending--;
+    memmove(session->pending + i, session->pending + i + 1,
+            (session->n_pending - i) * sizeof(session->pending[0]));
+    frame->number = pending->seq;
+    frame->superseded_by = 0;
+    return receive_answer(session, pending, &header, frame, error);
+}
+
 enum sheen_status sheen_receive(struct sheen_session *session,
                                 const struct sheen_progress *progress, struct sheen_frame *frame,
                                 struct sheen_error *error)
 {
-    struct message_header header;
+    struct session_pending pending = {.n_retries = SHEEN_MAX_RETRIES};
     enum sheen_status status = session_check(session, error);
     if (status)
         return status;
@@ -329,21 +384,14 @@ enum sheen_status sheen_receive(struct sheen_session *session,
         frame->memory = calloc(1, sizeof(*frame->memory));
     if (!frame->memory)
         return no_memory(session, error, sizeof(*frame->memory));
-    status = session_next(session, progress, &header, error);
-    if (status)
-        return status;
-    if (header.type == MESSAGE_ERROR && header.seq == 0)
-        return session_read_error(session, &header, error);
-    size_t i = find_pending(session, header.seq);
-    if (i == session->n_pending)
-        return session_bad_peer(session, error, header.type, "it answers no request in flight");
-    const struct session_pending pending = session->pending[i];
-    session->n_pending--;
-    memmove(session->pending + i, session->pending + i + 1,
-            (session->n_pending - i) * sizeof(session->pending[0]));
-    frame->number = pending.seq;
-    frame->superseded_by = 0;
-    return receive_answer(session, &pending, &header, frame, error);
+    for (;;) {
+        status = receive_next(session, progress, &pending, frame, error);
+        if (status != SHEEN_GPU_LOST || pending.n_retries == SHEEN_MAX_RETRIES)
+            return status;
+        status = retry(session, &pending, frame, error);
+        if (status)
+            return status;
+    }
 }
 
 enum sheen_status sheen_render(struct sheen_session *session, const struct sheen_request *request,

@@ -98,6 +98,8 @@ static enum sheen_status status_of_code(sheen_ErrorCode code)
         return SHEEN_CANCELLED;
     case sheen_ErrorCode_ERROR_DEADLINE:
         return SHEEN_LATE;
+    case sheen_ErrorCode_ERROR_GPU_LOST:
+        return SHEEN_GPU_LOST;
     default:
         return SHEEN_BAD_PEER;
     }
@@ -141,11 +143,17 @@ static enum sheen_status last_words(struct sheen_session *session, enum sheen_st
 enum sheen_status session_send(struct sheen_session *session, uint8_t type, const void *body,
                                uint32_t *seq, struct sheen_error *error)
 {
-    size_t length = 0;
     if (++session->last_seq == 0)
         session->last_seq = 1; /* 0 is the number of no request */
     *seq = session->last_seq;
-    if (!message_encode(type, *seq, body, session->buffer, sizeof(session->buffer), &length))
+    return session_send_again(session, type, body, *seq, error);
+}
+
+enum sheen_status session_send_again(struct sheen_session *session, uint8_t type, const void *body,
+                                     uint32_t seq, struct sheen_error *error)
+{
+    size_t length = 0;
+    if (!message_encode(type, seq, body, session->buffer, sizeof(session->buffer), &length))
         return status_set(error, SHEEN_BAD_ARGUMENT, "a text of the %s is too long",
                           message_type_name(type));
     enum sheen_status status =

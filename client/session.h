@@ -13,8 +13,8 @@
 /* A request whose frame has not been received. */
 struct session_pending {
     uint32_t seq;
-    uint32_t width_px, height_px, planes;
-    sheen_Encoding encoding;
+    unsigned n_retries;
+    sheen_Render render; /* as sent: it may have to be sent again */
 };
 
 struct sheen_session {
@@ -41,6 +41,9 @@ enum sheen_status session_check(const struct sheen_session *session, struct shee
 /* Sends a message with the next sequence number, which is written to *seq. */
 enum sheen_status session_send(struct sheen_session *session, uint8_t type, const void *body,
                                uint32_t *seq, struct sheen_error *error);
+/* The same with a number that has been used: of a request that was answered without being done. */
+enum sheen_status session_send_again(struct sheen_session *session, uint8_t type, const void *body,
+                                     uint32_t seq, struct sheen_error *error);
 /* Sends raw bytes of a type that has no body struct. */
 enum sheen_status session_send_raw(struct sheen_session *session, uint8_t type, uint32_t seq,
                                    const uint8_t *bytes, uint32_t n_bytes,

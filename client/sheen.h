@@ -49,6 +49,7 @@ enum sheen_status {
     SHEEN_SUPERSEDED,    /* a newer request of its view took its place   exit code 4 */
     SHEEN_CANCELLED,     /* by sheen_cancel()                            exit code 4 */
     SHEEN_LATE,          /* not drawn within its deadline                exit code 4 */
+    SHEEN_GPU_LOST,      /* the daemon's GPU, again and again; ask later exit code 4 */
     SHEEN_SHUTTING_DOWN, /* fatal                                        exit code 4 */
     SHEEN_NO_SERVER,     /* fatal: cannot connect, or start a daemon     exit code 4 */
     SHEEN_LOST_SERVER,   /* fatal: the connection broke                  exit code 4 */
@@ -373,7 +374,10 @@ enum sheen_status sheen_render(struct sheen_session *session, const struct sheen
 /* Sends a request without waiting, up to sheen_server().max_in_flight of them (SHEEN_BAD_ARGUMENT
  * beyond), and receives the next answer: frames of a class in the order sent, failures as soon as
  * the daemon knows; frame->number tells whose it is. A request that the daemon refuses, replaces or
- * gives up fails in its sheen_receive(). */
+ * gives up fails in its sheen_receive(). One whose frame goes with the daemon's GPU is sent again,
+ * up to SHEEN_MAX_RETRIES times, and comes after what was sent meanwhile; but when a newer request
+ * of its view is in flight, that takes its place (SHEEN_SUPERSEDED). */
+#define SHEEN_MAX_RETRIES 5
 enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_request *request,
                              struct sheen_error *error);
 enum sheen_status sheen_receive(struct sheen_session *session,

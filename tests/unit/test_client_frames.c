@@ -389,6 +389,74 @@ static void every_error_has_its_status(void **state)
     fake_finish(&fake);
 }
 
+/* Two lost, then a frame; then one that is lost as often as it is asked for. */
+static void serve_lost_frames(int fd)
+{
+    uint8_t first[512] = {0}, again[512] = {0};
+    greet(fd);
+    uint32_t seq = read_message(fd, first, sizeof(first)).seq;
+    for (int i = 0; i < 2; i++) {
+        send_error(fd, seq, sheen_ErrorCode_ERROR_GPU_LOST, "the GPU was lost");
+        assert_int_equal(read_message(fd, again, sizeof(again)).seq, seq);
+        assert_memory_equal(again, first, sizeof(first));
+    }
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 3);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    send_data(fd, seq, (const uint8_t *)"012", 3, MESSAGE_END);
+    for (int i = 0; i <= SHEEN_MAX_RETRIES; i++)
+        send_error(fd, read_message(fd, NULL, 0).seq, sheen_ErrorCode_ERROR_GPU_LOST, "lost");
+}
+
+static void a_lost_frame_is_asked_for_again(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_frame frame = {0};
+    struct sheen_request request = small_request(SHEEN_FILE_PNG);
+    assert_int_equal(open_session(&fake, serve_lost_frames, &session, &error), SHEEN_OK);
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_OK);
+    assert_memory_equal(frame.file, "012", 3);
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_GPU_LOST);
+    assert_int_equal(sheen_status_exit_code(SHEEN_GPU_LOST), 4);
+    assert_false(sheen_status_is_fatal(SHEEN_GPU_LOST));
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+/* Three of one view in flight: the first is lost, and must not take the place of the last. */
+static void serve_lost_view(int fd)
+{
+    uint32_t seq[3];
+    greet(fd);
+    for (int i = 0; i < 3; i++)
+        seq[i] = read_message(fd, NULL, 0).seq;
+    send_error(fd, seq[0], sheen_ErrorCode_ERROR_GPU_LOST, "the GPU was lost");
+    send_error(fd, seq[2], sheen_ErrorCode_ERROR_CANCELLED, "the newest");
+}
+
+static void a_lost_frame_gives_way_to_a_newer_one(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_frame frame = {0};
+    struct sheen_request request = small_request(SHEEN_PLANES_RAW);
+    request.request_class = SHEEN_INTERACTIVE;
+    assert_int_equal(open_session(&fake, serve_lost_view, &session, &error), SHEEN_OK);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
+    assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_SUPERSEDED);
+    assert_int_equal(frame.superseded_by, sheen_last_number(session));
+    assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_CANCELLED);
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
 static void bad_arguments_send_nothing(void **state)
 {
     (void)state;
@@ -430,6 +498,8 @@ int main(void)
         cmocka_unit_test(answers_to_nothing_are_refused),
         cmocka_unit_test(classes_travel),
         cmocka_unit_test(every_error_has_its_status),
+        cmocka_unit_test(a_lost_frame_is_asked_for_again),
+        cmocka_unit_test(a_lost_frame_gives_way_to_a_newer_one),
         cmocka_unit_test(bad_arguments_send_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
