@@ -48,6 +48,7 @@ def resident_kb(pid):
 
 class Daemon:
     """A real sheend on a Unix socket and a TCP port of its own."""
+    program = SHEEND
 
     def __init__(self, *arguments, folder=None, path=None, tcp=True, env=None, under=()):
         self.folder = folder or tempfile.mkdtemp(prefix="sheen-test-")
@@ -56,7 +57,7 @@ class Daemon:
         self.unix = "unix:" + self.path
         listen = ["--listen", self.unix] + (["--listen", "tcp:127.0.0.1:0"] if tcp else [])
         self.stderr = tempfile.TemporaryFile("w+")
-        self.process = subprocess.Popen([*under, SHEEND, *listen, "--device", "software", *arguments],
+        self.process = subprocess.Popen([*under, self.program, *listen, "--device", "software", *arguments],
                                         stdout=subprocess.DEVNULL, stderr=self.stderr,
                                         env={**os.environ, **(env or {})})
         atexit.register(self.process.kill)  # where a test fails before it stops its daemon
