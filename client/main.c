@@ -26,6 +26,15 @@ static void print_help(FILE *out)
           out);
 }
 
+/* What a command prints is its result: if it cannot be written, the command has failed. */
+static int end_output(int code)
+{
+    if ((fflush(stdout) == 0 && !ferror(stdout)) || code != 0)
+        return code;
+    fputs("sheen: standard output cannot be written\n", stderr);
+    return sheen_status_exit_code(SHEEN_BAD_IMAGE);
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
@@ -44,7 +53,7 @@ int main(int argc, char **argv)
         char why[OPTIONS_WHY_BYTES];
         switch (options_parse(COMMANDS[i], argc - 1, argv + 1, &options, why)) {
         case OPTIONS_RUN:
-            return COMMANDS[i]->run(&options);
+            return end_output(COMMANDS[i]->run(&options));
         case OPTIONS_HELP:
             options_help(COMMANDS[i], stdout);
             return 0;
