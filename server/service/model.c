@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/fault.h"
+
 #define MAX_RANGES 256 /* even shares for many cores, and a progress bar that moves */
 #define MIN_FACES_PER_RANGE 16
 
@@ -129,7 +131,7 @@ static bool start_ranges(struct model_build *build)
     size_t n_faces = build->model->tables.n_faces;
     size_t n = n_faces / MIN_FACES_PER_RANGE + 1;
     n = n > MAX_RANGES ? MAX_RANGES : n;
-    build->ranges = calloc(n, sizeof *build->ranges);
+    build->ranges = fault_at("model.build") ? NULL : calloc(n, sizeof *build->ranges);
     if (!build->ranges)
         return error_set(&build->error, ERROR_SERVER, "%s: no memory to build its tables",
                          build->order.name);
