@@ -5,7 +5,8 @@
 #   make unit | oracle | service    one kind of test
 #   make fuzz       SECONDS=60: fuzz each target of tests/fuzz so long (needs clang-14: sh deploy/deps.sh fuzz)
 #   make fuzz-coverage   lines of protocol/, the readers and the workers' messages that the corpora reach
-#   make soak       the service under load, SECONDS of each part (60); prints figures, judges ratios
+#   make soak       the service under load, SECONDS of each part (60), and 102 processes killed; prints
+#                   figures, judges ratios
 #   make bench      how fast, each question by a program of tests/bench; figures to build/bench
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
@@ -219,6 +220,7 @@ fuzz-coverage:
 
 soak: all $(BUILD)/sheend-faults
 	SHEEN_SOAK_S=$(SECONDS) /usr/bin/python3 tests/service/run.py $(BUILD) soak_load
+	SHEEN_KILLS=34 /usr/bin/python3 tests/service/run.py $(BUILD) test_faults.Killed
 
 # One after the other: each wants the machine for itself.
 bench: all $(BENCH)

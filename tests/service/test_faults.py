@@ -1,17 +1,25 @@
-"""A GPU that is lost, injected into the test build (faults.c)."""
+"""Faults: a GPU that is lost, memory, descriptors and disks that end, and processes that are killed.
+
+Some are injected into the test build (faults.c). SHEEN_KILLS says how many processes are killed."""
 import os
+import random
+import resource
+import signal
 import subprocess
+import tempfile
+import time
 import unittest
 
-import daemon
 import wire
+from daemon import BUILD, CUBE, MODELS, SHEEN, Daemon, grid
 from test_operations import get, metrics_address, read_metrics
+from test_untrusted import children, is_alive
 
-FENDER = os.path.join(daemon.MODELS, "fender.obj")
+FENDER = os.path.join(MODELS, "fender.obj")
 
 
-class FaultyDaemon(daemon.Daemon):
-    program = os.path.join(daemon.BUILD, "sheend-faults")
+class FaultyDaemon(Daemon):
+    program = os.path.join(BUILD, "sheend-faults")
 
     def __init__(self, faults, *arguments):
         super().__init__(*arguments, env={"SHEEN_FAULTS": faults})
@@ -42,7 +50,7 @@ class LostGpu(unittest.TestCase):
         for fault in ("gpu.lost", "gpu.fence"):
             server = self.serve(f"{fault}:1:1", "--gpu-losses", "0")
             client = self.client(server)
-            model = client.upload(daemon.CUBE, "cube.obj")
+            model = client.upload(CUBE, "cube.obj")
             with self.assertRaises(wire.Refused) as caught:
                 client.render(model)
             self.assertEqual(caught.exception.code, wire.ERROR_GPU_LOST)
@@ -52,7 +60,7 @@ class LostGpu(unittest.TestCase):
             self.assertIn("generation=2", server.wait_for("the GPU was lost"))
             healthy = self.serve("gpu.lost:1:0")
             other = self.client(healthy)
-            self.assertEqual(again, other.render(other.upload(daemon.CUBE, "cube.obj")).data)
+            self.assertEqual(again, other.render(other.upload(CUBE, "cube.obj")).data)
             self.assertEqual(server.stop(), 0)
 
     def test_all_comes_back(self):
@@ -62,7 +70,7 @@ class LostGpu(unittest.TestCase):
         for faults in ("gpu.lost:9:0", "gpu.lost:9:8"):
             server = self.serve(faults, "--gpu-losses", "0")
             client = self.client(server)
-            model = client.upload(daemon.CUBE, "cube.obj")
+            model = client.upload(CUBE, "cube.obj")
             image = client.upload(square, "light.ppm", wire.IMAGE)
             light = wire.field(5, wire.field(6, wire.field(1, wire.PATTERN_IMAGE) +
                                              wire.field(6, image)))
@@ -79,7 +87,7 @@ class LostGpu(unittest.TestCase):
     def test_three_losses_end_the_daemon_with_75(self):
         server = self.serve("gpu.lost:4:3")
         client = self.client(server)
-        model = client.upload(daemon.CUBE, "cube.obj")
+        model = client.upload(CUBE, "cube.obj")
         answers = []
         for _ in range(40):
             try:
@@ -98,7 +106,7 @@ class LostGpu(unittest.TestCase):
         n_losses = 20
         server = self.serve(f"gpu.lost:29:{n_losses}", "--gpu-losses", "0", "--metrics",
                             "tcp:127.0.0.1:0")
-        clients = [subprocess.Popen([daemon.SHEEN, "stream", FENDER, "--server", server.unix,
+        clients = [subprocess.Popen([SHEEN, "stream", FENDER, "--server", server.unix,
                                      "--frames", "80", "--size", "160x120", *more],
                                     stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
                    for more in ([], ["--class", "still"], ["--class", "batch"])]
@@ -109,6 +117,163 @@ class LostGpu(unittest.TestCase):
         text = get(metrics_address(server), "/metrics")[1]
         self.assertEqual(read_metrics(text)["sheen_gpu_generation"], 1 + n_losses)
         self.assertEqual(server.stop(), 0)
+
+
+
+class Shortage(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
+        self.addCleanup(self.folder.cleanup)
+        self.output = os.path.join(self.folder.name, "out.png")
+
+    def test_memory(self):
+        """Costs one request; the next one works."""
+        for fault in ("model.build", "encode"):
+            server = FaultyDaemon(f"{fault}:1:1")
+            with wire.Client(server.unix, minor=1) as client:
+                model = client.upload(CUBE, "cube.obj")
+                with self.assertRaises(wire.Refused) as caught:
+                    client.render(model, encoding=wire.ZSTD)
+                self.assertEqual(caught.exception.code, wire.ERROR_OVERLOADED)
+                self.assertIn("memory", caught.exception.text)
+                client.render(model, encoding=wire.ZSTD)
+            self.assertEqual(server.stop(), 0)
+
+    def test_descriptors(self):
+        """Who comes when there are none waits until one is free; nobody is thrown out."""
+        server = Daemon()
+        pid = server.process.pid
+        with wire.Client(server.unix) as first:
+            model = first.upload(CUBE, "cube.obj")
+            first.render(model)
+            lowest = max(int(fd) for fd in os.listdir(f"/proc/{pid}/fd")) + 1
+            hard = resource.prlimit(pid, resource.RLIMIT_NOFILE)[1]
+            resource.prlimit(pid, resource.RLIMIT_NOFILE, (lowest, hard))
+            waiting = [wire.Client(server.unix, greet=False) for _ in range(lowest)]
+            self.addCleanup(lambda: [client.socket.close() for client in waiting])
+            first.render(model)
+            time.sleep(0.3)
+            self.assertEqual(len(os.listdir(f"/proc/{pid}/fd")), lowest)
+            resource.prlimit(pid, resource.RLIMIT_NOFILE, (hard, hard))
+            with wire.Client(server.unix) as last:
+                last.render(model)
+        self.assertEqual(server.stop(), 0)
+
+    def test_disk(self):
+        def with_full_disk():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+        server = Daemon()
+        done = subprocess.run([SHEEN, "render", FENDER, "--server", server.unix, "-o", self.output],
+                              preexec_fn=with_full_disk, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("out.png", done.stderr)
+        self.assertEqual(os.listdir(self.folder.name), [])
+        for command in (["info", FENDER], ["render", FENDER, "--json", "-o", self.output],
+                        ["stream", FENDER, "--frames", "2", "--size", "64x48"]):
+            with open("/dev/full", "w", encoding="ascii") as full:
+                done = subprocess.run([SHEEN, *command, "--server", server.unix], stdout=full,
+                                      stderr=subprocess.PIPE, text=True, timeout=60)
+            self.assertEqual(done.returncode, 3, (command, done.stderr))
+            self.assertIn("standard output cannot be written", done.stderr)
+        self.assertEqual(server.stop(), 0)
+
+    def test_broken_pipe(self):
+        """A daemon whose log and whose client go away at once."""
+        reader, writer = os.pipe()
+        server = subprocess.Popen([Daemon.program, "--device", "software", "--log-level", "debug",
+                                   "--listen", f"unix:{self.folder.name}/s"], stderr=writer)
+        os.close(writer)
+        self.assertIn(b"listening", os.read(reader, 4096))
+        os.close(reader)
+        for _ in range(3):
+            with wire.Client(f"unix:{self.folder.name}/s") as client:
+                client.send(wire.render(5, client.upload(CUBE, "cube.obj"), 900, 900))
+        with wire.Client(f"unix:{self.folder.name}/s") as client:
+            client.render(client.upload(CUBE, "cube.obj"))
+        server.terminate()
+        self.assertEqual(server.wait(30), 0)
+
+
+class Killed(unittest.TestCase):
+    """kill -9 of the daemon or its client while a model is uploaded, built and drawn."""
+    ROUNDS = int(os.environ.get("SHEEN_KILLS", "6"))
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
+        self.addCleanup(self.folder.cleanup)
+        self.model = os.path.join(self.folder.name, "big.obj")
+        with open(self.model, "wb") as file:
+            file.write(grid(100))
+        self.path = os.path.join(self.folder.name, "sheen.sock")
+        seed = random.randrange(1 << 32)
+        self.noise = random.Random(seed)
+        print(f"seed {seed}", end=" ", flush=True)
+
+    def start_client(self, *more):
+        return subprocess.Popen([SHEEN, "render", self.model, "--size", "900x700", "-o",
+                                 os.path.join(self.folder.name, "out.png"), *more],
+                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+    def wait_until(self, is_so, what):
+        end = time.monotonic() + 20
+        while not is_so():
+            self.assertLess(time.monotonic(), end, what)
+            time.sleep(0.02)
+
+    def wait_for_end_of(self, pids):
+        self.wait_until(lambda: not any(is_alive(pid) for pid in pids), f"{pids} live on")
+
+    def family(self, pid):
+        """A process's children and theirs, as far as they have not ended."""
+        found = []
+        try:
+            for child in children(pid):
+                found += [child, *self.family(child)]
+        except (FileNotFoundError, ProcessLookupError):
+            pass
+        return found
+
+    def test_daemon(self):
+        for _ in range(self.ROUNDS):
+            server = Daemon(folder=self.folder.name, path=self.path, tcp=False)
+            client = self.start_client("--server", server.unix)
+            time.sleep(self.noise.uniform(0, 0.8))
+            family = self.family(server.process.pid)
+            server.process.kill()
+            server.process.wait()
+            _, said = client.communicate(timeout=30)
+            self.assertIn(client.returncode, (0, 4), said)
+            self.wait_for_end_of(family)
+            left = set(os.listdir(self.folder.name)) - {"big.obj", "sheen.sock"}
+            self.assertEqual(left, {"out.png"} if "out.png" in left else set())
+            server.stop()
+        server = Daemon(folder=self.folder.name, path=self.path, tcp=False)
+        client = self.start_client("--server", server.unix)
+        _, said = client.communicate(timeout=60)
+        self.assertEqual(client.returncode, 0, said)
+        self.assertEqual(server.stop(), 0)
+        self.assertFalse(os.path.exists(self.path))
+
+    def test_client(self):
+        server = Daemon(folder=self.folder.name, path=self.path, tcp=False)
+        with wire.Client(server.unix) as other:
+            for _ in range(self.ROUNDS):
+                client = self.start_client("--server", server.unix)
+                time.sleep(self.noise.uniform(0, 0.8))
+                client.kill()
+                client.communicate()
+                self.wait_until(lambda: other.stats()[2] == [1], "the session lives on")
+        self.assertEqual(server.stop(), 0)
+
+    def test_client_of_a_private_daemon(self):
+        for _ in range(self.ROUNDS):
+            client = self.start_client("--device", "software")
+            time.sleep(self.noise.uniform(0, 1))
+            family = self.family(client.pid)
+            client.kill()
+            client.communicate()
+            self.wait_for_end_of(family)
 
 
 if __name__ == "__main__":
