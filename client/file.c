@@ -74,15 +74,20 @@ enum sheen_status file_read_line(const char *path, char *line, size_t size,
     return SHEEN_OK;
 }
 
+/* The folder that `path` is in; the caller's to free(). NULL: no memory. */
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
+}
+
 enum sheen_status file_check_writable(const char *path, struct sheen_error *error)
 {
     struct stat about;
     if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
         return status_set(error, SHEEN_BAD_IMAGE, "%s: is there and is not a plain file", path);
-    const char *slash = strrchr(path, '/');
-    int length = !slash ? 1 : slash == path ? 1 : (int)(slash - path);
-    char *folder = NULL;
-    if (asprintf(&folder, "%.*s", length, slash ? path : ".") < 0)
+    char *folder = folder_of(path);
+    if (!folder)
         return status_set(error, SHEEN_NO_MEMORY, "no memory for a path");
     int reason = access(folder, W_OK | X_OK) == 0 ? 0 : errno;
     free(folder);
@@ -105,13 +110,31 @@ static bool write_all(int fd, const uint8_t *bytes, size_t n_bytes)
     return true;
 }
 
-/* Opens a new file beside `path`; its name is the caller's to free(). -1 and errno on failure. */
-static int open_temporary(const char *path, char **name)
+/* Opens a file that has no name yet and goes with this process, if it is killed. -1 where the file
+ * system has none. */
+static int open_nameless(const char *path)
 {
+    char *folder = folder_of(path);
+    bool can_link = access("/proc/self/fd", X_OK) == 0; /* see name_temporary() */
+    int fd = folder && can_link ? open(folder, O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666) : -1;
+    free(folder);
+    return fd;
+}
+
+/* Gives the nameless file a name beside `path`, or makes a new file there if `nameless` is -1.
+ * Returns its descriptor; the name is the caller's to free(). -1 and errno on failure. */
+static int name_temporary(const char *path, int nameless, char **name)
+{
+    char link[32];
+    snprintf(link, sizeof(link), "/proc/self/fd/%d", nameless);
     for (int i = 0; i < TEMPORARY_TRIES; i++) {
         if (asprintf(name, "%s.%ld-%d.tmp", path, (long)getpid(), i) < 0)
             break;
-        int fd = open(*name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        int fd = nameless;
+        if (nameless < 0)
+            fd = open(*name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        else if (linkat(AT_FDCWD, link, AT_FDCWD, *name, AT_SYMLINK_FOLLOW) != 0)
+            fd = -1;
         if (fd >= 0)
             return fd;
         int reason = errno;
@@ -128,8 +151,10 @@ enum sheen_status file_write(const char *path, const uint8_t *bytes, size_t n_by
                              struct sheen_error *error)
 {
     char *name = NULL;
-    int fd = open_temporary(path, &name);
-    bool is_written = fd >= 0 && write_all(fd, bytes, n_bytes);
+    int nameless = open_nameless(path);
+    int fd = nameless >= 0 ? nameless : name_temporary(path, -1, &name);
+    bool is_written = fd >= 0 && write_all(fd, bytes, n_bytes) &&
+                      (nameless < 0 || name_temporary(path, nameless, &name) >= 0);
     int reason = errno;
     if (fd >= 0 && close(fd) != 0 && is_written) {
         is_written = false;

@@ -22,7 +22,8 @@ enum sheen_status file_read_line(const char *path, char *line, size_t size,
 enum sheen_status file_check_writable(const char *path, struct sheen_error *error);
 
 /* Writes a temporary file in the same folder and renames it, so that `path` is either what it was
- * or whole. SHEEN_BAD_IMAGE on failure; the temporary file is then removed. */
+ * or whole. SHEEN_BAD_IMAGE on failure; the temporary file is then removed. It has no name before
+ * it is whole, where the file system has such files: a process that is killed leaves none. */
 enum sheen_status file_write(const char *path, const uint8_t *bytes, size_t n_bytes,
                              struct sheen_error *error);
 

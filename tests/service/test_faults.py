@@ -264,6 +264,8 @@ class Killed(unittest.TestCase):
                 client.kill()
                 client.communicate()
                 self.wait_until(lambda: other.stats()[2] == [1], "the session lives on")
+                self.assertLessEqual(set(os.listdir(self.folder.name)),
+                                     {"big.obj", "sheen.sock", "out.png"})
         self.assertEqual(server.stop(), 0)
 
     def test_client_of_a_private_daemon(self):
