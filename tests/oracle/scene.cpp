@@ -85,7 +85,8 @@ frame_request scene::request(uint32_t width_px, uint32_t height_px) const
 drawing::drawing(const scene &scene, const char *device) : renderer(nullptr), model(nullptr)
 {
     error error;
-    renderer_options options = {device, 0};
+    renderer_options options = {};
+    options.device = device;
     renderer = renderer_create(&options, &error);
     check(renderer != nullptr, error);
     model = renderer_model_create(renderer, &scene.tables, &error);
