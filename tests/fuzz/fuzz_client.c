@@ -20,10 +20,10 @@ static void receive_frames(struct sheen_session *session, uint8_t choice)
     for (uint32_t i = 0; i < 2; i++)
         session->pending[session->n_pending++] = (struct session_pending){
             .seq = SEQ + i,
-            .width_px = WIDTH_PX,
-            .height_px = HEIGHT_PX,
-            .planes = choice & 0x80 ? CODEC_ALL_PLANES : 1,
-            .encoding = (sheen_Encoding)(choice % (sheen_Encoding_ENCODING_TIFF + 1)),
+            .render = {.width_px = WIDTH_PX,
+                       .height_px = HEIGHT_PX,
+                       .planes = choice & 0x80 ? CODEC_ALL_PLANES : 1,
+                       .encoding = (sheen_Encoding)(choice % (sheen_Encoding_ENCODING_TIFF + 1))},
         };
     while (session->n_pending > 0 && sheen_receive(session, NULL, &frame, &error) == SHEEN_OK)
         MUST(frame.width_px == WIDTH_PX && frame.data_bytes > 0);
