@@ -27,7 +27,7 @@ panel "tunnel, duty=0.3" --light tunnel --pattern stripes:count=24,duty=0.3
 panel "sphere, soft=0.6" --light sphere --pattern stripes:count=48,soft=0.6
 panel "lattice" --pattern lattice:count=40,duty=0.15
 panel "circles" --pattern circles:count=20
-panel "single lines" --pattern lines:at=0.4/0.45/0.5/0.55/0.6,width=0.006
+panel "single lines, soft=0.3" --pattern lines:at=0.4/0.45/0.5/0.55/0.6,width=0.012,soft=0.3
 panel "rainbow" --pattern rainbow:count=10
 panel "distance" --pattern distance:count=40
 panel "two lights, opacity" --light rectangle \
