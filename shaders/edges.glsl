@@ -7,7 +7,7 @@
 //                from them those over which the normal turns so far that one footprint cannot tell;
 //   edges_shade  for each of the first, meets rays all over the pixel with the pieces of surface
 //                around it, and shades the share of each;
-//   turns_shade  for each of the others, shades the pixel's quarters.
+//   turns_shade  for each of the others, shades nine parts of the pixel.
 // At the rim of a tile the pixels beyond are not known: an edge there is seen from one side only.
 
 layout(binding = 0, rgba32f) readonly uniform image2D position;  // as in planes.glsl

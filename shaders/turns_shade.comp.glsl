@@ -3,7 +3,7 @@
 
 layout(local_size_x = 64) in;
 
-const int SIDE = 2;
+const int SIDE = 3;
 
 void main()
 {
