@@ -2,11 +2,13 @@
 //
 // The rasterised parameters belong to the triangle and would cost up to 0.2 degrees; Newton's method
 // from there makes them the pixel's (limit-surface 3.4). This pass stays inside the guessed
-// sub-patch, which serves nearly all pixels; the others are listed for unsolved.comp.glsl: those
-// next to borders of sub-patches, and those next to silhouettes and cracks. So no pixel pays for the
-// rare cases, on devices whose lanes all walk through every branch.
+// sub-patch, which serves nearly all pixels; the others, next to borders of sub-patches, are listed for
+// unsolved.comp.glsl. So no pixel pays for the rare cases, on devices whose lanes all walk through every
+// branch.
 
 layout(local_size_x = 64) in;
+
+LIST(0, Listed, listed);
 
 void main()
 {
@@ -28,14 +30,10 @@ void main()
     Surface s = patch_at(node, frame, points, scale, own.st);
 
     bool inside = all(greaterThanEqual(own.st, vec2(0.0))) && all(lessThanEqual(own.st, vec2(1.0)));
-    bool solved = is_seen && residual < close_enough(px_per_scale) && inside && s.s.z > 0.0 && !own.limit;
-    float front = nearest_around(p);
-    if (solved && !is_doubtful(front, s.s.z))
+    bool solved = is_seen && residual < close_enough(px_per_scale) && inside && s.s.z > 0.0 &&
+                  !own.limit && abs(s.s.z - z) < STRAY * pixel_units(z);
+    if (solved)
         store_hit(p, node, ldexp(own.origin + own.st, -own.scale), own.scale, s);
-    else if (is_seen && !solved)
+    else if (is_seen)
         LIST_ADD(listed, p, 64u)
-    else if (is_seen || front < FARTHEST)  // empty pixels ask their neighbours too
-        LIST_ADD(unsolved, p, 64u)
-    else
-        store_miss(p);
 }

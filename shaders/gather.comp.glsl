@@ -1,4 +1,5 @@
-// After stage 1: lists the groups of 4 x 2 pixels of which one is seen, or has a pixel beside it that is.
+// After stage 1: lists the groups of 4 x 2 pixels of which one is seen, or has a pixel beside it that is;
+// and apart from them those among these that are not calm (seen.glsl).
 // An invocation for each group of the blocks of 8 x 8 pixels that the pieces may cover, x | y << 16 in
 // blocks (server/gpu/pieces.h).
 
@@ -8,26 +9,36 @@ layout(std430, binding = 2) readonly buffer Blocks {
     uint blocks[];
 };
 
-layout(binding = 0) uniform sampler2D seen_depth;
+LIST(3, Restless, restless);
 
 uniform uint n_blocks;
 
-bool is_seen(ivec2 p)
-{
-    return texelFetch(seen_depth, clamp(p, ivec2(0), tile.zw - 1), 0).x > 0.0;
-}
+const int WIDTH = 4, HEIGHT = 2;
 
 void main()
 {
     uint i = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
     uint block = blocks[min(i / 8u, n_blocks - 1u)];
     ivec2 group = list_place(block) * ivec2(2, 4) + ivec2(i % 2u, i / 2u % 4u);
-    ivec2 first = group * ivec2(4, 2);
-    bool any_seen = false;
-    for (int y = -1; y <= 2; y++)
-        for (int x = y == -1 || y == 2 ? 0 : -1; x <= (y == -1 || y == 2 ? 3 : 4); x++)
-            any_seen = any_seen || is_seen(first + ivec2(x, y));
+    ivec2 first = group * ivec2(WIDTH, HEIGHT);
+    // Of the group and what is around it; its first pixel at [1][1].
+    float ndc[HEIGHT + 2][WIDTH + 2];
+    for (int y = 0; y < HEIGHT + 2; y++)
+        for (int x = 0; x < WIDTH + 2; x++)
+            ndc[y][x] = ndc_at(first + ivec2(x, y) - 1);
+    bool any_seen = false, calm = true;
+    for (int y = 1; y <= HEIGHT; y++) {
+        for (int x = 1; x <= WIDTH; x++) {
+            float own = ndc[y][x];
+            float front = max(max(ndc[y][x - 1], ndc[y][x + 1]), max(ndc[y - 1][x], ndc[y + 1][x]));
+            float z = depth_of(own);
+            any_seen = any_seen || max(own, front) > 0.0;
+            calm = calm && (own > 0.0 ? front_of(front) >= z - CALM * pixel_units(z) : front == 0.0);
+        }
+    }
     if (i / 8u >= n_blocks || !any_seen || any(greaterThanEqual(first, tile.zw)))
         return;
     LIST_ADD(groups, group, 8u)
+    if (!calm)
+        LIST_ADD(restless, group, 8u)
 }

@@ -1,4 +1,7 @@
-// What stage 2 writes for each pixel, for stage 3 and for the caller.
+// What stage 2 writes for each pixel that is hit, for stage 3 and for the caller. Stage 1 clears position
+// and ptex.
+//
+// Defined before this file: PTEX for the caller's plane of that name.
 
 // Relative to the eye, world axes; w: depth along the view axis, 0 where nothing is hit.
 layout(binding = 0, rgba32f) writeonly uniform image2D position;
@@ -6,19 +9,11 @@ layout(binding = 0, rgba32f) writeonly uniform image2D position;
 layout(binding = 1, rgba32f) writeonly uniform image2D normal;
 // Shape operator entries (1,1) and (1,2) in the basis tangent_basis(normal), 1/unit.
 layout(binding = 2, rg32f) writeonly uniform image2D shape;
+#ifdef PTEX
 layout(binding = 3, rgba32ui) writeonly uniform uimage2D ptex;
+#endif
 // border.glsl
 layout(binding = 4, r32ui) writeonly uniform uimage2D border;
-
-layout(binding = TEXTURES_FREE) uniform usampler2D seen;
-layout(binding = TEXTURES_FREE + 1) uniform sampler2D seen_depth;
-
-uniform bool want_ptex;
-
-float depth_of(float ndc)
-{
-    return is_perspective() ? depth.x / ndc : (ndc - depth.y) / depth.z;
-}
 
 // Second fundamental form over first, in the basis of basis.glsl.
 vec3 shape_operator(Surface s, vec3 n_world)
@@ -74,13 +69,6 @@ uint border_of(Node node, vec2 xy, ivec2 steps, Surface s)
     return pack_border(nearest, width);
 }
 
-void store_miss(ivec2 p)
-{
-    imageStore(position, p, vec4(0.0));
-    if (want_ptex)
-        imageStore(ptex, p, uvec4(NONE, floatBitsToUint(vec2(0.0)), 0u));
-}
-
 // steps: the surface's parameters run 2^steps faster than the node's x,y.
 void store_hit(ivec2 p, Node node, vec2 xy, ivec2 steps, Surface s)
 {
@@ -90,6 +78,7 @@ void store_hit(ivec2 p, Node node, vec2 xy, ivec2 steps, Surface s)
     imageStore(normal, p, vec4(n, h.z));
     imageStore(shape, p, vec4(h.xy, 0.0, 0.0));
     imageStore(border, p, uvec4(border_of(node, xy, steps, s)));
-    if (want_ptex)
-        imageStore(ptex, p, uvec4(node.face, floatBitsToUint(ptex_uv(node, xy)), 0u));
+#ifdef PTEX
+    imageStore(ptex, p, uvec4(node.face, floatBitsToUint(ptex_uv(node, xy)), 0u));
+#endif
 }

@@ -1,4 +1,4 @@
-// Stage 2, evaluate, second and third pass: the pixels that evaluate.comp.glsl listed.
+// Stage 2, evaluate, second and last pass: the pixels that evaluate.comp.glsl and doubt.comp.glsl listed.
 //
 // First those whose guess may lead to another sub-patch: they ask their own. Then what is left, where
 // the ray decides coverage: guesses of the pixels around are tried where the pixel has none, where its
@@ -7,7 +7,10 @@
 
 layout(local_size_x = 64) in;
 
-uniform bool around;  // the third pass
+LIST(0, Listed, listed);      // this pass's pixels
+LIST(3, Unsolved, unsolved);  // those for the last one
+
+uniform bool around;  // the last pass
 
 // The pixel itself first: the second pass asks no other.
 const ivec2 ASKED[5] =
@@ -36,6 +39,4 @@ void main()
         LIST_ADD(unsolved, p, 64u)
     else if (best.found)
         store_hit(p, best.hit.node, best.hit.xy, best.hit.steps, best.hit.surface);
-    else
-        store_miss(p);
 }

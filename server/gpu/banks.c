@@ -58,16 +58,13 @@ bool model_upload(struct renderer *renderer, struct renderer_model *model, struc
     /* A node's three texels stay in one bank. */
     size_t node_max = max / 3 * 3;
     model->points = model->nodes = model->adjacency = (struct bank_set){0};
-    model->programs = NULL;
-    if (upload(&model->points, MAX_POINT_BANKS, GL_RGBA32F, tables->texels, tables->n_texels,
-               sizeof *tables->texels, max, "points", error) &&
-        upload(&model->nodes, MAX_NODE_BANKS, GL_RGBA32UI, tables->nodes, 3 * tables->n_nodes, 16,
-               node_max, "nodes", error) &&
-        upload(&model->adjacency, MAX_ADJACENCY_BANKS, GL_RGBA32UI, tables->adjacency,
-               tables->n_faces, 16, max, "adjacency", error))
-        model->programs =
-            programs_for(renderer, model->points.n, model->nodes.n, model->adjacency.n, error);
-    if (!model->programs) {
+    if (!upload(&model->points, MAX_POINT_BANKS, GL_RGBA32F, tables->texels, tables->n_texels,
+                sizeof *tables->texels, max, "points", error) ||
+        !upload(&model->nodes, MAX_NODE_BANKS, GL_RGBA32UI, tables->nodes, 3 * tables->n_nodes, 16,
+                node_max, "nodes", error) ||
+        !upload(&model->adjacency, MAX_ADJACENCY_BANKS, GL_RGBA32UI, tables->adjacency,
+                tables->n_faces, 16, max, "adjacency", error) ||
+        !programs_for(renderer, model, false, error)) {
         take_down(model);
         return false;
     }

@@ -33,5 +33,5 @@ void stage_edges(struct renderer *r)
     glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
     glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    dispatch_groups(r, r->edges_find);
+    dispatch_groups(r->edges_find, target->groups);
 }

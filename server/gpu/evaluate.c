@@ -1,10 +1,20 @@
-/* Stage 2: the pixel's ray against the limit surface, in three passes. */
+/* Stage 2: the pixel's ray against the limit surface, in four passes. */
 #include "server/gpu/gpu.h"
 
-static void set_uniforms(GLuint program, bool want_ptex)
+#include "server/gpu/program.h"
+
+bool stage_evaluate_init(struct renderer *r, struct error *error)
 {
-    glUseProgram(program);
-    glUniform1i(glGetUniformLocation(program, "want_ptex"), want_ptex);
+    static const char *const files[] = {"view.glsl",   "list.glsl",       "seen.glsl",
+                                        "groups.glsl", "doubt.comp.glsl", NULL};
+    r->doubt = program_compute("#define TEXTURES_FREE 0\n", files, error);
+    return r->doubt;
+}
+
+static void bind_seen(const struct target *target, GLuint unit)
+{
+    glBindTextureUnit(unit, target->seen);
+    glBindTextureUnit(unit + 1, target->seen_depth);
 }
 
 static void bind_planes(const struct renderer *r, const struct renderer_model *model)
@@ -12,8 +22,7 @@ static void bind_planes(const struct renderer *r, const struct renderer_model *m
     int unit = banks_bind(&model->points, 0);
     unit = banks_bind(&model->nodes, unit);
     unit = banks_bind(&model->adjacency, unit);
-    glBindTextureUnit((GLuint)unit, r->target.seen);
-    glBindTextureUnit((GLuint)unit + 1, r->target.seen_depth);
+    bind_seen(&r->target, (GLuint)unit);
     glBindImageTexture(0, r->target.position, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
     glBindImageTexture(1, r->target.normal, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
     glBindImageTexture(2, r->target.shape, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
@@ -22,28 +31,39 @@ static void bind_planes(const struct renderer *r, const struct renderer_model *m
 }
 
 /* The pixels of a list, once it is complete. */
-static void dispatch_listed(GLuint program, GLuint list, bool around, bool want_ptex)
+static void solve_listed(GLuint program, GLuint list, bool around)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    set_uniforms(program, want_ptex);
+    glUseProgram(program);
     glUniform1i(glGetUniformLocation(program, "around"), around);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
     glDispatchComputeIndirect(0);
 }
 
-void stage_evaluate(struct renderer *r, const struct renderer_model *model, bool want_ptex)
+/* Adds to the unsolved ones what only the depths beside it give away. */
+static void doubt(const struct renderer *r)
+{
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    bind_seen(&r->target, 0);
+    glBindImageTexture(0, r->target.position, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    dispatch_groups(r->doubt, r->target.restless);
+}
+
+void stage_evaluate(struct renderer *r, const struct renderer_model *model,
+                    const struct table_programs *programs)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
-    const struct table_programs *programs = model->programs;
-    glNamedBufferSubData(r->target.strays, 0, sizeof no_work, no_work);
-    glNamedBufferSubData(r->target.unsolved, 0, sizeof no_work, no_work);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, r->target.strays);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.unsolved);
+    const struct target *target = &r->target;
+    glNamedBufferSubData(target->strays, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->unsolved, 0, sizeof no_work, no_work);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->strays);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->unsolved);
     bind_planes(r, model);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    set_uniforms(programs->evaluate, want_ptex);
-    dispatch_groups(r, programs->evaluate);
-    dispatch_listed(programs->unsolved, r->target.strays, false, want_ptex);
-    dispatch_listed(programs->unsolved, r->target.unsolved, true, want_ptex);
+    dispatch_groups(programs->evaluate, target->groups);
+    solve_listed(programs->unsolved, target->strays, false);
+    doubt(r);
+    bind_planes(r, model);
+    solve_listed(programs->unsolved, target->unsolved, true);
 }

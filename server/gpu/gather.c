@@ -5,9 +5,9 @@
 
 bool stage_gather_init(struct renderer *r, struct error *error)
 {
-    static const char *const files[] = {"view.glsl", "list.glsl", "groups.glsl", "gather.comp.glsl",
-                                        NULL};
-    r->gather = program_compute("", files, error);
+    static const char *const files[] = {"view.glsl",   "list.glsl",        "seen.glsl",
+                                        "groups.glsl", "gather.comp.glsl", NULL};
+    r->gather = program_compute("#define TEXTURES_FREE 0\n", files, error);
     glCreateBuffers(1, &r->block_buffer);
     return r->gather;
 }
@@ -20,24 +20,26 @@ void stage_gather(struct renderer *r)
     static const GLuint no_work[4] = {0, 1, 1, 0};
     size_t n = r->pieces.n_blocks, groups = (n + BLOCKS_PER_GROUP - 1) / BLOCKS_PER_GROUP;
     glNamedBufferSubData(r->target.groups, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(r->target.restless, 0, sizeof no_work, no_work);
     if (!n)
         return;
     glNamedBufferData(r->block_buffer, (GLsizeiptr)(n * sizeof *r->pieces.block), r->pieces.block,
                       GL_STREAM_DRAW);
     glUseProgram(r->gather);
     glUniform1ui(glGetUniformLocation(r->gather, "n_blocks"), (GLuint)n);
-    glBindTextureUnit(0, r->target.seen_depth);
+    glBindTextureUnit(1, r->target.seen_depth);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->target.groups);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->block_buffer);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.restless);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     glDispatchCompute((GLuint)(groups < ROW ? groups : ROW), (GLuint)((groups + ROW - 1) / ROW), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 
-void dispatch_groups(const struct renderer *r, GLuint program)
+void dispatch_groups(GLuint program, GLuint groups)
 {
     glUseProgram(program);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->target.groups);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->target.groups);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, groups);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups);
     glDispatchComputeIndirect(0);
 }

@@ -19,9 +19,10 @@ struct bank_set {
     int n;
 };
 
-/* The programs that read tables spread over so many banks. */
+/* The programs that read tables spread over so many banks, and write PLANE_PTEX or not. */
 struct table_programs {
     int point_banks, node_banks, adjacency_banks;
+    bool ptex;
     GLuint visibility, evaluate, unsolved;
 };
 
@@ -33,7 +34,6 @@ struct renderer_model {
     const struct limit_tables *tables;
     context_number context;
     struct bank_set points, nodes, adjacency;
-    const struct table_programs *programs;
     uint64_t serial; /* never reused: tells whose planes are kept */
 };
 
@@ -55,8 +55,8 @@ struct target {
     GLuint light, curvature;        /* RG32F */
     GLuint light_change;            /* RGBA32F */
     GLuint coverage;                /* R32F: share of the pixel that shows surface */
-    GLuint groups;                  /* buffer: shaders/groups.glsl */
-    GLuint strays, unsolved;        /* buffers: shaders/doubt.glsl */
+    GLuint groups, restless;        /* buffers: shaders/gather.comp.glsl */
+    GLuint strays, unsolved;        /* buffers: shaders/unsolved.comp.glsl */
     GLuint edges, turns;            /* buffers: shaders/edges_find.comp.glsl */
 };
 
@@ -98,10 +98,18 @@ struct planes {
     struct kept kept;
 };
 
-enum { MAX_PROGRAM_SETS = 16 };
+enum { MAX_PROGRAM_SETS = 32 };
 
-/* Which pixels a program of stage 3 shades: all, all by one sample each, those listed. */
-enum shaded { SHADED_ALL, SHADED_UNFILTERED, SHADED_EDGES, SHADED_TURNS, SHADED_KINDS };
+/* What a program of stage 3 makes: the colours of all pixels, of all by one sample each, of those
+ * listed; or the planes that go with them. */
+enum shaded {
+    SHADED_ALL,
+    SHADED_UNFILTERED,
+    SHADED_EDGES,
+    SHADED_TURNS,
+    SHADED_PLANES,
+    SHADED_KINDS
+};
 
 struct renderer {
     struct egl egl;
@@ -125,7 +133,7 @@ struct renderer {
     GLuint shade[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2][SHADED_KINDS];
     GLuint edges_find;
     GLuint view_buffer, light_buffer, piece_buffer;
-    GLuint gather;        /* program */
+    GLuint gather, doubt; /* programs */
     GLuint block_buffer;  /* pieces.block of the last tile gathered */
     GLuint piece_texture; /* of piece_buffer */
     GLuint vertex_array;
@@ -154,9 +162,10 @@ bool image_upload(struct renderer *renderer, struct renderer_image *image, struc
 /* Every bank of a set bound to texture units from `unit`; returns the next free unit. */
 int banks_bind(const struct bank_set *set, int unit);
 
-/* The programs for these bank counts, compiled when first asked for. */
-const struct table_programs *programs_for(struct renderer *renderer, int point_banks,
-                                          int node_banks, int adjacency_banks, struct error *error);
+/* The programs for a model that is on the device, compiled when first asked for. */
+const struct table_programs *programs_for(struct renderer *renderer,
+                                          const struct renderer_model *model, bool ptex,
+                                          struct error *error);
 
 /* Grows the target to hold a tile. ERROR_DEVICE when the device has no memory. */
 bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error);
@@ -165,8 +174,10 @@ void target_finish(struct target *target);
 /* The three stages, on the tile that the view block in view_buffer describes. */
 bool stage_visibility_init(struct renderer *renderer, struct error *error);
 void stage_visibility(struct renderer *renderer, const struct renderer_model *model,
-                      const struct tile *tile, bool want_ptex);
-void stage_evaluate(struct renderer *renderer, const struct renderer_model *model, bool want_ptex);
+                      const struct table_programs *programs, const struct tile *tile);
+bool stage_evaluate_init(struct renderer *renderer, struct error *error);
+void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
+                    const struct table_programs *programs);
 /* Lists the pixels that stage 3 looks at more closely; the coverage of all others. */
 bool stage_edges_init(struct renderer *renderer, struct error *error);
 void stage_edges(struct renderer *renderer);
@@ -192,11 +203,12 @@ void polygons_forget(struct polygons *polygons, uint64_t model_serial);
 /* Draws into a framebuffer from here on: the tile's viewport, nearest first by reversed depth. */
 void raster_begin(GLuint framebuffer, const struct tile *tile);
 
-/* After stage 1 or polygons: lists the pixels near what is seen, over which dispatch_groups() runs
- * a program. Planes that it writes must be cleared before: it leaves gaps. */
+/* After stage 1 or polygons: lists the pixels near what is seen, target.groups, over which
+ * dispatch_groups() runs a program; and those that may have to ask their neighbours,
+ * target.restless. Planes that it writes must be cleared before: it leaves gaps. */
 bool stage_gather_init(struct renderer *renderer, struct error *error);
 void stage_gather(struct renderer *renderer);
-void dispatch_groups(const struct renderer *renderer, GLuint program);
+void dispatch_groups(GLuint program, GLuint groups);
 
 /* Copies the planes asked for from the target into the frame: `tile`, which lies in `drawn`. */
 bool readback(struct renderer *renderer, const struct frame_request *request,

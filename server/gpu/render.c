@@ -90,11 +90,15 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
     }
     if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
         return false;
-    stage_visibility(r, model, tile, request->planes & PLANE_PTEX);
+    const struct table_programs *programs =
+        programs_for(r, model, request->planes & PLANE_PTEX, error);
+    if (!programs)
+        return false;
+    stage_visibility(r, model, programs, tile);
     stage_gather(r);
     if (!end_stage(r, &frame->times.visibility_us, &since))
         return false;
-    stage_evaluate(r, model, request->planes & PLANE_PTEX);
+    stage_evaluate(r, model, programs);
     if (edges_wanted(request))
         stage_edges(r);
     return end_stage(r, &frame->times.evaluate_us, &since);

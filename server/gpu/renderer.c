@@ -42,7 +42,8 @@ static bool begin_context(struct renderer *r, struct error *error)
     glCreateBuffers(1, &r->view_buffer);
     glNamedBufferData(r->view_buffer, sizeof(struct view_block), NULL, GL_STREAM_DRAW);
     return stage_visibility_init(r, error) && stage_gather_init(r, error) &&
-           stage_edges_init(r, error) && stage_shade_init(r, error);
+           stage_evaluate_init(r, error) && stage_edges_init(r, error) &&
+           stage_shade_init(r, error);
 }
 
 struct renderer *renderer_create(const struct renderer_options *options, struct error *error)

@@ -38,8 +38,9 @@ static GLuint shade_program(struct renderer *r, const struct frame_request *requ
                                         NULL};
     static const char *const turns[] = {COMMON,        "border.glsl",           "edges.glsl",
                                         "pieces.glsl", "turns_shade.comp.glsl", NULL};
+    static const char *const planes[] = {COMMON, "groups.glsl", "shade_planes.comp.glsl", NULL};
 #undef COMMON
-    static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns};
+    static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns, planes};
     int family = request->lines.family, pattern = light->pattern.kind;
     int kind = is_at_infinity(request->lines.family) ? 0 : (int)light->kind;
     bool soft = light->pattern.soft > 0;
@@ -59,8 +60,9 @@ bool stage_shade_init(struct renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const struct frame_request usual;
-    for (enum shaded which = SHADED_ALL; which < SHADED_KINDS; which++)
-        if (which != SHADED_UNFILTERED && !shade_program(r, &usual, &usual.lights[0], which, error))
+    static const enum shaded of_a_picture[] = {SHADED_ALL, SHADED_EDGES, SHADED_TURNS};
+    for (size_t i = 0; i < sizeof of_a_picture / sizeof of_a_picture[0]; i++)
+        if (!shade_program(r, &usual, &usual.lights[0], of_a_picture[i], error))
             return false;
     glCreateBuffers(1, &r->light_buffer);
     glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
@@ -212,9 +214,9 @@ static void fill_block(struct light_block *block, const struct frame_request *re
     put4(request->miss, block->miss);
     put4(request->empty, block->empty);
     put4(request->base, block->base);
-    block->want[0] = i == 0 && request->planes & PLANE_LIGHT;
-    block->want[1] = i == 0 && request->planes & PLANE_CURVATURE;
-    block->want[2] = i == 0 && request->planes & PLANE_LIGHT_CHANGE;
+    block->want[0] = (request->planes & PLANE_LIGHT) != 0;
+    block->want[1] = (request->planes & PLANE_CURVATURE) != 0;
+    block->want[2] = (request->planes & PLANE_LIGHT_CHANGE) != 0;
 }
 
 /* What lies outside the groups shows no surface. */
@@ -252,9 +254,6 @@ static void bind_planes(const struct target *target)
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
     glBindImageTexture(3, target->colour, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
-    glBindImageTexture(4, target->light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-    glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-    glBindImageTexture(6, target->light_change, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
 }
 
 /* After all covered pixels, those that stage_edges listed: their colours anew. */
@@ -266,6 +265,23 @@ static void dispatch_listed(const struct target *target, GLuint program, GLuint 
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
     glUseProgram(program);
     glDispatchComputeIndirect(0);
+}
+
+/* Of the foremost light, whose block is in place. */
+static bool shade_planes(struct renderer *r, const struct frame_request *request,
+                         struct error *error)
+{
+    if (!(request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE)))
+        return true;
+    GLuint program = shade_program(r, request, &request->lights[0], SHADED_PLANES, error);
+    if (!program)
+        return false;
+    const struct target *target = &r->target;
+    glBindImageTexture(4, target->light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+    glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+    glBindImageTexture(6, target->light_change, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    dispatch_groups(program, target->groups);
+    return true;
 }
 
 static bool shade_light(struct renderer *r, const struct frame_request *request, uint32_t i,
@@ -285,7 +301,7 @@ static bool shade_light(struct renderer *r, const struct frame_request *request,
     bind_picture(r, request, light);
     bind_planes(&r->target);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    dispatch_groups(r, all);
+    dispatch_groups(all, r->target.groups);
     if (closer) {
         glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                         GL_COMMAND_BARRIER_BIT);
@@ -302,5 +318,5 @@ bool stage_shade(struct renderer *r, const struct frame_request *request, struct
     for (uint32_t i = request->n_lights; i-- > 0;)
         if (!watch_check(&r->watch, error) || !shade_light(r, request, i, error))
             return false;
-    return true;
+    return shade_planes(r, request, error);
 }

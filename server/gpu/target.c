@@ -41,8 +41,8 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
         glTextureParameteri(*name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTextureParameteri(*name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
-    GLuint *const lists[] = {&target->groups, &target->strays, &target->unsolved, &target->edges,
-                             &target->turns};
+    GLuint *const lists[] = {&target->groups,   &target->restless, &target->strays,
+                             &target->unsolved, &target->edges,    &target->turns};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         glCreateBuffers(1, lists[i]);
         glNamedBufferData(*lists[i], (GLsizeiptr)(16 + (size_t)width * height * 4), NULL,
@@ -71,6 +71,7 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
 void target_finish(struct target *target)
 {
     glDeleteBuffers(1, &target->groups);
+    glDeleteBuffers(1, &target->restless);
     glDeleteBuffers(1, &target->strays);
     glDeleteBuffers(1, &target->unsolved);
     glDeleteBuffers(1, &target->edges);

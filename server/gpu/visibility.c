@@ -97,15 +97,14 @@ static void clear(const struct renderer *r, bool want_ptex)
 }
 
 void stage_visibility(struct renderer *r, const struct renderer_model *model,
-                      const struct tile *tile, bool want_ptex)
+                      const struct table_programs *programs, const struct tile *tile)
 {
     raster_begin(r->target.framebuffer, tile);
-    clear(r, want_ptex);
-    GLuint program = model->programs->visibility;
+    clear(r, programs->ptex);
+    GLuint program = programs->visibility;
     glUseProgram(program);
     banks_bind(&model->nodes, banks_bind(&model->points, 0));
-    const struct table_programs *banks = model->programs;
-    glBindTextureUnit((GLuint)(banks->point_banks + banks->node_banks + banks->adjacency_banks),
+    glBindTextureUnit((GLuint)(model->points.n + model->nodes.n + model->adjacency.n),
                       r->piece_texture);
     glBindVertexArray(r->vertex_array);
     for (int b = 0; b < PIECE_BUCKETS; b++) {

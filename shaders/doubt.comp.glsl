@@ -1,0 +1,20 @@
+// Stage 2, evaluate, third pass, over the groups that are not calm: lists the pixels that must ask those
+// around them, since they are empty beside some that are not, or lie behind one by more than a slope.
+// (Those that are seen and still unsolved are listed already, by the pass before.)
+
+layout(local_size_x = 64) in;
+
+layout(binding = 0, rgba32f) readonly uniform image2D position;
+
+LIST(3, Unsolved, unsolved);
+
+void main()
+{
+    ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
+    if (any(greaterThanEqual(p, tile.zw)))
+        return;
+    float z = imageLoad(position, p).w, front = nearest_around(p);
+    bool is_empty = ndc_at(p) == 0.0;
+    if (z > 0.0 ? is_doubtful(front, z) : is_empty && front < FARTHEST)
+        LIST_ADD(unsolved, p, 64u)
+}

@@ -1,0 +1,42 @@
+// What stage 1 left for each pixel, and what the depths beside it say.
+
+layout(binding = TEXTURES_FREE) uniform usampler2D seen;  // visibility.frag.glsl
+layout(binding = TEXTURES_FREE + 1) uniform sampler2D seen_depth;  // 0 where nothing is seen
+
+float depth_of(float ndc)
+{
+    return is_perspective() ? depth.x / ndc : (ndc - depth.y) / depth.z;
+}
+
+const ivec2 BESIDE[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+const float FARTHEST = 1e30;
+
+float ndc_at(ivec2 p)
+{
+    return texelFetch(seen_depth, clamp(p, ivec2(0), tile.zw - 1), 0).x;
+}
+
+float front_of(float ndc)
+{
+    return ndc > 0.0 ? depth_of(ndc) : FARTHEST;
+}
+
+// The nearest depth of the four pixels around, or FARTHEST.
+float nearest_around(ivec2 p)
+{
+    float ndc = 0.0;
+    for (int i = 0; i < 4; i++)
+        ndc = max(ndc, ndc_at(p + BESIDE[i]));
+    return front_of(ndc);
+}
+
+// In front by more than a slope of four pixels of depth a pixel: another sheet, or a crack that shows
+// what lies behind.
+bool is_doubtful(float front, float z)
+{
+    return front < z - 4.0 * pixel_units(z);
+}
+
+// Where depths slope less than CALM by what stage 1 saw, nothing is doubtful that lies within STRAY of
+// what it saw: so the pixels of whole groups (gather.comp.glsl) need not ask their neighbours.
+const float CALM = 1.0, STRAY = 2.0;

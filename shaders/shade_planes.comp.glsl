@@ -1,0 +1,38 @@
+// Stage 3 for those who measure: at the pixel's centre, where the foremost light is met, how that changes
+// from pixel to pixel, and the surface's principal curvatures. Apart from shade.comp.glsl, since
+// pictures seldom come with these and some devices take as long for stores that they skip.
+
+layout(local_size_x = 64) in;
+
+layout(binding = 0, rgba32f) readonly uniform image2D position;
+layout(binding = 1, rgba32f) readonly uniform image2D normal;
+layout(binding = 2, rg32f) readonly uniform image2D shape;
+layout(binding = 4, rg32f) writeonly uniform image2D light_st;
+layout(binding = 5, rg32f) writeonly uniform image2D curvature;
+layout(binding = 6, rgba32f) writeonly uniform image2D light_change;
+
+const vec4 NOTHING = vec4(uintBitsToFloat(0x7fc00000u));
+
+vec2 principal_curvatures(vec3 h)
+{
+    float mean = 0.5 * (h.x + h.z), radius = length(vec2(0.5 * (h.x - h.z), h.y));
+    return vec2(mean - radius, mean + radius);
+}
+
+void main()
+{
+    ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
+    if (any(greaterThanEqual(p, tile.zw)))
+        return;
+    vec4 place = imageLoad(position, p), facing = imageLoad(normal, p);
+    vec3 h = vec3(imageLoad(shape, p).xy, facing.w);
+    bool mirrors = place.w > 0.0 && dot(facing.xyz, facing.xyz) > 0.5;
+    Met met = meet(sample_at(pixel_offset(p), 1.0, place, facing.xyz, h, facing.xyz));
+    bool inside = mirrors && met.cover > 0.0 && met.inside;
+    if (want.x != 0)
+        imageStore(light_st, p, inside ? (met.q / size.xy + 0.5).xyxy : NOTHING);
+    if (want.y != 0)
+        imageStore(curvature, p, mirrors ? principal_curvatures(h).xyxy : NOTHING);
+    if (want.z != 0)
+        imageStore(light_change, p, inside ? vec4(met.ds, met.dt) / size.xxyy : NOTHING);
+}
