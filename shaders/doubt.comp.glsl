@@ -4,7 +4,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(binding = 0, rgba32f) readonly uniform image2D position;
+layout(binding = 0, r32f) readonly uniform image2D hit_depth;
 
 LIST(3, Unsolved, unsolved);
 
@@ -13,7 +13,7 @@ void main()
     ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
     if (any(greaterThanEqual(p, tile.zw)))
         return;
-    float z = imageLoad(position, p).w, front = nearest_around(p);
+    float z = imageLoad(hit_depth, p).x, front = nearest_around(p);
     bool is_empty = ndc_at(p) == 0.0;
     if (z > 0.0 ? is_doubtful(front, z) : is_empty && front < FARTHEST)
         LIST_ADD(unsolved, p, 64u)

@@ -42,10 +42,10 @@ void main()
     Hit own = hit_at(p);
     bool is_hit = own.depth > 0.0, at_edge = is_hit && border_crosses(p);
     for (int i = 0; i < 4; i++) {
-        ivec2 q = p + AROUND[i];
-        vec4 place = imageLoad(position, clamp(q, ivec2(0), tile.zw - 1));
-        bool other = place.w > 0.0;
-        at_edge = at_edge || is_hit != other || (is_hit && off_paraboloid(own, place.xyz) > SAME_PX);
+        ivec2 q = clamp(p + AROUND[i], ivec2(0), tile.zw - 1);
+        float z = imageLoad(hit_depth, q).x;
+        bool is_off = off_paraboloid(own, on_ray(pixel_offset(q), z)) > SAME_PX;
+        at_edge = at_edge || is_hit != z > 0.0 || (is_hit && is_off);
     }
     imageStore(coverage, p, vec4(is_hit));
     if (at_edge)

@@ -76,7 +76,7 @@ void main()
     Piece pieces[PIECES];
     int n = 0;
     bool beside_empty = false;
-    float own_depth = imageLoad(position, p).w;
+    float own_depth = imageLoad(hit_depth, p).x;
     bool is_hit = own_depth > 0.0;
     for (int i = 0; i < 9; i++) {
         ivec2 q = p + AROUND[i];

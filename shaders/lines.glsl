@@ -58,12 +58,12 @@ vec3 normal_change(vec3 along, vec3 n, vec3 h)
     return -(e1 * (h.x * a.x + h.y * a.y) + e2 * (h.y * a.x + h.z * a.y));
 }
 
-// Steps (1) to (4) of limit-surface 5.1, at a place on the ray of q (view.glsl), over the parallelogram
+// Steps (1) to (4) of limit-surface 5.1, at depth z on the ray of q (view.glsl), over the parallelogram
 // of the columns of `sides`, px. The shape operator is that at a normal nearby.
-Sample sample_over(vec2 q, mat2 sides, vec4 place, vec3 n, vec3 h, vec3 h_normal)
+Sample sample_over(vec2 q, mat2 sides, float z, vec3 n, vec3 h, vec3 h_normal)
 {
     Sample at;
-    at.x = place.xyz;
+    at.x = on_ray(q, z);
     at.n = n;
     at.h = h;
     vec3 d = to_world(vec3(q * ray.x, 1.0));
@@ -71,7 +71,7 @@ Sample sample_over(vec2 q, mat2 sides, vec4 place, vec3 n, vec3 h, vec3 h_normal
     float distance = line_eye.w > 0.0 ? length(from_eye) : 1.0;
     at.v = line_eye.w > 0.0 ? from_eye / distance : line_eye.xyz;
     for (int i = 0; i < 2; i++) {
-        vec3 raw = (axis[0].xyz * sides[i].x + axis[1].xyz * sides[i].y) * pixel_units(place.w);
+        vec3 raw = (axis[0].xyz * sides[i].x + axis[1].xyz * sides[i].y) * pixel_units(z);
         at.dx[i] = raw - d * (dot(raw, n) / dot(d, n));
         at.dn[i] = normal_change(at.dx[i], h_normal, h);
         at.dv[i] = line_eye.w / distance * (at.dx[i] - at.v * dot(at.v, at.dx[i]));
@@ -80,9 +80,9 @@ Sample sample_over(vec2 q, mat2 sides, vec4 place, vec3 n, vec3 h, vec3 h_normal
 }
 
 // Over a square of size_px.
-Sample sample_at(vec2 q, float size_px, vec4 place, vec3 n, vec3 h, vec3 h_normal)
+Sample sample_at(vec2 q, float size_px, float z, vec3 n, vec3 h, vec3 h_normal)
 {
-    return sample_over(q, mat2(size_px), place, n, h, h_normal);
+    return sample_over(q, mat2(size_px), z, n, h, h_normal);
 }
 
 // The family's ray and its change: step (5).

@@ -69,8 +69,7 @@ vec3 move_to(Hit hit, vec2 d, vec2 q, float z)
 vec4 shade_ray(Hit hit, vec2 q, vec2 d, float size, float z, vec4 under)
 {
     vec3 move = move_to(hit, d, q, z);
-    vec4 place = vec4(hit.x + move, z);
-    Sample at = sample_at(q, size, place, normal_at(hit, move), hit.h, hit.n);
+    Sample at = sample_at(q, size, z, normal_at(hit, move), hit.h, hit.n);
     return lay_over(under, at, meet(at), q);
 }
 

@@ -1,10 +1,10 @@
-// What stage 2 writes for each pixel that is hit, for stage 3 and for the caller. Stage 1 clears position
-// and ptex.
+// What stage 2 writes for each pixel that is hit, for stage 3 and for the caller. Stage 1 clears
+// hit_depth and ptex.
 //
 // Defined before this file: PTEX for the caller's plane of that name.
 
-// Relative to the eye, world axes; w: depth along the view axis, 0 where nothing is hit.
-layout(binding = 0, rgba32f) writeonly uniform image2D position;
+// Along the view axis; 0 where nothing is hit.
+layout(binding = 0, r32f) writeonly uniform image2D hit_depth;
 // Unit, along the winding; w: shape operator entry (2,2).
 layout(binding = 1, rgba32f) writeonly uniform image2D normal;
 // Shape operator entries (1,1) and (1,2) in the basis tangent_basis(normal), 1/unit.
@@ -74,7 +74,7 @@ void store_hit(ivec2 p, Node node, vec2 xy, ivec2 steps, Surface s)
 {
     vec3 n = dot(s.n, s.n) > 0.0 ? normalize(to_world(s.n)) : vec3(0.0);
     vec3 h = shape_operator(s, n);
-    imageStore(position, p, vec4(to_world(s.s), s.s.z));
+    imageStore(hit_depth, p, vec4(s.s.z));
     imageStore(normal, p, vec4(n, h.z));
     imageStore(shape, p, vec4(h.xy, 0.0, 0.0));
     imageStore(border, p, uvec4(border_of(node, xy, steps, s)));

@@ -8,7 +8,7 @@ in vec3 facing;
 in vec2 grid;
 flat in uvec2 where;
 
-layout(location = 0) out vec4 position;
+layout(location = 0) out float hit_depth;
 layout(location = 1) out vec4 normal;
 layout(location = 2) out vec2 shape;
 layout(location = 3) out uvec4 ptex;
@@ -41,7 +41,7 @@ void main()
     bool has_normal = size > 0.0;
     vec3 n = has_normal ? facing / size : vec3(0.0);
     vec3 h = has_normal ? shape_operator(n, size, z, pixel_offset(p)) : vec3(0.0);
-    position = vec4(seen_at, z);
+    hit_depth = z;
     normal = vec4(n, h.z);
     shape = h.xy;
     ptex = uvec4(where.x & ~FAN, floatBitsToUint(grid / float(where.y)), 0u);

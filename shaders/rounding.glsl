@@ -36,8 +36,8 @@ vec4 shade_rounding(Piece piece, vec3 other, ivec2 p, vec4 under)
     for (int i = 0; i < ROUNDING_PARTS; i++) {
         vec3 inner = rounding_normal(side, other, float(i) / float(ROUNDING_PARTS));
         vec3 outer = rounding_normal(side, other, float(i + 1) / float(ROUNDING_PARTS));
-        Sample at = sample_over(q, mat2(g * part, vec2(-g.y, g.x)), vec4(hit.x + move, z),
-                                normalize(inner + outer), hit.h, hit.n);
+        Sample at = sample_over(q, mat2(g * part, vec2(-g.y, g.x)), z, normalize(inner + outer),
+                                hit.h, hit.n);
         at.dn[0] = inner - outer;
         sum += premultiplied(lay_over(under, at, meet(at), q));
     }

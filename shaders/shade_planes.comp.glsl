@@ -4,7 +4,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(binding = 0, rgba32f) readonly uniform image2D position;
+layout(binding = 0, r32f) readonly uniform image2D hit_depth;
 layout(binding = 1, rgba32f) readonly uniform image2D normal;
 layout(binding = 2, rg32f) readonly uniform image2D shape;
 layout(binding = 4, rg32f) writeonly uniform image2D light_st;
@@ -24,10 +24,11 @@ void main()
     ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
     if (any(greaterThanEqual(p, tile.zw)))
         return;
-    vec4 place = imageLoad(position, p), facing = imageLoad(normal, p);
+    float z = imageLoad(hit_depth, p).x;
+    vec4 facing = imageLoad(normal, p);
     vec3 h = vec3(imageLoad(shape, p).xy, facing.w);
-    bool mirrors = place.w > 0.0 && dot(facing.xyz, facing.xyz) > 0.5;
-    Met met = meet(sample_at(pixel_offset(p), 1.0, place, facing.xyz, h, facing.xyz));
+    bool mirrors = z > 0.0 && dot(facing.xyz, facing.xyz) > 0.5;
+    Met met = meet(sample_at(pixel_offset(p), 1.0, z, facing.xyz, h, facing.xyz));
     bool inside = mirrors && met.cover > 0.0 && met.inside;
     if (want.x != 0)
         imageStore(light_st, p, inside ? (met.q / size.xy + 0.5).xyxy : NOTHING);

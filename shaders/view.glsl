@@ -40,3 +40,9 @@ vec3 to_world(vec3 camera_direction)
     return axis[0].xyz * camera_direction.x + axis[1].xyz * camera_direction.y +
            axis[2].xyz * camera_direction.z;
 }
+
+// Where the ray of q is at depth z, relative to the eye, world axes.
+vec3 on_ray(vec2 q, float z)
+{
+    return to_world(vec3(q * pixel_units(z), z));
+}

@@ -27,7 +27,7 @@ void stage_edges(struct renderer *r)
     glNamedBufferSubData(target->turns, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->edges);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->turns);
-    glBindImageTexture(0, target->position, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
     glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);

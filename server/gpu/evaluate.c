@@ -23,7 +23,7 @@ static void bind_planes(const struct renderer *r, const struct renderer_model *m
     unit = banks_bind(&model->nodes, unit);
     unit = banks_bind(&model->adjacency, unit);
     bind_seen(&r->target, (GLuint)unit);
-    glBindImageTexture(0, r->target.position, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    glBindImageTexture(0, r->target.hit_depth, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
     glBindImageTexture(1, r->target.normal, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
     glBindImageTexture(2, r->target.shape, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
     glBindImageTexture(3, r->target.ptex, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32UI);
@@ -46,7 +46,7 @@ static void doubt(const struct renderer *r)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     bind_seen(&r->target, 0);
-    glBindImageTexture(0, r->target.position, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    glBindImageTexture(0, r->target.hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     dispatch_groups(r->doubt, r->target.restless);
 }
 

@@ -47,17 +47,18 @@ struct renderer_image {
 struct target {
     uint32_t width, height;
     GLuint framebuffer;
-    GLuint seen, seen_depth;        /* visibility: RG32UI, DEPTH32F */
-    GLuint position, normal, shape; /* evaluate: RGBA32F, RGBA32F, RG32F */
-    GLuint ptex;                    /* RGBA32UI */
-    GLuint border;                  /* R32UI: two halves, shaders/planes.glsl */
-    GLuint colour;                  /* RGBA8 */
-    GLuint light, curvature;        /* RG32F */
-    GLuint light_change;            /* RGBA32F */
-    GLuint coverage;                /* R32F: share of the pixel that shows surface */
-    GLuint groups, restless;        /* buffers: shaders/gather.comp.glsl */
-    GLuint strays, unsolved;        /* buffers: shaders/unsolved.comp.glsl */
-    GLuint edges, turns;            /* buffers: shaders/edges_find.comp.glsl */
+    GLuint seen, seen_depth; /* visibility: RG32UI, DEPTH32F */
+    GLuint hit_depth;        /* evaluate: R32F */
+    GLuint normal, shape;    /* RGBA32F, RG32F */
+    GLuint ptex;             /* RGBA32UI */
+    GLuint border;           /* R32UI: two halves, shaders/planes.glsl */
+    GLuint colour;           /* RGBA8 */
+    GLuint light, curvature; /* RG32F */
+    GLuint light_change;     /* RGBA32F */
+    GLuint coverage;         /* R32F: share of the pixel that shows surface */
+    GLuint groups, restless; /* buffers: shaders/gather.comp.glsl */
+    GLuint strays, unsolved; /* buffers: shaders/unsolved.comp.glsl */
+    GLuint edges, turns;     /* buffers: shaders/edges_find.comp.glsl */
 };
 
 /* One mesh of polygons on the device (mesh.h). */
@@ -212,8 +213,8 @@ void dispatch_groups(GLuint program, GLuint groups);
 
 /* Copies the planes asked for from the target into the frame: `tile`, which lies in `drawn`. */
 bool readback(struct renderer *renderer, const struct frame_request *request,
-              const struct tile *drawn, const struct tile *tile, struct frame *frame,
-              struct error *error);
+              const struct view *view, const struct tile *drawn, const struct tile *tile,
+              struct frame *frame, struct error *error);
 
 /* False, with ERROR_SERVER, once nobody waits for the frame being drawn. */
 bool watch_check(const struct frame_watch *watch, struct error *error);

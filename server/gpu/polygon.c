@@ -163,7 +163,7 @@ bool stage_polygons(struct renderer *r, const struct renderer_model *model,
 {
     static const GLuint no_face[4] = {UINT32_MAX, 0, 0, 0};
     static const GLfloat nothing[4] = {0, 0, 0, 0};
-    const GLuint planes[4] = {r->target.position, r->target.normal, r->target.shape,
+    const GLuint planes[4] = {r->target.hit_depth, r->target.normal, r->target.shape,
                               r->target.ptex};
     struct polygons *p = &r->polygons;
     struct polygon_mesh *mesh =

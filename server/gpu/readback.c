@@ -42,15 +42,22 @@ static void read_four(GLuint texture, GLenum format, GLenum type, const struct t
     read_part(texture, format, type, part, (size_t)part->width * part->height * 16, texels);
 }
 
-/* World positions are formed here, in double: the target holds them relative to the eye. */
-static void pack_position(const float (*texels)[4], const double eye[3], const struct rows *rows,
+/* Where the ray of a pixel's centre is at a depth: world coordinates, in double. */
+static void pack_position(const float *depth, const struct view *view, const struct rows *rows,
                           const struct tile *tile)
 {
     for (uint32_t y = 0; y < tile->height; y++) {
         float(*out)[3] = (float(*)[3])(void *)(rows->first + y * rows->stride);
-        for (uint32_t x = 0; x < tile->width; x++, texels++)
+        for (uint32_t x = 0; x < tile->width; x++, depth++) {
+            double z = (double)*depth;
+            double px = view->units_per_px * (view->perspective ? z : 1);
+            double right = (tile->x + x + 0.5 - view->centre_px[0]) * px;
+            double down = (tile->y + y + 0.5 - view->centre_px[1]) * px;
             for (int k = 0; k < 3; k++)
-                out[x][k] = (*texels)[3] > 0 ? (float)(eye[k] + (double)(*texels)[k]) : NAN;
+                out[x][k] = z > 0 ? (float)(view->eye[k] + right * view->axis[0][k] +
+                                            down * view->axis[1][k] + z * view->axis[2][k])
+                                  : NAN;
+        }
     }
 }
 
@@ -60,14 +67,14 @@ static bool has_normal(const float n[4])
     return n[0] != 0 || n[1] != 0 || n[2] != 0;
 }
 
-static void pack_normal(const float (*texels)[4], const float (*position)[4],
-                        const struct rows *rows, const struct tile *tile)
+static void pack_normal(const float (*texels)[4], const float *depth, const struct rows *rows,
+                        const struct tile *tile)
 {
     for (uint32_t y = 0; y < tile->height; y++) {
         float(*out)[3] = (float(*)[3])(void *)(rows->first + y * rows->stride);
-        for (uint32_t x = 0; x < tile->width; x++, texels++, position++)
+        for (uint32_t x = 0; x < tile->width; x++, texels++, depth++)
             for (int k = 0; k < 3; k++)
-                out[x][k] = (*position)[3] > 0 && has_normal(*texels) ? (*texels)[k] : NAN;
+                out[x][k] = *depth > 0 && has_normal(*texels) ? (*texels)[k] : NAN;
     }
 }
 
@@ -82,39 +89,41 @@ static void pack_ptex(const uint32_t (*texels)[4], const struct rows *rows, cons
 }
 
 static bool read_packed(struct renderer *r, const struct frame_request *request,
-                        const struct tile *part, const struct tile *tile, struct frame *frame,
-                        struct error *error)
+                        const struct view *view, const struct tile *part, const struct tile *tile,
+                        struct frame *frame, struct error *error)
 {
-    enum { NEED_POSITION = PLANE_POSITION | PLANE_NORMAL };
-    if (!(request->planes & (NEED_POSITION | PLANE_PTEX)))
+    enum { NEED_DEPTH = PLANE_POSITION | PLANE_NORMAL };
+    if (!(request->planes & (NEED_DEPTH | PLANE_PTEX)))
         return true;
-    size_t bytes = (size_t)tile->width * tile->height * 16;
-    void *position = malloc(bytes), *other = malloc(bytes);
-    bool ok = position && other;
-    if (ok && request->planes & NEED_POSITION)
-        read_four(r->target.position, GL_RGBA, GL_FLOAT, part, position);
+    size_t pixels = (size_t)tile->width * tile->height, bytes = pixels * 20;
+    float *depth = malloc(pixels * 4);
+    void *other = malloc(pixels * 16);
+    bool ok = depth && other;
+    if (ok && request->planes & NEED_DEPTH)
+        read_part(r->target.hit_depth, GL_RED, GL_FLOAT, part, pixels * 4, depth);
     if (ok && request->planes & PLANE_POSITION) {
         struct rows rows = tile_rows(frame, 1, tile);
-        pack_position(position, request->camera.eye, &rows, tile);
+        pack_position(depth, view, &rows, tile);
     }
     if (ok && request->planes & PLANE_NORMAL) {
         struct rows rows = tile_rows(frame, 2, tile);
         read_four(r->target.normal, GL_RGBA, GL_FLOAT, part, other);
-        pack_normal(other, position, &rows, tile);
+        pack_normal(other, depth, &rows, tile);
     }
     if (ok && request->planes & PLANE_PTEX) {
         struct rows rows = tile_rows(frame, 3, tile);
         read_four(r->target.ptex, GL_RGBA_INTEGER, GL_UNSIGNED_INT, part, other);
         pack_ptex(other, &rows, tile);
     }
-    free(position);
+    free(depth);
     free(other);
     return ok || error_set(error, ERROR_SERVER,
-                           "out of memory: reading a tile back needs %zu bytes", 2 * bytes);
+                           "out of memory: reading a tile back needs %zu bytes", bytes);
 }
 
-bool readback(struct renderer *r, const struct frame_request *request, const struct tile *drawn,
-              const struct tile *tile, struct frame *frame, struct error *error)
+bool readback(struct renderer *r, const struct frame_request *request, const struct view *view,
+              const struct tile *drawn, const struct tile *tile, struct frame *frame,
+              struct error *error)
 {
     const struct tile part = {tile->x - drawn->x, tile->y - drawn->y, tile->width, tile->height};
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
@@ -136,7 +145,7 @@ bool readback(struct renderer *r, const struct frame_request *request, const str
         read_direct(direct[i].texture, direct[i].format, direct[i].type, &rows, frame->width_px,
                     &part);
     }
-    return read_packed(r, request, &part, tile, frame, error) &&
+    return read_packed(r, request, view, &part, tile, frame, error) &&
            gpu_check("reading a frame back", error);
 }
 

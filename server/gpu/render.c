@@ -123,7 +123,7 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
         !stage_wireframe(r, model, request, drawn, error))
         return false;
     return end_stage(r, &frame->times.shade_us, &since) &&
-           readback(r, request, drawn, tile, frame, error) &&
+           readback(r, request, view, drawn, tile, frame, error) &&
            end_stage(r, &frame->times.readback_us, &since);
 }
 

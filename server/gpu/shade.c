@@ -250,7 +250,7 @@ static void bind_picture(const struct renderer *r, const struct frame_request *r
 
 static void bind_planes(const struct target *target)
 {
-    glBindImageTexture(0, target->position, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
     glBindImageTexture(3, target->colour, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);

@@ -9,7 +9,7 @@ static const struct {
 } images[] = {
     {offsetof(struct target, seen), GL_RG32UI},
     {offsetof(struct target, seen_depth), GL_DEPTH_COMPONENT32F},
-    {offsetof(struct target, position), GL_RGBA32F},
+    {offsetof(struct target, hit_depth), GL_R32F},
     {offsetof(struct target, normal), GL_RGBA32F},
     {offsetof(struct target, shape), GL_RG32F},
     {offsetof(struct target, ptex), GL_RGBA32UI},
@@ -50,7 +50,7 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
     }
     glCreateFramebuffers(1, &target->framebuffer);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->seen, 0);
-    glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT1, target->position, 0);
+    glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT1, target->hit_depth, 0);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT2, target->ptex, 0);
     glNamedFramebufferTexture(target->framebuffer, GL_DEPTH_ATTACHMENT, target->seen_depth, 0);
     target->width = width;
