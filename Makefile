@@ -70,7 +70,7 @@ SHADERS := $(sort $(wildcard shaders/*.glsl))
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(LIMIT_SRC) server/error.c)
 RENDER_OBJ := $(call obj,$(GPU_SRC)) $(BUILD)/obj/gen/shaders.c.o
-SERVER_OBJ := $(call obj,server/main.c server/fault.c $(wildcard server/options*.c) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
+SERVER_OBJ := $(call obj,server/main.c server/fault.c server/spares.c $(wildcard server/options*.c) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
 KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
@@ -128,10 +128,11 @@ $(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
 	@mkdir -p $(@D)
 	$(Q)sh shaders/embed.sh $(SHADERS) > $@
 
-# sheend that fails where $SHEEN_FAULTS asks it to: what is installed cannot.
-$(BUILD)/sheend-faults: $(call obj,tests/service/faults.c) $(filter-out %/server/fault.c.o,$(SERVER_OBJ))
+# sheend that fails where $SHEEN_FAULTS asks it to, and counts what its own code (no library's) takes from
+# the heap: what is installed cannot.
+$(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/allocations.c) $(filter-out %/server/fault.c.o,$(SERVER_OBJ))
 	$(call say,LD $@)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
+	$(Q)$(CC) $(LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup -o $@ $^ $(SERVER_LIBS)
 
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything but the two mains.

@@ -2,7 +2,6 @@
 #include "server/gpu/gpu.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* The rows of a tile inside a plane of the whole frame. */
 struct rows {
@@ -96,8 +95,9 @@ static bool read_packed(struct renderer *r, const struct frame_request *request,
     if (!(request->planes & (NEED_DEPTH | PLANE_PTEX)))
         return true;
     size_t pixels = (size_t)tile->width * tile->height, bytes = pixels * 20;
-    float *depth = malloc(pixels * 4);
-    void *other = malloc(pixels * 16);
+    struct spares *spares = r->options.spares;
+    float *depth = spares_take(spares, pixels * 4);
+    void *other = spares_take(spares, pixels * 16);
     bool ok = depth && other;
     if (ok && request->planes & NEED_DEPTH)
         read_part(r->target.hit_depth, GL_RED, GL_FLOAT, part, pixels * 4, depth);
@@ -115,8 +115,8 @@ static bool read_packed(struct renderer *r, const struct frame_request *request,
         read_four(r->target.ptex, GL_RGBA_INTEGER, GL_UNSIGNED_INT, part, other);
         pack_ptex(other, &rows, tile);
     }
-    free(depth);
-    free(other);
+    spares_give(spares, depth);
+    spares_give(spares, other);
     return ok || error_set(error, ERROR_SERVER,
                            "out of memory: reading a tile back needs %zu bytes", bytes);
 }
@@ -171,6 +171,6 @@ size_t renderer_plane_bytes(enum renderer_plane plane)
 void frame_finish(struct frame *frame)
 {
     for (int p = 0; p < PLANE_COUNT; p++)
-        free(frame->plane[p]);
+        spares_give(frame->spares, frame->plane[p]);
     *frame = (struct frame){0};
 }

@@ -1,7 +1,6 @@
 /* One frame: tiles, the three stages of each, and what is kept for a light-only change. */
 #include "server/gpu/gpu.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -49,15 +48,16 @@ static bool is_kept(const struct kept *kept, const struct renderer_model *model,
 }
 
 static bool frame_init(struct frame *frame, const struct frame_request *request,
-                       struct error *error)
+                       struct spares *spares, struct error *error)
 {
-    *frame = (struct frame){.width_px = request->width_px, .height_px = request->height_px};
+    *frame = (struct frame){
+        .width_px = request->width_px, .height_px = request->height_px, .spares = spares};
     size_t pixels = (size_t)request->width_px * request->height_px;
     for (int p = 0; p < PLANE_COUNT; p++) {
         if (!(request->planes & 1u << p))
             continue;
         size_t bytes = pixels * renderer_plane_bytes((enum renderer_plane)(1 << p));
-        frame->plane[p] = malloc(bytes);
+        frame->plane[p] = spares_take(spares, bytes);
         if (!frame->plane[p]) {
             frame_finish(frame);
             return error_set(error, ERROR_SERVER,
@@ -202,7 +202,8 @@ bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *f
 {
     *frame = (struct frame){0};
     work->x = work->y = 0;
-    if (!request_check(&r->info, work->request, error) || !frame_init(frame, work->request, error))
+    if (!request_check(&r->info, work->request, error) ||
+        !frame_init(frame, work->request, r->options.spares, error))
         return false;
     cut(work);
     return true;

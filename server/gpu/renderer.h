@@ -13,6 +13,7 @@
 #include "server/gpu/scene.h"
 #include "server/image/image.h"
 #include "server/limit/tables.h"
+#include "server/spares.h"
 
 struct renderer;
 struct renderer_model;    /* one cage's tables on the GPU */
@@ -39,6 +40,7 @@ struct renderer_options {
      * that fails. NULL: nobody is. */
     void (*lost)(void *owner);
     void *owner;
+    struct spares *spares; /* memory of frames, which outlives them; NULL: malloc's */
 };
 #define RENDERER_NAME_BYTES 256
 
@@ -75,6 +77,7 @@ struct frame {
     uint32_t width_px, height_px;
     void *plane[PLANE_COUNT]; /* indexed by bit number */
     struct frame_times times;
+    struct spares *spares; /* the renderer's: where the planes come from */
 };
 
 /* EGL by device enumeration, surfaceless, OpenGL 4.5 core. NULL with ERROR_DEVICE when there is

@@ -1,10 +1,10 @@
 #include "server/service/answer.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 struct answer {
     struct answer *next;
+    struct spares *spares;
     uint32_t seq;
     enum request_class request_class;
     bool ready, last;
@@ -16,11 +16,10 @@ struct answer {
 struct answer *answer_expect(struct answer_list *list, uint32_t seq,
                              enum request_class request_class)
 {
-    struct answer *answer = calloc(1, sizeof *answer);
+    struct answer *answer = spares_take(list->spares, sizeof *answer);
     if (!answer)
         return NULL;
-    answer->seq = seq;
-    answer->request_class = request_class;
+    *answer = (struct answer){.spares = list->spares, .seq = seq, .request_class = request_class};
     if (list->tail)
         list->tail->next = answer;
     else
@@ -44,8 +43,8 @@ static void drop(struct answer_list *list, struct answer *before)
         list->tail = before;
     list->n--;
     encoded_destroy(answer->encoded);
-    free(answer->message);
-    free(answer);
+    spares_give(list->spares, answer->message);
+    spares_give(list->spares, answer);
 }
 
 void answer_list_finish(struct answer_list *list)
@@ -60,7 +59,7 @@ bool answer_fill(struct answer *answer, uint8_t type, const void *body)
     answer->ready = true;
     if (!message_encode(type, answer->seq, body, buffer, sizeof buffer, &answer->length))
         return false;
-    answer->message = malloc(answer->length);
+    answer->message = spares_take(answer->spares, answer->length);
     if (!answer->message)
         return false;
     memcpy(answer->message, buffer, answer->length);

@@ -16,6 +16,7 @@ struct answer_list {
     unsigned n;                 /* owed */
     bool is_ordered;            /* as minor version 0 has it */
     unsigned unsent;            /* interactive frames handed to the connection: at most 1 */
+    struct spares *spares;      /* where the answers' memory comes from, or NULL */
 };
 
 /* A request has come; `request_class` is that of its frame, CLASS_STILL for what has none. NULL

@@ -64,7 +64,7 @@ static void drop_block(struct conn *conn)
     conn->unsent_bytes -= block->size - block->sent;
     if (block->release)
         block->release(block->owner);
-    free(block);
+    spares_give(conn->spares, block);
 }
 
 void conn_close(struct conn *conn)
@@ -113,7 +113,8 @@ void conn_close_after_flush(struct conn *conn)
 
 static struct conn_block *append(struct conn *conn, size_t size, size_t copied)
 {
-    struct conn_block *block = conn->state == CONN_OPEN ? malloc(sizeof *block + copied) : NULL;
+    struct conn_block *block =
+        conn->state == CONN_OPEN ? spares_take(conn->spares, sizeof *block + copied) : NULL;
     if (!block) {
         if (conn->state == CONN_OPEN)
             conn_close(conn);

@@ -17,6 +17,7 @@
 #include "protocol/limits.h"
 #include "server/error.h"
 #include "server/service/loop.h"
+#include "server/spares.h"
 
 #define CONN_IN_BYTES 4096u /* of the buffer at first and again when the client is idle */
 #define CONN_MOST_IN_BYTES (MESSAGE_HEADER_BYTES + PROTOCOL_MAX_CHUNK_BYTES)
@@ -69,6 +70,7 @@ struct conn {
     bool peer_ended; /* the peer will send no more */
 
     struct conn_block *out_head, *out_tail;
+    struct spares *spares; /* where their memory comes from; NULL until the owner says */
     size_t unsent_bytes;
     uint64_t *sent_bytes; /* everybody's; counted up here */
 

@@ -1,7 +1,5 @@
 #include "server/service/encode.h"
 
-#include <stdlib.h>
-
 #include "server/fault.h"
 
 #define ZSTD_LEVEL 1
@@ -59,23 +57,25 @@ void encoded_destroy(struct encoded *encoded)
     if (encoded->released)
         encoded->released(encoded->memory_of);
     frame_finish(&encoded->frame);
+    struct spares *spares = encoded->spares;
     for (size_t i = 0; i < encoded->n_blocks; i++)
-        free(encoded->blocks[i]);
-    free(encoded->blocks);
-    free(encoded->pieces);
-    free(encoded);
+        spares_give(spares, encoded->blocks[i]);
+    spares_give(spares, encoded->blocks);
+    spares_give(spares, encoded->pieces);
+    spares_give(spares, encoded);
 }
 
 static void end_job(struct encode_job *job, const struct error *error)
 {
     struct encoded *encoded = job->encoded;
+    struct spares *spares = encoded->spares;
     if (error) {
         encoded_destroy(encoded);
         encoded = NULL;
     }
     job->finished(job->owner, encoded, error);
-    free(job->strips);
-    free(job);
+    spares_give(spares, job->strips);
+    spares_give(spares, job);
 }
 
 static void end_job_no_memory(struct encode_job *job)
@@ -95,9 +95,11 @@ static void add_piece(struct encoded *encoded, const uint8_t *bytes, size_t size
 /* Room for n blocks and as many pieces. */
 static bool allocate(struct encoded *encoded, size_t n)
 {
-    encoded->blocks = calloc(n, sizeof *encoded->blocks);
-    encoded->pieces = calloc(n, sizeof *encoded->pieces);
+    encoded->blocks = spares_take(encoded->spares, n * sizeof *encoded->blocks);
+    encoded->pieces = spares_take(encoded->spares, n * sizeof *encoded->pieces);
     encoded->n_blocks = encoded->blocks ? n : 0;
+    for (size_t i = 0; i < encoded->n_blocks; i++)
+        encoded->blocks[i] = NULL;
     return encoded->blocks && encoded->pieces;
 }
 
@@ -125,7 +127,7 @@ static void strip_run(struct work *work, void *worker)
     struct encoded *encoded = job->encoded;
     struct codec_strip place = codec_strip_at(&job->layout, strip->index);
     size_t bound = codec_strip_bound(&place);
-    uint8_t *bytes = fault_at("encode") ? NULL : malloc(bound);
+    uint8_t *bytes = fault_at("encode") ? NULL : spares_take(encoded->spares, bound);
     if (bytes)
         strip->size =
             codec_strip_encode(worker, &place, encoded->frame.plane[place.plane], bytes, bound);
@@ -135,8 +137,9 @@ static void strip_run(struct work *work, void *worker)
 static bool join_strips(struct encode_job *job)
 {
     struct encoded *encoded = job->encoded;
-    uint32_t *lengths = calloc(job->layout.n_strips, sizeof *lengths);
-    uint8_t *table = malloc(job->layout.table_bytes);
+    struct spares *spares = encoded->spares;
+    uint32_t *lengths = spares_take(spares, job->layout.n_strips * sizeof *lengths);
+    uint8_t *table = spares_take(spares, job->layout.table_bytes);
     encoded->blocks[0] = table;
     bool ok = lengths && table;
     if (ok)
@@ -148,7 +151,7 @@ static bool join_strips(struct encode_job *job)
     }
     if (ok)
         codec_table_encode(&job->layout, lengths, table);
-    free(lengths);
+    spares_give(spares, lengths);
     return ok;
 }
 
@@ -167,7 +170,7 @@ static void strip_done(struct work *work)
 static void start_strips(struct encode_job *job)
 {
     size_t n = job->layout.n_strips;
-    job->strips = calloc(n, sizeof *job->strips);
+    job->strips = spares_take(job->encoded->spares, n * sizeof *job->strips);
     if (!job->strips || !allocate(job->encoded, n + 1)) {
         end_job_no_memory(job);
         return;
@@ -247,8 +250,8 @@ static void file_run(struct work *work, void *worker)
         if (job->layout.planes & (1u << plane))
             planes[n_planes++] = (struct picture_block){job->encoded->frame.plane[plane],
                                                         codec_plane_bytes(&job->layout, plane)};
-    workers_write_image(job->workers, &picture, planes, n_planes, &job->encoded->blocks[0],
-                        &job->file_size, &job->error);
+    workers_write_image(job->workers, &picture, planes, n_planes, job->encoded->spares,
+                        &job->encoded->blocks[0], &job->file_size, &job->error);
 }
 
 static void file_done(struct work *work)
@@ -280,18 +283,19 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
                   void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
                   void *owner)
 {
-    struct encode_job *job = calloc(1, sizeof *job);
-    struct encoded *encoded = calloc(1, sizeof *encoded);
+    struct spares *spares = frame->spares;
+    struct encode_job *job = spares_take(spares, sizeof *job);
+    struct encoded *encoded = spares_take(spares, sizeof *encoded);
     if (!job || !encoded) {
-        free(job);
-        free(encoded);
+        spares_give(spares, job);
+        spares_give(spares, encoded);
         frame_finish(frame);
         struct error error = {0};
         error_set(&error, ERROR_SERVER, "no memory to encode a frame: try again later");
         finished(owner, NULL, &error);
         return;
     }
-    encoded->frame = *frame;
+    *encoded = (struct encoded){.frame = *frame, .spares = spares};
     *frame = (struct frame){0};
     *job = (struct encode_job){
         .encoded = encoded,

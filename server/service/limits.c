@@ -23,6 +23,10 @@ const struct limits_row LIMITS[] = {
     {"peer-memory", UNIT_BYTES,
      "most that uploads under way and frames of one user (Unix socket) or address\nmay take", 1,
      MOST_BYTES, 2 * GIB, AT(peer_memory)},
+    {"spare-memory", UNIT_BYTES,
+     "memory of sent frames that is kept for the next ones, at most, beside the budget;\n"
+     "what is not used for 5 s is given back",
+     0, MOST_BYTES, 256 * MIB, AT(spare_memory)},
     {"max-upload", UNIT_BYTES, "largest model or image file", 1, PROTOCOL_MAX_UPLOAD_BYTES,
      PROTOCOL_MAX_UPLOAD_BYTES, AT(max_upload)},
     {"max-frame", UNIT_BYTES, "largest frame: width x height x bytes of all its planes", 1,

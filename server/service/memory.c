@@ -1,7 +1,6 @@
 #include "server/service/memory.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 
 struct memory_charge {
     struct memory *memory;
@@ -47,13 +46,13 @@ enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
                                        struct memory_charge **charge, struct error *error)
 {
     bool is_patient = request_class != CLASS_INTERACTIVE;
-    struct memory_charge *made = malloc(sizeof *made);
+    struct memory_charge *made = spares_take(memory->spares, sizeof *made);
     if (!made) {
         error_set(error, ERROR_SERVER, "no memory for a frame: try again later");
         return MEMORY_FAILED;
     }
     if (!take(memory, peer, is_patient, bytes, error)) {
-        free(made);
+        spares_give(memory->spares, made);
         return memory->frame_bytes > 0 ? MEMORY_LATER : MEMORY_FAILED;
     }
     *made = (struct memory_charge){memory, peer_reference(peer), bytes, is_patient};
@@ -84,7 +83,7 @@ void memory_charge_release(void *owner)
         return;
     memory_charge_shrink(charge, 0);
     peer_put(&charge->memory->peers, charge->peer);
-    free(charge);
+    spares_give(charge->memory->spares, charge);
 }
 
 bool memory_charge_upload(struct memory *memory, struct peer *peer, uint64_t bytes,

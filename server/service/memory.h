@@ -8,10 +8,12 @@
 #include "server/service/peers.h"
 #include "server/service/scheduler.h"
 #include "server/service/store.h"
+#include "server/spares.h"
 
 struct memory {
     struct store *store;
     const struct limits *limits;
+    struct spares *spares; /* where charges lie, or NULL */
     struct peers peers;
     uint64_t frame_bytes;   /* of all frames */
     uint64_t patient_bytes; /* of stills and batches: at most half of the budget, or one frame */

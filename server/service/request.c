@@ -10,13 +10,13 @@
 
 static struct request *request_create(struct session *session, struct answer *answer, uint32_t seq)
 {
-    struct request *request = calloc(1, sizeof *request);
+    struct request *request = spares_take(session->host->spares, sizeof *request);
     if (!request) {
         session_answer_error(session, answer, sheen_ErrorCode_ERROR_OVERLOADED,
                              "no memory for another request: try again later");
         return NULL;
     }
-    request->host = session->host;
+    *request = (struct request){.host = session->host};
     request->session = session;
     request->answer = answer;
     request->seq = seq;
@@ -62,7 +62,7 @@ void request_end(struct request *request)
     for (int i = 0; i < MAX_LIGHTS; i++)
         if (request->images[i].asset)
             store_unuse(request->images[i].asset);
-    free(request);
+    spares_give(request->host->spares, request);
 }
 
 void request_fail(struct request *request, const struct error *error)

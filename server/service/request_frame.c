@@ -287,7 +287,7 @@ static void paint_run(struct work *work, void *worker)
                request->frame_request.miss, request->frame_request.empty);
     for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
         if (!(request->layout.planes & 1u << plane)) {
-            free(frame->plane[plane]);
+            spares_give(frame->spares, frame->plane[plane]);
             frame->plane[plane] = NULL;
         }
 }

@@ -19,6 +19,7 @@
 #include "server/service/request.h"
 #include "server/service/session.h"
 
+#define SERVICE_TRIM_US 5000000u     /* spares that lay unused for so long are given back */
 #define SERVICE_OWN_DESCRIPTORS 128u /* listeners, devices, libraries: more than are used */
 
 struct service {
@@ -33,6 +34,7 @@ struct service {
     int signal_fd;
     struct session *sessions;
     struct losses losses; /* of the GPU */
+    uint64_t trimmed_us;  /* when the spares were last */
     enum service_end end;
     bool single; /* ends with its session */
 };
@@ -152,7 +154,8 @@ static void after_batch(void *owner)
     count_losses(service);
     settle_sessions(service);
     request_start_next(&service->host);
-    loop_set_ticking(service->host.loop, service->sessions || any_paused(service));
+    loop_set_ticking(service->host.loop, service->sessions || any_paused(service) ||
+                                             spares_bytes(service->host.spares) > 0);
     if (service->sessions || !(service->single || service->host.draining))
         return;
     /* Nobody is left to answer; other threads may still be at work. */
@@ -171,6 +174,10 @@ static void tick(void *owner)
     uint64_t now = loop_now_us();
     for (struct session *session = service->sessions; session; session = session->next)
         session_tick(session, now);
+    if (now - service->trimmed_us > SERVICE_TRIM_US) {
+        service->trimmed_us = now;
+        spares_trim(service->host.spares);
+    }
     for (size_t i = 0; i < service->n_listeners; i++)
         if (listener_is_paused(service->listeners[i]))
             listener_resume(service->listeners[i]);
@@ -373,7 +380,9 @@ static bool start(struct service *service, struct error *error)
     struct session_host *host = &service->host;
     const struct service_options *options = &service->options;
     const struct loop_hooks hooks = {after_batch, tick, service};
-    const struct renderer_options renderer = {.device = options->device};
+    if (!(host->spares = spares_create((size_t)options->limits.spare_memory)))
+        return error_set(error, ERROR_SERVER, "no memory for the daemon");
+    const struct renderer_options renderer = {.device = options->device, .spares = host->spares};
     /* The reader of cages starts while the device opens. */
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
         !workers_init(&host->workers, NULL, options->limits.memory_budget, error) ||
@@ -394,7 +403,8 @@ static bool start(struct service *service, struct error *error)
     host->gpu_generation = 1;
     host->max_upload_bytes =
         limits->memory_budget < limits->max_upload ? limits->memory_budget : limits->max_upload;
-    host->memory = (struct memory){.store = host->store, .limits = &host->limits};
+    host->memory =
+        (struct memory){.store = host->store, .limits = &host->limits, .spares = host->spares};
     allow_descriptors(limits->max_connections + SERVICE_OWN_DESCRIPTORS);
     stats_init(&host->stats);
     if (service->single)
@@ -508,6 +518,7 @@ void service_destroy(struct service *service)
         close(service->signal_fd);
     loop_destroy(host->loop);
     access_destroy(host->access);
+    spares_destroy(host->spares);
     if (host->models_fd >= 0)
         close(host->models_fd);
     free(service);

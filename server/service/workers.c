@@ -124,10 +124,11 @@ bool workers_read_image(struct workers *workers, struct image *image, const void
 }
 
 /* All that is left of an answer. */
-static bool take_file(struct source *answer, uint8_t **bytes, size_t *size, struct error *error)
+static bool take_file(struct source *answer, struct spares *spares, uint8_t **bytes, size_t *size,
+                      struct error *error)
 {
     *size = answer->left;
-    *bytes = malloc(*size > 0 ? *size : 1);
+    *bytes = spares_take(spares, *size);
     if (!*bytes)
         return error_set(error, ERROR_SERVER, "no memory for a file of %zu bytes: try again later",
                          *size);
@@ -136,8 +137,8 @@ static bool take_file(struct source *answer, uint8_t **bytes, size_t *size, stru
 }
 
 bool workers_write_image(struct workers *workers, const struct picture *picture,
-                         const struct picture_block *blocks, size_t n_blocks, uint8_t **bytes,
-                         size_t *size, struct error *error)
+                         const struct picture_block *blocks, size_t n_blocks, struct spares *spares,
+                         uint8_t **bytes, size_t *size, struct error *error)
 {
     uint64_t memory_bytes = WORKERS_LEAST_MEMORY_BYTES;
     for (size_t i = 0; i < n_blocks; i++)
@@ -152,7 +153,7 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
     ok = ok &&
          worker_run(workers->images, &call, JOB_WRITE_IMAGE, &limits, "the picture", ERROR_IMAGE,
                     error) &&
-         take_file(&call.answer, bytes, size, error);
+         take_file(&call.answer, spares, bytes, size, error);
     worker_call_finish(&call);
     return ok;
 }

@@ -9,6 +9,7 @@
 #include "server/cage/cage.h"
 #include "server/image/image.h"
 #include "server/service/worker.h"
+#include "server/spares.h"
 #include "server/worker/image_code.h"
 
 /* What a process may take: its own memory beyond what it starts with, time, and what it answers.
@@ -42,10 +43,10 @@ bool workers_read_cage(struct workers *workers, struct cage *cage, const void *b
 /* As image_decode(). */
 bool workers_read_image(struct workers *workers, struct image *image, const void *bytes,
                         size_t size, const char *name, uint32_t max_px, struct error *error);
-/* As image_encode(); the picture's channels lie in the blocks. */
+/* As image_encode(); the picture's channels lie in the blocks. The bytes are of `spares`. */
 bool workers_write_image(struct workers *workers, const struct picture *picture,
-                         const struct picture_block *blocks, size_t n_blocks, uint8_t **bytes,
-                         size_t *size, struct error *error);
+                         const struct picture_block *blocks, size_t n_blocks, struct spares *spares,
+                         uint8_t **bytes, size_t *size, struct error *error);
 /* As text_create(). */
 bool workers_draw_text(struct workers *workers, struct text *text, const char *line, int size_px,
                        struct error *error);

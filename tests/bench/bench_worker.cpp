@@ -73,7 +73,8 @@ void measure_pictures(report *report, workers *workers)
             },
             [&](int) {
                 return time_ms([&] {
-                    check(workers_write_image(workers, &picture, &block, 1, &bytes, &size, &error),
+                    check(workers_write_image(workers, &picture, &block, 1, nullptr, &bytes, &size,
+                                              &error),
                           error);
                     free(bytes);
                 });

@@ -22,7 +22,7 @@ class Table(unittest.TestCase):
         text = run("--help").stdout
         rows = re.findall(r"^[ *] --([a-z-]+) (?:BYTES|PX|N|SECONDS)\b.*?\(default: (\w+)\)",
                           text[text.index("limits;"):], re.S | re.M)
-        self.assertEqual(len(rows), 20, rows)
+        self.assertEqual(len(rows), 21, rows)
         with tempfile.NamedTemporaryFile("w", suffix=".conf") as file:
             file.write("".join(f"{name} = {fallback}\n" for name, fallback in rows))
             file.flush()

@@ -1,0 +1,94 @@
+"""Memory of frames: a warm one takes none from the heap, and what was kept goes back.
+
+build/sheend-faults counts the blocks that sheend's own code takes (allocations.c)."""
+import mmap
+import os
+import struct
+import tempfile
+import time
+import unittest
+
+import wire
+from daemon import BUILD, MODELS, Daemon, resident_kb
+
+P, N, PTEX, LIGHT = 2, 4, 8, 16
+COLOUR = 1
+MIB = 1 << 20
+
+
+class CountingDaemon(Daemon):
+    program = os.path.join(BUILD, "sheend-faults")
+
+    def __init__(self, *arguments):
+        with tempfile.NamedTemporaryFile() as file:
+            file.write(bytes(8))
+            file.flush()
+            self.count = mmap.mmap(file.fileno(), 8)
+            super().__init__(*arguments, env={"SHEEN_ALLOCATIONS": file.name})
+
+    def allocations(self):
+        return struct.unpack("<Q", self.count[:8])[0]
+
+
+def light_at(x):
+    """A light of its own for each frame: the camera stays, so its planes are kept."""
+    vector = lambda *v: b"".join(wire.field(i + 1, float(value)) for i, value in enumerate(v))
+    light = (wire.field(1, vector(x, 0, 20)) + wire.field(2, vector(40, 0, 0)) +
+             wire.field(3, vector(0, 40, 0)))
+    return wire.field(5, light)
+
+
+class WarmFrames(unittest.TestCase):
+    def serve(self, *arguments):
+        server = CountingDaemon(*arguments)
+        self.addCleanup(server.stop)
+        client = wire.Client(server.unix, minor=1)
+        self.addCleanup(client.socket.close)
+        with open(os.path.join(MODELS, "fender.obj"), "rb") as file:
+            model = client.upload(file.read(), "fender.obj")
+        return server, client, model
+
+    def warm_allocations(self, server, client, frames):
+        """Taken by the second half of these frames; each is the arguments of one."""
+        for i, (model, named) in enumerate(frames):
+            if i == len(frames) // 2:
+                before = server.allocations()
+            client.render(model, **named)
+        return server.allocations() - before
+
+    def test_a_warm_frame_takes_nothing_from_the_heap(self):
+        server, client, model = self.serve()
+        self.assertGreater(server.allocations(), 0)
+        planes = COLOUR | P | N | PTEX | LIGHT
+        kinds = {
+            "raw": {"encoding": wire.RAW},
+            "zstd": {"encoding": wire.ZSTD},
+            "float planes": {"encoding": wire.ZSTD, "planes": planes},
+            "raw float planes": {"encoding": wire.RAW, "planes": planes},
+            "in tiles": {"encoding": wire.ZSTD, "width": 640, "height": 480, "kind": wire.STILL},
+            "batch": {"encoding": wire.RAW, "kind": wire.BATCH},
+            "file": {"encoding": wire.PNG},
+        }
+        for name, named in kinds.items():
+            frames = [(model, {"kind": wire.INTERACTIVE, **named})] * 20
+            self.assertEqual(self.warm_allocations(server, client, frames), 0, name)
+        lights = [(model, {"kind": wire.INTERACTIVE, "encoding": wire.ZSTD,
+                           "extra": light_at(0.1 * i)}) for i in range(20)]
+        self.assertEqual(self.warm_allocations(server, client, lights), 0, "light")
+
+    def test_without_spare_memory_each_takes_its_own(self):
+        server, client, model = self.serve("--spare-memory", "0")
+        frames = [(model, {"encoding": wire.ZSTD})] * 8
+        self.assertGreater(self.warm_allocations(server, client, frames), 4)
+
+    def test_what_is_not_used_goes_back(self):
+        server, client, model = self.serve()
+        client.render(model, width=3840, height=2160, planes=COLOUR | P | N)
+        client.socket.close()
+        most = resident_kb(server.process.pid)
+        end = time.monotonic() + 40
+        while resident_kb(server.process.pid) * 1024 > most * 1024 - 64 * MIB:
+            if most == 0:
+                break  # a sanitizer hoards memory
+            self.assertLess(time.monotonic(), end, "spares were kept for 40 s")
+            time.sleep(0.5)
