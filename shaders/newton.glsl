@@ -64,7 +64,8 @@ float close_enough(float px_per_scale)
 }
 
 // Newton's method inside one sub-patch, whose polynomials also hold a little beyond it. Returns
-// how far from the ray, px, the surface then is.
+// how far from the ray, px, the surface was before the last step, which squares it: what is close enough
+// then lies on the ray.
 float solve_patch(FlatNet net, float px_per_scale, inout vec2 st)
 {
     float residual = 1e30, enough = close_enough(px_per_scale);
@@ -72,9 +73,9 @@ float solve_patch(FlatNet net, float px_per_scale, inout vec2 st)
         vec2 step_st;
         // Beyond half a sub-patch the linear model says little.
         residual = length(newton_step(net, st, 0.5, step_st)) * px_per_scale;
+        st += step_st;
         if (residual < enough)
             break;
-        st += step_st;
         if (any(lessThan(st, vec2(-0.5))) || any(greaterThan(st, vec2(1.5))))
             break;
     }
