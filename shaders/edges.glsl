@@ -10,26 +10,7 @@
 //   turns_shade  for each of the others, shades nine parts of the pixel.
 // At the rim of a tile the pixels beyond are not known: an edge there is seen from one side only.
 
-layout(binding = 0, r32f) readonly uniform image2D hit_depth;  // as in planes.glsl
-layout(binding = 1, rgba32f) readonly uniform image2D normal;
-layout(binding = 2, rg32f) readonly uniform image2D shape;
 layout(binding = 4, r32ui) readonly uniform uimage2D border;
-
-struct Hit {
-    vec3 x;      // relative to the eye, world axes
-    float depth; // 0: nothing
-    vec3 n;
-    vec3 h;      // shape operator in tangent_basis(n): (1,1), (1,2), (2,2)
-};
-
-Hit hit_at(ivec2 p)
-{
-    if (any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, tile.zw)))
-        return Hit(vec3(0.0), -1.0, vec3(0.0), vec3(0.0));
-    float z = imageLoad(hit_depth, p).x;
-    vec4 facing = imageLoad(normal, p);
-    return Hit(on_ray(pixel_offset(p), z), z, facing.xyz, vec3(imageLoad(shape, p).xy, facing.w));
-}
 
 // Whether the paraboloid at `a` runs through x: how far off, px.
 float off_paraboloid(Hit a, vec3 x)

@@ -82,7 +82,7 @@ void main()
         ivec2 q = p + AROUND[i];
         Hit hit = hit_at(q);
         beside_empty = beside_empty || hit.depth == 0.0;
-        bool is_new = hit.depth > 0.0 && dot(hit.n, hit.n) > 0.5;
+        bool is_new = mirrors(hit);
         for (int k = 0; k < PIECES; k++)
             is_new = is_new && (k >= n || !same_surface(pieces[k].hit, hit));
         if (!is_new || n == PIECES)

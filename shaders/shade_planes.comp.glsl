@@ -4,9 +4,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(binding = 0, r32f) readonly uniform image2D hit_depth;
-layout(binding = 1, rgba32f) readonly uniform image2D normal;
-layout(binding = 2, rg32f) readonly uniform image2D shape;
 layout(binding = 4, rg32f) writeonly uniform image2D light_st;
 layout(binding = 5, rg32f) writeonly uniform image2D curvature;
 layout(binding = 6, rgba32f) writeonly uniform image2D light_change;
@@ -24,16 +21,13 @@ void main()
     ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
     if (any(greaterThanEqual(p, tile.zw)))
         return;
-    float z = imageLoad(hit_depth, p).x;
-    vec4 facing = imageLoad(normal, p);
-    vec3 h = vec3(imageLoad(shape, p).xy, facing.w);
-    bool mirrors = z > 0.0 && dot(facing.xyz, facing.xyz) > 0.5;
-    Met met = meet(sample_at(pixel_offset(p), 1.0, z, facing.xyz, h, facing.xyz));
-    bool inside = mirrors && met.cover > 0.0 && met.inside;
+    Hit hit = hit_at(p);
+    Met met = meet(sample_at(pixel_offset(p), 1.0, hit.depth, hit.n, hit.h, hit.n));
+    bool inside = mirrors(hit) && met.cover > 0.0 && met.inside;
     if (want.x != 0)
         imageStore(light_st, p, inside ? (met.q / size.xy + 0.5).xyxy : NOTHING);
     if (want.y != 0)
-        imageStore(curvature, p, mirrors ? principal_curvatures(h).xyxy : NOTHING);
+        imageStore(curvature, p, mirrors(hit) ? principal_curvatures(hit.h).xyxy : NOTHING);
     if (want.z != 0)
         imageStore(light_change, p, inside ? vec4(met.ds, met.dt) / size.xxyy : NOTHING);
 }

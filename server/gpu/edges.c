@@ -6,7 +6,7 @@
 bool stage_edges_init(struct renderer *r, struct error *error)
 {
     static const char *const files[] = {
-        "view.glsl",  "list.glsl",   "basis.glsl",           "border.glsl",
+        "view.glsl",  "list.glsl",   "basis.glsl",           "hit.glsl", "border.glsl",
         "edges.glsl", "groups.glsl", "edges_find.comp.glsl", NULL};
     r->edges_find = program_compute("", files, error);
     return r->edges_find;

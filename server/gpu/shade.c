@@ -31,7 +31,8 @@ static GLuint shade_program(struct renderer *r, const struct frame_request *requ
                             const struct light *light, enum shaded which, struct error *error)
 {
 #define COMMON                                                                                     \
-    "view.glsl", "list.glsl", "basis.glsl", "coverage.glsl", "lines.glsl", "patterns.glsl"
+    "view.glsl", "list.glsl", "basis.glsl", "hit.glsl", "coverage.glsl", "lines.glsl",             \
+        "patterns.glsl"
     static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
     static const char *const edges[] = {COMMON,        "border.glsl",   "edges.glsl",
                                         "pieces.glsl", "rounding.glsl", "edges_shade.comp.glsl",
