@@ -65,7 +65,7 @@ float close_enough(float px_per_scale)
 
 // Newton's method inside one sub-patch, whose polynomials also hold a little beyond it. Returns
 // how far from the ray, px, the surface was before the last step, which squares it: what is close enough
-// then lies on the ray.
+// then lies on the ray. (But for places so near the sub-patch's border that the step leaves it: they stay.)
 float solve_patch(FlatNet net, float px_per_scale, inout vec2 st)
 {
     float residual = 1e30, enough = close_enough(px_per_scale);
@@ -73,7 +73,9 @@ float solve_patch(FlatNet net, float px_per_scale, inout vec2 st)
         vec2 step_st;
         // Beyond half a sub-patch the linear model says little.
         residual = length(newton_step(net, st, 0.5, step_st)) * px_per_scale;
-        st += step_st;
+        vec2 next = st + step_st;
+        bool leaves = any(lessThan(next, vec2(0.0))) || any(greaterThan(next, vec2(1.0)));
+        st = residual < enough && leaves ? st : next;
         if (residual < enough)
             break;
         if (any(lessThan(st, vec2(-0.5))) || any(greaterThan(st, vec2(1.5))))
