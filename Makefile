@@ -13,8 +13,9 @@
 #   make deps       install Debian packages (needs root or sudo)
 #   make install    PREFIX=/usr/local DESTDIR=
 #   make clean
-# SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize. FUZZ=1 and
-# COVERAGE=1 are the builds of make fuzz and make fuzz-coverage.
+# SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize, SANITIZE=thread
+# with ThreadSanitizer into build/thread. FUZZ=1 and COVERAGE=1 are the builds of make fuzz and
+# make fuzz-coverage.
 
 VERSION := 0.1.0
 PREFIX ?= /usr/local
@@ -26,8 +27,9 @@ COVERAGE ?=
 SECONDS ?= 60
 
 comma := ,
-BUILD := build$(if $(FUZZ),/fuzz,$(if $(COVERAGE),/coverage,$(if $(SANITIZE),/sanitize)))
-CHECKED := -O1 -fsanitize=address$(comma)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+BUILD := build$(if $(FUZZ),/fuzz,$(if $(COVERAGE),/coverage,$(if $(SANITIZE),$(if $(filter thread,$(SANITIZE)),/thread,/sanitize))))
+SANITIZERS := $(if $(filter thread,$(SANITIZE)),thread,address$(comma)undefined)
+CHECKED := -O1 -fsanitize=$(SANITIZERS) -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPT := $(if $(FUZZ)$(SANITIZE),$(CHECKED),$(if $(COVERAGE),-O0 --coverage,-O2))
 ifneq ($(FUZZ),)
 CC := clang-14

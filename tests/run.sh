@@ -6,6 +6,7 @@ kind=$1 build=$2
 shapes=../shared/shapes
 # In builds with sanitizers: what libraries lose by themselves is not ours to report.
 export LSAN_OPTIONS="suppressions=tests/lsan.supp:print_suppressions=0"
+export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp:print_suppressions=0"
 mkdir -p "$build/tests"
 rm -f "$build"/tests/*.count
 
