@@ -8,6 +8,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "server/fault.h"
+
 #define MAX_PIECES 64 /* blocks per sendmsg() */
 
 struct conn_block {
@@ -152,6 +154,13 @@ void conn_send_block(struct conn *conn, const void *bytes, size_t size, void (*r
     }
 }
 
+/* A socket that takes nothing now, or breaks. */
+static bool fails_to_write(void)
+{
+    errno = fault_at("send.full") ? EAGAIN : fault_at("send.broken") ? EPIPE : 0;
+    return errno != 0;
+}
+
 static ssize_t write_some(struct conn *conn)
 {
     struct iovec pieces[MAX_PIECES];
@@ -161,6 +170,10 @@ static ssize_t write_some(struct conn *conn)
         memcpy(&piece->iov_base, &(const void *){b->bytes + b->sent}, sizeof(void *));
         piece->iov_len = b->size - b->sent;
     }
+    if (fails_to_write())
+        return -1;
+    if (pieces[0].iov_len > 1 && fault_at("send.short"))
+        pieces[0].iov_len = n = 1; /* a byte of the first */
     return conn->transport->write(conn, pieces, n);
 }
 

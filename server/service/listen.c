@@ -14,6 +14,9 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "server/fault.h"
+#include "server/service/log.h"
+
 #define ACCEPTS_PER_EVENT 16
 
 struct listener {
@@ -21,6 +24,7 @@ struct listener {
     struct loop_source source;
     int fd;
     bool paused;
+    bool is_short; /* of descriptors or memory, since an accept() failed */
     struct address address;
     struct stat file; /* of a Unix socket */
     char text[LISTENER_TEXT_BYTES];
@@ -201,18 +205,37 @@ static bool open_tcp(struct listener *listener, struct error *error)
 
 /* --- accepting */
 
+/* The connection stays in the queue and would wake the loop at once, again and again. */
+static void pause_for(struct listener *listener, int code)
+{
+    listener->paused = true;
+    loop_unwatch(listener->loop, &listener->source);
+    if (!listener->is_short)
+        log_event(LOG_ERROR, "cannot accept clients: those who come wait",
+                  log_text("listener", listener->text), log_text("text", strerror(code)));
+    listener->is_short = true;
+}
+
+static int accept_fd(const struct listener *listener)
+{
+    if (!fault_at("accept.emfile"))
+        return accept4(listener->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    errno = EMFILE;
+    return -1;
+}
+
 /* False when there is nobody to accept now. */
 static bool accept_one(struct listener *listener)
 {
-    int fd = accept4(listener->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    int fd = accept_fd(listener);
     if (fd < 0) {
-        /* The connection stays in the queue and would wake the loop at once, again and again. */
-        if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS) {
-            listener->paused = true;
-            loop_unwatch(listener->loop, &listener->source);
-        }
+        if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS)
+            pause_for(listener, errno);
         return false;
     }
+    if (listener->is_short)
+        log_event(LOG_INFO, "accepting clients again", log_text("listener", listener->text));
+    listener->is_short = false;
     /* What has not left for the network stays here, where a newer frame may still replace it. */
     static const int on = 1, most_unsent_bytes = 128 * 1024;
     if (listener->address.kind != ADDRESS_UNIX) {

@@ -139,6 +139,18 @@ class Shortage(unittest.TestCase):
                 client.render(model, encoding=wire.ZSTD)
             self.assertEqual(server.stop(), 0)
 
+    def test_no_descriptor_to_accept_with(self):
+        """The client waits in the queue through five failures, and the log has two lines, not five."""
+        server = FaultyDaemon("accept.emfile:1:5")
+        with wire.Client(server.unix) as client:
+            client.render(client.upload(CUBE, "cube.obj"))
+        log = server.errors()
+        self.assertEqual(log.count("fault: accept.emfile"), 5)
+        self.assertEqual(log.count("cannot accept clients"), 1)
+        self.assertIn("Too many open files", log)
+        self.assertEqual(log.count("accepting clients again"), 1)
+        self.assertEqual(server.stop(), 0)
+
     def test_descriptors(self):
         """Who comes when there are none waits until one is free; nobody is thrown out."""
         server = Daemon()
@@ -193,6 +205,44 @@ class Shortage(unittest.TestCase):
             client.render(client.upload(CUBE, "cube.obj"))
         server.terminate()
         self.assertEqual(server.wait(30), 0)
+
+
+class Sending(unittest.TestCase):
+    """A socket that takes a byte, nothing, or breaks, at every so-many-th write."""
+
+    def serve(self, faults):
+        server = FaultyDaemon(faults)
+        self.addCleanup(lambda: server.process.poll() is None and server.stop())
+        return server
+
+    def draw(self, address):
+        with wire.Client(address) as client:
+            model = client.upload(CUBE, "cube.obj")
+            return [client.render(model, 700, 500, encoding=encoding).data
+                    for encoding in (wire.RAW, wire.ZSTD) for _ in range(4)]
+
+    def test_what_arrives_is_the_same(self):
+        healthy = self.serve("send.short:1:0")
+        want = self.draw(healthy.unix)
+        for fault in ("send.short", "send.full"):
+            for every in (1, 2):
+                server = self.serve(f"{fault}:{every}:40")
+                self.assertEqual([self.draw(address) for address in (server.unix, server.tcp)],
+                                 [want, want])
+                self.assertGreater(server.errors().count(f"fault: {fault}"), 10)
+                self.assertEqual(server.stop(), 0)
+
+    def test_a_broken_one_ends_its_session_alone(self):
+        server = self.serve("send.broken:6:1")
+        with wire.Client(server.unix) as other, wire.Client(server.tcp) as client:
+            model = client.upload(CUBE, "cube.obj")
+            with self.assertRaises((EOFError, OSError)):
+                for _ in range(6):
+                    client.render(model)
+            self.assertEqual(server.errors().count("fault: send.broken"), 1)
+            other.render(other.upload(CUBE, "cube.obj"))
+            self.assertEqual(other.stats()[2], [1])
+        self.assertEqual(server.stop(), 0)
 
 
 class Killed(unittest.TestCase):
