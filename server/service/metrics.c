@@ -191,6 +191,8 @@ static void write_process(const struct session_host *host, struct report *report
     seconds(report, render_thread_busy_us(host->render_thread, now));
     report_add(report, "\nsheen_thread_busy_seconds{thread=\"pool\"} ");
     seconds(report, pool_busy_us(host->pool, now));
+    report_add(report, "\nsheen_thread_busy_seconds{thread=\"read\"} ");
+    seconds(report, pool_busy_us(host->readers, now));
     report_add(report, "\n");
     put(report, "log_lines_left_out_total", "counter", log_left_out(),
         "Log lines above the most a second.");

@@ -31,7 +31,9 @@ static const char *who_is_stuck(const struct monitor *monitor)
     uint64_t now = loop_now_us();
     if (render_thread_busy_us(monitor->host->render_thread, now) > monitor->stuck_us)
         return "the GL thread";
-    return pool_busy_us(monitor->host->pool, now) > monitor->stuck_us ? "a worker thread" : NULL;
+    if (pool_busy_us(monitor->host->pool, now) > monitor->stuck_us)
+        return "a worker thread";
+    return pool_busy_us(monitor->host->readers, now) > monitor->stuck_us ? "a reader thread" : NULL;
 }
 
 /* --- HTTP */

@@ -1,5 +1,6 @@
 /* What watches the daemon while it serves: the service manager's watchdog, fed only while the GL
- * thread and the pool are well, and health and metrics over HTTP. Thread: the loop's. */
+ * thread, the pool and the readers are well, and health and metrics over HTTP. Thread: the loop's.
+ */
 #ifndef SHEEN_SERVICE_MONITOR_H
 #define SHEEN_SERVICE_MONITOR_H
 

@@ -9,8 +9,10 @@
 struct pool_thread {
     struct pool *pool;
     pthread_t thread;
-    atomic_ullong busy_since_us; /* when its present work began; 0: it has none */
+    atomic_ullong busy_since_us; /* when its present work began or beat; 0: it has none */
 };
+
+static _Thread_local struct pool_thread *this_thread; /* NULL outside of a pool */
 
 struct pool {
     char name[13];
@@ -59,6 +61,7 @@ static void *thread_main(void *argument)
 {
     struct pool_thread *self = argument;
     struct pool *pool = self->pool;
+    this_thread = self;
     pthread_setname_np(pthread_self(), pool->name);
     void *worker = NULL;
     int least_urgent;
@@ -143,6 +146,12 @@ uint64_t pool_busy_us(const struct pool *pool, uint64_t now_us)
         longest = busy > longest ? busy : longest;
     }
     return longest;
+}
+
+void pool_beat(void)
+{
+    if (this_thread)
+        atomic_store(&this_thread->busy_since_us, loop_now_us());
 }
 
 void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency)

@@ -1,7 +1,7 @@
 /* A pool of threads that run works and post them back as completions. With one thread it is the
  * owner of something that only one thread may touch (render_thread.h).
  *
- * Thread: all functions here are for the loop's thread. */
+ * Thread: all functions here but pool_beat() are for the loop's thread. */
 #ifndef SHEEN_SERVICE_POOL_H
 #define SHEEN_SERVICE_POOL_H
 
@@ -41,9 +41,14 @@ struct pool *pool_create(const char *name, unsigned n_threads, unsigned n_urgent
  * delivered then. NULL is safe. */
 void pool_destroy(struct pool *pool);
 
-/* For how long the thread that has been busy longest has been at its present work; 0: all wait for
- * work. A thread that hangs is told from one that works by how long this is. */
+/* For how long the thread that has been busy longest has been at its present work, or has not
+ * called pool_beat() in it; 0: all wait for work. A thread that hangs is told from one that works
+ * by how long this is. */
 uint64_t pool_busy_us(const struct pool *pool, uint64_t now_us);
+
+/* The calling thread's present work is well, though it takes long: it waits for somebody, and will
+ * not wait for ever. Any thread; nothing outside of a pool. */
+void pool_beat(void);
 
 /* Takes a work in. Never blocks and never fails: callers bound how much they submit. */
 void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency);

@@ -16,10 +16,12 @@
 #include <unistd.h>
 
 #include "server/service/log.h"
+#include "server/service/pool.h"
 #include "server/worker/zygote.h"
 
 #define ATTEMPTS 2
-#define GRACE_S 10 /* for the program to tell of a job's end after its time */
+#define GRACE_S 10  /* for the program to tell of a job's end after its time */
+#define BEAT_MS 500 /* less than any thread is given before it is taken for stuck */
 
 extern char **environ;
 
@@ -273,10 +275,12 @@ static bool await(int end_fd, const struct job *job, struct job_end *job_end)
 {
     struct pollfd end = {end_fd, POLLIN, 0};
     uint8_t message[JOB_END_BYTES];
+    const uint64_t deadline_us = loop_now_us() + ((uint64_t)job->limits.wall_s + GRACE_S) * 1000000;
     int n;
-    do
-        n = poll(&end, 1, (int)(job->limits.wall_s + GRACE_S) * 1000);
-    while (n < 0 && errno == EINTR);
+    do {
+        pool_beat();
+        n = poll(&end, 1, BEAT_MS);
+    } while ((n == 0 && loop_now_us() < deadline_us) || (n < 0 && errno == EINTR));
     ssize_t size = n > 0 ? read(end_fd, message, sizeof message) : -1;
     return size > 0 && job_end_decode(job_end, message, (size_t)size);
 }

@@ -13,6 +13,7 @@ import unittest
 
 import wire
 from daemon import CUBE, SHEEN, SHEEND, Daemon, run
+from test_untrusted import is_alive, workers
 from wire import Client
 
 
@@ -111,6 +112,30 @@ class Notify:
         return n
 
 
+PTRACE_SEIZE, PTRACE_INTERRUPT, PTRACE_DETACH, WALL = 0x4206, 0x4207, 17, 0x40000000
+libc = ctypes.CDLL(None, use_errno=True)
+
+
+def trace(request, thread):
+    if libc.ptrace(request, thread, None, None) != 0:
+        raise OSError(ctypes.get_errno(), "ptrace")
+
+
+def stop_thread(thread):
+    trace(PTRACE_INTERRUPT, thread)
+    os.waitpid(thread, WALL)
+
+
+def threads(pid, name):
+    """The threads of a process that have this name, oldest first; a driver's threads inherit it."""
+    found = []
+    for task in sorted(map(int, os.listdir(f"/proc/{pid}/task"))):
+        with open(f"/proc/{pid}/task/{task}/comm", encoding="ascii") as file:
+            if file.read() == name + "\n":
+                found.append(task)
+    return found
+
+
 class ServiceManager(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -141,32 +166,20 @@ class ServiceManager(unittest.TestCase):
 
     def test_watchdog_starves_when_the_gl_thread_hangs(self):
         """ptrace stops this one thread in the middle of a frame."""
-        libc = ctypes.CDLL(None, use_errno=True)
-        seize, interrupt, detach, any_thread = 0x4206, 0x4207, 17, 0x40000000
-
-        def trace(request, thread):
-            code = libc.ptrace(request, thread, None, None)
-            self.assertEqual(code, 0, os.strerror(ctypes.get_errno()))
-
         manager = Notify(self.folder, watchdog_us=200000)
         daemon = Daemon("--stuck-after", "1", "--metrics", f"unix:{self.folder}/metrics",
                         env=manager.env)
         address = metrics_address(daemon)
-        tasks = f"/proc/{daemon.process.pid}/task"
-        for task in os.listdir(tasks):
-            with open(f"{tasks}/{task}/comm", encoding="ascii") as file:
-                if file.read() == "sheend-gl\n":
-                    thread = int(task)
+        thread = threads(daemon.process.pid, "sheend-gl")[0]
         with Client(daemon.unix, timeout=60) as client:
             model = client.upload(CUBE, "cube.obj")
             client.render(model)
-            trace(seize, thread)
+            trace(PTRACE_SEIZE, thread)
             client.send(wire.render(50, model, 3000, 3000))
             busy = 'sheen_thread_busy_seconds{thread="gl"}'
             while read_metrics(get(address, "/metrics")[1])[busy] == 0:
                 pass
-            trace(interrupt, thread)
-            os.waitpid(thread, any_thread)
+            stop_thread(thread)
             self.assertEqual(get(address, "/healthz"), (200, "ok\n"))
             daemon.wait_for("the watchdog is not fed any more")
             self.assertEqual(manager.count(1), 0)
@@ -175,11 +188,45 @@ class ServiceManager(unittest.TestCase):
                 self.assertEqual(status, 503)
                 self.assertIn("the GL thread", text)
             self.assertGreater(read_metrics(get(address, "/metrics")[1])[busy], 1)
-            trace(detach, thread)
+            trace(PTRACE_DETACH, thread)
             client.read_frame(50)
             daemon.wait_for("not stuck any more")
             self.assertGreaterEqual(manager.count(1), 5)
             self.assertEqual(get(address, "/healthz"), (200, "ok\n"))
+        self.assertEqual(daemon.stop(), 0)
+        manager.socket.close()
+
+    def test_watchdog_starves_when_a_reader_hangs(self):
+        """Not while it waits for the process that reads: that has its own limit of time."""
+        manager = Notify(self.folder, watchdog_us=200000)
+        daemon = Daemon("--stuck-after", "1", "--metrics", f"unix:{self.folder}/metrics",
+                        env=manager.env)
+        address = metrics_address(daemon)
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            worker = workers(daemon.process.pid)["sheend-cage"]
+            os.kill(worker, signal.SIGSTOP)
+            self.addCleanup(lambda: is_alive(worker) and os.kill(worker, signal.SIGCONT))
+            client.send(wire.render(50, model))
+            time.sleep(2)
+            self.assertEqual(get(address, "/healthz"), (200, "ok\n"))
+            self.assertNotIn("not fed", daemon.errors())
+            readers = threads(daemon.process.pid, "sheend-read")
+            for thread in readers:
+                trace(PTRACE_SEIZE, thread)
+                stop_thread(thread)
+            daemon.wait_for("the watchdog is not fed any more")
+            self.assertEqual(manager.count(1), 0)
+            status, text = get(address, "/healthz")
+            self.assertEqual(status, 503)
+            self.assertIn("a reader thread", text)
+            busy = 'sheen_thread_busy_seconds{thread="read"}'
+            self.assertGreater(read_metrics(get(address, "/metrics")[1])[busy], 1)
+            for thread in readers:
+                trace(PTRACE_DETACH, thread)
+            os.kill(worker, signal.SIGCONT)
+            client.read_frame(50)
+            daemon.wait_for("not stuck any more")
         self.assertEqual(daemon.stop(), 0)
         manager.socket.close()
 
