@@ -1,13 +1,17 @@
 #include "server/service/render_thread.h"
 
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "server/service/pool.h"
 
 struct render_thread {
     struct renderer_options options;
+    /* For the loop's thread: the renderer writes its own names anew when it opens the device again.
+     */
     struct renderer_info info;
+    char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES];
     struct pool *pool; /* of one thread */
     atomic_uint losses;
 };
@@ -25,6 +29,10 @@ static bool open_device(void *owner, void **worker, struct error *error)
     if (!renderer)
         return false;
     thread->info = *renderer_info(renderer);
+    snprintf(thread->device, sizeof thread->device, "%s", thread->info.device);
+    snprintf(thread->driver, sizeof thread->driver, "%s", thread->info.driver);
+    thread->info.device = thread->device;
+    thread->info.driver = thread->driver;
     *worker = renderer;
     return true;
 }
