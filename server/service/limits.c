@@ -62,6 +62,14 @@ const struct limits_row LIMITS[] = {
      AT(idle_s)},
     {"drain-timeout", UNIT_SECONDS, "after SIGTERM, for a client to read its frames", 0,
      MOST_SECONDS, 30, AT(drain_s)},
+    {"worker-memory", UNIT_BYTES,
+     "most memory of the process that reads or writes a file; less for small files and\nwithin the "
+     "budget",
+     MIB, MOST_BYTES, 8 * GIB, AT(worker_memory)},
+    {"worker-output", UNIT_BYTES, "most that comes out of it", MIB, MOST_BYTES, 8 * GIB,
+     AT(worker_output)},
+    {"worker-cpu", UNIT_SECONDS, "of a processor, for one file", 1, 86400, 60, AT(worker_cpu_s)},
+    {"worker-time", UNIT_SECONDS, "for one file", 1, 86400, 120, AT(worker_s)},
     {"gpu-losses", UNIT_COUNT,
      "so often may the GPU be lost in ten minutes; then the daemon ends with exit code\n75, to be "
      "started anew; 0: as often as it likes",
@@ -133,8 +141,7 @@ const char *limits_argument(const struct limits_row *row)
     return names[row->unit];
 }
 
-void limits_format(const struct limits_row *row, uint64_t value,
-                   char text[static LIMITS_TEXT_BYTES])
+void limits_format(const struct limits_row *row, uint64_t value, char text[LIMITS_TEXT_BYTES])
 {
     static const char suffixes[] = "KMGT";
     unsigned n = 0;

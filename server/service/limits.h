@@ -37,6 +37,9 @@ struct limits {
     uint64_t idle_s;      /* without a request; 0: for ever */
     uint64_t drain_s;     /* for a client to read its frames when the daemon ends */
 
+    /* What a process that reads or writes one file may take (workers.h). */
+    uint64_t worker_memory, worker_output, worker_cpu_s, worker_s;
+
     uint64_t gpu_losses; /* in ten minutes (losses.h) end the daemon; 0: none do */
 };
 
@@ -65,8 +68,7 @@ uint64_t limits_get(const struct limits *limits, const struct limits_row *row);
 const char *limits_argument(const struct limits_row *row);
 /* A number of bytes with the largest suffix that keeps it whole ("4G"); other units as they are. */
 enum { LIMITS_TEXT_BYTES = 24 };
-void limits_format(const struct limits_row *row, uint64_t value,
-                   char text[static LIMITS_TEXT_BYTES]);
+void limits_format(const struct limits_row *row, uint64_t value, char text[LIMITS_TEXT_BYTES]);
 
 /* A whole number from low to high; with suffixes K, M, G or T multiply by powers of 1024. */
 bool number_parse(const char *value, uint64_t low, uint64_t high, bool suffixes, uint64_t *number);

@@ -217,6 +217,7 @@ static void apply(struct service *service, const struct service_options *options
     for (struct session *session = service->sessions; session; session = session->next)
         session_check_access(session);
     service->host.limits = options->limits;
+    workers_set_times(&service->host.workers, &options->limits);
     /* The client of a private daemon shows its last line when it dies. */
     log_set(service->single ? LOG_ERROR : options->log_level, options->log_format);
     if (service->monitor)
@@ -385,7 +386,7 @@ static bool start(struct service *service, struct error *error)
     const struct renderer_options renderer = {.device = options->device, .spares = host->spares};
     /* The reader of cages starts while the device opens. */
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
-        !workers_init(&host->workers, NULL, options->limits.memory_budget, error) ||
+        !workers_init(&host->workers, NULL, &options->limits, error) ||
         !(service->completions = completions_create(host->loop, error)) ||
         !(host->render_thread = render_thread_create(&renderer, service->completions, error)) ||
         !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1, &encode_worker,

@@ -49,10 +49,22 @@ static struct worker *create(const char *folder, const char *name, struct error 
     return find_program(folder, name, path, error) ? worker_create(path, error) : NULL;
 }
 
-bool workers_init(struct workers *workers, const char *folder, size_t memory_budget_bytes,
+void workers_set_times(struct workers *workers, const struct limits *limits)
+{
+    __atomic_store_n(&workers->cpu_s, (unsigned)limits->worker_cpu_s, __ATOMIC_RELAXED);
+    __atomic_store_n(&workers->wall_s, (unsigned)limits->worker_s, __ATOMIC_RELAXED);
+}
+
+bool workers_init(struct workers *workers, const char *folder, const struct limits *limits,
                   struct error *error)
 {
-    *workers = (struct workers){.memory_budget_bytes = memory_budget_bytes};
+    workers->images = NULL;
+    workers->budget_bytes = limits->memory_budget > WORKERS_LEAST_MEMORY_BYTES
+                                ? limits->memory_budget
+                                : WORKERS_LEAST_MEMORY_BYTES;
+    workers->memory_bytes = limits->worker_memory;
+    workers->output_bytes = limits->worker_output;
+    workers_set_times(workers, limits);
     return (workers->cages = create(folder, "sheend-cage", error)) &&
            (workers->images = create(folder, "sheend-image", error)) &&
            worker_wake(workers->cages, error);
@@ -79,19 +91,31 @@ void workers_stop(struct workers *workers)
 
 /* --- the jobs */
 
-static struct job_limits limits_of(const struct workers *workers, uint64_t memory_bytes)
+static uint64_t least(uint64_t a, uint64_t b)
 {
-    uint64_t most = workers->memory_budget_bytes > WORKERS_LEAST_MEMORY_BYTES
-                        ? workers->memory_budget_bytes
-                        : WORKERS_LEAST_MEMORY_BYTES;
-    memory_bytes = memory_bytes < most ? memory_bytes : most;
-    return (struct job_limits){memory_bytes, memory_bytes, WORKERS_CPU_S, WORKERS_WALL_S};
+    return a < b ? a : b;
+}
+
+static struct job_limits limits_of(struct workers *workers, uint64_t memory_bytes)
+{
+    return (struct job_limits){
+        .memory_bytes = least(memory_bytes, workers->memory_bytes),
+        .answer_bytes = least(memory_bytes, workers->output_bytes),
+        .cpu_s = __atomic_load_n(&workers->cpu_s, __ATOMIC_RELAXED),
+        .wall_s = __atomic_load_n(&workers->wall_s, __ATOMIC_RELAXED),
+    };
+}
+
+/* For what comes from a client. */
+static struct job_limits limits_within_budget(struct workers *workers, uint64_t memory_bytes)
+{
+    return limits_of(workers, least(memory_bytes, workers->budget_bytes));
 }
 
 bool workers_read_cage(struct workers *workers, struct cage *cage, const void *bytes, size_t size,
                        const char *name, struct error *error)
 {
-    const struct job_limits limits = limits_of(
+    const struct job_limits limits = limits_within_budget(
         workers, WORKERS_LEAST_MEMORY_BYTES + (uint64_t)size * WORKERS_CAGE_MEMORY_PER_BYTE);
     struct worker_call call;
     *cage = (struct cage){0};
@@ -108,7 +132,7 @@ bool workers_read_cage(struct workers *workers, struct cage *cage, const void *b
 bool workers_read_image(struct workers *workers, struct image *image, const void *bytes,
                         size_t size, const char *name, uint32_t max_px, struct error *error)
 {
-    const struct job_limits limits = limits_of(workers, WORKERS_IMAGE_MEMORY_BYTES);
+    const struct job_limits limits = limits_within_budget(workers, WORKERS_IMAGE_MEMORY_BYTES);
     struct worker_call call;
     *image = (struct image){0};
     bool ok = worker_call_init(&call, error);
@@ -143,7 +167,7 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
     uint64_t memory_bytes = WORKERS_LEAST_MEMORY_BYTES;
     for (size_t i = 0; i < n_blocks; i++)
         memory_bytes += 4 * (uint64_t)blocks[i].size; /* the file, as it grows, and a copy */
-    const struct job_limits limits = {memory_bytes, memory_bytes, WORKERS_CPU_S, WORKERS_WALL_S};
+    const struct job_limits limits = limits_of(workers, memory_bytes);
     struct worker_call call;
     *bytes = NULL;
     *size = 0;
@@ -161,7 +185,7 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
 bool workers_draw_text(struct workers *workers, struct text *text, const char *line, int size_px,
                        struct error *error)
 {
-    const struct job_limits limits = limits_of(workers, WORKERS_LEAST_MEMORY_BYTES);
+    const struct job_limits limits = limits_within_budget(workers, WORKERS_LEAST_MEMORY_BYTES);
     struct worker_call call;
     *text = (struct text){0};
     bool ok = worker_call_init(&call, error);

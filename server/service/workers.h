@@ -8,28 +8,30 @@
 
 #include "server/cage/cage.h"
 #include "server/image/image.h"
+#include "server/service/limits.h"
 #include "server/service/worker.h"
 #include "server/spares.h"
 #include "server/worker/image_code.h"
 
-/* What a process may take: its own memory beyond what it starts with, time, and what it answers.
- * The memory budget, but never less than the least, caps memory and answer. */
+/* What a process may take of memory, beyond what it starts with; as much it may answer. Within the
+ * memory budget, which counts for no less than the least, and within the rows of limits.h. */
 #define WORKERS_LEAST_MEMORY_BYTES (256ull << 20)
 #define WORKERS_CAGE_MEMORY_PER_BYTE 24 /* of the file */
 #define WORKERS_IMAGE_MEMORY_BYTES (IMAGE_MAX_BYTES + (512ull << 20))
-#define WORKERS_CPU_S 60u
-#define WORKERS_WALL_S 120u
 
 struct workers {
     struct worker *cages, *images;
-    size_t memory_budget_bytes;
+    uint64_t budget_bytes, memory_bytes, output_bytes;
+    unsigned cpu_s, wall_s; /* any thread, by __atomic_load_n() and __atomic_store_n() alone */
 };
 
 /* Finds sheend-cage and sheend-image in `folder`; NULL: in the folder of the running program, or in
  * ../libexec/sheen beside it; and starts the first. ERROR_SERVER on failure; workers_finish() is
  * due in both cases. */
-bool workers_init(struct workers *workers, const char *folder, size_t memory_budget_bytes,
+bool workers_init(struct workers *workers, const char *folder, const struct limits *limits,
                   struct error *error);
+/* Takes new times over, for jobs that begin from now on. */
+void workers_set_times(struct workers *workers, const struct limits *limits);
 void workers_finish(struct workers *workers);
 /* An image or a text will come. Loading its libraries keeps a processor busy for 0.2 s, so that a
  * daemon which is about to make its first frame does it only then. */

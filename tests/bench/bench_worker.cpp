@@ -128,9 +128,11 @@ int main(int argc, char **argv)
         report report("bench_worker", argc, argv, {"workers"});
         workers workers;
         error error = {};
+        limits limits;
+        limits_init(&limits);
         image_use_one_thread();
-        check(workers_init(&workers, report.given().other("workers", "build").c_str(),
-                           size_t{4} << 30, &error),
+        check(workers_init(&workers, report.given().other("workers", "build").c_str(), &limits,
+                           &error),
               error);
         measure_least(&report, &workers);
         measure_pictures(&report, &workers);

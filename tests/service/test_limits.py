@@ -4,15 +4,36 @@ import contextlib
 import os
 import re
 import resource
+import signal
+import struct
 import tempfile
 import time
 import unittest
+import zlib
 
 import wire
-from daemon import CUBE, Daemon, DaemonCase, grid, resident_kb, run
+from daemon import CUBE, SANITIZED, Daemon, DaemonCase, grid, resident_kb, run
+from test_untrusted import children, image_pattern, workers
 from wire import BATCH, INTERACTIVE, Client, field, message
 
 MIB = 1 << 20
+
+
+def interlaced_png(width, height):
+    """RGBA, black, in the seven passes of Adam7, each row predicted by Paeth."""
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data +
+                struct.pack(">I", zlib.crc32(kind + data)))
+
+    packer, packed = zlib.compressobj(1), b""
+    for x, y, dx, dy in ((0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4),
+                         (1, 0, 2, 2), (0, 1, 1, 2)):
+        row = b"\4" + bytes(4 * -(-(width - x) // dx))
+        for _ in range(-(-(height - y) // dy)):
+            packed += packer.compress(row)
+    return (b"\x89PNG\r\n\x1a\n" +
+            chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 1)) +
+            chunk(b"IDAT", packed + packer.flush()) + chunk(b"IEND", b""))
 
 
 class Table(unittest.TestCase):
@@ -22,7 +43,7 @@ class Table(unittest.TestCase):
         text = run("--help").stdout
         rows = re.findall(r"^[ *] --([a-z-]+) (?:BYTES|PX|N|SECONDS)\b.*?\(default: (\w+)\)",
                           text[text.index("limits;"):], re.S | re.M)
-        self.assertEqual(len(rows), 21, rows)
+        self.assertEqual(len(rows), 25, rows)
         with tempfile.NamedTemporaryFile("w", suffix=".conf") as file:
             file.write("".join(f"{name} = {fallback}\n" for name, fallback in rows))
             file.flush()
@@ -32,7 +53,52 @@ class Table(unittest.TestCase):
             file.flush()
             done = run("--config", file.name, "--check-config")
             self.assertEqual(done.returncode, 2)
-            self.assertIn(f"{file.name}:21: credits is '65'", done.stderr)
+            self.assertIn(f"{file.name}:26: credits is '65'", done.stderr)
+
+
+class Workers(unittest.TestCase):
+    """What the process that reads a file may take: its sender is told which limit it was."""
+
+    def refused(self, arguments, words, act=lambda daemon: None):
+        daemon = Daemon(*arguments, tcp=False)
+        with Client(daemon.unix, timeout=60) as client:
+            client.send(wire.render(70, client.upload(grid(300), "sheet.obj")))
+            act(daemon)
+            with self.assertRaises(wire.Refused) as caught:
+                client.read_frame(70)
+            self.assertEqual(caught.exception.seq, 70)
+            self.assertIn(words, caught.exception.text)
+            client.render(client.upload(CUBE, "cube.obj"))
+        self.assertEqual(daemon.stop(), 0)
+
+    @unittest.skipIf(SANITIZED, "without a limit of memory")
+    def test_worker_memory(self):
+        self.refused(("--worker-memory", "4M"), "of the 4 MB that it may take")
+
+    def test_worker_output(self):
+        self.refused(("--worker-output", "1M"), "sheet.obj: more than 1 MB come out of it")
+
+    def test_worker_time(self):
+        def stop_its_process(daemon):
+            reader = workers(daemon.process.pid)["sheend-cage"]
+            while not (jobs := children(reader)):
+                pass
+            os.kill(jobs[0], signal.SIGSTOP)
+
+        self.refused(("--worker-time", "1"), "sheet.obj: not done in 1 s", stop_its_process)
+
+    def test_worker_cpu(self):
+        """A megabyte that takes seconds: an interlaced picture."""
+        daemon = Daemon("--worker-cpu", "1", tcp=False)
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            image = client.upload(interlaced_png(12000, 8000), "slow.png", wire.IMAGE)
+            client.send(wire.render(70, model, extra=image_pattern(image)))
+            with self.assertRaises(wire.Refused) as caught:
+                client.read_frame(70)
+            self.assertIn("slow.png: more than 1 s of processor time", caught.exception.text)
+            client.render(model)
+        self.assertEqual(daemon.stop(), 0)
 
 
 class Memory(DaemonCase):

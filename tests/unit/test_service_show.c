@@ -315,7 +315,9 @@ static int start_workers(void **state)
 {
     (void)state;
     struct error error = {0};
-    if (!workers_init(&workers, build_folder(), 0, &error))
+    struct limits limits;
+    limits_init(&limits);
+    if (!workers_init(&workers, build_folder(), &limits, &error))
         fail_msg("%s", error.text);
     return 0;
 }

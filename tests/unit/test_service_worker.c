@@ -28,7 +28,7 @@ enum { SANITIZED = true }; /* takes more memory than any limit */
 enum { SANITIZED = false };
 #endif
 
-static const struct job_limits LIMITS = {64 << 20, 1 << 20, 1, 20};
+static const struct job_limits JOB_LIMITS = {64 << 20, 1 << 20, 1, 20};
 
 static struct worker *worker;
 
@@ -125,14 +125,14 @@ static bool run_job(const char *name, const struct job_limits *limits, struct er
 static void assert_works(void)
 {
     struct error error = {0};
-    if (!run_job("echo", &LIMITS, &error))
+    if (!run_job("echo", &JOB_LIMITS, &error))
         fail_msg("%s", error.text);
 }
 
 static void assert_fails(const char *name, enum error_kind kind, const char *words)
 {
     struct error error = {0};
-    if (run_job(name, &LIMITS, &error))
+    if (run_job(name, &JOB_LIMITS, &error))
         fail_msg("%s passed", name);
     if (error.kind != kind || !strstr(error.text, words) ||
         strncmp(error.text, name, strlen(name)) != 0)
@@ -167,7 +167,7 @@ static void test_what_libraries_say_goes_nowhere(void **state)
 {
     (void)state;
     struct error error = {0};
-    assert_true(run_job("stderr", &LIMITS, &error));
+    assert_true(run_job("stderr", &JOB_LIMITS, &error));
 }
 
 static void test_crashes(void **state)
@@ -198,7 +198,7 @@ static void test_broken_answers(void **state)
     assert_fails("wrong-kind", ERROR_MODEL, "broken answer");
     assert_fails("long-error", ERROR_MODEL, "broken answer");
     struct error error = {0};
-    assert_false(run_job("control-characters", &LIMITS, &error));
+    assert_false(run_job("control-characters", &JOB_LIMITS, &error));
     assert_string_equal(error.text, "a?b?c");
 }
 
@@ -374,7 +374,9 @@ static void test_no_program(void **state)
     (void)state;
     struct error error = {0};
     struct workers workers;
-    assert_false(workers_init(&workers, "/nonexistent", 0, &error));
+    struct limits limits;
+    limits_init(&limits);
+    assert_false(workers_init(&workers, "/nonexistent", &limits, &error));
     workers_finish(&workers);
     assert_int_equal(error.kind, ERROR_SERVER);
     assert_non_null(strstr(error.text, "sheend-cage"));
