@@ -128,6 +128,18 @@ static bool load_authority(struct tls_context *context, const struct tls_files *
     return true;
 }
 
+static bool load_revoked(SSL_CTX *ctx, const struct tls_files *files, char *text)
+{
+    if (!is_set(files->crl))
+        return true;
+    X509_STORE *store = SSL_CTX_get_cert_store(ctx);
+    X509_LOOKUP *lookup = X509_STORE_add_lookup(store, X509_LOOKUP_file());
+    if (!lookup || X509_load_crl_file(lookup, files->crl, X509_FILETYPE_PEM) <= 0)
+        return fail_file(text, "revocation list", files->crl);
+    return X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK) == 1 ||
+           fail_file(text, "revocation list", files->crl);
+}
+
 static bool set_up(struct tls_context *context)
 {
     SSL_CTX *ctx = context->ctx;
@@ -158,7 +170,8 @@ struct tls_context *tls_context_create(enum tls_side side, const struct tls_file
     bool ok = context->method && context->ctx && set_up(context);
     if (!ok)
         snprintf(text, TLS_TEXT_BYTES, "TLS cannot be used: %s", last_error());
-    if (!ok || !load_own(context->ctx, files, text) || !load_authority(context, files, text)) {
+    if (!ok || !load_own(context->ctx, files, text) || !load_authority(context, files, text) ||
+        !load_revoked(context->ctx, files, text)) {
         tls_context_destroy(context);
         return NULL;
     }
@@ -303,6 +316,28 @@ bool tls_peer(const struct tls_channel *channel, char name[static TLS_NAME_BYTES
         ok = true;
     }
     BIO_free(text);
+    ERR_clear_error();
+    return ok;
+}
+
+bool tls_still_trusts(const struct tls_context *context, const struct tls_channel *channel,
+                      char text[static TLS_TEXT_BYTES])
+{
+    X509 *cert = SSL_get0_peer_certificate(channel->ssl);
+    if (!cert)
+        return true;
+    X509_STORE_CTX *verdict = X509_STORE_CTX_new();
+    bool ok = verdict &&
+              X509_STORE_CTX_init(verdict, SSL_CTX_get_cert_store(context->ctx), cert,
+                                  SSL_get_peer_cert_chain(channel->ssl)) == 1 &&
+              X509_STORE_CTX_set_default(verdict, context->side == TLS_SERVER ? "ssl_client"
+                                                                              : "ssl_server") == 1;
+    if (!ok)
+        snprintf(text, TLS_TEXT_BYTES, "no memory to check a certificate");
+    else if (!(ok = X509_verify_cert(verdict) == 1))
+        snprintf(text, TLS_TEXT_BYTES, "%s",
+                 X509_verify_cert_error_string(X509_STORE_CTX_get_error(verdict)));
+    X509_STORE_CTX_free(verdict);
     ERR_clear_error();
     return ok;
 }

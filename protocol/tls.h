@@ -17,9 +17,11 @@ enum tls_side { TLS_SERVER, TLS_CLIENT };
 
 /* PEM files; NULL or "" for none. A server needs cert and key, and with `ca` it asks for client
  * certificates, which must then be by that authority. A client checks the server's against `ca`,
- * else against what the system trusts, and shows cert and key when asked. */
+ * else against what the system trusts, and shows cert and key when asked. With `crl`, lists of
+ * revoked certificates, a peer's certificate needs a list of its authority that has not expired and
+ * that does not name it. */
 struct tls_files {
-    const char *cert, *key, *ca;
+    const char *cert, *key, *ca, *crl;
     bool needs_client_cert; /* server: a client without a certificate is refused by the handshake */
 };
 
@@ -66,6 +68,10 @@ void tls_end(struct tls_channel *channel);
  * checked it. */
 bool tls_peer(const struct tls_channel *channel, char name[static TLS_NAME_BYTES],
               int64_t *expires_s);
+/* Would a handshake with this context take the peer's certificate today? True when the peer showed
+ * none. If not, `text` says why. */
+bool tls_still_trusts(const struct tls_context *context, const struct tls_channel *channel,
+                      char text[static TLS_TEXT_BYTES]);
 /* Why the channel has failed, in words; "" when it has not. */
 const char *tls_reason(const struct tls_channel *channel);
 

@@ -157,6 +157,11 @@ static const struct option_row OWN_ROWS[] = {
     {"client-ca", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.access.client_ca), 0, 0, NULL, NULL,
      "PEM, the authority of client certificates that may come in over TLS", NULL},
+    {"tls-crl", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tls_crl),
+     0, 0, NULL, NULL,
+     "PEM, the authority's list of revoked client certificates; one that has expired\n"
+     "lets no certificate in (default: none, every certificate holds until it expires)",
+     NULL},
     {"tokens", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tokens),
      0, 0, NULL, NULL,
      "lines 'NAME HASH YYYY-MM-DD': tokens that may come in over TLS, each until\n"

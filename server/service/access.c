@@ -39,11 +39,15 @@ static bool read_tls(struct access *access, struct error *error)
     const struct tls_files files = {.cert = options->tls_cert,
                                     .key = options->tls_key,
                                     .ca = options->client_ca,
+                                    .crl = options->tls_crl,
                                     .needs_client_cert = *options->client_ca && !*options->tokens};
     char text[TLS_TEXT_BYTES];
     bool wanted = *options->tls_cert || *options->tls_key;
     if (!*options->tls_cert != !*options->tls_key)
         return error_set(error, ERROR_REQUEST, "tls-cert and tls-key come together");
+    if (*options->tls_crl && !*options->client_ca)
+        return error_set(error, ERROR_REQUEST,
+                         "tls-crl lists certificates of --client-ca, which is missing");
     if (!wanted)
         return true;
     if (!check_key_file(options->tls_key, error))
@@ -196,4 +200,11 @@ bool access_still_admits(const struct access *access, struct identity *identity,
     }
     return identity->expires_s == 0 || time(NULL) < identity->expires_s ||
            error_set(error, ERROR_REQUEST, "%s has expired", identity->name);
+}
+
+bool access_still_trusts(const struct access *access, const struct conn *conn, struct error *error)
+{
+    char text[TLS_TEXT_BYTES];
+    return !access->tls || !conn->channel || tls_still_trusts(access->tls, conn->channel, text) ||
+           error_set(error, ERROR_REQUEST, "%s", text);
 }

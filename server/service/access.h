@@ -28,6 +28,7 @@ struct access_options {
     struct access_ids uids, gids; /* both empty: the socket file's permissions decide */
     char tls_cert[ACCESS_PATH_BYTES], tls_key[ACCESS_PATH_BYTES]; /* "": no TLS */
     char client_ca[ACCESS_PATH_BYTES], tokens[ACCESS_PATH_BYTES];
+    char tls_crl[ACCESS_PATH_BYTES]; /* "": no certificate is looked for in a list */
 };
 
 /* A client that has been admitted. */
@@ -66,5 +67,8 @@ bool access_admit_tls(const struct access *access, const struct conn *conn, cons
  * file or is another one now. Takes over a new expiry. */
 bool access_still_admits(const struct access *access, struct identity *identity,
                          struct error *error);
+/* Does the certificate that he showed, if any, hold by these rules too? It takes a signature to
+ * check: for new rules, not for every tick. */
+bool access_still_trusts(const struct access *access, const struct conn *conn, struct error *error);
 
 #endif

@@ -215,7 +215,7 @@ static void apply(struct service *service, const struct service_options *options
     for (size_t i = 0; i < service->n_listeners; i++)
         listener_open_to_all(service->listeners[i], access_has_list(access));
     for (struct session *session = service->sessions; session; session = session->next)
-        session_check_access(session);
+        session_check_access(session, true);
     service->host.limits = options->limits;
     workers_set_times(&service->host.workers, &options->limits);
     /* The client of a private daemon shows its last line when it dies. */

@@ -572,7 +572,7 @@ bool session_settle(struct session *session)
 void session_tick(struct session *session, uint64_t now_us)
 {
     if (session->client.identity.expires_s)
-        session_check_access(session);
+        session_check_access(session, false);
     session_check_limits(session, now_us);
     if (session->conn.state != CONN_OPEN)
         return;

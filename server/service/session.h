@@ -100,8 +100,8 @@ void session_destroy(struct session *session);
 bool session_settle(struct session *session);
 /* Deadlines and progress. */
 void session_tick(struct session *session, uint64_t now_us);
-/* The rules of access have changed: closes when the client may not be here any more. */
-void session_check_access(struct session *session);
+/* Closes when the client may not be here any more, by rules of access that may have changed. */
+void session_check_access(struct session *session, bool changed);
 
 /* --- for requests: `answer` is the one they owe */
 

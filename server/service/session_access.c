@@ -31,7 +31,7 @@ bool session_admit(struct session *session, const sheen_Hello *hello)
     return true;
 }
 
-void session_check_access(struct session *session)
+void session_check_access(struct session *session, bool changed)
 {
     struct error error = {0};
     struct session_client *client = &session->client;
@@ -43,7 +43,8 @@ void session_check_access(struct session *session)
     if (client->kind == CLIENT_UNIX)
         ok = access_admit_local(access, conn->source.fd, ADDRESS_UNIX, &client->identity, &error);
     else if (client->kind == CLIENT_TLS)
-        ok = access_still_admits(access, &client->identity, &error);
+        ok = access_still_admits(access, &client->identity, &error) &&
+             (!changed || access_still_trusts(access, conn, &error));
     if (!ok)
         session_turn_away(session, error.text);
 }

@@ -59,6 +59,14 @@ class Authority:
         os.chmod(key, 0o600)
         return cert, key
 
+    def revoke(self, *names):
+        """Writes the list of all that has been revoked, and returns its path."""
+        by = ("-config", self.path("config"), "-cert", self.cert, "-keyfile", self.path("ca.key"))
+        for name in names:
+            openssl("ca", *by, "-revoke", self.path(name + ".pem"))
+        openssl("ca", *by, "-gencrl", "-crldays", "2", "-out", self.path("crl.pem"))
+        return self.path("crl.pem")
+
 
 def context(authority, pair=None):
     """A client's side: whom it trusts, and what it shows."""

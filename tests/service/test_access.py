@@ -287,6 +287,29 @@ class Lasting(Case):
         daemon.wait_for("peer did not return a certificate")
         self.assertEqual(daemon.stop(), 0)
 
+    def test_a_revoked_certificate(self):
+        """Turned away, and a reload ends the connections that it has; nobody else's."""
+        anna, berta = (context(self.ca, self.ca.issue(name)) for name in ("anna", "berta"))
+        daemon = self.start("--client-ca", self.ca.cert, "--tls-crl", self.ca.revoke())
+        with Client(self.address, tls=anna) as first, Client(self.address, tls=berta) as other:
+            first.stats()
+            self.ca.revoke("anna")
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertTrue(first.at_end())
+            self.assertRegex(daemon.errors(), 'client turned away.*text="certificate revoked"')
+            other.stats()
+        with self.assertRaises((EOFError, OSError)):
+            Client(self.address, tls=anna)
+        daemon.wait_for("TLS: certificate verify failed: certificate revoked")
+        with Client(self.address, tls=berta) as client:
+            client.stats()
+            self.write("ca/crl.pem", "no list\n")
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertIn("revocation list " + self.path("ca/crl.pem"),
+                          daemon.wait_for("the old one stays"))
+            client.stats()
+        self.assertEqual(daemon.stop(), 0)
+
     def test_tokens_reload(self):
         daemon = self.start("--tokens", self.tokens)
         tls = context(self.ca)
@@ -357,6 +380,10 @@ class Starts(Case):
                                  ("server.pem", ("--tls-cert", cert, "--tls-key", cert)),
                                  ("other.key", ("--tls-cert", cert, "--tls-key", other_key)),
                                  ("no-such", (*own, "--client-ca", self.path("no-such"))),
+                                 ("no-such", (*own, "--client-ca", ca.cert, "--tls-crl",
+                                              self.path("no-such"))),
+                                 ("revocation list", (*own, "--client-ca", ca.cert, "--tls-crl", cert)),
+                                 ("--client-ca, which is missing", (*own, "--tls-crl", ca.revoke())),
                                  ("no-such", (*own, "--tokens", self.path("no-such")))):
             self.assert_refused(words, *listen, *arguments)
         os.chmod(key, 0o644)
