@@ -101,22 +101,25 @@ static void answer(struct http_connection *connection, int status)
 }
 
 /* The request line, "GET /path HTTP/1.x"; fields behind it are not looked at. */
-static void answer_request(struct http_connection *connection)
+static int parse_line(char *line, const char **path)
 {
-    struct http *http = connection->http;
-    char *line = connection->request, *path = strchr(line, ' ');
     line[strcspn(line, "\r\n")] = 0;
-    char *version = path ? strchr(path + 1, ' ') : NULL;
-    if (!version || path[1] != '/' || strncmp(version, " HTTP/1.", 8) != 0) {
-        answer(connection, 400);
-        return;
-    }
-    *path++ = *version = 0;
-    path[strcspn(path, "?")] = 0;
-    if (strcmp(line, "GET") != 0)
-        answer(connection, 405);
-    else
-        answer(connection, http->handler.get(http->handler.owner, path, &connection->body));
+    char *start = strchr(line, ' '), *version = start ? strchr(start + 1, ' ') : NULL;
+    if (!version || start[1] != '/' || strncmp(version, " HTTP/1.", 8) != 0)
+        return 400;
+    *start++ = *version = 0;
+    start[strcspn(start, "?")] = 0;
+    *path = start;
+    return strcmp(line, "GET") == 0 ? 200 : 405;
+}
+
+int http_parse(char *request, size_t length, const char **path)
+{
+    if (memchr(request, 0, length))
+        return 400;
+    if (strstr(request, "\r\n\r\n") || strstr(request, "\n\n"))
+        return parse_line(request, path);
+    return length == HTTP_MAX_REQUEST_BYTES ? 431 : 0;
 }
 
 static void read_some(struct http_connection *connection)
@@ -131,12 +134,13 @@ static void read_some(struct http_connection *connection)
     }
     connection->received += (size_t)n;
     connection->request[connection->received] = 0;
-    if (memchr(connection->request, 0, connection->received))
-        answer(connection, 400);
-    else if (strstr(connection->request, "\r\n\r\n") || strstr(connection->request, "\n\n"))
-        answer_request(connection);
-    else if (connection->received == HTTP_MAX_REQUEST_BYTES)
-        answer(connection, 431);
+    const struct http_handler *handler = &connection->http->handler;
+    const char *path = NULL;
+    int status = http_parse(connection->request, connection->received, &path);
+    if (status == 200)
+        status = handler->get(handler->owner, path, &connection->body);
+    if (status != 0)
+        answer(connection, status);
 }
 
 static void connection_ready(struct loop_source *source, uint32_t events)

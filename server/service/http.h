@@ -24,6 +24,11 @@ struct http_handler {
     void *owner;
 };
 
+/* Reads what has come of a request: `length` bytes and a 0 behind them. Returns 0 when its end is
+ * still to come, 200 when it GETs *path, which begins with '/' and lies in `request` (which is cut
+ * up for it), without a query; else what to answer: 400, 405 or 431. Pure. */
+int http_parse(char *request, size_t length, const char **path);
+
 struct http *http_create(struct loop *loop, const struct http_handler *handler,
                          struct error *error);
 void http_destroy(struct http *http); /* closes all; NULL is safe */
