@@ -78,22 +78,29 @@ static void ask_about_model(struct job *job, struct sheen_model_info *info)
     snprintf(info->warnings, sizeof(info->warnings), "its warnings are unknown: %s", error.text);
 }
 
+static enum sheen_status render(struct job *job, const struct options *options,
+                                struct sheen_frame *frame)
+{
+    struct sheen_request request = options->request;
+    enum sheen_status status = job_upload_images(job, options, &request);
+    for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
+        request.model_id[i] = job->model_id[i];
+    return status ? status : sheen_render(job->session, &request, &job->report, frame, &job->error);
+}
+
 static int run(const struct options *options)
 {
     struct job job = {0};
     struct sheen_frame frame = {0};
     struct sheen_model_info info;
-    struct sheen_request request = options->request;
     enum sheen_status status = file_check_writable(options->output, &job.error);
     if (status)
         return job_finish(&job, status);
     status = job_init(&job, options);
     if (!status)
-        status = job_upload_images(&job, options, &request);
-    for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
-        request.model_id[i] = job.model_id[i];
-    if (!status)
-        status = sheen_render(job.session, &request, &job.report, &frame, &job.error);
+        status = render(&job, options, &frame);
+    while (status && job_resume(&job, options, &status))
+        status = render(&job, options, &frame);
     if (!status)
         status = file_write(options->output, frame.file, frame.file_bytes, &job.error);
     /* After the frame, so that the frame's own times tell of the tables it had to wait for. */

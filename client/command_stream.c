@@ -32,8 +32,9 @@ struct stream {
     struct sheen_frame frame;
     struct record *records;                /* [frames] */
     uint32_t n_records, n_late;            /* frames that came, and that were not drawn in time */
+    uint32_t n_received;                   /* answers: both together */
     uint64_t sent_us[SHEEN_MAX_IN_FLIGHT]; /* by the request's number modulo its size */
-    uint64_t elapsed_us; /* of all frames but the first, which may wait for tables */
+    uint64_t start_us, elapsed_us; /* of all frames but the first, which may wait for tables */
 };
 
 static uint64_t now_us(void)
@@ -108,11 +109,10 @@ static enum sheen_status receive_one(struct job *job, struct stream *stream)
     return SHEEN_OK;
 }
 
-static enum sheen_status run_frames(struct job *job, struct stream *stream,
-                                    const struct options *options)
+/* It goes alone, and has time: its answer tells the camera and the light that move. */
+static enum sheen_status first_frame(struct job *job, struct stream *stream,
+                                     const struct options *options)
 {
-    /* The first frame goes alone, and has time: its answer tells the camera and the light that
-     * move. */
     stream->request.deadline_ms = 0;
     enum sheen_status status = send_one(job, stream);
     if (!status)
@@ -123,20 +123,31 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
     progress_clear(&job->progress);
     stream->camera = stream->frame.camera;
     stream->light = stream->frame.lights[0];
-    uint64_t start_us = now_us();
-    uint32_t n_sent = 1, n_received = 1;
-    while (!status && n_received < options->frames) {
-        if (n_sent < options->frames && n_sent - n_received < IN_FLIGHT) {
+    stream->n_received = 1;
+    stream->start_us = now_us();
+    return SHEEN_OK;
+}
+
+/* All that have no answer yet. */
+static enum sheen_status run_frames(struct job *job, struct stream *stream,
+                                    const struct options *options)
+{
+    enum sheen_status status = job_upload_images(job, options, &stream->request);
+    if (!status && stream->n_received == 0)
+        status = first_frame(job, stream, options);
+    uint32_t n_sent = stream->n_received;
+    while (!status && stream->n_received < options->frames) {
+        if (n_sent < options->frames && n_sent - stream->n_received < IN_FLIGHT) {
             move(stream, options, n_sent);
             status = send_one(job, stream);
             n_sent++;
         } else {
             status = receive_one(job, stream);
-            n_received++;
-            job->report.report(job->report.context, "frames", n_received, options->frames);
+            stream->n_received += status == SHEEN_OK;
+            job->report.report(job->report.context, "frames", stream->n_received, options->frames);
         }
     }
-    stream->elapsed_us = now_us() - start_us;
+    stream->elapsed_us = now_us() - stream->start_us;
     return status;
 }
 
@@ -209,8 +220,8 @@ static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_
     enum sheen_status status = job_init(job, options);
     memcpy(stream->request.model_id, job->model_id, SHEEN_ID_BYTES);
     if (!status)
-        status = job_upload_images(job, options, &stream->request);
-    if (!status)
+        status = run_frames(job, stream, options);
+    while (status && job_resume(job, options, &status))
         status = run_frames(job, stream, options);
     progress_clear(&job->progress);
     if (status)

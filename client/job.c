@@ -3,12 +3,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "client/file.h"
 #include "client/status.h"
 #include "client/values.h"
 
 #define TOKEN_BYTES 256
+#define FIRST_RESUME_MS 200u
 #define AT_SERVER "server:" /* a MODEL that is a file below the daemon's --models */
 
 static enum sheen_status upload(struct job *job, enum sheen_file_kind kind, const char *path,
@@ -26,10 +28,8 @@ static enum sheen_status identify(struct job *job, const uint8_t *bytes, size_t 
     return status_set(&job->error, SHEEN_NO_MEMORY, "libcrypto cannot compute a SHA-256");
 }
 
-enum sheen_status job_init(struct job *job, const struct options *options)
+static enum sheen_status connect_and_upload(struct job *job, const struct options *options)
 {
-    *job = (struct job){0};
-    job->report = progress_init(&job->progress, options->quiet);
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
     struct sheen_connect_options connect = SHEEN_CONNECT_DEFAULTS;
@@ -65,6 +65,33 @@ enum sheen_status job_init(struct job *job, const struct options *options)
         status = upload(job, SHEEN_FILE_MODEL, options->model, bytes, n_bytes, job->model_id);
     free(bytes);
     return status;
+}
+
+enum sheen_status job_init(struct job *job, const struct options *options)
+{
+    *job = (struct job){0};
+    job->report = progress_init(&job->progress, options->quiet);
+    return connect_and_upload(job, options);
+}
+
+bool job_resume(struct job *job, const struct options *options, enum sheen_status *status)
+{
+    if (!options->server || *status != SHEEN_SHUTTING_DOWN)
+        return false;
+    while (job->n_resumes < JOB_MAX_RESUMES &&
+           (*status == SHEEN_SHUTTING_DOWN || *status == SHEEN_NO_SERVER)) {
+        unsigned wait_ms = FIRST_RESUME_MS << job->n_resumes++;
+        progress_clear(&job->progress);
+        fprintf(stderr, "sheen: %s; connecting again in %.1f s (%u of %u)\n", job->error.text,
+                wait_ms / 1e3, job->n_resumes, JOB_MAX_RESUMES);
+        sheen_close(job->session);
+        job->session = NULL;
+        usleep(wait_ms * 1000);
+        *status = connect_and_upload(job, options);
+        if (!*status)
+            return true;
+    }
+    return false;
 }
 
 static enum sheen_status upload_image(struct job *job, const char *path, uint8_t id[SHEEN_ID_BYTES])

@@ -15,11 +15,20 @@ struct job {
     struct progress progress;
     struct sheen_progress report; /* for libsheen */
     struct sheen_error error;     /* of the last failure */
+    unsigned n_resumes;           /* how often job_resume() has tried to connect */
 };
 
 /* Reads options->model (if any), connects and uploads it. On failure job->error says why; the job
  * must be finished all the same. */
 enum sheen_status job_init(struct job *job, const struct options *options);
+
+/* After a failure, *status, that a shared daemon's end is the reason of: waits, twice as long each
+ * time, connects to the daemon that takes its place and uploads the model again, JOB_MAX_RESUMES
+ * times in all for a command, and says so on standard error. True when it has; images are to be
+ * uploaded and what has no answer to be asked again. Else *status and job->error say what stands in
+ * the way. */
+#define JOB_MAX_RESUMES 5u
+bool job_resume(struct job *job, const struct options *options, enum sheen_status *status);
 
 /* Uploads the images of a command's lights and writes their ids into the request. */
 enum sheen_status job_upload_images(struct job *job, const struct options *options,
