@@ -81,6 +81,36 @@ class Soak(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
 
+    def test_a_65th_among_64_and_a_thousand_idle(self):
+        """It drags as the others do: it waits as long as they, and has its share of the frames."""
+        daemon = Daemon()
+        hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+        resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 4096), hard))
+        with Client(daemon.unix) as other:
+            model = other.upload(CUBE, "cube.obj", share=True)
+            other.render(model)
+            idle = [Client(daemon.tcp if i % 2 else daemon.unix, minor=1) for i in range(1000)]
+            active, _ = make_clients((daemon.unix, daemon.tcp), model, 64, 0)
+            run_load(active, 5)  # warm
+            (late,), _ = make_clients((daemon.unix,), model, 1, 0, seed=2)
+            for client in active:
+                client.latencies = []
+            run_load(active + [late], max(10, SECONDS // 2))
+        p50 = [percentile(client.latencies, 0.5) for client in active]
+        mean = sum(p50) / len(p50)
+        wait = percentile(late.latencies, 0.5) / mean
+        share = len(late.latencies) * len(active) / sum(len(c.latencies) for c in active)
+        say(f"a 65th active client beside 64 and 1,000 idle ones: p50 "
+            f"{percentile(late.latencies, 0.5) * 1e3:.1f} ms, {wait:.2f} x the mean of the others' "
+            f"({mean * 1e3:.1f} ms); {share:.2f} x their mean number of frames")
+        self.assertEqual([client.errors for client in active + [late]], [[]] * 65)
+        self.assertLessEqual(wait, 1.2)
+        self.assertGreaterEqual(share, 0.8)
+        for client in idle + active + [late]:
+            client.socket.close()
+        self.assertEqual(daemon.stop(), 0)
+
+
 class SoakMisbehaviour(test_load.Misbehaviour):
     def test_each_costs_only_itself(self):
         """The others' p99 within 1.5 times of what it is without."""
