@@ -125,7 +125,7 @@ struct renderer {
     struct planes resting;                /* the other one */
     bool in_tiles;                        /* those in use are for frames of several tiles */
     struct frame_watch watch;             /* of the frame being drawn */
-    const struct renderer_polygons *made; /* its polygons, or NULL */
+    const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
     struct pieces pieces;
     struct polygons polygons;
     struct table_programs programs[MAX_PROGRAM_SETS];
@@ -198,6 +198,8 @@ bool stage_shade(struct renderer *renderer, const struct frame_request *request,
 bool stage_wireframe(struct renderer *renderer, const struct renderer_model *model,
                      const struct frame_request *request, const struct tile *tile,
                      struct error *error);
+/* Are they on the device? */
+bool polygons_have(const struct polygons *polygons, uint64_t model_serial, uint32_t level);
 /* Drops the meshes of a model that goes. */
 void polygons_forget(struct polygons *polygons, uint64_t model_serial);
 

@@ -104,29 +104,28 @@ static struct polygon_mesh *upload(struct polygons *p, const struct mesh *made,
     return NULL;
 }
 
-static struct polygon_mesh *build(struct renderer *r, const struct renderer_model *model,
-                                  uint32_t level, struct error *error)
+/* The index of the place that they have, or MAX_POLYGON_MESHES. */
+static int find(const struct polygons *p, uint64_t model_serial, uint32_t level)
 {
-    struct mesh made;
-    if (r->made)
-        return upload(&r->polygons, &r->made->mesh, model, level, error);
-    if (!mesh_init(&made, model->tables, level, &r->watch, error))
-        return NULL;
-    struct polygon_mesh *mesh = upload(&r->polygons, &made, model, level, error);
-    mesh_finish(&made);
-    return mesh;
+    int i = 0;
+    while (i < MAX_POLYGON_MESHES &&
+           (p->mesh[i].model_serial != model_serial || p->mesh[i].level != level))
+        i++;
+    return i;
 }
 
-static struct polygon_mesh *find_or_build(struct renderer *r, const struct renderer_model *model,
-                                          uint32_t level, struct error *error)
+bool polygons_have(const struct polygons *p, uint64_t model_serial, uint32_t level)
+{
+    return find(p, model_serial, level) < MAX_POLYGON_MESHES;
+}
+
+static struct polygon_mesh *find_or_upload(struct renderer *r, const struct renderer_model *model,
+                                           uint32_t level, struct error *error)
 {
     struct polygons *p = &r->polygons;
-    struct polygon_mesh *found = NULL;
-    for (int i = 0; i < MAX_POLYGON_MESHES && !found; i++)
-        if (p->mesh[i].model_serial == model->serial && p->mesh[i].level == level)
-            found = &p->mesh[i];
-    if (!found)
-        found = build(r, model, level, error);
+    int i = find(p, model->serial, level);
+    struct polygon_mesh *found =
+        i < MAX_POLYGON_MESHES ? &p->mesh[i] : upload(p, &r->made->mesh, model, level, error);
     if (found)
         found->used = ++p->clock;
     return found;
@@ -167,7 +166,7 @@ bool stage_polygons(struct renderer *r, const struct renderer_model *model,
                               r->target.ptex};
     struct polygons *p = &r->polygons;
     struct polygon_mesh *mesh =
-        compile(p, error) ? find_or_build(r, model, request->surface.level, error) : NULL;
+        compile(p, error) ? find_or_upload(r, model, request->surface.level, error) : NULL;
     if (!mesh || !pieces_cover_all(&r->pieces, tile, error))
         return false;
     if (!p->framebuffer)
@@ -187,7 +186,7 @@ bool stage_wireframe(struct renderer *r, const struct renderer_model *model,
                      struct error *error)
 {
     struct polygons *p = &r->polygons;
-    struct polygon_mesh *mesh = find_or_build(r, model, request->surface.level, error);
+    struct polygon_mesh *mesh = find_or_upload(r, model, request->surface.level, error);
     if (!mesh)
         return false;
     attach(r, &r->target.colour, 1);

@@ -227,7 +227,7 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
     const struct frame_request *request = work->request;
     struct view view;
     struct tile drawn, tile;
-    if (!renderer_ready(r, error) || !upload_all(r, model, request, error))
+    if (!upload_all(r, model, request, error))
         return false;
     place_tile(work, &drawn, &tile);
     use_planes(r, !is_single(work));
@@ -250,7 +250,12 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
 enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error)
 {
-    if (!step(r, model, work, frame, error)) {
+    const struct surface *surface = &work->request->surface;
+    bool ready = renderer_ready(r, error);
+    if (ready && surface->kind != SURFACE_EXACT && !work->polygons &&
+        !polygons_have(&r->polygons, model->serial, surface->level))
+        return FRAME_POLYGONS;
+    if (!ready || !step(r, model, work, frame, error)) {
         /* Whatever failed then, this is why. */
         if (renderer_check_lost(r))
             error_set(error, ERROR_GPU_LOST,
@@ -270,11 +275,20 @@ bool renderer_render(struct renderer *r, struct renderer_model *model,
                      const struct frame_request *request, struct frame *frame, struct error *error)
 {
     struct frame_work work = {.request = request};
+    struct renderer_polygons *polygons = NULL;
     if (!renderer_begin(r, &work, frame, error))
         return false;
     enum frame_step next;
-    do
+    do {
         next = renderer_step(r, model, &work, frame, error);
-    while (next == FRAME_MORE);
+        if (next == FRAME_POLYGONS) {
+            work.polygons = polygons =
+                renderer_polygons_create(model->tables, request->surface.level, &work.watch, error);
+            next = polygons ? FRAME_MORE : FRAME_FAILED;
+        }
+    } while (next == FRAME_MORE);
+    if (next == FRAME_FAILED)
+        frame_finish(frame);
+    renderer_polygons_destroy(polygons);
     return next == FRAME_DONE;
 }

@@ -103,30 +103,31 @@ struct renderer_image *renderer_image_create(struct renderer *renderer, const st
                                              struct error *error);
 void renderer_image_destroy(struct renderer *renderer, struct renderer_image *image);
 
-/* Who waits for a frame: asked between its tiles, its lights and the faces of its mesh. Once nobody
- * does the frame fails, so that a client that has gone holds nobody up. */
+/* Who waits for a frame: asked between its tiles and its lights, and the faces of its polygons.
+ * Once nobody does the frame fails, so that a client that has gone holds nobody up. */
 struct frame_watch {
-    bool (*is_abandoned)(void *owner); /* NULL: never; called on the GL thread */
+    bool (*is_abandoned)(void *owner); /* NULL: never; called by who draws or makes polygons */
     void *owner;
 };
 
 /* A frame in the making, one tile a step, so that the GL thread can turn to other frames in
  * between. Fill in the first group and call renderer_begin(), then renderer_step() until it says
- * something else than FRAME_MORE. */
+ * something else than FRAME_MORE or FRAME_POLYGONS. */
 struct frame_work {
     const struct frame_request *request; /* stays until the last step, as the model does */
     uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
     struct frame_watch watch;
-    /* Of the request's surface, for the case that the device has them not yet; NULL: they are made
-     * then, which takes as long as many tiles. */
-    const struct renderer_polygons *polygons;
+    const struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
 
     uint32_t tile_width, tile_height; /* the renderer's own from here on */
     uint32_t x, y;                    /* of the next tile */
 };
 
 enum frame_step {
-    FRAME_MORE,   /* tiles are left */
+    FRAME_MORE, /* tiles are left */
+    /* The device has no polygons for the request's surface, or no longer: set frame_work.polygons
+     * and go on. Making them takes as long as many tiles. */
+    FRAME_POLYGONS,
     FRAME_DONE,   /* the frame is whole */
     FRAME_FAILED, /* *error says why; ERROR_GPU_LOST: ask again. The frame is empty */
 };

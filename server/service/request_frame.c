@@ -65,6 +65,11 @@ static uint64_t cost_key(const struct request *request)
 
 /* --- polygons, which are made on the pool: the GL thread would be away for seconds */
 
+static bool has_begun(const struct request *request)
+{
+    return request->frame.width_px > 0;
+}
+
 static void polygons_run(struct work *work, void *worker)
 {
     (void)worker;
@@ -84,11 +89,13 @@ static void polygons_done(struct work *work)
         request_end(request);
     else if (!request->polygons)
         request_fail(request, &request->failure);
+    else if (has_begun(request))
+        scheduler_resume(&request->entry);
     else
         scheduler_ready(&request->entry);
 }
 
-/* Makes them where the device has never had them. */
+/* Makes them where the device has never had them, or has none any more. */
 static void start_polygons(struct request *request)
 {
     struct asset *asset = request->model.asset;
@@ -320,11 +327,6 @@ static void frame_drawn(struct request *request)
     pool_submit(request->host->pool, &request->work, urgency(request));
 }
 
-static bool has_begun(const struct request *request)
-{
-    return request->frame.width_px > 0;
-}
-
 static void step_run(struct work *work, void *worker)
 {
     struct request *request = work->owner;
@@ -357,7 +359,7 @@ static void step_done(struct work *work)
     request->is_busy = false;
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
                       request->step == FRAME_MORE);
-    if (request->step != FRAME_FAILED) {
+    if (request->step == FRAME_MORE || request->step == FRAME_DONE) {
         note_polygons(request);
         costs_learn(&host->costs, request->cost_key, next_tile_px(request), request->step_us);
         request->entry.estimate_us =
@@ -367,6 +369,8 @@ static void step_done(struct work *work)
         request_end(request);
     else if (request->step == FRAME_FAILED)
         request_fail(request, &request->failure);
+    else if (request->step == FRAME_POLYGONS)
+        start_polygons(request);
     else if (request->step == FRAME_DONE)
         frame_drawn(request);
 }

@@ -313,6 +313,11 @@ void scheduler_stepped(struct scheduler *scheduler, struct schedule_entry *entry
     entry->state = more && entry->queue ? SCHEDULE_BEGUN : SCHEDULE_ENCODING;
 }
 
+void scheduler_resume(struct schedule_entry *entry)
+{
+    entry->state = SCHEDULE_BEGUN;
+}
+
 bool scheduler_is_idle(const struct scheduler *scheduler)
 {
     unsigned begun = scheduler->on_device;

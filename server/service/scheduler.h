@@ -99,6 +99,9 @@ void scheduler_put_back(struct scheduler *scheduler, struct schedule_entry *entr
 void scheduler_stepped(struct scheduler *scheduler, struct schedule_entry *entry, uint64_t took_us,
                        bool more);
 
+/* Something had to be made before its next tile, and is: from ENCODING back to BEGUN. */
+void scheduler_resume(struct schedule_entry *entry);
+
 /* ENCODING to HELD. Returns the entry that has asked for the same view since, or NULL: then the
  * frame is worth keeping. */
 struct schedule_entry *scheduler_hold(struct schedule_entry *entry);

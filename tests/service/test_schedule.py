@@ -192,6 +192,16 @@ class Schedule(DaemonCase):
         self.assertEqual(other.stats()[3][0] - before, 5)  # the polygons' frame is not among them
         slow.read_frame(seq)
 
+    def test_polygons_that_the_device_has_dropped(self):
+        """It keeps 32 meshes; the frame that needs another one again is the same as before."""
+        client = self.client()
+        frames = []
+        for i in (0, 1, 2, 3, 4, 0):
+            model = client.upload(CUBE + b"# %d\n" % i, "cube.obj")
+            frames.append([client.render(model, extra=field(40, 1) + field(41, level)).data
+                           for level in range(7)])
+        self.assertEqual(frames[0], frames[5])
+
     def test_a_client_that_has_gone_leaves_the_device(self):
         """Eight lights over 16 million pixels, or a mesh of millions: the next client does not wait
         until they are done."""

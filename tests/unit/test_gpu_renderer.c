@@ -355,8 +355,8 @@ static bool is_over(void *owner)
     return countdown->left-- == 0;
 }
 
-/* A frame that nobody waits for ends between tiles, between lights, and in the middle of a mesh;
- * the renderer serves the next. */
+/* A frame that nobody waits for ends between tiles and between lights; the renderer serves the
+ * next. Polygons end between two faces. */
 static void test_abandoned(void **state)
 {
     (void)state;
@@ -364,16 +364,14 @@ static void test_abandoned(void **state)
     scene_init(&scene, "tests/models/body.obj");
     struct renderer *renderer = open_renderer(0);
     struct renderer_model *model = upload(renderer, &scene);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 2; k++) {
         struct frame_request request = request_for(&scene, 300, 300);
-        struct countdown countdown = {k == 0 ? 4 : k == 1 ? 2 : 30};
+        struct countdown countdown = {k == 0 ? 4 : 2};
         if (k == 1) { /* asked at the start, and before the second of eight lights */
             request.n_lights = MAX_LIGHTS;
             for (int i = 1; i < MAX_LIGHTS; i++)
                 request.lights[i] = request.lights[0];
         }
-        if (k == 2)
-            request.surface = (struct surface){SURFACE_POLYGON, 3};
         struct frame_work work = {
             .request = &request, .tile_px = k == 0 ? 1 : 0, .watch = {is_over, &countdown}};
         struct frame frame;
@@ -386,12 +384,70 @@ static void test_abandoned(void **state)
         assert_int_equal(error.kind, ERROR_SERVER);
         assert_int_equal(countdown.left, -1); /* and nobody was asked again */
         assert_null(frame.plane[0]);
-        request.surface = (struct surface){SURFACE_EXACT, 0};
         frame = render(renderer, model, &request);
         assert_true(hits(&frame) > 1000);
         frame_finish(&frame);
     }
+    struct countdown countdown = {30};
+    const struct frame_watch watch = {is_over, &countdown};
+    struct error error = {0};
+    assert_null(renderer_polygons_create(&scene.tables, 3, &watch, &error));
+    assert_int_equal(error.kind, ERROR_SERVER);
+    assert_int_equal(countdown.left, -1);
     renderer_model_destroy(renderer, model);
+    renderer_destroy(renderer);
+    scene_finish(&scene);
+}
+
+/* One frame of polygons; how often the renderer asked for them is added to *n_asked. */
+static void draw_polygons(struct renderer *renderer, struct renderer_model *model,
+                          const struct scene *scene, uint32_t level, unsigned *n_asked)
+{
+    struct error error = {0};
+    struct frame frame;
+    struct frame_request request = request_for(scene, 64, 48);
+    struct frame_work work = {.request = &request};
+    struct renderer_polygons *polygons = NULL;
+    request.surface = (struct surface){SURFACE_WIREFRAME, level};
+    assert_true(renderer_begin(renderer, &work, &frame, &error));
+    enum frame_step step = renderer_step(renderer, model, &work, &frame, &error);
+    if (step == FRAME_POLYGONS) {
+        ++*n_asked;
+        polygons = renderer_polygons_create(&scene->tables, level, &work.watch, &error);
+        work.polygons = polygons;
+        step = renderer_step(renderer, model, &work, &frame, &error);
+    }
+    assert_int_equal(step, FRAME_DONE);
+    assert_true(hits(&frame) > 100);
+    renderer_polygons_destroy(polygons);
+    frame_finish(&frame);
+}
+
+/* The device keeps 32 meshes. It asks for one that it has not, or not any more, and makes none by
+ * itself: whoever else wants a frame would wait for it. */
+static void test_polygons_are_asked_for(void **state)
+{
+    (void)state;
+    enum { N_MODELS = 5, N_LEVELS = 7 };
+    struct scene scene;
+    scene_init(&scene, "tests/models/tetra.obj");
+    struct renderer *renderer = open_renderer(0);
+    struct renderer_model *models[N_MODELS];
+    unsigned n_asked = 0;
+    for (int i = 0; i < N_MODELS; i++) {
+        models[i] = upload(renderer, &scene);
+        for (uint32_t level = 0; level < N_LEVELS; level++) {
+            draw_polygons(renderer, models[i], &scene, level, &n_asked);
+            draw_polygons(renderer, models[i], &scene, level, &n_asked);
+        }
+    }
+    assert_int_equal(n_asked, N_MODELS * N_LEVELS);
+    draw_polygons(renderer, models[N_MODELS - 1], &scene, 0, &n_asked);
+    assert_int_equal(n_asked, N_MODELS * N_LEVELS);
+    draw_polygons(renderer, models[0], &scene, 0, &n_asked);
+    assert_int_equal(n_asked, N_MODELS * N_LEVELS + 1);
+    for (int i = 0; i < N_MODELS; i++)
+        renderer_model_destroy(renderer, models[i]);
     renderer_destroy(renderer);
     scene_finish(&scene);
 }
@@ -604,12 +660,19 @@ static void test_unknown_devices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_point_banks),      cmocka_unit_test(test_node_banks),
-        cmocka_unit_test(test_too_few_texels),   cmocka_unit_test(test_tiles),
-        cmocka_unit_test(test_cuts_do_not_show), cmocka_unit_test(test_frames_interleave),
-        cmocka_unit_test(test_abandoned),        cmocka_unit_test(test_light_only),
-        cmocka_unit_test(test_image_pattern),    cmocka_unit_test(test_no_ghost_of_the_light),
-        cmocka_unit_test(test_collapsed_edges),  cmocka_unit_test(test_refused_requests),
+        cmocka_unit_test(test_point_banks),
+        cmocka_unit_test(test_node_banks),
+        cmocka_unit_test(test_too_few_texels),
+        cmocka_unit_test(test_tiles),
+        cmocka_unit_test(test_cuts_do_not_show),
+        cmocka_unit_test(test_frames_interleave),
+        cmocka_unit_test(test_abandoned),
+        cmocka_unit_test(test_polygons_are_asked_for),
+        cmocka_unit_test(test_light_only),
+        cmocka_unit_test(test_image_pattern),
+        cmocka_unit_test(test_no_ghost_of_the_light),
+        cmocka_unit_test(test_collapsed_edges),
+        cmocka_unit_test(test_refused_requests),
         cmocka_unit_test(test_unknown_devices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
