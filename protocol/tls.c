@@ -128,6 +128,21 @@ static bool load_authority(struct tls_context *context, const struct tls_files *
     return true;
 }
 
+/* Is the list by one of the authorities in the store? Else no certificate would find its list. */
+static bool is_by_authority(X509_CRL *crl, const STACK_OF(X509_OBJECT) * objects)
+{
+    for (int i = 0; i < sk_X509_OBJECT_num(objects); i++) {
+        X509 *authority = X509_OBJECT_get0_X509(sk_X509_OBJECT_value(objects, i));
+        if (authority &&
+            X509_NAME_cmp(X509_get_subject_name(authority), X509_CRL_get_issuer(crl)) == 0 &&
+            X509_CRL_verify(crl, X509_get0_pubkey(authority)) == 1)
+            return true;
+    }
+    ERR_clear_error();
+    return false;
+}
+
+/* Behind the authorities. */
 static bool load_revoked(SSL_CTX *ctx, const struct tls_files *files, char *text)
 {
     if (!is_set(files->crl))
@@ -136,6 +151,15 @@ static bool load_revoked(SSL_CTX *ctx, const struct tls_files *files, char *text
     X509_LOOKUP *lookup = X509_STORE_add_lookup(store, X509_LOOKUP_file());
     if (!lookup || X509_load_crl_file(lookup, files->crl, X509_FILETYPE_PEM) <= 0)
         return fail_file(text, "revocation list", files->crl);
+    const STACK_OF(X509_OBJECT) *objects = X509_STORE_get0_objects(store);
+    for (int i = 0; i < sk_X509_OBJECT_num(objects); i++) {
+        X509_CRL *crl = X509_OBJECT_get0_X509_CRL(sk_X509_OBJECT_value(objects, i));
+        if (crl && !is_by_authority(crl, objects)) {
+            snprintf(text, TLS_TEXT_BYTES, "revocation list %.200s: it is by another authority",
+                     files->crl);
+            return false;
+        }
+    }
     return X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK) == 1 ||
            fail_file(text, "revocation list", files->crl);
 }

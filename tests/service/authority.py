@@ -59,12 +59,13 @@ class Authority:
         os.chmod(key, 0o600)
         return cert, key
 
-    def revoke(self, *names):
-        """Writes the list of all that has been revoked, and returns its path."""
+    def revoke(self, *names, due=172800):
+        """Writes the list of all that has been revoked, and returns its path. The next one is due in
+        so many seconds."""
         by = ("-config", self.path("config"), "-cert", self.cert, "-keyfile", self.path("ca.key"))
         for name in names:
             openssl("ca", *by, "-revoke", self.path(name + ".pem"))
-        openssl("ca", *by, "-gencrl", "-crldays", "2", "-out", self.path("crl.pem"))
+        openssl("ca", *by, "-gencrl", "-crlsec", str(due), "-out", self.path("crl.pem"))
         return self.path("crl.pem")
 
 

@@ -308,6 +308,25 @@ class Lasting(Case):
             self.assertIn("revocation list " + self.path("ca/crl.pem"),
                           daemon.wait_for("the old one stays"))
             client.stats()
+            self.ca.revoke(due=1)
+            time.sleep(1.5)
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertTrue(client.at_end())
+            daemon.wait_for('text="CRL has expired"')
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_a_new_authority(self):
+        """Nobody stays whom only the one before would let in."""
+        authority = self.path("authority.pem")
+        shutil.copy(self.ca.cert, authority)
+        shutil.rmtree(self.path("next"), ignore_errors=True)
+        daemon = self.start("--client-ca", authority)
+        with Client(self.address, tls=context(self.ca, self.ca.issue("anna"))) as client:
+            client.stats()
+            shutil.copy(Authority(self.path("next")).cert, authority)
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertTrue(client.at_end())
+            daemon.wait_for('client turned away" session=1')
         self.assertEqual(daemon.stop(), 0)
 
     def test_tokens_reload(self):
@@ -365,7 +384,7 @@ class Starts(Case):
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
     def test_tls(self):
-        ca = Authority(self.path("ca"))
+        ca, other_ca = Authority(self.path("ca")), Authority(self.path("other"))
         cert, key = ca.issue("server")
         other_key = ca.issue("other")[1]
         listen = ("--listen", "tls:0.0.0.0:0")
@@ -383,6 +402,8 @@ class Starts(Case):
                                  ("no-such", (*own, "--client-ca", ca.cert, "--tls-crl",
                                               self.path("no-such"))),
                                  ("revocation list", (*own, "--client-ca", ca.cert, "--tls-crl", cert)),
+                                 ("by another authority", (*own, "--client-ca", ca.cert, "--tls-crl",
+                                                           other_ca.revoke())),
                                  ("--client-ca, which is missing", (*own, "--tls-crl", ca.revoke())),
                                  ("no-such", (*own, "--tokens", self.path("no-such")))):
             self.assert_refused(words, *listen, *arguments)
