@@ -133,6 +133,7 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
                                     const struct options *options)
 {
     enum sheen_status status = job_upload_images(job, options, &stream->request);
+    memcpy(stream->request.model_id, job->model_id, SHEEN_ID_BYTES);
     if (!status && stream->n_received == 0)
         status = first_frame(job, stream, options);
     uint32_t n_sent = stream->n_received;
@@ -218,7 +219,6 @@ static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_
                                  const struct options *options)
 {
     enum sheen_status status = job_init(job, options);
-    memcpy(stream->request.model_id, job->model_id, SHEEN_ID_BYTES);
     if (!status)
         status = run_frames(job, stream, options);
     while (status && job_resume(job, options, &status))

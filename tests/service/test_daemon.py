@@ -229,6 +229,35 @@ class Shutdown(unittest.TestCase):
         self.assertEqual(len(json.loads(out)["frames"]), 60)
         self.assertEqual(after.stop(), 0)
 
+    def test_a_client_that_is_told_at_once(self):
+        """In the answer to its HELLO, before it has asked where the daemon keeps its model."""
+        folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
+        self.addCleanup(folder.cleanup)
+        path = os.path.join(folder.name, "sheen.sock")
+        picture = os.path.join(folder.name, "a.png")
+        for command in (("render", "-o", picture), ("stream", "--frames", "3")):
+            with socket.socket(socket.AF_UNIX) as listener:
+                listener.bind(path)
+                listener.listen()
+                client = subprocess.Popen(
+                    [SHEEN, *command, "server:fender.obj", "--server", "unix:" + path, "--size",
+                     "64x48"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                peer, _ = listener.accept()
+            os.unlink(path)
+            with peer:
+                peer.recv(1000)
+                peer.sendall(wire.message(wire.ERROR, 1, wire.field(1, wire.ERROR_SHUTTING_DOWN) +
+                                          wire.field(2, "shutting down")))
+                peer.shutdown(socket.SHUT_WR)
+                while peer.recv(1000):
+                    pass
+            daemon = Daemon("--models", MODELS, path=path, tcp=False)
+            said = client.communicate(timeout=60)[1]
+            with self.subTest(command=command[0]):
+                self.assertEqual(client.returncode, 0, said)
+                self.assertIn("shutting down; connecting again", said)
+            self.assertEqual(daemon.stop(), 0)
+
     def test_the_client_gives_up_when_none_comes(self):
         daemon = Daemon(tcp=False)
         client = subprocess.Popen([SHEEN, "stream", os.path.join(MODELS, "fender.obj"), "--server",
