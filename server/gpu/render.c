@@ -4,6 +4,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "server/fault.h"
+
 /* Larger frames are drawn in tiles: about 80 bytes a pixel live on the device. */
 enum { TILE_MAX_PX = 4096 };
 /* Smaller tiles would be mostly margin. */
@@ -253,7 +255,7 @@ enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
     const struct surface *surface = &work->request->surface;
     bool ready = renderer_ready(r, error);
     if (ready && surface->kind != SURFACE_EXACT && !work->polygons &&
-        !polygons_have(&r->polygons, model->serial, surface->level))
+        (fault_at("gpu.polygons") || !polygons_have(&r->polygons, model->serial, surface->level)))
         return FRAME_POLYGONS;
     if (!ready || !step(r, model, work, frame, error)) {
         /* Whatever failed then, this is why. */

@@ -84,6 +84,18 @@ class LostGpu(unittest.TestCase):
         self.assertGreater(sum(lost for _, lost in drawn), 3)
         self.assertEqual(pictures[0], pictures[1])
 
+    def test_polygons_go_between_two_tiles(self):
+        """Others have taken their room on the device: the frame gets them again and goes on."""
+        server = self.serve("gpu.polygons:4:3")
+        client = self.client(server)
+        model = client.upload(CUBE, "cube.obj")
+        level2 = wire.field(40, 1) + wire.field(41, 2)
+        first, *others = [client.render(model, 900, 900, extra=level2, kind=wire.STILL).data
+                          for _ in range(4)]
+        self.assertEqual(others, [first] * 3)
+        self.assertEqual(server.errors().count("fault: gpu.polygons"), 3)
+        self.assertEqual(server.stop(), 0)
+
     def test_three_losses_end_the_daemon_with_75(self):
         server = self.serve("gpu.lost:4:3")
         client = self.client(server)
