@@ -56,6 +56,7 @@ struct canvas {
     uint8_t *rgba;
     uint32_t width_px, height_px;
     struct workers *workers;
+    struct spares *spares;
     struct error *error;
 };
 
@@ -63,17 +64,17 @@ static bool write_text(const struct canvas *canvas, int x, int y, int size_px,
                        enum text_align align, const char *line)
 {
     struct text text;
-    if (!workers_draw_text(canvas->workers, &text, line, size_px, canvas->error))
+    if (!workers_draw_text(canvas->workers, canvas->spares, &text, line, size_px, canvas->error))
         return false;
     text_draw(&text, canvas->rgba, canvas->width_px, canvas->height_px, x, y, align, TEXT_COLOUR);
-    text_finish(&text);
+    spares_give(canvas->spares, text.coverage);
     return true;
 }
 
 bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
-                 struct workers *workers, struct error *error)
+                 struct workers *workers, struct spares *spares, struct error *error)
 {
-    const struct canvas canvas = {rgba, width_px, height_px, workers, error};
+    const struct canvas canvas = {rgba, width_px, height_px, workers, spares, error};
     int font = (int)(height_px / FONT_SHARE);
     font = font < MIN_FONT_PX ? MIN_FONT_PX : font;
     struct box panel = {.width = PANEL_WIDTH * font, .height = (int)(PANEL_HEIGHT * font)};

@@ -342,7 +342,7 @@ static void add_legend(const struct painting *painting, const struct frame *fram
     add_marks(painting, &legend);
     struct error error = {0};
     if (!legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend, workers,
-                     &error) &&
+                     frame->spares, &error) &&
         !atomic_flag_test_and_set(&told))
         log_event(LOG_WARN, "legends lack their numbers", log_text("text", error.text));
 }

@@ -182,8 +182,21 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
     return ok;
 }
 
-bool workers_draw_text(struct workers *workers, struct text *text, const char *line, int size_px,
-                       struct error *error)
+/* The mask that is left of an answer. */
+static bool take_text(struct source *answer, struct spares *spares, struct text *text,
+                      struct error *error)
+{
+    float *coverage = spares_take(spares, answer->left);
+    if (!coverage)
+        return error_set(error, ERROR_SERVER, "no memory for a line of text: try again later");
+    if (text_take(answer, coverage, text))
+        return true;
+    spares_give(spares, coverage);
+    return error_set(error, ERROR_SERVER, "a line of text came back broken");
+}
+
+bool workers_draw_text(struct workers *workers, struct spares *spares, struct text *text,
+                       const char *line, int size_px, struct error *error)
 {
     const struct job_limits limits = limits_within_budget(workers, WORKERS_LEAST_MEMORY_BYTES);
     struct worker_call call;
@@ -196,8 +209,7 @@ bool workers_draw_text(struct workers *workers, struct text *text, const char *l
     ok = ok &&
          worker_run(workers->images, &call, JOB_DRAW_TEXT, &limits, "a line of text", ERROR_SERVER,
                     error) &&
-         (text_take(&call.answer, text) ||
-          error_set(error, ERROR_SERVER, "a line of text came back broken"));
+         take_text(&call.answer, spares, text, error);
     worker_call_finish(&call);
     return ok;
 }

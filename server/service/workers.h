@@ -49,8 +49,8 @@ bool workers_read_image(struct workers *workers, struct image *image, const void
 bool workers_write_image(struct workers *workers, const struct picture *picture,
                          const struct picture_block *blocks, size_t n_blocks, struct spares *spares,
                          uint8_t **bytes, size_t *size, struct error *error);
-/* As text_create(). */
-bool workers_draw_text(struct workers *workers, struct text *text, const char *line, int size_px,
-                       struct error *error);
+/* As text_create(), but that the mask is of `spares`. */
+bool workers_draw_text(struct workers *workers, struct spares *spares, struct text *text,
+                       const char *line, int size_px, struct error *error);
 
 #endif

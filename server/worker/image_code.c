@@ -151,26 +151,21 @@ void text_write(struct sink *sink, const struct text *text)
                (size_t)text->width_px * text->height_px * sizeof *text->coverage);
 }
 
-bool text_take(struct source *source, struct text *text)
+bool text_take(struct source *source, float *coverage, struct text *text)
 {
-    struct text taken = {0};
+    struct text taken = {.coverage = coverage};
     taken.left_px = (int)source_u32(source);
     taken.top_px = (int)source_u32(source);
     taken.width_px = source_u32(source);
     taken.height_px = source_u32(source);
     *text = (struct text){0};
     if (!source->ok || taken.width_px > TEXT_MAX_PX || taken.height_px > TEXT_MAX_PX ||
-        source->left != (size_t)taken.width_px * taken.height_px * sizeof *taken.coverage)
+        source->left != (size_t)taken.width_px * taken.height_px * sizeof *coverage)
         return false;
     const size_t size = source->left;
-    taken.coverage = malloc(size > 0 ? size : 1);
-    if (!taken.coverage)
+    memcpy(coverage, source_bytes(source, size), size);
+    if (!text_check(&taken))
         return false;
-    memcpy(taken.coverage, source_bytes(source, size), size);
-    if (!text_check(&taken)) {
-        text_finish(&taken);
-        return false;
-    }
     *text = taken;
     return true;
 }

@@ -34,8 +34,9 @@ void picture_write(struct sink *sink, const struct picture *picture,
 /* False when it is none; its channels then are not to be read. */
 bool picture_take(struct source *source, struct picture *picture);
 
-/* A mask of text; it is copied and passes text_check(). On failure *text is empty. */
+/* A mask of text, which passes text_check(). It is copied to `coverage`, the caller's room for all
+ * that is left of the source, to which *text refers. On failure *text is empty. */
 void text_write(struct sink *sink, const struct text *text);
-bool text_take(struct source *source, struct text *text);
+bool text_take(struct source *source, float *coverage, struct text *text);
 
 #endif

@@ -13,10 +13,12 @@ void *__real_malloc(size_t size);
 void *__real_calloc(size_t n, size_t size);
 void *__real_realloc(void *block, size_t size);
 char *__real_strdup(const char *text);
+char *__real_strndup(const char *text, size_t most);
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t n, size_t size);
 void *__wrap_realloc(void *block, size_t size);
 char *__wrap_strdup(const char *text);
+char *__wrap_strndup(const char *text, size_t most);
 /* NOLINTEND */
 
 static _Atomic(uint64_t) *count; /* NULL: nobody asks */
@@ -61,4 +63,10 @@ char *__wrap_strdup(const char *text)
 {
     add();
     return __real_strdup(text);
+}
+
+char *__wrap_strndup(const char *text, size_t most)
+{
+    add();
+    return __real_strndup(text, most);
 }

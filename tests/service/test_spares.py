@@ -1,6 +1,7 @@
 """Memory of frames: a warm one takes none from the heap, and what was kept goes back.
 
 build/sheend-faults counts the blocks that sheend's own code takes (allocations.c)."""
+import math
 import mmap
 import os
 import struct
@@ -30,9 +31,18 @@ class CountingDaemon(Daemon):
         return struct.unpack("<Q", self.count[:8])[0]
 
 
+def vector(*values):
+    return b"".join(wire.field(i + 1, float(value)) for i, value in enumerate(values))
+
+
+def camera_at(angle):
+    """A view of its own for each frame: nothing is kept, pieces are chosen and drawn again."""
+    return wire.field(4, wire.field(1, vector(25 * math.cos(angle), 25 * math.sin(angle), 12)) +
+                      wire.field(2, vector(0, 0, 0)) + wire.field(3, vector(0, 0, 1)))
+
+
 def light_at(x):
     """A light of its own for each frame: the camera stays, so its planes are kept."""
-    vector = lambda *v: b"".join(wire.field(i + 1, float(value)) for i, value in enumerate(v))
     light = (wire.field(1, vector(x, 0, 20)) + wire.field(2, vector(40, 0, 0)) +
              wire.field(3, vector(0, 40, 0)))
     return wire.field(5, light)
@@ -67,14 +77,25 @@ class WarmFrames(unittest.TestCase):
             "raw float planes": {"encoding": wire.RAW, "planes": planes},
             "in tiles": {"encoding": wire.ZSTD, "width": 640, "height": 480, "kind": wire.STILL},
             "batch": {"encoding": wire.RAW, "kind": wire.BATCH},
-            "file": {"encoding": wire.PNG},
+            "PNG": {"encoding": wire.PNG},
+            "JPEG": {"encoding": wire.JPEG},
+            "false colour": {"encoding": wire.RAW, "width": 320, "height": 240,  # with a legend
+                             "extra": wire.field(13, wire.field(1, 1))},
         }
         for name, named in kinds.items():
             frames = [(model, {"kind": wire.INTERACTIVE, **named})] * 20
             self.assertEqual(self.warm_allocations(server, client, frames), 0, name)
-        lights = [(model, {"kind": wire.INTERACTIVE, "encoding": wire.ZSTD,
-                           "extra": light_at(0.1 * i)}) for i in range(20)]
-        self.assertEqual(self.warm_allocations(server, client, lights), 0, "light")
+        polygons = wire.field(40, 1) + wire.field(41, 2)
+        changes = {
+            "light": light_at,
+            "view": camera_at,
+            "view, polygons": lambda x: camera_at(x) + polygons,
+        }
+        for name, extra in changes.items():
+            for planes in COLOUR, COLOUR | P | N | PTEX | LIGHT:
+                frames = [(model, {"kind": wire.INTERACTIVE, "encoding": wire.ZSTD,
+                                   "planes": planes, "extra": extra(0.1 * i)}) for i in range(20)]
+                self.assertEqual(self.warm_allocations(server, client, frames), 0, name)
 
     def test_without_spare_memory_each_takes_its_own(self):
         server, client, model = self.serve("--spare-memory", "0")
