@@ -53,7 +53,7 @@ class Table(unittest.TestCase):
             file.flush()
             done = run("--config", file.name, "--check-config")
             self.assertEqual(done.returncode, 2)
-            self.assertIn(f"{file.name}:26: credits is '65'", done.stderr)
+            self.assertIn(f"{file.name}:{len(rows) + 1}: credits is '65'", done.stderr)
 
 
 class Workers(unittest.TestCase):

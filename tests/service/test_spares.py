@@ -97,6 +97,29 @@ class WarmFrames(unittest.TestCase):
                                    "planes": planes, "extra": extra(0.1 * i)}) for i in range(20)]
                 self.assertEqual(self.warm_allocations(server, client, frames), 0, name)
 
+    def two_in_flight(self, server, client, model, encoding):
+        """Taken in the middle of 40 frames of a turning camera, of which one draws while the one
+        before is encoded and sent."""
+        ends, asked = [], []
+        for i in range(40):
+            asked.append(client.ask(model, 320, 240, encoding, extra=camera_at(0.1 * i),
+                                    kind=wire.INTERACTIVE, view=i % 2))
+            if i > 0:
+                client.read_frame(asked[i - 1])
+            ends.append(server.allocations())
+        client.read_frame(asked[-1])
+        return ends[-1] - ends[19]
+
+    def test_nor_do_two_in_flight(self):
+        server, client, model = self.serve()
+        for encoding in wire.RAW, wire.ZSTD:
+            # How many frames are on their way at once is up to the clock, and of what few need the
+            # spares may have let go. What each frame takes is in all of these.
+            counts = []
+            while 0 not in counts and len(counts) < 8:
+                counts.append(self.two_in_flight(server, client, model, encoding))
+            self.assertIn(0, counts, encoding)
+
     def test_without_spare_memory_each_takes_its_own(self):
         server, client, model = self.serve("--spare-memory", "0")
         frames = [(model, {"encoding": wire.ZSTD})] * 8
