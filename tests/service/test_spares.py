@@ -50,12 +50,16 @@ def light_at(x):
 
 class WarmFrames(unittest.TestCase):
     def serve(self, *arguments):
+        """A daemon with the model, and a client that did not upload it: the room that an upload's
+        messages took is made smaller when its client waits for a second, also amid warm frames."""
         server = CountingDaemon(*arguments)
         self.addCleanup(server.stop)
         client = wire.Client(server.unix, minor=1)
         self.addCleanup(client.socket.close)
-        with open(os.path.join(MODELS, "fender.obj"), "rb") as file:
-            model = client.upload(file.read(), "fender.obj")
+        with wire.Client(server.unix) as uploader, \
+                open(os.path.join(MODELS, "fender.obj"), "rb") as file:
+            model = uploader.upload(file.read(), "fender.obj")
+            client.query(model)
         return server, client, model
 
     def warm_allocations(self, server, client, frames):
