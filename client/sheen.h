@@ -334,7 +334,9 @@ struct sheen_request {
                             .planes = SHEEN_COLOUR,                                                \
                             .format = SHEEN_FILE_PNG})
 
-/* What the daemon spent, in microseconds; 0: not done for this frame. */
+/* What the daemon spent, in microseconds; 0: not done for this frame. Visibility, evaluate and
+ * shade are the device's own time where its timer queries count all of it (hardware); the rest is
+ * by the clock, and total_us from the request's last byte to the answer's first. */
 struct sheen_times {
     uint64_t tables_us, visibility_us, evaluate_us, shade_us, readback_us, encode_us, total_us;
 };

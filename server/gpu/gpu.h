@@ -99,6 +99,15 @@ struct planes {
     struct kept kept;
 };
 
+/* Of the stages of one tile (stage_clock.c). */
+enum { MAX_CLOCKED_STAGES = 3 };
+struct stage_clock {
+    GLuint mark[MAX_CLOCKED_STAGES][2];  /* queries: each stage's start and end on the device */
+    uint64_t *stage[MAX_CLOCKED_STAGES]; /* where its time is added */
+    int n;                               /* stages that have ended since the last reading */
+    uint64_t since_us;                   /* when the clock was last read */
+};
+
 enum { MAX_PROGRAM_SETS = 32 };
 
 /* What a program of stage 3 makes: the colours of all pixels, of all by one sample each, of those
@@ -122,6 +131,7 @@ struct renderer {
     /* In use: as struct planes. */
     struct target target;
     struct kept kept;
+    struct stage_clock clock;
     struct planes resting;                /* the other one */
     bool in_tiles;                        /* those in use are for frames of several tiles */
     struct frame_watch watch;             /* of the frame being drawn */
@@ -155,6 +165,22 @@ static inline bool is_current(const struct renderer *renderer, context_number co
 }
 /* Waits for the device. False when it is lost, as one is that does not come back in time. */
 bool renderer_wait(struct renderer *renderer);
+
+/* Has the device timer queries that tell the truth? */
+bool stage_clock_by_device(const struct renderer *renderer);
+void stage_clock_init(struct renderer *renderer);
+/* A tile begins: what the processor does from here on belongs to its first stage by the clock. */
+void stage_clock_begin(struct renderer *renderer);
+/* The device is about to get the commands of a stage, and has got them all. The stage's time is
+ * added to *stage, by the clock after waiting for the device, or by stage_clock_read(), until which
+ * the pointer stays. False when the device is lost. */
+void stage_clock_start(struct renderer *renderer);
+bool stage_clock_end(struct renderer *renderer, uint64_t *stage);
+/* Waits for the stages that have ended, where that has not been done, and adds their times. False
+ * when the device is lost. */
+bool stage_clock_read(struct renderer *renderer);
+/* Waits for the device and adds what has passed by the clock. False when it is lost. */
+bool stage_clock_wait(struct renderer *renderer, uint64_t *stage);
 
 /* Puts on the device what is not there. */
 bool model_upload(struct renderer *renderer, struct renderer_model *model, struct error *error);

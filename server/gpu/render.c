@@ -2,7 +2,6 @@
 #include "server/gpu/gpu.h"
 
 #include <string.h>
-#include <time.h>
 
 #include "server/fault.h"
 
@@ -12,23 +11,6 @@ enum { TILE_MAX_PX = 4096 };
 enum { TILE_MIN_PX = 128 };
 /* Drawn around a tile and not kept: stages look at neighbours, and these at theirs. */
 enum { MARGIN_PX = COVER_BLOCK_PX };
-
-static uint64_t now_us(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
-}
-
-/* Waits for the device and adds what passed since *since to *stage. False when it is lost. */
-static bool end_stage(struct renderer *r, uint64_t *stage, uint64_t *since)
-{
-    bool ok = renderer_wait(r);
-    uint64_t now = now_us();
-    *stage += now - *since;
-    *since = now;
-    return ok;
-}
 
 static bool same_camera(const struct camera *a, const struct camera *b)
 {
@@ -81,14 +63,14 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
                          const struct frame_request *request, const struct view *view,
                          const struct tile *tile, struct frame *frame, struct error *error)
 {
-    uint64_t since = now_us();
     if (is_kept(&r->kept, model, request))
         return true;
     if (request->surface.kind != SURFACE_EXACT) {
+        stage_clock_start(r);
         if (!stage_polygons(r, model, request, tile, error))
             return false;
         stage_gather(r);
-        return end_stage(r, &frame->times.visibility_us, &since);
+        return stage_clock_end(r, &frame->times.visibility_us);
     }
     if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
         return false;
@@ -96,14 +78,16 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
         programs_for(r, model, request->planes & PLANE_PTEX, error);
     if (!programs)
         return false;
+    stage_clock_start(r);
     stage_visibility(r, model, programs, tile);
     stage_gather(r);
-    if (!end_stage(r, &frame->times.visibility_us, &since))
+    if (!stage_clock_end(r, &frame->times.visibility_us))
         return false;
+    stage_clock_start(r);
     stage_evaluate(r, model, programs);
     if (edges_wanted(request))
         stage_edges(r);
-    return end_stage(r, &frame->times.evaluate_us, &since);
+    return stage_clock_end(r, &frame->times.evaluate_us);
 }
 
 /* `drawn` is the tile with its margin. */
@@ -116,17 +100,18 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
     view_block_fill(&block, view, drawn);
     glNamedBufferSubData(r->view_buffer, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
+    stage_clock_begin(r);
     if (!draw_surface(r, model, request, view, drawn, frame, error))
         return false;
-    uint64_t since = now_us();
+    stage_clock_start(r);
     if (!stage_shade(r, request, error))
         return false;
     if (request->surface.kind == SURFACE_WIREFRAME &&
         !stage_wireframe(r, model, request, drawn, error))
         return false;
-    return end_stage(r, &frame->times.shade_us, &since) &&
+    return stage_clock_end(r, &frame->times.shade_us) && stage_clock_read(r) &&
            readback(r, request, view, drawn, tile, frame, error) &&
-           end_stage(r, &frame->times.readback_us, &since);
+           stage_clock_wait(r, &frame->times.readback_us);
 }
 
 static uint32_t at_most(uint32_t value, uint32_t limit)

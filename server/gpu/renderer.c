@@ -7,7 +7,7 @@
 #include "server/fault.h"
 #include "server/gpu/gpu.h"
 
-/* How long the device may take for a stage of a tile; those are made for a hundredth of that. */
+/* How long the device may take for the stages of a tile; those are made for a hundredth of that. */
 #define LOST_AFTER_NS 2000000000u
 
 static void query_info(struct renderer *r)
@@ -28,6 +28,7 @@ static void query_info(struct renderer *r)
         .max_height_px = (uint32_t)height,
         .max_texels = (size_t)texels,
     };
+    r->info.timed_by_device = stage_clock_by_device(r);
     size_t max_texels = r->options.max_texels;
     if (max_texels && max_texels < r->info.max_texels)
         r->info.max_texels = max_texels;
@@ -39,6 +40,7 @@ static bool begin_context(struct renderer *r, struct error *error)
     r->context++;
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    stage_clock_init(r);
     glCreateBuffers(1, &r->view_buffer);
     glNamedBufferData(r->view_buffer, sizeof(struct view_block), NULL, GL_STREAM_DRAW);
     return stage_visibility_init(r, error) && stage_gather_init(r, error) &&

@@ -36,6 +36,7 @@ enum renderer_plane {
 struct renderer_options {
     const char *device; /* "auto", "software" or a number: the n-th EGL device */
     size_t max_texels;  /* tests only: pretend that buffer textures hold no more; 0: ask */
+    bool device_times;  /* tests only: frame_times by timer queries on a software device, too */
     /* Told on the GL thread of every context that is lost, and of every try to open another one
      * that fails. NULL: nobody is. */
     void (*lost)(void *owner);
@@ -49,6 +50,7 @@ struct renderer_info {
     const char *device; /* GL_RENDERER */
     const char *driver; /* GL_VERSION */
     bool software; /* EGL says so (EGL_MESA_device_software) or no hardware node is behind it */
+    bool timed_by_device; /* frame_times are its own, by timer queries */
     uint32_t max_width_px, max_height_px;
     size_t max_texels; /* per buffer texture */
 };
@@ -67,6 +69,9 @@ struct frame_request {
     struct surface surface;
 };
 
+/* What each stage took of the device's time, without what the processor did meanwhile, where
+ * renderer_info says timed_by_device; else by the clock, waiting for the device after each.
+ * Readback: by the clock. */
 struct frame_times {
     uint64_t visibility_us, evaluate_us, shade_us, readback_us;
 };
