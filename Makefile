@@ -8,6 +8,7 @@
 #   make soak       the service under load, SECONDS of each part (60), and 102 processes killed; prints
 #                   figures, judges ratios
 #   make bench      how fast, each question by a program of tests/bench; figures to build/bench
+#   make sheen-bench   the renderer's questions without peers, for a machine with EGL, libepoxy and no more
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
 #   make deps       install Debian packages (needs root or sudo)
@@ -183,23 +184,37 @@ $(FUZZ_TARGETS): $(BUILD)/tests/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.c.o $(FUZ
 	$(Q)$(CXX) $(LDFLAGS) $(FUZZ_LINK) -o $@ $^ $(CAGE_WORKER_LIBS) $(SERVER_LIBS) $(CLIENT_LIBS)
 $(BUILD)/tests/fuzz_config: FUZZ_LINK += -Wl,--wrap=getaddrinfo
 
-# Every benchmark is one bench_NAME.cpp; what is beside them they share.
-BENCH := $(patsubst tests/bench/%.cpp,$(BUILD)/tests/%,$(wildcard tests/bench/bench_*.cpp))
-BENCH_SHARED := $(call obj,tests/bench/bench.cpp tests/bench/daemon.cpp \
-                tests/bench/sheet.cpp) $(ORACLE_SHARED)
+# Every question of the benchmarks is one bench_NAME.cpp, and a program with the peers it names.
+BENCH_QUESTIONS := $(patsubst tests/bench/bench_%.cpp,%,$(wildcard tests/bench/bench_*.cpp))
+BENCH := $(patsubst %,$(BUILD)/tests/bench_%,$(BENCH_QUESTIONS))
+BENCH_MAIN := $(call obj,$(patsubst %,tests/bench/%.cpp,main bench timing sheet))
 BENCH_LIBS := -losdCPU $(TEST_LIBS)
-$(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_SHARED) $(TEST_LIB)
-	@mkdir -p $(@D)
-	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $(filter %.o,$^) $(TEST_LIB) $(BENCH_LIBS)
 # The peer gets what its users would give it: all of this processor.
 EMBREE_OBJ := $(call obj,tests/bench/embree.cpp)
 $(EMBREE_OBJ): CXXFLAGS += -O3 -march=native -ffp-contract=fast
-$(BUILD)/tests/bench_frame: $(EMBREE_OBJ)
+$(BUILD)/tests/bench_frame: $(call obj,tests/bench/frame_peers.cpp) $(EMBREE_OBJ)
 $(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
+$(BUILD)/tests/bench_tables: $(call obj,tests/bench/tables_peers.cpp) $(call obj,tests/bench/osd_patches.cpp)
+$(BUILD)/tests/bench_wire: $(call obj,tests/bench/daemon.cpp)
+$(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_MAIN) $(ORACLE_SHARED) $(TEST_LIB)
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -o $@ $(filter %.o,$^) $(TEST_LIB) $(BENCH_LIBS)
 
-.PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench lint format demo deps install clean
-tests: all $(BUILD)/sheend-faults $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH)
+# The questions of the renderer without peers, for a machine that has EGL, libepoxy and nothing
+# else. What is in C++ brings its runtime along.
+SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame light paper size tables)) \
+                   $(BENCH_MAIN) \
+                   $(call obj,tests/bench/no_peers.cpp tests/bench/no_gltf.c) \
+                   $(call obj,$(patsubst %,tests/oracle/%.cpp,scene cage_file folder)) \
+                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/fault.c server/spares.c) $(RENDER_OBJ) $(CORE_OBJ)
+$(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
+	$(call say,LD $@)
+	$(Q)$(CXX) $(LDFLAGS) -static-libstdc++ -static-libgcc -o $@ $^ -lepoxy -lm
+sheen-bench: $(BUILD)/sheen-bench
+
+.PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench sheen-bench lint format demo deps install clean
+tests: all $(BUILD)/sheend-faults $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH) $(BUILD)/sheen-bench
 unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 	sh tests/run.sh unit $(BUILD)
 service: all $(BUILD)/sheend-faults
@@ -226,8 +241,9 @@ soak: all $(BUILD)/sheend-faults
 	SHEEN_KILLS=34 /usr/bin/python3 tests/service/run.py $(BUILD) test_faults.Killed
 
 # One after the other: each wants the machine for itself.
-bench: all $(BENCH)
+bench: all $(BENCH) $(BUILD)/sheen-bench
 	for bench in $(BENCH); do $$bench --folder $(BUILD)/bench || exit 1; done
+	/usr/bin/python3 tests/bench/summary.py $(BUILD)/bench
 
 lint:
 	sh tests/lint.sh

@@ -1,5 +1,5 @@
 #!/bin/sh
-# run.sh unit|fuzz|service|oracle|all BUILD: runs the tests of one kind, or all, and ends with their sum,
+# run.sh unit|fuzz|bench|service|oracle|all BUILD: runs the tests of one kind, or all, and ends with their sum,
 # "N passed, N failed". Each program's full output is kept in BUILD/tests/NAME.log.
 set -u
 kind=$1 build=$2
@@ -64,6 +64,10 @@ fuzz() {
     done
 }
 
+bench() {
+    run sheen_bench /usr/bin/python3 tests/bench/test_sheen_bench.py "$build"
+}
+
 service() {
     run service /usr/bin/python3 tests/service/run.py "$build"
     run same sh tests/oracle/test_same.sh "$build/sheen" "$build/sheend" tests/models/fender.gltf \
@@ -107,12 +111,13 @@ case $kind in
 all)
     unit
     fuzz
+    bench
     service
     oracle
     ;;
-unit | fuzz | service | oracle) "$kind" ;;
+unit | fuzz | bench | service | oracle) "$kind" ;;
 *)
-    echo "usage: run.sh unit|fuzz|service|oracle|all BUILD" >&2
+    echo "usage: run.sh unit|fuzz|bench|service|oracle|all BUILD" >&2
     exit 2
     ;;
 esac

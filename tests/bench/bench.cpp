@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <filesystem>
@@ -11,6 +12,49 @@
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
+
+namespace
+{
+
+/* The figures of an earlier run that are numbers; none when there is no such file. */
+nlohmann::json read_figures(const std::string &path)
+{
+    nlohmann::json numbers = nlohmann::json::object();
+    std::ifstream file(path);
+    if (!file)
+        return numbers;
+    nlohmann::json old = nlohmann::json::parse(file, nullptr, false);
+    if (!old.is_object() || !old.contains("figures") || !old["figures"].is_object()) {
+        std::printf("%s holds no figures to compare with\n", path.c_str());
+        return numbers;
+    }
+    for (const auto &[key, value] : old["figures"].items())
+        if (value.is_number())
+            numbers[key] = value;
+    std::printf("against %s:\n", path.c_str());
+    return numbers;
+}
+
+int positive(const std::string &option, const std::string &value)
+{
+    char *end;
+    long n = std::strtol(value.c_str(), &end, 10);
+    if (*end || n < 1 || n > 1000000)
+        throw std::invalid_argument(option + " " + value + " is no number from 1 to 1000000");
+    return (int)n;
+}
+
+void add_those_there(const std::vector<std::string> &paths, std::vector<std::string> *found)
+{
+    for (const std::string &path : paths) {
+        if (std::filesystem::exists(path))
+            found->push_back(path);
+        else
+            std::printf("MISSING: %s is not there; going on without it\n", path.c_str());
+    }
+}
+
+} // namespace
 
 double now_ms()
 {
@@ -31,17 +75,28 @@ double samples::percentile(double p) const
     return sorted[(size_t)std::clamp(rank - 1, 0.0, (double)sorted.size() - 1)];
 }
 
+std::vector<turn> measure_in_turn(int runs, const std::vector<timed_call> &calls)
+{
+    std::vector<turn> turns(calls.size());
+    for (int run = 0; run <= runs; run++) {
+        double first = 0;
+        for (size_t i = 0; i < calls.size(); i++) {
+            double ms = calls[i](run);
+            if (i == 0)
+                first = ms;
+            if (run == 0)
+                continue;
+            turns[i].ms.add(ms);
+            turns[i].ratio.add(ms / first);
+        }
+    }
+    return turns;
+}
+
 pair_of_samples measure_pairs(int runs, const timed_call &a, const timed_call &b)
 {
-    pair_of_samples pair;
-    a(0), b(0);
-    for (int run = 1; run <= runs; run++) {
-        double ms_a = a(run), ms_b = b(run);
-        pair.a.add(ms_a);
-        pair.b.add(ms_b);
-        pair.ratio.add(ms_b / ms_a);
-    }
-    return pair;
+    std::vector<turn> turns = measure_in_turn(runs, {a, b});
+    return {turns[0].ms, turns[1].ms, turns[1].ratio};
 }
 
 double time_ms(const std::function<void()> &call)
@@ -98,30 +153,37 @@ std::string options::other(const std::string &key, const std::string &otherwise)
     return otherwise;
 }
 
-report::report(const std::string &report_name, int argc, char **argv,
-               std::vector<std::string> known)
-    : name(report_name)
+options parse_options(const std::vector<std::string> &arguments,
+                      const std::vector<std::string> &known)
 {
-    for (int i = 1; i < argc; i++) {
-        std::string word = argv[i];
+    options options;
+    for (size_t i = 0; i < arguments.size(); i++) {
+        const std::string &word = arguments[i];
         if (word.rfind("--", 0) != 0) {
-            asked.words.push_back(word);
+            options.words.push_back(word);
             continue;
         }
         std::string key = word.substr(2);
-        if (++i == argc)
+        if (++i == arguments.size())
             throw std::invalid_argument(word + " needs a value");
+        const std::string &value = arguments[i];
         if (key == "runs")
-            asked.runs = std::max(1, std::stoi(argv[i]));
+            options.runs = positive(word, value);
         else if (key == "folder")
-            asked.folder = argv[i];
+            options.folder = value;
         else if (key == "compare")
-            asked.compare = argv[i];
+            options.compare = value;
         else if (std::count(known.begin(), known.end(), key))
-            asked.others.emplace_back(key, argv[i]);
+            options.others.emplace_back(key, value);
         else
-            throw std::invalid_argument(word + " is no option of " + name);
+            throw std::invalid_argument("there is no option " + word + " here: --help lists them");
     }
+    return options;
+}
+
+report::report(const std::string &report_name, const options &given)
+    : name(report_name), asked(given)
+{
     std::printf("--- %s ---\n", name.c_str());
 }
 
@@ -132,35 +194,16 @@ void report::figure(const std::string &figure_name, double value)
 
 void report::note(const std::string &key, const std::string &value)
 {
+    if (std::count(notes.begin(), notes.end(), std::make_pair(key, value)))
+        return;
     notes.emplace_back(key, value);
     std::printf("%s: %s\n", key.c_str(), value.c_str());
-}
-
-void report::compare(const std::string &path) const
-{
-    std::ifstream file(path);
-    if (!file)
-        return;
-    nlohmann::json old = nlohmann::json::parse(file, nullptr, false);
-    if (!old.is_object() || !old.contains("figures")) {
-        std::printf("%s holds no figures to compare with\n", path.c_str());
-        return;
-    }
-    std::printf("against %s of %s:\n", path.c_str(), old.value("date", "?").c_str());
-    table table({"figure", "then", "now", "now/then"});
-    for (const auto &[key, value] : figures) {
-        const nlohmann::json &figure = old["figures"][key];
-        double then = figure.is_number() ? figure.get<double>() : 0;
-        if (then != 0)
-            table.row({key, number(then, 3), number(value, 3), number(value / then, 2)});
-    }
-    table.print();
 }
 
 void report::finish() const
 {
     std::filesystem::path path = std::filesystem::path(asked.folder) / (name + ".json");
-    compare(asked.compare.empty() ? path.string() : asked.compare);
+    nlohmann::json old = read_figures(asked.compare.empty() ? path.string() : asked.compare);
     nlohmann::ordered_json json;
     char date[32];
     std::time_t now = std::time(nullptr);
@@ -168,8 +211,17 @@ void report::finish() const
     json["date"] = date;
     for (const auto &[key, value] : notes)
         json[key] = value;
-    for (const auto &[key, value] : figures)
+    table table({"figure", "then", "now", "now/then"});
+    for (const auto &[key, value] : figures) {
         json["figures"][key] = value;
+        double then = old.contains(key) ? old[key].get<double>() : 0;
+        if (then == 0)
+            continue;
+        json["before"][key] = then;
+        table.row({key, number(then, 3), number(value, 3), number(value / then, 2)});
+    }
+    if (json.contains("before"))
+        table.print();
     std::filesystem::create_directories(asked.folder);
     std::ofstream file(path);
     file << json.dump(1) << "\n";
@@ -182,36 +234,17 @@ std::vector<std::string> bench_models(const options &options)
 {
     std::vector<std::string> wanted = options.words, found;
     if (wanted.empty())
-        wanted = {"/work/shared/shapes/catmark_car.obj", "tests/models/fender.obj",
-                  "/work/shared/shapes/catmark_bishop.obj"};
-    for (const std::string &path : wanted) {
-        if (std::filesystem::exists(path))
-            found.push_back(path);
-        else
-            std::printf("MISSING: %s is not there; going on without it\n", path.c_str());
-    }
-    if (found.size() < 2 && options.words.empty()) {
-        std::printf("MISSING: the shapes; tests/models/body.obj and creases.obj stand in\n");
-        found.insert(found.end(), {"tests/models/body.obj", "tests/models/creases.obj"});
-    }
+        wanted = {"../shared/shapes/catmark_car.obj", "tests/models/fender.obj",
+                  "../shared/shapes/catmark_bishop.obj"};
+    add_those_there(wanted, &found);
+    if (found.size() < 2 && options.words.empty())
+        add_those_there({"tests/models/body.obj", "tests/models/creases.obj"}, &found);
+    if (found.empty())
+        throw std::runtime_error("no model is there: name OBJ files of your own");
     return found;
 }
 
 std::string model_name(const std::string &path)
 {
     return std::filesystem::path(path).stem().string();
-}
-
-int bench_main(const char *name, const std::function<void()> &body)
-{
-    try {
-        body();
-        return 0;
-    } catch (const std::invalid_argument &wrong) {
-        std::fprintf(stderr, "%s: %s\n", name, wrong.what());
-        return 2;
-    } catch (const std::exception &failure) {
-        std::fprintf(stderr, "%s: %s\n", name, failure.what());
-        return 1;
-    }
 }

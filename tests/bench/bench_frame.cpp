@@ -1,19 +1,20 @@
-/* bench_frame: how long an exact frame takes against Embree's, which ends in a tessellation for
- * what is seen and in its own approximate caps for normals.
+/* bench_frame: how long an exact frame takes, beside peers that end in a tessellation for what is
+ * seen and in caps of their own for normals: Embree without a GPU, OpenSubdiv's drawing on one.
  *
  * Same cage, camera, size, light and stripes, two threads each; runs in turn, the camera a little
- * on in every pair so that no planes are kept. Ours is visibility + evaluate + shade, filtered;
- * "all" has the picture read back, too. Embree: rtcIntersect8 and rtcInterpolate, one sample a
- * pixel. How alike the two pictures are is printed beside the times. */
-#include "tests/bench/bench.h"
+ * on in every round so that no planes are kept. Ours is visibility + evaluate + shade, filtered;
+ * "wall" is the same by the clock from the request on, "all" has the picture read back, too. Theirs
+ * take one sample a pixel. How alike the pictures are is printed beside the times. */
+#include "tests/bench/peers.h"
+#include "tests/bench/question.h"
 
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
-#include "tests/bench/embree.h"
-#include "tests/oracle/scene.h"
-#include "tests/oracle/model.h"
+#include "tests/bench/timing.h"
+#include "tests/oracle/cage_file.h"
+#include "tests/oracle/vec.h"
 
 namespace
 {
@@ -28,22 +29,35 @@ struct likeness {
     double mean_deg = 0, median_deg = 0;   /* between the normals of pixels that both cover */
 };
 
+/* One model with all who draw it. */
+struct contest {
+    std::string name;
+    std::unique_ptr<scene> its_scene;
+    std::unique_ptr<drawing> ours;
+    std::vector<frame_peer_kind> kinds = frame_peers();
+    std::vector<std::unique_ptr<frame_peer>> peers;
+};
+
+struct tables {
+    table cold, warm, alike;
+};
+
+std::string text(size size)
+{
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
 vec3 normal_at(const float *normals, size_t i)
 {
     return {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
 }
 
-likeness compare(drawing *ours, const embree_scene &theirs, frame_request request)
+likeness compare(const float *ours, const float *theirs, size_t pixels)
 {
-    request.planes |= PLANE_NORMAL;
-    frame frame = ours->render(request);
-    embree_picture picture;
-    theirs.render(request, true, &picture);
     likeness like;
     samples degrees;
-    size_t pixels = (size_t)frame.width_px * frame.height_px;
     for (size_t i = 0; i < pixels; i++) {
-        vec3 a = normal_at((const float *)frame.plane[2], i), b = normal_at(&picture.normals[0], i);
+        vec3 a = normal_at(ours, i), b = normal_at(theirs, i);
         like.ours += finite(a);
         like.theirs += finite(b);
         if (!finite(a) || !finite(b))
@@ -51,119 +65,169 @@ likeness compare(drawing *ours, const embree_scene &theirs, frame_request reques
         like.both++;
         double deg = angle(a, b) * 180 / M_PI;
         like.mean_deg += deg;
-        if (like.both % 101 == 0) /* a sample does for the median */
+        if (like.both % 101 == 1) /* a sample does for the median */
             degrees.add(deg);
     }
-    like.mean_deg /= (double)like.both;
-    like.median_deg = degrees.median();
-    frame_finish(&frame);
+    if (like.both) {
+        like.mean_deg /= (double)like.both;
+        like.median_deg = degrees.median();
+    }
     return like;
 }
 
-/* One size of one model, both warm. */
-void measure_size(report *report, table *warm, table *alike, const std::string &name, size size,
-                  const scene &scene, drawing *ours, const embree_scene &theirs)
+/* How alike the pictures are. */
+void compare_all(report *report, table *alike, const contest &contest, size size)
 {
-    frame_request request = scene.request(size.width, size.height);
+    frame_request request = contest.its_scene->request(size.width, size.height);
+    request.planes |= PLANE_NORMAL;
+    frame frame = contest.ours->render(request);
+    const float *normals = (const float *)frame.plane[2];
+    std::string key = contest.name + " " + text(size) + " ";
+    report->figure(key + "covered pixels", (double)covered_pixels(frame));
+    if (contest.peers.empty())
+        alike->row({contest.name, text(size), count((double)covered_pixels(frame))});
+    for (size_t i = 0; i < contest.peers.size(); i++) {
+        std::vector<float> theirs = contest.peers[i]->normals(request);
+        likeness like = compare(normals, theirs.data(), (size_t)size.width * size.height);
+        const std::string &peer = contest.kinds[i].name;
+        if (std::abs((double)like.theirs / (double)like.ours - 1) > 0.01)
+            throw std::runtime_error(peer + " draws another picture of " + contest.name + ": " +
+                                     count((double)like.theirs) + " pixels covered, not " +
+                                     count((double)like.ours));
+        alike->row({contest.name, text(size), count((double)like.ours), peer,
+                    count((double)like.theirs), count((double)like.both), number(like.mean_deg, 4),
+                    number(like.median_deg, 4)});
+        report->figure(key + peer + " covered pixels", (double)like.theirs);
+        report->figure(key + peer + " normals_apart_deg", like.mean_deg);
+    }
+    frame_finish(&frame);
+}
+
+/* One size of one model, all warm. */
+void measure_size(report *report, tables *tables, const contest &contest, size size)
+{
+    frame_request request = contest.its_scene->request(size.width, size.height);
     auto view = [&](int run) {
         frame_request moved = request;
         orbit(&moved.camera, 0.1 * run);
         return moved;
     };
-    embree_picture picture;
-    samples all, visibility, evaluate, shade;
-    pair_of_samples pair = measure_pairs(
-        report->given().runs,
-        [&](int run) {
-            frame_times times;
-            double ms = time_ms([&] { times = ours->times(view(run)); });
-            if (run > 0) {
-                all.add(ms);
-                visibility.add((double)times.visibility_us / 1000);
-                evaluate.add((double)times.evaluate_us / 1000);
-                shade.add((double)times.shade_us / 1000);
-            }
-            return stages_ms(times);
-        },
-        [&](int run) { return time_ms([&] { theirs.render(view(run), false, &picture); }); });
-    std::string of = std::to_string(size.width) + "x" + std::to_string(size.height);
-    std::string key = name + " " + of + " ";
-    warm->row({name, of, number(visibility.median(), 1), number(evaluate.median(), 1),
-               number(shade.median(), 1), number(pair.a.median(), 1), number(all.median(), 1),
-               number(pair.b.median(), 1), number(pair.a.least(), 1), number(pair.b.least(), 1),
-               number(pair.ratio.median(), 2)});
+    samples visibility, evaluate, shade, wall, all;
+    std::vector<timed_call> calls = {[&](int run) {
+        frame_cost cost = contest.ours->cost(view(run));
+        if (run > 0) {
+            visibility.add((double)cost.stages.visibility_us / 1000);
+            evaluate.add((double)cost.stages.evaluate_us / 1000);
+            shade.add((double)cost.stages.shade_us / 1000);
+            wall.add(cost.wall_ms);
+            all.add(cost.all_ms);
+        }
+        return cost.stages_ms();
+    }};
+    for (const auto &peer : contest.peers)
+        calls.push_back([&](int run) { return peer->draw_ms(view(run)); });
+    std::vector<turn> turns = measure_in_turn(report->given().runs, calls);
+
+    std::string key = contest.name + " " + text(size) + " ";
+    std::vector<std::string> row = {contest.name,
+                                    text(size),
+                                    number(visibility.median(), 2),
+                                    number(evaluate.median(), 2),
+                                    number(shade.median(), 2),
+                                    number(turns[0].ms.median(), 2),
+                                    number(turns[0].ms.least(), 2),
+                                    number(wall.median(), 2),
+                                    number(all.median(), 2)};
     report->figure(key + "visibility_ms", visibility.median());
     report->figure(key + "evaluate_ms", evaluate.median());
     report->figure(key + "shade_ms", shade.median());
-    report->figure(key + "frame_ms", pair.a.median());
+    report->figure(key + "frame_ms", turns[0].ms.median());
+    report->figure(key + "least_frame_ms", turns[0].ms.least());
+    report->figure(key + "wall_ms", wall.median());
     report->figure(key + "all_ms", all.median());
-    report->figure(key + "embree_ms", pair.b.median());
-    report->figure(key + "least_frame_ms", pair.a.least());
-    report->figure(key + "least_embree_ms", pair.b.least());
-    report->figure(key + "embree/frame ratio", pair.ratio.median());
-    likeness like = compare(ours, theirs, request);
-    alike->row({name, of, count((double)like.ours), count((double)like.theirs),
-                count((double)like.both), number(like.mean_deg, 4), number(like.median_deg, 4)});
-    report->figure(key + "covered pixels", (double)like.ours);
-    report->figure(key + "embree covered pixels", (double)like.theirs);
-    report->figure(key + "normals_apart_deg", like.mean_deg);
+    for (size_t i = 0; i < contest.peers.size(); i++) {
+        const turn &theirs = turns[i + 1];
+        row.insert(row.end(), {number(theirs.ms.median(), 2), number(theirs.ms.least(), 2),
+                               number(theirs.ratio.median(), 2)});
+        const std::string &peer = contest.kinds[i].name;
+        report->figure(key + peer + "_ms", theirs.ms.median());
+        report->figure(key + "least_" + peer + "_ms", theirs.ms.least());
+        report->figure(key + peer + "/frame ratio", theirs.ratio.median());
+    }
+    tables->warm.row(row);
+    compare_all(report, &tables->alike, contest, size);
 }
 
-void measure_model(report *report, const std::string &path, const std::vector<size> &sizes,
-                   const char *device, table *cold, table *warm, table *alike)
+/* Everything from the cage to everybody's first picture. */
+void measure_cold(report *report, table *cold, contest *contest, const std::string &path, size size)
 {
     std::shared_ptr<const cage> cage = read_cage_file(path);
-    std::string name = model_name(path), lacks = embree_lacks(*cage);
-    if (!lacks.empty())
-        std::printf("%s: Embree draws it without%s\n", name.c_str(), lacks.c_str());
-    std::unique_ptr<scene> scene;
-    std::unique_ptr<drawing> ours;
-    std::unique_ptr<embree_scene> theirs;
-    embree_picture picture;
-    double tables = time_ms([&] { scene.reset(new class scene(cage)); });
-    double start = time_ms([&] { ours.reset(new drawing(*scene, device)); });
-    frame_request request = scene->request(sizes[0].width, sizes[0].height);
-    report->note(name + " device", ours->device());
-    double first = time_ms([&] { ours->times(request); });
-    double build = time_ms([&] { theirs.reset(new embree_scene(*cage, 4, bench_threads)); });
-    double their_first = time_ms([&] { theirs->render(request, false, &picture); });
-    cold->row({name, count((double)cage->n_faces), number(tables, 1), number(start, 1),
-               number(first, 1), number(build, 1), number(their_first, 1)});
-    report->figure(name + " tables_ms", tables);
-    report->figure(name + " start_ms", start);
-    report->figure(name + " first_frame_ms", first);
-    report->figure(name + " embree_build_ms", build);
-    report->figure(name + " embree_first_frame_ms", their_first);
-    for (size size : sizes)
-        measure_size(report, warm, alike, name, size, *scene, ours.get(), *theirs);
+    std::string device = report->given().device();
+    double tables = time_ms([&] { contest->its_scene.reset(new scene(cage)); });
+    double start =
+        time_ms([&] { contest->ours.reset(new drawing(*contest->its_scene, device.c_str())); });
+    frame_request request = contest->its_scene->request(size.width, size.height);
+    double first = time_ms([&] { contest->ours->cost(request); });
+    std::vector<std::string> row = {contest->name, count((double)cage->n_faces), number(tables, 1),
+                                    number(start, 1), number(first, 1)};
+    report->figure(contest->name + " tables_ms", tables);
+    report->figure(contest->name + " start_ms", start);
+    report->figure(contest->name + " first_frame_ms", first);
+    for (const frame_peer_kind &kind : contest->kinds) {
+        std::string lacks = kind.lacks(*cage);
+        if (!lacks.empty())
+            std::printf("%s: %s draws it without%s\n", contest->name.c_str(), kind.name.c_str(),
+                        lacks.c_str());
+        double build =
+            time_ms([&] { contest->peers.push_back(kind.build(*cage, *contest->ours)); });
+        double their_first = time_ms([&] { contest->peers.back()->draw_ms(request); });
+        row.insert(row.end(), {number(build, 1), number(their_first, 1)});
+        report->figure(contest->name + " " + kind.name + "_build_ms", build);
+        report->figure(contest->name + " " + kind.name + "_first_frame_ms", their_first);
+    }
+    cold->row(row);
 }
+
+tables make_tables()
+{
+    std::vector<std::string> cold = {"cold", "faces", "tables ms", "start ms", "first frame ms"};
+    std::vector<std::string> warm = {"warm, medians", "size",  "visibility", "evaluate", "shade",
+                                     "frame ms",      "least", "wall ms",    "all ms"};
+    std::vector<std::string> alike = {"same picture", "size", "covered"};
+    for (const frame_peer_kind &kind : frame_peers()) {
+        cold.insert(cold.end(), {kind.name + " build ms", "first ms"});
+        warm.insert(warm.end(), {kind.name + " ms", "least", "ratio"});
+    }
+    if (!frame_peers().empty())
+        alike.insert(alike.end(), {"peer", "peer's", "both", "normals apart, deg", "median"});
+    return {table(cold), table(warm), table(alike)};
+}
+
+void ask(report *report)
+{
+    tables tables = make_tables();
+    for (const frame_peer_kind &kind : frame_peers())
+        report->note(kind.name, kind.about);
+    for (const std::string &path : bench_models(report->given())) {
+        contest contest;
+        contest.name = model_name(path);
+        std::vector<size> sizes = {{640, 480}, {1280, 720}, {1920, 1080}};
+        measure_cold(report, &tables.cold, &contest, path, sizes[0]);
+        note_device(report, contest.ours->info());
+        bool large = contest.ours->info().software;
+        if (report->given().other("large", large ? "no" : "yes") == "yes")
+            sizes.push_back({3840, 2160});
+        for (size size : sizes)
+            measure_size(report, &tables, contest, size);
+    }
+    tables.cold.print();
+    tables.warm.print();
+    tables.alike.print();
+}
+
+const question frame_question("frame",
+                              "a frame of each model, cold and warm; --large yes or no: 3840x2160, "
+                              "too (on hardware yes)",
+                              {"device", "large"}, ask);
 
 } // namespace
-
-int main(int argc, char **argv)
-{
-    return bench_main("bench_frame", [&] {
-        report report("bench_frame", argc, argv, {"device", "large"});
-        std::vector<size> sizes = {{640, 480}, {1280, 720}, {1920, 1080}};
-        if (report.given().other("large", "no") == "yes")
-            sizes.push_back({3840, 2160});
-        std::string device = report.given().other("device", "software");
-        std::vector<std::string> models = bench_models(report.given());
-        if (models.empty())
-            throw std::runtime_error("no model is there");
-        report.note("peer", embree_scene::version() + ", tessellation rate 4, " +
-                                std::to_string(bench_threads) + " threads");
-        table cold({"cold", "faces", "tables ms", "start ms", "first frame ms", "Embree build ms",
-                    "Embree first ms"});
-        table warm({"warm, medians", "size", "visibility", "evaluate", "shade", "frame ms",
-                    "all ms", "Embree ms", "least", "Embree's", "ratio"});
-        table alike({"same picture", "size", "covered", "Embree's", "both", "normals apart, deg",
-                     "median"});
-        for (const std::string &path : models)
-            measure_model(&report, path, sizes, device.c_str(), &cold, &warm, &alike);
-        cold.print();
-        warm.print();
-        alike.print();
-        report.finish();
-    });
-}

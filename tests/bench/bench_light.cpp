@@ -1,9 +1,10 @@
-/* bench_light: what a frame costs whose light alone moved, against a full frame: both with the
- * picture read back, in turn, on the same view. */
-#include "tests/bench/bench.h"
+/* bench_light: what a frame costs whose light alone moved, against a full frame: both by the clock,
+ * with the picture read back, in turn, on the same view. */
+#include "tests/bench/question.h"
 
+#include "tests/bench/timing.h"
+#include "tests/oracle/cage_file.h"
 #include "tests/oracle/scene.h"
-#include "tests/oracle/model.h"
 
 namespace
 {
@@ -13,7 +14,8 @@ void measure(report *report, table *table, const std::string &path, const char *
     scene scene(read_cage_file(path));
     drawing drawing(scene, device);
     frame_request request = scene.request(1920, 1080);
-    auto render = [&] { return time_ms([&] { drawing.times(request); }); };
+    note_device(report, drawing.info());
+    auto render = [&] { return drawing.cost(request).all_ms; };
     pair_of_samples pair = measure_pairs(
         report->given().runs,
         [&](int run) {
@@ -33,18 +35,15 @@ void measure(report *report, table *table, const std::string &path, const char *
     report->figure(name + " light/full", pair.ratio.median());
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+void ask(report *report)
 {
-    return bench_main("bench_light", [&] {
-        report report("bench_light", argc, argv, {"device"});
-        table table(
-            {"light only", "size", "full ms", "light ms", "least", "light's", "light/full"});
-        std::string device = report.given().other("device", "software");
-        for (const std::string &path : bench_models(report.given()))
-            measure(&report, &table, path, device.c_str());
-        table.print();
-        report.finish();
-    });
+    table table({"light only", "size", "full ms", "light ms", "least", "light's", "light/full"});
+    std::string device = report->given().device();
+    for (const std::string &path : bench_models(report->given()))
+        measure(report, &table, path, device.c_str());
+    table.print();
 }
+
+const question light("light", "a light-only change against a full frame", {"device"}, ask);
+
+} // namespace

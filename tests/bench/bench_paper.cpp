@@ -4,7 +4,7 @@
  *
  * The cage is a rolling sheet with vertices of valence 3 and 5 inside, drawn so large that every
  * pixel is covered. Position is visibility + evaluate, colour is shade. */
-#include "tests/bench/bench.h"
+#include "tests/bench/question.h"
 
 #include <array>
 #include <cmath>
@@ -12,6 +12,7 @@
 
 #include "tests/oracle/scene.h"
 #include "tests/bench/sheet.h"
+#include "tests/bench/timing.h"
 
 namespace
 {
@@ -45,22 +46,23 @@ void measure_fragments(report *report, const char *device)
     sheet sheet(60, 20, 48);
     scene scene(sheet.cage());
     drawing drawing(scene, device);
-    report->note("device", drawing.device());
-    table table({"fragments", "covered", "position ms", "colour ms", "both ms", "least",
+    note_device(report, drawing.info());
+    table table({"fragments", "covered", "position ms", "colour ms", "both ms", "least", "wall ms",
                  "paper's position", "colour", "both", "times as fast"});
     for (uint32_t side : {300u, 500u, 700u}) {
         frame_request request = scene.request(side, side);
         sheet.fill_view(&request.camera);
-        samples position, colour, both;
+        samples position, colour, both, wall;
         for (int run = 0; run <= report->given().runs; run++) {
             frame_request moved = request;
             moved.camera.target[0] += 1e-4 * run;
-            frame_times times = drawing.times(moved);
+            frame_cost cost = drawing.cost(moved);
             if (run == 0)
                 continue;
-            position.add((double)(times.visibility_us + times.evaluate_us) / 1000);
-            colour.add((double)times.shade_us / 1000);
-            both.add(stages_ms(times));
+            position.add((double)(cost.stages.visibility_us + cost.stages.evaluate_us) / 1000);
+            colour.add((double)cost.stages.shade_us / 1000);
+            both.add(cost.stages_ms());
+            wall.add(cost.wall_ms);
         }
         request.planes |= PLANE_NORMAL;
         frame frame = drawing.render(request);
@@ -71,12 +73,13 @@ void measure_fragments(report *report, const char *device)
         double paper_ms = 1000 * (paper_position_s + paper_colour_s);
         table.row({of, count((double)covered), number(position.median(), 1),
                    number(colour.median(), 1), number(both.median(), 1), number(both.least(), 1),
-                   known ? number(1000 * paper_position_s, 0) : "",
+                   number(wall.median(), 1), known ? number(1000 * paper_position_s, 0) : "",
                    known ? number(1000 * paper_colour_s, 0) : "", known ? number(paper_ms, 0) : "",
                    known ? number(paper_ms / both.median(), 1) : ""});
         report->figure(of + " position_ms", position.median());
         report->figure(of + " colour_ms", colour.median());
         report->figure(of + " both_ms", both.median());
+        report->figure(of + " wall_ms", wall.median());
         report->figure(of + " least both_ms", both.least());
         report->figure(of + " covered pixels", (double)covered);
         if (known)
@@ -85,14 +88,12 @@ void measure_fragments(report *report, const char *device)
     table.print();
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+void ask(report *report)
 {
-    return bench_main("bench_paper", [&] {
-        report report("bench_paper", argc, argv, {"device"});
-        measure_tables(&report);
-        measure_fragments(&report, report.given().other("device", "software").c_str());
-        report.finish();
-    });
+    measure_tables(report);
+    measure_fragments(report, report->given().device().c_str());
 }
+
+const question paper("paper", "the measurements of Yasui and Kanai (2004)", {"device"}, ask);
+
+} // namespace

@@ -2,7 +2,7 @@
  * build its tables in two threads, bytes a face, and a frame of 1280x720 that shows all of it, by a
  * view that stays. Cost of reading and building must grow with the number of faces and no faster,
  * that of a frame much slower: the last columns are against the first row's. */
-#include "tests/bench/bench.h"
+#include "tests/bench/question.h"
 
 #include <cmath>
 #include <cstdio>
@@ -10,17 +10,18 @@
 
 #include "tests/oracle/scene.h"
 #include "tests/bench/sheet.h"
-#include "tests/oracle/model.h"
-#include "tests/oracle/render.h"
+#include "tests/bench/timing.h"
+#include "tests/oracle/cage_file.h"
+#include "tests/oracle/folder.h"
 
 namespace
 {
 
 struct costs {
-    double faces, import_ms, tables_ms, bytes, first_ms, frame_ms;
+    double faces, import_ms, tables_ms, bytes, first_ms, frame_ms, wall_ms;
 };
 
-costs measure(const options &given, const char *device, int n)
+costs measure(report *report, const char *device, int n)
 {
     temporary_folder folder;
     std::string path = folder.file("sheet.obj");
@@ -34,43 +35,46 @@ costs measure(const options &given, const char *device, int n)
     costs.bytes = (double)tables->bytes() / costs.faces;
     drawing drawing(*tables, device);
     frame_request request = tables->request(1280, 720);
-    costs.first_ms = time_ms([&] { drawing.times(request); });
-    samples frames;
-    for (int run = 0; run < given.runs; run++) {
+    note_device(report, drawing.info());
+    costs.first_ms = drawing.cost(request).all_ms;
+    samples frames, walls;
+    for (int run = 0; run < report->given().runs; run++) {
         orbit(&request.camera, 0.1);
-        frames.add(stages_ms(drawing.times(request)));
+        frame_cost cost = drawing.cost(request);
+        frames.add(cost.stages_ms());
+        walls.add(cost.wall_ms);
     }
     costs.frame_ms = frames.median();
+    costs.wall_ms = walls.median();
     return costs;
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+void ask(report *report)
 {
-    return bench_main("bench_size", [&] {
-        report report("bench_size", argc, argv, {"device"});
-        std::string device = report.given().other("device", "software");
-        table table({"faces", "import ms", "tables ms", "B/face", "first frame ms", "frame ms",
-                     "import a face", "tables a face", "frame"});
-        costs first = {};
-        for (int n : {32, 100, 316, 1000}) {
-            costs c = measure(report.given(), device.c_str(), n);
-            if (n == 32)
-                first = c;
-            double faces = c.faces / first.faces;
-            table.row({count(c.faces), number(c.import_ms, 1), number(c.tables_ms, 1),
-                       number(c.bytes, 1), number(c.first_ms, 0), number(c.frame_ms, 1),
-                       number(c.import_ms / first.import_ms / faces, 2),
-                       number(c.tables_ms / first.tables_ms / faces, 2),
-                       number(c.frame_ms / first.frame_ms, 1)});
-            std::string key = number(c.faces, 0) + " faces ";
-            report.figure(key + "import_ms", c.import_ms);
-            report.figure(key + "tables_ms", c.tables_ms);
-            report.figure(key + "bytes_a_face", c.bytes);
-            report.figure(key + "frame_ms", c.frame_ms);
-        }
-        table.print();
-        report.finish();
-    });
+    std::string device = report->given().device();
+    table table({"faces", "import ms", "tables ms", "B/face", "first frame ms", "frame ms",
+                 "wall ms", "import a face", "tables a face", "frame"});
+    costs first = {};
+    for (int n : {32, 100, 316, 1000}) {
+        costs c = measure(report, device.c_str(), n);
+        if (n == 32)
+            first = c;
+        double faces = c.faces / first.faces;
+        table.row({count(c.faces), number(c.import_ms, 1), number(c.tables_ms, 1),
+                   number(c.bytes, 1), number(c.first_ms, 0), number(c.frame_ms, 1),
+                   number(c.wall_ms, 1), number(c.import_ms / first.import_ms / faces, 2),
+                   number(c.tables_ms / first.tables_ms / faces, 2),
+                   number(c.frame_ms / first.frame_ms, 1)});
+        std::string key = number(c.faces, 0) + " faces ";
+        report->figure(key + "import_ms", c.import_ms);
+        report->figure(key + "tables_ms", c.tables_ms);
+        report->figure(key + "bytes_a_face", c.bytes);
+        report->figure(key + "frame_ms", c.frame_ms);
+        report->figure(key + "wall_ms", c.wall_ms);
+    }
+    table.print();
 }
+
+const question size("size", "faces from 10^3 to 10^6: reading, tables, a frame", {"device"}, ask);
+
+} // namespace

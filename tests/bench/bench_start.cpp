@@ -2,7 +2,7 @@
  * that starts a daemon of its own: connect, upload, a frame of 640x480. Planes, which sheend packs
  * itself, and a PNG file, for which sheend-image loads its libraries first, in turn. The caches of
  * the system and of the driver are warm: an unmeasured pair goes first. */
-#include "tests/bench/bench.h"
+#include "tests/bench/question.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -72,19 +72,18 @@ void measure(report *report, table *table, const std::string &path, const char *
     report->figure(name + " first_png_ms", pair.b.median());
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+void ask(report *report)
 {
-    return bench_main("bench_start", [&] {
-        report report("bench_start", argc, argv, {"device", "sheend"});
-        const options &given = report.given();
-        setenv("SHEEN_DAEMON", given.other("sheend", "build/sheend").c_str(), 1);
-        table table({"start", "faces", "planes ms", "least", "PNG ms", "least"});
-        std::string device = given.other("device", "software");
-        for (const std::string &path : bench_models(given))
-            measure(&report, &table, path, device.c_str());
-        table.print();
-        report.finish();
-    });
+    const options &given = report->given();
+    setenv("SHEEN_DAEMON", given.other("sheend", "build/sheend").c_str(), 1);
+    table table({"start", "faces", "planes ms", "least", "PNG ms", "least"});
+    std::string device = given.device();
+    for (const std::string &path : bench_models(given))
+        measure(report, &table, path, device.c_str());
+    table.print();
 }
+
+const question start("start", "a private daemon from its start to its first frame",
+                     {"device", "sheend"}, ask);
+
+} // namespace

@@ -4,7 +4,7 @@
  * Latency is from request to decoded frame, one in flight. "daemon's" is what the daemon took from
  * request to answer beyond the render (visibility, evaluate, shade, readback), encoding included.
  * Then two in flight: frames a second, and how much of the render's own rate in that time it is. */
-#include "tests/bench/bench.h"
+#include "tests/bench/question.h"
 
 #include <cstring>
 #include <fstream>
@@ -163,25 +163,23 @@ void measure_transport(report *report, table *table, const std::string &transpor
     }
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+void ask(report *report)
 {
-    return bench_main("bench_wire", [&] {
-        report report("bench_wire", argc, argv, {"device", "sheend", "frames"});
-        const options &given = report.given();
-        int frames = std::stoi(given.other("frames", "20"));
-        std::vector<std::string> models = bench_models(given);
-        if (models.empty() || frames < 1)
-            throw std::invalid_argument("a model and at least one frame are needed");
-        daemon_process daemon(given.other("sheend", "build/sheend"),
-                              given.other("device", "software"));
-        report.note("model", model_name(models[0]));
-        table table({"wire", "coding", "bytes", "render ms", "daemon's ms", "p50 ms", "p95", "p99",
-                     "frames/s of 2", "of render rate", "daemon CPU ms"});
-        measure_transport(&report, &table, "unix", daemon.unix_address, daemon, models[0], frames);
-        measure_transport(&report, &table, "tcp", daemon.tcp_address, daemon, models[0], frames);
-        table.print();
-        report.finish();
-    });
+    const options &given = report->given();
+    int frames = std::stoi(given.other("frames", "20"));
+    std::vector<std::string> models = bench_models(given);
+    if (models.empty() || frames < 1)
+        throw std::invalid_argument("a model and at least one frame are needed");
+    daemon_process daemon(given.other("sheend", "build/sheend"), given.device());
+    report->note("model", model_name(models[0]));
+    table table({"wire", "coding", "bytes", "render ms", "daemon's ms", "p50 ms", "p95", "p99",
+                 "frames/s of 2", "of render rate", "daemon CPU ms"});
+    measure_transport(report, &table, "unix", daemon.unix_address, daemon, models[0], frames);
+    measure_transport(report, &table, "tcp", daemon.tcp_address, daemon, models[0], frames);
+    table.print();
 }
+
+const question wire("wire", "frames a second, bytes and latency of a daemon",
+                    {"device", "sheend", "frames"}, ask);
+
+} // namespace

@@ -1,7 +1,7 @@
 /* bench_worker [--workers FOLDER]: what a process of its own costs a job: pictures of
  * 1920x1080 written in this process and by sheend-image, in turn; and the least job of each worker,
  * a cage of one face and an image of one pixel. */
-#include "tests/bench/bench.h"
+#include "tests/bench/question.h"
 
 #include <cstdlib>
 #include <stdexcept>
@@ -120,23 +120,20 @@ void measure_least(report *report, workers *workers)
     report->figure("image job_ms", pair.b.median());
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+void ask(report *report)
 {
-    return bench_main("bench_worker", [&] {
-        report report("bench_worker", argc, argv, {"workers"});
-        workers workers;
-        error error = {};
-        limits limits;
-        limits_init(&limits);
-        image_use_one_thread();
-        check(workers_init(&workers, report.given().other("workers", "build").c_str(), &limits,
-                           &error),
-              error);
-        measure_least(&report, &workers);
-        measure_pictures(&report, &workers);
-        workers_finish(&workers);
-        report.finish();
-    });
+    workers workers;
+    error error = {};
+    limits limits;
+    limits_init(&limits);
+    image_use_one_thread();
+    check(workers_init(&workers, report->given().other("workers", "build").c_str(), &limits, &error),
+          error);
+    measure_least(report, &workers);
+    measure_pictures(report, &workers);
+    workers_finish(&workers);
 }
+
+const question worker("worker", "what jobs cost in worker processes", {"workers"}, ask);
+
+} // namespace

@@ -1,7 +1,29 @@
 #include "tests/oracle/cage_file.h"
 
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
+
+extern "C" {
+#include "server/cage/read/read.h"
+}
+
+std::shared_ptr<const cage> read_cage_file(const std::string &path)
+{
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw std::runtime_error(path + ": cannot be opened");
+    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    error error;
+    std::shared_ptr<struct cage> cage(new struct cage(), [](struct cage *c) {
+        cage_finish(c);
+        delete c;
+    });
+    if (!cage_read(cage.get(), bytes.data(), bytes.size(), path.c_str(), &error))
+        throw std::runtime_error(path + ": " + error.text);
+    return cage;
+}
 
 loose_cage::loose_cage(const cage &cage)
     : creases(cage.crease, cage.crease + cage.n_creases),

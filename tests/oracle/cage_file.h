@@ -1,9 +1,10 @@
-/* Cages taken apart, put together differently, and written as OBJ. */
+/* Cages read from files, taken apart, put together differently, and written as OBJ. */
 #ifndef SHEEN_TESTS_ORACLE_CAGE_FILE_H
 #define SHEEN_TESTS_ORACLE_CAGE_FILE_H
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@
 extern "C" {
 #include "server/cage/cage.h"
 }
+
+/* Throws std::runtime_error, with the path in it, when the file cannot be read. */
+std::shared_ptr<const struct cage> read_cage_file(const std::string &path);
 
 /* A cage that owns its parts and lets them be changed. */
 struct loose_cage {

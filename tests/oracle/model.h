@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/oracle/cage_file.h"
 #include "tests/oracle/osd_oracle.h"
 
 struct model {
@@ -23,9 +24,6 @@ struct model {
         return length(box_max - box_min);
     }
 };
-
-/* Throws std::runtime_error, with the path in it, when the file cannot be read. */
-std::shared_ptr<const struct cage> read_cage_file(const std::string &path);
 
 /* Throws as read_cage_file(), and when the cage cannot be evaluated. */
 model read_model(const std::string &path);

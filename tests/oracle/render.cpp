@@ -1,10 +1,8 @@
 #include "tests/oracle/render.h"
 
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <spawn.h>
@@ -145,20 +143,6 @@ planes read_planes(const std::string &path, const std::string &aov)
         throw std::runtime_error(path + ": " + failure.what());
     }
     return planes;
-}
-
-temporary_folder::temporary_folder()
-{
-    const char *parent = std::getenv("TMPDIR");
-    path = std::string(parent && *parent ? parent : "/tmp") + "/sheen-oracle-XXXXXX";
-    if (!mkdtemp(path.data()))
-        throw std::runtime_error("cannot make a temporary folder like " + path);
-}
-
-temporary_folder::~temporary_folder()
-{
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
 }
 
 program_result run_program(const std::vector<std::string> &arguments,

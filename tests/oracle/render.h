@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/oracle/folder.h"
 #include "tests/oracle/vec.h"
 
 const uint32_t no_face = 0xffffffffu;
@@ -36,23 +37,6 @@ struct planes {
  * no EXR of one part, or a plane of `aov` (comma-separated, as in --aov) is missing or of another
  * type than promised. */
 planes read_planes(const std::string &path, const std::string &aov);
-
-/* A folder of its own under TMPDIR that is removed with everything in it. */
-class temporary_folder
-{
-  public:
-    temporary_folder();
-    ~temporary_folder();
-    temporary_folder(const temporary_folder &) = delete;
-    temporary_folder &operator=(const temporary_folder &) = delete;
-    std::string file(const std::string &name) const
-    {
-        return path + "/" + name;
-    }
-
-  private:
-    std::string path;
-};
 
 struct program_result {
     int exit_code = -1; /* -1: it could not be run, was killed or took too long */

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <thread>
@@ -109,17 +110,16 @@ frame drawing::render(const frame_request &request)
     return frame;
 }
 
-frame_times drawing::times(const frame_request &request)
+frame_cost drawing::cost(const frame_request &request)
 {
+    using clock = std::chrono::steady_clock;
+    clock::time_point start = clock::now();
     frame frame = render(request);
-    frame_times times = frame.times; /* finishing forgets them */
+    std::chrono::duration<double, std::milli> all = clock::now() - start;
+    frame_cost cost = {frame.times, all.count(),
+                       all.count() - (double)frame.times.readback_us / 1000};
     frame_finish(&frame);
-    return times;
-}
-
-double stages_ms(const frame_times &times)
-{
-    return (double)(times.visibility_us + times.evaluate_us + times.shade_us) / 1000;
+    return cost;
 }
 
 void orbit(camera *camera, double degrees)

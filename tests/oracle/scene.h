@@ -33,6 +33,19 @@ class scene
     limit_tables tables = {};
 };
 
+/* What a frame cost. */
+struct frame_cost {
+    frame_times stages;
+    double all_ms;  /* from the request to the planes in memory, by the clock */
+    double wall_ms; /* the same without reading back */
+
+    /* Visibility, evaluate and shade, in milliseconds. */
+    double stages_ms() const
+    {
+        return (double)(stages.visibility_us + stages.evaluate_us + stages.shade_us) / 1000;
+    }
+};
+
 /* The renderer with one scene's tables on its device. */
 class drawing
 {
@@ -42,23 +55,19 @@ class drawing
     drawing(const drawing &) = delete;
     drawing &operator=(const drawing &) = delete;
 
-    /* What the device calls itself. */
-    std::string device() const
+    const struct renderer_info &info() const
     {
-        return renderer_info(renderer)->device;
+        return *renderer_info(renderer);
     }
     /* The caller gives the frame back with frame_finish(). */
     frame render(const frame_request &request);
     /* Renders and drops the picture. */
-    frame_times times(const frame_request &request);
+    frame_cost cost(const frame_request &request);
 
   private:
     struct renderer *renderer;
     struct renderer_model *model;
 };
-
-/* Visibility, evaluate and shade, in milliseconds. */
-double stages_ms(const frame_times &times);
 
 /* The eye goes about the target along up. Frames of different cameras share no planes. */
 void orbit(camera *camera, double degrees);

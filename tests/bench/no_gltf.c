@@ -1,0 +1,10 @@
+/* Stands in for the reader of glTF in a program that shall need nothing of tinygltf. */
+#include "server/cage/read/gltf.h"
+
+bool gltf_read(struct cage_builder *builder, const void *bytes, size_t size, const char *name,
+               struct error *error)
+{
+    (void)builder, (void)bytes, (void)size;
+    return error_set(error, ERROR_MODEL,
+                     "%s: this program reads OBJ alone: give it the cage as OBJ", name);
+}

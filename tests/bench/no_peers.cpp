@@ -1,0 +1,11 @@
+#include "tests/bench/peers.h"
+
+std::vector<frame_peer_kind> frame_peers()
+{
+    return {};
+}
+
+std::vector<tables_peer> tables_peers()
+{
+    return {};
+}
