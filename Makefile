@@ -192,9 +192,10 @@ BENCH_LIBS := -losdCPU $(TEST_LIBS)
 # The peer gets what its users would give it: all of this processor.
 EMBREE_OBJ := $(call obj,tests/bench/embree.cpp)
 $(EMBREE_OBJ): CXXFLAGS += -O3 -march=native -ffp-contract=fast
-$(BUILD)/tests/bench_frame: $(call obj,tests/bench/frame_peers.cpp) $(EMBREE_OBJ)
-$(BUILD)/tests/bench_frame: BENCH_LIBS += -lembree3
-$(BUILD)/tests/bench_tables: $(call obj,tests/bench/tables_peers.cpp) $(call obj,tests/bench/osd_patches.cpp)
+OSD_PATCHES_OBJ := $(call obj,tests/bench/osd_patches.cpp)
+$(BUILD)/tests/bench_frame: $(call obj,$(patsubst %,tests/bench/%.cpp,frame_peers osd_drawing)) $(OSD_PATCHES_OBJ) $(EMBREE_OBJ)
+$(BUILD)/tests/bench_frame: BENCH_LIBS := -losdGPU $(BENCH_LIBS) -lembree3
+$(BUILD)/tests/bench_tables: $(call obj,tests/bench/tables_peers.cpp) $(OSD_PATCHES_OBJ)
 $(BUILD)/tests/bench_wire: $(call obj,tests/bench/daemon.cpp)
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_MAIN) $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
