@@ -17,6 +17,16 @@ static void json_times(struct json *json, const char *key, const struct sheen_ti
     json_object_end(json);
 }
 
+static void json_latency(struct json *json, const char *key, const struct sheen_latency *latency)
+{
+    json_object_begin(json, key);
+    json_uint(json, "frames", latency->frames);
+    json_uint(json, "p50_us", latency->p50_us);
+    json_uint(json, "p95_us", latency->p95_us);
+    json_uint(json, "p99_us", latency->p99_us);
+    json_object_end(json);
+}
+
 static void print_json(struct json *json, const struct sheen_stats *stats)
 {
     json_object_begin(json, NULL);
@@ -46,6 +56,12 @@ static void print_json(struct json *json, const struct sheen_stats *stats)
     json_uint(json, "window_us", stats->window_us);
     json_double(json, "requests_per_s", per_second(stats, stats->window_requests));
     json_double(json, "frames_per_s", per_second(stats, stats->window_frames));
+    json_double(json, "sent_bytes_per_s", per_second(stats, stats->window_sent_bytes));
+    json_object_begin(json, "latency");
+    json_latency(json, "interactive", &stats->interactive);
+    json_latency(json, "still", &stats->still);
+    json_latency(json, "batch", &stats->batch);
+    json_object_end(json);
     json_times(json, "p50", &stats->p50);
     json_times(json, "p95", &stats->p95);
     json_times(json, "p99", &stats->p99);
@@ -61,6 +77,14 @@ static void print_times(const char *name, const struct sheen_times *times)
     for (size_t i = 0; i < sizeof(us) / sizeof(*us); i++)
         printf(" %10.2f", (double)us[i] / 1e3);
     putchar('\n');
+}
+
+static void print_latency(const char *name, const struct sheen_stats *stats,
+                          const struct sheen_latency *latency)
+{
+    printf("%-12s %10" PRIu64 " %10.1f %10.2f %10.2f %10.2f\n", name, latency->frames,
+           per_second(stats, latency->frames), (double)latency->p50_us / 1e3,
+           (double)latency->p95_us / 1e3, (double)latency->p99_us / 1e3);
 }
 
 static void print_table(const struct sheen_stats *stats)
@@ -81,9 +105,14 @@ static void print_table(const struct sheen_stats *stats)
            stats->model_bytes, stats->images);
     printf("%-10s %" PRIu64 " bytes in, %" PRIu64 " bytes out\n", "traffic", stats->uploads_bytes,
            stats->sent_bytes);
-    printf("%-10s %.1f requests/s, %.1f frames/s over the last %.0f s\n", "rates",
+    printf("%-10s %.1f requests/s, %.1f frames/s, %.0f bytes/s over the last %.0f s\n", "rates",
            per_second(stats, stats->window_requests), per_second(stats, stats->window_frames),
-           (double)stats->window_us / 1e6);
+           per_second(stats, stats->window_sent_bytes), (double)stats->window_us / 1e6);
+    printf("%-12s %10s %10s %10s %10s %10s\n", "ms of class", "frames", "frames/s", "p50", "p95",
+           "p99");
+    print_latency("interactive", stats, &stats->interactive);
+    print_latency("still", stats, &stats->still);
+    print_latency("batch", stats, &stats->batch);
     printf("%-10s %10s %10s %10s %10s %10s %10s %10s\n", "ms a frame", "tables", "visibility",
            "evaluate", "shade", "readback", "encode", "total");
     print_times("mean", &stats->mean);
@@ -115,9 +144,10 @@ const struct command COMMAND_STATS = {
     .name = "stats",
     .arguments = "[option]...",
     .summary =
-        "Says what a daemon is doing: how much, how fast (rates and percentiles of the last\n"
-        "minute, the mean of the last 64 frames). Without a server it tells of a fresh\n"
-        "private daemon: the device that this machine has.",
+        "Says what a daemon is doing: how much, how fast. Of the last minute: rates, percentiles\n"
+        "of each stage, and by class those of a frame's way from the request's last byte to the\n"
+        "answer's first; and the mean of the last 64 frames. Without a server it tells of a\n"
+        "fresh private daemon: the device that this machine has.",
     .tables = TABLES,
     .examples = "  sheen stats --server unix:/run/sheen.sock\n"
                 "  sheen stats --json\n",

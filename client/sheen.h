@@ -399,6 +399,12 @@ void sheen_frame_finish(struct sheen_frame *frame); /* frees and zeroes it; a ze
 
 /* ---- statistics ---- */
 
+/* Of a class's frames in the last minute: from the request's last byte to the answer's first, to
+ * 3 %; zeros when there were none. */
+struct sheen_latency {
+    uint64_t frames, p50_us, p95_us, p99_us;
+};
+
 struct sheen_stats {
     uint64_t uptime_us;
     uint32_t sessions, queued; /* now */
@@ -414,6 +420,8 @@ struct sheen_stats {
     /* The last minute, or what of it there has been; window_us is 0 when the daemon is too old to
      * say. Percentiles are of each stage by itself, to 3 %; 0: no frame needed it. */
     uint64_t window_us, window_requests, window_frames;
+    uint64_t window_sent_bytes; /* since the first of its answers */
+    struct sheen_latency interactive, still, batch;
     struct sheen_times p50, p95, p99;
     char device[128], driver[128], server[32];
     bool software;

@@ -4,6 +4,12 @@
 #include "client/status.h"
 #include "client/times.h"
 
+static struct sheen_latency latency_from_message(const sheen_Latency *latency)
+{
+    return (struct sheen_latency){latency->frames, latency->p50_us, latency->p95_us,
+                                  latency->p99_us};
+}
+
 enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_stats *stats,
                                     struct sheen_error *error)
 {
@@ -43,6 +49,10 @@ enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_
         .window_us = body.window_us,
         .window_requests = body.window_requests,
         .window_frames = body.window_frames,
+        .window_sent_bytes = body.window_sent_bytes,
+        .interactive = latency_from_message(&body.interactive),
+        .still = latency_from_message(&body.still),
+        .batch = latency_from_message(&body.batch),
         .p50 = times_from_message(&body.p50),
         .p95 = times_from_message(&body.p95),
         .p99 = times_from_message(&body.p99),

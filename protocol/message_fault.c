@@ -33,6 +33,7 @@ NAMES(sheen_Render);
 NAMES(sheen_Times);
 NAMES(sheen_Frame);
 NAMES(sheen_Progress);
+NAMES(sheen_Latency);
 NAMES(sheen_Stats);
 NAMES(sheen_Error);
 
@@ -50,7 +51,7 @@ static const struct {
     MESSAGE(sheen_Camera),     MESSAGE(sheen_Pattern),      MESSAGE(sheen_Light),
     MESSAGE(sheen_Lines),      MESSAGE(sheen_Show),         MESSAGE(sheen_Render),
     MESSAGE(sheen_Times),      MESSAGE(sheen_Frame),        MESSAGE(sheen_Progress),
-    MESSAGE(sheen_Stats),      MESSAGE(sheen_Error),
+    MESSAGE(sheen_Latency),    MESSAGE(sheen_Stats),        MESSAGE(sheen_Error),
 };
 
 #define MAX_TAG 64    /* above every tag of sheen.proto */

@@ -203,7 +203,7 @@ static void answer_frame(struct request *request, struct encoded *encoded)
     request->times.tables_us = request->model.asset->unreported_us;
     request->times.total_us = now - request->start_us;
     request->model.asset->unreported_us = 0;
-    stats_frame(&request->host->stats, &request->times, now);
+    stats_frame(&request->host->stats, request->entry.request_class, &request->times, now);
     sheen_Frame frame;
     fill_frame(request, encoded, &frame);
     session_answer_frame(request->session, request->answer, request->entry.request_class, &frame,

@@ -312,7 +312,7 @@ static void handle_query(struct session *session, uint32_t seq, const sheen_Mode
         request_query(session, answer, seq, query);
 }
 
-/* The last minute: rates, and percentiles of each stage. */
+/* The last minute: rates, and percentiles of each stage and of each class. */
 static void add_recent(sheen_Stats *body, const struct stats *stats)
 {
     struct stats_recent recent;
@@ -325,6 +325,12 @@ static void add_recent(sheen_Stats *body, const struct stats *stats)
     body->p50 = recent.p50;
     body->p95 = recent.p95;
     body->p99 = recent.p99;
+    body->has_window_sent_bytes = true;
+    body->window_sent_bytes = recent.sent_bytes;
+    body->has_interactive = body->has_still = body->has_batch = true;
+    body->interactive = recent.latency[CLASS_INTERACTIVE];
+    body->still = recent.latency[CLASS_STILL];
+    body->batch = recent.latency[CLASS_BATCH];
 }
 
 static void reply_stats(struct session *session, uint32_t seq)

@@ -13,7 +13,7 @@ static struct stats_slice *slice_now(struct stats *stats, uint64_t now_us)
     uint64_t number = (now_us - stats->start_us) / STATS_SLICE_US;
     struct stats_slice *slice = &stats->slices[number % STATS_SLICES];
     if (slice->number != number)
-        *slice = (struct stats_slice){.number = number};
+        *slice = (struct stats_slice){.number = number, .sent_before = stats->sent_bytes};
     return slice;
 }
 
@@ -38,7 +38,8 @@ void stats_answer(struct stats *stats, uint8_t type, sheen_ErrorCode code, uint6
     slice->frames += type == MESSAGE_FRAME;
 }
 
-void stats_frame(struct stats *stats, const sheen_Times *times, uint64_t now_us)
+void stats_frame(struct stats *stats, enum request_class request_class, const sheen_Times *times,
+                 uint64_t now_us)
 {
     struct stats_slice *slice = slice_now(stats, now_us);
     for (unsigned stage = 0; stage < STAGE_COUNT; stage++) {
@@ -48,6 +49,7 @@ void stats_frame(struct stats *stats, const sheen_Times *times, uint64_t now_us)
         histogram_add(&stats->stage[stage], us);
         histogram_add(&slice->stage[stage], us);
     }
+    histogram_add(&slice->latency[request_class], times->total_us);
     stats->last[stats->stage[STAGE_TOTAL].n % STATS_FRAMES] = *times;
 }
 
@@ -84,21 +86,37 @@ static void percentiles(const struct histogram stage[static STAGE_COUNT], double
         *member[i] = histogram_percentile(&stage[i], p);
 }
 
+static sheen_Latency latency_of(const struct histogram *histogram)
+{
+    return (sheen_Latency){.frames = histogram->n,
+                           .p50_us = histogram_percentile(histogram, 0.5),
+                           .p95_us = histogram_percentile(histogram, 0.95),
+                           .p99_us = histogram_percentile(histogram, 0.99)};
+}
+
 void stats_recent(const struct stats *stats, uint64_t now_us, struct stats_recent *recent)
 {
-    struct histogram stage[STAGE_COUNT] = {{0}};
+    struct histogram stage[STAGE_COUNT] = {{0}}, latency[N_CLASSES] = {{0}};
     uint64_t age = now_us - stats->start_us, number = age / STATS_SLICE_US;
     uint64_t first = number >= STATS_SLICES ? number - STATS_SLICES + 1 : 0;
+    const struct stats_slice *oldest = NULL; /* with an answer in it */
     *recent = (struct stats_recent){.window_us = age - first * STATS_SLICE_US};
     for (unsigned i = 0; i < STATS_SLICES; i++) {
         const struct stats_slice *slice = &stats->slices[i];
         if (slice->number < first)
             continue;
+        if (slice->requests && (!oldest || slice->number < oldest->number))
+            oldest = slice;
         recent->requests += slice->requests;
         recent->frames += slice->frames;
         for (unsigned k = 0; k < STAGE_COUNT; k++)
             histogram_merge(&stage[k], &slice->stage[k]);
+        for (unsigned k = 0; k < N_CLASSES; k++)
+            histogram_merge(&latency[k], &slice->latency[k]);
     }
+    recent->sent_bytes = oldest ? stats->sent_bytes - oldest->sent_before : 0;
+    for (unsigned k = 0; k < N_CLASSES; k++)
+        recent->latency[k] = latency_of(&latency[k]);
     percentiles(stage, 0.5, &recent->p50);
     percentiles(stage, 0.95, &recent->p95);
     percentiles(stage, 0.99, &recent->p99);

@@ -5,6 +5,7 @@
 
 #include "protocol/message.h"
 #include "server/service/histogram.h"
+#include "server/service/scheduler.h"
 
 #define STATS_FRAMES 64 /* that the mean times are of */
 /* The last minute is kept in slices, of which the oldest is forgotten as a whole. */
@@ -39,7 +40,9 @@ enum stats_end {
 struct stats_slice {
     uint64_t number; /* of the slice since the start */
     uint64_t requests, frames;
+    uint64_t sent_before; /* stats.sent_bytes when the slice began */
     struct histogram stage[STAGE_COUNT];
+    struct histogram latency[N_CLASSES]; /* total_us of the frames of a class */
 };
 
 struct stats {
@@ -62,14 +65,17 @@ struct stats {
 struct stats_recent {
     uint64_t window_us; /* what it is of */
     uint64_t requests, frames;
-    sheen_Times p50, p95, p99; /* of each stage by itself; 0: no frame needed it */
+    uint64_t sent_bytes;              /* since the first of its answers */
+    sheen_Latency latency[N_CLASSES]; /* by enum request_class */
+    sheen_Times p50, p95, p99;        /* of each stage by itself; 0: no frame needed it */
 };
 
 void stats_init(struct stats *stats);
 /* An answer of this type is ready; `code` is that of an ERROR. */
 void stats_answer(struct stats *stats, uint8_t type, sheen_ErrorCode code, uint64_t now_us);
 /* The times of a FRAME, which stats_answer() counts. */
-void stats_frame(struct stats *stats, const sheen_Times *times, uint64_t now_us);
+void stats_frame(struct stats *stats, enum request_class request_class, const sheen_Times *times,
+                 uint64_t now_us);
 /* Mean over the last frames, at most STATS_FRAMES; zeros before the first. */
 sheen_Times stats_mean(const struct stats *stats);
 void stats_recent(const struct stats *stats, uint64_t now_us, struct stats_recent *recent);

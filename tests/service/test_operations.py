@@ -551,8 +551,17 @@ class Stats(unittest.TestCase):
         self.assertLessEqual(stats["p95"]["total_us"], stats["p99"]["total_us"])
         self.assertAlmostEqual(stats["frames_per_s"] * stats["window_us"] / 1e6, 20, places=6)
         self.assertGreater(stats["requests_per_s"], stats["frames_per_s"])
+        latency = stats["latency"]
+        self.assertEqual([latency[name]["frames"] for name in ("interactive", "still", "batch")],
+                         [0, 20, 0])
+        for p in "p50", "p95", "p99":
+            self.assertEqual(latency["still"][p + "_us"], stats[p]["total_us"])
+            self.assertEqual(latency["batch"][p + "_us"], 0)
+        sent = stats["sent_bytes_per_s"] * stats["window_us"] / 1e6
+        self.assertGreater(sent, 20 * 64 * 48 * 4)
+        self.assertLessEqual(sent, stats["sent_bytes"])
         table = subprocess.run([SHEEN, "stats", "--server", daemon.unix], capture_output=True,
                                text=True, timeout=60).stdout
-        for words in ("frames/s", "p50", "p95", "p99", "ms a frame"):
+        for words in ("frames/s", "bytes/s", "p50", "p95", "p99", "ms a frame", "interactive"):
             self.assertIn(words, table)
         self.assertEqual(daemon.stop(), 0)

@@ -86,11 +86,11 @@ static void test_mean_of_the_last(void **test_state)
     stats_init(&stats);
     assert_int_equal(stats_mean(&stats).total_us, 0);
     const sheen_Times slow = {.total_us = 1000000}, fast = {.total_us = 10, .encode_us = 4};
-    stats_frame(&stats, &slow, stats.start_us);
-    stats_frame(&stats, &fast, stats.start_us);
+    stats_frame(&stats, CLASS_STILL, &slow, stats.start_us);
+    stats_frame(&stats, CLASS_STILL, &fast, stats.start_us);
     assert_int_equal(stats_mean(&stats).total_us, 500005);
     for (int i = 0; i < STATS_FRAMES; i++)
-        stats_frame(&stats, &fast, stats.start_us);
+        stats_frame(&stats, CLASS_STILL, &fast, stats.start_us);
     assert_int_equal(stats_mean(&stats).total_us, 10);
     assert_int_equal(stats_mean(&stats).encode_us, 4);
     assert_int_equal(stats.stage[STAGE_TOTAL].n, STATS_FRAMES + 2);
@@ -98,11 +98,17 @@ static void test_mean_of_the_last(void **test_state)
     assert_int_equal(stats.stage[STAGE_TABLES].n, 0);
 }
 
-static void answer(struct stats *stats, uint64_t total_us, uint64_t now_us)
+static void answer_of(struct stats *stats, enum request_class request_class, uint64_t total_us,
+                      uint64_t now_us)
 {
     const sheen_Times times = {.total_us = total_us};
     stats_answer(stats, MESSAGE_FRAME, sheen_ErrorCode_ERROR_NONE, now_us);
-    stats_frame(stats, &times, now_us);
+    stats_frame(stats, request_class, &times, now_us);
+}
+
+static void answer(struct stats *stats, uint64_t total_us, uint64_t now_us)
+{
+    answer_of(stats, CLASS_STILL, total_us, now_us);
 }
 
 static void test_the_last_minute(void **test_state)
@@ -145,6 +151,58 @@ static void test_the_last_minute(void **test_state)
     assert_int_equal(recent.frames, 1);
 }
 
+static void test_latency_by_class(void **test_state)
+{
+    (void)test_state;
+    static struct stats stats;
+    struct stats_recent recent;
+    stats_init(&stats);
+    const uint64_t start = stats.start_us, second = 1000000;
+    for (uint64_t i = 1; i <= 100; i++)
+        answer_of(&stats, CLASS_INTERACTIVE, i <= 50 ? 8 : i <= 95 ? 10 : 12, start);
+    answer_of(&stats, CLASS_BATCH, 15, start + 30 * second);
+    stats_recent(&stats, start + 30 * second, &recent);
+    const sheen_Latency *interactive = &recent.latency[CLASS_INTERACTIVE];
+    assert_int_equal(interactive->frames, 100);
+    assert_int_equal(interactive->p50_us, 8);
+    assert_int_equal(interactive->p95_us, 10);
+    assert_int_equal(interactive->p99_us, 12);
+    assert_int_equal(recent.latency[CLASS_STILL].frames, 0);
+    assert_int_equal(recent.latency[CLASS_STILL].p99_us, 0);
+    assert_int_equal(recent.latency[CLASS_BATCH].frames, 1);
+    assert_int_equal(recent.latency[CLASS_BATCH].p50_us, 15);
+    /* The interactive ones have become too old. */
+    stats_recent(&stats, start + 70 * second, &recent);
+    assert_int_equal(recent.latency[CLASS_INTERACTIVE].frames, 0);
+    assert_int_equal(recent.latency[CLASS_BATCH].frames, 1);
+}
+
+static void test_sent_bytes(void **test_state)
+{
+    (void)test_state;
+    static struct stats stats;
+    struct stats_recent recent;
+    stats_init(&stats);
+    const uint64_t start = stats.start_us, second = 1000000;
+    answer_of(&stats, CLASS_STILL, 8, start);
+    stats.sent_bytes += 1000; /* as a connection counts them */
+    stats_recent(&stats, start + second, &recent);
+    assert_int_equal(recent.sent_bytes, 1000);
+    answer_of(&stats, CLASS_STILL, 8, start + 35 * second);
+    stats.sent_bytes += 70;
+    answer_of(&stats, CLASS_STILL, 8, start + 45 * second);
+    stats.sent_bytes += 5;
+    stats_recent(&stats, start + 50 * second, &recent);
+    assert_int_equal(recent.sent_bytes, 1075);
+    /* What went out before the window is in the sum alone. */
+    stats_recent(&stats, start + 65 * second, &recent);
+    assert_int_equal(recent.sent_bytes, 75);
+    stats_recent(&stats, start + 99 * second, &recent);
+    assert_int_equal(recent.sent_bytes, 5);
+    stats_recent(&stats, start + 3600 * second, &recent);
+    assert_int_equal(recent.sent_bytes, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -153,6 +211,8 @@ int main(void)
         cmocka_unit_test(test_ends),
         cmocka_unit_test(test_mean_of_the_last),
         cmocka_unit_test(test_the_last_minute),
+        cmocka_unit_test(test_latency_by_class),
+        cmocka_unit_test(test_sent_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
