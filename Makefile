@@ -7,7 +7,8 @@
 #   make fuzz-coverage   lines of protocol/, the readers and the workers' messages that the corpora reach
 #   make soak       the service under load, SECONDS of each part (60), and 102 processes killed; prints
 #                   figures, judges ratios
-#   make bench      how fast, each question by a program of tests/bench; figures to build/bench
+#   make bench      how fast, each question by a program of tests/bench, RUNS=9 of each; figures to
+#                   build/bench, and at the end every ratio beside the last run's
 #   make sheen-bench   the renderer's questions without peers, for a machine with EGL, libepoxy and no more
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
@@ -26,6 +27,7 @@ SANITIZE ?=
 FUZZ ?=
 COVERAGE ?=
 SECONDS ?= 60
+RUNS ?= 9
 
 comma := ,
 BUILD := build$(if $(FUZZ),/fuzz,$(if $(COVERAGE),/coverage,$(if $(SANITIZE),$(if $(filter thread,$(SANITIZE)),/thread,/sanitize))))
@@ -243,7 +245,7 @@ soak: all $(BUILD)/sheend-faults
 
 # One after the other: each wants the machine for itself.
 bench: all $(BENCH) $(BUILD)/sheen-bench
-	for bench in $(BENCH); do $$bench --folder $(BUILD)/bench || exit 1; done
+	for bench in $(BENCH); do $$bench --runs $(RUNS) --folder $(BUILD)/bench || exit 1; done
 	/usr/bin/python3 tests/bench/summary.py $(BUILD)/bench
 
 lint:

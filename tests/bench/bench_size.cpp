@@ -71,6 +71,7 @@ void ask(report *report)
         report->figure(key + "bytes_a_face", c.bytes);
         report->figure(key + "frame_ms", c.frame_ms);
         report->figure(key + "wall_ms", c.wall_ms);
+        report->figure(key + "frame/first", c.frame_ms / first.frame_ms);
     }
     table.print();
 }

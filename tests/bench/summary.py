@@ -1,5 +1,5 @@
 """summary.py FOLDER: the ratios of every benchmark whose figures lie there, each beside that of the
-run before. A ratio is a peer's time over ours, or as its name says."""
+run before. More is better of those that end in "ratio", less of the others."""
 import json
 import pathlib
 import sys
@@ -9,9 +9,9 @@ def rows(path):
     kept = json.loads(path.read_text())
     before = kept.get("before", {})
     for name, value in kept["figures"].items():
-        if name.endswith("ratio"):
+        if name.endswith("ratio") or "/" in name:
             then = before.get(name)
-            yield (path.stem, name.removesuffix(" ratio"), f"{value:.2f}",
+            yield (path.stem, name, f"{value:.2f}",
                    f"{then:.2f}" if then else "-", f"{value / then:.2f}" if then else "-")
 
 
