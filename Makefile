@@ -210,7 +210,8 @@ SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame
                    $(BENCH_MAIN) \
                    $(call obj,tests/bench/no_peers.cpp tests/bench/no_gltf.c) \
                    $(call obj,$(patsubst %,tests/oracle/%.cpp,scene cage_file folder)) \
-                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/fault.c server/spares.c) $(RENDER_OBJ) $(CORE_OBJ)
+                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/fault.c server/spares.c) $(RENDER_OBJ) $(CORE_OBJ) \
+                   $(KEEP_MODULES)
 $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -static-libstdc++ -static-libgcc -o $@ $^ -lepoxy -lm

@@ -13,7 +13,7 @@ PROGRAM = str(BUILD / "sheen-bench")
 MAY_NEED = {"linux-vdso.so.1", "libc.so.6", "libm.so.6", "libdl.so.2", "libepoxy.so.0", "libEGL.so.1",
             "libGLdispatch.so.0"}
 # What a build with sanitizers adds.
-SANITIZERS = {"libasan.so.8", "libubsan.so.1", "libpthread.so.0", "librt.so.1"}
+SANITIZERS = {"libasan.so.8", "libubsan.so.1", "libstdc++.so.6", "libgcc_s.so.1"}
 
 
 def run(*arguments):
