@@ -58,7 +58,7 @@ void help(const std::string &program)
         "\n  --runs     measured so often in turn (9), medians are printed\n"
         "  --folder   where the figures go, one JSON file a question (build/bench)\n"
         "  --compare  figures to set beside them (those that lie there)\n"
-        "  --device   software, the number of an EGL device, or auto (that): hardware first\n");
+        "  --device   software, the number of an EGL device, or auto: hardware first (auto)\n");
 }
 
 void run(const std::string &program, std::vector<std::string> arguments)
