@@ -127,8 +127,9 @@ void ask(report *report)
     limits limits;
     limits_init(&limits);
     image_use_one_thread();
-    check(workers_init(&workers, report->given().other("workers", "build").c_str(), &limits, &error),
-          error);
+    check(
+        workers_init(&workers, report->given().other("workers", "build").c_str(), &limits, &error),
+        error);
     measure_least(report, &workers);
     measure_pictures(report, &workers);
     workers_finish(&workers);
