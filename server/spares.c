@@ -5,8 +5,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* Four sizes to a power of two: a fifth of a block is unused at most. */
-enum { SIZES_OF_A_POWER = 4, N_SIZES = SIZES_OF_A_POWER * 64, LEAST_BYTES = 64 };
+/* Sixteen sizes to a power of two: blocks are 6 % larger than asked at most, which no budget knows
+ * of. */
+enum { PART_BITS = 4, PARTS = 1 << PART_BITS, N_SIZES = PARTS * 64, LEAST_BYTES = 64 };
 
 /* Stands before every block. */
 struct spare {
@@ -36,20 +37,20 @@ struct spares *spares_create(size_t most_bytes)
     return spares;
 }
 
-/* A size is a number of quarters of a power of two. */
+/* A size is a number of parts of a power of two. */
 static size_t round_up(size_t size)
 {
     if (size < LEAST_BYTES)
         size = LEAST_BYTES;
     unsigned power = 63u - (unsigned)__builtin_clzll(size);
-    size_t quarter = (size_t)1 << (power - 2);
-    return (size + quarter - 1) & ~(quarter - 1);
+    size_t part = (size_t)1 << (power - PART_BITS);
+    return (size + part - 1) & ~(part - 1);
 }
 
 static struct spare_list *list_of(struct spares *spares, size_t capacity)
 {
     unsigned power = 63u - (unsigned)__builtin_clzll(capacity);
-    return &spares->lists[SIZES_OF_A_POWER * power + (capacity >> (power - 2) & 3)];
+    return &spares->lists[PARTS * power + (capacity >> (power - PART_BITS) & (PARTS - 1))];
 }
 
 static struct spare *pop(struct spares *spares, struct spare_list *list)
