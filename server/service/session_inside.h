@@ -1,6 +1,7 @@
-/* What the files of sessions share: session.c has the protocol's order, session_access.c who the
- * client is, session_watch.c what clients may not do too long or too much of. Private to them.
- * Thread: the loop's. */
+/* What the files of sessions share: session.c has the protocol's order and a session's life,
+ * session_answer.c how answers leave, session_ask.c what each request asks for, session_stats.c
+ * the answer to STATS_QUERY, session_access.c who the client is, session_watch.c what clients may
+ * not do too long or too much of. Private to them. Thread: the loop's. */
 #ifndef SHEEN_SERVICE_SESSION_INSIDE_H
 #define SHEEN_SERVICE_SESSION_INSIDE_H
 
@@ -11,6 +12,28 @@
 /* The connection cannot go on: answers what came before, says why, and closes. */
 void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code, const char *format,
                     ...) __attribute__((format(printf, 4, 5)));
+
+/* --- session_answer.c */
+
+/* Owes the request an answer. NULL without memory; the connection is closed then. */
+struct answer *session_expect_answer(struct session *session, uint32_t seq,
+                                     enum request_class request_class);
+/* Answers at once what takes no time. */
+void session_reply(struct session *session, uint32_t seq, uint8_t type, const void *body);
+void session_reply_error(struct session *session, uint32_t seq, sheen_ErrorCode code,
+                         const char *text);
+
+/* --- session_ask.c: one message each, decoded, in its turn; each is answered */
+
+void session_upload_begin(struct session *session, uint32_t seq, const sheen_UploadBegin *begin);
+void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *body,
+                          size_t length);
+void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query);
+void session_render(struct session *session, uint32_t seq, sheen_Render *render);
+
+/* --- session_stats.c */
+
+void session_reply_stats(struct session *session, uint32_t seq);
 
 /* --- session_access.c */
 

@@ -1,0 +1,152 @@
+#include <stdio.h>
+
+#include "server/service/request.h"
+#include "server/service/session_inside.h"
+#include "server/service/wire.h"
+
+static void reply_upload_state(struct session *session, uint32_t seq, bool complete,
+                               uint64_t received_bytes)
+{
+    const sheen_UploadState state = {.complete = complete, .received_bytes = received_bytes};
+    session_reply(session, seq, MESSAGE_UPLOAD_STATE, &state);
+}
+
+void session_upload_begin(struct session *session, uint32_t seq, const sheen_UploadBegin *begin)
+{
+    struct session_host *host = session->host;
+    char text[MESSAGE_TEXT_BYTES];
+    struct error error = {0};
+    session->upload_seq = seq;
+    if (begin->size_bytes > host->max_upload_bytes) {
+        snprintf(text, sizeof text, "a file of %llu bytes; this daemon takes at most %llu",
+                 (unsigned long long)begin->size_bytes, (unsigned long long)host->max_upload_bytes);
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
+        return;
+    }
+    if (!message_check_upload_begin(begin, text)) {
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
+    struct asset *known = store_find(host->store, session_owner(session), kind, begin->sha256);
+    if (known) {
+        if (begin->share)
+            store_share(known);
+        session->upload_seq = 0; /* no chunk may follow */
+        reply_upload_state(session, seq, true, begin->size_bytes);
+        return;
+    }
+    if (kind == ASSET_IMAGE)
+        workers_expect_images(&host->workers);
+    session->upload =
+        upload_create(&host->memory, session->peer, session_owner(session), begin, &error);
+    if (session->upload)
+        reply_upload_state(session, seq, false, 0);
+    else
+        session_reply_error(session, seq, wire_error_code(error.kind), error.text);
+}
+
+void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
+{
+    if (seq != session->upload_seq || length == 0) {
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "UPLOAD_CHUNK %s",
+                       length == 0 ? "without a byte" : "of no upload under way");
+        return;
+    }
+    if (!session->upload)
+        return; /* sent before the client read that the upload has failed */
+    struct error error = {0};
+    enum upload_state state = upload_add(session->upload, body, length, &error);
+    session->host->stats.upload_bytes += length;
+    if (state == UPLOAD_MORE)
+        return;
+    uint64_t received = upload_received_bytes(session->upload);
+    upload_destroy(session->upload);
+    session->upload = NULL;
+    if (state == UPLOAD_STORED) {
+        session->upload_seq = 0;
+        reply_upload_state(session, seq, true, received);
+    } else if (state == UPLOAD_TOO_MUCH) {
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
+    } else {
+        session_reply_error(session, seq, wire_error_code(error.kind), error.text);
+    }
+}
+
+/* What a frame takes at most: its planes, and what they are encoded to. */
+static uint64_t frame_bytes(const sheen_Render *render)
+{
+    struct codec_layout all, sent;
+    codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
+    codec_layout_init(&sent, render->width_px, render->height_px, render->planes);
+    return all.raw_bytes + (render->encoding == sheen_Encoding_ENCODING_RAW ? 0 : sent.raw_bytes);
+}
+
+/* Answers and returns false when the frame could never be made here. */
+static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render *render)
+{
+    const struct limits *limits = &session->host->limits;
+    struct codec_layout all;
+    codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
+    uint64_t bytes = frame_bytes(render);
+    const struct {
+        const char *what, *name;
+        uint64_t needed, limit;
+    } checks[] = {
+        {"planes", "max-frame", all.raw_bytes, limits->max_frame},
+        {"planes and their encoding", "memory-budget", bytes, limits->memory_budget},
+        {"planes and their encoding", "peer-memory", bytes, limits->peer_memory},
+    };
+    for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
+        char text[MESSAGE_TEXT_BYTES];
+        if (checks[i].needed <= checks[i].limit)
+            continue;
+        snprintf(text, sizeof text,
+                 "%ux%u px: %s take %llu bytes, over this daemon's --%s of %llu: ask for a smaller "
+                 "frame or fewer planes",
+                 render->width_px, render->height_px, checks[i].what,
+                 (unsigned long long)checks[i].needed, checks[i].name,
+                 (unsigned long long)checks[i].limit);
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
+        return false;
+    }
+    return true;
+}
+
+/* What a client of this minor version cannot have meant. */
+static void drop_newer_fields(const struct session *session, sheen_Render *render)
+{
+    if (session->minor > 0)
+        return;
+    render->has_view = render->has_deadline_ms = false;
+    render->request_class = sheen_RequestClass_CLASS_STILL;
+}
+
+void session_render(struct session *session, uint32_t seq, sheen_Render *render)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    const struct renderer_info *info = render_thread_info(session->host->render_thread);
+    drop_newer_fields(session, render);
+    if (!message_check_render(render, info->max_width_px, info->max_height_px, text)) {
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    if (!frame_fits(session, seq, render))
+        return;
+    struct answer *answer =
+        session_expect_answer(session, seq, wire_request_class(render->request_class));
+    if (answer)
+        request_render(session, answer, seq, render, frame_bytes(render));
+}
+
+void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    if (!message_check_model_query(query, text)) {
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    struct answer *answer = session_expect_answer(session, seq, CLASS_STILL);
+    if (answer)
+        request_query(session, answer, seq, query);
+}
