@@ -1,11 +1,11 @@
 // Stage 1, visibility: grids over the pieces of the surface that the CPU chose
-// (server/gpu/pieces.h), each of grid x grid cells. One instance draws several pieces, since some
-// devices take longer to start an instance than to draw a small grid.
+// (server/gpu/pieces.h), each of as many cells along u and v as `grid` says. One instance draws several
+// pieces, since some devices take longer to start an instance than to draw a small grid.
 
 layout(binding = TEXTURES_FREE) uniform usamplerBuffer pieces;  // node, level | k << 6 | depth << 8, x, y
 
-uniform int grid;
-uniform int n_pieces;
+uniform ivec2 grid;
+uniform int first_piece, n_pieces;
 uniform int pieces_per_instance;
 
 flat out uvec2 where;  // node, level
@@ -24,14 +24,14 @@ vec3 position_at(Node node, vec2 xy)
 
 void main()
 {
-    int vertices = (grid + 1) * (grid + 1);
+    int vertices = (grid.x + 1) * (grid.y + 1);
     int index = gl_InstanceID * pieces_per_instance + gl_VertexID / vertices;
     int vertex = gl_VertexID % vertices;
-    uvec4 piece = texelFetch(pieces, min(index, n_pieces - 1));
+    uvec4 piece = texelFetch(pieces, first_piece + min(index, n_pieces - 1));
     int level = int(piece.y & 63u);
     uint k = (piece.y >> 6) & 3u;
-    float size = ldexp(1.0, -int(piece.y >> 8));
-    vec2 cell = vec2(vertex % (grid + 1), vertex / (grid + 1)) / float(grid);
+    float size = ldexp(1.0, -int(piece.y >> 8 & 0xffu));
+    vec2 cell = vec2(vertex % (grid.x + 1), vertex / (grid.x + 1)) / vec2(grid);
     // k = 1,2,3: the three unit squares of a level's ring (a strip has only the third); 0: the
     // square at the origin.
     vec2 square = vec2(k == 1u || k == 2u, k >= 2u);

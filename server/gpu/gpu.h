@@ -148,8 +148,9 @@ struct renderer {
     GLuint block_buffer;  /* pieces.block of the last tile gathered */
     GLuint piece_texture; /* of piece_buffer */
     GLuint vertex_array;
-    GLuint grid_buffer[PIECE_BUCKETS]; /* element indices of each bucket's grid */
-    GLuint blank_texture;              /* stands in where a pattern has no image */
+    GLuint grid_buffer; /* element indices of an instance of each grid */
+    size_t grid_first[PIECE_GRIDS];
+    GLuint blank_texture; /* stands in where a pattern has no image */
     uint64_t next_serial;
 };
 

@@ -1,5 +1,6 @@
 #include "server/gpu/pieces.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,8 @@ enum { MAX_DEPTH = 20 };
  * million faces need. */
 static const uint64_t MAX_VERTICES = 24000000;
 
+const uint8_t piece_cells[PIECE_SIDES] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+
 /* What choosing needs at every turn. */
 struct chooser {
     struct pieces *out;
@@ -25,13 +28,15 @@ struct chooser {
     double offset[4];  /* signed distance = side . p + offset */
     const struct tile *tile;
     uint32_t blocks[2]; /* of the tile: across and down */
+    size_t n_chosen;
     uint64_t n_vertices;
     bool no_memory;
 };
 
 /* The part of the surface under consideration: a sphere in camera space and how much it bends. */
 struct extent {
-    double centre[3], radius, bend;
+    double centre[3];
+    struct limit_bound bound;
 };
 
 static void set_sides(struct chooser *c, const struct tile *tile)
@@ -57,12 +62,12 @@ static void set_sides(struct chooser *c, const struct tile *tile)
 
 static bool is_outside(const struct chooser *c, const struct extent *e)
 {
-    if (e->centre[2] + e->radius < c->view->near)
+    if (e->centre[2] + e->bound.radius < c->view->near)
         return true;
     for (int s = 0; s < 4; s++) {
         double distance = c->side[s][0] * e->centre[0] + c->side[s][1] * e->centre[1] +
                           c->side[s][2] * e->centre[2] + c->offset[s];
-        if (distance < -e->radius)
+        if (distance < -e->bound.radius)
             return true;
     }
     return false;
@@ -71,7 +76,7 @@ static bool is_outside(const struct chooser *c, const struct extent *e)
 /* How many px a length can span at the extent's nearest depth. */
 static double in_px(const struct chooser *c, const struct extent *e, double length)
 {
-    double z = fmax(e->centre[2] - e->radius, c->view->near);
+    double z = fmax(e->centre[2] - e->bound.radius, c->view->near);
     return length / (c->view->perspective ? z * c->view->units_per_px : c->view->units_per_px);
 }
 
@@ -86,11 +91,11 @@ static uint32_t block_at(const struct chooser *c, int k, double px)
 /* Marks the blocks under a sphere's outline. */
 static void cover(struct chooser *c, const struct extent *e)
 {
-    double nearest = e->centre[2] - e->radius, farthest = e->centre[2] + e->radius;
+    double nearest = e->centre[2] - e->bound.radius, farthest = e->centre[2] + e->bound.radius;
     bool whole = c->view->perspective && nearest <= 0;
     uint32_t first[2], last[2];
     for (int k = 0; k < 2; k++) {
-        double low = e->centre[k] - e->radius, high = e->centre[k] + e->radius;
+        double low = e->centre[k] - e->bound.radius, high = e->centre[k] + e->bound.radius;
         if (c->view->perspective) {
             low = fmin(low / nearest, low / farthest);
             high = fmax(high / nearest, high / farthest);
@@ -105,26 +110,48 @@ static void cover(struct chooser *c, const struct extent *e)
         memset(c->out->is_covered + (size_t)y * c->blocks[0] + first[0], 1, last[0] - first[0] + 1);
 }
 
-static void emit(struct chooser *c, unsigned bucket, struct piece piece,
-                 const struct extent *extent)
+static bool grow(struct pieces *out)
 {
-    uint64_t side = (1u << bucket) + 1;
-    c->n_vertices += side * side;
-    if (c->n_vertices > MAX_VERTICES)
+    size_t capacity = out->piece_capacity ? 2 * out->piece_capacity : 4096;
+    struct piece *piece = realloc(out->piece, capacity * sizeof *piece);
+    if (piece)
+        out->piece = piece;
+    struct piece *chosen = realloc(out->chosen, capacity * sizeof *chosen);
+    if (chosen)
+        out->chosen = chosen;
+    if (piece && chosen)
+        out->piece_capacity = capacity;
+    return piece && chosen;
+}
+
+static void emit(struct chooser *c, unsigned grid, struct piece piece, const struct extent *extent)
+{
+    struct pieces *out = c->out;
+    c->n_vertices +=
+        (piece_cells[grid / PIECE_SIDES] + 1u) * (piece_cells[grid % PIECE_SIDES] + 1u);
+    if (c->n_vertices > MAX_VERTICES || c->no_memory)
         return;
     cover(c, extent);
-    struct piece_list *list = &c->out->bucket[bucket];
-    if (list->n == list->capacity) {
-        size_t capacity = list->capacity ? 2 * list->capacity : 1024;
-        struct piece *grown = realloc(list->piece, capacity * sizeof *grown);
-        if (!grown) {
-            c->no_memory = true;
-            return;
-        }
-        list->piece = grown;
-        list->capacity = capacity;
+    if (c->n_chosen == out->piece_capacity && !grow(out)) {
+        c->no_memory = true;
+        return;
     }
-    list->piece[list->n++] = piece;
+    piece.where |= grid << 16;
+    out->chosen[c->n_chosen++] = piece;
+    out->first[grid + 1]++;
+}
+
+/* A counting sort of what has been chosen. */
+static void sort_by_grid(struct chooser *c)
+{
+    struct pieces *out = c->out;
+    size_t next[PIECE_GRIDS];
+    for (int g = 0; g < PIECE_GRIDS; g++) {
+        next[g] = out->first[g];
+        out->first[g + 1] += out->first[g];
+    }
+    for (size_t i = 0; i < c->n_chosen; i++)
+        out->piece[next[out->chosen[i].where >> 16]++] = out->chosen[i];
 }
 
 /* The B-spline points of [a, b] of a segment on [0, 1]: blossoms at the finer knots. */
@@ -191,12 +218,14 @@ static struct extent square_extent(const struct chooser *c, const struct piece *
             struct vec p = limit_frame_to_world(c->tables, node, grid[k]);
             grid[k] = vec_mad(p, -vec_dot(p, forward), forward);
         }
-        bound.bend = fminf(bound.bend, bound_of_grid(grid, 4, false, false).bend);
+        struct limit_bound plain = bound_of_grid(grid, 4, false, false);
+        if (bound_bend(&plain) < bound_bend(&bound))
+            bound = plain;
     }
     struct vec at = limit_frame_to_world(c->tables, node, middle);
     const double world[3] = {node->origin[0] + at.x, node->origin[1] + at.y,
                              node->origin[2] + at.z};
-    struct extent extent = {.radius = bound.radius, .bend = bound.bend};
+    struct extent extent = {.bound = bound};
     view_transform(c->view, world, extent.centre);
     return extent;
 }
@@ -216,24 +245,48 @@ static void choose_quarters(struct chooser *c, struct piece piece)
     }
 }
 
+/* The grid of fewest cells whose triangles stray no more than an eighth of `allowed`. False when
+ * the finest do. */
+static bool find_grid(const struct limit_bound *bound, double allowed, unsigned *grid)
+{
+    double u = bound->u / allowed, mixed = bound->mixed / allowed, v = bound->v / allowed;
+    double border_u = bound->border_u / allowed, border_v = bound->border_v / allowed;
+    unsigned fewest = UINT_MAX;
+    for (unsigned i = 0; i < PIECE_SIDES && piece_cells[i] < fewest; i++) {
+        double m = piece_cells[i], left = 1 - u / (m * m);
+        if (left <= 0 || border_u > m * m)
+            continue;
+        /* v / n^2 + 2 mixed / (m n) = left */
+        double n =
+            fmax((mixed / m + sqrt(mixed / m * (mixed / m) + left * v)) / left, sqrt(border_v));
+        unsigned k = 0;
+        while (k < PIECE_SIDES && piece_cells[k] < n)
+            k++;
+        if (k == PIECE_SIDES || piece_cells[i] * piece_cells[k] >= fewest)
+            continue;
+        fewest = piece_cells[i] * piece_cells[k];
+        *grid = i * PIECE_SIDES + k;
+    }
+    return fewest < UINT_MAX;
+}
+
 static void choose_square(struct chooser *c, struct piece piece, const struct extent *extent)
 {
     if (is_outside(c, extent) || c->n_vertices > MAX_VERTICES)
         return;
-    double cells = sqrt(in_px(c, extent, extent->bend) / (8 * TOLERANCE_PX));
-    unsigned bucket = 0;
-    while (bucket < PIECE_BUCKETS - 1 && (1u << bucket) < cells)
-        bucket++;
-    if (cells > 1u << bucket && piece.where >> 8 < MAX_DEPTH)
+    double allowed = 8 * TOLERANCE_PX / in_px(c, extent, 1);
+    unsigned grid = 0;
+    if (bound_bend(&extent->bound) <= allowed || find_grid(&extent->bound, allowed, &grid))
+        emit(c, grid, piece, extent);
+    else if (piece.where >> 8 < MAX_DEPTH)
         choose_quarters(c, piece);
     else
-        emit(c, bucket, piece, extent);
+        emit(c, PIECE_GRIDS - 1, piece, extent);
 }
 
 static void choose_regular(struct chooser *c, uint32_t node)
 {
-    const struct limit_bound *bound = &c->tables->bounds[c->tables->bound_first[node]];
-    struct extent extent = {.radius = bound->radius, .bend = bound->bend};
+    struct extent extent = {.bound = c->tables->bounds[c->tables->bound_first[node]]};
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
     choose_square(c, (struct piece){node, 0, 0, 0}, &extent);
 }
@@ -244,17 +297,16 @@ static void choose_strip(struct chooser *c, uint32_t node)
 {
     const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
     uint32_t levels = c->tables->nodes[node].levels;
-    struct extent extent = {.radius = bounds->radius, .bend = bounds->bend};
+    struct extent extent = {.bound = *bounds};
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
     if (is_outside(c, &extent))
         return;
-    if (in_px(c, &extent, extent.bend) <= 8 * TOLERANCE_PX) {
+    if (in_px(c, &extent, bound_bend(&extent.bound)) <= 8 * TOLERANCE_PX) {
         emit(c, 0, (struct piece){node, 0, 0, 0}, &extent);
         return;
     }
     for (uint32_t n = 1; n <= levels + 1; n++) {
-        extent.radius = bounds[n].radius;
-        extent.bend = bounds[n].bend;
+        extent.bound = bounds[n];
         uint32_t where = n <= levels ? n | 3u << 6 : levels;
         choose_square(c, (struct piece){node, where, 0, 0}, &extent);
     }
@@ -270,12 +322,11 @@ static void choose_corner(struct chooser *c, uint32_t node)
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
     uint32_t level = 0, levels = c->tables->nodes[node].levels & ~LIMIT_NO_NORMAL;
     for (; level < levels; level++) {
-        extent.radius = bounds[level].radius;
-        extent.bend = bounds[level].bend;
+        extent.bound = bounds[level];
         if (is_outside(c, &extent))
             return;
-        if (in_px(c, &extent, extent.radius) < TOLERANCE_PX ||
-            in_px(c, &extent, extent.bend) < TOLERANCE_PX)
+        if (in_px(c, &extent, extent.bound.radius) < TOLERANCE_PX ||
+            in_px(c, &extent, bound_bend(&extent.bound)) < TOLERANCE_PX)
             break;
         for (uint32_t square = 1; square <= 3; square++)
             choose_square(c, (struct piece){node, (level + 1) | square << 6, 0, 0}, &extent);
@@ -288,16 +339,15 @@ static bool reserve_blocks(struct chooser *c, struct error *error)
     struct pieces *out = c->out;
     c->blocks[0] = (c->tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
     c->blocks[1] = (c->tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
-    for (int b = 0; b < PIECE_BUCKETS; b++)
-        out->bucket[b].n = 0;
+    memset(out->first, 0, sizeof out->first);
     size_t n = (size_t)c->blocks[0] * c->blocks[1];
-    if (n > out->capacity) {
+    if (n > out->block_capacity) {
         free(out->block);
         free(out->is_covered);
         out->block = malloc(n * sizeof *out->block);
         out->is_covered = malloc(n);
-        out->capacity = out->block && out->is_covered ? n : 0;
-        if (!out->capacity)
+        out->block_capacity = out->block && out->is_covered ? n : 0;
+        if (!out->block_capacity)
             return error_set(error, ERROR_SERVER, "out of memory for the blocks of a frame");
     }
     memset(out->is_covered, 0, n);
@@ -329,6 +379,7 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
         else if (tables->nodes[node].kind == LIMIT_STRIP)
             choose_strip(&c, node);
     }
+    sort_by_grid(&c);
     list_blocks(&c);
     if (c.no_memory)
         return error_set(error, ERROR_SERVER, "out of memory for the pieces of a frame");
@@ -352,8 +403,8 @@ bool pieces_cover_all(struct pieces *pieces, const struct tile *tile, struct err
 
 void pieces_finish(struct pieces *pieces)
 {
-    for (int b = 0; b < PIECE_BUCKETS; b++)
-        free(pieces->bucket[b].piece);
+    free(pieces->piece);
+    free(pieces->chosen);
     free(pieces->block);
     free(pieces->is_covered);
     *pieces = (struct pieces){0};

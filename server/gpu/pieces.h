@@ -14,30 +14,31 @@
 #include "server/gpu/view.h"
 #include "server/limit/tables.h"
 
-/* Pieces come in buckets by their grid: bucket b is drawn with 2^b x 2^b cells. */
-enum { PIECE_BUCKETS = 7 };
+/* Grid g has piece_cells[g / PIECE_SIDES] cells along u and piece_cells[g % PIECE_SIDES] along v.
+ */
+enum { PIECE_SIDES = 12, PIECE_GRIDS = PIECE_SIDES * PIECE_SIDES };
+extern const uint8_t piece_cells[PIECE_SIDES];
 enum { COVER_BLOCK_PX = 8 };
 
 /* As shaders/visibility.vert.glsl reads it. */
 struct piece {
     uint32_t node;
-    uint32_t where; /* level | square << 6 | depth << 8 */
+    uint32_t where; /* level | square << 6 | depth << 8 | grid << 16 */
     uint32_t x, y;  /* which square of the 2^depth by 2^depth ones */
 };
 
-struct piece_list {
-    struct piece *piece;
-    size_t n, capacity;
-};
-
 struct pieces {
-    struct piece_list bucket[PIECE_BUCKETS];
+    /* In the order of their grids: those of grid g from first[g] to first[g + 1]. */
+    struct piece *piece;
+    size_t first[PIECE_GRIDS + 1];
+    struct piece *chosen; /* scratch: in the order of the nodes */
+    size_t piece_capacity;
     /* Blocks of COVER_BLOCK_PX x COVER_BLOCK_PX pixels of the tile that the pieces may cover, x |
      * y << 16 in blocks; outside them nothing is seen. */
     uint32_t *block;
     size_t n_blocks;
     uint8_t *is_covered; /* scratch: one byte a block of the tile */
-    size_t capacity;     /* blocks that both have room for */
+    size_t block_capacity;
 };
 
 /* Chooses the pieces that the tile may show. Lists keep their memory from call to call; zero them

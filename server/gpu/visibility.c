@@ -3,18 +3,35 @@
 
 #include <stdlib.h>
 
-/* Pieces drawn by one instance of a bucket: about as many vertices in each. */
-static int pieces_per_instance(int bucket)
+/* So many cells are drawn by other threads, where the device is software, while this one goes on.
+ */
+static const size_t FLUSH_CELLS = 16384;
+
+/* A grid's cells along u and v. */
+static uint32_t cells_along(int grid, int side)
 {
-    return bucket < 4 ? 256 >> (2 * bucket) : 1;
+    return piece_cells[side ? grid % PIECE_SIDES : grid / PIECE_SIDES];
 }
 
-/* Two triangles for each cell of a grid of vertices that start at `first`. */
-static uint32_t *fill_indices(uint32_t *index, uint32_t cells, uint32_t first)
+/* Pieces drawn by one instance: about as many cells in each. */
+static uint32_t pieces_per_instance(int grid)
 {
-    for (uint32_t y = 0; y < cells; y++) {
-        for (uint32_t x = 0; x < cells; x++) {
-            uint32_t a = first + y * (cells + 1) + x, b = a + cells + 1;
+    uint32_t cells = cells_along(grid, 0) * cells_along(grid, 1);
+    return cells < 256 ? 256 / cells : 1;
+}
+
+static uint32_t indices_per_instance(int grid)
+{
+    return 6 * cells_along(grid, 0) * cells_along(grid, 1) * pieces_per_instance(grid);
+}
+
+/* Two triangles for each cell of a piece's vertices, which start at `first`. */
+static uint32_t *fill_indices(uint32_t *index, int grid, uint32_t first)
+{
+    uint32_t across = cells_along(grid, 0), down = cells_along(grid, 1);
+    for (uint32_t y = 0; y < down; y++) {
+        for (uint32_t x = 0; x < across; x++) {
+            uint32_t a = first + y * (across + 1) + x, b = a + across + 1;
             const uint32_t corners[6] = {a, a + 1, b, b, a + 1, b + 1};
             for (int k = 0; k < 6; k++)
                 *index++ = corners[k];
@@ -23,46 +40,68 @@ static uint32_t *fill_indices(uint32_t *index, uint32_t cells, uint32_t first)
     return index;
 }
 
-static bool make_grid(struct renderer *r, int bucket, struct error *error)
-{
-    uint32_t cells = 1u << bucket, pieces = (uint32_t)pieces_per_instance(bucket);
-    size_t bytes = (size_t)cells * cells * 6 * pieces * sizeof(uint32_t);
-    uint32_t *index = malloc(bytes);
-    if (!index)
-        return error_set(error, ERROR_SERVER, "out of memory");
-    uint32_t *at = index;
-    for (uint32_t k = 0; k < pieces; k++)
-        at = fill_indices(at, cells, k * (cells + 1) * (cells + 1));
-    glNamedBufferStorage(r->grid_buffer[bucket], (GLsizeiptr)bytes, index, 0);
-    free(index);
-    return true;
-}
-
 bool stage_visibility_init(struct renderer *r, struct error *error)
 {
-    glCreateBuffers(PIECE_BUCKETS, r->grid_buffer);
-    for (int b = 0; b < PIECE_BUCKETS; b++)
-        if (!make_grid(r, b, error))
-            return false;
+    size_t n = 0;
+    for (int g = 0; g < PIECE_GRIDS; g++) {
+        r->grid_first[g] = n;
+        n += indices_per_instance(g);
+    }
+    uint32_t *index = malloc(n * sizeof *index), *at = index;
+    if (!index)
+        return error_set(error, ERROR_SERVER, "out of memory");
+    for (int g = 0; g < PIECE_GRIDS; g++)
+        for (uint32_t k = 0; k < pieces_per_instance(g); k++)
+            at = fill_indices(at, g, k * (cells_along(g, 0) + 1) * (cells_along(g, 1) + 1));
+    glCreateBuffers(1, &r->grid_buffer);
+    glNamedBufferStorage(r->grid_buffer, (GLsizeiptr)(n * sizeof *index), index, 0);
+    free(index);
     glCreateVertexArrays(1, &r->vertex_array);
+    glVertexArrayElementBuffer(r->vertex_array, r->grid_buffer);
     glCreateBuffers(1, &r->piece_buffer);
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &r->piece_texture);
     return gpu_check("the grids", error);
 }
 
-/* Pieces [first, first + n) of a bucket, at most as many as a buffer texture holds. */
-static void draw_pieces(struct renderer *r, GLuint program, int bucket, size_t first, size_t n)
+/* Pieces [first, first + n) of those on the device, all of one grid. */
+static void draw_pieces(const struct renderer *r, GLuint program, int grid, size_t first, size_t n)
 {
-    int per_instance = pieces_per_instance(bucket);
-    const struct piece *pieces = r->pieces.bucket[bucket].piece + first;
-    glNamedBufferData(r->piece_buffer, (GLsizeiptr)(n * sizeof *pieces), pieces, GL_STREAM_DRAW);
-    glTextureBuffer(r->piece_texture, GL_RGBA32UI, r->piece_buffer);
-    glVertexArrayElementBuffer(r->vertex_array, r->grid_buffer[bucket]);
-    glUniform1i(glGetUniformLocation(program, "grid"), 1 << bucket);
+    uint32_t per_instance = pieces_per_instance(grid);
+    glUniform2i(glGetUniformLocation(program, "grid"), (GLint)cells_along(grid, 0),
+                (GLint)cells_along(grid, 1));
+    glUniform1i(glGetUniformLocation(program, "first_piece"), (GLint)first);
     glUniform1i(glGetUniformLocation(program, "n_pieces"), (GLint)n);
-    glUniform1i(glGetUniformLocation(program, "pieces_per_instance"), per_instance);
-    glDrawElementsInstanced(GL_TRIANGLES, (6 << (2 * bucket)) * per_instance, GL_UNSIGNED_INT, NULL,
-                            (GLsizei)((n + (size_t)per_instance - 1) / (size_t)per_instance));
+    glUniform1i(glGetUniformLocation(program, "pieces_per_instance"), (GLint)per_instance);
+    glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)indices_per_instance(grid), GL_UNSIGNED_INT,
+                            (const void *)(r->grid_first[grid] * sizeof(uint32_t)),
+                            (GLsizei)((n + per_instance - 1) / per_instance));
+}
+
+static size_t cut(size_t i, size_t low, size_t high)
+{
+    return i < low ? low : i < high ? i : high;
+}
+
+/* Pieces [begin, end), at most as many as a buffer texture holds. */
+static void draw_range(struct renderer *r, GLuint program, size_t begin, size_t end)
+{
+    const struct pieces *pieces = &r->pieces;
+    size_t cells = 0;
+    glNamedBufferData(r->piece_buffer, (GLsizeiptr)((end - begin) * sizeof *pieces->piece),
+                      pieces->piece + begin, GL_STREAM_DRAW);
+    glTextureBuffer(r->piece_texture, GL_RGBA32UI, r->piece_buffer);
+    for (int g = 0; g < PIECE_GRIDS; g++) {
+        size_t first = cut(pieces->first[g], begin, end);
+        size_t n = cut(pieces->first[g + 1], begin, end) - first;
+        if (!n)
+            continue;
+        draw_pieces(r, program, g, first - begin, n);
+        cells += n * cells_along(g, 0) * cells_along(g, 1);
+        if (cells > FLUSH_CELLS) {
+            glFlush();
+            cells = 0;
+        }
+    }
 }
 
 void raster_begin(GLuint framebuffer, const struct tile *tile)
@@ -107,9 +146,7 @@ void stage_visibility(struct renderer *r, const struct renderer_model *model,
     glBindTextureUnit((GLuint)(model->points.n + model->nodes.n + model->adjacency.n),
                       r->piece_texture);
     glBindVertexArray(r->vertex_array);
-    for (int b = 0; b < PIECE_BUCKETS; b++) {
-        size_t n = r->pieces.bucket[b].n, most = r->info.max_texels;
-        for (size_t first = 0; first < n; first += most)
-            draw_pieces(r, program, b, first, n - first < most ? n - first : most);
-    }
+    size_t n = r->pieces.first[PIECE_GRIDS], most = r->info.max_texels;
+    for (size_t begin = 0; begin < n; begin += most)
+        draw_range(r, program, begin, n - begin < most ? n : begin + most);
 }

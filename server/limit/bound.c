@@ -38,13 +38,8 @@ static bool find_normal(const struct vec *grid, int size, bool without_first, st
 
 /* What bends, in the plain norm or as it is weighed. */
 struct bends {
-    double along_u, along_v, mixed;
+    double u, v, mixed;
 };
-
-static double bend_of(struct bends bends)
-{
-    return bends.along_u + 2 * bends.mixed + bends.along_v;
-}
 
 static inline struct vec second(struct vec before, struct vec at, struct vec after)
 {
@@ -80,10 +75,9 @@ struct limit_bound bound_of_grid(const struct vec *grid, int size, bool without_
             bool left = i > 0 && !(without_first && j == 0 && i == 1);
             bool below = j > 0 && !(without_first && i == 0 && j == 1);
             if (left && i + 1 < size)
-                add(&plain.along_u, &across.along_u, second(p[-1], p[0], p[1]),
-                    by_normal ? &normal : NULL);
+                add(&plain.u, &across.u, second(p[-1], p[0], p[1]), by_normal ? &normal : NULL);
             if (below && j + 1 < size)
-                add(&plain.along_v, &across.along_v, second(p[-size], p[0], p[size]),
+                add(&plain.v, &across.v, second(p[-size], p[0], p[size]),
                     by_normal ? &normal : NULL);
             if (i > 0 && j > 0 && !(without_first && i == 1 && j == 1))
                 add(&plain.mixed, &across.mixed,
@@ -91,8 +85,15 @@ struct limit_bound bound_of_grid(const struct vec *grid, int size, bool without_
                     by_normal ? &normal : NULL);
         }
     }
-    plain = (struct bends){sqrt(plain.along_u), sqrt(plain.along_v), sqrt(plain.mixed)};
-    double border = fmax(plain.along_u, plain.along_v);
-    double bend = by_normal ? fmax(bend_of(across), border) : bend_of(plain);
-    return (struct limit_bound){(float)(sqrt(radius2) * 1.000001), (float)(bend * 1.000001)};
+    plain = (struct bends){sqrt(plain.u), sqrt(plain.v), sqrt(plain.mixed)};
+    const struct bends *inside = by_normal ? &across : &plain;
+    const double up = 1.000001; /* more than what floats lose */
+    return (struct limit_bound){
+        .radius = (float)(sqrt(radius2) * up),
+        .u = (float)(inside->u * up),
+        .mixed = (float)(inside->mixed * up),
+        .v = (float)(inside->v * up),
+        .border_u = (float)(plain.u * up),
+        .border_v = (float)(plain.v * up),
+    };
 }

@@ -8,8 +8,8 @@
 #include "server/limit/vec.h"
 
 /* Of a size x size grid about the coordinates' origin. Second and mixed differences bound the
- * second derivatives of every patch of the grid (limit-surface 3.2), so a patch cut into m x m
- * cells lies within bend / (8 m^2) of its triangles. without_first: the first point is not one.
+ * second derivatives of every patch of the grid (limit-surface 3.2). without_first: the first
+ * point is not one.
  *
  * weighed: an offset counts by what lies across the surface and a quarter of what lies along it,
  * which moves only the parameters that a pixel starts from, not what is seen; but borders, which
@@ -17,5 +17,13 @@
  * degrees. */
 struct limit_bound bound_of_grid(const struct vec *grid, int size, bool without_first,
                                  bool weighed);
+
+/* How much it bends in all: within an eighth of this it is one cell. */
+static inline float bound_bend(const struct limit_bound *bound)
+{
+    float bend = bound->u + 2 * bound->mixed + bound->v;
+    float border = bound->border_u > bound->border_v ? bound->border_u : bound->border_v;
+    return bend > border ? bend : border;
+}
 
 #endif

@@ -69,10 +69,14 @@ struct limit_adjacency {
     uint32_t across[4];
 };
 
-/* How far a piece of surface reaches and bends: for culling and for choosing its grid. */
+/* How far a piece of surface reaches and bends: for culling and for choosing its grid. In units.
+ * Cut into m x n cells it lies within (u / m^2 + 2 mixed / (m n) + v / n^2) / 8 of their triangles
+ * (limit-surface 3.2: M1, M2, M3 of Filip, Magedson, Markot 1986), and what runs along u or v, as
+ * its borders do, within border_u / (8 m^2) or border_v / (8 n^2). */
 struct limit_bound {
-    float radius; /* of a sphere about the node's origin that holds the control points, in units */
-    float bend;   /* M1 + 2 M2 + M3 of limit-surface 3.2 (Filip, Magedson, Markot 1986), in units */
+    float radius; /* of a sphere about the node's origin that holds the control points */
+    float u, mixed, v;
+    float border_u, border_v;
 };
 
 struct limit_tables {

@@ -1,0 +1,206 @@
+/* The pieces that stage 1 draws: no triangle strays further from the surface than is allowed, and
+ * no grid is finer than its piece bends in either direction. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "server/cage/read/read.h"
+#include "server/gpu/pieces.h"
+#include "server/gpu/renderer.h"
+#include "server/limit/evaluate.h"
+
+enum { WIDTH = 960, HEIGHT = 540 };
+
+struct scene {
+    struct cage cage;
+    struct limit_tables tables;
+    struct view view;
+    struct pieces pieces;
+};
+
+static void scene_init(struct scene *scene, const char *bytes, size_t size)
+{
+    struct error error = {0};
+    *scene = (struct scene){0};
+    if (!cage_read(&scene->cage, bytes, size, "scene.obj", &error))
+        fail_msg("%s", error.text);
+    struct limit_plan *plan = limit_plan_create(&scene->cage, &error);
+    assert_non_null(plan);
+    assert_true(limit_tables_init(&scene->tables, plan, &error));
+    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, &error));
+    limit_plan_destroy(plan);
+}
+
+static void scene_finish(struct scene *scene)
+{
+    pieces_finish(&scene->pieces);
+    limit_tables_finish(&scene->tables);
+    cage_finish(&scene->cage);
+}
+
+/* What the default camera shows, from `closer` times as near. */
+static void choose(struct scene *scene, bool orthographic, double closer)
+{
+    struct error error = {0};
+    struct camera camera;
+    const struct limit_tables *t = &scene->tables;
+    renderer_default_camera(t->box_min, t->box_max, WIDTH, HEIGHT, &camera);
+    for (int i = 0; i < 3; i++)
+        camera.eye[i] = camera.target[i] + (camera.eye[i] - camera.target[i]) / closer;
+    if (orthographic) {
+        camera.kind = CAMERA_ORTHOGRAPHIC;
+        camera.ortho_height =
+            1.2 * (t->box_max[2] - t->box_min[2] + t->box_max[0] - t->box_min[0]) / closer;
+    }
+    view_init(&scene->view, &camera, WIDTH, HEIGHT, t->hull_min, t->hull_max);
+    const struct tile whole = {0, 0, WIDTH, HEIGHT};
+    if (!pieces_choose(&scene->pieces, t, &scene->view, &whole, &error))
+        fail_msg("%s", error.text);
+}
+
+/* --- */
+
+static struct limit_point surface_at(const struct scene *scene, const struct piece *piece, double x,
+                                     double y)
+{
+    const struct limit_node *node = &scene->tables.nodes[piece->node];
+    unsigned square = piece->where >> 6 & 3;
+    int level = piece->where & 63;
+    double size = ldexp(1, -(int)(piece->where >> 8 & 0xff));
+    double s = (square == 1 || square == 2) + (piece->x + x) * size;
+    double t = (square >= 2) + (piece->y + y) * size;
+    const struct limit_place place = {piece->node, node->rotation,
+                                      ldexp(s, node->kind == LIMIT_STRIP ? 0 : -level),
+                                      ldexp(t, -level)};
+    struct limit_point point;
+    assert_true(limit_evaluate_at(&scene->tables, &place, &point));
+    return point;
+}
+
+/* A vector from the surface at `p` in px, by what shows: what lies along the surface counts a
+ * quarter. */
+static double shown_px(const struct view *view, const struct limit_point *p, struct vec off)
+{
+    const double world[3] = {p->s.x, p->s.y, p->s.z};
+    double camera[3];
+    view_transform(view, world, camera);
+    double across = p->has_normal ? fabs(vec_dot(off, p->n)) : 0;
+    double along = sqrt(fmax(vec_dot(off, off) - across * across, 0));
+    double depth = view->perspective ? fmax(camera[2], view->near) : 1;
+    return (across + along / 4) / (view->units_per_px * depth);
+}
+
+/* How far the surface is from a cell's triangles, by the middles of their sides and of themselves.
+ */
+static double stray_px(const struct scene *scene, const struct piece *piece, double x, double y,
+                       double width, double height)
+{
+    static const double weights[4][3] = {
+        {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1 / 3.0, 1 / 3.0, 1 / 3.0}};
+    double most = 0;
+    for (int half = 0; half < 2; half++) {
+        const double at[3][2] = {
+            {x + half * width, y + half * height}, {x + width, y}, {x, y + height}};
+        struct vec corner[3];
+        for (int k = 0; k < 3; k++)
+            corner[k] = surface_at(scene, piece, at[k][0], at[k][1]).s;
+        for (int w = 0; w < 4; w++) {
+            double place[2] = {0, 0};
+            struct vec flat = {0, 0, 0};
+            for (int k = 0; k < 3; k++) {
+                place[0] += weights[w][k] * at[k][0];
+                place[1] += weights[w][k] * at[k][1];
+                flat = vec_mad(flat, weights[w][k], corner[k]);
+            }
+            struct limit_point p = surface_at(scene, piece, place[0], place[1]);
+            most = fmax(most, shown_px(&scene->view, &p, vec_sub(flat, p.s)));
+        }
+    }
+    return most;
+}
+
+/* Every seventh cell of all pieces. */
+static double largest_stray_px(const struct scene *scene)
+{
+    const struct pieces *pieces = &scene->pieces;
+    double most = 0;
+    for (int g = 0; g < PIECE_GRIDS; g++) {
+        unsigned m = piece_cells[g / PIECE_SIDES], n = piece_cells[g % PIECE_SIDES];
+        for (size_t i = pieces->first[g]; i < pieces->first[g + 1]; i++) {
+            assert_int_equal(pieces->piece[i].where >> 16, g);
+            for (unsigned k = (unsigned)i % 7; k < m * n; k += 7)
+                most = fmax(most, stray_px(scene, &pieces->piece[i], k % m / (double)m,
+                                           k / m / (double)n, 1.0 / m, 1.0 / n));
+        }
+    }
+    return most;
+}
+
+static void test_no_triangle_strays(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"tests/models/fender.obj", "tests/models/creases.obj",
+                                        "tests/models/ngons.obj", "tests/models/body.obj",
+                                        "tests/models/pole.obj"};
+    static char bytes[1 << 20];
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        struct scene scene;
+        FILE *file = fopen(paths[i], "rb");
+        assert_non_null(file);
+        size_t size = fread(bytes, 1, sizeof bytes, file);
+        fclose(file);
+        scene_init(&scene, bytes, size);
+        for (int view = 0; view < 4; view++) {
+            choose(&scene, view & 1, view & 2 ? 20 : 1);
+            double most = largest_stray_px(&scene);
+            if (!(most <= 0.5 && most >= 0.1))
+                fail_msg("%s, view %d: %.3f px", paths[i], view, most);
+        }
+        scene_finish(&scene);
+    }
+}
+
+/* --- */
+
+/* A tube of 8 x 8 quads, bent along u only. */
+static void test_one_way(void **state)
+{
+    (void)state;
+    static char text[1 << 14];
+    size_t used = 0;
+    for (unsigned k = 0; k < 8 * 9; k++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "v %.17g %.17g %u\n",
+                                 cos(k % 8 * 0.7853981633974483), sin(k % 8 * 0.7853981633974483),
+                                 k / 8);
+    for (unsigned k = 0; k < 8 * 8; k++) {
+        unsigned row = k / 8 * 8 + 1, next = (k + 1) % 8;
+        used += (size_t)snprintf(text + used, sizeof text - used, "f %u %u %u %u\n", row + k % 8,
+                                 row + next, row + 8 + next, row + 8 + k % 8);
+    }
+    struct scene scene;
+    scene_init(&scene, text, used);
+    choose(&scene, false, 1);
+    assert_int_equal(scene.pieces.first[PIECE_GRIDS], 64);
+    for (int g = 0; g < PIECE_GRIDS; g++) {
+        if (scene.pieces.first[g] == scene.pieces.first[g + 1])
+            continue;
+        assert_int_equal(piece_cells[g % PIECE_SIDES], 1);
+        assert_in_range(piece_cells[g / PIECE_SIDES], 3, 4);
+    }
+    scene_finish(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_no_triangle_strays),
+        cmocka_unit_test(test_one_way),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
