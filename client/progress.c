@@ -4,25 +4,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "client/clock.h"
 
 #define BAR_CELLS 30
 #define INTERVAL_MS 100
-
-static int64_t now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
-}
 
 static void report(void *context, const char *stage, uint64_t done, uint64_t total)
 {
     struct progress *progress = context;
     if (!progress->is_shown || total == 0)
         return;
-    int64_t now = now_ms();
+    int64_t now = clock_now_ms();
     if (progress->is_drawn && now - progress->last_ms < INTERVAL_MS)
         return;
     progress->last_ms = now;
