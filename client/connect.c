@@ -7,13 +7,19 @@
 #include "client/session.h"
 #include "client/status.h"
 
+/* Until the daemon has greeted. */
+static uint32_t connect_timeout_ms(const struct sheen_connect_options *options)
+{
+    return options->connect_timeout_ms ? options->connect_timeout_ms : options->timeout_ms;
+}
+
 static enum sheen_status start_private(struct sheen_session *session,
                                        const struct sheen_connect_options *options,
                                        struct sheen_error *error)
 {
     int peer_fd;
     enum sheen_status status =
-        connection_pair(&session->connection, &peer_fd, options->timeout_ms, error);
+        connection_pair(&session->connection, &peer_fd, connect_timeout_ms(options), error);
     if (status)
         return status;
     status = private_daemon_start(&session->daemon, peer_fd, options->device, error);
@@ -38,7 +44,8 @@ static enum sheen_status open_address(struct sheen_session *session,
                           "address '%s' has port 0; a server has a port from 1 to 65535",
                           options->address);
     const struct tls_files files = {.cert = options->cert, .key = options->key, .ca = options->ca};
-    return connection_open(&session->connection, &address, &files, options->timeout_ms, error);
+    return connection_open(&session->connection, &address, &files, connect_timeout_ms(options),
+                           error);
 }
 
 /* A daemon does not tell a stranger why it closes. */
@@ -103,6 +110,7 @@ enum sheen_status sheen_connect(struct sheen_session **session,
         sheen_close(made);
         return status;
     }
+    made->connection.timeout_ms = options->timeout_ms;
     *session = made;
     return SHEEN_OK;
 }

@@ -110,6 +110,37 @@ static void a_silent_server_costs_its_time(void **state)
     assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_TIMEOUT);
     assert_non_null(strstr(error.text, "0.1 s"));
     fake_finish(&fake);
+    fake_start(&fake, serve_silence);
+    options.address = fake.address;
+    options.timeout_ms = 0;
+    options.connect_timeout_ms = 200;
+    assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_TIMEOUT);
+    assert_non_null(strstr(error.text, "0.2 s"));
+    fake_finish(&fake);
+}
+
+static void serve_greeting_alone(int fd)
+{
+    greet(fd);
+    serve_silence(fd);
+}
+
+/* The time to connect in ends with it. */
+static void a_server_that_has_greeted_has_more_time(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_stats stats;
+    fake_start(&fake, serve_greeting_alone);
+    struct sheen_connect_options options = {
+        .address = fake.address, .timeout_ms = 300, .connect_timeout_ms = 2000};
+    assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_OK);
+    assert_int_equal(sheen_query_stats(session, &stats, &error), SHEEN_TIMEOUT);
+    assert_non_null(strstr(error.text, "0.3 s"));
+    sheen_close(session);
+    fake_finish(&fake);
 }
 
 static void nobody_listens(void **state)
@@ -281,6 +312,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_handshakes),
         cmocka_unit_test(a_silent_server_costs_its_time),
+        cmocka_unit_test(a_server_that_has_greeted_has_more_time),
         cmocka_unit_test(nobody_listens),
         cmocka_unit_test(an_upload_goes_on_where_it_broke),
         cmocka_unit_test(names_lose_folders_and_control_characters),
