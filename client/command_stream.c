@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "client/clock.h"
 #include "client/commands.h"
 #include "client/job.h"
 #include "client/status.h"
@@ -21,8 +21,17 @@ static const char *const STAGE_NAMES[N_STAGES] = {
     "tables", "visibility", "evaluate", "shade", "readback", "encode", "total", "round_trip"};
 
 struct record {
+    enum { WANTED, DRAWN, LATE } state;
+    uint32_t number; /* of the frame, from 0 */
     uint64_t stage_us[N_STAGES];
     uint64_t data_bytes;
+};
+
+/* Answers may come in another order than requests: a refusal before an older frame, a frame that
+ * was asked for again after a newer one. */
+struct sent {
+    uint32_t frame;
+    int64_t us;
 };
 
 struct stream {
@@ -30,19 +39,11 @@ struct stream {
     struct sheen_camera camera;   /* of the first frame */
     struct sheen_light light;     /* the first: the one that moves */
     struct sheen_frame frame;
-    struct record *records;                /* [frames] */
-    uint32_t n_records, n_late;            /* frames that came, and that were not drawn in time */
-    uint32_t n_received;                   /* answers: both together */
-    uint64_t sent_us[SHEEN_MAX_IN_FLIGHT]; /* by the request's number modulo its size */
-    uint64_t start_us, elapsed_us; /* of all frames but the first, which may wait for tables */
+    struct record *records;                /* [frames], by the frame's number */
+    uint32_t n_drawn, n_late;              /* frames that came, and that were not drawn in time */
+    struct sent sent[SHEEN_MAX_IN_FLIGHT]; /* by the request's number modulo its size */
+    int64_t start_us, elapsed_us; /* of all frames but the first, which may wait for tables */
 };
-
-static uint64_t now_us(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint64_t)now.tv_sec * 1000000 + (uint64_t)now.tv_nsec / 1000;
-}
 
 /* Turns the eye about the axis through the target along up. */
 static void orbit(struct sheen_camera *camera, const struct sheen_camera *start, double angle_rad)
@@ -81,11 +82,11 @@ static void move(struct stream *stream, const struct options *options, uint32_t 
         stream->request.lights[0].centre[i] += LIGHT_SWING * sin(angle) * stream->light.u[i];
 }
 
-static enum sheen_status send_one(struct job *job, struct stream *stream)
+static enum sheen_status send_one(struct job *job, struct stream *stream, uint32_t number)
 {
-    uint64_t now = now_us();
+    struct sent sent = {.frame = number, .us = clock_now_us()};
     enum sheen_status status = sheen_send(job->session, &stream->request, &job->error);
-    stream->sent_us[sheen_last_number(job->session) % SHEEN_MAX_IN_FLIGHT] = now;
+    stream->sent[sheen_last_number(job->session) % SHEEN_MAX_IN_FLIGHT] = sent;
     return status;
 }
 
@@ -93,15 +94,21 @@ static enum sheen_status receive_one(struct job *job, struct stream *stream)
 {
     enum sheen_status status =
         sheen_receive(job->session, &job->report, &stream->frame, &job->error);
-    if (status == SHEEN_LATE) {
+    const struct sent *sent = &stream->sent[stream->frame.number % SHEEN_MAX_IN_FLIGHT];
+    bool is_late = status == SHEEN_LATE && stream->request.deadline_ms;
+    if (status && !is_late)
+        return status;
+    if (is_late) {
+        stream->records[sent->frame].state = LATE;
         stream->n_late++;
         return SHEEN_OK;
     }
-    if (status)
-        return status;
     const struct sheen_times *times = &stream->frame.times;
-    uint64_t round_trip_us = now_us() - stream->sent_us[stream->frame.number % SHEEN_MAX_IN_FLIGHT];
-    stream->records[stream->n_records++] = (struct record){
+    uint64_t round_trip_us = (uint64_t)(clock_now_us() - sent->us);
+    stream->n_drawn++;
+    stream->records[sent->frame] = (struct record){
+        .state = DRAWN,
+        .number = sent->frame,
         .stage_us = {times->tables_us, times->visibility_us, times->evaluate_us, times->shade_us,
                      times->readback_us, times->encode_us, times->total_us, round_trip_us},
         .data_bytes = stream->frame.data_bytes,
@@ -114,7 +121,7 @@ static enum sheen_status first_frame(struct job *job, struct stream *stream,
                                      const struct options *options)
 {
     stream->request.deadline_ms = 0;
-    enum sheen_status status = send_one(job, stream);
+    enum sheen_status status = send_one(job, stream, 0);
     if (!status)
         status = receive_one(job, stream);
     if (status)
@@ -123,9 +130,13 @@ static enum sheen_status first_frame(struct job *job, struct stream *stream,
     progress_clear(&job->progress);
     stream->camera = stream->frame.camera;
     stream->light = stream->frame.lights[0];
-    stream->n_received = 1;
-    stream->start_us = now_us();
+    stream->start_us = clock_now_us();
     return SHEEN_OK;
+}
+
+static uint32_t n_answered(const struct stream *stream)
+{
+    return stream->n_drawn + stream->n_late;
 }
 
 /* All that have no answer yet. */
@@ -134,22 +145,33 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
 {
     enum sheen_status status = job_upload_images(job, options, &stream->request);
     memcpy(stream->request.model_id, job->model_id, SHEEN_ID_BYTES);
-    if (!status && stream->n_received == 0)
+    if (!status && n_answered(stream) == 0)
         status = first_frame(job, stream, options);
-    uint32_t n_sent = stream->n_received;
-    while (!status && stream->n_received < options->frames) {
-        if (n_sent < options->frames && n_sent - stream->n_received < IN_FLIGHT) {
-            move(stream, options, n_sent);
-            status = send_one(job, stream);
-            n_sent++;
+    uint32_t next = 0, n_in_flight = 0;
+    while (!status && n_answered(stream) < options->frames) {
+        while (next < options->frames && stream->records[next].state != WANTED)
+            next++;
+        if (next < options->frames && n_in_flight < IN_FLIGHT) {
+            move(stream, options, next);
+            status = send_one(job, stream, next++);
+            n_in_flight++;
         } else {
             status = receive_one(job, stream);
-            stream->n_received += status == SHEEN_OK;
-            job->report.report(job->report.context, "frames", stream->n_received, options->frames);
+            n_in_flight--;
+            job->report.report(job->report.context, "frames", n_answered(stream), options->frames);
         }
     }
-    stream->elapsed_us = now_us() - stream->start_us;
+    stream->elapsed_us = clock_now_us() - stream->start_us;
     return status;
+}
+
+/* Moves the records of drawn frames to the front, in the frames' order. */
+static void keep_drawn(struct stream *stream, uint32_t n_frames)
+{
+    uint32_t n_kept = 0;
+    for (uint32_t i = 0; i < n_frames; i++)
+        if (stream->records[i].state == DRAWN)
+            stream->records[n_kept++] = stream->records[i];
 }
 
 static double frames_per_second(const struct stream *stream, uint32_t n_frames)
@@ -203,6 +225,7 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
     json_array_begin(json, "frames");
     for (uint32_t i = 0; i < n_frames; i++) {
         json_object_begin(json, NULL);
+        json_uint(json, "number", stream->records[i].number);
         for (int stage = 0; stage < N_STAGES; stage++) {
             char key[24];
             snprintf(key, sizeof(key), "%s_us", STAGE_NAMES[stage]);
@@ -226,12 +249,13 @@ static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_
     progress_clear(&job->progress);
     if (status)
         return status;
+    keep_drawn(stream, options->frames);
     if (!options->json) {
-        print_table(stream, stream->n_records, sorted);
+        print_table(stream, stream->n_drawn, sorted);
         return SHEEN_OK;
     }
     struct json json = {.out = stdout};
-    print_json(&json, stream, stream->n_records, job);
+    print_json(&json, stream, stream->n_drawn, job);
     return job_finish_json(job, &json);
 }
 
