@@ -3,7 +3,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "client/canvas.h"
 #include "client/commands.h"
@@ -124,26 +123,28 @@ static void describe(const struct normal_error *error, char largest[CAPTION_BYTE
     }
 }
 
-static enum sheen_status render(struct job *job, struct sheen_request *request,
-                                enum sheen_surface surface, int level, struct sheen_frame *frame)
+static enum sheen_status render(struct job *job, const struct options *options,
+                                struct sheen_request *request, enum sheen_surface surface,
+                                int level, struct sheen_frame *frame)
 {
     request->surface = surface;
     request->surface_level = (uint32_t)level;
-    return sheen_render(job->session, request, &job->report, frame, &job->error);
+    return job_render(job, options, request, frame);
 }
 
-static enum sheen_status draw_row(struct job *job, struct sheen_request *request, int row,
+static enum sheen_status draw_row(struct job *job, const struct options *options,
+                                  struct sheen_request *request, int row,
                                   const struct sheen_frame *exact, struct sheen_frame *frame,
                                   struct figure *figure)
 {
     char title[CAPTION_BYTES], largest[CAPTION_BYTES], mean[CAPTION_BYTES];
     int level = FIRST_LEVEL + row;
-    enum sheen_status status = render(job, request, SHEEN_SURFACE_WIREFRAME, level, frame);
+    enum sheen_status status = render(job, options, request, SHEEN_SURFACE_WIREFRAME, level, frame);
     if (status)
         return status;
     snprintf(title, sizeof(title), "wireframe, level %d", level);
     place(figure, WIREFRAME, row, frame, (const char *[]){title, "", ""});
-    status = render(job, request, SHEEN_SURFACE_POLYGON, level, frame);
+    status = render(job, options, request, SHEEN_SURFACE_POLYGON, level, frame);
     if (status)
         return status;
     figure->errors[row] = compare(frame, exact);
@@ -159,14 +160,11 @@ static enum sheen_status draw(struct job *job, const struct options *options,
 {
     struct sheen_request request = options->request;
     struct sheen_frame frame = {0};
-    enum sheen_status status = job_upload_images(job, options, &request);
-    memcpy(request.model_id, job->model_id, SHEEN_ID_BYTES);
-    if (!status)
-        status = render(job, &request, SHEEN_SURFACE_EXACT, 0, exact);
+    enum sheen_status status = render(job, options, &request, SHEEN_SURFACE_EXACT, 0, exact);
     if (!status && !figure_init(figure, &request))
         status = status_set(&job->error, SHEEN_NO_MEMORY, "no memory for nine panels of that size");
     for (int row = 0; row < N_LEVELS && !status; row++)
-        status = draw_row(job, &request, row, exact, &frame, figure);
+        status = draw_row(job, options, &request, row, exact, &frame, figure);
     sheen_frame_finish(&frame);
     return status ? status : canvas_write_png(&figure->canvas, options->output, &job->error);
 }
@@ -238,8 +236,8 @@ static const struct option_row ROWS[] = {
     {0},
 };
 
-static const struct option_row *const TABLES[] = {ROWS, OPTIONS_SCENE, OPTIONS_COMMON,
-                                                  OPTIONS_OUTPUT, NULL};
+static const struct option_row *const TABLES[] = {
+    ROWS, OPTIONS_SCENE, OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_FIGURE7 = {
     .name = "figure7",

@@ -87,13 +87,20 @@ static void print_table(const struct sheen_model_info *info)
     printf("%-16s %.1f ms\n", "built in", (double)info->tables_us / 1e3);
 }
 
+static enum sheen_status ask(struct job *job, struct sheen_model_info *info)
+{
+    return sheen_query_model(job->session, job->model_id, &job->report, info, &job->error);
+}
+
 static int run(const struct options *options)
 {
     struct job job;
     struct sheen_model_info info;
     enum sheen_status status = job_init(&job, options);
     if (!status)
-        status = sheen_query_model(job.session, job.model_id, &job.report, &info, &job.error);
+        status = ask(&job, &info);
+    while (status && job_resume(&job, options, &status))
+        status = ask(&job, &info);
     progress_clear(&job.progress);
     if (!status && !options->quiet)
         job_print_warnings(&job, options->model, info.warnings);
@@ -107,7 +114,8 @@ static int run(const struct options *options)
     return job_finish(&job, status);
 }
 
-static const struct option_row *const TABLES[] = {OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
+static const struct option_row *const TABLES[] = {OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT,
+                                                  NULL};
 
 const struct command COMMAND_INFO = {
     .name = "info",

@@ -78,19 +78,10 @@ static void ask_about_model(struct job *job, struct sheen_model_info *info)
     snprintf(info->warnings, sizeof(info->warnings), "its warnings are unknown: %s", error.text);
 }
 
-static enum sheen_status render(struct job *job, const struct options *options,
-                                struct sheen_frame *frame)
-{
-    struct sheen_request request = options->request;
-    enum sheen_status status = job_upload_images(job, options, &request);
-    for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
-        request.model_id[i] = job->model_id[i];
-    return status ? status : sheen_render(job->session, &request, &job->report, frame, &job->error);
-}
-
 static int run(const struct options *options)
 {
     struct job job = {0};
+    struct sheen_request request = options->request;
     struct sheen_frame frame = {0};
     struct sheen_model_info info;
     enum sheen_status status = file_check_writable(options->output, &job.error);
@@ -98,9 +89,7 @@ static int run(const struct options *options)
         return job_finish(&job, status);
     status = job_init(&job, options);
     if (!status)
-        status = render(&job, options, &frame);
-    while (status && job_resume(&job, options, &status))
-        status = render(&job, options, &frame);
+        status = job_render(&job, options, &request, &frame);
     if (!status)
         status = file_write(options->output, frame.file, frame.file_bytes, &job.error);
     /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
@@ -130,7 +119,8 @@ static const struct option_row ROWS[] = {
 };
 
 static const struct option_row *const TABLES[] = {
-    ROWS, OPTIONS_SCENE, OPTIONS_SURFACE, OPTIONS_SCHEDULE, OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
+    ROWS,           OPTIONS_SCENE,     OPTIONS_SURFACE, OPTIONS_SCHEDULE,
+    OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT,  NULL};
 
 const struct command COMMAND_RENDER = {
     .name = "render",

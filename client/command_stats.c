@@ -121,6 +121,14 @@ static void print_table(const struct sheen_stats *stats)
     print_times("p99", &stats->p99);
 }
 
+/* It is one daemon that is asked: the numbers of the next are no answer. */
+static bool check(struct options *options, char *why)
+{
+    (void)why;
+    options->reconnect_s = 0;
+    return true;
+}
+
 static int run(const struct options *options)
 {
     struct job job;
@@ -147,9 +155,11 @@ const struct command COMMAND_STATS = {
         "Says what a daemon is doing: how much, how fast. Of the last minute: rates, percentiles\n"
         "of each stage, and by class those of a frame's way from the request's last byte to the\n"
         "answer's first; and the mean of the last 64 frames. Without a server it tells of a\n"
-        "fresh private daemon: the device that this machine has.",
+        "fresh private daemon: the device that this machine has. It gives up at once when the\n"
+        "daemon ends meanwhile: the one that takes its place has numbers of its own.",
     .tables = TABLES,
     .examples = "  sheen stats --server unix:/run/sheen.sock\n"
                 "  sheen stats --json\n",
+    .check = check,
     .run = run,
 };

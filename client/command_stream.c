@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "client/clock.h"
 #include "client/commands.h"
@@ -98,6 +97,7 @@ static enum sheen_status receive_one(struct job *job, struct stream *stream)
     bool is_late = status == SHEEN_LATE && stream->request.deadline_ms;
     if (status && !is_late)
         return status;
+    job_answered(job);
     if (is_late) {
         stream->records[sent->frame].state = LATE;
         stream->n_late++;
@@ -144,7 +144,6 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
                                     const struct options *options)
 {
     enum sheen_status status = job_upload_images(job, options, &stream->request);
-    memcpy(stream->request.model_id, job->model_id, SHEEN_ID_BYTES);
     if (!status && n_answered(stream) == 0)
         status = first_frame(job, stream, options);
     uint32_t next = 0, n_in_flight = 0;
@@ -320,7 +319,8 @@ static const struct option_row ROWS[] = {
 };
 
 static const struct option_row *const TABLES_LIST[] = {
-    ROWS, OPTIONS_SCENE, OPTIONS_SURFACE, OPTIONS_SCHEDULE, OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
+    ROWS,           OPTIONS_SCENE,     OPTIONS_SURFACE, OPTIONS_SCHEDULE,
+    OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT,  NULL};
 
 const struct command COMMAND_STREAM = {
     .name = "stream",

@@ -1,16 +1,17 @@
 #include "client/job.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+#include <time.h>
 
+#include "client/clock.h"
 #include "client/file.h"
 #include "client/status.h"
 #include "client/values.h"
 
 #define TOKEN_BYTES 256
-#define FIRST_RESUME_MS 200u
 #define AT_SERVER "server:" /* a MODEL that is a file below the daemon's --models */
 
 static enum sheen_status upload(struct job *job, enum sheen_file_kind kind, const char *path,
@@ -28,39 +29,80 @@ static enum sheen_status identify(struct job *job, const uint8_t *bytes, size_t 
     return status_set(&job->error, SHEEN_NO_MEMORY, "libcrypto cannot compute a SHA-256");
 }
 
-static enum sheen_status connect_and_upload(struct job *job, const struct options *options)
+/* A file is read again for each server: answers about two versions of it must not be mixed. */
+static enum sheen_status keep_id(struct job *job, uint8_t kept[SHEEN_ID_BYTES],
+                                 const uint8_t id[SHEEN_ID_BYTES], enum sheen_status status,
+                                 const char *path)
 {
-    uint8_t *bytes = NULL;
-    size_t n_bytes = 0;
+    if (job->resume.is_answered && memcmp(kept, id, SHEEN_ID_BYTES) != 0)
+        return status_set(&job->error, status,
+                          "%s: it has changed since the first answer about it came; ask for "
+                          "everything again",
+                          path);
+    memcpy(kept, id, SHEEN_ID_BYTES);
+    return SHEEN_OK;
+}
+
+/* A file's bytes, which are the caller's to free, whatever the status is; and its id. */
+static enum sheen_status read_file(struct job *job, const char *path, enum sheen_status bad,
+                                   uint8_t **bytes, size_t *n_bytes, uint8_t kept[SHEEN_ID_BYTES])
+{
+    uint8_t id[SHEEN_ID_BYTES];
+    enum sheen_status status = file_read(path, bad, bytes, n_bytes, &job->error);
+    if (!status)
+        status = identify(job, *bytes, *n_bytes, id);
+    return status ? status : keep_id(job, kept, id, bad, path);
+}
+
+/* `timeout_ms` is for connecting; 0: as for everything. */
+static enum sheen_status connect_server(struct job *job, const struct options *options,
+                                        uint32_t timeout_ms)
+{
     struct sheen_connect_options connect = SHEEN_CONNECT_DEFAULTS;
+    connect.connect_timeout_ms = timeout_ms;
     connect.address = options->server;
     connect.device = options->device;
     connect.ca = options->ca;
     connect.cert = options->cert;
     connect.key = options->key;
     connect.share = options->share;
+    memcpy(connect.model_id, job->model_id, SHEEN_ID_BYTES);
     char token[TOKEN_BYTES];
-    enum sheen_status status = SHEEN_OK;
     if (options->token_file) {
-        status = file_read_line(options->token_file, token, sizeof(token), &job->error);
+        enum sheen_status status =
+            file_read_line(options->token_file, token, sizeof(token), &job->error);
+        if (status)
+            return status;
         connect.token = token;
     }
+    return sheen_connect(&job->session, &connect, &job->error);
+}
+
+static enum sheen_status find_model(struct job *job, const char *name)
+{
+    uint8_t id[SHEEN_ID_BYTES];
+    enum sheen_status status = sheen_find_model(job->session, name, &job->report, id, &job->error);
+    return status ? status : keep_id(job, job->model_id, id, SHEEN_BAD_MODEL, name);
+}
+
+static enum sheen_status connect_and_upload(struct job *job, const struct options *options,
+                                            uint32_t timeout_ms)
+{
+    uint8_t *bytes = NULL;
+    size_t n_bytes = 0;
     const char *at_server =
         options->model && strncmp(options->model, AT_SERVER, strlen(AT_SERVER)) == 0
             ? options->model + strlen(AT_SERVER)
             : NULL;
     bool local = options->model && !at_server;
-    if (!status && local) {
-        status = file_read(options->model, SHEEN_BAD_MODEL, &bytes, &n_bytes, &job->error);
-        if (!status)
-            status = identify(job, bytes, n_bytes, job->model_id);
-        memcpy(connect.model_id, job->model_id, SHEEN_ID_BYTES);
-    }
+    enum sheen_status status = SHEEN_OK;
+    job->has_images = false;
+    if (local)
+        status = read_file(job, options->model, SHEEN_BAD_MODEL, &bytes, &n_bytes, job->model_id);
     if (!status)
-        status = sheen_connect(&job->session, &connect, &job->error);
+        status = connect_server(job, options, timeout_ms);
     if (!status && at_server)
-        status =
-            sheen_find_model(job->session, at_server, &job->report, job->model_id, &job->error);
+        status = find_model(job, at_server);
     if (!status && local)
         status = upload(job, SHEEN_FILE_MODEL, options->model, bytes, n_bytes, job->model_id);
     free(bytes);
@@ -69,38 +111,76 @@ static enum sheen_status connect_and_upload(struct job *job, const struct option
 
 enum sheen_status job_init(struct job *job, const struct options *options)
 {
-    *job = (struct job){0};
+    *job = (struct job){.resume = {.limit_ms = options->reconnect_s * 1000}};
     job->report = progress_init(&job->progress, options->quiet);
-    return connect_and_upload(job, options);
+    enum sheen_status status = connect_and_upload(job, options, 0);
+    if (status)
+        job_resume(job, options, &status);
+    return status;
+}
+
+/* A connection has been lost: begins the time that the next may take. False when this goes on and
+ * on. */
+static bool begin_resume(struct job *job, const struct options *options)
+{
+    char text[sizeof(job->error.text)];
+    if (resume_lost(&job->resume, clock_now_ms())) {
+        progress_note(&job->progress, "%s; connecting again for up to %u s", job->error.text,
+                      options->reconnect_s);
+        return true;
+    }
+    snprintf(text, sizeof(text), "%s", job->error.text);
+    status_set(&job->error, job->error.status,
+               "%.400s; %u servers in a row went before they answered: see their logs before "
+               "asking again",
+               text, job->resume.n_losses);
+    return false;
+}
+
+static void nap(uint32_t ms)
+{
+    struct timespec left = {.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000L};
+    while (nanosleep(&left, &left) != 0 && errno == EINTR)
+        ;
 }
 
 bool job_resume(struct job *job, const struct options *options, enum sheen_status *status)
 {
-    if (!options->server || *status != SHEEN_SHUTTING_DOWN)
+    /* Nobody at an address that nobody was met at is no loss: it may be wrong. */
+    bool is_lost =
+        *status == SHEEN_SHUTTING_DOWN || (*status == SHEEN_LOST_SERVER && job->session != NULL);
+    bool is_new = true;
+    uint32_t wait_ms;
+    if (!options->server || options->reconnect_s == 0)
         return false;
-    while (job->n_resumes < JOB_MAX_RESUMES &&
-           (*status == SHEEN_SHUTTING_DOWN || *status == SHEEN_NO_SERVER)) {
-        unsigned wait_ms = FIRST_RESUME_MS << job->n_resumes++;
-        progress_clear(&job->progress);
-        fprintf(stderr, "sheen: %s; connecting again in %.1f s (%u of %u)\n", job->error.text,
-                wait_ms / 1e3, job->n_resumes, JOB_MAX_RESUMES);
+    while (is_lost) {
+        if ((is_new || job->session) && !begin_resume(job, options))
+            return false;
+        is_new = false;
         sheen_close(job->session);
         job->session = NULL;
-        usleep(wait_ms * 1000);
-        *status = connect_and_upload(job, options);
+        if (!resume_wait(&job->resume, clock_now_ms(), &wait_ms))
+            return false;
+        nap(wait_ms);
+        *status = connect_and_upload(job, options, resume_try_ms(&job->resume, clock_now_ms()));
         if (!*status)
             return true;
+        is_lost = *status == SHEEN_SHUTTING_DOWN || *status == SHEEN_LOST_SERVER ||
+                  *status == SHEEN_NO_SERVER;
     }
     return false;
+}
+
+void job_answered(struct job *job)
+{
+    resume_answered(&job->resume);
 }
 
 static enum sheen_status upload_image(struct job *job, const char *path, uint8_t id[SHEEN_ID_BYTES])
 {
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
-    enum sheen_status status = file_read(path, SHEEN_BAD_IMAGE, &bytes, &n_bytes, &job->error);
-    if (!status)
-        status = identify(job, bytes, n_bytes, id);
+    enum sheen_status status = read_file(job, path, SHEEN_BAD_IMAGE, &bytes, &n_bytes, id);
     if (!status)
         status = upload(job, SHEEN_FILE_IMAGE, path, bytes, n_bytes, id);
     free(bytes);
@@ -110,10 +190,28 @@ static enum sheen_status upload_image(struct job *job, const char *path, uint8_t
 enum sheen_status job_upload_images(struct job *job, const struct options *options,
                                     struct sheen_request *request)
 {
+    memcpy(request->model_id, job->model_id, SHEEN_ID_BYTES);
+    if (job->has_images)
+        return SHEEN_OK;
     enum sheen_status status = SHEEN_OK;
     for (uint32_t i = 0; !status && i < request->n_lights; i++)
         if (options->image_path[i])
             status = upload_image(job, options->image_path[i], request->lights[i].pattern.image_id);
+    job->has_images = status == SHEEN_OK;
+    return status;
+}
+
+enum sheen_status job_render(struct job *job, const struct options *options,
+                             struct sheen_request *request, struct sheen_frame *frame)
+{
+    enum sheen_status status;
+    do {
+        status = job_upload_images(job, options, request);
+        if (!status)
+            status = sheen_render(job->session, request, &job->report, frame, &job->error);
+    } while (status && job_resume(job, options, &status));
+    if (!status)
+        job_answered(job);
     return status;
 }
 

@@ -7,6 +7,7 @@
 #include "client/json.h"
 #include "client/options.h"
 #include "client/progress.h"
+#include "client/resume.h"
 #include "client/sheen.h"
 
 struct job {
@@ -15,24 +16,33 @@ struct job {
     struct progress progress;
     struct sheen_progress report; /* for libsheen */
     struct sheen_error error;     /* of the last failure */
-    unsigned n_resumes;           /* how often job_resume() has tried to connect */
+    struct resume resume;
+    bool has_images; /* the session's daemon has all that the request shows */
 };
 
-/* Reads options->model (if any), connects and uploads it. On failure job->error says why; the job
- * must be finished all the same. */
+/* Reads options->model (if any), connects and uploads it; goes on like job_resume() when that is
+ * cut off. On failure job->error says why; the job must be finished all the same. */
 enum sheen_status job_init(struct job *job, const struct options *options);
 
-/* After a failure, *status, that a shared daemon's end is the reason of: waits, twice as long each
- * time, connects to the daemon that takes its place and uploads the model again, JOB_MAX_RESUMES
- * times in all for a command, and says so on standard error. True when it has; images are to be
- * uploaded and what has no answer to be asked again. Else *status and job->error say what stands in
- * the way. */
-#define JOB_MAX_RESUMES 5u
+/* After a failure, *status, that the loss of the server at options->server is the reason of: tries
+ * for options->reconnect_s seconds to connect to the one that takes its place and to upload the
+ * model there, and says so in one line unless --quiet. True when it has, *status is SHEEN_OK then:
+ * images are to be uploaded and what has no answer to be asked again. Else *status and job->error
+ * say what stands in the way. */
 bool job_resume(struct job *job, const struct options *options, enum sheen_status *status);
 
-/* Uploads the images of a command's lights and writes their ids into the request. */
+/* To be called for each answer: it is what job_resume() knows progress by. */
+void job_answered(struct job *job);
+
+/* Uploads the images of a command's lights, once a session, and writes their ids and the model's
+ * into the request, which must be the same each time. */
 enum sheen_status job_upload_images(struct job *job, const struct options *options,
                                     struct sheen_request *request);
+
+/* job_upload_images() and one frame, from whichever server is there to draw it. No request may be
+ * in flight. */
+enum sheen_status job_render(struct job *job, const struct options *options,
+                             struct sheen_request *request, struct sheen_frame *frame);
 
 /* Gives everything back; prints job->error as one line if `status` is a failure. Returns the exit
  * code. */

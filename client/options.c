@@ -8,6 +8,7 @@
 #define MAX_OPTIONS 64
 #define FIRST_LONG 256 /* getopt's number of row 0; letters are below */
 #define HELP_COLUMN 30
+#define DEFAULT_RECONNECT_S 30
 
 bool options_refuse(char *why, const char *format, ...)
 {
@@ -123,7 +124,8 @@ enum options_result options_parse(const struct command *command, int argc, char 
 {
     const struct option_row *rows[MAX_OPTIONS];
     size_t n = collect(command, rows);
-    *options = (struct options){.request = SHEEN_REQUEST_DEFAULTS, .orbit_deg = 1};
+    *options = (struct options){
+        .request = SHEEN_REQUEST_DEFAULTS, .reconnect_s = DEFAULT_RECONNECT_S, .orbit_deg = 1};
     enum options_result result = parse_options(argc, argv, rows, n, options, why);
     if (result != OPTIONS_RUN)
         return result;

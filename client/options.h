@@ -42,6 +42,7 @@ struct options {
     const char *output;                       /* render: where the picture goes */
     uint32_t aov_planes;                      /* render: planes beside colour */
     uint32_t frames;                          /* stream: 1 to 1000000 */
+    uint32_t reconnect_s;                     /* after a loss; 0 to 86400, 0: not at all */
     double orbit_deg;                         /* stream: per frame */
     bool light_only;                          /* stream: the light moves, not the camera */
 };
@@ -70,11 +71,12 @@ struct command {
 
 enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };
 
-extern const struct option_row OPTIONS_COMMON[];   /* server, device, quiet */
-extern const struct option_row OPTIONS_OUTPUT[];   /* json, help: of every command */
-extern const struct option_row OPTIONS_SCENE[];    /* size, camera, light, pattern, colours */
-extern const struct option_row OPTIONS_SURFACE[];  /* surface, show, show-range */
-extern const struct option_row OPTIONS_SCHEDULE[]; /* class, deadline */
+extern const struct option_row OPTIONS_COMMON[];    /* server, device, quiet */
+extern const struct option_row OPTIONS_RECONNECT[]; /* of commands that call job_resume() */
+extern const struct option_row OPTIONS_OUTPUT[];    /* json, help: of every command */
+extern const struct option_row OPTIONS_SCENE[];     /* size, camera, light, pattern, colours */
+extern const struct option_row OPTIONS_SURFACE[];   /* surface, show, show-range */
+extern const struct option_row OPTIONS_SCHEDULE[];  /* class, deadline */
 
 /* Parses argv, whose [0] is the command's name. OPTIONS_WRONG leaves one line in `why` that names
  * the option, OPTIONS_HELP asks for options_help(). */

@@ -5,6 +5,8 @@
 #include "client/options.h"
 #include "client/values.h"
 
+#define MAX_RECONNECT_S 86400u
+
 static bool apply_vec3(struct options *options, const char *value, double *target, unsigned given,
                        char *why)
 {
@@ -75,6 +77,13 @@ static bool apply_quiet(struct options *options, const char *value, char *why)
     (void)value;
     (void)why;
     return options->quiet = true;
+}
+
+static bool apply_reconnect(struct options *options, const char *value, char *why)
+{
+    return (value_uint32(value, &options->reconnect_s) &&
+            options->reconnect_s <= MAX_RECONNECT_S) ||
+           options_refuse(why, "must be whole seconds from 0 to %u", MAX_RECONNECT_S);
 }
 
 static bool apply_size(struct options *options, const char *value, char *why)
@@ -270,7 +279,18 @@ const struct option_row OPTIONS_COMMON[] = {
      "of the private daemon: auto, software, or a number from 0 (default: auto,\n"
      "a GPU when there is one)",
      apply_device},
-    {"quiet", 'q', NULL, "no progress, summary or warnings on standard error", apply_quiet},
+    {"quiet", 'q', NULL, "no progress, summary, notices or warnings on standard error",
+     apply_quiet},
+    {0},
+};
+
+const struct option_row OPTIONS_RECONNECT[] = {
+    {"reconnect", 0, "SECONDS",
+     "how long to go on connecting when the server of --server shuts down or breaks\n"
+     "the connection: what has no answer is asked again of the one that takes its\n"
+     "place, 0 to 86400 (default: 30; 0: give up at once). A server that was never\n"
+     "there, and a private daemon, are not waited for",
+     apply_reconnect},
     {0},
 };
 

@@ -1,6 +1,7 @@
 #include "client/progress.h"
 
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,9 +41,23 @@ struct sheen_progress progress_init(struct progress *progress, bool quiet)
     bool can_draw = isatty(STDERR_FILENO) && terminal && strcmp(terminal, "dumb") != 0;
     *progress = (struct progress){
         .is_shown = can_draw && !quiet,
+        .is_quiet = quiet,
         .has_colour = !(no_colour && *no_colour),
     };
     return (struct sheen_progress){.report = report, .context = progress};
+}
+
+void progress_note(struct progress *progress, const char *format, ...)
+{
+    if (progress->is_quiet)
+        return;
+    progress_clear(progress);
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("sheen: ", stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
 }
 
 void progress_clear(struct progress *progress)

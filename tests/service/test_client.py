@@ -151,7 +151,8 @@ class Client(unittest.TestCase):
         for name, (value, wanted) in said.items():
             self.assertEqual(value, wanted, name)
         options = set(re.findall(r"^ +(?:-., )?--([a-z-]+)", sheen("render", "--help").stdout, re.M))
-        not_of_the_frame = {"quiet", "json", "help", "ca", "cert", "key", "token-file", "share"}
+        not_of_the_frame = {"quiet", "json", "help", "ca", "cert", "key", "token-file", "share",
+                            "reconnect"}
         self.assertEqual(options - not_of_the_frame, set(said))
 
     def test_cameras_in_part(self):
@@ -215,7 +216,7 @@ class Client(unittest.TestCase):
             daemon = Daemon()
             address = daemon.unix if kind == "unix" else daemon.tcp
             with subprocess.Popen([SHEEN, "render", FENDER, "-o", self.path("x.png"), "--size",
-                                   "6000x6000", "--server", address], stderr=subprocess.PIPE,
+                                   "6000x6000", "--server", address, "--reconnect", "0"], stderr=subprocess.PIPE,
                                   text=True) as client:
                 time.sleep(0.5)
                 daemon.process.kill()
@@ -231,7 +232,7 @@ class Client(unittest.TestCase):
             with socket.create_server(("127.0.0.1", 0)) as server:
                 address = f"tcp:127.0.0.1:{server.getsockname()[1]}"
                 with subprocess.Popen([SHEEN, "render", FENDER, "-o", self.path("x.png"),
-                                       "--server", address], stderr=subprocess.PIPE,
+                                       "--server", address, "--reconnect", "0"], stderr=subprocess.PIPE,
                                       text=True) as client:
                     relay(server, self.daemon.tcp, cut)
                     _, errors = client.communicate(timeout=30)

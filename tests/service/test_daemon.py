@@ -1,5 +1,4 @@
 """Start, end and options of the daemon."""
-import json
 import os
 import re
 import signal
@@ -12,7 +11,7 @@ import time
 import unittest
 
 import wire
-from daemon import CUBE, MODELS, SHEEN, SHEEND, Daemon, grid, run
+from daemon import CUBE, SHEEND, Daemon, grid, run
 from wire import Client
 
 
@@ -207,70 +206,6 @@ class Shutdown(unittest.TestCase):
                 self.assert_told(idle)
                 self.assertEqual(daemon.wait(), 0)
             self.assertEqual(daemon.stop(), 0)
-
-    def test_the_client_goes_on_with_the_next_daemon(self):
-        """Every frame comes, from one or the other."""
-        folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
-        self.addCleanup(folder.cleanup)
-        daemon = Daemon(folder=folder.name, tcp=False)
-        client = subprocess.Popen([SHEEN, "stream", os.path.join(MODELS, "fender.obj"), "--server",
-                                   daemon.unix, "--frames", "60", "--size", "400x300", "--json"],
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        with Client(daemon.unix) as other:
-            while other.stats()[3][0] < 5:
-                time.sleep(0.02)
-        self.assertEqual(daemon.stop(), 0)
-        time.sleep(0.5)  # one try finds nobody
-        after = Daemon(folder=folder.name, tcp=False)
-        out, said = client.communicate(timeout=120)
-        self.assertEqual(client.returncode, 0, said)
-        self.assertIn("shutting down", said)
-        self.assertIn("connecting again in 0.4 s (2 of 5)", said)
-        self.assertEqual(len(json.loads(out)["frames"]), 60)
-        self.assertEqual(after.stop(), 0)
-
-    def test_a_client_that_is_told_at_once(self):
-        """In the answer to its HELLO, before it has asked where the daemon keeps its model."""
-        folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
-        self.addCleanup(folder.cleanup)
-        path = os.path.join(folder.name, "sheen.sock")
-        picture = os.path.join(folder.name, "a.png")
-        for command in (("render", "-o", picture), ("stream", "--frames", "3")):
-            with socket.socket(socket.AF_UNIX) as listener:
-                listener.bind(path)
-                listener.listen()
-                client = subprocess.Popen(
-                    [SHEEN, *command, "server:fender.obj", "--server", "unix:" + path, "--size",
-                     "64x48"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-                peer, _ = listener.accept()
-            os.unlink(path)
-            with peer:
-                peer.recv(1000)
-                peer.sendall(wire.message(wire.ERROR, 1, wire.field(1, wire.ERROR_SHUTTING_DOWN) +
-                                          wire.field(2, "shutting down")))
-                peer.shutdown(socket.SHUT_WR)
-                while peer.recv(1000):
-                    pass
-            daemon = Daemon("--models", MODELS, path=path, tcp=False)
-            said = client.communicate(timeout=60)[1]
-            with self.subTest(command=command[0]):
-                self.assertEqual(client.returncode, 0, said)
-                self.assertIn("shutting down; connecting again", said)
-            self.assertEqual(daemon.stop(), 0)
-
-    def test_the_client_gives_up_when_none_comes(self):
-        daemon = Daemon(tcp=False)
-        client = subprocess.Popen([SHEEN, "stream", os.path.join(MODELS, "fender.obj"), "--server",
-                                   daemon.unix, "--frames", "10000", "--size", "64x48"],
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        with Client(daemon.unix) as other:
-            while other.stats()[3][0] < 5:
-                time.sleep(0.02)
-        self.assertEqual(daemon.stop(), 0)
-        out, said = client.communicate(timeout=60)
-        self.assertEqual((client.returncode, out), (4, ""))
-        self.assertEqual(len(said.splitlines()), 6, said)
-        self.assertIn("connecting again in 3.2 s (5 of 5)", said)
 
     def test_new_requests_are_refused(self):
         daemon = Daemon()

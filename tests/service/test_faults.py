@@ -299,7 +299,7 @@ class Killed(unittest.TestCase):
     def test_daemon(self):
         for _ in range(self.ROUNDS):
             server = Daemon(folder=self.folder.name, path=self.path, tcp=False)
-            client = self.start_client("--server", server.unix)
+            client = self.start_client("--server", server.unix, "--reconnect", "0")
             time.sleep(self.noise.uniform(0, 0.8))
             family = self.family(server.process.pid)
             server.process.kill()

@@ -247,7 +247,14 @@ static void good_command_lines(void **state)
     assert_int_equal(parse(&COMMAND_INFO, "m.obj --server unix:/tmp/s", &options, why),
                      OPTIONS_RUN);
     assert_string_equal(options.server, "unix:/tmp/s");
+    assert_int_equal(options.reconnect_s, 30);
+    assert_int_equal(parse(&COMMAND_INFO, "m.obj --reconnect 0", &options, why), OPTIONS_RUN);
+    assert_int_equal(options.reconnect_s, 0);
+    assert_int_equal(parse(&COMMAND_FIGURE7, "m.obj -o a.png --reconnect 86400", &options, why),
+                     OPTIONS_RUN);
+    assert_int_equal(options.reconnect_s, 86400);
     assert_int_equal(parse(&COMMAND_STATS, "--device 1", &options, why), OPTIONS_RUN);
+    assert_int_equal(options.reconnect_s, 0);
     assert_int_equal(parse(&COMMAND_STATS, "--help --nonsense", &options, why), OPTIONS_HELP);
 }
 
@@ -335,6 +342,10 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_STREAM, "m.obj --frames 5 --orbit 361", "--orbit"},
         {&COMMAND_STREAM, "m.obj --frames 5 -o a.png", "-o"},
         {&COMMAND_INFO, "m.obj --size 4x4", "--size"},
+        {&COMMAND_INFO, "m.obj --reconnect 86401", "0 to 86400"},
+        {&COMMAND_RENDER, "m.obj -o a.png --reconnect -1", "--reconnect '-1'"},
+        {&COMMAND_STREAM, "m.obj --frames 5 --reconnect 1.5", "whole seconds"},
+        {&COMMAND_STATS, "--reconnect 5", "--reconnect is no option here"},
         {&COMMAND_STATS, "m.obj", "m.obj"},
     };
     struct options options;

@@ -1,0 +1,125 @@
+"""A server that passes messages on to a daemon, and can lose a connection at a chosen one."""
+import os
+import socket
+import struct
+import tempfile
+import threading
+
+import wire
+
+FORWARD, HOLD, CUT = range(3)
+
+
+def read(source, size):
+    """Exactly so many bytes, or none at the end."""
+    out = b""
+    while len(out) < size:
+        part = source.recv(size - len(out))
+        if not part:
+            return b""
+        out += part
+    return out
+
+
+def close(*sockets):
+    for each in sockets:
+        try:
+            each.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            pass  # it has gone by itself
+
+
+class Between:
+    """`judge(connection, kind, seq, body, client)` says what becomes of a client's message: FORWARD,
+    HOLD (it is dropped) or CUT (both sides are closed); `connection` counts from 0, `client` is the
+    client's socket. `cut_after`: so many bytes of the daemon's answers on the first connection."""
+
+    def __init__(self, daemon, judge=lambda *_: FORWARD, cut_after=None, n_accepted=None):
+        self.daemon, self.judge, self.cut_after = daemon, judge, cut_after
+        self.n_accepted = n_accepted  # connections beyond wait and are never served
+        self.n_connections = 0
+        self.sockets = []
+        self.folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
+        self.path = os.path.join(self.folder.name, "between.sock")
+        self.listener = socket.socket(socket.AF_UNIX)
+        self.listener.bind(self.path)
+        self.listener.listen()
+        self.threads = [threading.Thread(target=self.accept)]
+        self.threads[0].start()
+
+    @property
+    def unix(self):
+        return "unix:" + self.path
+
+    def accept(self):
+        while self.n_accepted is None or self.n_connections < self.n_accepted:
+            try:
+                client, _ = self.listener.accept()
+            except OSError:
+                return  # finished
+            server = socket.socket(socket.AF_UNIX)
+            self.sockets += client, server
+            server.connect(self.daemon.path)
+            for work in (self.requests, self.answers):
+                thread = threading.Thread(target=work, args=(self.n_connections, client, server))
+                self.threads.append(thread)
+                thread.start()
+            self.n_connections += 1
+
+    def requests(self, connection, client, server):
+        try:
+            while header := read(client, 16):
+                kind, _, length, seq = struct.unpack("<BHII", header[5:])
+                body = read(client, length)
+                what = self.judge(connection, kind, seq, body, client)
+                if what == CUT:
+                    break
+                if what == FORWARD:
+                    server.sendall(header + body)
+        except OSError:
+            pass  # one of them has gone
+        close(client, server)
+
+    def answers(self, connection, client, server):
+        left = self.cut_after if connection == 0 else None
+        try:
+            while data := server.recv(1 << 16 if left is None else min(left, 1 << 16)):
+                client.sendall(data)
+                if left is not None:
+                    left -= len(data)
+                    if left == 0:
+                        break
+        except OSError:
+            pass  # one of them has gone
+        close(client, server)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        close(self.listener)
+        self.listener.close()
+        for thread in self.threads:
+            thread.join(30)
+        for each in self.sockets:
+            each.close()
+        self.folder.cleanup()
+
+
+def cut_at(kind, number=1, connections=(0,)):
+    """Loses these connections at their so many-th message of a kind."""
+    seen = {}
+
+    def judge(connection, got, *_):
+        if got == kind and connection in connections:
+            seen[connection] = seen.get(connection, 0) + 1
+            if seen[connection] == number:
+                return CUT
+        return FORWARD
+
+    return judge
+
+
+def frame_number(body):
+    """Of a stream's RENDER: its view; the first goes without."""
+    return wire.decode(body).get(15, [0])[0]
