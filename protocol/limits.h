@@ -18,6 +18,7 @@
 #define PROTOCOL_MAX_UPLOAD_BYTES (1024ull * 1024 * 1024) /* one model or image file */
 #define PROTOCOL_MAX_FRAME_BYTES (4096ull * 1024 * 1024)  /* one frame: its planes, or its file */
 #define PROTOCOL_MAX_SIZE_PX 65536u /* width and height; the device's limit is lower */
+#define PROTOCOL_MAX_JPEG_PX 65500u /* the same of a JPEG file: libjpeg's limit */
 
 /* Requests sent and not yet answered, per connection. A peer of minor version 0 has the first, and
  * more is left in the socket's buffer; to others HELLO_OK grants some, and more breaks the

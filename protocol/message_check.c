@@ -391,16 +391,22 @@ static bool check_schedule(const sheen_Render *render, char *text)
                   render->deadline_ms, PROTOCOL_MAX_DEADLINE_MS);
 }
 
+static bool check_side(uint32_t side_px, uint32_t max_px, unsigned encoding, const char *name,
+                       char *text)
+{
+    if (side_px == 0 || side_px > max_px)
+        return refuse(text, "%s is %u px; it must be from 1 to %u", name, side_px, max_px);
+    return encoding != sheen_Encoding_ENCODING_JPEG || side_px <= PROTOCOL_MAX_JPEG_PX ||
+           refuse(text, "%s is %u px; a JPEG file has at most %u: ask for another format", name,
+                  side_px, PROTOCOL_MAX_JPEG_PX);
+}
+
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES])
 {
-    if (render->width_px == 0 || render->width_px > max_width_px)
-        return refuse(text, "width is %u px; it must be from 1 to %u", render->width_px,
-                      max_width_px);
-    if (render->height_px == 0 || render->height_px > max_height_px)
-        return refuse(text, "height is %u px; it must be from 1 to %u", render->height_px,
-                      max_height_px);
-    if (!check_planes(render->planes, render->encoding, text) || !check_show(render, text))
+    if (!check_side(render->width_px, max_width_px, render->encoding, "width", text) ||
+        !check_side(render->height_px, max_height_px, render->encoding, "height", text) ||
+        !check_planes(render->planes, render->encoding, text) || !check_show(render, text))
         return false;
     struct codec_layout layout;
     uint32_t planes = message_render_planes(render);

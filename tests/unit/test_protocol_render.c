@@ -53,6 +53,25 @@ static void render_sizes(void **state)
     assert_non_null(strstr(text, "4294967296 bytes"));
 }
 
+static void render_jpeg_sizes(void **state)
+{
+    (void)state;
+    for (int side = 0; side < 2; side++) {
+        sheen_Render render = GOOD;
+        char text[MESSAGE_TEXT_BYTES];
+        uint32_t *side_px = side ? &render.height_px : &render.width_px;
+        render.encoding = sheen_Encoding_ENCODING_JPEG;
+        *side_px = 65500;
+        assert_true(message_check_render(&render, UINT32_MAX, UINT32_MAX, text));
+        *side_px = 65501;
+        assert_false(message_check_render(&render, UINT32_MAX, UINT32_MAX, text));
+        assert_non_null(strstr(text, side ? "height is 65501" : "width is 65501"));
+        assert_non_null(strstr(text, "JPEG file has at most 65500"));
+        render.encoding = sheen_Encoding_ENCODING_PNG;
+        assert_true(message_check_render(&render, UINT32_MAX, UINT32_MAX, text));
+    }
+}
+
 static void render_floats(void **state)
 {
     (void)state;
@@ -298,10 +317,15 @@ static void render_schedules(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(render_sizes),     cmocka_unit_test(render_floats),
-        cmocka_unit_test(render_geometry),  cmocka_unit_test(cameras_in_part),
-        cmocka_unit_test(render_kinds),     cmocka_unit_test(render_surfaces),
-        cmocka_unit_test(false_colour),     cmocka_unit_test(left_out_fields_are_not_looked_at),
+        cmocka_unit_test(render_sizes),
+        cmocka_unit_test(render_jpeg_sizes),
+        cmocka_unit_test(render_floats),
+        cmocka_unit_test(render_geometry),
+        cmocka_unit_test(cameras_in_part),
+        cmocka_unit_test(render_kinds),
+        cmocka_unit_test(render_surfaces),
+        cmocka_unit_test(false_colour),
+        cmocka_unit_test(left_out_fields_are_not_looked_at),
         cmocka_unit_test(render_schedules),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
