@@ -53,6 +53,7 @@ only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/limit server/gpu s
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
     'server client protocol'
 only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp
+only_in '#include <turbojpeg|\btj[A-Z][A-Za-z0-9]*\(' 'libjpeg-turbo code' 'server client protocol' server/service/jpeg.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf
 
 cppcheck --quiet --std=c11 --language=c --inline-suppr --error-exitcode=1 -I. \

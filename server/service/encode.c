@@ -1,6 +1,9 @@
 #include "server/service/encode.h"
 
+#include <stdlib.h>
+
 #include "server/fault.h"
+#include "server/service/jpeg.h"
 
 #define ZSTD_LEVEL 1
 #define MAX_CHANNELS 22 /* of all planes together */
@@ -12,7 +15,8 @@ struct strip_work {
     struct work work;
     struct encode_job *job;
     size_t index;
-    size_t size; /* 0: failed */
+    size_t start, size; /* of what was written, from where to where it is the frame's */
+    struct error error; /* why it failed */
 };
 
 struct encode_job {
@@ -27,23 +31,41 @@ struct encode_job {
     struct pool *pool;
     struct workers *workers;
 
+    struct error error; /* why it failed */
     struct work file_work;
     size_t file_size;
-    struct error error; /* of the file's encoder */
+    struct jpeg_layout jpeg;
     struct strip_work *strips;
-    size_t n_strips_left;
+    size_t n_strips, n_strips_left;
+    bool (*join)(struct encode_job *job); /* the strips; false: no memory */
 };
+
+/* A thread's own. */
+struct encoders {
+    struct codec_encoder *zstd;
+    struct jpeg_encoder *jpeg;
+};
+
+static void stop_worker(void *worker)
+{
+    struct encoders *encoders = worker;
+    codec_encoder_destroy(encoders->zstd);
+    jpeg_encoder_destroy(encoders->jpeg);
+    free(encoders);
+}
 
 static bool start_worker(void *owner, void **worker, struct error *error)
 {
     (void)owner;
-    *worker = codec_encoder_create(ZSTD_LEVEL);
-    return *worker || error_set(error, ERROR_SERVER, "no memory for a zstd encoder");
-}
-
-static void stop_worker(void *worker)
-{
-    codec_encoder_destroy(worker);
+    struct encoders *encoders = calloc(1, sizeof *encoders);
+    if (encoders && (encoders->zstd = codec_encoder_create(ZSTD_LEVEL)) &&
+        (encoders->jpeg = jpeg_encoder_create())) {
+        *worker = encoders;
+        return true;
+    }
+    if (encoders)
+        stop_worker(encoders);
+    return error_set(error, ERROR_SERVER, "no memory for the encoders of a thread");
 }
 
 const struct pool_worker encode_worker = {start_worker, stop_worker, NULL};
@@ -78,12 +100,16 @@ static void end_job(struct encode_job *job, const struct error *error)
     spares_give(spares, job);
 }
 
+static void set_no_memory(const struct encode_job *job, struct error *error)
+{
+    error_set(error, ERROR_SERVER, "no memory to encode %u x %u pixels: try again later",
+              job->layout.width_px, job->layout.height_px);
+}
+
 static void end_job_no_memory(struct encode_job *job)
 {
-    struct error error = {0};
-    error_set(&error, ERROR_SERVER, "no memory to encode %u x %u pixels: try again later",
-              job->layout.width_px, job->layout.height_px);
-    end_job(job, &error);
+    set_no_memory(job, &job->error);
+    end_job(job, &job->error);
 }
 
 static void add_piece(struct encoded *encoded, const uint8_t *bytes, size_t size)
@@ -118,73 +144,136 @@ static void start_raw(struct encode_job *job)
     end_job(job, NULL);
 }
 
-/* --- ZSTD: block 0 is the table, block 1 + i is strip i */
+/* --- strips: block 1 + i is strip i, block 0 what stands before them */
 
-static void strip_run(struct work *work, void *worker)
+/* NULL: the strip has failed. */
+static uint8_t *take_strip(struct strip_work *strip, size_t bound)
 {
-    struct strip_work *strip = work->owner;
-    struct encode_job *job = strip->job;
-    struct encoded *encoded = job->encoded;
-    struct codec_strip place = codec_strip_at(&job->layout, strip->index);
-    size_t bound = codec_strip_bound(&place);
+    struct encoded *encoded = strip->job->encoded;
     uint8_t *bytes = fault_at("encode") ? NULL : spares_take(encoded->spares, bound);
-    if (bytes)
-        strip->size =
-            codec_strip_encode(worker, &place, encoded->frame.plane[place.plane], bytes, bound);
+    if (!bytes)
+        set_no_memory(strip->job, &strip->error);
     encoded->blocks[1 + strip->index] = bytes;
+    return bytes;
 }
 
-static bool join_strips(struct encode_job *job)
+static void add_strips(struct encode_job *job)
 {
-    struct encoded *encoded = job->encoded;
-    struct spares *spares = encoded->spares;
-    uint32_t *lengths = spares_take(spares, job->layout.n_strips * sizeof *lengths);
-    uint8_t *table = spares_take(spares, job->layout.table_bytes);
-    encoded->blocks[0] = table;
-    bool ok = lengths && table;
-    if (ok)
-        add_piece(encoded, table, job->layout.table_bytes);
-    for (size_t i = 0; ok && i < job->layout.n_strips; i++) {
-        lengths[i] = (uint32_t)job->strips[i].size;
-        ok = lengths[i] > 0;
-        add_piece(encoded, encoded->blocks[1 + i], lengths[i]);
+    for (size_t i = 0; i < job->n_strips; i++) {
+        const struct strip_work *strip = &job->strips[i];
+        add_piece(job->encoded, job->encoded->blocks[1 + i] + strip->start,
+                  strip->size - strip->start);
     }
-    if (ok)
-        codec_table_encode(&job->layout, lengths, table);
-    spares_give(spares, lengths);
-    return ok;
 }
 
 static void strip_done(struct work *work)
 {
-    struct encode_job *job = ((struct strip_work *)work->owner)->job;
+    const struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    if (strip->error.kind != ERROR_NONE)
+        job->error = strip->error;
     if (--job->n_strips_left > 0)
         return;
     frame_finish(&job->encoded->frame);
-    if (join_strips(job))
+    if (job->error.kind != ERROR_NONE)
+        end_job(job, &job->error);
+    else if (job->join(job))
         end_job(job, NULL);
     else
         end_job_no_memory(job);
 }
 
-static void start_strips(struct encode_job *job)
+static void start_strips(struct encode_job *job, size_t n,
+                         void (*run)(struct work *work, void *worker),
+                         bool (*join)(struct encode_job *job))
 {
-    size_t n = job->layout.n_strips;
     job->strips = spares_take(job->encoded->spares, n * sizeof *job->strips);
     if (!job->strips || !allocate(job->encoded, n + 1)) {
         end_job_no_memory(job);
         return;
     }
-    job->n_strips_left = n;
+    job->n_strips = job->n_strips_left = n;
+    job->join = join;
     for (size_t i = 0; i < n; i++) {
         struct strip_work *strip = &job->strips[i];
         *strip = (struct strip_work){.job = job, .index = i};
-        strip->work = (struct work){strip_run, strip_done, strip, NULL};
+        strip->work = (struct work){run, strip_done, strip, NULL};
         pool_submit(job->pool, &strip->work, job->urgency);
     }
 }
 
-/* --- files */
+/* --- ZSTD: a table and the strips */
+
+static void zstd_run(struct work *work, void *worker)
+{
+    struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    struct encoders *encoders = worker;
+    struct codec_strip place = codec_strip_at(&job->layout, strip->index);
+    size_t bound = codec_strip_bound(&place);
+    uint8_t *bytes = take_strip(strip, bound);
+    if (!bytes)
+        return;
+    strip->size = codec_strip_encode(encoders->zstd, &place, job->encoded->frame.plane[place.plane],
+                                     bytes, bound);
+    if (strip->size == 0)
+        set_no_memory(job, &strip->error);
+}
+
+static bool zstd_join(struct encode_job *job)
+{
+    struct spares *spares = job->encoded->spares;
+    uint32_t *lengths = spares_take(spares, job->n_strips * sizeof *lengths);
+    uint8_t *table = spares_take(spares, job->layout.table_bytes);
+    job->encoded->blocks[0] = table;
+    bool ok = lengths && table;
+    for (size_t i = 0; ok && i < job->n_strips; i++)
+        lengths[i] = (uint32_t)job->strips[i].size;
+    if (ok) {
+        codec_table_encode(&job->layout, lengths, table);
+        add_piece(job->encoded, table, job->layout.table_bytes);
+        add_strips(job);
+    }
+    spares_give(spares, lengths);
+    return ok;
+}
+
+/* --- JPEG: a head and the strips */
+
+static void jpeg_run(struct work *work, void *worker)
+{
+    struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    struct encoders *encoders = worker;
+    uint8_t *bytes = take_strip(strip, job->jpeg.strip_bound);
+    if (bytes)
+        jpeg_strip_encode(encoders->jpeg, &job->jpeg, strip->index, job->encoded->frame.plane[0],
+                          bytes, &strip->start, &strip->size, &strip->error);
+}
+
+static bool jpeg_join(struct encode_job *job)
+{
+    struct encoded *encoded = job->encoded;
+    const size_t start = job->strips[0].start;
+    const size_t bound = jpeg_head_bound(start, job->attributes, job->n_attributes);
+    uint8_t *head = spares_take(encoded->spares, bound);
+    encoded->blocks[0] = head;
+    if (!head)
+        return false;
+    add_piece(encoded, head,
+              jpeg_head_write(&job->jpeg, encoded->blocks[1], start, job->attributes,
+                              job->n_attributes, head));
+    add_strips(job);
+    return true;
+}
+
+static void start_jpeg(struct encode_job *job)
+{
+    jpeg_layout_init(&job->jpeg, job->layout.width_px, job->layout.height_px);
+    start_strips(job, job->jpeg.n_strips, jpeg_run, jpeg_join);
+}
+
+/* --- files, by a worker process */
 
 /* The channels of every plane, in the order of the planes' bits. */
 static const struct {
@@ -211,8 +300,6 @@ static enum image_format file_format(sheen_Encoding encoding)
     switch (encoding) {
     case sheen_Encoding_ENCODING_EXR:
         return IMAGE_EXR;
-    case sheen_Encoding_ENCODING_JPEG:
-        return IMAGE_JPEG;
     case sheen_Encoding_ENCODING_TIFF:
         return IMAGE_TIFF;
     default:
@@ -276,6 +363,20 @@ static void start_file(struct encode_job *job)
     pool_submit(job->pool, &job->file_work, job->urgency);
 }
 
+uint64_t encode_bytes(const struct codec_layout *layout, sheen_Encoding encoding)
+{
+    struct jpeg_layout jpeg;
+    switch (encoding) {
+    case sheen_Encoding_ENCODING_RAW:
+        return 0;
+    case sheen_Encoding_ENCODING_JPEG:
+        jpeg_layout_init(&jpeg, layout->width_px, layout->height_px);
+        return (uint64_t)jpeg.n_strips * jpeg.strip_bound;
+    default:
+        return layout->raw_bytes;
+    }
+}
+
 void encode_start(struct pool *pool, struct workers *workers, struct frame *frame,
                   const struct codec_layout *layout, sheen_Encoding encoding,
                   enum pool_urgency urgency, const struct image_attribute *attributes,
@@ -312,7 +413,9 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
     if (encoding == sheen_Encoding_ENCODING_RAW)
         start_raw(job);
     else if (encoding == sheen_Encoding_ENCODING_ZSTD)
-        start_strips(job);
+        start_strips(job, layout->n_strips, zstd_run, zstd_join);
+    else if (encoding == sheen_Encoding_ENCODING_JPEG)
+        start_jpeg(job);
     else
         start_file(job);
 }

@@ -1,5 +1,5 @@
-/* A rendered frame turned into the bytes that the client asked for: on the pool, files by a worker
- * process.
+/* A rendered frame turned into the bytes that the client asked for: on the pool; PNG, EXR and TIFF
+ * by a worker process.
  * Thread: the loop's, for all functions here. */
 #ifndef SHEEN_SERVICE_ENCODE_H
 #define SHEEN_SERVICE_ENCODE_H
@@ -33,8 +33,12 @@ struct encoded {
 /* Worker of the pool's threads: what encoding needs of its own in each. */
 extern const struct pool_worker encode_worker;
 
+/* What encoding a frame takes at most, beside its planes. */
+uint64_t encode_bytes(const struct codec_layout *layout, sheen_Encoding encoding);
+
 /* Takes *frame over in any case and zeroes it. finished() gets the bytes, or NULL and why; it may
- * be called before this returns. `layout` fits the frame; `attributes` stay until finished(). */
+ * be called before this returns. `layout` fits the frame, and has what the encoding asks for
+ * (message_check_render()); `attributes` stay until finished(). */
 void encode_start(struct pool *pool, struct workers *workers, struct frame *frame,
                   const struct codec_layout *layout, sheen_Encoding encoding,
                   enum pool_urgency urgency, const struct image_attribute *attributes,

@@ -10,6 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "server/service/jpeg.h"
 #include "server/service/listen.h"
 #include "server/service/losses.h"
 #include "server/service/model_file.h"
@@ -381,6 +382,7 @@ static bool start(struct service *service, struct error *error)
     struct session_host *host = &service->host;
     const struct service_options *options = &service->options;
     const struct loop_hooks hooks = {after_batch, tick, service};
+    jpeg_keep_defaults();
     if (!(host->spares = spares_create((size_t)options->limits.spare_memory)))
         return error_set(error, ERROR_SERVER, "no memory for the daemon");
     const struct renderer_options renderer = {.device = options->device, .spares = host->spares};

@@ -79,7 +79,7 @@ static uint64_t frame_bytes(const sheen_Render *render)
     struct codec_layout all, sent;
     codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
     codec_layout_init(&sent, render->width_px, render->height_px, render->planes);
-    return all.raw_bytes + (render->encoding == sheen_Encoding_ENCODING_RAW ? 0 : sent.raw_bytes);
+    return all.raw_bytes + encode_bytes(&sent, render->encoding);
 }
 
 /* Answers and returns false when the frame could never be made here. */

@@ -140,15 +140,16 @@ class Shortage(unittest.TestCase):
 
     def test_memory(self):
         """Costs one request; the next one works."""
-        for fault in ("model.build", "encode"):
+        for fault, encoding in (("model.build", wire.ZSTD), ("encode", wire.ZSTD),
+                                ("encode", wire.JPEG)):
             server = FaultyDaemon(f"{fault}:1:1")
             with wire.Client(server.unix, minor=1) as client:
                 model = client.upload(CUBE, "cube.obj")
                 with self.assertRaises(wire.Refused) as caught:
-                    client.render(model, encoding=wire.ZSTD)
+                    client.render(model, encoding=encoding)
                 self.assertEqual(caught.exception.code, wire.ERROR_OVERLOADED)
                 self.assertIn("memory", caught.exception.text)
-                client.render(model, encoding=wire.ZSTD)
+                client.render(model, encoding=encoding)
             self.assertEqual(server.stop(), 0)
 
     def test_no_descriptor_to_accept_with(self):

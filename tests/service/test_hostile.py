@@ -358,6 +358,8 @@ class Renders(DaemonCase):
                 frame = client.render(model, encoding=encoding)
                 self.assertTrue(frame.data.startswith(start), frame.data[:8])
                 self.assertEqual(client.render(model, encoding=encoding).data, frame.data)
+                for said in (b"sheen:version", b"sheen:camera", b"eye=", b"pattern=stripes"):
+                    self.assertIn(said, frame.data)
             all_planes = client.render(model, planes=63)
             self.assertEqual(len(all_planes.data), 64 * 48 * (4 + 12 + 12 + 12 + 8 + 8))
             packed = client.render(model, planes=63, encoding=wire.ZSTD)

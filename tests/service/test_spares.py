@@ -96,10 +96,12 @@ class WarmFrames(unittest.TestCase):
             "view, polygons": lambda x: camera_at(x) + polygons,
         }
         for name, extra in changes.items():
-            for planes in COLOUR, COLOUR | P | N | PTEX | LIGHT:
-                frames = [(model, {"kind": wire.INTERACTIVE, "encoding": wire.ZSTD,
+            for encoding, planes in ((wire.ZSTD, COLOUR), (wire.JPEG, COLOUR),
+                                     (wire.ZSTD, COLOUR | P | N | PTEX | LIGHT)):
+                frames = [(model, {"kind": wire.INTERACTIVE, "encoding": encoding,
                                    "planes": planes, "extra": extra(0.1 * i)}) for i in range(20)]
-                self.assertEqual(self.warm_allocations(server, client, frames), 0, name)
+                self.assertEqual(self.warm_allocations(server, client, frames), 0,
+                                 (name, encoding))
 
     def two_in_flight(self, server, client, model, encoding):
         """Taken in the middle of 40 frames of a turning camera, of which one draws while the one
@@ -116,7 +118,7 @@ class WarmFrames(unittest.TestCase):
 
     def test_nor_do_two_in_flight(self):
         server, client, model = self.serve()
-        for encoding in wire.RAW, wire.ZSTD:
+        for encoding in wire.RAW, wire.ZSTD, wire.JPEG:
             # How many frames are on their way at once is up to the clock, and of what few need the
             # spares may have let go. What each frame takes is in all of these.
             counts = []

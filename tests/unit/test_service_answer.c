@@ -12,8 +12,11 @@
 
 #include "server/service/answer.h"
 #include "tests/unit/build_folder.h"
+#include "tests/unit/jpeg_file.h"
 
 enum { WIDTH = 811, HEIGHT = 523 }; /* odd, several strips a plane, several DATA a frame */
+
+static const struct image_attribute LABEL[] = {{"sheen:version", "1.2.3"}};
 
 struct fixture {
     struct loop *loop;
@@ -24,7 +27,8 @@ struct fixture {
     struct answer_list answers;
     int peer; /* the client's end */
     uint64_t sent_bytes;
-    struct encoded *encoded; /* of the last encode() */
+    struct encoded *encoded[2]; /* since the last encode() */
+    size_t n_encoded;
 };
 
 static void nothing(void *owner)
@@ -90,28 +94,24 @@ static void encode_finished(void *owner, struct encoded *encoded, const struct e
     struct fixture *f = owner;
     if (error)
         fail_msg("%s", error->text);
-    f->encoded = encoded;
+    assert_true(f->n_encoded < 2);
+    f->encoded[f->n_encoded++] = encoded;
     loop_stop(f->loop);
 }
 
-static struct encoded *encode(struct fixture *f, uint32_t planes, sheen_Encoding encoding)
+static void start_encoding(struct fixture *f, uint32_t planes, sheen_Encoding encoding)
 {
     struct frame frame = make_frame(planes);
     struct codec_layout layout;
     assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, planes));
-    f->encoded = NULL;
-    encode_start(f->pool, &f->workers, &frame, &layout, encoding, POOL_SOON, NULL, 0,
+    encode_start(f->pool, &f->workers, &frame, &layout, encoding, POOL_SOON, LABEL, 1,
                  encode_finished, f);
     assert_null(frame.plane[0]);
-    while (!f->encoded)
-        completions_deliver(f->completions);
-    return f->encoded;
 }
 
-static void test_zstd_round_trip(void **state)
+/* The bytes of all pieces; freed by the caller. */
+static uint8_t *join(const struct encoded *encoded)
 {
-    struct fixture *f = *state;
-    struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_ZSTD);
     uint8_t *bytes = malloc(encoded->size), *end = bytes;
     assert_non_null(bytes);
     for (size_t i = 0; i < encoded->n_pieces; i++) {
@@ -119,7 +119,23 @@ static void test_zstd_round_trip(void **state)
         end += encoded->pieces[i].size;
     }
     assert_int_equal(end - bytes, encoded->size);
+    return bytes;
+}
 
+static struct encoded *encode(struct fixture *f, uint32_t planes, sheen_Encoding encoding)
+{
+    f->n_encoded = 0;
+    start_encoding(f, planes, encoding);
+    while (f->n_encoded == 0)
+        completions_deliver(f->completions);
+    return f->encoded[0];
+}
+
+static void test_zstd_round_trip(void **state)
+{
+    struct fixture *f = *state;
+    struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_ZSTD);
+    uint8_t *bytes = join(encoded);
     struct codec_layout layout;
     assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, CODEC_ALL_PLANES));
     struct frame want = make_frame(CODEC_ALL_PLANES), got = make_frame(CODEC_ALL_PLANES);
@@ -134,6 +150,30 @@ static void test_zstd_round_trip(void **state)
     frame_finish(&got);
     free(bytes);
     encoded_destroy(encoded);
+}
+
+/* By three threads, of which each takes strips as they come. */
+static void test_two_jpeg_files_at_once(void **state)
+{
+    struct fixture *f = *state;
+    struct frame frame = make_frame(1);
+    struct jpeg_encoder *encoder = jpeg_encoder_create();
+    size_t size;
+    uint8_t *want = jpeg_file(encoder, frame.plane[0], WIDTH, HEIGHT, LABEL, 1, &size);
+    for (int i = 0; i < 2; i++)
+        start_encoding(f, 1, sheen_Encoding_ENCODING_JPEG);
+    while (f->n_encoded < 2)
+        completions_deliver(f->completions);
+    for (int i = 0; i < 2; i++) {
+        uint8_t *got = join(f->encoded[i]);
+        assert_int_equal(f->encoded[i]->size, size);
+        assert_memory_equal(got, want, size);
+        free(got);
+        encoded_destroy(f->encoded[i]);
+    }
+    free(want);
+    jpeg_encoder_destroy(encoder);
+    frame_finish(&frame);
 }
 
 /* Reads exactly n bytes, letting the connection write what it holds back. */
@@ -276,6 +316,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_zstd_round_trip, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_two_jpeg_files_at_once, setup, teardown),
         cmocka_unit_test_setup_teardown(test_frame_is_cut_into_data, setup, teardown),
         cmocka_unit_test_setup_teardown(test_order_of_requests, setup, teardown),
         cmocka_unit_test_setup_teardown(test_nothing_after_the_last, setup, teardown),

@@ -1,0 +1,40 @@
+/* A whole JPEG file of a picture, strip by strip in the calling thread; the caller frees it. */
+#ifndef SHEEN_TESTS_UNIT_JPEG_FILE_H
+#define SHEEN_TESTS_UNIT_JPEG_FILE_H
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "server/service/jpeg.h"
+
+static uint8_t *jpeg_file(struct jpeg_encoder *encoder, const uint8_t *rgba, uint32_t width_px,
+                          uint32_t height_px, const struct image_attribute *attributes,
+                          size_t n_attributes, size_t *size)
+{
+    struct jpeg_layout layout;
+    jpeg_layout_init(&layout, width_px, height_px);
+    uint8_t *file = NULL;
+    *size = 0;
+    for (size_t i = 0; i < layout.n_strips; i++) {
+        uint8_t *strip = malloc(layout.strip_bound); /* a checker sees a write past the bound */
+        size_t start, end;
+        struct error error = {0};
+        assert_non_null(strip);
+        if (!jpeg_strip_encode(encoder, &layout, i, rgba, strip, &start, &end, &error))
+            fail_msg("%s", error.text);
+        size_t head = i == 0 ? jpeg_head_bound(start, attributes, n_attributes) : 0;
+        file = realloc(file, *size + head + end - start);
+        assert_non_null(file);
+        if (i == 0)
+            *size = jpeg_head_write(&layout, strip, start, attributes, n_attributes, file);
+        assert_true(i > 0 || *size <= head);
+        memcpy(file + *size, strip + start, end - start);
+        *size += end - start;
+        free(strip);
+    }
+    return file;
+}
+
+#endif
