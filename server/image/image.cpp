@@ -223,14 +223,12 @@ bool decode(struct image *image, const void *bytes, size_t size, const char *nam
 struct file_format {
     const char *name, *file_name; // OpenImageIO's name; the ending tells it the format
     const char *colour;           // the 8-bit channels taken, or NULL for any
-    const char *dropped;          // a channel that may be given and is left out
 };
 
 constexpr file_format FORMATS[] = {
-    {"png", "image.png", "RGBA", ""},
-    {"openexr", "image.exr", nullptr, ""},
-    {"jpeg", "image.jpg", "RGB", "A"},
-    {"tiff", "image.tif", "RGBA", ""},
+    {"png", "image.png", "RGBA"},
+    {"openexr", "image.exr", nullptr},
+    {"tiff", "image.tif", "RGBA"},
 };
 
 constexpr size_t sample_bytes_in(enum image_type type)
@@ -264,8 +262,7 @@ bool choose_channels(channel_list &chosen, const file_format &format,
                 channels[i].type == IMAGE_UINT8)
                 chosen.push_back(&channels[i]);
     for (size_t i = 0; i < n; i++)
-        if (std::find(chosen.begin(), chosen.end(), &channels[i]) == chosen.end() &&
-            std::strcmp(channels[i].name, format.dropped) != 0)
+        if (std::find(chosen.begin(), chosen.end(), &channels[i]) == chosen.end())
             return error_set(
                 error, ERROR_REQUEST,
                 "a %s file cannot hold the plane %s: write EXR, or ask for colour only",
@@ -305,19 +302,15 @@ void set_attributes(OIIO::ImageSpec &spec, enum image_format format,
     case IMAGE_EXR:
         spec.attribute("compression", "zip:4");
         break;
-    case IMAGE_JPEG:
-        spec.attribute("Compression", "jpeg:95");
-        spec.attribute("jpeg:subsampling", "4:4:4");
-        break;
     case IMAGE_TIFF:
         spec.attribute("compression", "zip");
         spec.attribute("tiff:zipquality", 4);
         spec.attribute("tiff:predictor", 2); // horizontal differences
         break;
     }
-    std::string description; // JPEG and TIFF have one text field
+    std::string description; // TIFF has one text field
     for (size_t i = 0; i < n; i++) {
-        if (format == IMAGE_PNG || format == IMAGE_EXR)
+        if (format != IMAGE_TIFF)
             spec.attribute(attributes[i].name, attributes[i].value);
         else
             description += std::string(attributes[i].name) + "=" + attributes[i].value + "\n";

@@ -53,18 +53,19 @@ struct image_channel {
     size_t row_stride_bytes;
 };
 
-/* A text attribute that goes into PNG text chunks, EXR attributes, TIFF or JPEG description. */
+/* A text attribute that goes into PNG text chunks, EXR attributes, TIFF's description or a JPEG
+ * file's comment. */
 struct image_attribute {
     const char *name;
     const char *value;
 };
 
-enum image_format { IMAGE_PNG, IMAGE_EXR, IMAGE_JPEG, IMAGE_TIFF };
+enum image_format { IMAGE_PNG, IMAGE_EXR, IMAGE_TIFF };
 
-/* Encodes to a malloc'd buffer that the caller frees. PNG and JPEG take the UINT8 channels R G B
- * (A for PNG) only; TIFF takes R G B A; EXR takes any mix of types, UINT8 colour written as HALF in
- * [0,1]. The same input gives the same bytes: no clock, host or path is written. A plane that the
- * format cannot hold is ERROR_REQUEST, except that JPEG drops A. */
+/* Encodes to a malloc'd buffer that the caller frees. PNG and TIFF take the UINT8 channels R G B
+ * A only; EXR takes any mix of types, UINT8 colour written as HALF in [0,1]. The same input gives
+ * the same bytes: no clock, host or path is written. A plane that the format cannot hold is
+ * ERROR_REQUEST. */
 bool image_encode(enum image_format format, uint32_t width_px, uint32_t height_px,
                   const struct image_channel *channels, size_t n_channels,
                   const struct image_attribute *attributes, size_t n_attributes, uint8_t **bytes,
