@@ -9,6 +9,8 @@
 #include <errno.h>
 #include <time.h>
 
+#include <openssl/ssl.h>
+
 #include "protocol/tls.h"
 #include "tests/unit/certificates.h"
 
@@ -171,6 +173,63 @@ static void test_pending(void **state)
     pair_finish(&pair);
 }
 
+/* --- a client that tls.c would not be */
+
+/* Hands what `ssl` has to say to the other end, whole. */
+static void say(SSL *ssl, const struct end *end)
+{
+    char *bytes = NULL;
+    long n = BIO_get_mem_data(SSL_get_wbio(ssl), &bytes);
+    assert_int_equal(pipe_write((void *)(uintptr_t)end, bytes, (size_t)n), n);
+    assert_int_equal(BIO_reset(SSL_get_wbio(ssl)), 1);
+}
+
+static void shake_hands(SSL *ssl, const struct pair *pair)
+{
+    uint8_t bytes[MAX_PIPE];
+    size_t moved;
+    while (SSL_do_handshake(ssl) != 1) {
+        say(ssl, &pair->client);
+        assert_int_equal(tls_read(pair->server.channel, bytes, sizeof bytes, &moved),
+                         TLS_WANTS_READ);
+        ssize_t n = pipe_read((void *)(uintptr_t)&pair->client, bytes, sizeof bytes);
+        assert_int_equal(BIO_write(SSL_get_rbio(ssl), bytes, (int)n), n);
+    }
+}
+
+/* One call must end before the peer does: it may never stop to send new keys. */
+static void test_key_updates(void **state)
+{
+    (void)state;
+    enum { UPDATES = 50 };
+    static struct pair pair;
+    uint8_t byte;
+    size_t moved, n;
+    SSL_CTX *ctx = SSL_CTX_new(TLS_client_method());
+    SSL *ssl = SSL_new(ctx);
+    pair_init(&pair, MAX_PIPE, client_context, "localhost");
+    SSL_set_bio(ssl, BIO_new(BIO_s_mem()), BIO_new(BIO_s_mem()));
+    SSL_set_connect_state(ssl);
+    shake_hands(ssl, &pair);
+    for (int i = 0; i < UPDATES; i++) {
+        assert_int_equal(SSL_key_update(ssl, SSL_KEY_UPDATE_NOT_REQUESTED), 1);
+        assert_int_equal(SSL_do_handshake(ssl), 1);
+    }
+    assert_int_equal(SSL_write_ex(ssl, "x", 1, &n), 1);
+    say(ssl, &pair.client);
+
+    unsigned turns = 0;
+    enum tls_result result;
+    while ((result = tls_read(pair.server.channel, &byte, 1, &moved)) == TLS_WANTS_READ)
+        assert_true(++turns < 2 * UPDATES);
+    assert_int_equal(result, TLS_MOVED);
+    assert_int_equal(byte, 'x');
+    assert_true(turns >= UPDATES);
+    SSL_free(ssl);
+    SSL_CTX_free(ctx);
+    pair_finish(&pair);
+}
+
 static void test_wrong_host(void **state)
 {
     (void)state;
@@ -258,6 +317,7 @@ int main(void)
         cmocka_unit_test(test_narrow_pipes), cmocka_unit_test(test_end_and_cut),
         cmocka_unit_test(test_pending),      cmocka_unit_test(test_wrong_host),
         cmocka_unit_test(test_peer),         cmocka_unit_test(test_bad_files),
+        cmocka_unit_test(test_key_updates),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
