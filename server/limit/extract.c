@@ -227,14 +227,17 @@ static double crease_weight(const struct topology *t, uint32_t c, struct arena *
 }
 
 /* TRI_SUB_SMOOTH: edges beside triangles lean on the face points, in the first step only. */
-static void refine_smooth_triangle_edges(const struct topology *t, struct refined_points *points,
-                                         struct arena *arena)
+static bool refine_smooth_triangle_edges(const struct topology *t, struct refined_points *points,
+                                         struct arena *arena, const struct limit_watch *watch,
+                                         struct error *error)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
     for (uint32_t c = 0; c < n_corners; c++) {
         uint32_t twin = t->twin[c];
         if (twin == CORNER_NONE || c > twin)
             continue;
+        if (!limit_goes_on(watch, error))
+            return false;
         double crease = crease_weight(t, c, arena);
         double face = 0.5 * (smooth_triangle_weight(t, c) + smooth_triangle_weight(t, twin));
         struct vec ends = vec_add(position(t, c), position(t, corner_next(t, c)));
@@ -243,10 +246,11 @@ static void refine_smooth_triangle_edges(const struct topology *t, struct refine
         points->edge[c] = vec_mad(vec_scale(smooth, 1 - crease), 0.5 * crease, ends);
         points->edge[twin] = points->edge[c];
     }
+    return true;
 }
 
 bool refined_points_init(struct refined_points *points, const struct topology *t,
-                         struct arena *arena, struct error *error)
+                         struct arena *arena, const struct limit_watch *watch, struct error *error)
 {
     const struct cage *cage = t->cage;
     uint32_t n_corners = cage->face_start[cage->n_faces];
@@ -263,13 +267,13 @@ bool refined_points_init(struct refined_points *points, const struct topology *t
                          cage->n_faces);
     }
     refine_face_points(t, points);
-    for (uint32_t c = 0; c < n_corners; c++)
-        if (!done[c])
+    bool ok = true;
+    for (uint32_t c = 0; c < n_corners && ok; c++)
+        if (!done[c] && (ok = limit_goes_on(watch, error)))
             refine_sector(t, points, c, done, arena);
     free(done);
-    if (cage->smooth_triangles)
-        refine_smooth_triangle_edges(t, points, arena);
-    return true;
+    return ok && (!cage->smooth_triangles ||
+                  refine_smooth_triangle_edges(t, points, arena, watch, error));
 }
 
 void refined_points_finish(struct refined_points *points)

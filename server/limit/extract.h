@@ -6,6 +6,7 @@
 #define SHEEN_LIMIT_EXTRACT_H
 
 #include "server/limit/quad.h"
+#include "server/limit/tables.h"
 #include "server/limit/topology.h"
 
 struct refined_points {
@@ -14,8 +15,9 @@ struct refined_points {
     struct vec *face;   /* [faces] */
 };
 
+/* False: ERROR_SERVER when memory is short, or the watch's error; finishing is safe then, too. */
 bool refined_points_init(struct refined_points *points, const struct topology *topology,
-                         struct arena *arena, struct error *error);
+                         struct arena *arena, const struct limit_watch *watch, struct error *error);
 void refined_points_finish(struct refined_points *points);
 
 /* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (crease.h). */

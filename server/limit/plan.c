@@ -32,7 +32,7 @@ static bool mark_holes(struct limit_plan *plan)
 }
 
 /* Measures every face in turn: where its share begins is what came before. */
-static bool lay_out(struct limit_plan *plan, struct error *error)
+static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, struct error *error)
 {
     struct face_builder measure = {.plan = plan,
                                    .box_min = {INFINITY, INFINITY, INFINITY},
@@ -41,7 +41,7 @@ static bool lay_out(struct limit_plan *plan, struct error *error)
         return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
     uint64_t node = plan->n_ptex, texel = 0, bound = 0;
     bool ok = true;
-    for (uint32_t p = 0; p < plan->n_ptex && ok; p++) {
+    for (uint32_t p = 0; p < plan->n_ptex && ok && (ok = limit_goes_on(watch, error)); p++) {
         plan->offsets[p] = (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
         measure.next = (struct plan_offsets){0, 0, 0};
         face_build(&measure, p);
@@ -120,19 +120,21 @@ static bool check_valence(struct limit_plan *plan, struct error *error)
     return true;
 }
 
-static bool refine_if_needed(struct limit_plan *plan, struct error *error)
+static bool refine_if_needed(struct limit_plan *plan, const struct limit_watch *watch,
+                             struct error *error)
 {
     if (plan->topology.quads_only)
         return true;
     struct arena arena;
     if (!arena_init(&arena, plan->arena_bytes))
         return error_set(error, ERROR_SERVER, "out of memory for the refined cage");
-    bool ok = refined_points_init(&plan->refined, &plan->topology, &arena, error);
+    bool ok = refined_points_init(&plan->refined, &plan->topology, &arena, watch, error);
     arena_finish(&arena);
     return ok;
 }
 
-struct limit_plan *limit_plan_create(const struct cage *cage, struct error *error)
+struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit_watch *watch,
+                                     struct error *error)
 {
     if (!check_supported(cage, error))
         return NULL;
@@ -149,7 +151,7 @@ struct limit_plan *limit_plan_create(const struct cage *cage, struct error *erro
                   cage->n_faces);
         goto fail;
     }
-    if (!refine_if_needed(plan, error) || !lay_out(plan, error))
+    if (!refine_if_needed(plan, watch, error) || !lay_out(plan, watch, error))
         goto fail;
     return plan;
 

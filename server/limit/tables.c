@@ -72,17 +72,18 @@ size_t limit_tables_bytes(const struct limit_tables *tables)
 }
 
 bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,
-                       size_t last, struct error *error)
+                       size_t last, const struct limit_watch *watch, struct error *error)
 {
     struct face_builder builder = {.tables = tables, .plan = plan};
     if (!arena_init(&builder.arena, plan->arena_bytes))
         return error_set(error, ERROR_SERVER, "out of memory while building tables");
-    for (size_t p = first; p < last; p++) {
+    bool ok = true;
+    for (size_t p = first; p < last && (ok = limit_goes_on(watch, error)); p++) {
         builder.next = plan->offsets[p];
         face_build(&builder, (uint32_t)p);
         assert(builder.next.node == plan->offsets[p + 1].node);
         assert(builder.next.texel == plan->offsets[p + 1].texel);
     }
     arena_finish(&builder.arena);
-    return true;
+    return ok;
 }

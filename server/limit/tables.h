@@ -104,9 +104,22 @@ struct limit_tables {
 
 struct limit_plan; /* topology of the cage and the layout of its tables */
 
+/* Asked at every face, whose corners may cost milliseconds: false ends the work, and `error` says
+ * why. NULL for a watch: it goes on to its end. */
+struct limit_watch {
+    bool (*goes_on)(void *owner, struct error *error);
+    void *owner;
+};
+
+static inline bool limit_goes_on(const struct limit_watch *watch, struct error *error)
+{
+    return !watch || watch->goes_on(watch->owner, error);
+}
+
 /* Reads the cage's topology and sizes the tables. The cage must outlive the plan. NULL on failure:
- * ERROR_MODEL for what is not evaluated yet, ERROR_SERVER when memory is short. */
-struct limit_plan *limit_plan_create(const struct cage *cage, struct error *error);
+ * ERROR_MODEL for what is not evaluated yet, ERROR_SERVER when memory is short, or the watch's. */
+struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit_watch *watch,
+                                     struct error *error);
 void limit_plan_destroy(struct limit_plan *plan);
 
 /* Allocates the tables of a plan. ERROR_SERVER names the bytes when there is no memory. */
@@ -115,9 +128,10 @@ bool limit_tables_init(struct limit_tables *tables, const struct limit_plan *pla
 void limit_tables_finish(struct limit_tables *tables);
 
 /* Fills the nodes and points of Ptex faces [first, last). Pure but for what it writes into that
- * range; disjoint ranges may run in different threads. ERROR_SERVER when memory is short. */
+ * range; disjoint ranges may run in different threads. ERROR_SERVER when memory is short, or the
+ * watch's error. */
 bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,
-                       size_t last, struct error *error);
+                       size_t last, const struct limit_watch *watch, struct error *error);
 
 /* Bytes that the GPU holds for these tables: nodes + adjacency + texels. */
 size_t limit_tables_bytes(const struct limit_tables *tables);

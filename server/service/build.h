@@ -31,6 +31,7 @@ struct build_order {
     const char *name; /* the file's, for messages and to tell the format */
     struct build_progress *progress;
     uint32_t max_image_px;        /* either way */
+    uint64_t tables_cpu_us;       /* of processors, for a model's tables */
     const atomic_bool *cancelled; /* soon ends with a failure once this is true */
 
     /* May this much memory be kept until the result is destroyed? Called once, before it is

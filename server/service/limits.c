@@ -70,6 +70,8 @@ const struct limits_row LIMITS[] = {
      AT(worker_output)},
     {"worker-cpu", UNIT_SECONDS, "of a processor, for one file", 1, 86400, 60, AT(worker_cpu_s)},
     {"worker-time", UNIT_SECONDS, "for one file", 1, 86400, 120, AT(worker_s)},
+    {"tables-cpu", UNIT_SECONDS, "of processors, to build one model's tables", 1, 86400, 120,
+     AT(tables_cpu_s)},
     {"gpu-losses", UNIT_COUNT,
      "so often may the GPU be lost in ten minutes; then the daemon ends with exit code\n75, to be "
      "started anew; 0: as often as it likes",

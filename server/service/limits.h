@@ -39,6 +39,7 @@ struct limits {
 
     /* What a process that reads or writes one file may take (workers.h). */
     uint64_t worker_memory, worker_output, worker_cpu_s, worker_s;
+    uint64_t tables_cpu_s; /* for one model's tables, by all threads together */
 
     uint64_t gpu_losses; /* in ten minutes (losses.h) end the daemon; 0: none do */
 };

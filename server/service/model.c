@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "server/fault.h"
+#include "server/service/build_clock.h"
 
 #define MAX_RANGES 256 /* even shares for many cores, and a progress bar that moves */
 #define MIN_FACES_PER_RANGE 16
@@ -28,6 +29,7 @@ struct model_build {
     struct error error;
     struct range *ranges;
     size_t n_ranges, n_ranges_left;
+    atomic_ullong cpu_us; /* that measuring and filling have taken */
     uint64_t start_us;
 };
 
@@ -106,9 +108,12 @@ static void range_run(struct work *work, void *worker)
     (void)worker;
     struct range *range = work->owner;
     struct model_build *build = range->build;
+    struct build_clock clock;
+    const struct limit_watch watch = {build_clock_goes_on, &clock};
+    build_clock_start(&clock, &build->order, &build->cpu_us);
     range->ok = check_not_cancelled(&build->order, &range->error) &&
                 limit_build_faces(&build->model->tables, build->plan, range->first, range->last,
-                                  &range->error);
+                                  &watch, &range->error);
     atomic_fetch_add(&build->order.progress->done, range->last - range->first);
 }
 
@@ -161,8 +166,11 @@ static bool read_cage(struct model_build *build)
     model->n_faces = build->cage.n_faces;
     if (build->cage.warnings && !(model->warnings = strdup(build->cage.warnings)))
         return error_set(&build->error, ERROR_SERVER, "%s: no memory", order->name);
+    struct build_clock clock;
+    const struct limit_watch watch = {build_clock_goes_on, &clock};
+    build_clock_start(&clock, order, &build->cpu_us);
     if (check_not_cancelled(order, &error) && cage_survey(&build->cage, &model->survey, &error) &&
-        (build->plan = limit_plan_create(&build->cage, &error)) &&
+        (build->plan = limit_plan_create(&build->cage, &watch, &error)) &&
         limit_tables_init(&model->tables, build->plan, &error))
         return true;
     return fail_named(build, &error);
@@ -198,6 +206,7 @@ bool model_build_start(const struct build_order *order, struct error *error)
         return error_set(error, ERROR_SERVER, "%s: no memory to build it", order->name);
     }
     build->order = *order;
+    atomic_init(&build->cpu_us, 0);
     build->model = model;
     build->start_us = loop_now_us();
     order->progress->stage = "reading";

@@ -396,8 +396,7 @@ static bool start(struct service *service, struct error *error)
         !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_worker){0},
                                       service->completions, error)) ||
         !(host->store = store_create(host->pool, host->readers, host->render_thread, &host->workers,
-                                     options->limits.memory_budget,
-                                     (uint32_t)options->limits.max_image_side, error)))
+                                     &host->limits, error)))
         return false;
     const struct limits *limits = &options->limits;
     host->share_models = options->share_models;

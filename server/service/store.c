@@ -10,6 +10,7 @@ struct store {
     struct pool *pool, *readers;
     struct render_thread *render_thread;
     struct workers *workers;
+    const struct limits *limits;
     size_t budget_bytes, used_bytes;
     uint32_t max_image_px;
     size_t n_assets;
@@ -31,7 +32,7 @@ static struct asset **bucket_of(struct store *store, const uint8_t *sha256)
 
 struct store *store_create(struct pool *pool, struct pool *readers,
                            struct render_thread *render_thread, struct workers *workers,
-                           size_t budget_bytes, uint32_t max_image_px, struct error *error)
+                           const struct limits *limits, struct error *error)
 {
     struct store *store = calloc(1, sizeof *store);
     if (!store) {
@@ -43,8 +44,9 @@ struct store *store_create(struct pool *pool, struct pool *readers,
     store->readers = readers;
     store->render_thread = render_thread;
     store->workers = workers;
-    store->budget_bytes = budget_bytes;
-    store->max_image_px = max_image_px;
+    store->limits = limits;
+    store->budget_bytes = limits->memory_budget;
+    store->max_image_px = (uint32_t)limits->max_image_side;
     return store;
 }
 
@@ -282,6 +284,7 @@ static void start_builds(struct store *store)
             .name = asset->name,
             .progress = &asset->progress,
             .max_image_px = store->max_image_px,
+            .tables_cpu_us = store->limits->tables_cpu_s * 1000000,
             .cancelled = &store->cancelled,
             .reserve = build_reserve,
             .finished = build_finished,

@@ -75,11 +75,11 @@ struct store_counts {
     uint64_t hits, misses, evictions; /* ever: uses of what was ready, uses that had to wait */
 };
 
-/* `readers` has STORE_MAX_BUILDS threads. budget_bytes: the most that all who reserve may take
- * together; max_image_px: of a light image, either way. */
+/* `readers` has STORE_MAX_BUILDS threads. Of the limits, which must stay, the budget and the size
+ * of images are read now, the time of a build when it starts. */
 struct store *store_create(struct pool *pool, struct pool *readers,
                            struct render_thread *render_thread, struct workers *workers,
-                           size_t budget_bytes, uint32_t max_image_px, struct error *error);
+                           const struct limits *limits, struct error *error);
 /* No build may be running. The GL thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */
 

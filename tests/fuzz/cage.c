@@ -19,9 +19,10 @@ static void build_tables(const struct cage *cage)
     struct cage_survey survey;
     struct limit_tables tables = {0};
     struct limit_plan *plan = NULL;
-    bool ok = cage_survey(cage, &survey, &error) && (plan = limit_plan_create(cage, &error)) &&
+    bool ok = cage_survey(cage, &survey, &error) &&
+              (plan = limit_plan_create(cage, NULL, &error)) &&
               limit_tables_init(&tables, plan, &error) &&
-              limit_build_faces(&tables, plan, 0, tables.n_faces, &error);
+              limit_build_faces(&tables, plan, 0, tables.n_faces, NULL, &error);
     MUST(ok || error.kind == ERROR_MODEL || (error.kind == ERROR_SERVER && fuzz_memory_failed()));
     limit_plan_destroy(plan);
     limit_tables_finish(&tables);

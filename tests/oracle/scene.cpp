@@ -28,8 +28,8 @@ void build(limit_tables *tables, const limit_plan *plan, int n_threads)
     std::atomic<size_t> next{0};
     auto work = [&](size_t k) {
         for (size_t first; built[k] && (first = next.fetch_add(range)) < tables->n_faces;)
-            built[k] = limit_build_faces(tables, plan, first,
-                                         std::min(first + range, tables->n_faces), &errors[k]);
+            built[k] = limit_build_faces(
+                tables, plan, first, std::min(first + range, tables->n_faces), NULL, &errors[k]);
     };
     std::vector<std::thread> others;
     for (size_t k = 1; k < errors.size(); k++)
@@ -51,8 +51,8 @@ vec3 from(const double a[3])
 scene::scene(std::shared_ptr<const struct cage> whose, int n_threads) : cage(std::move(whose))
 {
     error error;
-    std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(limit_plan_create(cage.get(), &error),
-                                                             limit_plan_destroy);
+    std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(
+        limit_plan_create(cage.get(), NULL, &error), limit_plan_destroy);
     check(plan != nullptr, error);
     check(limit_tables_init(&tables, plan.get(), &error), error);
     build(&tables, plan.get(), n_threads);

@@ -87,11 +87,11 @@ curvatures principal_curvatures(const surface_point &s)
 table_evaluator::table_evaluator(const cage &cage)
 {
     error error;
-    limit_plan *plan = limit_plan_create(&cage, &error);
+    limit_plan *plan = limit_plan_create(&cage, NULL, &error);
     if (!plan)
         throw std::runtime_error(error.text);
     bool built = limit_tables_init(&tables, plan, &error) &&
-                 limit_build_faces(&tables, plan, 0, tables.n_faces, &error);
+                 limit_build_faces(&tables, plan, 0, tables.n_faces, NULL, &error);
     limit_plan_destroy(plan);
     if (!built)
         throw std::runtime_error(error.text);

@@ -97,8 +97,8 @@ void judge(const std::string &path, verdict *verdict)
     std::shared_ptr<const cage> cage = read_cage_file(path);
     osd_levels truth(*cage, n_levels);
     error error;
-    std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(limit_plan_create(cage.get(), &error),
-                                                             limit_plan_destroy);
+    std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(
+        limit_plan_create(cage.get(), NULL, &error), limit_plan_destroy);
     if (!plan)
         throw std::runtime_error(path + ": " + error.text);
     walk walk = {};

@@ -43,7 +43,7 @@ class Table(unittest.TestCase):
         text = run("--help").stdout
         rows = re.findall(r"^[ *] --([a-z-]+) (?:BYTES|PX|N|SECONDS)\b.*?\(default: (\w+)\)",
                           text[text.index("limits;"):], re.S | re.M)
-        self.assertEqual(len(rows), 25, rows)
+        self.assertEqual(len(rows), 26, rows)
         with tempfile.NamedTemporaryFile("w", suffix=".conf") as file:
             file.write("".join(f"{name} = {fallback}\n" for name, fallback in rows))
             file.flush()
@@ -98,6 +98,24 @@ class Workers(unittest.TestCase):
                 client.read_frame(70)
             self.assertIn("slow.png: more than 1 s of processor time", caught.exception.text)
             client.render(model)
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_tables_cpu(self):
+        """A fan of triangles: each of them has to do with all the others."""
+        valence = 4000
+        fan = ["v 0 0 0"] + [f"v {i} {i * i % 97} {i * i % 89}" for i in range(valence + 1)]
+        fan += [f"f 1 {i + 2} {i + 3}" for i in range(valence)]
+        daemon = Daemon("--tables-cpu", "1", "--threads", "2", tcp=False)
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload("\n".join(fan).encode() + b"\n", "fan.obj")
+            for seq in (70, 71):
+                client.send(wire.render(seq, model))
+                with self.assertRaises(wire.Refused) as caught:
+                    client.read_frame(seq)
+                self.assertEqual(caught.exception.code, wire.ERROR_MODEL)
+                self.assertIn("fan.obj: its tables take more than 1 s of processor time "
+                              "(--tables-cpu)", caught.exception.text)
+            client.render(client.upload(CUBE, "cube.obj"))
         self.assertEqual(daemon.stop(), 0)
 
 

@@ -37,10 +37,10 @@ static void scene_init(struct scene *scene, bool device_times)
                                                                 .opacity = 1}}},
                                         .planes = PLANE_COLOUR}};
     assert_true(cage_read(&scene->cage, CUBE, strlen(CUBE), "cube.obj", &error));
-    struct limit_plan *plan = limit_plan_create(&scene->cage, &error);
+    struct limit_plan *plan = limit_plan_create(&scene->cage, NULL, &error);
     assert_non_null(plan);
     assert_true(limit_tables_init(&scene->tables, plan, &error));
-    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, &error));
+    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, NULL, &error));
     limit_plan_destroy(plan);
     scene->renderer = renderer_create(&options, &error);
     if (!scene->renderer)

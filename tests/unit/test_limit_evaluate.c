@@ -24,10 +24,10 @@ static void build(const char *bytes, size_t size, struct limit_tables *tables)
     struct error error = {0};
     if (!cage_read(&cage, bytes, size, "test.obj", &error))
         fail_msg("%s", error.text);
-    struct limit_plan *plan = limit_plan_create(&cage, &error);
+    struct limit_plan *plan = limit_plan_create(&cage, NULL, &error);
     assert_non_null(plan);
     assert_true(limit_tables_init(tables, plan, &error));
-    assert_true(limit_build_faces(tables, plan, 0, tables->n_faces, &error));
+    assert_true(limit_build_faces(tables, plan, 0, tables->n_faces, NULL, &error));
     limit_plan_destroy(plan);
     cage_finish(&cage);
 }
