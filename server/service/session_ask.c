@@ -29,7 +29,7 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
     }
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
     struct asset *known = store_find(host->store, session_owner(session), kind, begin->sha256);
-    if (known) {
+    if (known && store_is_known_as(known, begin->name)) {
         if (begin->share)
             store_share(known);
         session->upload_seq = 0; /* no chunk may follow */

@@ -146,8 +146,16 @@ static struct asset *find_owned(struct store *store, const uint8_t *owner, enum 
 struct asset *store_find(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
                          enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES])
 {
-    struct asset *asset = find_owned(store, owner, kind, sha256);
-    return asset ? asset : find_owned(store, STORE_SHARED, kind, sha256);
+    struct asset *own = find_owned(store, owner, kind, sha256);
+    if (own && own->state != ASSET_FAILED)
+        return own;
+    struct asset *shared = find_owned(store, STORE_SHARED, kind, sha256);
+    return shared ? shared : own;
+}
+
+bool store_is_known_as(const struct asset *asset, const char *name)
+{
+    return asset->state == ASSET_READY || strcmp(asset->name, name) == 0;
 }
 
 void store_share(struct asset *asset)
@@ -178,12 +186,26 @@ void store_release(struct store *store, size_t bytes)
     store->used_bytes -= bytes;
 }
 
+/* Takes a file, whose bytes have been reserved, in the place of another or of none. */
+static void take_file(struct asset *asset, const char *name, uint8_t *file, size_t file_bytes)
+{
+    drop_file(asset);
+    snprintf(asset->name, sizeof asset->name, "%s", name);
+    asset->state = ASSET_STORED;
+    asset->file = file;
+    asset->file_bytes = file_bytes;
+    asset->charged_bytes += file_bytes;
+}
+
 bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
                enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES], const char *name,
                uint8_t *file, size_t file_bytes, struct error *error)
 {
-    struct asset *asset = NULL;
-    bool known = find_owned(store, owner, kind, sha256) != NULL;
+    struct asset *asset = NULL, *known = find_owned(store, owner, kind, sha256);
+    if (known && known->state != ASSET_BUILDING && !store_is_known_as(known, name)) {
+        take_file(known, name, file, file_bytes);
+        return true;
+    }
     if (!known && (store->n_assets < STORE_MAX_ASSETS || evict_one(store)))
         asset = calloc(1, sizeof *asset);
     if (!asset) {
@@ -196,10 +218,7 @@ bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES
     asset->store = store;
     memcpy(asset->sha256, sha256, MODEL_ID_BYTES);
     memcpy(asset->owner, owner, sizeof asset->owner);
-    snprintf(asset->name, sizeof asset->name, "%s", name);
-    asset->file = file;
-    asset->file_bytes = file_bytes;
-    asset->charged_bytes = file_bytes;
+    take_file(asset, name, file, file_bytes);
     asset->bucket_next = *bucket_of(store, sha256);
     *bucket_of(store, sha256) = asset;
     link_newest(store, asset);

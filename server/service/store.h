@@ -83,10 +83,13 @@ struct store *store_create(struct pool *pool, struct pool *readers,
 /* No build may be running. The GL thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */
 
-/* The owner's own, else the shared one, else NULL. The asset stays at least until the loop's next
- * turn. */
+/* The owner's own, else the shared one, else NULL; the shared one, too, where his own cannot be
+ * read. The asset stays at least until the loop's next turn. */
 struct asset *store_find(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
                          enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES]);
+/* Is what comes under this name the same to its readers? The ending of a name tells the format:
+ * what could not be read, or has not been yet, may be a good file under another name. */
+bool store_is_known_as(const struct asset *asset, const char *name);
 /* From now on everybody may use it. */
 void store_share(struct asset *asset);
 
@@ -98,8 +101,8 @@ bool store_reserve(struct store *store, size_t bytes, const char *what, enum err
 void store_release(struct store *store, size_t bytes);
 
 /* Takes over a malloc'd file whose bytes have been charged, and whose hash has been checked. A file
- * that is here already is freed. ERROR_SERVER when there is no room for another entry; the file
- * is freed then too. */
+ * that is here already, and known as this, is freed. ERROR_SERVER when there is no room for another
+ * entry; the file is freed then too. */
 bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
                enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES], const char *name,
                uint8_t *file, size_t file_bytes, struct error *error);

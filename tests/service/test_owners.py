@@ -100,6 +100,40 @@ class Owners(Case):
             other.render(model)
         self.assertEqual(daemon.stop(), 0)
 
+    def test_a_wrong_name_spoils_nothing(self):
+        """The ending tells the format; whoever comes first with a wrong one, perhaps on purpose, must not
+        decide for those who come with the right one."""
+        folder = self.path("models")
+        os.makedirs(folder)
+        with open(os.path.join(folder, "cube.obj"), "wb") as file:
+            file.write(CUBE)
+        daemon = Daemon("--models", folder)
+        with Client(daemon.unix) as first, Client(daemon.tcp) as other:
+            def spoil(data, share):
+                model = first.upload(data, "wrong.glb", share=share)
+                with self.assertRaises(wire.Refused) as caught:
+                    first.query(model)
+                self.assertEqual(caught.exception.code, wire.ERROR_MODEL)
+                self.assertIn("wrong.glb", caught.exception.text)
+
+            spoil(CUBE, True)
+            other.find("cube.obj")  # the daemon's own file
+            first.query(first.upload(CUBE, "cube.obj"))
+            for number, share in enumerate((False, True)):
+                data = CUBE + b"# %d\n" % number
+                spoil(data, share)
+                self.assertEqual(other.query(other.upload(data, "theirs.obj"))[2], [b"theirs.obj"])
+                self.assertEqual(first.query(first.upload(data, "right.obj"))[2], [b"right.obj"])
+            data = CUBE + b"# not read yet\n"
+            first.upload(data, "wrong.glb", share=True)
+            self.assertEqual(other.query(other.upload(data, "theirs.obj"))[2], [b"theirs.obj"])
+            data = CUBE + b"# shared after all\n"
+            spoil(data, False)
+            model = first.upload(data, "right.obj", share=True)
+            first.query(model)
+            other.query(model)
+        self.assertEqual(daemon.stop(), 0)
+
     def test_shared_by_the_daemon(self):
         daemon = Daemon("--share-models")
         with Client(daemon.unix) as owner, Client(daemon.tcp) as other:
