@@ -21,6 +21,7 @@ static struct request *request_create(struct session *session, struct answer *an
     request->answer = answer;
     request->seq = seq;
     memcpy(request->owner, session_owner(session), sizeof request->owner);
+    memcpy(request->asker, session->client.identity.owner, sizeof request->asker);
     request->start_us = loop_now_us();
     atomic_init(&request->abandoned, false);
     request->next = session->requests;
@@ -168,7 +169,7 @@ static void acquire(struct request *request, struct needed *needed, enum asset_k
     needed->waiter = (struct asset_waiter){asset_ready, needed, NULL};
     needed->asset = store_find(request->host->store, request->owner, kind, sha256);
     request->n_awaited++;
-    switch (store_acquire(needed->asset, &needed->waiter, &request->failure)) {
+    switch (store_acquire(needed->asset, request->asker, &needed->waiter, &request->failure)) {
     case ACQUIRE_WAIT:
         return;
     case ACQUIRE_FAILED:

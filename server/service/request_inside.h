@@ -21,6 +21,7 @@ struct request {
     struct answer *answer;           /* valid while there is a session */
     uint32_t seq;
     uint8_t owner[STORE_OWNER_BYTES]; /* the session's */
+    uint8_t asker[STORE_OWNER_BYTES]; /* the client's identity, also where all is shared */
     bool is_query, is_parked;
     bool is_busy;                   /* another thread works for it */
     uint64_t start_us, deadline_us; /* loop_now_us(); deadline 0: none */

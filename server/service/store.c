@@ -16,6 +16,7 @@ struct store {
     size_t n_assets;
     uint64_t n_hits, n_misses, n_evictions;
     unsigned n_building;
+    const struct asset *building[STORE_MAX_BUILDS];
     atomic_bool cancelled;
     struct asset *build_head, *build_tail; /* wait for a turn */
     struct asset *newest, *oldest;
@@ -271,7 +272,10 @@ static void build_finished(void *owner, void *result, const struct error *failur
     } else {
         asset->image = result;
     }
-    store->n_building--;
+    unsigned at = 0;
+    while (store->building[at] != asset)
+        at++;
+    store->building[at] = store->building[--store->n_building];
     asset->users++; /* nobody woken may see it evicted */
     build_ended(asset, failure);
     asset->users--;
@@ -288,11 +292,38 @@ static bool build_reserve(void *owner, size_t bytes, struct error *error)
     return true;
 }
 
+/* Does whoever asked for it have another build running? */
+static bool is_served(const struct store *store, const struct asset *asset)
+{
+    for (unsigned i = 0; i < store->n_building; i++)
+        if (memcmp(store->building[i]->asker, asset->asker, sizeof asset->asker) == 0)
+            return true;
+    return false;
+}
+
+/* The first of those that wait whose asker has nothing running, else the first: who asks for a
+ * hundred models that take a minute each must not hold up who asks for one. Some wait. */
+static struct asset *take_next(struct store *store)
+{
+    struct asset *before = NULL, *asset = store->build_head;
+    while (asset && is_served(store, asset)) {
+        before = asset;
+        asset = asset->next_build;
+    }
+    if (!asset) {
+        before = NULL;
+        asset = store->build_head;
+    }
+    *(before ? &before->next_build : &store->build_head) = asset->next_build;
+    if (store->build_tail == asset)
+        store->build_tail = before;
+    return asset;
+}
+
 static void start_builds(struct store *store)
 {
     while (store->n_building < STORE_MAX_BUILDS && store->build_head) {
-        struct asset *asset = store->build_head;
-        store->build_head = asset->next_build;
+        struct asset *asset = take_next(store);
         const struct build_order order = {
             .pool = store->pool,
             .readers = store->readers,
@@ -310,16 +341,17 @@ static void start_builds(struct store *store)
             .owner = asset,
         };
         struct error error = {0};
-        store->n_building++;
+        store->building[store->n_building++] = asset;
         if (!(asset->kind == ASSET_MODEL ? model_build_start(&order, &error)
                                          : light_image_build_start(&order, &error)))
             build_finished(asset, NULL, &error);
     }
 }
 
-static void queue_build(struct asset *asset)
+static void queue_build(struct asset *asset, const uint8_t asker[static STORE_OWNER_BYTES])
 {
     struct store *store = asset->store;
+    memcpy(asset->asker, asker, sizeof asset->asker);
     asset->state = ASSET_BUILDING;
     asset->progress.stage = "waiting";
     asset->progress.total = 0;
@@ -333,8 +365,9 @@ static void queue_build(struct asset *asset)
     start_builds(store);
 }
 
-enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *waiter,
-                                  struct error *error)
+enum acquire_result store_acquire(struct asset *asset,
+                                  const uint8_t asker[static STORE_OWNER_BYTES],
+                                  struct asset_waiter *waiter, struct error *error)
 {
     unlink_by_use(asset->store, asset);
     link_newest(asset->store, asset);
@@ -351,7 +384,7 @@ enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *wait
     waiter->next = asset->waiters;
     asset->waiters = waiter;
     if (asset->state == ASSET_STORED)
-        queue_build(asset);
+        queue_build(asset, asker);
     return ACQUIRE_WAIT;
 }
 

@@ -39,6 +39,7 @@ struct asset {
     enum asset_state state;
     uint8_t sha256[MODEL_ID_BYTES];
     uint8_t owner[STORE_OWNER_BYTES]; /* equal files of two owners are two assets */
+    uint8_t asker[STORE_OWNER_BYTES]; /* whoever asked for the build first */
     char name[STORE_NAME_BYTES];
     uint8_t *file; /* malloc'd, or NULL */
     size_t file_bytes;
@@ -109,10 +110,12 @@ bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES
 
 enum acquire_result { ACQUIRE_READY, ACQUIRE_WAIT, ACQUIRE_FAILED };
 
-/* Wants to use an asset. READY: it is, until store_unuse(). WAIT: waiter->ready() will be called;
- * without a failure that is as READY. FAILED: *error says why. */
-enum acquire_result store_acquire(struct asset *asset, struct asset_waiter *waiter,
-                                  struct error *error);
+/* Wants to use an asset, for the client of this identity, whoever owns it: of those who wait for
+ * builds each has his turn. READY: it is, until store_unuse(). WAIT: waiter->ready() will be
+ * called; without a failure that is as READY. FAILED: *error says why. */
+enum acquire_result store_acquire(struct asset *asset,
+                                  const uint8_t asker[static STORE_OWNER_BYTES],
+                                  struct asset_waiter *waiter, struct error *error);
 void store_unuse(struct asset *asset);
 
 /* A model in use will be drawn as polygons of this level (0 to 6): they are charged once, until the

@@ -100,14 +100,17 @@ class Workers(unittest.TestCase):
             client.render(model)
         self.assertEqual(daemon.stop(), 0)
 
+    @staticmethod
+    def fan(valence, comment=""):
+        """Triangles, each of which has to do with all the others: slow to build."""
+        lines = ["v 0 0 0"] + [f"v {i} {i * i % 97} {i * i % 89}" for i in range(valence + 1)]
+        lines += [f"f 1 {i + 2} {i + 3}" for i in range(valence)]
+        return "\n".join([*lines, "# " + comment, ""]).encode()
+
     def test_tables_cpu(self):
-        """A fan of triangles: each of them has to do with all the others."""
-        valence = 4000
-        fan = ["v 0 0 0"] + [f"v {i} {i * i % 97} {i * i % 89}" for i in range(valence + 1)]
-        fan += [f"f 1 {i + 2} {i + 3}" for i in range(valence)]
         daemon = Daemon("--tables-cpu", "1", "--threads", "2", tcp=False)
         with Client(daemon.unix, timeout=60) as client:
-            model = client.upload("\n".join(fan).encode() + b"\n", "fan.obj")
+            model = client.upload(self.fan(4000), "fan.obj")
             for seq in (70, 71):
                 client.send(wire.render(seq, model))
                 with self.assertRaises(wire.Refused) as caught:
@@ -116,6 +119,29 @@ class Workers(unittest.TestCase):
                 self.assertIn("fan.obj: its tables take more than 1 s of processor time "
                               "(--tables-cpu)", caught.exception.text)
             client.render(client.upload(CUBE, "cube.obj"))
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_builds_have_turns(self):
+        """Who asks for many slow models holds up who asks for one by those that have begun."""
+        n_slow = 8
+        daemon = Daemon("--tables-cpu", "1", "--threads", "2")
+        with Client(daemon.tcp, minor=1, timeout=60) as many, Client(daemon.unix) as one:
+            slow = [many.upload(self.fan(4000, str(i)), "fan.obj") for i in range(n_slow)]
+            quick = one.upload(CUBE, "cube.obj")
+            many.send(b"".join(wire.message(wire.MODEL_QUERY, 100 + i, wire.field(1, model))
+                               for i, model in enumerate(slow)))
+            many.stats()  # all of them have been read
+            one.query(quick)
+            refused = 0
+            many.send(wire.message(wire.STATS_QUERY, 200))
+            while True:
+                try:
+                    many.expect(wire.STATS, 200)
+                    break
+                except wire.Refused as answer:
+                    self.assertEqual(answer.code, wire.ERROR_MODEL)
+                    refused += 1
+            self.assertLess(refused, n_slow // 2)
         self.assertEqual(daemon.stop(), 0)
 
 
