@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "server/options_table.h"
+#include "server/service/plain_file.h"
 #include "server/service/listen.h"
 
 #define HELP_COLUMN 28
@@ -94,6 +95,8 @@ static bool read_file(struct settings *settings, struct error *error)
 {
     struct error found = {0};
     struct file_reader reader = {settings, &found};
+    if (!plain_file_check(settings->config, error))
+        return false;
     int line = ini_parse(settings->config, file_value, &reader);
     if (line == 0)
         return true;

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
+#include "server/service/plain_file.h"
 #include "server/service/conn_tls.h"
 
 #define MAX_GROUPS 1024
@@ -50,6 +51,10 @@ static bool read_tls(struct access *access, struct error *error)
                          "tls-crl lists certificates of --client-ca, which is missing");
     if (!wanted)
         return true;
+    const char *const paths[] = {files.cert, files.key, files.ca, files.crl};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
+        if (*paths[i] && !plain_file_check(paths[i], error))
+            return false;
     if (!check_key_file(options->tls_key, error))
         return false;
     access->tls = tls_context_create(TLS_SERVER, &files, text);

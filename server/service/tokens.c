@@ -8,6 +8,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "server/service/plain_file.h"
 #include "server/service/wire.h"
 
 _Static_assert(TOKEN_HASH_BYTES == SHA256_DIGEST_LENGTH, "a hash is a SHA-256");
@@ -100,6 +101,8 @@ static bool read_lines(struct tokens *tokens, FILE *file, const char *path, stru
 
 struct tokens *tokens_read(const char *path, struct error *error)
 {
+    if (!plain_file_check(path, error))
+        return NULL;
     FILE *file = fopen(path, "re");
     if (!file) {
         error_set(error, ERROR_REQUEST, "cannot read %s: %s", path, strerror(errno));

@@ -405,7 +405,10 @@ class Starts(Case):
                                  ("by another authority", (*own, "--client-ca", ca.cert, "--tls-crl",
                                                            other_ca.revoke())),
                                  ("--client-ca, which is missing", (*own, "--tls-crl", ca.revoke())),
-                                 ("no-such", (*own, "--tokens", self.path("no-such")))):
+                                 ("no-such", (*own, "--tokens", self.path("no-such"))),
+                                 ("no plain file", ("--tls-cert", self.path(""), "--tls-key", key)),
+                                 ("no plain file", (*own, "--client-ca", self.path(""))),
+                                 ("no plain file", (*own, "--tokens", self.path("")))):
             self.assert_refused(words, *listen, *arguments)
         os.chmod(key, 0o644)
         self.assert_refused("chmod", *listen, *own, "--client-ca", ca.cert)

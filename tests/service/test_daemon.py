@@ -80,6 +80,9 @@ class Options(unittest.TestCase):
             done = run("--config", path, "--listen", f"unix:{folder}/b.sock", "--check-config")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assert_fails(2, "cannot read", "--config", folder + "/none")
+            os.mkfifo(folder + "/pipe")
+            for other in (folder, folder + "/pipe"):
+                self.assert_fails(2, other + ": it is no plain file", "--config", other)
 
     def test_no_device(self):
         hidden = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"}

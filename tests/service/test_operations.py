@@ -330,6 +330,9 @@ class Reload(unittest.TestCase):
             self.assertIn(words, hang_up("the old one stays"))
         os.unlink(self.path)
         self.assertIn("cannot read", hang_up("the old one stays"))
+        os.mkfifo(self.path)  # which nobody writes to
+        self.assertIn("no plain file", hang_up("the old one stays"))
+        os.unlink(self.path)
         with Client(daemon.unix) as idle:
             with self.assertRaises(wire.Refused) as caught:
                 idle.receive()
