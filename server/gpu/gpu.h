@@ -195,7 +195,8 @@ const struct table_programs *programs_for(struct renderer *renderer,
                                           const struct renderer_model *model, bool ptex,
                                           struct error *error);
 
-/* Grows the target to hold a tile. ERROR_DEVICE when the device has no memory. */
+/* Makes the target hold a tile, and mostly what it held before. ERROR_DEVICE when the device has no
+ * memory. */
 bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error);
 void target_finish(struct target *target);
 

@@ -26,12 +26,29 @@ static GLuint *image_name(struct target *target, size_t i)
     return (GLuint *)(void *)((char *)target + images[i].member);
 }
 
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+/* A size that holds what is asked for and, where that wastes little, all that has been: no column
+ * of pixels after a row of them may make a square. */
+static void choose_size(const struct target *target, uint32_t *width, uint32_t *height)
+{
+    uint64_t asked_px = (uint64_t)*width * *height;
+    uint64_t held_px = (uint64_t)target->width * target->height;
+    uint32_t both[2] = {larger(*width, target->width), larger(*height, target->height)};
+    if ((uint64_t)both[0] * both[1] > 2 * (asked_px + held_px))
+        return;
+    *width = both[0];
+    *height = both[1];
+}
+
 bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error)
 {
     if (width <= target->width && height <= target->height)
         return true;
-    width = width > target->width ? width : target->width;
-    height = height > target->height ? height : target->height;
+    choose_size(target, &width, &height);
     target_finish(target);
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         GLuint *name = image_name(target, i);

@@ -332,6 +332,18 @@ class Renders(DaemonCase):
                 self.assert_refused(client, wire.ERROR_REQUEST, words, seq)
             client.render(model)
 
+    def test_a_column_after_a_row(self):
+        """The device's planes hold the largest frame so far, which is no square of both."""
+        with Client(self.daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            before = resident_kb(self.daemon.process.pid)
+            want = client.render(model).data
+            for width, height in ((1, 16384), (16384, 1), (1, 16384)):
+                frame = client.render(model, width=width, height=height)
+                self.assertEqual(len(frame.data), 4 * 16384)
+            self.assertEqual(client.render(model).data, want)
+            self.assertLess(resident_kb(self.daemon.process.pid), before + (512 << 10))
+
     def test_answers_keep_the_order_of_requests(self):
         with Client(self.daemon.unix) as client:
             model = client.upload(grid(60), "order.obj")
