@@ -1,9 +1,12 @@
 // What the border plane holds: from the pixel's centre to the nearest border of the piece seen, px, in
 // 12 bits each for x and y; and how wide the rounding of a crease there is on this side, px, in 8.
+// Or ROUNDED: the pixel shows the rounding of a crease that is between THIN and WIDE.
 
 const float BORDER_STEPS = 512.0;          // a px
 const vec2 NO_BORDER = vec2(2047.0 / 512.0);
 const float THIN = 0.5;                    // px: what is rounded more widely is no border
+const float WIDE = 6.0;                    // px: across which the curvature hardly changes in a pixel
+const uint ROUNDED = 0x800u;               // no foot's x
 
 uint pack_border(vec2 foot, float rounding)
 {

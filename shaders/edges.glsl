@@ -8,6 +8,8 @@
 //   edges_shade  for each of the first, meets rays all over the pixel with the pieces of surface
 //                around it, and shades the share of each;
 //   turns_shade  for each of the others, shades nine parts of the pixel.
+// Pixels that show the rounding of a crease, half a pixel to some pixels wide, do ask the surface again:
+// rounded.glsl.
 // At the rim of a tile the pixels beyond are not known: an edge there is seen from one side only.
 
 layout(binding = 4, r32ui) readonly uniform uimage2D border;

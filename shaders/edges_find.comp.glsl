@@ -1,4 +1,5 @@
-// Lists the pixels at edges and those that turn, and writes the coverage of all others. At an edge is a
+// Lists the pixels at edges, those that turn, and those that show the rounding of a crease, and writes
+// the coverage of all others. At an edge is a
 // pixel whose border runs through it, or whose neighbour to a side is not where its paraboloid says. (An edge that runs
 // through a pixel has the centre of one of these four on its other side.)
 
@@ -8,6 +9,7 @@ layout(binding = 5, r32f) writeonly uniform image2D coverage;
 
 LIST(0, Edges, edges);
 LIST(2, Turns, turns);
+LIST(3, Rounded, rounded);
 
 const ivec2 AROUND[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -41,14 +43,18 @@ void main()
         return;
     Hit own = hit_at(p);
     bool is_hit = own.depth > 0.0, at_edge = is_hit && border_crosses(p);
+    bool is_rounded = is_hit && imageLoad(border, p).x == ROUNDED, beside_rounded = false;
     for (int i = 0; i < 4; i++) {
         ivec2 q = clamp(p + AROUND[i], ivec2(0), tile.zw - 1);
         float z = imageLoad(hit_depth, q).x;
+        beside_rounded = beside_rounded || (z > 0.0 && imageLoad(border, q).x == ROUNDED);
         bool is_off = off_paraboloid(own, on_ray(pixel_offset(q), z)) > SAME_PX;
         at_edge = at_edge || is_hit != z > 0.0 || (is_hit && is_off);
     }
     imageStore(coverage, p, vec4(is_hit));
-    if (at_edge)
+    if (is_rounded || (at_edge && beside_rounded))
+        LIST_ADD(rounded, p, ROUNDED_PER_GROUP)
+    else if (at_edge)
         LIST_ADD(edges, p, 64u)
     else if (is_hit && turn_over_pixel(p, own) > MOST_TURN)
         LIST_ADD(turns, p, 64u)

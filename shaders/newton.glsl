@@ -9,10 +9,14 @@ struct Ray {
     vec2 start;
 };
 
+Ray ray_through(vec2 q)  // view.glsl
+{
+    return Ray(q * ray.x, q * ray.y);
+}
+
 Ray ray_of(ivec2 pixel)
 {
-    vec2 q = pixel_offset(pixel);
-    return Ray(q * ray.x, q * ray.y);
+    return ray_through(pixel_offset(pixel));
 }
 
 // The 16 points' distances from the two planes, in units of scale, as rows like those of a Net.

@@ -33,9 +33,12 @@ vec3 shape_operator(Surface s, vec3 n_world)
     return vec3(dot(a, second * a), dot(a, second * b), dot(b, second * b)) / s.scale;
 }
 
+const float HALF_PIXEL = 0.71;  // from its centre to its corners
+
 // From the pixel's centre to the nearest border of the Ptex face, px: the foot of the perpendicular on
 // the border's line in the picture, to first order. A crease counts where its rounding is narrower
-// than THIN px; inside the rounding the foot is 0.
+// than THIN px; inside the rounding the foot is 0. ROUNDED where the pixel reaches into a rounding up to
+// WIDE px.
 uint border_of(Node node, vec2 xy, ivec2 steps, Surface s)
 {
     // How the picture moves along x and y, px.
@@ -55,18 +58,22 @@ uint border_of(Node node, vec2 xy, ivec2 steps, Surface s)
     vec4 away = cells + vec4(xy.y, 1.0 - xy.x, 1.0 - xy.y, xy.x);
     vec2 nearest = NO_BORDER;
     float width = 0.0;
+    bool is_rounded = false;
     for (int e = 0; e < 4; e++) {
         uint border = node.borders >> 4 * e & 15u;
         vec2 to = e == 0 ? -to_y : e == 1 ? to_x : e == 2 ? to_y : -to_x;
         float rounding = border == BORDER_SHARP ? 0.0 : ldexp(1.0, int(node.depth) - int(border));
         float rounding_px = rounding * length(to);
+        float beyond_px = (away[e] - rounding) * length(to);
+        is_rounded = is_rounded || (border != 0u && rounding_px >= THIN && rounding_px < WIDE &&
+                                    beyond_px < HALF_PIXEL);
         vec2 foot = (away[e] < rounding ? 0.0 : away[e]) * to;
         if (border != 0u && rounding_px < THIN && dot(foot, foot) < dot(nearest, nearest)) {
             nearest = foot;
             width = rounding_px;
         }
     }
-    return pack_border(nearest, width);
+    return is_rounded ? ROUNDED : pack_border(nearest, width);
 }
 
 // steps: the surface's parameters run 2^steps faster than the node's x,y.

@@ -5,9 +5,16 @@
 
 bool stage_edges_init(struct renderer *r, struct error *error)
 {
-    static const char *const files[] = {
-        "view.glsl",  "list.glsl",   "basis.glsl",           "hit.glsl", "border.glsl",
-        "edges.glsl", "groups.glsl", "edges_find.comp.glsl", NULL};
+    static const char *const files[] = {"view.glsl",
+                                        "list.glsl",
+                                        "basis.glsl",
+                                        "hit.glsl",
+                                        "border.glsl",
+                                        "edges.glsl",
+                                        "rounded.glsl",
+                                        "groups.glsl",
+                                        "edges_find.comp.glsl",
+                                        NULL};
     r->edges_find = program_compute("", files, error);
     return r->edges_find;
 }
@@ -25,8 +32,10 @@ void stage_edges(struct renderer *r)
     glClearTexImage(target->coverage, 0, GL_RED, GL_FLOAT, nothing);
     glNamedBufferSubData(target->edges, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->turns, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->rounded, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->edges);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->turns);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->rounded);
     glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);

@@ -17,12 +17,18 @@ static void bind_seen(const struct target *target, GLuint unit)
     glBindTextureUnit(unit + 1, target->seen_depth);
 }
 
-static void bind_planes(const struct renderer *r, const struct renderer_model *model)
+/* The tables, and what stage 1 left. */
+static void bind_tables(const struct renderer *r, const struct renderer_model *model)
 {
     int unit = banks_bind(&model->points, 0);
     unit = banks_bind(&model->nodes, unit);
     unit = banks_bind(&model->adjacency, unit);
     bind_seen(&r->target, (GLuint)unit);
+}
+
+static void bind_planes(const struct renderer *r, const struct renderer_model *model)
+{
+    bind_tables(r, model);
     glBindImageTexture(0, r->target.hit_depth, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
     glBindImageTexture(1, r->target.normal, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
     glBindImageTexture(2, r->target.shape, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
@@ -30,12 +36,10 @@ static void bind_planes(const struct renderer *r, const struct renderer_model *m
     glBindImageTexture(4, r->target.border, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
 }
 
-/* The pixels of a list, once it is complete. */
-static void solve_listed(GLuint program, GLuint list, bool around)
+/* The pixels of a list, once it is complete, with the program in use. */
+static void solve_listed(GLuint list)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    glUseProgram(program);
-    glUniform1i(glGetUniformLocation(program, "around"), around);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
     glDispatchComputeIndirect(0);
@@ -55,6 +59,7 @@ void stage_evaluate(struct renderer *r, const struct renderer_model *model,
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
     const struct target *target = &r->target;
+    GLint around = glGetUniformLocation(programs->unsolved, "around");
     glNamedBufferSubData(target->strays, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->unsolved, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->strays);
@@ -62,8 +67,22 @@ void stage_evaluate(struct renderer *r, const struct renderer_model *model,
     bind_planes(r, model);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     dispatch_groups(programs->evaluate, target->groups);
-    solve_listed(programs->unsolved, target->strays, false);
+    glUseProgram(programs->unsolved);
+    glUniform1i(around, false);
+    solve_listed(target->strays);
     doubt(r);
     bind_planes(r, model);
-    solve_listed(programs->unsolved, target->unsolved, true);
+    glUseProgram(programs->unsolved);
+    glUniform1i(around, true);
+    solve_listed(target->unsolved);
+}
+
+void stage_rounded(struct renderer *r, const struct renderer_model *model,
+                   const struct table_programs *programs)
+{
+    bind_tables(r, model);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
+    glUseProgram(programs->rounded);
+    glUniform1ui(glGetUniformLocation(programs->rounded, "max_rounded"), r->target.max_rounded);
+    solve_listed(r->target.rounded);
 }

@@ -23,7 +23,7 @@ struct bank_set {
 struct table_programs {
     int point_banks, node_banks, adjacency_banks;
     bool ptex;
-    GLuint visibility, evaluate, unsolved;
+    GLuint visibility, evaluate, unsolved, rounded;
 };
 
 /* Which context of the renderer an object's GL names are of. Those of an earlier one went with it:
@@ -59,6 +59,9 @@ struct target {
     GLuint groups, restless; /* buffers: shaders/gather.comp.glsl */
     GLuint strays, unsolved; /* buffers: shaders/unsolved.comp.glsl */
     GLuint edges, turns;     /* buffers: shaders/edges_find.comp.glsl */
+    GLuint rounded;          /* another; and what its pixels' rays meet: shaders/rounded.glsl */
+    GLuint rounded_hits;
+    GLuint max_rounded; /* pixels of which rounded_hits has room for all rays */
 };
 
 /* One mesh of polygons on the device (mesh.h). */
@@ -117,6 +120,7 @@ enum shaded {
     SHADED_UNFILTERED,
     SHADED_EDGES,
     SHADED_TURNS,
+    SHADED_ROUNDED,
     SHADED_PLANES,
     SHADED_KINDS
 };
@@ -210,6 +214,9 @@ void stage_evaluate(struct renderer *renderer, const struct renderer_model *mode
 /* Lists the pixels that stage 3 looks at more closely; the coverage of all others. */
 bool stage_edges_init(struct renderer *renderer, struct error *error);
 void stage_edges(struct renderer *renderer);
+/* After it: the rays of the pixels that show the rounding of a crease, against the surface. */
+void stage_rounded(struct renderer *renderer, const struct renderer_model *model,
+                   const struct table_programs *programs);
 /* Whether it does. */
 bool edges_wanted(const struct frame_request *request);
 /* Stages 1 and 2 of polygons: the same planes from a mesh. */

@@ -85,8 +85,10 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
         return false;
     stage_clock_start(r);
     stage_evaluate(r, model, programs);
-    if (edges_wanted(request))
+    if (edges_wanted(request)) {
         stage_edges(r);
+        stage_rounded(r, model, programs);
+    }
     return stage_clock_end(r, &frame->times.evaluate_us);
 }
 

@@ -39,9 +39,12 @@ static GLuint shade_program(struct renderer *r, const struct frame_request *requ
                                         NULL};
     static const char *const turns[] = {COMMON,        "border.glsl",           "edges.glsl",
                                         "pieces.glsl", "turns_shade.comp.glsl", NULL};
+    static const char *const rounded[] = {COMMON,        "border.glsl",  "edges.glsl",
+                                          "pieces.glsl", "rounded.glsl", "rounded_shade.comp.glsl",
+                                          NULL};
     static const char *const planes[] = {COMMON, "groups.glsl", "shade_planes.comp.glsl", NULL};
 #undef COMMON
-    static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns, planes};
+    static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns, rounded, planes};
     int family = request->lines.family, pattern = light->pattern.kind;
     int kind = is_at_infinity(request->lines.family) ? 0 : (int)light->kind;
     bool soft = light->pattern.soft > 0;
@@ -61,7 +64,8 @@ bool stage_shade_init(struct renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const struct frame_request usual;
-    static const enum shaded of_a_picture[] = {SHADED_ALL, SHADED_EDGES, SHADED_TURNS};
+    static const enum shaded of_a_picture[] = {SHADED_ALL, SHADED_EDGES, SHADED_TURNS,
+                                               SHADED_ROUNDED};
     for (size_t i = 0; i < sizeof of_a_picture / sizeof of_a_picture[0]; i++)
         if (!shade_program(r, &usual, &usual.lights[0], of_a_picture[i], error))
             return false;
@@ -294,7 +298,8 @@ static bool shade_light(struct renderer *r, const struct frame_request *request,
                                request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL, error);
     GLuint edges = all && closer ? shade_program(r, request, light, SHADED_EDGES, error) : 0;
     GLuint turns = edges ? shade_program(r, request, light, SHADED_TURNS, error) : 0;
-    if (!all || (closer && !turns))
+    GLuint rounded = turns ? shade_program(r, request, light, SHADED_ROUNDED, error) : 0;
+    if (!all || (closer && !rounded))
         return false;
     struct light_block block;
     fill_block(&block, request, i);
@@ -308,6 +313,10 @@ static bool shade_light(struct renderer *r, const struct frame_request *request,
                         GL_COMMAND_BARRIER_BIT);
         dispatch_listed(&r->target, edges, r->target.edges);
         dispatch_listed(&r->target, turns, r->target.turns);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
+        glProgramUniform1ui(rounded, glGetUniformLocation(rounded, "max_rounded"),
+                            r->target.max_rounded);
+        dispatch_listed(&r->target, rounded, r->target.rounded);
     }
     return true;
 }

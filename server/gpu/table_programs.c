@@ -18,6 +18,8 @@ const struct table_programs *programs_for(struct renderer *r, const struct rende
         "border.glsl", "planes.glsl", "newton.glsl", "seen.glsl"
     static const char *const evaluate[] = {STAGE_2, "groups.glsl", "evaluate.comp.glsl", NULL};
     static const char *const unsolved[] = {STAGE_2, "walk.glsl", "unsolved.comp.glsl", NULL};
+    static const char *const rounded[] = {STAGE_2, "walk.glsl", "rounded.glsl",
+                                          "rounded_solve.comp.glsl", NULL};
 #undef STAGE_2
     for (int i = 0; i < r->n_programs; i++) {
         const struct table_programs *p = &r->programs[i];
@@ -41,9 +43,11 @@ const struct table_programs *programs_for(struct renderer *r, const struct rende
     p->visibility = program_raster(defines, vertex, fragment, error);
     p->evaluate = p->visibility ? program_compute(defines, evaluate, error) : 0;
     p->unsolved = p->evaluate ? program_compute(defines, unsolved, error) : 0;
-    if (!p->unsolved) {
+    p->rounded = p->unsolved ? program_compute(defines, rounded, error) : 0;
+    if (!p->rounded) {
         glDeleteProgram(p->visibility);
         glDeleteProgram(p->evaluate);
+        glDeleteProgram(p->unsolved);
         return NULL;
     }
     p->point_banks = point_banks;

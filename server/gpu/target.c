@@ -2,6 +2,11 @@
 
 #include <stddef.h>
 
+/* One in so many pixels may be rounded and have all its 16 rays, of 32 bytes
+ * (shaders/rounded.glsl). */
+enum { PX_PER_ROUNDED = 32 };
+static const size_t ROUNDED_BYTES = 512;
+
 /* Every image of a target, by where its name is kept and its format. */
 static const struct {
     size_t member;
@@ -58,13 +63,17 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
         glTextureParameteri(*name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTextureParameteri(*name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
-    GLuint *const lists[] = {&target->groups,   &target->restless, &target->strays,
-                             &target->unsolved, &target->edges,    &target->turns};
+    GLuint *const lists[] = {&target->groups, &target->restless, &target->strays, &target->unsolved,
+                             &target->edges,  &target->turns,    &target->rounded};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         glCreateBuffers(1, lists[i]);
         glNamedBufferData(*lists[i], (GLsizeiptr)(16 + (size_t)width * height * 4), NULL,
                           GL_DYNAMIC_COPY);
     }
+    target->max_rounded = (GLuint)((size_t)width * height / PX_PER_ROUNDED) + 1;
+    glCreateBuffers(1, &target->rounded_hits);
+    glNamedBufferData(target->rounded_hits, (GLsizeiptr)(target->max_rounded * ROUNDED_BYTES), NULL,
+                      GL_DYNAMIC_COPY);
     glCreateFramebuffers(1, &target->framebuffer);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->seen, 0);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT1, target->hit_depth, 0);
@@ -93,6 +102,8 @@ void target_finish(struct target *target)
     glDeleteBuffers(1, &target->unsolved);
     glDeleteBuffers(1, &target->edges);
     glDeleteBuffers(1, &target->turns);
+    glDeleteBuffers(1, &target->rounded);
+    glDeleteBuffers(1, &target->rounded_hits);
     glDeleteFramebuffers(1, &target->framebuffer);
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         glDeleteTextures(1, image_name(target, i));

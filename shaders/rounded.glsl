@@ -1,0 +1,31 @@
+// Pixels that show the rounding of a semi-sharp crease, from half a pixel to some pixels wide: there the
+// surface turns too much and too unevenly for one footprint or one paraboloid to tell. Rays spread over
+// the pixel meet the limit surface itself (rounded_solve), and each is shaded with the footprint of its
+// own part of the pixel (rounded_shade).
+//
+// There is memory for 16 rays of max_rounded pixels. Where more are listed each has fewer, so that what
+// a pixel shows does not depend on the order in which they were.
+
+const uint MAX_RAYS = 16u;
+const uint ROUNDED_PER_GROUP = 64u / MAX_RAYS;
+
+uniform uint max_rounded;
+
+// A pixel has side x side rays; where that is 0, as when half of the picture is listed, it keeps the
+// colour it has.
+int rounded_side(uint n_listed)
+{
+    return n_listed <= max_rounded ? 4 : n_listed <= 4u * max_rounded ? 2
+                                     : n_listed <= 16u * max_rounded ? 1 : 0;
+}
+
+// Where ray i leaves its pixel's centre, px.
+vec2 rounded_place(int i, int side)
+{
+    return (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
+}
+
+struct RoundedHit {
+    vec4 normal_depth;  // world; depth 0: nothing is met
+    vec4 shape;         // in tangent_basis(normal); w unused
+};
