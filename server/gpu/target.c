@@ -4,7 +4,7 @@
 
 /* One in so many pixels may be rounded and have all its 16 rays, of 32 bytes
  * (shaders/rounded.glsl). */
-enum { PX_PER_ROUNDED = 32 };
+enum { PX_PER_ROUNDED = 32, MIN_ROUNDED = 32768 }; /* the least even in small tiles */
 static const size_t ROUNDED_BYTES = 512;
 
 /* Every image of a target, by where its name is kept and its format. */
@@ -70,7 +70,9 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
         glNamedBufferData(*lists[i], (GLsizeiptr)(16 + (size_t)width * height * 4), NULL,
                           GL_DYNAMIC_COPY);
     }
-    target->max_rounded = (GLuint)((size_t)width * height / PX_PER_ROUNDED) + 1;
+    size_t pixels = (size_t)width * height, most = pixels / PX_PER_ROUNDED;
+    most = most < MIN_ROUNDED ? MIN_ROUNDED : most;
+    target->max_rounded = (GLuint)(most < pixels ? most : pixels);
     glCreateBuffers(1, &target->rounded_hits);
     glNamedBufferData(target->rounded_hits, (GLsizeiptr)(target->max_rounded * ROUNDED_BYTES), NULL,
                       GL_DYNAMIC_COPY);

@@ -30,10 +30,10 @@ static void scene_init(struct scene *scene, const char *bytes, size_t size)
     *scene = (struct scene){0};
     if (!cage_read(&scene->cage, bytes, size, "scene.obj", &error))
         fail_msg("%s", error.text);
-    struct limit_plan *plan = limit_plan_create(&scene->cage, &error);
+    struct limit_plan *plan = limit_plan_create(&scene->cage, NULL, &error);
     assert_non_null(plan);
     assert_true(limit_tables_init(&scene->tables, plan, &error));
-    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, &error));
+    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, NULL, &error));
     limit_plan_destroy(plan);
 }
 
