@@ -3,6 +3,7 @@
 #define SHEEN_GPU_GPU_H
 
 #include <epoxy/gl.h>
+#include <stdatomic.h>
 
 #include "server/gpu/egl.h"
 #include "server/gpu/pieces.h"
@@ -69,15 +70,18 @@ struct polygon_mesh {
     uint64_t model_serial; /* 0: a free place */
     uint32_t level;
     GLuint array, buffer[2]; /* vertices, indices */
-    GLsizei n_indices;
-    size_t bytes;
-    uint64_t used; /* by the cache's clock */
+    struct mesh_part *part;  /* owned */
+    size_t n_parts;
+    size_t vertex_bytes, index_bytes;
+    size_t put_bytes; /* that the device has of both */
+    uint64_t used;    /* by the cache's clock */
     double centre[3];
 };
 
 enum { MAX_POLYGON_MESHES = 32 };
 
-/* The conventional picture's meshes and programs (polygon.c). All zero until first used. */
+/* The conventional picture's meshes (polygon_meshes.c) and programs (polygon.c). All zero until
+ * first used. */
 struct polygons {
     struct polygon_mesh mesh[MAX_POLYGON_MESHES];
     size_t bytes; /* of all meshes */
@@ -100,6 +104,26 @@ struct kept {
 struct planes {
     struct target target;
     struct kept kept;
+};
+
+/* What a frame of polygons has drawn of its tile, while others are drawn between its steps
+ * (slices.c). */
+enum { MAX_CANVASES = RENDERER_MAX_SLICED };
+struct canvas {
+    struct planes planes;
+    context_number context; /* of the planes */
+    uint64_t model_serial;  /* whose mesh of this level the device must keep meanwhile */
+    uint32_t level;
+    atomic_bool is_taken; /* by a frame, which gives it back on any thread */
+};
+
+/* A part of a tile's polygons. */
+struct slice {
+    const struct polygon_mesh *mesh;
+    const struct view *view;
+    const struct tile *tile;
+    size_t part; /* the next one to draw */
+    size_t left; /* indices that may be drawn yet; the last part may exceed them */
 };
 
 /* Of the stages of one tile (stage_clock.c). */
@@ -142,6 +166,7 @@ struct renderer {
     const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
     struct pieces pieces;
     struct polygons polygons;
+    struct canvas *canvas; /* MAX_CANVASES; they stay where they are when the device is lost */
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
     /* By line family, light, pattern, soft edges and pixels; 0 until first asked for. */
@@ -219,24 +244,51 @@ void stage_rounded(struct renderer *renderer, const struct renderer_model *model
                    const struct table_programs *programs);
 /* Whether it does. */
 bool edges_wanted(const struct frame_request *request);
-/* Stages 1 and 2 of polygons: the same planes from a mesh. */
-bool stage_polygons(struct renderer *renderer, const struct renderer_model *model,
-                    const struct frame_request *request, const struct tile *tile,
-                    struct error *error);
+/* Stages 1 and 2 of polygons: the same planes from a mesh that is whole. Empty, then slice by
+ * slice. */
+bool stage_polygons_begin(struct renderer *renderer, const struct tile *tile, struct error *error);
+bool stage_polygons(struct renderer *renderer, struct slice *slice, struct error *error);
 bool stage_shade_init(struct renderer *renderer, struct error *error);
 /* Compiles the pattern's program when it is asked for first. */
 bool stage_shade(struct renderer *renderer, const struct frame_request *request,
                  struct error *error);
 
-/* After stage_shade: the polygons' edges in place of the colour, by the depths of stage_polygons.
- */
-bool stage_wireframe(struct renderer *renderer, const struct renderer_model *model,
-                     const struct frame_request *request, const struct tile *tile,
-                     struct error *error);
-/* Are they on the device? */
-bool polygons_have(const struct polygons *polygons, uint64_t model_serial, uint32_t level);
+/* After stage_shade: the polygons' edges in place of the colour, by the depths of stage_polygons,
+ * slice by slice. */
+bool stage_wireframe(struct renderer *renderer, struct slice *slice, struct error *error);
+
+/* Are they on the device, wholly? */
+bool polygons_have(struct polygons *polygons, uint64_t model_serial, uint32_t level);
+bool polygons_are_whole(const struct polygon_mesh *mesh);
+/* The mesh, after putting so many bytes more of it on the device at most, from renderer.made,
+ * unless it is whole. NULL on failure. */
+struct polygon_mesh *polygons_put(struct renderer *renderer, const struct renderer_model *model,
+                                  uint32_t level, size_t most, struct error *error);
 /* Drops the meshes of a model that goes. */
 void polygons_forget(struct polygons *polygons, uint64_t model_serial);
+/* Drops all after the context that they were in. */
+void polygons_lose(struct polygons *polygons);
+
+/* Whether the target's planes are those of this view already. */
+bool is_kept(const struct kept *kept, const struct renderer_model *model,
+             const struct frame_request *request);
+/* The planes in use change places with others. */
+void planes_swap(struct renderer *renderer, struct planes *others);
+
+/* Takes into use what the frame has drawn of its tile, if anything. */
+void canvas_resume(struct renderer *renderer, struct frame_work *work, struct frame *frame);
+/* The next part of a tile of polygons, as much as a step may take. *is_whole: it was the last, and
+ * stands in the frame. */
+bool draw_polygons(struct renderer *renderer, const struct renderer_model *model,
+                   struct frame_work *work, const struct view *view, const struct tile *drawn,
+                   struct frame *frame, bool *is_whole, struct error *error);
+/* Keeps what is drawn until the frame's next step: others may use the planes meanwhile. */
+bool canvas_set_aside(struct renderer *renderer, const struct renderer_model *model,
+                      const struct frame_work *work, struct frame *frame, struct error *error);
+/* The frame needs it no more. Any thread. */
+void canvas_give_back(struct frame *frame);
+/* Is a frame under way that is drawn of this mesh? */
+bool canvas_needs(const struct renderer *renderer, const struct polygon_mesh *mesh);
 
 /* Draws into a framebuffer from here on: the tile's viewport, nearest first by reversed depth. */
 void raster_begin(GLuint framebuffer, const struct tile *tile);

@@ -1,5 +1,6 @@
 #include "server/gpu/mesh.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "server/gpu/gpu.h"
@@ -78,18 +79,6 @@ static bool refuse(const struct limit_tables *tables, uint32_t level, uint64_t q
                      level, (unsigned long long)quads, (unsigned long long)MESH_MAX_VERTICES, fits);
 }
 
-/* The two triangles of every cell of the grid whose vertices come next. */
-static void add_cells(struct mesh *mesh, uint32_t cells)
-{
-    uint32_t first = (uint32_t)mesh->n_vertices, row = cells + 1;
-    for (uint32_t k = 0; k < cells * cells; k++) {
-        uint32_t a = first + k / cells * row + k % cells, b = a + 1, c = b + row, d = a + row;
-        const uint32_t corners[6] = {a, b, c, a, c, d};
-        for (int i = 0; i < 6; i++)
-            mesh->index[mesh->n_indices++] = corners[i];
-    }
-}
-
 static void add_vertex(struct mesh *mesh, uint32_t face, uint32_t cells, uint32_t x, uint32_t y,
                        struct vec s, struct vec n)
 {
@@ -104,16 +93,71 @@ static void add_vertex(struct mesh *mesh, uint32_t face, uint32_t cells, uint32_
     };
 }
 
+/* A part of its own, unless the last one has room. */
+static struct mesh_part *part_for(struct mesh *mesh, uint32_t n)
+{
+    struct mesh_part *last = mesh->n_parts ? &mesh->part[mesh->n_parts - 1] : NULL;
+    if (last && last->n + n <= MESH_PART_INDICES)
+        return last;
+    struct mesh_part *part = &mesh->part[mesh->n_parts++];
+    *part = (struct mesh_part){.first = (uint32_t)mesh->n_indices};
+    for (int k = 0; k < 3; k++) {
+        part->box_min[k] = INFINITY;
+        part->box_max[k] = -INFINITY;
+    }
+    return part;
+}
+
+/* Part of a face's grid, cells and vertices. */
+struct block {
+    uint32_t x, y, end_x, end_y;
+};
+
+static void add_block(struct mesh *mesh, uint32_t first, uint32_t row, const struct block *block)
+{
+    uint32_t n = 6 * (block->end_x - block->x) * (block->end_y - block->y);
+    struct mesh_part *part = part_for(mesh, n);
+    part->n += n;
+    for (uint32_t y = block->y; y < block->end_y; y++)
+        for (uint32_t x = block->x; x < block->end_x; x++) {
+            uint32_t a = first + y * row + x, b = a + 1, c = b + row, d = a + row;
+            const uint32_t corners[6] = {a, b, c, a, c, d};
+            for (int i = 0; i < 6; i++)
+                mesh->index[mesh->n_indices++] = corners[i];
+        }
+    for (uint32_t y = block->y; y <= block->end_y; y++)
+        for (uint32_t x = block->x; x <= block->end_x; x++) {
+            const float *p = mesh->vertex[first + y * row + x].position;
+            for (int k = 0; k < 3; k++) {
+                part->box_min[k] = fminf(part->box_min[k], p[k]);
+                part->box_max[k] = fmaxf(part->box_max[k], p[k]);
+            }
+        }
+}
+
+/* The two triangles of every cell of the grid whose vertices came last. */
+static void add_cells(struct mesh *mesh, uint32_t cells)
+{
+    enum { BLOCK = 32 };
+    uint32_t row = cells + 1, first = (uint32_t)mesh->n_vertices - row * row;
+    for (uint32_t y = 0; y < cells; y += BLOCK)
+        for (uint32_t x = 0; x < cells; x += BLOCK) {
+            const struct block block = {x, y, x + BLOCK < cells ? x + BLOCK : cells,
+                                        y + BLOCK < cells ? y + BLOCK : cells};
+            add_block(mesh, first, row, &block);
+        }
+}
+
 static void add_face(struct mesh *mesh, const struct limit_tables *tables, uint32_t face,
                      uint32_t cells)
 {
-    add_cells(mesh, cells);
     for (uint32_t y = 0; y <= cells; y++)
         for (uint32_t x = 0; x <= cells; x++) {
             struct limit_point p = {0};
             limit_evaluate(tables, face, (double)x / cells, (double)y / cells, &p);
             add_vertex(mesh, face, cells, x, y, p.s, p.n);
         }
+    add_cells(mesh, cells);
 }
 
 static struct limit_point corner_of(const struct limit_tables *tables, uint32_t face)
@@ -143,14 +187,20 @@ static void add_fan(struct mesh *mesh, const struct limit_tables *tables, uint32
     for (uint32_t k = 0; k < n; k++) {
         struct limit_point after = corner_of(tables, first + (k + 1) % n);
         uint32_t face = (first + k) | MESH_IS_FAN;
-        add_cells(mesh, 1);
         add_vertex(mesh, face, 1, 0, 0, own.s, own.n);
         add_vertex(mesh, face, 1, 1, 0, halfway(own.s, after.s), halfway(own.n, after.n));
         add_vertex(mesh, face, 1, 0, 1, halfway(before.s, own.s), halfway(before.n, own.n));
         add_vertex(mesh, face, 1, 1, 1, s, normal);
+        add_cells(mesh, 1);
         before = own;
         own = after;
     }
+}
+
+/* Two parts that follow each other have more than one's room. */
+static size_t most_parts(uint64_t quads)
+{
+    return (size_t)(2 * (6 * quads / MESH_PART_INDICES) + 2);
 }
 
 bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t level,
@@ -162,7 +212,8 @@ bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t le
         return refuse(tables, level, size.quads, error);
     mesh->vertex = malloc((size.vertices + 1) * sizeof *mesh->vertex);
     mesh->index = malloc((6 * size.quads + 1) * sizeof *mesh->index);
-    if (!mesh->vertex || !mesh->index) {
+    mesh->part = malloc(most_parts(size.quads) * sizeof *mesh->part);
+    if (!mesh->vertex || !mesh->index || !mesh->part) {
         mesh_finish(mesh);
         return error_set(error, ERROR_SERVER, "out of memory for %llu polygons",
                          (unsigned long long)size.quads);
@@ -189,5 +240,6 @@ void mesh_finish(struct mesh *mesh)
 {
     free(mesh->vertex);
     free(mesh->index);
+    free(mesh->part);
     *mesh = (struct mesh){0};
 }

@@ -29,10 +29,18 @@ struct mesh_vertex {
     uint8_t cells, unused;
 };
 
+/* Triangles that follow each other and lie together: what is drawn, or left out, at once. */
+#define MESH_PART_INDICES 6144u /* at most: a block of 32 x 32 cells */
+struct mesh_part {
+    uint32_t first, n;            /* indices */
+    float box_min[3], box_max[3]; /* relative to the mesh's centre */
+};
+
 struct mesh {
     struct mesh_vertex *vertex;
-    uint32_t *index; /* two triangles a cell, split from (0,0) to (1,1) */
-    size_t n_vertices, n_indices;
+    uint32_t *index;        /* two triangles a cell, split from (0,0) to (1,1), block by block */
+    struct mesh_part *part; /* all indices, in order */
+    size_t n_vertices, n_indices, n_parts;
     double centre[3]; /* world */
 };
 

@@ -24,8 +24,7 @@ struct chooser {
     struct pieces *out;
     const struct limit_tables *tables;
     const struct view *view;
-    double side[4][3]; /* unit inward normals of the tile's sides, camera space */
-    double offset[4];  /* signed distance = side . p + offset */
+    struct view_sides sides; /* the tile's */
     const struct tile *tile;
     uint32_t blocks[2]; /* of the tile: across and down */
     size_t n_chosen;
@@ -39,38 +38,9 @@ struct extent {
     struct limit_bound bound;
 };
 
-static void set_sides(struct chooser *c, const struct tile *tile)
-{
-    const struct view *view = c->view;
-    const double low[2] = {tile->x, tile->y};
-    const double high[2] = {(double)tile->x + tile->width, (double)tile->y + tile->height};
-    for (int k = 0; k < 2; k++) {
-        double a = (low[k] - view->centre_px[k]) * view->units_per_px;
-        double b = (high[k] - view->centre_px[k]) * view->units_per_px;
-        double *first = c->side[2 * k], *second = c->side[2 * k + 1];
-        for (int i = 0; i < 3; i++)
-            first[i] = second[i] = 0;
-        double la = view->perspective ? hypot(1, a) : 1, lb = view->perspective ? hypot(1, b) : 1;
-        first[k] = 1 / la;
-        second[k] = -1 / lb;
-        first[2] = view->perspective ? -a / la : 0;
-        second[2] = view->perspective ? b / lb : 0;
-        c->offset[2 * k] = view->perspective ? 0 : -a;
-        c->offset[2 * k + 1] = view->perspective ? 0 : b;
-    }
-}
-
 static bool is_outside(const struct chooser *c, const struct extent *e)
 {
-    if (e->centre[2] + e->bound.radius < c->view->near)
-        return true;
-    for (int s = 0; s < 4; s++) {
-        double distance = c->side[s][0] * e->centre[0] + c->side[s][1] * e->centre[1] +
-                          c->side[s][2] * e->centre[2] + c->offset[s];
-        if (distance < -e->bound.radius)
-            return true;
-    }
-    return false;
+    return view_sides_exclude(&c->sides, e->centre, e->bound.radius);
 }
 
 /* How many px a length can span at the extent's nearest depth. */
@@ -370,7 +340,7 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
     struct chooser c = {.out = pieces, .tables = tables, .view = view, .tile = tile};
     if (!reserve_blocks(&c, error))
         return false;
-    set_sides(&c, tile);
+    view_sides_init(&c.sides, view, tile);
     for (uint32_t node = 0; node < tables->n_nodes; node++) {
         if (tables->nodes[node].kind == LIMIT_REGULAR)
             choose_regular(&c, node);

@@ -170,6 +170,7 @@ size_t renderer_plane_bytes(enum renderer_plane plane)
 
 void frame_finish(struct frame *frame)
 {
+    canvas_give_back(frame);
     for (int p = 0; p < PLANE_COUNT; p++)
         spares_give(frame->spares, frame->plane[p]);
     *frame = (struct frame){0};

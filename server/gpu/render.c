@@ -19,9 +19,8 @@ static bool same_camera(const struct camera *a, const struct camera *b)
            a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
 }
 
-/* Whether the target's planes are those of this view already. */
-static bool is_kept(const struct kept *kept, const struct renderer_model *model,
-                    const struct frame_request *request)
+bool is_kept(const struct kept *kept, const struct renderer_model *model,
+             const struct frame_request *request)
 {
     return kept->model_serial == model->serial && kept->width_px == request->width_px &&
            kept->height_px == request->height_px && same_camera(&kept->camera, &request->camera) &&
@@ -65,13 +64,6 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
 {
     if (is_kept(&r->kept, model, request))
         return true;
-    if (request->surface.kind != SURFACE_EXACT) {
-        stage_clock_start(r);
-        if (!stage_polygons(r, model, request, tile, error))
-            return false;
-        stage_gather(r);
-        return stage_clock_end(r, &frame->times.visibility_us);
-    }
     if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
         return false;
     const struct table_programs *programs =
@@ -92,27 +84,42 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
     return stage_clock_end(r, &frame->times.evaluate_us);
 }
 
-/* `drawn` is the tile with its margin. */
+/* The three stages of the exact surface. */
+static bool draw_exact(struct renderer *r, const struct renderer_model *model,
+                       const struct frame_request *request, const struct view *view,
+                       const struct tile *drawn, struct frame *frame, struct error *error)
+{
+    if (!draw_surface(r, model, request, view, drawn, frame, error))
+        return false;
+    stage_clock_start(r);
+    return stage_shade(r, request, error) && stage_clock_end(r, &frame->times.shade_us) &&
+           stage_clock_read(r);
+}
+
+static bool is_of_polygons(const struct frame_work *work)
+{
+    return work->request->surface.kind != SURFACE_EXACT;
+}
+
+/* `drawn` is the tile with its margin. *is_whole: the frame has it. */
 static bool render_tile(struct renderer *r, const struct renderer_model *model,
-                        const struct frame_request *request, const struct view *view,
-                        const struct tile *drawn, const struct tile *tile, struct frame *frame,
+                        struct frame_work *work, const struct view *view, const struct tile *drawn,
+                        const struct tile *tile, struct frame *frame, bool *is_whole,
                         struct error *error)
 {
+    const struct frame_request *request = work->request;
     struct view_block block;
     view_block_fill(&block, view, drawn);
     glNamedBufferSubData(r->view_buffer, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
     stage_clock_begin(r);
-    if (!draw_surface(r, model, request, view, drawn, frame, error))
-        return false;
-    stage_clock_start(r);
-    if (!stage_shade(r, request, error))
-        return false;
-    if (request->surface.kind == SURFACE_WIREFRAME &&
-        !stage_wireframe(r, model, request, drawn, error))
-        return false;
-    return stage_clock_end(r, &frame->times.shade_us) && stage_clock_read(r) &&
-           readback(r, request, view, drawn, tile, frame, error) &&
+    *is_whole = true;
+    bool ok = is_of_polygons(work)
+                  ? draw_polygons(r, model, work, view, drawn, frame, is_whole, error)
+                  : draw_exact(r, model, request, view, drawn, frame, error);
+    if (!ok || !*is_whole)
+        return ok;
+    return readback(r, request, view, drawn, tile, frame, error) &&
            stage_clock_wait(r, &frame->times.readback_us);
 }
 
@@ -157,15 +164,19 @@ static void place_tile(const struct frame_work *work, struct tile *drawn, struct
                            above + tile->height + below};
 }
 
+void planes_swap(struct renderer *r, struct planes *others)
+{
+    const struct planes used = {r->target, r->kept};
+    r->target = others->target;
+    r->kept = others->kept;
+    *others = used;
+}
+
 /* Takes the planes for frames of one tile or those for frames of several into use. */
 static void use_planes(struct renderer *r, bool in_tiles)
 {
-    if (r->in_tiles == in_tiles)
-        return;
-    const struct planes used = {r->target, r->kept};
-    r->target = r->resting.target;
-    r->kept = r->resting.kept;
-    r->resting = used;
+    if (r->in_tiles != in_tiles)
+        planes_swap(r, &r->resting);
     r->in_tiles = in_tiles;
 }
 
@@ -211,7 +222,7 @@ static bool upload_all(struct renderer *r, struct renderer_model *model,
 }
 
 static bool step(struct renderer *r, struct renderer_model *model, struct frame_work *work,
-                 struct frame *frame, struct error *error)
+                 struct frame *frame, bool *is_whole, struct error *error)
 {
     const struct frame_request *request = work->request;
     struct view view;
@@ -220,6 +231,8 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
         return false;
     place_tile(work, &drawn, &tile);
     use_planes(r, !is_single(work));
+    if (is_of_polygons(work))
+        canvas_resume(r, work, frame);
     r->watch = work->watch;
     r->made = work->polygons;
     if (drawn.width > r->target.width || drawn.height > r->target.height)
@@ -228,23 +241,26 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
               model->tables->hull_min, model->tables->hull_max);
     bool ok = watch_check(&work->watch, error) &&
               target_reserve(&r->target, drawn.width, drawn.height, error) &&
-              render_tile(r, model, request, &view, &drawn, &tile, frame, error);
-    if (ok && is_single(work))
+              render_tile(r, model, work, &view, &drawn, &tile, frame, is_whole, error);
+    if (ok && *is_whole && is_single(work))
         keep(r, model, request);
     else
         r->kept.model_serial = 0;
+    if (ok && !*is_whole)
+        return canvas_set_aside(r, model, work, frame, error);
+    canvas_give_back(frame);
     return ok;
 }
 
 enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error)
 {
-    const struct surface *surface = &work->request->surface;
-    bool ready = renderer_ready(r, error);
-    if (ready && surface->kind != SURFACE_EXACT && !work->polygons &&
-        (fault_at("gpu.polygons") || !polygons_have(&r->polygons, model->serial, surface->level)))
+    bool ready = renderer_ready(r, error), is_whole = false;
+    if (ready && is_of_polygons(work) && !work->polygons &&
+        (fault_at("gpu.polygons") ||
+         !polygons_have(&r->polygons, model->serial, work->request->surface.level)))
         return FRAME_POLYGONS;
-    if (!ready || !step(r, model, work, frame, error)) {
+    if (!ready || !step(r, model, work, frame, &is_whole, error)) {
         /* Whatever failed then, this is why. */
         if (renderer_check_lost(r))
             error_set(error, ERROR_GPU_LOST,
@@ -252,6 +268,8 @@ enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
         frame_finish(frame);
         return FRAME_FAILED;
     }
+    if (!is_whole)
+        return FRAME_MORE;
     work->x += work->tile_width;
     if (work->x >= work->request->width_px) {
         work->x = 0;

@@ -56,7 +56,14 @@ struct renderer *renderer_create(const struct renderer_options *options, struct 
         return NULL;
     }
     r->options = *options;
+    r->canvas = calloc(MAX_CANVASES, sizeof *r->canvas);
+    if (!r->canvas) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        free(r);
+        return NULL;
+    }
     if (!egl_init(&r->egl, options->device ? options->device : "auto", error)) {
+        free(r->canvas);
         free(r);
         return NULL;
     }
@@ -75,6 +82,8 @@ void renderer_destroy(struct renderer *r)
     /* GL objects go with their context. */
     egl_finish(&r->egl);
     pieces_finish(&r->pieces);
+    polygons_lose(&r->polygons);
+    free(r->canvas);
     free(r);
 }
 
@@ -112,12 +121,14 @@ bool renderer_ready(struct renderer *r, struct error *error)
     if (!r->is_lost)
         return true;
     /* Only what is in main memory stays; every GL name went with the context. */
+    polygons_lose(&r->polygons);
     const struct renderer old = *r;
     *r = (struct renderer){.egl = old.egl,
                            .options = old.options,
                            .info = old.info,
                            .context = old.context,
                            .pieces = old.pieces,
+                           .canvas = old.canvas,
                            .next_serial = old.next_serial};
     memcpy(r->device, old.device, sizeof r->device);
     memcpy(r->driver, old.driver, sizeof r->driver);

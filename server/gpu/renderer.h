@@ -36,7 +36,8 @@ enum renderer_plane {
 struct renderer_options {
     const char *device; /* "auto", "software" or a number: the n-th EGL device */
     size_t max_texels;  /* tests only: pretend that buffer textures hold no more; 0: ask */
-    bool device_times;  /* tests only: frame_times by timer queries on a software device, too */
+    size_t slice;      /* tests only: triangles of polygons drawn a step, about; 0: by the device */
+    bool device_times; /* tests only: frame_times by timer queries on a software device, too */
     /* Told on the GL thread of every context that is lost, and of every try to open another one
      * that fails. NULL: nobody is. */
     void (*lost)(void *owner);
@@ -83,6 +84,7 @@ struct frame {
     void *plane[PLANE_COUNT]; /* indexed by bit number */
     struct frame_times times;
     struct spares *spares; /* the renderer's: where the planes come from */
+    struct canvas *canvas; /* the renderer's, between two steps; NULL once the frame is whole */
 };
 
 /* EGL by device enumeration, surfaceless, OpenGL 4.5 core. NULL with ERROR_DEVICE when there is
@@ -116,8 +118,9 @@ struct frame_watch {
 };
 
 /* A frame in the making, one tile a step, so that the GL thread can turn to other frames in
- * between. Fill in the first group and call renderer_begin(), then renderer_step() until it says
- * something else than FRAME_MORE or FRAME_POLYGONS. */
+ * between; of polygons a step is a part of a tile, and they are put on the device in several, too.
+ * Fill in the first group and call renderer_begin(), then renderer_step() until it says something
+ * else than FRAME_MORE or FRAME_POLYGONS. */
 struct frame_work {
     const struct frame_request *request; /* stays until the last step, as the model does */
     uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
@@ -126,10 +129,16 @@ struct frame_work {
 
     uint32_t tile_width, tile_height; /* the renderer's own from here on */
     uint32_t x, y;                    /* of the next tile */
+    unsigned stage;                   /* of polygons: what comes next of it */
+    size_t part;                      /* and from where */
 };
 
+/* So many frames of polygons may be under way, begun and neither whole nor given up; one more fails
+ * with ERROR_SERVER if it takes several steps a tile. */
+enum { RENDERER_MAX_SLICED = 24 };
+
 enum frame_step {
-    FRAME_MORE, /* tiles are left */
+    FRAME_MORE, /* steps are left */
     /* The device has no polygons for the request's surface, or no longer: set frame_work.polygons
      * and go on. Making them takes as long as many tiles. */
     FRAME_POLYGONS,
@@ -138,13 +147,15 @@ enum frame_step {
 };
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and
- * makes its planes. A frame that is given up between two steps needs frame_finish() alone. */
+ * makes its planes. A frame that is given up between two steps needs frame_finish() alone, on any
+ * thread, while there is the renderer. */
 bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct frame *frame,
                     struct error *error);
-/* Draws the next tile. A frame of one tile that differs from the last such frame in light, pattern
- * or colours only, on the same model, reuses the evaluated planes, whatever was drawn in tiles
- * meanwhile. Cut otherwise, a frame is the same but for single precision's rounding: so a tile's
- * size must depend on the request alone where equal requests shall give equal bytes. */
+/* Draws the next tile, or the next part of one. A frame of one tile that differs from the last such
+ * frame in light, pattern or colours only, on the same model, reuses the evaluated planes, whatever
+ * was drawn in tiles meanwhile. Cut otherwise, a frame is the same but for single precision's
+ * rounding: so a tile's size must depend on the request alone where equal requests shall give equal
+ * bytes. */
 enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error);
 

@@ -93,3 +93,37 @@ void view_transform(const struct view *view, const double world[3], double camer
     for (int a = 0; a < 3; a++)
         camera[a] = view->axis[a][0] * d[0] + view->axis[a][1] * d[1] + view->axis[a][2] * d[2];
 }
+
+void view_sides_init(struct view_sides *sides, const struct view *view, const struct tile *tile)
+{
+    const double low[2] = {tile->x, tile->y};
+    const double high[2] = {(double)tile->x + tile->width, (double)tile->y + tile->height};
+    sides->near = view->near;
+    for (int k = 0; k < 2; k++) {
+        double a = (low[k] - view->centre_px[k]) * view->units_per_px;
+        double b = (high[k] - view->centre_px[k]) * view->units_per_px;
+        double *first = sides->side[2 * k], *second = sides->side[2 * k + 1];
+        for (int i = 0; i < 3; i++)
+            first[i] = second[i] = 0;
+        double la = view->perspective ? hypot(1, a) : 1, lb = view->perspective ? hypot(1, b) : 1;
+        first[k] = 1 / la;
+        second[k] = -1 / lb;
+        first[2] = view->perspective ? -a / la : 0;
+        second[2] = view->perspective ? b / lb : 0;
+        sides->offset[2 * k] = view->perspective ? 0 : -a;
+        sides->offset[2 * k + 1] = view->perspective ? 0 : b;
+    }
+}
+
+bool view_sides_exclude(const struct view_sides *sides, const double centre[3], double radius)
+{
+    if (centre[2] + radius < sides->near)
+        return true;
+    for (int s = 0; s < 4; s++) {
+        const double *side = sides->side[s];
+        double distance = side[0] * centre[0] + side[1] * centre[1] + side[2] * centre[2];
+        if (distance + sides->offset[s] < -radius)
+            return true;
+    }
+    return false;
+}

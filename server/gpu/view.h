@@ -41,4 +41,15 @@ void view_block_fill(struct view_block *block, const struct view *view, const st
 /* World to camera space. */
 void view_transform(const struct view *view, const double world[3], double camera[3]);
 
+/* What a tile may show: the camera space between four planes, from the nearest depth on. */
+struct view_sides {
+    double side[4][3]; /* unit inward normals */
+    double offset[4];  /* signed distance = side . p + offset */
+    double near;
+};
+
+void view_sides_init(struct view_sides *sides, const struct view *view, const struct tile *tile);
+/* Does a sphere in camera space lie outside? */
+bool view_sides_exclude(const struct view_sides *sides, const double centre[3], double radius);
+
 #endif

@@ -415,8 +415,10 @@ static void draw_polygons(struct renderer *renderer, struct renderer_model *mode
         ++*n_asked;
         polygons = renderer_polygons_create(&scene->tables, level, &work.watch, &error);
         work.polygons = polygons;
-        step = renderer_step(renderer, model, &work, &frame, &error);
+        step = FRAME_MORE;
     }
+    while (step == FRAME_MORE)
+        step = renderer_step(renderer, model, &work, &frame, &error);
     assert_int_equal(step, FRAME_DONE);
     assert_true(hits(&frame) > 100);
     renderer_polygons_destroy(polygons);
