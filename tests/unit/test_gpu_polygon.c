@@ -11,100 +11,8 @@
 
 #include <cmocka.h>
 
-#include "server/cage/read/read.h"
 #include "server/gpu/mesh.h"
-#include "server/gpu/renderer.h"
-
-struct scene {
-    struct limit_tables tables;
-    struct renderer *renderer;
-    struct renderer_model *model;
-};
-
-static void build(const char *bytes, size_t size, struct limit_tables *tables)
-{
-    struct cage cage;
-    struct error error = {0};
-    if (!cage_read(&cage, bytes, size, "scene.obj", &error))
-        fail_msg("%s", error.text);
-    struct limit_plan *plan = limit_plan_create(&cage, NULL, &error);
-    assert_non_null(plan);
-    assert_true(limit_tables_init(tables, plan, &error));
-    assert_true(limit_build_faces(tables, plan, 0, tables->n_faces, NULL, &error));
-    limit_plan_destroy(plan);
-    cage_finish(&cage);
-}
-
-static void build_file(const char *path, struct limit_tables *tables)
-{
-    static char bytes[1 << 20];
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    size_t size = fread(bytes, 1, sizeof bytes, file);
-    fclose(file);
-    build(bytes, size, tables);
-}
-
-/* A torus of n x n quads: smooth, and regular all over. */
-static void build_torus(unsigned n, struct limit_tables *tables)
-{
-    size_t room = (size_t)n * n * 100, used = 0;
-    char *text = malloc(room);
-    assert_non_null(text);
-    for (unsigned k = 0; k < n * n; k++) {
-        double a = 6.283185307179586 * (k / n) / n, b = 6.283185307179586 * (k % n) / n;
-        double r = 2 + cos(b);
-        used += (size_t)snprintf(text + used, room - used, "v %.12f %.12f %.12f\n", r * cos(a),
-                                 r * sin(a), sin(b));
-    }
-    for (unsigned k = 0; k < n * n; k++) {
-        unsigned i = k / n, j = k % n, i2 = (i + 1) % n, j2 = (j + 1) % n;
-        used += (size_t)snprintf(text + used, room - used, "f %u %u %u %u\n", i * n + j + 1,
-                                 i2 * n + j + 1, i2 * n + j2 + 1, i * n + j2 + 1);
-    }
-    build(text, used, tables);
-    free(text);
-}
-
-static void open_scene(struct scene *scene)
-{
-    const struct renderer_options options = {.device = "software"};
-    struct error error = {0};
-    scene->renderer = renderer_create(&options, &error);
-    if (!scene->renderer)
-        fail_msg("%s", error.text);
-    scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
-    assert_non_null(scene->model);
-}
-
-static void close_scene(struct scene *scene)
-{
-    renderer_model_destroy(scene->renderer, scene->model);
-    renderer_destroy(scene->renderer);
-    limit_tables_finish(&scene->tables);
-}
-
-static struct frame_request request_for(const struct scene *scene)
-{
-    struct frame_request request = {
-        .width_px = 240,
-        .height_px = 160,
-        .n_lights = 1,
-        .lights = {{.pattern = {.count = 20,
-                                .duty = 0.5,
-                                .opacity = 1,
-                                .foreground = {1, 1, 1, 1},
-                                .background = {0, 0, 0, 1}}}},
-        .miss = {0, 0, 1, 1},
-        .empty = {1, 0, 0, 1},
-        .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_CURVATURE,
-    };
-    const struct limit_tables *tables = &scene->tables;
-    renderer_default_camera(tables->box_min, tables->box_max, request.width_px, request.height_px,
-                            &request.camera);
-    renderer_default_light(tables->box_min, tables->box_max, &request.camera, &request.lights[0]);
-    return request;
-}
+#include "tests/unit/polygon_scene.h"
 
 static struct frame render(struct scene *scene, const struct frame_request *request)
 {
@@ -185,7 +93,7 @@ static void test_error_falls(void **state)
     (void)state;
     struct scene scene;
     build_torus(12, &scene.tables);
-    open_scene(&scene);
+    open_scene(&scene, 0);
     struct frame_request view = request_for(&scene);
     struct frame exact = render(&scene, &view);
     struct errors last = {0};
@@ -222,7 +130,7 @@ static void test_wireframe(void **state)
     (void)state;
     struct scene scene;
     build_torus(12, &scene.tables);
-    open_scene(&scene);
+    open_scene(&scene, 0);
     double last = 0;
     for (uint32_t level = 0; level < 3; level++) {
         struct frame polygon = render_surface(&scene, SURFACE_POLYGON, level);
@@ -264,7 +172,7 @@ static void test_edges_of_a_quad(void **state)
                                "t corner 4/1/0 0 3 4 5 10\n";
     struct scene scene;
     build(text, sizeof text - 1, &scene.tables);
-    open_scene(&scene);
+    open_scene(&scene, 0);
     struct frame_request request = request_for(&scene);
     request.camera = (struct camera){.kind = CAMERA_ORTHOGRAPHIC,
                                      .eye = {4, 2, 5},
@@ -287,15 +195,6 @@ static void test_edges_of_a_quad(void **state)
     close_scene(&scene);
 }
 
-static void assert_same(const struct frame *a, const struct frame *b)
-{
-    for (int p = 0; p < PLANE_COUNT; p++)
-        if (a->plane[p])
-            assert_memory_equal(a->plane[p], b->plane[p],
-                                (size_t)a->width_px * a->height_px *
-                                    renderer_plane_bytes((enum renderer_plane)(1 << p)));
-}
-
 /* A light-only change draws no polygon again; another surface does, and nothing of the last one
  * shows. */
 static void test_kept_planes(void **state)
@@ -311,7 +210,7 @@ static void test_kept_planes(void **state)
     struct scene scene;
     for (size_t k = 0; k < N; k++) { /* each by a renderer that has drawn nothing before */
         build_torus(12, &scene.tables);
-        open_scene(&scene);
+        open_scene(&scene, 0);
         struct frame_request request = request_for(&scene);
         request.surface = surfaces[k];
         request.lights[0].centre[0] += 0.25;
@@ -319,7 +218,7 @@ static void test_kept_planes(void **state)
         close_scene(&scene);
     }
     build_torus(12, &scene.tables);
-    open_scene(&scene);
+    open_scene(&scene, 0);
     for (size_t k = 0; k < N; k++) {
         struct frame_request request = request_for(&scene);
         request.surface = surfaces[k];
@@ -344,7 +243,7 @@ static void test_ngons(void **state)
     struct scene scene;
     struct error error = {0};
     build_file("tests/models/ngons.obj", &scene.tables);
-    open_scene(&scene);
+    open_scene(&scene, 0);
     struct mesh mesh;
     size_t n_quads = 0, n_parts = 0;
     for (size_t face = 0; face < scene.tables.n_faces; face++)
@@ -383,7 +282,7 @@ static void test_too_many(void **state)
     struct scene scene;
     struct error error = {0};
     build_torus(50, &scene.tables);
-    open_scene(&scene);
+    open_scene(&scene, 0);
     struct frame_request request = request_for(&scene);
     struct frame frame;
     request.surface = (struct surface){SURFACE_POLYGON, 6};
