@@ -84,6 +84,34 @@ class LostGpu(unittest.TestCase):
         self.assertGreater(sum(lost for _, lost in drawn), 3)
         self.assertEqual(pictures[0], pictures[1])
 
+    def test_lost_between_two_slices(self):
+        """Polygons that take several steps to come to the device and to be drawn, for two at once:
+        who is drawn then asks again, the other goes on by itself."""
+        level6 = wire.field(40, 1) + wire.field(41, 6)
+        pictures = []
+        for faults in ("gpu.lost:9:0", "gpu.lost:9:3"):
+            server = self.serve(faults, "--gpu-losses", "0")
+            clients = [self.client(server) for _ in range(2)]
+            model = [client.upload(grid(6), "sheet.obj") for client in clients][0]
+            lost, asked = 0, {}
+            for client in clients:
+                asked[client] = client.ask(model, extra=level6, kind=wire.BATCH)
+            while asked:
+                for client, seq in list(asked.items()):
+                    got, what = client.answer()
+                    self.assertEqual(got, seq)
+                    del asked[client]
+                    if isinstance(what, wire.Frame):
+                        pictures.append(what.data)
+                        continue
+                    self.assertEqual(what.code, wire.ERROR_GPU_LOST, what)
+                    lost += 1
+                    asked[client] = client.ask(model, extra=level6, kind=wire.BATCH)
+            self.assertEqual(lost, server.errors().count("fault: gpu.lost"))
+            self.assertEqual(server.stop(), 0)
+        self.assertEqual(lost, 3)
+        self.assertEqual(pictures, pictures[:1] * 4)
+
     def test_polygons_go_between_two_tiles(self):
         """Others have taken their room on the device: the frame gets them again and goes on."""
         server = self.serve("gpu.polygons:4:3")

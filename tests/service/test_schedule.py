@@ -192,6 +192,61 @@ class Schedule(DaemonCase):
         self.assertEqual(other.stats()[3][0] - before, 5)  # the polygons' frame is not among them
         slow.read_frame(seq)
 
+    def begin_polygons(self, client, **named):
+        """A frame of 3.3 million triangles, many steps, that is being drawn: its model, and what it
+        is asked with."""
+        sheet = client.upload(grid(20), "sheet.obj")
+        client.render(self.model)  # nothing is kept
+        asked = {"model": sheet, "extra": field(40, 1) + field(41, 6)}
+        return asked, self.ask_polygons(client, asked, **named)
+
+    def ask_polygons(self, client, asked, kind=STILL, view=None, deadline=None):
+        seq = client.next_seq()  # fields in rising order: the surface comes last
+        later = b"".join(field(number, value) for number, value in
+                         ((14, kind), (15, view), (16, deadline)) if value is not None)
+        client.send(message(wire.RENDER, seq, field(1, asked["model"]) + field(2, 64) +
+                            field(3, 48) + field(9, 1) + field(10, 0) + later + asked["extra"]))
+        return seq
+
+    def test_nobody_waits_while_polygons_are_drawn(self):
+        slow, other = self.client(), self.client()
+        for kind in STILL, BATCH, INTERACTIVE:
+            with self.subTest(kind=kind):
+                asked, first = self.begin_polygons(slow, kind=kind)
+                self.wait_until_begun(slow)
+                before = self.stats()[3][0]
+                for _ in range(5):
+                    other.render(self.model, kind=INTERACTIVE)
+                # The polygons' frame is not among them: they were drawn between its slices.
+                self.assertEqual(self.stats()[3][0] - before, 5)
+                whole = slow.read_frame(first).data
+                slow.render(self.model)  # nothing is kept
+                again = self.ask_polygons(slow, asked, kind=kind)
+                self.assertEqual(slow.read_frame(again).data, whole)
+
+    def test_polygons_are_given_up_between_slices(self):
+        client, other = self.client(), self.client()
+        asked, first = self.begin_polygons(client)
+        whole = client.read_frame(first).data
+        client.render(self.model)  # nothing is kept
+        for _ in range(30):  # more than may be under way at once
+            seq = self.ask_polygons(client, asked, deadline=20)
+            got, what = client.answer()
+            self.assertEqual(got, seq)
+            self.assert_refused_with(what, wire.ERROR_DEADLINE, "deadline_ms of 20")
+        seq = self.ask_polygons(client, asked, kind=INTERACTIVE, view=1)
+        self.wait_until_begun(client)
+        newer = [self.ask_polygons(client, asked, kind=INTERACTIVE, view=1) for _ in range(3)]
+        for older, by in zip(newer, newer[1:]):  # at once: before the frame that is being drawn
+            self.assertEqual(client.answer(), (older, by))
+        client.send(message(wire.CANCEL, seq))
+        got, what = client.answer()
+        self.assertEqual(got, seq)
+        self.assert_refused_with(what, wire.ERROR_CANCELLED, "taken back")
+        got, what = client.answer()
+        self.assertEqual((got, what.data), (newer[-1], whole))
+        self.assertIsInstance(other.render(self.model), wire.Frame)
+
     def test_polygons_that_the_device_has_dropped(self):
         """It keeps 32 meshes; the frame that needs another one again is the same as before."""
         client = self.client()

@@ -90,10 +90,12 @@ class WarmFrames(unittest.TestCase):
             frames = [(model, {"kind": wire.INTERACTIVE, **named})] * 20
             self.assertEqual(self.warm_allocations(server, client, frames), 0, name)
         polygons = wire.field(40, 1) + wire.field(41, 2)
+        sliced = wire.field(40, 2) + wire.field(41, 4)  # 98,304 triangles: several steps a frame
         changes = {
             "light": light_at,
             "view": camera_at,
             "view, polygons": lambda x: camera_at(x) + polygons,
+            "view, edges in slices": lambda x: camera_at(x) + sliced,
         }
         for name, extra in changes.items():
             for encoding, planes in ((wire.ZSTD, COLOUR), (wire.JPEG, COLOUR),
