@@ -227,6 +227,8 @@ const struct table_programs *programs_for(struct renderer *renderer,
 /* Makes the target hold a tile, and mostly what it held before. ERROR_DEVICE when the device has no
  * memory. */
 bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error);
+/* What it takes then. */
+uint64_t target_bytes(uint32_t width, uint32_t height);
 void target_finish(struct target *target);
 
 /* The three stages, on the tile that the view block in view_buffer describes. */

@@ -128,21 +128,29 @@ static uint32_t at_most(uint32_t value, uint32_t limit)
     return value < limit ? value : limit;
 }
 
-/* The whole frame where that is allowed, else tiles about square. */
-static void cut(struct frame_work *work)
+/* A tile's size: the whole frame where that is allowed, else about square. */
+static void cut(uint32_t width_px, uint32_t height_px, uint64_t tile_px, uint32_t *tile_width,
+                uint32_t *tile_height)
 {
-    const struct frame_request *request = work->request;
     uint32_t side = TILE_MAX_PX;
-    work->tile_width = at_most(request->width_px, side);
-    work->tile_height = at_most(request->height_px, side);
-    if (!work->tile_px || (uint64_t)work->tile_width * work->tile_height <= work->tile_px)
+    *tile_width = at_most(width_px, side);
+    *tile_height = at_most(height_px, side);
+    if (!tile_px || (uint64_t)*tile_width * *tile_height <= tile_px)
         return;
-    while (side > TILE_MIN_PX && (uint64_t)side * side > work->tile_px)
+    while (side > TILE_MIN_PX && (uint64_t)side * side > tile_px)
         side -= TILE_MIN_PX;
-    work->tile_width = at_most(request->width_px, side);
-    uint64_t rows = work->tile_px / work->tile_width;
-    work->tile_height = at_most(request->height_px, rows < side ? side : (uint32_t)rows);
-    work->tile_height = at_most(work->tile_height, TILE_MAX_PX);
+    *tile_width = at_most(width_px, side);
+    uint64_t rows = tile_px / *tile_width;
+    *tile_height = at_most(height_px, rows < side ? side : (uint32_t)rows);
+    *tile_height = at_most(*tile_height, TILE_MAX_PX);
+}
+
+uint64_t renderer_canvas_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px)
+{
+    uint32_t width, height;
+    cut(width_px, height_px, tile_px, &width, &height);
+    return target_bytes(at_most(width_px, width + 2 * MARGIN_PX),
+                        at_most(height_px, height + 2 * MARGIN_PX));
 }
 
 static bool is_single(const struct frame_work *work)
@@ -205,7 +213,8 @@ bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *f
     if (!request_check(&r->info, work->request, error) ||
         !frame_init(frame, work->request, r->options.spares, error))
         return false;
-    cut(work);
+    cut(work->request->width_px, work->request->height_px, work->tile_px, &work->tile_width,
+        &work->tile_height);
     return true;
 }
 

@@ -169,6 +169,10 @@ void frame_finish(struct frame *frame);
  * thread. */
 size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level);
 
+/* What a frame of polygons takes on the device between its steps, cut into such tiles. Any thread.
+ */
+uint64_t renderer_canvas_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px);
+
 /* Makes them for frame_work.polygons; they take as much again here. ERROR_REQUEST when they are too
  * many, ERROR_SERVER when memory is short or nobody waits (asked for every face). Any thread. */
 struct renderer_polygons *renderer_polygons_create(const struct limit_tables *tables,

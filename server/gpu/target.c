@@ -2,29 +2,50 @@
 
 #include <stddef.h>
 
-/* One in so many pixels may be rounded and have all its 16 rays, of 32 bytes
- * (shaders/rounded.glsl). */
-enum { PX_PER_ROUNDED = 32, MIN_ROUNDED = 32768 }; /* the least even in small tiles */
-static const size_t ROUNDED_BYTES = 512;
-
-/* Every image of a target, by where its name is kept and its format. */
+/* Every image of a target: where its name is kept, its format, and what a pixel takes. */
 static const struct {
     size_t member;
     GLenum format;
+    unsigned bytes;
 } images[] = {
-    {offsetof(struct target, seen), GL_RG32UI},
-    {offsetof(struct target, seen_depth), GL_DEPTH_COMPONENT32F},
-    {offsetof(struct target, hit_depth), GL_R32F},
-    {offsetof(struct target, normal), GL_RGBA32F},
-    {offsetof(struct target, shape), GL_RG32F},
-    {offsetof(struct target, ptex), GL_RGBA32UI},
-    {offsetof(struct target, border), GL_R32UI},
-    {offsetof(struct target, colour), GL_RGBA8},
-    {offsetof(struct target, coverage), GL_R32F},
-    {offsetof(struct target, light), GL_RG32F},
-    {offsetof(struct target, curvature), GL_RG32F},
-    {offsetof(struct target, light_change), GL_RGBA32F},
+    {offsetof(struct target, seen), GL_RG32UI, 8},
+    {offsetof(struct target, seen_depth), GL_DEPTH_COMPONENT32F, 4},
+    {offsetof(struct target, hit_depth), GL_R32F, 4},
+    {offsetof(struct target, normal), GL_RGBA32F, 16},
+    {offsetof(struct target, shape), GL_RG32F, 8},
+    {offsetof(struct target, ptex), GL_RGBA32UI, 16},
+    {offsetof(struct target, border), GL_R32UI, 4},
+    {offsetof(struct target, colour), GL_RGBA8, 4},
+    {offsetof(struct target, coverage), GL_R32F, 4},
+    {offsetof(struct target, light), GL_RG32F, 8},
+    {offsetof(struct target, curvature), GL_RG32F, 8},
+    {offsetof(struct target, light_change), GL_RGBA32F, 16},
 };
+
+/* And its lists of pixels. */
+enum { N_LISTS = 7, LIST_BYTES = 4, LIST_HEAD_BYTES = 16 };
+
+/* One in so many pixels may be rounded and have all its 16 rays, of 32 bytes
+ * (shaders/rounded.glsl). */
+enum { PX_PER_ROUNDED = 32, MIN_ROUNDED = 32768 }; /* the least even in small tiles */
+enum { ROUNDED_BYTES = 512 };
+
+static uint32_t max_rounded(uint64_t pixels)
+{
+    uint64_t most = pixels / PX_PER_ROUNDED;
+    most = most < MIN_ROUNDED ? MIN_ROUNDED : most;
+    return (uint32_t)(most < pixels ? most : pixels);
+}
+
+uint64_t target_bytes(uint32_t width, uint32_t height)
+{
+    uint64_t pixel = N_LISTS * LIST_BYTES;
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
+        pixel += images[i].bytes;
+    uint64_t pixels = (uint64_t)width * height;
+    return pixels * pixel + N_LISTS * LIST_HEAD_BYTES +
+           (uint64_t)max_rounded(pixels) * ROUNDED_BYTES;
+}
 
 static GLuint *image_name(struct target *target, size_t i)
 {
@@ -63,18 +84,18 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
         glTextureParameteri(*name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTextureParameteri(*name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
-    GLuint *const lists[] = {&target->groups, &target->restless, &target->strays, &target->unsolved,
-                             &target->edges,  &target->turns,    &target->rounded};
-    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+    GLuint *const lists[N_LISTS] = {&target->groups,   &target->restless, &target->strays,
+                                    &target->unsolved, &target->edges,    &target->turns,
+                                    &target->rounded};
+    for (size_t i = 0; i < N_LISTS; i++) {
         glCreateBuffers(1, lists[i]);
-        glNamedBufferData(*lists[i], (GLsizeiptr)(16 + (size_t)width * height * 4), NULL,
+        glNamedBufferData(*lists[i],
+                          (GLsizeiptr)(LIST_HEAD_BYTES + (size_t)width * height * LIST_BYTES), NULL,
                           GL_DYNAMIC_COPY);
     }
-    size_t pixels = (size_t)width * height, most = pixels / PX_PER_ROUNDED;
-    most = most < MIN_ROUNDED ? MIN_ROUNDED : most;
-    target->max_rounded = (GLuint)(most < pixels ? most : pixels);
+    target->max_rounded = max_rounded((uint64_t)width * height);
     glCreateBuffers(1, &target->rounded_hits);
-    glNamedBufferData(target->rounded_hits, (GLsizeiptr)(target->max_rounded * ROUNDED_BYTES), NULL,
+    glNamedBufferData(target->rounded_hits, (GLsizeiptr)target->max_rounded * ROUNDED_BYTES, NULL,
                       GL_DYNAMIC_COPY);
     glCreateFramebuffers(1, &target->framebuffer);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->seen, 0);

@@ -22,15 +22,22 @@
  * they are larger than this many tiles. */
 #define WHOLE_TILES 32
 
-static uint64_t tile_px(const struct request *request)
+static uint64_t tile_px(const struct session_host *host, const sheen_Render *render)
 {
-    const struct renderer_info *info = render_thread_info(request->host->render_thread);
+    const struct renderer_info *info = render_thread_info(host->render_thread);
     uint64_t px = info->software ? SOFTWARE_TILE_PX : HARDWARE_TILE_PX;
-    uint32_t n_lights = request->frame_request.n_lights;
-    uint64_t whole = (uint64_t)request->frame_request.width_px * request->frame_request.height_px;
-    if (request->entry.request_class == CLASS_INTERACTIVE && whole <= WHOLE_TILES * px)
+    uint64_t whole = (uint64_t)render->width_px * render->height_px;
+    if (wire_request_class(render->request_class) == CLASS_INTERACTIVE && whole <= WHOLE_TILES * px)
         return 0;
-    return n_lights > LIGHTS_OF_A_TILE ? px * LIGHTS_OF_A_TILE / n_lights : px;
+    return render->lights_count > LIGHTS_OF_A_TILE ? px * LIGHTS_OF_A_TILE / render->lights_count
+                                                   : px;
+}
+
+uint64_t request_canvas_bytes(const struct session_host *host, const sheen_Render *render)
+{
+    return render->surface == sheen_SurfaceKind_SURFACE_EXACT
+               ? 0
+               : renderer_canvas_bytes(render->width_px, render->height_px, tile_px(host, render));
 }
 
 /* --- into the queue */
@@ -140,8 +147,9 @@ void request_queue_frame(struct request *request)
         if (request->images[i].asset)
             asked->lights[i].pattern.image = request->images[i].asset->image->gpu;
     codec_layout_init(&request->layout, render->width_px, render->height_px, render->planes);
-    request->frame_work = (struct frame_work){
-        .request = asked, .tile_px = tile_px(request), .watch = {is_abandoned, request}};
+    request->frame_work = (struct frame_work){.request = asked,
+                                              .tile_px = tile_px(request->host, render),
+                                              .watch = {is_abandoned, request}};
     request->cost_key = cost_key(request);
     request->entry.estimate_us =
         costs_estimate(&request->host->costs, request->cost_key, next_tile_px(request));

@@ -73,13 +73,15 @@ void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *
     }
 }
 
-/* What a frame takes at most: its planes, and what they are encoded to. */
-static uint64_t frame_bytes(const sheen_Render *render)
+/* What a frame takes at most: its planes, what they are encoded to, and what polygons are drawn on.
+ */
+static uint64_t frame_bytes(const struct session *session, const sheen_Render *render)
 {
     struct codec_layout all, sent;
     codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
     codec_layout_init(&sent, render->width_px, render->height_px, render->planes);
-    return all.raw_bytes + encode_bytes(&sent, render->encoding);
+    return all.raw_bytes + encode_bytes(&sent, render->encoding) +
+           request_canvas_bytes(session->host, render);
 }
 
 /* Answers and returns false when the frame could never be made here. */
@@ -88,14 +90,17 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
     const struct limits *limits = &session->host->limits;
     struct codec_layout all;
     codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
-    uint64_t bytes = frame_bytes(render);
+    uint64_t bytes = frame_bytes(session, render);
+    const char *all_of_it = render->surface == sheen_SurfaceKind_SURFACE_EXACT
+                                ? "planes and their encoding"
+                                : "planes, their encoding and what polygons are drawn on";
     const struct {
         const char *what, *name;
         uint64_t needed, limit;
     } checks[] = {
         {"planes", "max-frame", all.raw_bytes, limits->max_frame},
-        {"planes and their encoding", "memory-budget", bytes, limits->memory_budget},
-        {"planes and their encoding", "peer-memory", bytes, limits->peer_memory},
+        {all_of_it, "memory-budget", bytes, limits->memory_budget},
+        {all_of_it, "peer-memory", bytes, limits->peer_memory},
     };
     for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
         char text[MESSAGE_TEXT_BYTES];
@@ -136,7 +141,7 @@ void session_render(struct session *session, uint32_t seq, sheen_Render *render)
     struct answer *answer =
         session_expect_answer(session, seq, wire_request_class(render->request_class));
     if (answer)
-        request_render(session, answer, seq, render, frame_bytes(render));
+        request_render(session, answer, seq, render, frame_bytes(session, render));
 }
 
 void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query)

@@ -179,6 +179,16 @@ class Memory(DaemonCase):
         seq = client.ask(model, 1400, 1400, encoding=wire.ZSTD)
         self.assert_refused(client, wire.ERROR_TOO_BIG, f"--peer-memory of {12 * MIB}", seq)
 
+    def test_frames_count_what_polygons_are_drawn_on(self):
+        """Whole, or tile by tile where the class allows it."""
+        client = self.client()
+        model = client.upload(CUBE, "cube.obj")
+        polygons = field(40, 1) + field(41, 1)
+        client.render(model, 400, 400, kind=INTERACTIVE)
+        seq = client.ask(model, 400, 400, kind=INTERACTIVE, extra=polygons)
+        self.assert_refused(client, wire.ERROR_TOO_BIG, "what polygons are drawn on", seq)
+        client.render(model, 400, 400, kind=wire.STILL, extra=polygons)
+
     def test_max_image_side(self):
         client = self.client()
         model = client.upload(CUBE, "cube.obj")
