@@ -6,6 +6,7 @@
 #include <stdatomic.h>
 
 #include "server/gpu/egl.h"
+#include "server/gpu/mesh.h"
 #include "server/gpu/pieces.h"
 #include "server/gpu/renderer.h"
 #include "server/gpu/view.h"
@@ -65,16 +66,23 @@ struct target {
     GLuint max_rounded; /* pixels of which rounded_hits has room for all rays */
 };
 
-/* One mesh of polygons on the device (mesh.h). */
+/* One chunk of a mesh: a driver that clears a buffer when it makes one takes long for a large one.
+ */
+struct polygon_chunk {
+    GLuint array, buffer[2]; /* vertices, indices */
+    struct mesh_chunk of;
+};
+
+/* One mesh of polygons on the device. */
 struct polygon_mesh {
     uint64_t model_serial; /* 0: a free place */
     uint32_t level;
-    GLuint array, buffer[2]; /* vertices, indices */
-    struct mesh_part *part;  /* owned */
-    size_t n_parts;
-    size_t vertex_bytes, index_bytes;
-    size_t put_bytes; /* that the device has of both */
-    uint64_t used;    /* by the cache's clock */
+    struct mesh_part *part; /* owned, as the chunks are */
+    struct polygon_chunk *chunk;
+    size_t n_parts, n_chunks;
+    size_t n_put;  /* chunks that the device has */
+    size_t bytes;  /* on the device, in the end */
+    uint64_t used; /* by the cache's clock */
     double centre[3];
 };
 
@@ -122,8 +130,10 @@ struct slice {
     const struct polygon_mesh *mesh;
     const struct view *view;
     const struct tile *tile;
-    size_t part; /* the next one to draw */
-    size_t left; /* indices that may be drawn yet; the last part may exceed them */
+    size_t part;      /* the next one to draw */
+    size_t left;      /* indices that may be drawn yet; the last part may exceed them */
+    size_t at_once;   /* indices after which the device shall begin with them */
+    size_t not_begun; /* indices that it has been given since */
 };
 
 /* Of the stages of one tile (stage_clock.c). */
@@ -262,8 +272,8 @@ bool stage_wireframe(struct renderer *renderer, struct slice *slice, struct erro
 /* Are they on the device, wholly? */
 bool polygons_have(struct polygons *polygons, uint64_t model_serial, uint32_t level);
 bool polygons_are_whole(const struct polygon_mesh *mesh);
-/* The mesh, after putting so many bytes more of it on the device at most, from renderer.made,
- * unless it is whole. NULL on failure. */
+/* The mesh, after putting the next chunks of it on the device, about so many bytes, from
+ * renderer.made, unless it is whole. NULL on failure. */
 struct polygon_mesh *polygons_put(struct renderer *renderer, const struct renderer_model *model,
                                   uint32_t level, size_t most, struct error *error);
 /* Drops the meshes of a model that goes. */

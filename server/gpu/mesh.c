@@ -16,6 +16,11 @@ struct mesh_size {
     uint64_t vertices, quads;
 };
 
+static size_t mesh_bytes(uint64_t n_vertices, uint64_t n_indices)
+{
+    return (size_t)n_vertices * sizeof(struct mesh_vertex) + (size_t)n_indices * sizeof(uint32_t);
+}
+
 static struct mesh_size measure(const struct limit_tables *tables, uint32_t level)
 {
     struct mesh_size size = {0, 0};
@@ -35,8 +40,7 @@ size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level)
     struct mesh_size size = measure(tables, level);
     if (size.vertices > MESH_MAX_VERTICES)
         return 0;
-    return (size_t)size.vertices * sizeof(struct mesh_vertex) +
-           (size_t)size.quads * 6 * sizeof(uint32_t);
+    return mesh_bytes(size.vertices, 6 * size.quads);
 }
 
 struct renderer_polygons *renderer_polygons_create(const struct limit_tables *tables,
@@ -93,14 +97,15 @@ static void add_vertex(struct mesh *mesh, uint32_t face, uint32_t cells, uint32_
     };
 }
 
-/* A part of its own, unless the last one has room. */
+/* A part of its own, unless the last one of the chunk has room. */
 static struct mesh_part *part_for(struct mesh *mesh, uint32_t n)
 {
+    uint32_t chunk = (uint32_t)mesh->n_chunks - 1;
     struct mesh_part *last = mesh->n_parts ? &mesh->part[mesh->n_parts - 1] : NULL;
-    if (last && last->n + n <= MESH_PART_INDICES)
+    if (last && last->chunk == chunk && last->n + n <= MESH_PART_INDICES)
         return last;
     struct mesh_part *part = &mesh->part[mesh->n_parts++];
-    *part = (struct mesh_part){.first = (uint32_t)mesh->n_indices};
+    *part = (struct mesh_part){.first = (uint32_t)mesh->n_indices, .chunk = chunk};
     for (int k = 0; k < 3; k++) {
         part->box_min[k] = INFINITY;
         part->box_max[k] = -INFINITY;
@@ -135,6 +140,18 @@ static void add_block(struct mesh *mesh, uint32_t first, uint32_t row, const str
         }
 }
 
+/* The chunk of the face that comes next: another one if the last is full. */
+static void choose_chunk(struct mesh *mesh)
+{
+    const struct mesh_chunk *last = mesh->n_chunks ? &mesh->chunk[mesh->n_chunks - 1] : NULL;
+    if (last && mesh_bytes(last->n_vertices, last->n_indices) < MESH_CHUNK_BYTES)
+        return;
+    mesh->chunk[mesh->n_chunks++] = (struct mesh_chunk){
+        .first_vertex = (uint32_t)mesh->n_vertices,
+        .first_index = (uint32_t)mesh->n_indices,
+    };
+}
+
 /* The two triangles of every cell of the grid whose vertices came last. */
 static void add_cells(struct mesh *mesh, uint32_t cells)
 {
@@ -146,6 +163,9 @@ static void add_cells(struct mesh *mesh, uint32_t cells)
                                         y + BLOCK < cells ? y + BLOCK : cells};
             add_block(mesh, first, row, &block);
         }
+    struct mesh_chunk *chunk = &mesh->chunk[mesh->n_chunks - 1];
+    chunk->n_vertices = (uint32_t)mesh->n_vertices - chunk->first_vertex;
+    chunk->n_indices = (uint32_t)mesh->n_indices - chunk->first_index;
 }
 
 static void add_face(struct mesh *mesh, const struct limit_tables *tables, uint32_t face,
@@ -197,10 +217,16 @@ static void add_fan(struct mesh *mesh, const struct limit_tables *tables, uint32
     }
 }
 
-/* Two parts that follow each other have more than one's room. */
-static size_t most_parts(uint64_t quads)
+static bool reserve(struct mesh *mesh, const struct mesh_size *size)
 {
-    return (size_t)(2 * (6 * quads / MESH_PART_INDICES) + 2);
+    size_t most_chunks = mesh_bytes(size->vertices, 6 * size->quads) / MESH_CHUNK_BYTES + 1;
+    /* Two parts of a chunk that follow each other have more than one's room. */
+    size_t most_parts = 2 * (size_t)(6 * size->quads / MESH_PART_INDICES) + 2 * most_chunks;
+    mesh->vertex = malloc((size->vertices + 1) * sizeof *mesh->vertex);
+    mesh->index = malloc((6 * size->quads + 1) * sizeof *mesh->index);
+    mesh->part = malloc(most_parts * sizeof *mesh->part);
+    mesh->chunk = malloc(most_chunks * sizeof *mesh->chunk);
+    return mesh->vertex && mesh->index && mesh->part && mesh->chunk;
 }
 
 bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t level,
@@ -210,10 +236,7 @@ bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t le
     struct mesh_size size = measure(tables, level);
     if (size.vertices > MESH_MAX_VERTICES)
         return refuse(tables, level, size.quads, error);
-    mesh->vertex = malloc((size.vertices + 1) * sizeof *mesh->vertex);
-    mesh->index = malloc((6 * size.quads + 1) * sizeof *mesh->index);
-    mesh->part = malloc(most_parts(size.quads) * sizeof *mesh->part);
-    if (!mesh->vertex || !mesh->index || !mesh->part) {
+    if (!reserve(mesh, &size)) {
         mesh_finish(mesh);
         return error_set(error, ERROR_SERVER, "out of memory for %llu polygons",
                          (unsigned long long)size.quads);
@@ -228,6 +251,7 @@ bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t le
             mesh_finish(mesh);
             return false;
         }
+        choose_chunk(mesh);
         if (level > 0 || !root->ngon_size)
             add_face(mesh, tables, face, cells_of(root, level));
         else if (root->ngon_corner == 0)
@@ -241,5 +265,6 @@ void mesh_finish(struct mesh *mesh)
     free(mesh->vertex);
     free(mesh->index);
     free(mesh->part);
+    free(mesh->chunk);
     *mesh = (struct mesh){0};
 }

@@ -33,14 +33,22 @@ struct mesh_vertex {
 #define MESH_PART_INDICES 6144u /* at most: a block of 32 x 32 cells */
 struct mesh_part {
     uint32_t first, n;            /* indices */
+    uint32_t chunk;               /* which it is of */
     float box_min[3], box_max[3]; /* relative to the mesh's centre */
+};
+
+/* Whole parts, and the vertices that they alone have: what comes to the device at once. */
+#define MESH_CHUNK_BYTES ((size_t)512 << 10) /* or a face more */
+struct mesh_chunk {
+    uint32_t first_vertex, n_vertices, first_index, n_indices;
 };
 
 struct mesh {
     struct mesh_vertex *vertex;
-    uint32_t *index;        /* two triangles a cell, split from (0,0) to (1,1), block by block */
-    struct mesh_part *part; /* all indices, in order */
-    size_t n_vertices, n_indices, n_parts;
+    uint32_t *index;          /* two triangles a cell, split from (0,0) to (1,1), block by block */
+    struct mesh_part *part;   /* all indices, in order */
+    struct mesh_chunk *chunk; /* all vertices and indices, in order */
+    size_t n_vertices, n_indices, n_parts, n_chunks;
     double centre[3]; /* world */
 };
 

@@ -4,7 +4,6 @@
 
 #include <math.h>
 
-#include "server/gpu/mesh.h"
 #include "server/gpu/program.h"
 
 static bool compile(struct polygons *p, struct error *error)
@@ -53,26 +52,36 @@ static bool is_outside(const struct slice *slice, const struct mesh_part *part,
     return view_sides_exclude(sides, camera, radius + px + rounding);
 }
 
-static void draw_indices(size_t first, size_t n)
+/* Indices of one chunk. */
+static void draw_run(struct slice *slice, uint32_t number, size_t first, size_t n)
 {
-    if (n > 0)
-        glDrawElements(GL_TRIANGLES, (GLsizei)n, GL_UNSIGNED_INT,
-                       (const void *)(first * sizeof(uint32_t)));
+    if (n == 0)
+        return;
+    const struct polygon_chunk *chunk = &slice->mesh->chunk[number];
+    glBindVertexArray(chunk->array);
+    glDrawElementsBaseVertex(GL_TRIANGLES, (GLsizei)n, GL_UNSIGNED_INT,
+                             (const void *)((first - chunk->of.first_index) * sizeof(uint32_t)),
+                             -(GLint)chunk->of.first_vertex);
+    slice->not_begun += n;
+    if (slice->not_begun < slice->at_once)
+        return;
+    glFlush();
+    slice->not_begun = 0;
 }
 
-/* The parts that the tile may show, those that follow each other at once. */
+/* The parts that the tile may show, those that follow each other in a chunk at once. */
 static void draw(struct slice *slice, GLuint program)
 {
     const struct polygon_mesh *mesh = slice->mesh;
     struct view_sides sides;
     float centre[3];
+    uint32_t chunk = 0;
     size_t first = 0, n = 0;
     view_sides_init(&sides, slice->view, slice->tile);
     for (int k = 0; k < 3; k++)
         centre[k] = (float)(mesh->centre[k] - slice->view->eye[k]);
     glUseProgram(program);
     glUniform3fv(glGetUniformLocation(program, "centre"), 1, centre);
-    glBindVertexArray(mesh->array);
     for (; slice->part < mesh->n_parts; slice->part++) {
         const struct mesh_part *next = &mesh->part[slice->part];
         if (is_outside(slice, next, &sides))
@@ -80,14 +89,15 @@ static void draw(struct slice *slice, GLuint program)
         if (slice->left == 0)
             break;
         slice->left -= next->n < slice->left ? next->n : slice->left;
-        if (first + n != next->first) {
-            draw_indices(first, n);
+        if (first + n != next->first || chunk != next->chunk || n >= slice->at_once) {
+            draw_run(slice, chunk, first, n);
+            chunk = next->chunk;
             first = next->first;
             n = 0;
         }
         n += next->n;
     }
-    draw_indices(first, n);
+    draw_run(slice, chunk, first, n);
 }
 
 static void attach_planes(struct renderer *r)

@@ -6,17 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/gpu/mesh.h"
-
 /* What all meshes together may keep on the device beside those in use. */
 static const size_t MAX_CACHED_BYTES = (size_t)512 << 20;
 
 static void drop(struct polygons *p, struct polygon_mesh *mesh)
 {
-    p->bytes -= mesh->vertex_bytes + mesh->index_bytes;
-    glDeleteVertexArrays(1, &mesh->array);
-    glDeleteBuffers(2, mesh->buffer);
+    p->bytes -= mesh->bytes;
+    for (size_t i = 0; i < mesh->n_put; i++) {
+        glDeleteVertexArrays(1, &mesh->chunk[i].array);
+        glDeleteBuffers(2, mesh->chunk[i].buffer);
+    }
     free(mesh->part);
+    free(mesh->chunk);
     *mesh = (struct polygon_mesh){0};
 }
 
@@ -29,8 +30,10 @@ void polygons_forget(struct polygons *p, uint64_t model_serial)
 
 void polygons_lose(struct polygons *p)
 {
-    for (int i = 0; i < MAX_POLYGON_MESHES; i++)
+    for (int i = 0; i < MAX_POLYGON_MESHES; i++) {
         free(p->mesh[i].part);
+        free(p->mesh[i].chunk);
+    }
     *p = (struct polygons){0};
 }
 
@@ -56,12 +59,12 @@ static struct polygon_mesh *make_room(struct renderer *r, size_t bytes)
     }
 }
 
-static void describe_vertices(const struct polygon_mesh *mesh)
+static void describe_vertices(const struct polygon_chunk *chunk)
 {
     enum { POSITION, NORMAL, FACE, CELL };
-    GLuint array = mesh->array;
-    glVertexArrayVertexBuffer(array, 0, mesh->buffer[0], 0, sizeof(struct mesh_vertex));
-    glVertexArrayElementBuffer(array, mesh->buffer[1]);
+    GLuint array = chunk->array;
+    glVertexArrayVertexBuffer(array, 0, chunk->buffer[0], 0, sizeof(struct mesh_vertex));
+    glVertexArrayElementBuffer(array, chunk->buffer[1]);
     glVertexArrayAttribFormat(array, POSITION, 3, GL_FLOAT, GL_FALSE,
                               offsetof(struct mesh_vertex, position));
     glVertexArrayAttribFormat(array, NORMAL, 3, GL_FLOAT, GL_FALSE,
@@ -74,62 +77,52 @@ static void describe_vertices(const struct polygon_mesh *mesh)
     }
 }
 
-static void make_buffers(struct polygon_mesh *mesh)
-{
-    glCreateBuffers(2, mesh->buffer);
-    /* One byte at least: a cage of holes has no polygons. */
-    glNamedBufferStorage(mesh->buffer[0], (GLsizeiptr)mesh->vertex_bytes + 1, NULL,
-                         GL_DYNAMIC_STORAGE_BIT);
-    glNamedBufferStorage(mesh->buffer[1], (GLsizeiptr)mesh->index_bytes + 1, NULL,
-                         GL_DYNAMIC_STORAGE_BIT);
-    glCreateVertexArrays(1, &mesh->array);
-    describe_vertices(mesh);
-}
-
 /* A place for it, with nothing in it yet. */
 static struct polygon_mesh *begin(struct renderer *r, const struct mesh *made,
                                   const struct renderer_model *model, uint32_t level,
                                   struct error *error)
 {
-    size_t vertex_bytes = made->n_vertices * sizeof *made->vertex;
-    size_t index_bytes = made->n_indices * sizeof *made->index;
     struct mesh_part *part = malloc((made->n_parts + 1) * sizeof *part);
-    if (!part) {
+    struct polygon_chunk *chunk = calloc(made->n_chunks + 1, sizeof *chunk);
+    if (!part || !chunk) {
+        free(part);
+        free(chunk);
         error_set(error, ERROR_SERVER, "out of memory for polygons");
         return NULL;
     }
+    size_t bytes = made->n_vertices * sizeof *made->vertex + made->n_indices * sizeof *made->index;
+    struct polygon_mesh *mesh = make_room(r, bytes);
     memcpy(part, made->part, made->n_parts * sizeof *part);
-    struct polygon_mesh *mesh = make_room(r, vertex_bytes + index_bytes);
+    for (size_t i = 0; i < made->n_chunks; i++)
+        chunk[i].of = made->chunk[i];
     *mesh = (struct polygon_mesh){
         .model_serial = model->serial,
         .level = level,
         .part = part,
+        .chunk = chunk,
         .n_parts = made->n_parts,
-        .vertex_bytes = vertex_bytes,
-        .index_bytes = index_bytes,
+        .n_chunks = made->n_chunks,
+        .bytes = bytes,
         .centre = {made->centre[0], made->centre[1], made->centre[2]},
     };
-    r->polygons.bytes += vertex_bytes + index_bytes;
-    make_buffers(mesh);
+    r->polygons.bytes += bytes;
     return mesh;
 }
 
-static size_t least(size_t a, size_t b)
+/* The next chunk; returns its bytes. */
+static size_t put(struct polygon_mesh *mesh, const struct mesh *made)
 {
-    return a < b ? a : b;
-}
-
-/* The next piece: vertices, then indices. */
-static void put(struct polygon_mesh *mesh, const struct mesh *made, size_t most)
-{
-    size_t at = least(mesh->put_bytes, mesh->vertex_bytes);
-    size_t vertices = least(most, mesh->vertex_bytes - at), from = mesh->put_bytes - at;
-    size_t indices = least(most - vertices, mesh->index_bytes - from);
-    glNamedBufferSubData(mesh->buffer[0], (GLintptr)at, (GLsizeiptr)vertices,
-                         (const char *)made->vertex + at);
-    glNamedBufferSubData(mesh->buffer[1], (GLintptr)from, (GLsizeiptr)indices,
-                         (const char *)made->index + from);
-    mesh->put_bytes += vertices + indices;
+    struct polygon_chunk *chunk = &mesh->chunk[mesh->n_put++];
+    size_t vertex_bytes = chunk->of.n_vertices * sizeof *made->vertex;
+    size_t index_bytes = chunk->of.n_indices * sizeof *made->index;
+    glCreateBuffers(2, chunk->buffer);
+    glNamedBufferStorage(chunk->buffer[0], (GLsizeiptr)vertex_bytes,
+                         made->vertex + chunk->of.first_vertex, 0);
+    glNamedBufferStorage(chunk->buffer[1], (GLsizeiptr)index_bytes,
+                         made->index + chunk->of.first_index, 0);
+    glCreateVertexArrays(1, &chunk->array);
+    describe_vertices(chunk);
+    return vertex_bytes + index_bytes;
 }
 
 static struct polygon_mesh *find(struct polygons *p, uint64_t model_serial, uint32_t level)
@@ -142,7 +135,7 @@ static struct polygon_mesh *find(struct polygons *p, uint64_t model_serial, uint
 
 bool polygons_are_whole(const struct polygon_mesh *mesh)
 {
-    return mesh->put_bytes == mesh->vertex_bytes + mesh->index_bytes;
+    return mesh->n_put == mesh->n_chunks;
 }
 
 bool polygons_have(struct polygons *p, uint64_t model_serial, uint32_t level)
@@ -159,8 +152,8 @@ struct polygon_mesh *polygons_put(struct renderer *r, const struct renderer_mode
     if (!mesh && !(mesh = begin(r, &r->made->mesh, model, level, error)))
         return NULL;
     mesh->used = ++p->clock;
-    if (!polygons_are_whole(mesh))
-        put(mesh, &r->made->mesh, most);
+    for (size_t bytes = 0; bytes < most && !polygons_are_whole(mesh);)
+        bytes += put(mesh, &r->made->mesh);
     if (gpu_check("polygons", error))
         return mesh;
     drop(p, mesh);

@@ -72,7 +72,7 @@ static struct frame_request polygons_of(const struct scene *scene, enum surface_
     return request;
 }
 
-/* 73,728 triangles in 36 parts. */
+/* 73,728 triangles in 36 parts or more, which come to the device in 5 chunks. */
 static void test_same_picture(void **state)
 {
     (void)state;
@@ -92,7 +92,7 @@ static void test_same_picture(void **state)
             struct drawn drawn;
             draw(&scene, &drawn, &request, tiles_px[k / 2]);
             printf("%zu triangles a step: %u steps\n", slices[i], drawn.steps);
-            assert_true(drawn.steps > 73728 / slices[i] + 73728 / (slices[i] + 2048));
+            assert_true(drawn.steps >= 3 + 73728 / (slices[i] + 2048));
             assert_same(&expected.frame, &drawn.frame);
             finish(&drawn);
             /* Its light alone changes: no polygon is filled again, edges are drawn again. */
