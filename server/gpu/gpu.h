@@ -123,6 +123,13 @@ struct canvas {
     uint64_t model_serial;  /* whose mesh of this level the device must keep meanwhile */
     uint32_t level;
     atomic_bool is_taken; /* by a frame, which gives it back on any thread */
+    struct canvas_set *set;
+};
+
+/* On the heap: frames may give theirs back when the renderer has gone. */
+struct canvas_set {
+    atomic_uint holders; /* the renderer, and the frames with a canvas; the last one frees it */
+    struct canvas canvas[MAX_CANVASES];
 };
 
 /* A part of a tile's polygons. */
@@ -176,7 +183,7 @@ struct renderer {
     const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
     struct pieces pieces;
     struct polygons polygons;
-    struct canvas *canvas; /* MAX_CANVASES; they stay where they are when the device is lost */
+    struct canvas_set *canvases; /* they stay where they are when the device is lost */
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
     /* By line family, light, pattern, soft edges and pixels; 0 until first asked for. */
@@ -287,6 +294,9 @@ bool is_kept(const struct kept *kept, const struct renderer_model *model,
 /* The planes in use change places with others. */
 void planes_swap(struct renderer *renderer, struct planes *others);
 
+/* NULL when memory is short. Released once by the renderer, any thread. */
+struct canvas_set *canvases_create(void);
+void canvases_release(struct canvas_set *set);
 /* Takes into use what the frame has drawn of its tile, if anything. */
 void canvas_resume(struct renderer *renderer, struct frame_work *work, struct frame *frame);
 /* The next part of a tile of polygons, as much as a step may take. *is_whole: it was the last, and

@@ -56,14 +56,14 @@ struct renderer *renderer_create(const struct renderer_options *options, struct 
         return NULL;
     }
     r->options = *options;
-    r->canvas = calloc(MAX_CANVASES, sizeof *r->canvas);
-    if (!r->canvas) {
+    r->canvases = canvases_create();
+    if (!r->canvases) {
         error_set(error, ERROR_SERVER, "out of memory");
         free(r);
         return NULL;
     }
     if (!egl_init(&r->egl, options->device ? options->device : "auto", error)) {
-        free(r->canvas);
+        canvases_release(r->canvases);
         free(r);
         return NULL;
     }
@@ -83,7 +83,7 @@ void renderer_destroy(struct renderer *r)
     egl_finish(&r->egl);
     pieces_finish(&r->pieces);
     polygons_lose(&r->polygons);
-    free(r->canvas);
+    canvases_release(r->canvases);
     free(r);
 }
 
@@ -128,7 +128,7 @@ bool renderer_ready(struct renderer *r, struct error *error)
                            .info = old.info,
                            .context = old.context,
                            .pieces = old.pieces,
-                           .canvas = old.canvas,
+                           .canvases = old.canvases,
                            .next_serial = old.next_serial};
     memcpy(r->device, old.device, sizeof r->device);
     memcpy(r->driver, old.driver, sizeof r->driver);

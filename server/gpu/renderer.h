@@ -148,7 +148,7 @@ enum frame_step {
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and
  * makes its planes. A frame that is given up between two steps needs frame_finish() alone, on any
- * thread, while there is the renderer. */
+ * thread, also when the renderer has gone. */
 bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct frame *frame,
                     struct error *error);
 /* Draws the next tile, or the next part of one. A frame of one tile that differs from the last such

@@ -3,6 +3,8 @@
  * planes, which are set aside meanwhile, so that the picture is that of one stroke. */
 #include "server/gpu/gpu.h"
 
+#include <stdlib.h>
+
 /* What a tile goes through. */
 enum { FILL, SHADE, EDGES, WHOLE };
 
@@ -34,10 +36,27 @@ static size_t bytes_a_step(const struct renderer *r)
 
 /* --- canvases */
 
+struct canvas_set *canvases_create(void)
+{
+    struct canvas_set *set = calloc(1, sizeof *set);
+    if (!set)
+        return NULL;
+    atomic_init(&set->holders, 1);
+    for (int i = 0; i < MAX_CANVASES; i++)
+        set->canvas[i].set = set;
+    return set;
+}
+
+void canvases_release(struct canvas_set *set)
+{
+    if (set && atomic_fetch_sub(&set->holders, 1) == 1)
+        free(set);
+}
+
 bool canvas_needs(const struct renderer *r, const struct polygon_mesh *mesh)
 {
     for (int i = 0; i < MAX_CANVASES; i++) {
-        struct canvas *canvas = &r->canvas[i];
+        struct canvas *canvas = &r->canvases->canvas[i];
         if (is_current(r, canvas->context) && atomic_load(&canvas->is_taken) &&
             canvas->model_serial == mesh->model_serial && canvas->level == mesh->level)
             return true;
@@ -50,7 +69,7 @@ static struct canvas *take(struct renderer *r)
 {
     struct canvas *taken = NULL;
     for (int i = 0; i < MAX_CANVASES; i++) {
-        struct canvas *canvas = &r->canvas[i], *smaller = canvas;
+        struct canvas *canvas = &r->canvases->canvas[i], *smaller = canvas;
         if (atomic_load(&canvas->is_taken))
             continue;
         if (!is_current(r, canvas->context))
@@ -66,15 +85,20 @@ static struct canvas *take(struct renderer *r)
     if (!taken)
         return NULL;
     taken->planes.kept.model_serial = 0; /* others may have been drawn in tiles, or not */
+    atomic_fetch_add(&taken->set->holders, 1);
     atomic_store(&taken->is_taken, true);
     return taken;
 }
 
 void canvas_give_back(struct frame *frame)
 {
-    if (frame->canvas)
-        atomic_store(&frame->canvas->is_taken, false);
+    struct canvas *canvas = frame->canvas;
     frame->canvas = NULL;
+    if (!canvas)
+        return;
+    struct canvas_set *set = canvas->set; /* the canvas is the next frame's at once */
+    atomic_store(&canvas->is_taken, false);
+    canvases_release(set);
 }
 
 void canvas_resume(struct renderer *r, struct frame_work *work, struct frame *frame)

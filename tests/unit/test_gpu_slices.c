@@ -181,7 +181,12 @@ static void test_given_up(void **state)
     }
     draw(&scene, &late, &request, 0);
     finish(&late);
+    request.camera.eye[0] += 0.1;
+    begin(&scene, &late, &request, 0);
+    assert_int_equal(step(&scene, &late), FRAME_MORE);
     close_scene(&scene);
+    assert_non_null(late.frame.canvas);
+    finish(&late); /* as at the daemon's end */
 }
 
 /* The device keeps 32 meshes: those that frames under way are drawn of stay among them. */
