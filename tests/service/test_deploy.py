@@ -108,6 +108,23 @@ class Systemd(unittest.TestCase):
             done = shell(line.replace("deploy/systemd/sheend.service", path))
         self.assertNotEqual(done.returncode, 0)
 
+    @unittest.skipUnless(shutil.which("systemd-analyze"), "no systemd-analyze here")
+    def test_the_exposure_is_what_the_readme_says(self):
+        line = next(c for c in commands("systemd", "check") if "--threshold" in c)
+        measured = re.search(r"Overall exposure level for sheend.service: ([\d.]+)",
+                             shell(line).stdout).group(1)
+        said = re.search(r"with Debian 12's systemd it is ([\d.]+)\.", read("systemd", "README.md"))
+        version = subprocess.run(["systemd-analyze", "--version"], capture_output=True, text=True,
+                                 check=True).stdout
+        if not version.startswith("systemd 252 "):
+            self.skipTest("the README's figure is of systemd 252")
+        self.assertEqual(said.group(1), measured)
+
+    def test_clients_keep_their_users(self):
+        """A user namespace of the daemon's own would make one of them all."""
+        for unit in ("sheend.service", "sheend.socket", "sheend-metrics.socket"):
+            self.assertNotRegex(read("systemd", unit), r"(?m)^\s*PrivateUsers\s*=")
+
     def system_calls(self):
         """The unit's list by name: sets with '@' are systemd's, '~' takes away."""
         def expand(name):
