@@ -11,6 +11,7 @@
 
 #include "server/service/plain_file.h"
 #include "server/service/conn_tls.h"
+#include "server/service/id_map.h"
 
 #define MAX_GROUPS 1024
 
@@ -18,6 +19,7 @@ struct access {
     struct access_options options;
     struct tls_context *tls; /* NULL: none */
     struct tokens *tokens;   /* NULL: none */
+    struct id_map users, groups;
 };
 
 /* --- reading */
@@ -69,6 +71,8 @@ struct access *access_create(const struct access_options *options, struct error 
         return NULL;
     }
     access->options = *options;
+    access->users = id_map_read(ID_MAP_USERS);
+    access->groups = id_map_read(ID_MAP_GROUPS);
     bool ok = read_tls(access, error);
     if (ok && *options->tokens)
         ok = (access->tokens = tokens_read(options->tokens, error)) != NULL;
@@ -122,17 +126,23 @@ static bool is_listed(const struct access_ids *ids, uint64_t id)
     return false;
 }
 
+/* A group that may be any of several is none on the list. */
+static bool is_listed_group(const struct access *access, gid_t group)
+{
+    return !id_map_hides(&access->groups, group) && is_listed(&access->options.gids, group);
+}
+
 /* Any of the groups that the peer was in when it connected. */
-static bool has_listed_group(const struct access_ids *gids, int fd, gid_t primary)
+static bool has_listed_group(const struct access *access, int fd, gid_t primary)
 {
     gid_t groups[MAX_GROUPS];
     socklen_t size = sizeof groups;
-    if (is_listed(gids, primary))
+    if (is_listed_group(access, primary))
         return true;
     if (getsockopt(fd, SOL_SOCKET, SO_PEERGROUPS, groups, &size) < 0)
         return false;
     for (size_t i = 0; i < size / sizeof *groups; i++)
-        if (is_listed(gids, groups[i]))
+        if (is_listed_group(access, groups[i]))
             return true;
     return false;
 }
@@ -149,8 +159,14 @@ bool access_admit_local(const struct access *access, int fd, enum address_kind k
     }
     if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) < 0)
         return error_set(error, ERROR_REQUEST, "SO_PEERCRED: %s", strerror(errno));
+    if (id_map_hides(&access->users, peer.uid))
+        return error_set(error, ERROR_REQUEST,
+                         "its user is %lu, as are all users that the daemon's user namespace does "
+                         "not map: run sheend where they are mapped (a systemd unit without "
+                         "PrivateUsers=), or let them in by tls: and tokens",
+                         (unsigned long)peer.uid);
     if (access_has_list(access) && !is_listed(&access->options.uids, peer.uid) &&
-        !has_listed_group(&access->options.gids, fd, peer.gid))
+        !has_listed_group(access, fd, peer.gid))
         return error_set(error, ERROR_REQUEST, "user %lu is in neither allow-uid nor allow-gid",
                          (unsigned long)peer.uid);
     snprintf(number, sizeof number, "%lu", (unsigned long)peer.uid);

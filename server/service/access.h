@@ -1,8 +1,8 @@
 /* Who may come in, and who he is.
  *
- * A Unix socket: whoever its file lets in, or with allow-lists whoever they name. Loopback TCP:
- * anybody on this machine, all of them one owner. TLS: whoever shows a certificate of --client-ca
- * or a token of --tokens. Thread: the loop's, but for access_check(). */
+ * A Unix socket: whoever its file lets in, or with allow-lists whoever they name, if the daemon can
+ * tell him from others (id_map.h). Loopback TCP: anybody on this machine, all of them one owner.
+ * TLS: whoever shows a certificate of --client-ca or a token of --tokens. Thread: the loop's. */
 #ifndef SHEEN_SERVICE_ACCESS_H
 #define SHEEN_SERVICE_ACCESS_H
 
@@ -42,7 +42,8 @@ struct identity {
 
 struct access;
 
-/* Reads certificates and tokens. ERROR_REQUEST names the option or the file. */
+/* Reads certificates, tokens, and which users the kernel can show. ERROR_REQUEST names the option
+ * or the file. */
 struct access *access_create(const struct access_options *options, struct error *error);
 void access_destroy(struct access *access); /* NULL is safe */
 

@@ -20,6 +20,7 @@ from daemon import CUBE, MODELS, SHEEN, SHEEND, Daemon, grid, run
 from wire import Client
 
 FENDER = os.path.join(MODELS, "fender.obj")
+GONE = "^0$|^ConnectionResetError|^BrokenPipeError"  # the daemon closed without an answer
 LATER, EARLIER = "2099-12-31", "2020-02-29"
 
 
@@ -491,28 +492,75 @@ class Peers(Case):
             client.stats()
         self.assertEqual(daemon.stop(), 0)
 
-    @unittest.skipUnless(os.getuid() == 0, "only root can be somebody else")
-    def test_another_user(self):
-        os.chmod(self.folder, 0o755)
+    def try_as(self, uid, group=65534):
+        """What a HELLO of this user to the socket "s" brings: bytes of answer, or the failure."""
         script = ("import os, socket, sys\n"
                   "os.setgroups([int(sys.argv[2])]); os.setgid(65534); os.setuid(int(sys.argv[3]))\n"
                   "s = socket.socket(socket.AF_UNIX); s.connect(sys.argv[1])\n"
                   "s.sendall(bytes.fromhex(sys.argv[4])); print(len(s.recv(4096)))\n")
+        done = subprocess.run(["/usr/bin/python3", "-c", script, self.path("s"), str(group),
+                               str(uid), wire.hello().hex()], capture_output=True, text=True,
+                              timeout=20)
+        return done.stdout.strip() or done.stderr.splitlines()[-1]
 
-        def try_as(uid, group=65534):
-            done = subprocess.run(["/usr/bin/python3", "-c", script, self.path("s"), str(group),
-                                   str(uid), wire.hello().hex()], capture_output=True, text=True,
-                                  timeout=20)
-            return done.stdout.strip() or done.stderr.splitlines()[-1]
-
+    @unittest.skipUnless(os.getuid() == 0, "only root can be somebody else")
+    def test_another_user(self):
+        os.chmod(self.folder, 0o755)
         daemon = Daemon(path=self.path("s"), tcp=False)
-        self.assertIn("PermissionError", try_as(1234))
+        self.assertIn("PermissionError", self.try_as(1234))
         self.assertEqual(daemon.stop(), 0)
         daemon = Daemon("--allow-uid", "1234", "--allow-gid", "777", path=self.path("s"), tcp=False)
-        self.assertGreater(int(try_as(1234)), 16)
-        self.assertGreater(int(try_as(1235, group=777)), 16, "a group that is not its first")
-        self.assertRegex(try_as(1235), "^0$|^ConnectionResetError|^BrokenPipeError")
+        self.assertGreater(int(self.try_as(1234)), 16)
+        self.assertGreater(int(self.try_as(1235, group=777)), 16, "a group that is not its first")
+        self.assertRegex(self.try_as(1235), GONE)
         daemon.wait_for("user 1235 is in neither")
+        self.assertEqual(daemon.stop(), 0)
+
+    def in_namespace(self, *options, **named):
+        """A daemon in a user namespace of its own."""
+        under = ["unshare", "--user", *options]
+        done = subprocess.run([*under, "true"], capture_output=True, text=True, timeout=20)
+        if done.returncode != 0:
+            self.skipTest(f"no user namespace here: {done.stderr.strip()}")
+        return Daemon(*named.pop("arguments", ()), tcp=False, under=under, **named)
+
+    def assert_hidden(self, daemon):
+        said = daemon.wait_for("client turned away")
+        self.assertRegex(said, r"its user is \d+, as are all users that .* does not map: run sheend "
+                               r"where they are mapped .*PrivateUsers=.*tokens")
+        self.assertNotIn("session opened", said)
+
+    def test_users_that_cannot_be_told_apart(self):
+        """Nobody is mapped: all users of the machine look alike, the list's only one too."""
+        with open("/proc/sys/kernel/overflowuid", encoding="ascii") as file:
+            overflow = file.read().strip()
+        for arguments in ((), ("--allow-uid", overflow), ("--allow-gid", overflow)):
+            with self.subTest(arguments=arguments):
+                daemon = self.in_namespace(arguments=arguments)
+                with self.assertRaises((EOFError, OSError)):
+                    Client(daemon.unix)
+                self.assert_hidden(daemon)
+                self.assertEqual(daemon.stop(), 0)
+
+    def test_the_mapped_user_of_a_namespace(self):
+        daemon = self.in_namespace("--map-root-user")
+        with Client(daemon.unix) as client:
+            client.render(client.upload(CUBE, "cube.obj"))
+        self.assertIn("identity=uid:0", daemon.errors())
+        self.assertEqual(daemon.stop(), 0)
+
+    @unittest.skipUnless(os.getuid() == 0, "only root can be somebody else")
+    def test_another_user_of_a_namespace(self):
+        os.chmod(self.folder, 0o755)
+        with open("/proc/sys/kernel/overflowuid", encoding="ascii") as file:
+            overflow = file.read().strip()
+        # A group that is not mapped is none that is listed, whoever is in it.
+        daemon = self.in_namespace("--map-root-user", path=self.path("s"),
+                                   arguments=("--allow-uid", overflow, "--allow-gid", overflow))
+        self.assertRegex(self.try_as(1234), GONE)
+        self.assert_hidden(daemon)
+        self.assertRegex(self.try_as(0, group=777), GONE)
+        daemon.wait_for("user 0 is in neither allow-uid nor allow-gid")
         self.assertEqual(daemon.stop(), 0)
 
 
