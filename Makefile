@@ -137,7 +137,7 @@ $(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
 # the heap: what is installed cannot.
 $(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/allocations.c) $(filter-out %/server/fault.c.o,$(SERVER_OBJ))
 	$(call say,LD $@)
-	$(Q)$(CC) $(LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup -o $@ $^ $(SERVER_LIBS)
+	$(Q)$(CC) $(LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup,--wrap=limit_build_faces -o $@ $^ $(SERVER_LIBS)
 
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything but the two mains.

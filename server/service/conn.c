@@ -128,8 +128,8 @@ static struct conn_block *append(struct conn *conn, size_t size, size_t copied)
     else
         conn->out_head = block;
     conn->out_tail = block;
-    if (conn->unsent_bytes == 0) /* the clocks start with the first byte to send */
-        conn->last_out_us = conn->sending_since_us = loop_now_us();
+    if (conn->unsent_bytes == 0) /* the clock starts with the first byte to send */
+        conn->last_out_us = loop_now_us();
     conn->unsent_bytes += size;
     return block;
 }

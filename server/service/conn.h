@@ -76,7 +76,6 @@ struct conn {
 
     uint64_t last_in_us, last_out_us; /* when bytes last moved; loop_now_us() */
     uint64_t message_since_us; /* when the oldest byte in the buffer came, or input resumed */
-    uint64_t sending_since_us; /* since when there has always been something unsent */
 };
 
 /* Takes the socket over, makes it non-blocking and watches it. On failure the fd is closed.

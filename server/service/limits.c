@@ -60,8 +60,10 @@ const struct limits_row LIMITS[] = {
      MOST_SECONDS, 30, AT(stall_s)},
     {"idle-timeout", UNIT_SECONDS, "without a request; 0: for ever", 0, MOST_SECONDS, 900,
      AT(idle_s)},
-    {"drain-timeout", UNIT_SECONDS, "after SIGTERM, for a client to read its frames", 0,
-     MOST_SECONDS, 30, AT(drain_s)},
+    {"drain-timeout", UNIT_SECONDS,
+     "after SIGTERM, to finish what has been asked and for clients to read it; the rest is\nthen "
+     "refused, and the daemon ends within 4 s more",
+     0, MOST_SECONDS, 30, AT(drain_s)},
     {"worker-memory", UNIT_BYTES,
      "most memory of the process that reads or writes a file; less for small files and\nwithin the "
      "budget",

@@ -35,7 +35,7 @@ struct limits {
     uint64_t message_s;   /* from a message's first byte to its last */
     uint64_t stall_s;     /* without a byte sent or of an upload received */
     uint64_t idle_s;      /* without a request; 0: for ever */
-    uint64_t drain_s;     /* for a client to read its frames when the daemon ends */
+    uint64_t drain_s;     /* to finish and send what is asked when the daemon ends */
 
     /* What a process that reads or writes one file may take (workers.h). */
     uint64_t worker_memory, worker_output, worker_cpu_s, worker_s;

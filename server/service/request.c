@@ -94,12 +94,16 @@ void request_answer_superseded(struct request *request, uint32_t by_seq)
     let_go_of_session(request);
 }
 
+static void answer_error_early(struct request *request, sheen_ErrorCode code, const char *text)
+{
+    session_answer_error(request->session, request->answer, code, text);
+    let_go_of_session(request);
+}
+
 static void cancel(struct request *request, const char *why)
 {
-    struct session *session = request->session;
-    session->host->stats.cancelled++;
-    session_answer_error(session, request->answer, sheen_ErrorCode_ERROR_CANCELLED, why);
-    let_go_of_session(request);
+    request->host->stats.cancelled++;
+    answer_error_early(request, sheen_ErrorCode_ERROR_CANCELLED, why);
 }
 
 void request_cancel(struct session *session, uint32_t seq)
@@ -117,6 +121,17 @@ void request_cancel_all(struct session *session)
         cancel(session->requests, "the connection ends: it has asked for more than its credits");
 }
 
+void request_shut_down_all(struct session *session)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    snprintf(text, sizeof text,
+             "not done within the %llu s (drain-timeout) that the daemon takes to shut down: ask "
+             "another or the next",
+             (unsigned long long)session->host->limits.drain_s);
+    while (session->requests)
+        answer_error_early(session->requests, sheen_ErrorCode_ERROR_SHUTTING_DOWN, text);
+}
+
 bool request_is_late(const struct request *request, uint64_t now_us)
 {
     return request->deadline_us > 0 && now_us > request->deadline_us;
@@ -128,8 +143,7 @@ void request_answer_late(struct request *request)
     snprintf(text, sizeof text, "not drawn within its deadline_ms of %u: the daemon is busy",
              request->render.deadline_ms);
     request->host->stats.late++;
-    session_answer_error(request->session, request->answer, sheen_ErrorCode_ERROR_DEADLINE, text);
-    let_go_of_session(request);
+    answer_error_early(request, sheen_ErrorCode_ERROR_DEADLINE, text);
 }
 
 /* Frames that are drawn already are sent all the same. */

@@ -28,6 +28,8 @@ void request_render(struct session *session, struct answer *answer, uint32_t seq
 void request_cancel(struct session *session, uint32_t seq);
 /* The same for all of the session's. */
 void request_cancel_all(struct session *session);
+/* Answers all of the session's ERROR_SHUTTING_DOWN: the daemon's time to finish them is over. */
+void request_shut_down_all(struct session *session);
 /* Answers those whose time is over ERROR_DEADLINE. */
 void request_end_late(struct session *session, uint64_t now_us);
 /* The session's socket has taken its interactive frame: the next that is ready goes. */

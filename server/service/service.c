@@ -20,7 +20,10 @@
 #include "server/service/request.h"
 #include "server/service/session.h"
 
-#define SERVICE_TRIM_US 5000000u     /* spares that lay unused for so long are given back */
+#define SERVICE_TRIM_US 5000000u /* spares that lay unused for so long are given back */
+#define SERVICE_LAST_WORK_US                                                                       \
+    3000000u                         /* for other threads, when every client has gone in a drain   \
+                                      */
 #define SERVICE_OWN_DESCRIPTORS 128u /* listeners, devices, libraries: more than are used */
 
 struct service {
@@ -37,7 +40,8 @@ struct service {
     struct losses losses; /* of the GPU */
     uint64_t trimmed_us;  /* when the spares were last */
     enum service_end end;
-    bool single; /* ends with its session */
+    bool overdue; /* drain-timeout has passed, and the log has it */
+    bool single;  /* ends with its session */
 };
 
 /* --- sessions */
@@ -149,6 +153,16 @@ static void count_losses(struct service *service)
     }
 }
 
+/* With threads at work, so that nothing can be taken down in order. */
+static void leave_now(struct service *service)
+{
+    workers_stop(&service->host.workers);
+    monitor_destroy(service->monitor); /* removes its socket; the others have gone */
+    if (!service->single)
+        log_event(LOG_WARN, "ended while a thread was at work", log_number("code", service->end));
+    _exit(service->end);
+}
+
 static void after_batch(void *owner)
 {
     struct service *service = owner;
@@ -156,6 +170,7 @@ static void after_batch(void *owner)
     settle_sessions(service);
     request_start_next(&service->host);
     loop_set_ticking(service->host.loop, service->sessions || any_paused(service) ||
+                                             service->host.draining ||
                                              spares_bytes(service->host.spares) > 0);
     if (service->sessions || !(service->single || service->host.draining))
         return;
@@ -165,14 +180,20 @@ static void after_batch(void *owner)
     if (!store_is_building(service->host.store) && scheduler_is_idle(&service->host.scheduler) &&
         service->host.n_file_loads == 0)
         loop_stop(service->host.loop);
-    else if (service->single)
-        _exit(service->end); /* a tile or a table may take long yet: nobody wants them */
+    else if (service->single || session_host_overdue_us(&service->host, loop_now_us()) >
+                                    SESSION_LAST_WORDS_US + SERVICE_LAST_WORK_US)
+        leave_now(service); /* a tile or a table may take long yet: nobody wants them */
 }
 
 static void tick(void *owner)
 {
     struct service *service = owner;
     uint64_t now = loop_now_us();
+    if (!service->overdue && session_host_overdue_us(&service->host, now) > 0) {
+        service->overdue = true;
+        log_event(LOG_WARN, "drain-timeout is over: what is not done is refused",
+                  log_number("sessions", service->host.n_sessions));
+    }
     for (struct session *session = service->sessions; session; session = session->next)
         session_tick(session, now);
     if (now - service->trimmed_us > SERVICE_TRIM_US) {
@@ -194,10 +215,8 @@ static void close_listeners(struct service *service)
 
 static void drain(struct service *service)
 {
-    if (service->host.draining) {
-        workers_stop(&service->host.workers);
-        _exit(service->end); /* asked twice: at once, with the listeners gone already */
-    }
+    if (service->host.draining)
+        leave_now(service); /* asked twice */
     service->host.draining = true;
     service->host.drain_start_us = loop_now_us();
     close_listeners(service);

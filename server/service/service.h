@@ -57,8 +57,9 @@ struct service *service_create(const struct service_options *options,
                                const struct service_reloader *reloader, struct error *error);
 void service_destroy(struct service *service); /* NULL is safe */
 
-/* Serves until SIGTERM or SIGINT (what is in flight is finished and sent; a second signal ends at
- * once), or until the one session has closed: then the process ends, if need be here and now. It
+/* Serves until SIGTERM or SIGINT (what is in flight is finished and sent, for limits.drain_s; the
+ * rest is refused, and 4 s later the process ends whatever its threads do; a second signal ends it
+ * at once), or until the one session has closed: then the process ends, if need be here and now. It
  * also ends, as after SIGTERM, once the GPU has been lost too often (limits.gpu_losses). Returns
  * the process's exit code. */
 enum service_end { SERVICE_ENDED = 0, SERVICE_GPU_LOST = 75 /* EX_TEMPFAIL: start another */ };

@@ -283,6 +283,8 @@ void session_tick(struct session *session, uint64_t now_us)
         return;
     if (now_us - session->conn.last_in_us > SESSION_TRIM_US)
         conn_trim(&session->conn);
+    if (session_host_overdue_us(session->host, now_us) > 0)
+        request_shut_down_all(session);
     request_end_late(session, now_us);
     request_report_progress(session);
 }

@@ -22,6 +22,8 @@
 #define SESSION_MAX_UNSENT_BYTES (4u * 1024 * 1024)
 /* The end of a connection: from shutdown() until the peer has closed too. */
 #define SESSION_LINGER_US 2000000u
+/* When drain-timeout has passed, all is answered, and so much later every connection is closed. */
+#define SESSION_LAST_WORDS_US 1000000u
 /* Without input for so long, a connection keeps no memory for long messages. */
 #define SESSION_TRIM_US 1000000u
 
@@ -51,6 +53,9 @@ struct session_host {
     bool draining; /* no new request is taken, and answers must be read soon */
     uint64_t drain_start_us;
 };
+
+/* How long the drain has gone on beyond drain-timeout, in microseconds; 0: it has not. */
+uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us);
 
 struct request;
 

@@ -45,13 +45,10 @@ bool session_may_send(struct session *session)
     return false;
 }
 
-/* Is the daemon shutting down, and has the client had its time to read the answers in flight? */
-static bool drains_too_long(const struct session *session, uint64_t now)
+uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us)
 {
-    const struct session_host *host = session->host;
-    uint64_t since = session->conn.sending_since_us;
-    since = since > host->drain_start_us ? since : host->drain_start_us;
-    return host->draining && now - since > host->limits.drain_s * 1000000;
+    uint64_t end_us = host->drain_start_us + host->limits.drain_s * 1000000;
+    return host->draining && now_us > end_us ? now_us - end_us : 0;
 }
 
 /* What the client has not read for too long, or too much of it; NULL: nothing. */
@@ -71,7 +68,9 @@ static const char *output_limit(struct session *session, uint64_t now)
     }
     if (unsent > 0 && now - session->conn.last_out_us > limits->stall_s * 1000000)
         return "no byte read for stall-timeout";
-    return unsent > 0 && drains_too_long(session, now) ? "not read within drain-timeout" : NULL;
+    return unsent > 0 && session_host_overdue_us(session->host, now) > SESSION_LAST_WORDS_US
+               ? "not read within drain-timeout"
+               : NULL;
 }
 
 /* The client has been silent for too long, and is told for how long it may be. */
@@ -117,6 +116,8 @@ void session_check_limits(struct session *session, uint64_t now)
     const char *limit = output_limit(session, now);
     if (limit)
         disconnect(session, "%zu bytes unsent: %s", conn_unsent_bytes(conn), limit);
+    else if (session_host_overdue_us(session->host, now) > SESSION_LAST_WORDS_US)
+        conn_close(conn); /* it has been told, and leaves its end open */
     else if (conn->state == CONN_LINGERING && now - conn->last_in_us > SESSION_LINGER_US)
         conn_close(conn);
     else if (conn->state == CONN_OPEN)

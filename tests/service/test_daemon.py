@@ -267,6 +267,71 @@ class Shutdown(unittest.TestCase):
             self.assertLess(time.monotonic() - start, 5)
         self.assertEqual(daemon.stop(), 0)
 
+    def test_what_takes_too_long_is_refused(self):
+        """Half a minute of work or more is left when the daemon's second for it is over."""
+        daemon = Daemon("--drain-timeout", "1")
+        with Client(daemon.unix, timeout=60, minor=1) as client, \
+             Client(daemon.tcp, timeout=60, minor=1) as quick:
+            model = client.upload(CUBE, "cube.obj", share=True)
+            asked = [client.ask(model, 4096, 4096, kind=wire.BATCH) for _ in range(16)]
+            small = quick.ask(model)
+            daemon.terminate()
+            self.assertEqual(quick.answer()[0], small)
+            self.assert_told(quick)
+            answers = dict(client.answer() for _ in asked)
+            self.assertEqual(sorted(answers), asked)
+            refused = [a for a in answers.values() if isinstance(a, wire.Refused)]
+            self.assertGreater(len(refused), 8)
+            for one in refused:
+                self.assertEqual(one.code, wire.ERROR_SHUTTING_DOWN)
+                self.assertIn("not done within the 1 s (drain-timeout)", one.text)
+            self.assert_told(client)
+        self.assertEqual(daemon.wait(10), 0)
+        self.assertIn("drain-timeout is over", daemon.errors())
+        self.assertNotIn("at work", daemon.errors())
+        daemon.stop()
+
+    def test_a_tile_after_the_time_is_the_last(self):
+        """One frame of many tiles, between which the daemon looks at the clock."""
+        daemon = Daemon("--drain-timeout", "0")
+        with Client(daemon.unix, timeout=60, minor=1) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.render(model)  # all is compiled
+            seq = client.ask(model, 12000, 12000, kind=wire.BATCH)
+            time.sleep(0.3)
+            daemon.terminate()
+            number, refused = client.answer()
+            self.assertEqual((number, refused.code), (seq, wire.ERROR_SHUTTING_DOWN))
+            self.assert_told(client)
+        self.assertEqual(daemon.wait(10), 0)
+        daemon.stop()
+
+    def test_whoever_goes_on_sending_is_left(self):
+        daemon = Daemon("--drain-timeout", "1")
+        with Client(daemon.unix, timeout=60) as client:
+            daemon.terminate()
+            self.assert_told(client)
+            end = time.monotonic() + 20
+            while daemon.process.poll() is None and time.monotonic() < end:
+                try:
+                    client.send(b"x")
+                except OSError:
+                    break
+                time.sleep(0.05)
+            self.assertEqual(daemon.wait(5), 0)
+        daemon.stop()
+
+    def test_whoever_does_not_read_is_left(self):
+        daemon = Daemon("--drain-timeout", "1")
+        with Client(daemon.unix, timeout=60) as client:
+            model = client.upload(CUBE, "cube.obj")
+            seq = client.ask(model, 2000, 2000)  # its answer is more than the socket takes
+            client.expect(wire.FRAME, seq)
+            daemon.terminate()
+            self.assertEqual(daemon.wait(20), 0)
+            self.assertIn("bytes unsent: not read within drain-timeout", daemon.errors())
+        daemon.stop()
+
     def test_during_a_build_that_nobody_waits_for(self):
         daemon = Daemon()
         with Client(daemon.unix) as client:

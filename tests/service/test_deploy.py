@@ -120,6 +120,11 @@ class Systemd(unittest.TestCase):
             self.skipTest("the README's figure is of systemd 252")
         self.assertEqual(said.group(1), measured)
 
+    def test_the_drain_ends_before_its_time_to_stop(self):
+        drain, = re.findall(r"(?m)^drain-timeout = (\d+)$", read("systemd", "sheend.conf"))
+        stop, = re.findall(r"(?m)^TimeoutStopSec=(\d+)$", read("systemd", "sheend.service"))
+        self.assertGreaterEqual(int(stop), int(drain) + 4 + 5)  # and some to spare
+
     def test_clients_keep_their_users(self):
         """A user namespace of the daemon's own would make one of them all."""
         for unit in ("sheend.service", "sheend.socket", "sheend-metrics.socket"):

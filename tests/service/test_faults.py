@@ -13,9 +13,10 @@ import unittest
 import wire
 from daemon import BUILD, CUBE, MODELS, SHEEN, Daemon, grid
 from test_operations import get, metrics_address, read_metrics
-from test_untrusted import children, is_alive
+from test_untrusted import children, is_alive, workers
 
 FENDER = os.path.join(MODELS, "fender.obj")
+UPLOADS_BYTES = 8  # of STATS
 
 
 class FaultyDaemon(Daemon):
@@ -246,6 +247,67 @@ class Shortage(unittest.TestCase):
             client.render(client.upload(CUBE, "cube.obj"))
         server.terminate()
         self.assertEqual(server.wait(30), 0)
+
+
+class Stuck(unittest.TestCase):
+    """A daemon that shuts down waits for nobody beyond its time."""
+
+    def told_at_the_end(self, server, client, seq):
+        with client:
+            server.terminate()
+            number, refused = client.answer()
+            self.assertEqual((number, refused.code), (seq, wire.ERROR_SHUTTING_DOWN))
+        self.assertEqual(server.wait(30), 0)
+
+    def test_a_thread(self):
+        server = FaultyDaemon("tables.stuck:1:1", "--drain-timeout", "1", "--metrics",
+                              "tcp:127.0.0.1:0")
+        client = wire.Client(server.unix)
+        seq = client.ask(client.upload(CUBE, "cube.obj"))
+        server.wait_for("fault: tables.stuck")
+        self.told_at_the_end(server, client, seq)
+        self.assertIn("ended while a thread was at work", server.errors())
+        self.assertFalse(os.path.exists(server.path))
+        server.stop()
+
+    def test_a_reader(self):
+        server = Daemon("--drain-timeout", "1")
+        client = wire.Client(server.unix)
+        reader = workers(server.process.pid)["sheend-cage"]
+        os.kill(reader, signal.SIGSTOP)
+        self.told_at_the_end(server, client, client.ask(client.upload(CUBE, "cube.obj")))
+        self.assertNotIn("at work", server.errors())
+        server.stop()
+
+    def test_a_writer(self):
+        server = Daemon("--drain-timeout", "1")
+        client = wire.Client(server.unix)
+        model = client.upload(CUBE, "cube.obj")
+        client.render(model, encoding=wire.PNG)
+        writer = workers(server.process.pid)["sheend-image"]
+        os.kill(writer, signal.SIGSTOP)
+        self.told_at_the_end(server, client, client.ask(model, encoding=wire.PNG))
+        self.assertNotIn("at work", server.errors())
+        server.stop()
+
+    def test_the_client_goes_on_with_the_next(self):
+        with tempfile.TemporaryDirectory(prefix="sheen-test-") as folder:
+            server = Daemon("--drain-timeout", "1", folder=folder, tcp=False)
+            reader = workers(server.process.pid)["sheend-cage"]
+            os.kill(reader, signal.SIGSTOP)
+            client = subprocess.Popen([SHEEN, "render", FENDER, "--server", server.unix, "--size",
+                                       "64x48", "-o", os.path.join(folder, "a.png")],
+                                      stderr=subprocess.PIPE, text=True)
+            with wire.Client(server.unix) as other:
+                while other.stats()[UPLOADS_BYTES][0] < os.path.getsize(FENDER):
+                    time.sleep(0.02)
+            self.assertEqual(server.stop(), 0)
+            after = Daemon(folder=folder, tcp=False)
+            said = client.communicate(timeout=60)[1]
+            self.assertEqual(client.returncode, 0, said)
+            self.assertIn("not done within the 1 s (drain-timeout)", said)
+            self.assertIn("connecting again", said)
+            self.assertEqual(after.stop(), 0)
 
 
 class Sending(unittest.TestCase):
