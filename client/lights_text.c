@@ -40,7 +40,10 @@ const struct text_row TEXT_PATTERNS[] = {
      "--pattern lines:at=0.4/0.5/0.6,width=0.01,soft=0.3"},
     {"rainbow", "hue instead of bright and dark", "--pattern rainbow:count=5"},
     {"distance", "bands by the length of the ray to the light", "--pattern distance:period=50"},
-    {"image", "a picture on the light; HDR pictures are linear light", "--pattern image:grid.png"},
+    {"image",
+     "a picture on the light: PNG, JPEG, TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM;\n"
+     "floats are linear light",
+     "--pattern image:grid.png"},
     {0},
 };
 

@@ -338,8 +338,9 @@ const struct option_row OPTIONS_SCENE[] = {
     {"light-v", 0, "X,Y,Z", "its other edge; the axis of a tunnel or sphere", apply_light_v},
     {"pattern", 0, "PATTERN",
      "of the latest light: stripes, lattice, circles, lines, rainbow or distance,\n"
-     "then :count=40,duty=0.5,... as far as wanted, or image:FILE; sheen patterns\n"
-     "lists all parts (default: stripes:count=40,duty=0.5)",
+     "then :count=40,duty=0.5,... as far as wanted, or image:FILE (PNG,\n"
+     "JPEG, TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM); sheen patterns lists\n"
+     "all parts (default: stripes:count=40,duty=0.5)",
      apply_pattern},
     {"line-eye", 0, "EYE",
      "whose view the lines are computed for: camera, a point X,Y,Z, or dir:X,Y,Z\n"

@@ -1,14 +1,13 @@
 // Images in and out of memory, and text, through OpenImageIO: see image.h. No exception leaves this
 // file.
 //
-// A reader is chosen by the first bytes (by the name's ending where a format has no signature) and
-// is given the bytes through a proxy, never a path: a name from outside opens no file here.
+// A reader is chosen by the first bytes and is given the bytes through a proxy, never a path: a
+// name from outside opens no file here.
 extern "C" {
 #include "server/image/image.h"
 }
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -33,62 +32,63 @@ constexpr int STRIP_ROWS = 64; // gathered at once: a multiple of EXR's 16-row b
 
 struct signature {
     size_t offset;
-    const char *bytes;
-    size_t size;
+    std::string_view bytes;
     const char *format; // OpenImageIO's name
 };
 
 constexpr signature SIGNATURES[] = {
-    {0, "\x89PNG\r\n\x1a\n", 8, "png"},
-    {0, "\xff\xd8\xff", 3, "jpeg"},
-    {0, "\x76\x2f\x31\x01", 4, "openexr"},
-    {0, "II\x2a\0", 4, "tiff"},
-    {0, "MM\0\x2a", 4, "tiff"},
-    {0, "II\x2b\0", 4, "tiff"},
-    {0, "MM\0\x2b", 4, "tiff"},
-    {0, "#?R", 3, "hdr"},
-    {0, "GIF8", 4, "gif"},
-    {8, "WEBP", 4, "webp"},
-    {0, "BM", 2, "bmp"},
-    {0, "SDPX", 4, "dpx"},
-    {0, "XPDS", 4, "dpx"},
-    {0, "8BPS", 4, "psd"},
-    {0, "DDS ", 4, "dds"},
-    {0, "\x01\xda", 2, "sgi"},
-    {0, "\0\0\0\x0cjP  ", 8, "jpeg2000"},
-    {0, "P3\n", 3, "pnm"},
-    {0, "P5\n", 3, "pnm"},
-    {0, "P6\n", 3, "pnm"},
-    {0, "PF\n", 3, "pnm"},
-    {0, "Pf\n", 3, "pnm"},
+    {0, {"\x89PNG\r\n\x1a\n", 8}, "png"},
+    {0, {"\xff\xd8\xff", 3}, "jpeg"},
+    {0, {"\x76\x2f\x31\x01", 4}, "openexr"},
+    {0, {"II\x2a\0", 4}, "tiff"},
+    {0, {"MM\0\x2a", 4}, "tiff"},
+    {0, {"II\x2b\0", 4}, "tiff"},
+    {0, {"MM\0\x2b", 4}, "tiff"},
+    {0, {"#?RADIANCE", 10}, "hdr"},
+    {0, {"#?RGBE", 6}, "hdr"},
+    {0, {"GIF87a", 6}, "gif"},
+    {0, {"GIF89a", 6}, "gif"},
+    {8, {"WEBP", 4}, "webp"},
+    {0, {"BM", 2}, "bmp"},
 };
 
-// The ending of a name in lower case, letters and digits only: it is looked up, never opened.
-std::string ending_of(const char *name)
+// P1 to P6, or PF and Pf for floats, and then space.
+bool is_pnm(std::string_view file)
 {
-    const char *dot = std::strrchr(name, '.');
-    std::string ending;
-    for (const char *c = dot ? dot + 1 : ""; *c; c++) {
-        if (!std::isalnum(static_cast<unsigned char>(*c)) || ending.size() >= 16)
-            return "";
-        ending += static_cast<char>(std::tolower(static_cast<unsigned char>(*c)));
-    }
-    return ending;
+    return file.size() > 2 && file[0] == 'P' &&
+           std::string_view("123456Ff").find(file[1]) != file.npos &&
+           std::string_view(" \t\r\n").find(file[2]) != file.npos;
 }
 
-std::string format_of(const unsigned char *bytes, size_t size, const char *name)
+// TGA has no signature: its header must make sense. No text does, since its second byte is 0 or 1.
+bool is_tga(std::string_view file)
+{
+    auto at = [&](size_t i) { return static_cast<unsigned char>(file[i]); };
+    if (file.size() < 18)
+        return false;
+    unsigned map = at(1), kind = at(2), bits = at(16), width = at(12) | at(13) << 8u,
+             height = at(14) | at(15) << 8u;
+    bool is_mapped = kind == 1 || kind == 9;
+    bool is_known = is_mapped || kind == 2 || kind == 3 || kind == 10 || kind == 11;
+    return is_known && map <= 1 && (!is_mapped || map == 1) && width > 0 && height > 0 &&
+           (bits == 8 || bits == 15 || bits == 16 || bits == 24 || bits == 32);
+}
+
+// OpenImageIO's name of the format, or NULL. It is asked for no other: where it has no reader it
+// looks for one among the system's files, and many of its readers are for formats that no light
+// comes in.
+const char *format_of(std::string_view file)
 {
     for (const signature &s : SIGNATURES)
-        if (size >= s.offset + s.size && !std::memcmp(bytes + s.offset, s.bytes, s.size))
+        if (file.size() >= s.offset && file.substr(s.offset, s.bytes.size()) == s.bytes)
             return s.format;
-    return ending_of(name);
+    return is_pnm(file) ? "pnm" : is_tga(file) ? "targa" : nullptr;
 }
 
 // libjpeg fills up a cut file with grey. In a whole one the last end marker stands behind the last
 // start of a scan, and neither can occur inside of one.
-bool is_cut_jpeg(const void *bytes, size_t size)
+bool is_cut_jpeg(std::string_view file)
 {
-    std::string_view file(static_cast<const char *>(bytes), size);
     size_t scan = file.rfind("\xff\xda"), end = file.rfind("\xff\xd9");
     return end == file.npos || scan == file.npos || end < scan;
 }
@@ -115,20 +115,14 @@ bool open_reader(std::unique_ptr<OIIO::ImageInput> &reader, OIIO::Filesystem::IO
                  OIIO::ImageSpec &spec, const std::string &format, const char *name,
                  struct error *error)
 {
-    // "null" is OpenImageIO's reader that makes a black image of anything.
-    if (!format.empty() && format != "null")
-        reader = OIIO::ImageInput::create(format);
-    if (!reader) {
+    reader = OIIO::ImageInput::create(format);
+    if (!reader || !reader->supports("ioproxy")) {
         OIIO::geterror();
         return error_set(error, ERROR_IMAGE,
-                         "%s: not an image: neither its first bytes nor its name are those of a "
-                         "known format; use PNG, JPEG, TIFF, EXR or HDR",
-                         name);
+                         "%s: the OpenImageIO of this daemon cannot read '%s' from memory: convert "
+                         "it to PNG or EXR",
+                         name, format.c_str());
     }
-    if (!reader->supports("ioproxy"))
-        return error_set(error, ERROR_IMAGE,
-                         "%s: format '%s' cannot be read from memory; convert it to PNG or EXR",
-                         name, reader->format_name());
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1); // values as stored, alpha not multiplied in
     reader->set_ioproxy(&proxy);
@@ -208,12 +202,16 @@ bool decode(struct image *image, const void *bytes, size_t size, const char *nam
 {
     if (size == 0)
         return error_set(error, ERROR_IMAGE, "%s: not an image: the file is empty", name);
+    std::string_view file(static_cast<const char *>(bytes), size);
+    const char *format = format_of(file);
+    if (!format)
+        return error_set(error, ERROR_IMAGE,
+                         "%s: it is not an image format that is read: " IMAGE_READ_FORMATS, name);
+    if (!std::strcmp(format, "jpeg") && is_cut_jpeg(file))
+        return error_set(error, ERROR_IMAGE, "%s: the jpeg file is cut off", name);
     OIIO::Filesystem::IOMemReader proxy(bytes, size);
     std::unique_ptr<OIIO::ImageInput> reader;
     OIIO::ImageSpec spec;
-    std::string format = format_of(static_cast<const unsigned char *>(bytes), size, name);
-    if (format == "jpeg" && is_cut_jpeg(bytes, size))
-        return error_set(error, ERROR_IMAGE, "%s: the jpeg file is cut off", name);
     return open_reader(reader, proxy, spec, format, name, error) &&
            check_spec(spec, name, max_px, error) && read_pixels(image, *reader, spec, name, error);
 }

@@ -25,10 +25,13 @@ struct image {
     void *pixels;
 };
 
-/* Decodes any format OpenImageIO reads from memory. Grey becomes RGB, missing alpha becomes 1.
- * Refuses images wider or higher than max_px or over IMAGE_MAX_BYTES (named in the error). `name`
- * tells the format where the bytes do not, and stands in messages; it opens nothing. NaN becomes 0.
- * On failure *image is empty: ERROR_IMAGE, or ERROR_SERVER when memory is short. */
+/* What image_decode() takes, told by the first bytes. */
+#define IMAGE_READ_FORMATS "PNG, JPEG, TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM"
+
+/* Decodes one of IMAGE_READ_FORMATS. Grey becomes RGB, missing alpha becomes 1. Refuses images
+ * wider or higher than max_px or over IMAGE_MAX_BYTES (named in the error). `name` stands in
+ * messages; it opens nothing and tells nothing. NaN becomes 0. On failure *image is empty:
+ * ERROR_IMAGE, or ERROR_SERVER when memory is short. */
 bool image_decode(struct image *image, const void *bytes, size_t size, const char *name,
                   uint32_t max_px, struct error *error);
 void image_finish(struct image *image);

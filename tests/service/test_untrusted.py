@@ -6,6 +6,7 @@ import subprocess
 import time
 import unittest
 
+import pictures
 import wire
 from daemon import BUILD, CUBE, SANITIZED, Daemon, DaemonCase, resident_kb
 from wire import Client, field
@@ -79,12 +80,6 @@ def exr(tile):
             struct.pack("<Q", 10000) * 64 + bytes(200))
 
 
-def psd(side):
-    """Rows of no bytes at all that unpack to a square of four channels."""
-    return (b"8BPS" + struct.pack(">H6xHIIHH", 1, 4, side, side, 8, 3) + bytes(12) +
-            struct.pack(">H", 1) + bytes(2 * 4 * side))
-
-
 class Untrusted(DaemonCase):
     arguments = ("--memory-budget", "300M")
 
@@ -107,7 +102,7 @@ class Untrusted(DaemonCase):
         pid = self.daemon.process.pid
         before = resident_kb(pid)
         for data, name in ((tiff(30000), "tile.tif"), (exr(20000), "tile.exr"),
-                           (psd(12000), "square.psd")):
+                           (pictures.tga(12000), "square.tga")):
             if SANITIZED:
                 break  # without a limit of memory
             with self.subTest(name=name), Client(self.daemon.unix) as client:

@@ -210,12 +210,11 @@ static void test_no_image(void **state)
     (void)state;
     char text[4096];
     memset(text, 'v', sizeof text);
-    expect_refused(text, sizeof text, "cage.obj", ERROR_IMAGE, "not an image");
-    expect_refused(text, sizeof text, "lie.png", ERROR_IMAGE, "not a readable png");
-    expect_refused(text, sizeof text, "lie.null", ERROR_IMAGE, "not an image");
-    expect_refused(text, sizeof text, "lie.tga", ERROR_IMAGE, "lie.tga");
-    expect_refused(text, sizeof text, "../../etc/passwd", ERROR_IMAGE, "not an image");
-    expect_refused(text, sizeof text, "film.avi", ERROR_IMAGE, "cannot be read from memory");
+    static const char *const names[] = {"cage.obj", "lie.png",          "lie.null",
+                                        "lie.tga",  "../../etc/passwd", "film.avi"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        expect_refused(text, sizeof text, names[i], ERROR_IMAGE,
+                       ": it is not an image format that is read: " IMAGE_READ_FORMATS);
     expect_refused("", 0, "empty.png", ERROR_IMAGE, "empty");
     static const char huge[] = "P6\n100000 100000\n255\nabc";
     expect_refused(huge, sizeof huge - 1, "huge.ppm", ERROR_IMAGE, "100000 x 100000");
@@ -223,6 +222,55 @@ static void test_no_image(void **state)
     expect_refused(bomb, sizeof bomb - 1, "bomb.ppm", ERROR_IMAGE, "16384 x 16385");
     static const char bytes[] = "PF\n16384 16384\n-1\nabc";
     expect_refused(bytes, sizeof bytes - 1, "bytes.pfm", ERROR_IMAGE, "bytes");
+}
+
+/* What tells a format, and not all of what does. */
+static void test_signatures(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *format, *bytes;
+        size_t size;
+    } cases[] = {
+        {"png", "\x89PNG\r\n\x1a\n", 8},
+        {"jpeg", "\xff\xd8\xff", 3},
+        {"openexr", "\x76\x2f\x31\x01", 4},
+        {"tiff", "II\x2a\0", 4},
+        {"tiff", "MM\0\x2a", 4},
+        {"tiff", "II\x2b\0", 4},
+        {"tiff", "MM\0\x2b", 4},
+        {"hdr", "#?RADIANCE", 10},
+        {"hdr", "#?RGBE", 6},
+        {"gif", "GIF87a", 6},
+        {"gif", "GIF89a", 6},
+        {"webp", "RIFF\0\0\0\0WEBP", 12},
+        {"bmp", "BM", 2},
+        {"pnm", "P1\n", 3},
+        {"pnm", "P6 ", 3},
+        {"pnm", "PF\r", 3},
+        {"targa", "\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\0", 18},
+        {"targa", "\0\1\x09\0\0\2\0\x18\0\0\0\0\1\0\1\0\x08\0", 18},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (size_t size = 1; size <= cases[i].size; size++) {
+            uint8_t *part = malloc(size); /* exact, so that a checker sees a read past the end */
+            struct image image;
+            struct error error = {0};
+            assert_non_null(part);
+            memcpy(part, cases[i].bytes, size);
+            assert_false(image_decode(&image, part, size, "a", 16384, &error));
+            bool known = !strstr(error.text, "not an image format");
+            if (known != (size == cases[i].size) || (known && !strstr(error.text, cases[i].format)))
+                fail_msg("%zu bytes of %s: %s", size, cases[i].format, error.text);
+            free(part);
+        }
+    static const char *const bad[] = {
+        "\0\0\1\0\0\0\0\0\0\0\0\0\1\0\1\0\x08\0", /* colours of a map that is missing */
+        "\0\2\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\0", "\0\0\4\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\0",
+        "\0\0\2\0\0\0\0\0\0\0\0\0\0\0\1\0\x20\0", "\0\0\2\0\0\0\0\0\0\0\0\0\1\0\0\0\x20\0",
+        "\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x21\0"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        expect_refused(bad[i], 18, "b", ERROR_IMAGE, "not an image format");
 }
 
 /* Cut anywhere, a file is refused or, where the format allows it, decoded: never a crash. The cut
@@ -343,6 +391,7 @@ int main(void)
         cmocka_unit_test(test_same_bytes_at_any_time),
         cmocka_unit_test(test_grey_and_missing_alpha),
         cmocka_unit_test(test_no_image),
+        cmocka_unit_test(test_signatures),
         cmocka_unit_test(test_truncated),
         cmocka_unit_test(test_planes_a_format_cannot_hold),
         cmocka_unit_test(test_text),
