@@ -456,6 +456,22 @@ static void tell_ready(const struct service *service)
     notify_send("READY=1\nSTATUS=serving");
 }
 
+/* They are no secret that is worth TLS, nor for everybody to read. */
+static bool check_metrics(const struct service_listen *metrics, struct error *error)
+{
+    const struct address *address = &metrics->address[0];
+    if (metrics->n == 0 || (address->kind != ADDRESS_TLS && listener_check(address, error)))
+        return true;
+    if (address->kind != ADDRESS_TLS && error->kind != ERROR_REQUEST)
+        return false; /* the name is not known */
+    return error_set(error, ERROR_REQUEST,
+                     "metrics go to this machine alone, and not to %s:%s:%u: give a Unix socket, "
+                     "unix:PATH, or an address on loopback, as tcp:127.0.0.1:%u; from elsewhere "
+                     "have a proxy of yours ask there",
+                     address->kind == ADDRESS_TLS ? "tls" : "tcp", address->host,
+                     (unsigned)address->port, (unsigned)address->port);
+}
+
 bool service_options_check(const struct service_options *options, struct error *error)
 {
     if (options->session_fd >= 0 && options->listen.n > 0)
@@ -466,10 +482,7 @@ bool service_options_check(const struct service_options *options, struct error *
             return false;
         tls |= options->listen.address[i].kind == ADDRESS_TLS;
     }
-    if (options->metrics.n > 0 && options->metrics.address[0].kind == ADDRESS_TLS)
-        return error_set(error, ERROR_REQUEST,
-                         "metrics are served at unix:PATH or at tcp:HOST:PORT on loopback");
-    if (options->metrics.n > 0 && !listener_check(&options->metrics.address[0], error))
+    if (!check_metrics(&options->metrics, error))
         return false;
     int models_fd = *options->models ? model_folder_open(options->models, error) : -1;
     if (models_fd >= 0)

@@ -533,9 +533,20 @@ class Metrics(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_loopback_only(self):
-        done = run("--metrics", "tcp:0.0.0.0:0", "--check-config")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("loopback", done.stderr)
+        """And the advice is one that can be taken."""
+        for address in ("tcp:0.0.0.0:9477", "tcp:192.0.2.1:9477", "tls:0.0.0.0:9477",
+                        "tls:127.0.0.1:9477"):
+            with self.subTest(address=address):
+                done = run("--metrics", address, "--check-config")
+                self.assertEqual(done.returncode, 2)
+                self.assertIn(f"metrics go to this machine alone, and not to {address}: ",
+                              done.stderr)
+                for words in ("--tls", "use tls:"):
+                    self.assertNotIn(words, done.stderr)
+                advised, = re.findall(r"as (tcp:\S+);", done.stderr)
+                self.assertEqual(run("--metrics", advised, "--check-config").returncode, 0)
+        done = run("--metrics", "tcp:a..b:9477", "--check-config")
+        self.assertIn("cannot find the address of 'a..b'", done.stderr)
 
 
 class Stats(unittest.TestCase):
