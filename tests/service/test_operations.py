@@ -573,7 +573,7 @@ class Stats(unittest.TestCase):
             self.assertEqual(latency["batch"][p + "_us"], 0)
         sent = stats["sent_bytes_per_s"] * stats["window_us"] / 1e6
         self.assertGreater(sent, 20 * 64 * 48 * 4)
-        self.assertLessEqual(sent, stats["sent_bytes"])
+        self.assertLessEqual(sent, stats["sent_bytes"] + 0.001)  # a quotient's rounding
         table = subprocess.run([SHEEN, "stats", "--server", daemon.unix], capture_output=True,
                                text=True, timeout=60).stdout
         for words in ("frames/s", "bytes/s", "p50", "p95", "p99", "ms a frame", "interactive"):
