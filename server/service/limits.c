@@ -12,25 +12,32 @@
 #define KIB ((uint64_t)1 << 10)
 #define MIB ((uint64_t)1 << 20)
 #define GIB ((uint64_t)1 << 30)
+/* What nobody could be served with less of: memory for a frame of 640 x 480 pixels in colour, what
+ * it is encoded to (6 bytes a pixel for JPEG at most) and a small model beside it; its planes
+ * alone; a small file; a part of what the socket takes. */
+#define LEAST_MEMORY (4 * MIB)
+#define LEAST_FRAME (640u * 480 * 4)
+#define LEAST_FILE (64 * KIB)
+#define LEAST_OUTPUT (64 * KIB)
 #define MOST_BYTES (UINT64_MAX / 4) /* sums of a few stay in range */
 #define MOST_SECONDS 10000000u
 
 #define AT(member) offsetof(struct limits, member)
 
 const struct limits_row LIMITS[] = {
-    {"memory-budget", UNIT_BYTES, "most that files, models, images and frames may take together", 1,
-     MOST_BYTES, 4 * GIB, AT(memory_budget)},
+    {"memory-budget", UNIT_BYTES, "most that files, models, images and frames may take together",
+     LEAST_MEMORY, MOST_BYTES, 4 * GIB, AT(memory_budget)},
     {"peer-memory", UNIT_BYTES,
-     "most that uploads under way and frames of one user (Unix socket) or address\nmay take", 1,
-     MOST_BYTES, 2 * GIB, AT(peer_memory)},
+     "most that uploads under way and frames of one user (Unix socket) or address\nmay take",
+     LEAST_MEMORY, MOST_BYTES, 2 * GIB, AT(peer_memory)},
     {"spare-memory", UNIT_BYTES,
      "memory of sent frames that is kept for the next ones, at most, beside the budget;\n"
      "what is not used for 5 s is given back",
      0, MOST_BYTES, 256 * MIB, AT(spare_memory)},
-    {"max-upload", UNIT_BYTES, "largest model or image file", 1, PROTOCOL_MAX_UPLOAD_BYTES,
+    {"max-upload", UNIT_BYTES, "largest model or image file", LEAST_FILE, PROTOCOL_MAX_UPLOAD_BYTES,
      PROTOCOL_MAX_UPLOAD_BYTES, AT(max_upload)},
-    {"max-frame", UNIT_BYTES, "largest frame: width x height x bytes of all its planes", 1,
-     PROTOCOL_MAX_FRAME_BYTES, GIB, AT(max_frame)},
+    {"max-frame", UNIT_BYTES, "largest frame: width x height x bytes of all its planes",
+     LEAST_FRAME, PROTOCOL_MAX_FRAME_BYTES, GIB, AT(max_frame)},
     {"max-image-side", UNIT_PX, "largest width and height of a light image", 1,
      PROTOCOL_MAX_SIZE_PX, 16384, AT(max_image_side)},
     {"max-connections", UNIT_COUNT, "clients at the same time", 1, 1000000, 4096,
@@ -42,14 +49,14 @@ const struct limits_row LIMITS[] = {
     {"interactive-hard", UNIT_BYTES,
      "a client with more than this unsent when another interactive frame comes is\n"
      "disconnected",
-     1, MOST_BYTES, 32 * MIB, AT(interactive_hard)},
-    {"interactive-soft", UNIT_BYTES, "and so is one with more than this unsent for", 1, MOST_BYTES,
-     8 * MIB, AT(interactive_soft)},
+     LEAST_OUTPUT, MOST_BYTES, 32 * MIB, AT(interactive_hard)},
+    {"interactive-soft", UNIT_BYTES, "and so is one with more than this unsent for", LEAST_OUTPUT,
+     MOST_BYTES, 8 * MIB, AT(interactive_soft)},
     {"interactive-seconds", UNIT_SECONDS, "so long", 1, MOST_SECONDS, 5, AT(interactive_s)},
-    {"output-hard", UNIT_BYTES, "the same for stills, batches and all else", 1, MOST_BYTES,
-     256 * MIB, AT(output_hard)},
-    {"output-soft", UNIT_BYTES, "the same for stills, batches and all else", 1, MOST_BYTES,
-     64 * MIB, AT(output_soft)},
+    {"output-hard", UNIT_BYTES, "the same for stills, batches and all else", LEAST_OUTPUT,
+     MOST_BYTES, 256 * MIB, AT(output_hard)},
+    {"output-soft", UNIT_BYTES, "the same for stills, batches and all else", LEAST_OUTPUT,
+     MOST_BYTES, 64 * MIB, AT(output_soft)},
     {"output-seconds", UNIT_SECONDS, "the same for stills, batches and all else", 1, MOST_SECONDS,
      60, AT(output_s)},
     {"handshake-timeout", UNIT_SECONDS, "from connecting to HELLO", 1, MOST_SECONDS, 3,

@@ -36,6 +36,8 @@ class Options(unittest.TestCase):
                                   ("--device", "--device"), ("device", "--device", "fast"),
                                   ("memory-budget", "--memory-budget", "much"),
                                   ("memory-budget", "--memory-budget", "0"),
+                                  ("memory-budget is '1'; it must be bytes from 4194304 to ",
+                                   "--memory-budget", "1"),
                                   ("memory-budget", "--memory-budget", "-1"),
                                   ("memory-budget", "--memory-budget", "99999999999999T"),
                                   ("memory-budget", "--memory-budget", "4GB"),
@@ -374,27 +376,27 @@ class Timeouts(unittest.TestCase):
 
 class Budget(unittest.TestCase):
     def test_need_and_budget_are_named(self):
-        daemon = Daemon("--memory-budget", "100K")
+        daemon = Daemon("--memory-budget", "4M")
         with Client(daemon.unix) as client:
-            model = client.upload(grid(30), "sheet.obj")
+            model = client.upload(grid(150), "sheet.obj")
             client.send(wire.render(5, model))
             with self.assertRaises(wire.Refused) as caught:
                 client.receive()
             self.assertEqual(caught.exception.code, wire.ERROR_MODEL)
             self.assertIn("sheet.obj needs ", caught.exception.text)
-            self.assertIn("102400", caught.exception.text)
+            self.assertIn("4194304", caught.exception.text)
             client.stats()
             seq = client.next_seq()
-            client.send(wire.upload_begin(seq, bytes(32), 102401, "long.obj"))
+            client.send(wire.upload_begin(seq, bytes(32), 4194305, "long.obj"))
             with self.assertRaises(wire.Refused) as caught:
                 client.receive()
             self.assertEqual(caught.exception.code, wire.ERROR_TOO_BIG)
         self.assertEqual(daemon.stop(), 0)
 
     def test_least_recently_used_goes_first(self):
-        """Room for two sheets of about 128 kB of tables, not for three."""
-        sheets = [grid(20) + f"# {i}\n".encode() for i in range(3)]
-        daemon = Daemon("--memory-budget", "400K")
+        """Room for two sheets of about 1.6 MB of tables, not for three."""
+        sheets = [grid(70) + f"# {i}\n".encode() for i in range(3)]
+        daemon = Daemon("--memory-budget", "4M")
         with Client(daemon.unix) as client:
             ids = [client.upload(data, f"{i}.obj") for i, data in enumerate(sheets[:2])]
             for model in ids:

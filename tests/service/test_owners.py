@@ -174,7 +174,7 @@ class Files(Case):
         os.symlink("../outside.obj", cls.path("models/away.obj"))
         os.symlink("cars", cls.path("models/folder"))
         os.mkfifo(cls.path("models/pipe.obj"))
-        cls.daemon = Daemon("--models", cls.models, "--memory-budget", "1M")
+        cls.daemon = Daemon("--models", cls.models, "--max-upload", "1M")
 
     @classmethod
     def tearDownClass(cls):

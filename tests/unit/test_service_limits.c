@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "protocol/limits.h"
+#include "server/service/encode.h"
 #include "server/service/limits.h"
 
 static const struct limits_row *row_of(const char *name)
@@ -51,12 +52,9 @@ static void test_values(void **state)
     static const struct {
         const char *text;
         uint64_t bytes;
-    } good[] = {{"1", 1},
-                {"4000000000", 4000000000},
-                {"3K", 3 << 10},
-                {"800M", (uint64_t)800 << 20},
-                {"4G", (uint64_t)4 << 30},
-                {"2T", (uint64_t)2 << 40}};
+    } good[] = {{"4194304", 4194304},      {"4000000000", 4000000000},
+                {"5000K", 5000 << 10},     {"800M", (uint64_t)800 << 20},
+                {"4G", (uint64_t)4 << 30}, {"2T", (uint64_t)2 << 40}};
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
         assert_true(limits_set(&limits, budget, good[i].text, &error));
         assert_int_equal(limits.memory_budget, good[i].bytes);
@@ -70,6 +68,9 @@ static void test_values(void **state)
                                       "1x",
                                       "4g",
                                       "0",
+                                      "1",
+                                      "4194303",
+                                      "4095K",
                                       "4GB",
                                       "1.5G",
                                       "0x1",
@@ -87,6 +88,51 @@ static void test_values(void **state)
     assert_non_null(strstr(error.text, "credits is '65'; it must be a whole number from 1 to 64"));
     assert_false(limits_set(&limits, credits, "1K", &error)); /* no bytes */
     assert_int_equal(limits.credits, 64);
+}
+
+/* What would serve nobody is refused by name, and the least that is not is taken. */
+static void test_least_bytes(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *least, *less;
+    } cases[] = {
+        {"memory-budget", "4M", "4194303"},   {"peer-memory", "4M", "4194303"},
+        {"spare-memory", "0", "-1"},          {"max-upload", "64K", "65535"},
+        {"max-frame", "1228800", "1228799"},  {"interactive-hard", "64K", "65535"},
+        {"interactive-soft", "64K", "65535"}, {"output-hard", "64K", "65535"},
+        {"output-soft", "64K", "65535"},      {"worker-memory", "1M", "1048575"},
+        {"worker-output", "1M", "1048575"},
+    };
+    size_t n_bytes = 0;
+    for (size_t i = 0; i < N_LIMITS; i++)
+        n_bytes += LIMITS[i].unit == UNIT_BYTES;
+    assert_int_equal(n_bytes, sizeof cases / sizeof *cases);
+    for (size_t i = 0; i < n_bytes; i++) {
+        const struct limits_row *row = row_of(cases[i].name);
+        struct limits limits;
+        struct error error = {0};
+        limits_init(&limits);
+        assert_int_equal(row->unit, UNIT_BYTES);
+        assert_true(limits_set(&limits, row, cases[i].least, &error));
+        assert_false(limits_set(&limits, row, cases[i].less, &error));
+        assert_non_null(strstr(error.text, cases[i].name));
+        assert_int_equal(limits_get(&limits, row), row->low);
+    }
+}
+
+/* The least memory holds a frame of 640 x 480 in every encoding, the least of planes all of its
+ * colour. */
+static void test_least_memory_holds_a_frame(void **state)
+{
+    (void)state;
+    struct codec_layout layout;
+    codec_layout_init(&layout, 640, 480, sheen_Plane_PLANE_COLOUR);
+    assert_int_equal(row_of("max-frame")->low, layout.raw_bytes);
+    for (int e = _sheen_Encoding_MIN; e <= (int)_sheen_Encoding_MAX; e++) {
+        uint64_t bytes = layout.raw_bytes + encode_bytes(&layout, (sheen_Encoding)e);
+        assert_true(bytes <= row_of("memory-budget")->low && bytes <= row_of("peer-memory")->low);
+    }
 }
 
 static void test_formats(void **state)
@@ -116,8 +162,8 @@ static void test_formats(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rows),
-        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_rows),        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_least_bytes), cmocka_unit_test(test_least_memory_holds_a_frame),
         cmocka_unit_test(test_formats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
