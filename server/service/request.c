@@ -140,7 +140,7 @@ bool request_is_late(const struct request *request, uint64_t now_us)
 void request_answer_late(struct request *request)
 {
     char text[MESSAGE_TEXT_BYTES];
-    snprintf(text, sizeof text, "not drawn within its deadline_ms of %u: the daemon is busy",
+    snprintf(text, sizeof text, "not drawn within its deadline_ms of %u",
              request->render.deadline_ms);
     request->host->stats.late++;
     answer_error_early(request, sheen_ErrorCode_ERROR_DEADLINE, text);

@@ -134,7 +134,9 @@ class Schedule(DaemonCase):
         late, unbuilt = client.ask(self.model, deadline=1), client.ask(model, deadline=1)
         answers = dict(client.answer() for _ in range(3))
         for seq in (late, unbuilt):
-            self.assert_refused_with(answers[seq], wire.ERROR_DEADLINE, "deadline_ms of 1")
+            self.assert_refused_with(answers[seq], wire.ERROR_DEADLINE, "")
+            # Why is not known: a daemon with nothing else to do may take longer, too.
+            self.assertEqual(answers[seq].text, "not drawn within its deadline_ms of 1")
         self.assertIsInstance(answers[slow], wire.Frame)
         self.assertIsInstance(client.render(self.model, deadline=60000), wire.Frame)
 
