@@ -131,16 +131,17 @@ bool sheen_file_id(const void *bytes, size_t n_bytes, uint8_t id[SHEEN_ID_BYTES]
 
 /* Makes the daemon have a file: bytes travel only if it lacks them, from where a broken upload
  * ended. `id` is what sheen_file_id() says; the daemon checks it. `name` is the file's name,
- * folders are dropped; its ending tells the format. progress may be NULL. Not while requests are in
- * flight (SHEEN_BAD_ARGUMENT). SHEEN_TOO_BIG, SHEEN_BAD_MODEL, SHEEN_BAD_IMAGE when the daemon
- * refuses it. */
+ * folders are dropped; its ending tells a model's format. progress may be NULL. Not while requests
+ * are in flight (SHEEN_BAD_ARGUMENT). SHEEN_TOO_BIG, SHEEN_BAD_MODEL, SHEEN_BAD_IMAGE when the
+ * daemon refuses it. */
 enum sheen_status sheen_upload(struct sheen_session *session, enum sheen_file_kind kind,
                                const uint8_t id[SHEEN_ID_BYTES], const void *bytes, size_t n_bytes,
                                const char *name, const struct sheen_progress *progress,
                                struct sheen_error *error);
 
 /* The id of a model file that lies at the daemon, below its --models: `name` is its path there.
- * Builds its tables if that has not happened. SHEEN_BAD_REQUEST when there is none. */
+ * Builds its tables if that has not happened. SHEEN_BAD_MODEL when there is none or it is bad,
+ * SHEEN_BAD_REQUEST when the daemon has no files of its own. */
 enum sheen_status sheen_find_model(struct sheen_session *session, const char *name,
                                    const struct sheen_progress *progress,
                                    uint8_t id[SHEEN_ID_BYTES], struct sheen_error *error);

@@ -116,7 +116,7 @@ bool model_file_load(const struct model_file_order *order, struct error *error)
     if (wrong) {
         log_event(LOG_INFO, "model file refused", log_text("file", order->name),
                   log_text("text", wrong));
-        error_set(error, ERROR_REQUEST, "no model file '%.200s' at this daemon", order->name);
+        error_set(error, ERROR_MODEL, "no model file '%.200s' at this daemon", order->name);
     } else if (store_reserve(order->store, load->size, load->name, ERROR_MODEL, error)) {
         load->work = (struct work){load_run, load_done, load, NULL};
         pool_submit(order->pool, &load->work, POOL_LATER);

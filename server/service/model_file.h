@@ -14,7 +14,7 @@ int model_folder_open(const char *path, struct error *error);
 /* Reads the file `name`, a path below the folder, on the pool, and puts it into the store for
  * everybody. Symbolic links, '..', absolute paths, other mounts and whatever is no plain file are
  * refused. loaded() is called once, unless false is returned, with the file's SHA-256, or NULL and
- * why. ERROR_REQUEST says that there is no such file, and not why. */
+ * why. ERROR_MODEL says that there is no such file, and not why. */
 struct model_file_order {
     int folder_fd;
     const char *name;

@@ -201,7 +201,7 @@ class Files(Case):
                          "/proc/self/exe", 255 * "a"):
                 with self.subTest(name=name), self.assertRaises(wire.Refused) as caught:
                     client.find(name)
-                self.assertEqual(caught.exception.code, wire.ERROR_REQUEST)
+                self.assertEqual(caught.exception.code, wire.ERROR_MODEL)
                 texts.add(caught.exception.text.replace(name[:200], "NAME"))
             self.assertEqual(texts, {"no model file 'NAME' at this daemon"})
             self.assertIn("file=away.obj", self.daemon.errors())
@@ -226,15 +226,20 @@ class Files(Case):
             self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.path("a.png"), "rb") as a, open(self.path("b.png"), "rb") as b:
             self.assertEqual(a.read(), b.read())
-        done = sheen("info", "server:none.obj")
-        self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("no model file 'none.obj'", done.stderr)
+        for model in ("server:none.obj", self.path("none.obj")):  # there or here: a bad model
+            for command in (("info",), ("render", "-o", self.path("c.png")), ("stream", "--frames", "2")):
+                with self.subTest(model=model, command=command[0]):
+                    done = sheen(*command, model)
+                    self.assertEqual((done.returncode, done.stdout), (3, ""))
+                    self.assertIn("none.obj", done.stderr)
+                    self.assertEqual("no model file" in done.stderr, model.startswith("server:"))
 
     def test_a_daemon_without(self):
         daemon = Daemon()
         with Client(daemon.unix) as client, self.assertRaises(wire.Refused) as caught:
             client.find("top.obj")
         self.assertIn("--models", caught.exception.text)
+        self.assertEqual(caught.exception.code, wire.ERROR_REQUEST)
         self.assertEqual(daemon.stop(), 0)
 
     def test_ends_while_it_reads(self):
