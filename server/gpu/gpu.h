@@ -63,7 +63,7 @@ struct target {
     GLuint edges, turns;     /* buffers: shaders/edges_find.comp.glsl */
     GLuint rounded;          /* another; and what its pixels' rays meet: shaders/rounded.glsl */
     GLuint rounded_hits;
-    GLuint max_rounded; /* pixels of which rounded_hits has room for all rays */
+    GLuint max_rounded; /* pixels of which rounded_hits has room for all rays; 0: there is none */
 };
 
 /* One chunk of a mesh: a driver that clears a buffer when it makes one takes long for a large one.
@@ -246,6 +246,8 @@ const struct table_programs *programs_for(struct renderer *renderer,
 bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error);
 /* What it takes then. */
 uint64_t target_bytes(uint32_t width, uint32_t height);
+/* And to hold what stage_rounded() finds, which frames of polygons do not need. */
+bool target_reserve_rounded(struct target *target, struct error *error);
 void target_finish(struct target *target);
 
 /* The three stages, on the tile that the view block in view_buffer describes. */

@@ -250,6 +250,7 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
               model->tables->hull_min, model->tables->hull_max);
     bool ok = watch_check(&work->watch, error) &&
               target_reserve(&r->target, drawn.width, drawn.height, error) &&
+              (is_of_polygons(work) || target_reserve_rounded(&r->target, error)) &&
               render_tile(r, model, work, &view, &drawn, &tile, frame, is_whole, error);
     if (ok && *is_whole && is_single(work))
         keep(r, model, request);

@@ -30,21 +30,12 @@ enum { N_LISTS = 7, LIST_BYTES = 4, LIST_HEAD_BYTES = 16 };
 enum { PX_PER_ROUNDED = 32, MIN_ROUNDED = 32768 }; /* the least even in small tiles */
 enum { ROUNDED_BYTES = 512 };
 
-static uint32_t max_rounded(uint64_t pixels)
-{
-    uint64_t most = pixels / PX_PER_ROUNDED;
-    most = most < MIN_ROUNDED ? MIN_ROUNDED : most;
-    return (uint32_t)(most < pixels ? most : pixels);
-}
-
 uint64_t target_bytes(uint32_t width, uint32_t height)
 {
     uint64_t pixel = N_LISTS * LIST_BYTES;
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         pixel += images[i].bytes;
-    uint64_t pixels = (uint64_t)width * height;
-    return pixels * pixel + N_LISTS * LIST_HEAD_BYTES +
-           (uint64_t)max_rounded(pixels) * ROUNDED_BYTES;
+    return (uint64_t)width * height * pixel + N_LISTS * LIST_HEAD_BYTES;
 }
 
 static GLuint *image_name(struct target *target, size_t i)
@@ -93,10 +84,6 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
                           (GLsizeiptr)(LIST_HEAD_BYTES + (size_t)width * height * LIST_BYTES), NULL,
                           GL_DYNAMIC_COPY);
     }
-    target->max_rounded = max_rounded((uint64_t)width * height);
-    glCreateBuffers(1, &target->rounded_hits);
-    glNamedBufferData(target->rounded_hits, (GLsizeiptr)target->max_rounded * ROUNDED_BYTES, NULL,
-                      GL_DYNAMIC_COPY);
     glCreateFramebuffers(1, &target->framebuffer);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT0, target->seen, 0);
     glNamedFramebufferTexture(target->framebuffer, GL_COLOR_ATTACHMENT1, target->hit_depth, 0);
@@ -115,6 +102,19 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
                          height);
     }
     return true;
+}
+
+bool target_reserve_rounded(struct target *target, struct error *error)
+{
+    uint64_t pixels = (uint64_t)target->width * target->height, most = pixels / PX_PER_ROUNDED;
+    if (target->max_rounded)
+        return true;
+    most = most < MIN_ROUNDED ? MIN_ROUNDED : most;
+    target->max_rounded = (GLuint)(most < pixels ? most : pixels);
+    glCreateBuffers(1, &target->rounded_hits);
+    glNamedBufferData(target->rounded_hits, (GLsizeiptr)target->max_rounded * ROUNDED_BYTES, NULL,
+                      GL_DYNAMIC_COPY);
+    return gpu_check("the rays of a frame", error);
 }
 
 void target_finish(struct target *target)
