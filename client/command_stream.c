@@ -146,11 +146,12 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
     enum sheen_status status = job_upload_images(job, options, &stream->request);
     if (!status && n_answered(stream) == 0)
         status = first_frame(job, stream, options);
-    uint32_t next = 0, n_in_flight = 0;
+    uint32_t next = 0, n_in_flight = 0, granted = sheen_server(job->session).max_in_flight;
+    uint32_t most = granted < IN_FLIGHT ? granted : IN_FLIGHT;
     while (!status && n_answered(stream) < options->frames) {
         while (next < options->frames && stream->records[next].state != WANTED)
             next++;
-        if (next < options->frames && n_in_flight < IN_FLIGHT) {
+        if (next < options->frames && n_in_flight < most) {
             move(stream, options, next);
             status = send_one(job, stream, next++);
             n_in_flight++;
@@ -325,8 +326,8 @@ static const struct option_row *const TABLES_LIST[] = {
 const struct command COMMAND_STREAM = {
     .name = "stream",
     .arguments = "MODEL --frames N [option]...",
-    .summary = "Asks for frames back to back, lossless, two in flight, and prints the time of each "
-               "stage.",
+    .summary = "Asks for frames back to back, lossless, at most two in flight, and prints the time "
+               "of each stage.",
     .tables = TABLES_LIST,
     .examples = "  sheen stream hood.obj --frames 100\n"
                 "  sheen stream hood.obj --frames 100 --light-only --size 1920x1080\n"

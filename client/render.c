@@ -81,8 +81,8 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
     if (!request)
         return status_set(error, SHEEN_BAD_ARGUMENT, "request is NULL");
     if (session->n_pending == session->hello.credits)
-        return status_set(error, SHEEN_BAD_ARGUMENT, "%u requests are in flight: receive one",
-                          session->hello.credits);
+        return status_set(error, SHEEN_BAD_ARGUMENT, "%u request%s in flight: receive one",
+                          session->hello.credits, session->hello.credits == 1 ? " is" : "s are");
     if (request->n_lights < 1 || request->n_lights > SHEEN_MAX_LIGHTS)
         return status_set(error, SHEEN_BAD_ARGUMENT, "%u lights; there must be 1 to %d",
                           request->n_lights, SHEEN_MAX_LIGHTS);

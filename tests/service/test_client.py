@@ -200,6 +200,14 @@ class Client(unittest.TestCase):
                 self.assertGreater(os.path.getsize(self.path("x." + ending)), 10000)
             self.assertEqual(daemon.stop(), 0)
 
+    def test_stream_within_its_credits(self):
+        daemon = Daemon("--credits", "1", tcp=False)
+        self.addCleanup(daemon.stop)
+        done = sheen("stream", FENDER, "--frames", "5", "--size", "64x48", "--server", daemon.unix,
+                     "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(len(json.loads(done.stdout)["frames"]), 5)
+
     def test_bad_sizes(self):
         for size in ("0x0", "0x10", "100000x100000"):
             with self.subTest(size=size):

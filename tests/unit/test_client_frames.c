@@ -290,6 +290,31 @@ static void answers_out_of_order(void **state)
     fake_finish(&fake);
 }
 
+static void serve_one_at_a_time(int fd)
+{
+    struct message_header hello = read_message(fd, NULL, 0);
+    sheen_HelloOk ok = HELLO_OK;
+    ok.has_credits = true;
+    ok.credits = 1;
+    send_message(fd, MESSAGE_HELLO_OK, hello.seq, &ok);
+    read_message(fd, NULL, 0);
+}
+
+static void more_than_is_granted_is_refused(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_request request = small_request(SHEEN_PLANES_RAW);
+    assert_int_equal(open_session(&fake, serve_one_at_a_time, &session, &error), SHEEN_OK);
+    assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
+    assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
+    assert_string_equal(error.text, "1 request is in flight: receive one");
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
 static void serve_unknown_number(int fd)
 {
     greet(fd);
@@ -495,6 +520,7 @@ int main(void)
         cmocka_unit_test(packed_planes),
         cmocka_unit_test(requests_in_flight),
         cmocka_unit_test(answers_out_of_order),
+        cmocka_unit_test(more_than_is_granted_is_refused),
         cmocka_unit_test(answers_to_nothing_are_refused),
         cmocka_unit_test(classes_travel),
         cmocka_unit_test(every_error_has_its_status),
