@@ -48,17 +48,35 @@ static enum sheen_status open_address(struct sheen_session *session,
                            error);
 }
 
-/* A daemon does not tell a stranger why it closes. */
-static enum sheen_status explain_refusal(enum sheen_status status, struct sheen_error *error)
+/* What to look at when a handshake came to nothing; NULL when nothing is known. A daemon does not
+ * tell a stranger why it closes. */
+static const char *handshake_hint(const struct connection *connection)
 {
+    if (connection->kind == ADDRESS_TCP)
+        return "if that port speaks TLS, write tls: for tcp:";
+    if (connection->kind != ADDRESS_TLS)
+        return NULL;
+    switch (tls_fault(connection->channel)) {
+    case TLS_PEER_UNTRUSTED:
+        return "this client does not trust the server: see --ca, and whether the certificate is "
+               "good today and for the host that the address names";
+    case TLS_NO_TLS:
+        return "that port may not speak TLS 1.3: see sheend's --listen";
+    default:
+        return "it may not know this client: see --cert and --key, or --token-file, and the days "
+               "they are good for";
+    }
+}
+
+static enum sheen_status explain_loss(const struct connection *connection, enum sheen_status status,
+                                      struct sheen_error *error)
+{
+    const char *hint = handshake_hint(connection);
     char text[sizeof(error->text)];
-    if (status != SHEEN_LOST_SERVER || !error)
+    if (status != SHEEN_LOST_SERVER || !error || !hint)
         return status;
     snprintf(text, sizeof(text), "%s", error->text);
-    return status_set(error, status,
-                      "%.400s; it may not know this client: see --cert and --key, or --token-file, "
-                      "and the days they are good for",
-                      text);
+    return status_set(error, status, "%.400s; %s", text, hint);
 }
 
 static enum sheen_status shake_hands(struct sheen_session *session,
@@ -86,7 +104,7 @@ static enum sheen_status shake_hands(struct sheen_session *session,
     else
         status = session_receive(session, session->last_seq, MESSAGE_HELLO_OK, NULL,
                                  &session->hello, error);
-    return tls ? explain_refusal(status, error) : status;
+    return explain_loss(&session->connection, status, error);
 }
 
 enum sheen_status sheen_connect(struct sheen_session **session,

@@ -156,7 +156,7 @@ enum sheen_status connection_open(struct connection *connection, const struct ad
                                   const struct tls_files *files, uint32_t timeout_ms,
                                   struct sheen_error *error)
 {
-    *connection = (struct connection){.fd = -1, .timeout_ms = timeout_ms};
+    *connection = (struct connection){.fd = -1, .kind = address->kind, .timeout_ms = timeout_ms};
     if (address->kind == ADDRESS_UNIX)
         return open_unix(connection, address->path, error);
     enum sheen_status status = open_tcp(connection, address, error);
@@ -171,7 +171,7 @@ enum sheen_status connection_pair(struct connection *connection, int *peer_fd, u
                                   struct sheen_error *error)
 {
     int fds[2];
-    *connection = (struct connection){.fd = -1, .timeout_ms = timeout_ms};
+    *connection = (struct connection){.fd = -1, .kind = ADDRESS_UNIX, .timeout_ms = timeout_ms};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, fds) != 0)
         return status_set(error, SHEEN_NO_SERVER, "cannot make a socket pair: %s", strerror(errno));
     int flags = fcntl(fds[0], F_GETFL);

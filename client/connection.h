@@ -15,6 +15,7 @@
 
 struct connection {
     int fd;                      /* non-blocking, close-on-exec; -1: closed */
+    enum address_kind kind;      /* of a pair: ADDRESS_UNIX */
     uint32_t timeout_ms;         /* without a byte moved; 0: for ever */
     struct tls_channel *channel; /* of a tls: address; NULL: plain */
 };

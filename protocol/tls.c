@@ -23,7 +23,7 @@ struct tls_channel {
     struct tls_context *context;
     SSL *ssl;
     struct tls_io io;
-    bool failed;
+    enum tls_fault fault;
     char reason[TLS_TEXT_BYTES];
 };
 
@@ -258,6 +258,16 @@ void tls_channel_destroy(struct tls_channel *channel)
     free(channel);
 }
 
+/* Of the last error in OpenSSL's queue, which is not emptied. */
+static enum tls_fault last_fault(void)
+{
+    int reason = ERR_GET_REASON(ERR_peek_last_error());
+    if (reason == SSL_R_CERTIFICATE_VERIFY_FAILED)
+        return TLS_PEER_UNTRUSTED;
+    bool is_alert = reason > SSL_AD_REASON_OFFSET;
+    return is_alert || reason == SSL_R_UNEXPECTED_EOF_WHILE_READING ? TLS_PEER_GONE : TLS_NO_TLS;
+}
+
 /* What a call that did not return 1 has to say. */
 static enum tls_result explain(struct tls_channel *channel, int code)
 {
@@ -272,8 +282,10 @@ static enum tls_result explain(struct tls_channel *channel, int code)
     case SSL_ERROR_SYSCALL:
         snprintf(channel->reason, sizeof channel->reason, "%s",
                  number ? strerror(number) : "the connection broke");
+        channel->fault = TLS_PEER_GONE;
         break;
     default: {
+        channel->fault = last_fault();
         long verdict = SSL_get_verify_result(channel->ssl);
         const char *reason = last_error();
         if (verdict != X509_V_OK)
@@ -283,14 +295,13 @@ static enum tls_result explain(struct tls_channel *channel, int code)
             snprintf(channel->reason, sizeof channel->reason, "%s", reason);
     }
     }
-    channel->failed = true;
     return TLS_FAILED;
 }
 
 enum tls_result tls_read(struct tls_channel *channel, void *bytes, size_t size, size_t *moved)
 {
     *moved = 0;
-    if (channel->failed)
+    if (channel->fault)
         return TLS_FAILED;
     ERR_clear_error();
     errno = 0;
@@ -302,7 +313,7 @@ enum tls_result tls_write(struct tls_channel *channel, const void *bytes, size_t
                           size_t *moved)
 {
     *moved = 0;
-    if (channel->failed)
+    if (channel->fault)
         return TLS_FAILED;
     ERR_clear_error();
     errno = 0;
@@ -312,13 +323,13 @@ enum tls_result tls_write(struct tls_channel *channel, const void *bytes, size_t
 
 size_t tls_pending(const struct tls_channel *channel)
 {
-    return channel->failed ? 0 : (size_t)SSL_pending(channel->ssl);
+    return channel->fault ? 0 : (size_t)SSL_pending(channel->ssl);
 }
 
 void tls_end(struct tls_channel *channel)
 {
     ERR_clear_error();
-    if (!channel->failed && SSL_is_init_finished(channel->ssl))
+    if (!channel->fault && SSL_is_init_finished(channel->ssl))
         SSL_shutdown(channel->ssl);
     ERR_clear_error();
 }
@@ -371,4 +382,9 @@ bool tls_still_trusts(const struct tls_context *context, const struct tls_channe
 const char *tls_reason(const struct tls_channel *channel)
 {
     return channel->reason;
+}
+
+enum tls_fault tls_fault(const struct tls_channel *channel)
+{
+    return channel->fault;
 }

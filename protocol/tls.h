@@ -75,4 +75,13 @@ bool tls_still_trusts(const struct tls_context *context, const struct tls_channe
 /* Why the channel has failed, in words; "" when it has not. */
 const char *tls_reason(const struct tls_channel *channel);
 
+/* On whose side a failure is to be looked for. */
+enum tls_fault {
+    TLS_NO_FAULT,
+    TLS_PEER_GONE,      /* it closed, or sent an alert: it may not take what this side shows */
+    TLS_PEER_UNTRUSTED, /* this side does not take its certificate */
+    TLS_NO_TLS,         /* what it sent is no TLS of this version */
+};
+enum tls_fault tls_fault(const struct tls_channel *channel);
+
 #endif

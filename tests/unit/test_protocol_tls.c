@@ -133,6 +133,7 @@ static void test_narrow_pipes(void **state)
         if (capacities[i] <= 100) /* also in the handshake, which reads */
             assert_true(pair.server.wanted_write > 0);
         assert_string_equal(tls_reason(pair.server.channel), "");
+        assert_int_equal(tls_fault(pair.server.channel), TLS_NO_FAULT);
         pair_finish(&pair);
     }
 }
@@ -156,6 +157,7 @@ static void test_end_and_cut(void **state)
     assert_int_equal(tls_read(pair.server.channel, &byte, 1, &moved), TLS_FAILED);
     assert_int_equal(tls_write(pair.server.channel, &byte, 1, &moved), TLS_FAILED);
     assert_string_not_equal(tls_reason(pair.server.channel), "");
+    assert_int_equal(tls_fault(pair.server.channel), TLS_PEER_GONE);
     pair_finish(&pair);
 }
 
@@ -239,8 +241,28 @@ static void test_wrong_host(void **state)
         pair_init(&pair, MAX_PIPE, client_context, hosts[i]);
         assert_int_equal(move(&pair.server, &pair.client, 10), TLS_FAILED);
         assert_non_null(strstr(tls_reason(pair.client.channel), "mismatch"));
+        assert_int_equal(tls_fault(pair.client.channel), TLS_PEER_UNTRUSTED);
+        /* The client has said so in an alert. */
+        assert_int_equal(move(&pair.client, &pair.server, 10), TLS_FAILED);
+        uint8_t byte;
+        size_t moved;
+        assert_int_equal(tls_read(pair.server.channel, &byte, 1, &moved), TLS_FAILED);
+        assert_int_equal(tls_fault(pair.server.channel), TLS_PEER_GONE);
         pair_finish(&pair);
     }
+}
+
+static void test_no_tls(void **state)
+{
+    (void)state;
+    static struct pair pair;
+    uint8_t byte;
+    size_t moved;
+    pair_init(&pair, MAX_PIPE, client_context, "localhost");
+    pipe_write(&pair.server, "HTTP/1.1 400 Bad Request\r\n\r\n", 28);
+    assert_int_equal(tls_read(pair.client.channel, &byte, 1, &moved), TLS_FAILED);
+    assert_int_equal(tls_fault(pair.client.channel), TLS_NO_TLS);
+    pair_finish(&pair);
 }
 
 static void test_peer(void **state)
@@ -316,8 +338,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_narrow_pipes), cmocka_unit_test(test_end_and_cut),
         cmocka_unit_test(test_pending),      cmocka_unit_test(test_wrong_host),
-        cmocka_unit_test(test_peer),         cmocka_unit_test(test_bad_files),
-        cmocka_unit_test(test_key_updates),
+        cmocka_unit_test(test_no_tls),       cmocka_unit_test(test_peer),
+        cmocka_unit_test(test_bad_files),    cmocka_unit_test(test_key_updates),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
