@@ -33,22 +33,45 @@ static struct vec get(const double a[3])
     return (struct vec){a[0], a[1], a[2]};
 }
 
-/* How far from the box's middle the eye must be, looking along `forward`, for all of the box to lie
- * inside a picture whose half angles have these tangents. */
-static double framing_distance(const double box_min[3], const double box_max[3], struct vec forward,
-                               struct vec up, double tan_x, double tan_y)
+/* Where the eye must be for all of the box to lie inside a picture, as near as can be: from the
+ * box's middle by `distance` back along the view and `side` across it. */
+struct framing {
+    double distance, side;
+};
+
+/* Along one axis of the picture, `across`, of whose half angle this is the tangent. A corner is
+ * inside when |x - side| <= tangent (distance + depth): each edge of the picture is met by the
+ * corner that asks most of it. */
+static struct framing frame_axis(const struct vec corners[8], struct vec forward, struct vec across,
+                                 double tangent)
 {
-    struct vec middle = box_middle(box_min, box_max);
-    struct vec right = vec_unit(vec_cross(forward, up)), above = vec_cross(right, forward);
-    double distance = 0;
+    double above = -INFINITY, below = -INFINITY;
+    for (int i = 0; i < 8; i++) {
+        double x = vec_dot(corners[i], across) / tangent, depth = vec_dot(corners[i], forward);
+        above = fmax(above, x - depth);
+        below = fmax(below, -x - depth);
+    }
+    return (struct framing){0.5 * (above + below), 0.5 * tangent * (above - below)};
+}
+
+/* Puts eye and target, which look along `forward`, for the box to fill a picture whose half angles
+ * have these tangents. */
+static void frame_box(const double box_min[3], const double box_max[3], struct vec forward,
+                      struct vec up, double tan_x, double tan_y, struct camera *camera)
+{
+    struct vec middle = box_middle(box_min, box_max), corners[8];
     for (int i = 0; i < 8; i++) {
         struct vec corner = {i & 1 ? box_max[0] : box_min[0], i & 2 ? box_max[1] : box_min[1],
                              i & 4 ? box_max[2] : box_min[2]};
-        struct vec d = vec_sub(corner, middle);
-        double side = fmax(fabs(vec_dot(d, right)) / tan_x, fabs(vec_dot(d, above)) / tan_y);
-        distance = fmax(distance, side - vec_dot(d, forward));
+        corners[i] = vec_sub(corner, middle);
     }
-    return distance > 0 ? distance : 1;
+    struct vec right = vec_unit(vec_cross(forward, up)), above = vec_cross(right, forward);
+    struct framing x = frame_axis(corners, forward, right, tan_x);
+    struct framing y = frame_axis(corners, forward, above, tan_y);
+    double distance = fmax(x.distance, y.distance);
+    struct vec target = vec_mad(vec_mad(middle, x.side, right), y.side, above);
+    put(target, camera->target);
+    put(vec_mad(target, distance > 0 ? -distance : -1, forward), camera->eye);
 }
 
 void renderer_default_camera(const double box_min[3], const double box_max[3], uint32_t width_px,
@@ -63,12 +86,9 @@ void renderer_default_camera(const double box_min[3], const double box_max[3], u
     struct vec from = z_up ? (struct vec){east, south, sin(elevation)}
                            : (struct vec){east, sin(elevation), -south};
     double tan_y = margin * tan(0.5 * fov_deg * DEGREE), tan_x = tan_y * width_px / height_px;
-    double distance = framing_distance(box_min, box_max, vec_scale(from, -1), up, tan_x, tan_y);
-    struct vec middle = box_middle(box_min, box_max);
     *camera = (struct camera){.kind = CAMERA_PERSPECTIVE, .fov_deg = fov_deg};
-    put(vec_mad(middle, distance, from), camera->eye);
-    put(middle, camera->target);
     put(up, camera->up);
+    frame_box(box_min, box_max, vec_scale(from, -1), up, tan_x, tan_y, camera);
 }
 
 void renderer_default_light(const double box_min[3], const double box_max[3],

@@ -44,15 +44,18 @@ static void scene_finish(struct scene *scene)
     cage_finish(&scene->cage);
 }
 
-/* What the default camera shows, from `closer` times as near. */
+/* What the default camera shows, from `closer` times as near to the middle of the box. */
 static void choose(struct scene *scene, bool orthographic, double closer)
 {
     struct error error = {0};
     struct camera camera;
     const struct limit_tables *t = &scene->tables;
     renderer_default_camera(t->box_min, t->box_max, WIDTH, HEIGHT, &camera);
-    for (int i = 0; i < 3; i++)
-        camera.eye[i] = camera.target[i] + (camera.eye[i] - camera.target[i]) / closer;
+    for (int i = 0; i < 3; i++) {
+        double away = (camera.eye[i] - camera.target[i]) / closer;
+        camera.target[i] = 0.5 * (t->box_min[i] + t->box_max[i]);
+        camera.eye[i] = camera.target[i] + away;
+    }
     if (orthographic) {
         camera.kind = CAMERA_ORTHOGRAPHIC;
         camera.ortho_height =

@@ -1,0 +1,92 @@
+/* The camera that frames a model. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <math.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "server/gpu/view.h"
+
+#define MARGIN 0.92 /* of the half picture, which the box fills */
+
+/* How far the box reaches to either side of the picture's middle, in halves of the picture. */
+struct reach {
+    double low[2], high[2]; /* across, down */
+};
+
+static struct reach reach_of(const double box_min[3], const double box_max[3], uint32_t width_px,
+                             uint32_t height_px)
+{
+    struct camera camera;
+    struct view view;
+    renderer_default_camera(box_min, box_max, width_px, height_px, &camera);
+    view_init(&view, &camera, width_px, height_px, box_min, box_max);
+    const double half[2] = {0.5 * width_px, 0.5 * height_px};
+    struct reach reach = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    for (int corner = 0; corner < 8; corner++) {
+        double world[3], seen[3];
+        for (int i = 0; i < 3; i++)
+            world[i] = (corner >> i & 1 ? box_max : box_min)[i];
+        view_transform(&view, world, seen);
+        assert_true(seen[2] > 0);
+        for (int i = 0; i < 2; i++) {
+            double place = seen[i] / seen[2] / view.units_per_px / half[i];
+            reach.low[i] = fmin(reach.low[i], place);
+            reach.high[i] = fmax(reach.high[i], place);
+        }
+    }
+    return reach;
+}
+
+/* All of the box is in the picture, and it could not be larger there. */
+static void test_the_box_fills_the_picture(void **state)
+{
+    (void)state;
+    static const double boxes[][2][3] = {
+        {{-1, -1, -1}, {1, 1, 1}},             /* as high as wide */
+        {{0, 0, 0}, {4000, 1800, 1300}},       /* a car, in mm, z up */
+        {{0, 0, 0}, {4000, 1300, 1800}},       /* the same, y up */
+        {{-500, 20, 7}, {500, 21, 7}},         /* a sliver */
+        {{99000, -1, 3}, {99001, 9, 3.001}},   /* a plate, far off */
+        {{1e-12, 0, 0}, {2e-12, 2e-12, 5e-13}} /* tiny */
+    };
+    static const uint32_t sizes[][2] = {{640, 480}, {100, 400}, {1920, 300}};
+    for (size_t i = 0; i < sizeof boxes / sizeof boxes[0]; i++)
+        for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
+            struct reach reach = reach_of(boxes[i][0], boxes[i][1], sizes[k][0], sizes[k][1]);
+            bool touches = false;
+            for (int axis = 0; axis < 2; axis++) {
+                double least = fmin(-reach.low[axis], reach.high[axis]);
+                double most = fmax(-reach.low[axis], reach.high[axis]);
+                assert_true(most < MARGIN * (1 + 1e-6));
+                touches = touches || least > 0.99 * MARGIN;
+            }
+            assert_true(touches);
+        }
+}
+
+/* A box without size is looked at from some distance. */
+static void test_a_point(void **state)
+{
+    (void)state;
+    const double point[3] = {5, 6, 7};
+    struct camera camera;
+    renderer_default_camera(point, point, 640, 480, &camera);
+    double distance = 0;
+    for (int i = 0; i < 3; i++) {
+        assert_true(camera.target[i] == point[i]);
+        distance = hypot(distance, camera.eye[i] - camera.target[i]);
+    }
+    assert_true(fabs(distance - 1) < 1e-12);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_box_fills_the_picture),
+        cmocka_unit_test(test_a_point),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
