@@ -158,7 +158,7 @@ const struct command COMMAND_STATS = {
         "fresh private daemon: the device that this machine has. It gives up at once when the\n"
         "daemon ends meanwhile: the one that takes its place has numbers of its own.",
     .tables = TABLES,
-    .examples = "  sheen stats --server unix:/run/sheen.sock\n"
+    .examples = "  sheen stats --server unix:/run/sheen/sheen.sock\n"
                 "  sheen stats --json\n",
     .check = check,
     .run = run,

@@ -332,7 +332,7 @@ const struct command COMMAND_STREAM = {
     .examples = "  sheen stream hood.obj --frames 100\n"
                 "  sheen stream hood.obj --frames 100 --light-only --size 1920x1080\n"
                 "  sheen stream hood.obj --frames 100 --class batch --deadline 500\n"
-                "  sheen stream hood.obj --frames 360 --server unix:/run/sheen.sock --json\n",
+                "  sheen stream hood.obj --frames 360 --server unix:/run/sheen/sheen.sock --json\n",
     .takes_model = true,
     .check = check,
     .run = run,

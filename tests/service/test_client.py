@@ -10,7 +10,7 @@ import time
 import unittest
 
 import wire
-from daemon import CUBE, MODELS, SHEEN, SHEEND, Daemon
+from daemon import BUILD, CUBE, MODELS, SHEEN, SHEEND, Daemon
 
 FENDER = os.path.join(MODELS, "fender.obj")
 
@@ -207,6 +207,20 @@ class Client(unittest.TestCase):
                      "--json")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(len(json.loads(done.stdout)["frames"]), 5)
+
+    def test_readme_shares_a_daemon(self):
+        """Its block is pasted as it stands: the client must not come before the daemon."""
+        with open(os.path.join(MODELS, "..", "..", "README.md"), encoding="utf-8") as file:
+            block = re.search(r"To share one:\n\n((?:    .*\n)+)", file.read()).group(1)
+        for theirs, ours in (("build/", BUILD + "/"), ("/tmp/", self.folder + "/"),
+                             ("part.obj", FENDER), ("part.png", self.path("part.png"))):
+            self.assertIn(theirs, block)
+            block = block.replace(theirs, ours)
+        done = subprocess.run(["sh", "-ec", "trap 'kill $!' EXIT\n" + block], capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(os.path.exists(self.path("part.png")))
+        self.assertIn("requests", done.stdout)
 
     def test_bad_sizes(self):
         for size in ("0x0", "0x10", "100000x100000"):

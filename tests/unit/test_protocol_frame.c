@@ -81,9 +81,9 @@ static void good_addresses(void **state)
     (void)state;
     struct address address;
     char text[ADDRESS_TEXT_BYTES];
-    assert_true(address_parse(&address, "unix:/run/sheen.sock", text));
+    assert_true(address_parse(&address, "unix:/run/sheen/sheen.sock", text));
     assert_int_equal(address.kind, ADDRESS_UNIX);
-    assert_string_equal(address.path, "/run/sheen.sock");
+    assert_string_equal(address.path, "/run/sheen/sheen.sock");
     assert_true(address_parse(&address, "unix:a:b", text));
     assert_string_equal(address.path, "a:b");
     static const struct {
@@ -111,7 +111,7 @@ static void bad_addresses_say_why(void **state)
     static const struct {
         const char *text, *why;
     } bad[] = {{"", "none of"},
-               {"/run/sheen.sock", "none of"},
+               {"/run/sheen/sheen.sock", "none of"},
                {"udp:host:1", "none of"},
                {"unix:", "no path"},
                {"unix:a\nb", "control character"},
