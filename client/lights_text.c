@@ -23,8 +23,11 @@ const struct text_row TEXT_FAMILIES[] = {
 };
 
 const struct text_row TEXT_LIGHTS[] = {
-    {"rectangle", "centre, u and v are its middle and its edges; seen from both sides",
-     "--light rectangle:one-sided --light-center 0,0,3000 --light-u 4000,0,0 --light-v 0,4000,0"},
+    {"rectangle",
+     "centre, u and v are its middle and its edges; seen from both sides, one-sided\n"
+     "from where u x v points: here down, on a part in mm",
+     "--light rectangle:one-sided --light-center 0,0,3000 --light-u 20000,0,0 "
+     "--light-v 0,-20000,0"},
     {"plane", "the same without a border", "--light plane --pattern stripes:period=100"},
     {"tunnel", "a cylinder about the axis v through centre, u its radius; lines run along it",
      "--light tunnel --pattern stripes:count=24,duty=0.3"},

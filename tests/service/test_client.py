@@ -222,6 +222,17 @@ class Client(unittest.TestCase):
         self.assertTrue(os.path.exists(self.path("part.png")))
         self.assertIn("requests", done.stdout)
 
+    def test_example_lights_are_seen(self):
+        """What each shows is on the fender: another pattern makes another picture."""
+        lights = json.loads(sheen("lights", "--json").stdout)["lights"]
+        self.assertEqual(len(lights), 4)
+        for light in lights:
+            placed = light["example"].split(" --pattern ")[0].split()
+            pictures = {pixels_of(self.render("a.png", *placed, "--pattern", pattern, "--server",
+                                              self.daemon.unix)[1])
+                        for pattern in ("stripes", "circles")}
+            self.assertEqual(len(pictures), 2, light["name"])
+
     def test_bad_sizes(self):
         for size in ("0x0", "0x10", "100000x100000"):
             with self.subTest(size=size):
@@ -260,6 +271,16 @@ class Client(unittest.TestCase):
                     _, errors = client.communicate(timeout=30)
             self.assertEqual(client.returncode, 4, errors)
             self.assertFalse(os.path.exists(self.path("x.png")))
+
+
+def pixels_of(png):
+    """Compressed as they are, without the texts that say what made them."""
+    pixels, at = b"", 8
+    while at < len(png):
+        end = at + 12 + int.from_bytes(png[at:at + 4], "big")
+        pixels += png[at:end] if png[at + 4:at + 8] == b"IDAT" else b""
+        at = end
+    return pixels
 
 
 def relay(server, address, cut):
