@@ -132,7 +132,9 @@ const struct command COMMAND_RENDER = {
         "  sheen render hood.obj -o hood.png\n"
         "  sheen render hood.glb -o hood.png --size 1920x1080 --eye 3,-4,2 --target 0,0,0.5\n"
         "  sheen render hood.glb -o hood.png --pattern stripes:count=40,duty=0.3,bg=#202020\n"
-        "  sheen render hood.obj -o hood.exr --aov P,N,ptex --server tcp:render1:7410 --json\n",
+        "  sheen render hood.obj -o hood.exr --aov P,N,ptex --json\n"
+        "  sheen render hood.obj -o hood.png --server tls:render1:7410 --ca ours.pem "
+        "--token-file token\n",
     .takes_model = true,
     .check = check,
     .run = run,
