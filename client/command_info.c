@@ -103,7 +103,7 @@ static int run(const struct options *options)
         status = ask(&job, &info);
     progress_clear(&job.progress);
     if (!status && !options->quiet)
-        job_print_warnings(&job, options->model, info.warnings);
+        job_print_warnings(&job, info.warnings);
     if (!status && options->json) {
         struct json json = {.out = stdout};
         print_json(&json, &info);

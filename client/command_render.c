@@ -59,7 +59,7 @@ static void print_summary(struct job *job, const struct options *options,
                           const struct sheen_frame *frame, const struct sheen_model_info *info)
 {
     progress_clear(&job->progress);
-    job_print_warnings(job, options->model, info->warnings);
+    job_print_warnings(job, info->warnings);
     fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", ", options->output, frame->width_px,
             frame->height_px);
     if (info->faces)
@@ -69,13 +69,14 @@ static void print_summary(struct job *job, const struct options *options,
 
 /* What there is to say about the model. The frame is here by then and outlives a daemon that is
  * not: the info says that the rest is unknown, its counts are 0. */
-static void ask_about_model(struct job *job, struct sheen_model_info *info)
+static void ask_about_model(struct job *job, const char *model, struct sheen_model_info *info)
 {
     struct sheen_error error;
     if (sheen_query_model(job->session, job->model_id, &job->report, info, &error) == SHEEN_OK)
         return;
     *info = (struct sheen_model_info){0};
-    snprintf(info->warnings, sizeof(info->warnings), "its warnings are unknown: %s", error.text);
+    snprintf(info->warnings, sizeof(info->warnings), "%.1000s: its warnings are unknown: %s", model,
+             error.text);
 }
 
 static int run(const struct options *options)
@@ -94,7 +95,7 @@ static int run(const struct options *options)
         status = file_write(options->output, frame.file, frame.file_bytes, &job.error);
     /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
     if (!status)
-        ask_about_model(&job, &info);
+        ask_about_model(&job, options->model, &info);
     if (!status && !options->quiet)
         print_summary(&job, options, &frame, &info);
     if (!status && options->json) {

@@ -232,13 +232,13 @@ enum sheen_status job_finish_json(struct job *job, struct json *json)
     return status_set(&job->error, SHEEN_BAD_IMAGE, "standard output cannot be written");
 }
 
-void job_print_warnings(struct job *job, const char *model, const char *lines)
+void job_print_warnings(struct job *job, const char *lines)
 {
     progress_clear(&job->progress);
     while (*lines) {
         int length = (int)strcspn(lines, "\n");
         if (length > 0)
-            fprintf(stderr, "sheen: warning: %s: %.*s\n", model, length, lines);
+            fprintf(stderr, "sheen: warning: %.*s\n", length, lines);
         lines += length + (lines[length] == '\n');
     }
 }

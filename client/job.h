@@ -51,8 +51,8 @@ int job_finish(struct job *job, enum sheen_status status);
 /* Ends `json` on standard output; SHEEN_BAD_IMAGE when it cannot be written. */
 enum sheen_status job_finish_json(struct job *job, struct json *json);
 
-/* "sheen: warning: MODEL: LINE" for each line. */
-void job_print_warnings(struct job *job, const char *model, const char *lines);
+/* "sheen: warning: LINE" for each line; the lines name their file. */
+void job_print_warnings(struct job *job, const char *lines);
 
 /* Key class, and deadline_ms where there is one. */
 void job_json_schedule(struct json *json, const struct sheen_request *request);

@@ -233,6 +233,18 @@ class Client(unittest.TestCase):
                         for pattern in ("stripes", "circles")}
             self.assertEqual(len(pictures), 2, light["name"])
 
+    def test_warnings_name_the_file_once(self):
+        model = self.path("t.obj")
+        with open(model, "wb") as file:
+            file.write(CUBE + b"t scheme 0/0/1 loop\n")
+        for command in (("info", model), ("render", model, "-o", self.path("t.png"))):
+            done = sheen(*command, "--server", self.daemon.unix)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stderr.splitlines()[0],
+                             "sheen: warning: t.obj:15: t scheme is not read: the surface is drawn "
+                             "as if it were not there")
+            self.assertEqual(sheen(*command, "-q", "--server", self.daemon.unix).stderr, "")
+
     def test_bad_sizes(self):
         for size in ("0x0", "0x10", "100000x100000"):
             with self.subTest(size=size):
