@@ -30,6 +30,8 @@ static void test_creases(void **state)
                                                           "\"creaseSharpnesses\":[1,-2,3]")});
     expect_crease(&cage, 0, 0, 1, 1);
     expect_crease(&cage, 1, 1, 2, 0);
+    assert_string_equal(cage.warnings, "part.glb: mesh 0 primitive 0: creaseSharpnesses[1] is -2 "
+                                       "and counts as 0, as any other below 0");
     expect_crease(&cage, 2, 4, 1, 3);
     cage_finish(&cage);
     /* On the mesh, in an object of their own. */

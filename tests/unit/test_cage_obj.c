@@ -229,7 +229,7 @@ static void test_crease_tags(void **state)
                           "t crease 4/2/0 0 3 2 5 1 2\n"
                           "t crease 4/4/0 3 4 4 5 3 99 4 99\n"
                           "t crease 2/2/0 0 1 7 99\n"
-                          "t crease 2/1/0 1 2 -3\n");
+                          "t crease 2/1/0 1 2 0\n");
     assert_int_equal(cage.n_creases, 9);
     expect_crease(&cage, 0, 1, 4, 2.5f);
     expect_crease(&cage, 1, 0, 1, 10);
@@ -345,6 +345,20 @@ static void test_warnings(void **state)
         "part.obj:9: unknown keyword 'curv' passed over, and any others\n"
         "part.obj:12: t facevaryinginterpolateboundary is about textures and passed over\n"
         "part.obj:14: t vertexedit is not read: the surface is drawn as if it were not there");
+    cage_finish(&cage);
+}
+
+/* Once, at the first. */
+static void test_negative_sharpness(void **state)
+{
+    (void)state;
+    struct cage cage;
+    read_good(&cage, PAIR "t crease 2/1/0 0 1 0\nt crease 4/2/0 0 1 1 2 3 -0.5\n"
+                          "t corner 1/1/0 0 -7\n");
+    assert_string_equal(cage.warnings, "part.obj:10: t crease: sharpness -0.5 counts as 0, as "
+                                       "any other below 0");
+    assert_true(cage.crease[1].sharpness == 3 && cage.crease[2].sharpness == 0);
+    assert_true(cage.corner[0].sharpness == 0);
     cage_finish(&cage);
 }
 
@@ -516,12 +530,19 @@ static void test_a_million_faces(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_index_forms),     cmocka_unit_test(test_order),
-        cmocka_unit_test(test_lines),           cmocka_unit_test(test_long_line),
-        cmocka_unit_test(test_geometry_errors), cmocka_unit_test(test_bytes_that_are_no_text),
-        cmocka_unit_test(test_crease_tags),     cmocka_unit_test(test_other_tags),
-        cmocka_unit_test(test_tag_errors),      cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_own_models),      cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_index_forms),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_lines),
+        cmocka_unit_test(test_long_line),
+        cmocka_unit_test(test_geometry_errors),
+        cmocka_unit_test(test_bytes_that_are_no_text),
+        cmocka_unit_test(test_crease_tags),
+        cmocka_unit_test(test_other_tags),
+        cmocka_unit_test(test_tag_errors),
+        cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_negative_sharpness),
+        cmocka_unit_test(test_own_models),
+        cmocka_unit_test(test_shapes),
         cmocka_unit_test(test_a_million_faces),
     };
     return cmocka_run_group_tests_name("cage/obj", tests, NULL, NULL);

@@ -31,6 +31,7 @@ struct Reader {
     error *failure;
     bool has_scheme = false, has_boundary = false, has_triangle_rule = false;
     bool plain_triangles = false, skinned = false, morphed = false;
+    bool warned_negative = false; /* sharpness */
     size_t ngon_breaks = 0;
 
     [[noreturn]] void refuse(const char *format, ...) __attribute__((format(printf, 2, 3)));

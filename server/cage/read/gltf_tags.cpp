@@ -50,6 +50,12 @@ float tag_sharpness(Reader &reader, const Primitive &primitive, const Value::Arr
     double value = array[i].IsNumber() ? array[i].GetNumberAsDouble() : NAN;
     if (!std::isfinite(float(value)))
         reader.refuse("%s: %s[%zu] is not a finite number", primitive.where.c_str(), key, i);
+    if (value < 0 && !reader.warned_negative) {
+        reader.warned_negative = true;
+        cage_warn(&reader.builder->cage,
+                  "%s: %s: %s[%zu] is %g and counts as 0, as any other below 0", reader.name,
+                  primitive.where.c_str(), key, i, value);
+    }
     return value > 0 ? float(value) : 0;
 }
 

@@ -13,7 +13,7 @@ struct obj_reader {
     const char *name;
     locale_t c_locale;
     uint32_t line; /* where the current statement starts */
-    bool warned_keyword, warned_facevarying;
+    bool warned_keyword, warned_facevarying, warned_negative;
     struct error *error;
 };
 

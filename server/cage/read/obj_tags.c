@@ -63,7 +63,7 @@ static bool read_index(struct obj_reader *reader, const struct tag *tag, uint32_
     return true;
 }
 
-/* As OpenSubdiv's reader does, negative sharpness is smooth. */
+/* To OpenSubdiv negative sharpness is smooth, too. */
 static bool read_sharpness(struct obj_reader *reader, const struct tag *tag, float *sharpness)
 {
     struct obj_field field;
@@ -74,6 +74,12 @@ static bool read_sharpness(struct obj_reader *reader, const struct tag *tag, flo
         !isfinite((float)value))
         return obj_fail(reader, "t %.*s: not a sharpness: '%.*s'", OBJ_SHOWN(&tag->name),
                         OBJ_SHOWN(&field));
+    if (value < 0 && !reader->warned_negative) {
+        reader->warned_negative = true;
+        cage_warn(&reader->builder->cage,
+                  "%s:%u: t %.*s: sharpness %g counts as 0, as any other below 0", reader->name,
+                  reader->line, OBJ_SHOWN(&tag->name), value);
+    }
     *sharpness = value > 0 ? (float)value : 0;
     return true;
 }
