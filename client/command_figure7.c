@@ -233,6 +233,8 @@ static int run(const struct options *options)
 static const struct option_row ROWS[] = {
     {"output", 'o', "FILE", "the picture, a PNG of three rows and three columns of panels",
      apply_output},
+    {"size", 0, "WxH", "of one panel, in pixels, from 1x1 to the device's limit (default: 480x360)",
+     options_apply_size},
     {0},
 };
 
@@ -246,7 +248,7 @@ const struct command COMMAND_FIGURE7 = {
         "Shows what polygons do to reflection lines: the cage subdivided 1, 2 and 3 times as a\n"
         "wireframe and as interpolated polygons, beside the exact surface. Prints the largest\n"
         "angle between the polygons' normals and the surface's, at pixels that show both on the\n"
-        "same face. --size is that of one panel (default here: 480x360).",
+        "same face.",
     .tables = TABLES,
     .examples = "  sheen figure7 hood.obj -o hood7.png\n"
                 "  sheen figure7 hood.glb -o hood7.png --size 800x600 --pattern stripes:count=80\n",

@@ -74,7 +74,8 @@ enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };
 extern const struct option_row OPTIONS_COMMON[];    /* server, device, quiet */
 extern const struct option_row OPTIONS_RECONNECT[]; /* of commands that call job_resume() */
 extern const struct option_row OPTIONS_OUTPUT[];    /* json, help: of every command */
-extern const struct option_row OPTIONS_SCENE[];     /* size, camera, light, pattern, colours */
+extern const struct option_row OPTIONS_SIZE[];      /* of commands with no default of their own */
+extern const struct option_row OPTIONS_SCENE[];     /* camera, light, pattern, colours */
 extern const struct option_row OPTIONS_SURFACE[];   /* surface, show, show-range */
 extern const struct option_row OPTIONS_SCHEDULE[];  /* class, deadline */
 
@@ -84,6 +85,9 @@ enum options_result options_parse(const struct command *command, int argc, char 
                                   struct options *options, char why[static OPTIONS_WHY_BYTES]);
 
 void options_help(const struct command *command, FILE *out);
+
+/* Of an option_row: --size. */
+bool options_apply_size(struct options *options, const char *value, char *why);
 
 /* The check of commands that take OPTIONS_SCENE: camera and light are given whole or not at all. */
 bool options_check_scene(struct options *options, char *why);

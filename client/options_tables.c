@@ -86,7 +86,7 @@ static bool apply_reconnect(struct options *options, const char *value, char *wh
            options_refuse(why, "must be whole seconds from 0 to %u", MAX_RECONNECT_S);
 }
 
-static bool apply_size(struct options *options, const char *value, char *why)
+bool options_apply_size(struct options *options, const char *value, char *why)
 {
     options->given |= GIVEN_SIZE;
     return value_size(value, &options->request.width_px, &options->request.height_px) ||
@@ -300,8 +300,13 @@ const struct option_row OPTIONS_OUTPUT[] = {
     {0},
 };
 
+const struct option_row OPTIONS_SIZE[] = {
+    {"size", 0, "WxH", "pixels, from 1x1 to the device's limit (default: 1280x720)",
+     options_apply_size},
+    {0},
+};
+
 const struct option_row OPTIONS_SCENE[] = {
-    {"size", 0, "WxH", "pixels, from 1x1 to the device's limit (default: 1280x720)", apply_size},
     {"eye", 0, "X,Y,Z",
      "where the camera stands, in the model's units; with --target\n"
      "(default: a camera that frames the model)",

@@ -396,6 +396,33 @@ static void help_shows_every_option(void **state)
     }
 }
 
+/* The size that --help says is the one that a command takes without --size. */
+static void help_says_its_own_default_size(void **state)
+{
+    (void)state;
+    static const struct {
+        const struct command *command;
+        const char *line;
+    } cases[] = {{&COMMAND_RENDER, "m.obj -o a.png"},
+                 {&COMMAND_STREAM, "m.obj --frames 1"},
+                 {&COMMAND_FIGURE7, "m.obj -o a.png"}};
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct options options;
+        char why[OPTIONS_WHY_BYTES], wanted[40], *text = NULL;
+        size_t size = 0;
+        assert_int_equal(parse(cases[i].command, cases[i].line, &options, why), OPTIONS_RUN);
+        snprintf(wanted, sizeof(wanted), "(default: %ux%u)", options.request.width_px,
+                 options.request.height_px);
+        FILE *out = open_memstream(&text, &size);
+        options_help(cases[i].command, out);
+        fclose(out);
+        const char *row = strstr(text, "--size WxH"), *end = strchr(row, '\n');
+        assert_memory_equal(end - strlen(wanted), wanted, strlen(wanted));
+        assert_null(strstr(end, "--size WxH"));
+        free(text);
+    }
+}
+
 static void json_is_json(void **state)
 {
     (void)state;
@@ -447,6 +474,7 @@ int main(void)
         cmocka_unit_test(bad_command_lines_name_the_option),
         cmocka_unit_test(the_environment_names_a_server),
         cmocka_unit_test(help_shows_every_option),
+        cmocka_unit_test(help_says_its_own_default_size),
         cmocka_unit_test(json_is_json),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
