@@ -5,9 +5,16 @@
 #include "client/commands.h"
 #include "client/job.h"
 
+/* What rates are counted over: of a daemon that has just started, whose one request would look like
+ * a thousand a second, a second. */
+static double window_s(const struct sheen_stats *stats)
+{
+    return stats->window_us < 1000000 ? 1 : (double)stats->window_us / 1e6;
+}
+
 static double per_second(const struct sheen_stats *stats, uint64_t n)
 {
-    return stats->window_us ? (double)n * 1e6 / (double)stats->window_us : 0;
+    return (double)n / window_s(stats);
 }
 
 static void json_times(struct json *json, const char *key, const struct sheen_times *times)
@@ -107,7 +114,7 @@ static void print_table(const struct sheen_stats *stats)
            stats->sent_bytes);
     printf("%-10s %.1f requests/s, %.1f frames/s, %.0f bytes/s over the last %.0f s\n", "rates",
            per_second(stats, stats->window_requests), per_second(stats, stats->window_frames),
-           per_second(stats, stats->window_sent_bytes), (double)stats->window_us / 1e6);
+           per_second(stats, stats->window_sent_bytes), window_s(stats));
     printf("%-12s %10s %10s %10s %10s %10s\n", "ms of class", "frames", "frames/s", "p50", "p95",
            "p99");
     print_latency("interactive", stats, &stats->interactive);
@@ -152,11 +159,13 @@ const struct command COMMAND_STATS = {
     .name = "stats",
     .arguments = "[option]...",
     .summary =
-        "Says what a daemon is doing: how much, how fast. Of the last minute: rates, percentiles\n"
-        "of each stage, and by class those of a frame's way from the request's last byte to the\n"
-        "answer's first; and the mean of the last 64 frames. Without a server it tells of a\n"
-        "fresh private daemon: the device that this machine has. It gives up at once when the\n"
-        "daemon ends meanwhile: the one that takes its place has numbers of its own.",
+        "Says what a daemon is doing: how much, how fast. Of the last minute: rates (over a "
+        "second\n"
+        "at least), percentiles of each stage, and by class those of a frame's way from the\n"
+        "request's last byte to the answer's first; and the mean of the last 64 frames. Without a\n"
+        "server it tells of a fresh private daemon: the device that this machine has. It gives up\n"
+        "at once when the daemon ends meanwhile: the one that takes its place has numbers of its\n"
+        "own.",
     .tables = TABLES,
     .examples = "  sheen stats --server unix:/run/sheen/sheen.sock\n"
                 "  sheen stats --json\n",
