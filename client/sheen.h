@@ -178,14 +178,15 @@ enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t
 
 /* ---- frames ---- */
 
-/* Bits. Floats are NaN where nothing is hit. */
+/* Bits. Floats are NaN where nothing is hit, but ptex u and v and coverage, which are 0. */
 enum sheen_plane {
-    SHEEN_COLOUR = 1,        /* uint8_t[4] RGBA, straight alpha */
+    SHEEN_COLOUR = 1,        /* uint8_t[4] RGBA as displayed (sRGB), straight alpha */
     SHEEN_POSITION = 2,      /* float[3] */
     SHEEN_NORMAL = 4,        /* float[3], unit, along the face winding */
     SHEEN_PTEX = 8,          /* uint32_t face (0xffffffff: none), float u, float v */
     SHEEN_LIGHT = 16,        /* float s, t on the first light; NaN where it is not met, too */
-    SHEEN_CURVATURE = 32,    /* float k.min, k.max in 1/unit, signed against the normal */
+    SHEEN_CURVATURE = 32,    /* float k.min, k.max in 1/unit, signed against the normal: below
+                                0 where a body seen from outside is convex */
     SHEEN_LIGHT_CHANGE = 64, /* float ds/dx ds/dy dt/dx dt/dy by a pixel right and down; as LIGHT */
     SHEEN_COVERAGE = 128,    /* float share of the pixel that shows surface, 0 where none is; for
                                 the exact surface, filtered, only */
