@@ -48,6 +48,7 @@ static void print_json(struct json *json, const struct options *options, const s
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
     if (info->faces)
         json_uint(json, "faces", info->faces);
+    json_bool(json, "blank", frame->blank);
     job_json_times(json, &frame->times);
     job_json_schedule(json, &options->request);
     scene_json(json, &options->request, frame);
@@ -60,6 +61,10 @@ static void print_summary(struct job *job, const struct options *options,
 {
     progress_clear(&job->progress);
     job_print_warnings(job, info->warnings);
+    if (frame->blank)
+        fprintf(stderr,
+                "sheen: warning: no pixel shows the surface: see --eye, --target, --fov and "
+                "--ortho; without them a camera frames the model\n");
     fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", ", options->output, frame->width_px,
             frame->height_px);
     if (info->faces)

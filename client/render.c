@@ -199,6 +199,7 @@ static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
                                                                : SHEEN_PROJECTION_PERSPECTIVE,
                    .fov_deg = body->camera.fov_deg,
                    .ortho_height = body->camera.ortho_height},
+        .blank = body->blank,
         .times = times_from_message(&body->times),
         .software = body->software,
     };

@@ -362,6 +362,7 @@ struct sheen_frame {
     struct sheen_lines lines;
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
+    bool blank;        /* no pixel shows any of the model */
     double show_range; /* of false colour, as used; 0: none */
     bool has_colours;  /* the daemon says what it used: */
     float miss[4], empty[4], base[4];

@@ -36,6 +36,14 @@ void stage_gather(struct renderer *r)
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 
+bool gather_found_any(const struct renderer *r)
+{
+    GLuint workgroups = 0;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(r->target.groups, 0, sizeof workgroups, &workgroups);
+    return workgroups > 0;
+}
+
 void dispatch_groups(GLuint program, GLuint groups)
 {
     glUseProgram(program);

@@ -322,6 +322,8 @@ void raster_begin(GLuint framebuffer, const struct tile *tile);
  * target.restless. Planes that it writes must be cleared before: it leaves gaps. */
 bool stage_gather_init(struct renderer *renderer, struct error *error);
 void stage_gather(struct renderer *renderer);
+/* Has it found any, for the tile that was drawn last? Waits for the device. */
+bool gather_found_any(const struct renderer *renderer);
 void dispatch_groups(GLuint program, GLuint groups);
 
 /* Copies the planes asked for from the target into the frame: `tile`, which lies in `drawn`. */

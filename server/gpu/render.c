@@ -119,8 +119,10 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
                   : draw_exact(r, model, request, view, drawn, frame, error);
     if (!ok || !*is_whole)
         return ok;
-    return readback(r, request, view, drawn, tile, frame, error) &&
-           stage_clock_wait(r, &frame->times.readback_us);
+    if (!readback(r, request, view, drawn, tile, frame, error))
+        return false;
+    frame->shows_surface = frame->shows_surface || gather_found_any(r);
+    return stage_clock_wait(r, &frame->times.readback_us);
 }
 
 static uint32_t at_most(uint32_t value, uint32_t limit)

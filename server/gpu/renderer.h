@@ -83,6 +83,7 @@ struct frame {
     uint32_t width_px, height_px;
     void *plane[PLANE_COUNT]; /* indexed by bit number */
     struct frame_times times;
+    bool shows_surface;    /* false: no pixel shows any of the model */
     struct spares *spares; /* the renderer's: where the planes come from */
     struct canvas *canvas; /* the renderer's, between two steps; NULL once the frame is whole */
 };

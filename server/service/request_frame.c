@@ -189,6 +189,8 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .software = info->software,
         .has_show_range = request->render.show.has_range,
         .show_range = request->render.show.range,
+        .has_blank = request->is_blank,
+        .blank = request->is_blank,
         .has_miss = true,
         .miss = wire_from_colour(asked->miss),
         .has_empty = true,
@@ -325,6 +327,7 @@ static void frame_drawn(struct request *request)
     request->times.evaluate_us = times->evaluate_us;
     request->times.shade_us = times->shade_us;
     request->times.readback_us = times->readback_us;
+    request->is_blank = !request->frame.shows_surface;
     request->encode_start_us = loop_now_us();
     request->is_busy = true;
     if (request->render.show.kind == sheen_ShowKind_SHOW_LINES) {

@@ -45,6 +45,7 @@ struct request {
     uint64_t step_us; /* the GL thread's time */
     struct frame frame;
     sheen_Times times;
+    bool is_blank; /* no pixel shows any of the model */
     uint64_t encode_start_us;
     struct label label;
     struct renderer_polygons *polygons; /* until the device has them */

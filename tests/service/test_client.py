@@ -245,6 +245,22 @@ class Client(unittest.TestCase):
                              "as if it were not there")
             self.assertEqual(sheen(*command, "-q", "--server", self.daemon.unix).stderr, "")
 
+    def test_nothing_to_see(self):
+        """Said once, and not with -q; every way to draw tells."""
+        away = ("--eye", "0,0,5000", "--target", "0,0,9000", "--up", "0,1,0")
+        for surface in ("exact", "polygon:1", "wireframe:1"):
+            for size in ("320x240", "2000x1000"):
+                arguments = ("render", FENDER, "-o", self.path("a.png"), "--surface", surface,
+                             "--size", size, "--class", "batch", "--server", self.daemon.unix)
+                done = sheen(*arguments, *away, "--json")
+                self.assertRegex(done.stderr, "^sheen: warning: no pixel shows the surface: see --eye")
+                self.assertEqual(len(done.stderr.splitlines()), 2)
+                self.assertTrue(json.loads(done.stdout)["blank"])
+                self.assertEqual(sheen(*arguments, *away, "-q").stderr, "")
+                done = sheen(*arguments, "--json")
+                self.assertNotIn("warning", done.stderr)
+                self.assertFalse(json.loads(done.stdout)["blank"])
+
     def test_bad_sizes(self):
         for size in ("0x0", "0x10", "100000x100000"):
             with self.subTest(size=size):

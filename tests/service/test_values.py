@@ -12,6 +12,21 @@ WIDTH, HEIGHT = 64, 48
 
 
 class Values(DaemonCase):
+    def test_blank(self):
+        """A light-only change draws no surface anew and knows it all the same."""
+        def vec3(x, y, z):
+            return field(1, float(x)) + field(2, float(y)) + field(3, float(z))
+
+        away = field(4, field(1, vec3(0, 0, 5)) + field(2, vec3(0, 0, 9)) + field(3, vec3(0, 1, 0)))
+        with Client(self.daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            for camera, want in ((b"", [0]), (away, [1])):
+                for family in (0, 1):
+                    seq = client.ask(model, extra=camera + field(6, field(1, family)))
+                    fields = client.expect(wire.FRAME, seq)
+                    client.read_rest(seq, fields)
+                    self.assertEqual(fields.get(16, [0]), want)
+
     def test_where_nothing_is_hit(self):
         with Client(self.daemon.unix) as client:
             data = client.render(client.upload(CUBE, "cube.obj"), WIDTH, HEIGHT,
