@@ -37,6 +37,16 @@ bool is_doubtful(float front, float z)
     return front < z - 4.0 * pixel_units(z);
 }
 
+// Behind what lies on both sides of it by a pixel's depth: a crack may show a sheet too near for doubt.
+bool is_between(ivec2 p, float z)
+{
+    float behind = z - pixel_units(z);
+    for (int i = 0; i < 4; i += 2)
+        if (max(front_of(ndc_at(p + BESIDE[i])), front_of(ndc_at(p + BESIDE[i + 1]))) < behind)
+            return true;
+    return false;
+}
+
 // Where depths slope less than CALM by what stage 1 saw, nothing is doubtful that lies within STRAY of
 // what it saw: so the pixels of whole groups (gather.comp.glsl) need not ask their neighbours.
 const float CALM = 1.0, STRAY = 2.0;

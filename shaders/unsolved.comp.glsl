@@ -34,7 +34,8 @@ void main()
         if (other.found && (!best.found || other.hit.surface.s.z < best.hit.surface.s.z))
             best = other;
     }
-    bool is_settled = best.found && !is_doubtful(nearest_around(p), best.hit.surface.s.z);
+    float z = best.found ? best.hit.surface.s.z : 0.0;
+    bool is_settled = best.found && !is_doubtful(nearest_around(p), z) && !is_between(p, z);
     if (!around && !is_settled)
         LIST_ADD(unsolved, p, 64u)
     else if (best.found)
