@@ -9,6 +9,7 @@
 #include "server/gpu/mesh.h"
 #include "server/gpu/pieces.h"
 #include "server/gpu/renderer.h"
+#include "server/gpu/shade_programs.h"
 #include "server/gpu/view.h"
 
 /* How many buffer textures each table may be spread over (shaders/tables.glsl). */
@@ -154,18 +155,6 @@ struct stage_clock {
 
 enum { MAX_PROGRAM_SETS = 32 };
 
-/* What a program of stage 3 makes: the colours of all pixels, of all by one sample each, of those
- * listed; or the planes that go with them. */
-enum shaded {
-    SHADED_ALL,
-    SHADED_UNFILTERED,
-    SHADED_EDGES,
-    SHADED_TURNS,
-    SHADED_ROUNDED,
-    SHADED_PLANES,
-    SHADED_KINDS
-};
-
 struct renderer {
     struct egl egl;
     struct renderer_options options;
@@ -186,8 +175,7 @@ struct renderer {
     struct canvas_set *canvases; /* they stay where they are when the device is lost */
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
-    /* By line family, light, pattern, soft edges and pixels; 0 until first asked for. */
-    GLuint shade[LINES_ENVIRONMENT + 1][LIGHT_SPHERE + 1][PATTERN_DISTANCE + 1][2][SHADED_KINDS];
+    struct shade_programs shading;
     GLuint edges_find;
     GLuint view_buffer, light_buffer, piece_buffer;
     GLuint gather, doubt; /* programs */
@@ -197,6 +185,7 @@ struct renderer {
     GLuint grid_buffer; /* element indices of an instance of each grid */
     size_t grid_first[PIECE_GRIDS];
     GLuint blank_texture; /* stands in where a pattern has no image */
+    GLuint no_groups;     /* a buffer: the dispatch of nothing */
     uint64_t next_serial;
 };
 
@@ -270,7 +259,10 @@ bool edges_wanted(const struct frame_request *request);
 bool stage_polygons_begin(struct renderer *renderer, const struct tile *tile, struct error *error);
 bool stage_polygons(struct renderer *renderer, struct slice *slice, struct error *error);
 bool stage_shade_init(struct renderer *renderer, struct error *error);
-/* Compiles the pattern's program when it is asked for first. */
+/* Makes one of the programs that the frame takes and that are not there yet, or says that they are
+ * all there, for the target as it is: until the next call. */
+bool stage_shade_prepare(struct renderer *renderer, const struct frame_request *request,
+                         bool *is_ready, struct error *error);
 bool stage_shade(struct renderer *renderer, const struct frame_request *request,
                  struct error *error);
 

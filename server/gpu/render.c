@@ -211,7 +211,7 @@ bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *f
                     struct error *error)
 {
     *frame = (struct frame){0};
-    work->x = work->y = 0;
+    work->x = work->y = work->n_programs = 0;
     if (!request_check(&r->info, work->request, error) ||
         !frame_init(frame, work->request, r->options.spares, error))
         return false;
@@ -232,12 +232,27 @@ static bool upload_all(struct renderer *r, struct renderer_model *model,
     return ok;
 }
 
+/* Makes one of the programs that the next tile takes, where one is not there. Frames that take
+ * turns may take each other's away: one that has made as many as it can need gets all at once. */
+static bool prepare(struct renderer *r, struct frame_work *work, bool *is_ready,
+                    struct error *error)
+{
+    bool ok;
+    do {
+        ok = stage_shade_prepare(r, work->request, is_ready, error);
+        work->n_programs += !*is_ready;
+    } while (ok && !*is_ready && work->n_programs > MAX_FRAME_PROGRAMS);
+    return ok;
+}
+
+/* *next: FRAME_DONE where the tile is whole now. */
 static bool step(struct renderer *r, struct renderer_model *model, struct frame_work *work,
-                 struct frame *frame, bool *is_whole, struct error *error)
+                 struct frame *frame, enum frame_step *next, struct error *error)
 {
     const struct frame_request *request = work->request;
     struct view view;
     struct tile drawn, tile;
+    bool is_ready = false;
     if (!upload_all(r, model, request, error))
         return false;
     place_tile(work, &drawn, &tile);
@@ -253,12 +268,18 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
     bool ok = watch_check(&work->watch, error) &&
               target_reserve(&r->target, drawn.width, drawn.height, error) &&
               (is_of_polygons(work) || target_reserve_rounded(&r->target, error)) &&
-              render_tile(r, model, work, &view, &drawn, &tile, frame, is_whole, error);
-    if (ok && *is_whole && is_single(work))
+              prepare(r, work, &is_ready, error);
+    bool is_whole = false;
+    *next = FRAME_PROGRAM;
+    if (ok && !is_ready)
+        return !is_of_polygons(work) || canvas_set_aside(r, model, work, frame, error);
+    ok = ok && render_tile(r, model, work, &view, &drawn, &tile, frame, &is_whole, error);
+    *next = is_whole ? FRAME_DONE : FRAME_MORE;
+    if (ok && is_whole && is_single(work))
         keep(r, model, request);
     else
         r->kept.model_serial = 0;
-    if (ok && !*is_whole)
+    if (ok && !is_whole)
         return canvas_set_aside(r, model, work, frame, error);
     canvas_give_back(frame);
     return ok;
@@ -267,12 +288,13 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
 enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error)
 {
-    bool ready = renderer_ready(r, error), is_whole = false;
+    bool ready = renderer_ready(r, error);
+    enum frame_step next;
     if (ready && is_of_polygons(work) && !work->polygons &&
         (fault_at("gpu.polygons") ||
          !polygons_have(&r->polygons, model->serial, work->request->surface.level)))
         return FRAME_POLYGONS;
-    if (!ready || !step(r, model, work, frame, &is_whole, error)) {
+    if (!ready || !step(r, model, work, frame, &next, error)) {
         /* Whatever failed then, this is why. */
         if (renderer_check_lost(r))
             error_set(error, ERROR_GPU_LOST,
@@ -280,8 +302,8 @@ enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
         frame_finish(frame);
         return FRAME_FAILED;
     }
-    if (!is_whole)
-        return FRAME_MORE;
+    if (next != FRAME_DONE) /* the tile is not whole */
+        return next;
     work->x += work->tile_width;
     if (work->x >= work->request->width_px) {
         work->x = 0;
@@ -305,7 +327,7 @@ bool renderer_render(struct renderer *r, struct renderer_model *model,
                 renderer_polygons_create(model->tables, request->surface.level, &work.watch, error);
             next = polygons ? FRAME_MORE : FRAME_FAILED;
         }
-    } while (next == FRAME_MORE);
+    } while (next == FRAME_MORE || next == FRAME_PROGRAM);
     if (next == FRAME_FAILED)
         frame_finish(frame);
     renderer_polygons_destroy(polygons);

@@ -121,7 +121,7 @@ struct frame_watch {
 /* A frame in the making, one tile a step, so that the GL thread can turn to other frames in
  * between; of polygons a step is a part of a tile, and they are put on the device in several, too.
  * Fill in the first group and call renderer_begin(), then renderer_step() until it says something
- * else than FRAME_MORE or FRAME_POLYGONS. */
+ * else than FRAME_MORE, FRAME_PROGRAM or FRAME_POLYGONS. */
 struct frame_work {
     const struct frame_request *request; /* stays until the last step, as the model does */
     uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
@@ -132,6 +132,7 @@ struct frame_work {
     uint32_t x, y;                    /* of the next tile */
     unsigned stage;                   /* of polygons: what comes next of it */
     size_t part;                      /* and from where */
+    unsigned n_programs;              /* made for it so far */
 };
 
 /* So many frames of polygons may be under way, begun and neither whole nor given up; one more fails
@@ -140,6 +141,9 @@ enum { RENDERER_MAX_SLICED = 24 };
 
 enum frame_step {
     FRAME_MORE, /* steps are left */
+    /* No tile, but one of the programs that the frame takes was made for the device, which may take
+     * as long as several: go on. */
+    FRAME_PROGRAM,
     /* The device has no polygons for the request's surface, or no longer: set frame_work.polygons
      * and go on. Making them takes as long as many tiles. */
     FRAME_POLYGONS,
@@ -152,11 +156,11 @@ enum frame_step {
  * thread, also when the renderer has gone. */
 bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct frame *frame,
                     struct error *error);
-/* Draws the next tile, or the next part of one. A frame of one tile that differs from the last such
- * frame in light, pattern or colours only, on the same model, reuses the evaluated planes, whatever
- * was drawn in tiles meanwhile. Cut otherwise, a frame is the same but for single precision's
- * rounding: so a tile's size must depend on the request alone where equal requests shall give equal
- * bytes. */
+/* Draws the next tile, or the next part of one, or makes ready for it. A frame of one tile that
+ * differs from the last such frame in light, pattern or colours only, on the same model, reuses the
+ * evaluated planes, whatever was drawn in tiles meanwhile. Cut otherwise, a frame is the same but
+ * for single precision's rounding: so a tile's size must depend on the request alone where equal
+ * requests shall give equal bytes. */
 enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error);
 

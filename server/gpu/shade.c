@@ -2,9 +2,7 @@
 #include "server/gpu/gpu.h"
 
 #include <math.h>
-#include <stdio.h>
 
-#include "server/gpu/program.h"
 #include "server/limit/vec.h"
 
 static const double PI = 3.14159265358979323846;
@@ -27,50 +25,58 @@ static bool is_at_infinity(enum line_family family)
     return family == LINES_ISOPHOTE || family == LINES_ZEBRA || family == LINES_ENVIRONMENT;
 }
 
-static GLuint shade_program(struct renderer *r, const struct frame_request *request,
-                            const struct light *light, enum shaded which, struct error *error)
+/* What a software device makes a program anew for: an image whose texels are others, or which has a
+ * side that is a power of two. */
+static uint8_t picture_kind(const struct image *pixels)
 {
-#define COMMON                                                                                     \
-    "view.glsl", "list.glsl", "basis.glsl", "hit.glsl", "coverage.glsl", "lines.glsl",             \
-        "patterns.glsl"
-    static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
-    static const char *const edges[] = {COMMON,        "border.glsl",   "edges.glsl",
-                                        "pieces.glsl", "rounding.glsl", "edges_shade.comp.glsl",
-                                        NULL};
-    static const char *const turns[] = {COMMON,        "border.glsl",           "edges.glsl",
-                                        "pieces.glsl", "turns_shade.comp.glsl", NULL};
-    static const char *const rounded[] = {COMMON,        "border.glsl",  "edges.glsl",
-                                          "pieces.glsl", "rounded.glsl", "rounded_shade.comp.glsl",
-                                          NULL};
-    static const char *const planes[] = {COMMON, "groups.glsl", "shade_planes.comp.glsl", NULL};
-#undef COMMON
-    static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns, rounded, planes};
-    int family = request->lines.family, pattern = light->pattern.kind;
-    int kind = is_at_infinity(request->lines.family) ? 0 : (int)light->kind;
-    bool soft = light->pattern.soft > 0;
-    GLuint *program = &r->shade[family][kind][pattern][soft][which];
-    if (!*program) {
-        char defines[160];
-        snprintf(defines, sizeof defines,
-                 "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n%s%s", family, kind,
-                 pattern, soft ? "#define SOFT\n" : "",
-                 which == SHADED_UNFILTERED ? "#define UNFILTERED\n" : "");
-        *program = program_compute(defines, files[which], error);
-    }
-    return *program;
+    uint32_t width = pixels->width_px, height = pixels->height_px;
+    return (uint8_t)(pixels->is_float | !(width & (width - 1)) << 1 |
+                     !(height & (height - 1)) << 2 | (width == 1 && height == 1) << 3);
+}
+
+static struct shade_key key_of(const struct frame_request *request, const struct light *light,
+                               enum shaded which)
+{
+    enum line_family family = request->lines.family;
+    const struct pattern *pattern = &light->pattern;
+    const struct renderer_image *image = pattern->kind == PATTERN_IMAGE ? pattern->image : NULL;
+    return (struct shade_key){.family = (uint8_t)family,
+                              .light = is_at_infinity(family) ? 0 : (uint8_t)light->kind,
+                              .pattern = (uint8_t)pattern->kind,
+                              .soft = pattern->soft > 0,
+                              .picture = image ? picture_kind(image->pixels) : 0,
+                              .which = (uint8_t)which};
+}
+
+/* What each of the frame's lights takes, in the order of use. */
+static int kinds_of(const struct frame_request *request, enum shaded kinds[SHADED_KINDS])
+{
+    static const enum shaded closer[] = {SHADED_EDGES, SHADED_TURNS, SHADED_ROUNDED};
+    int n = 0;
+    kinds[n++] = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
+    for (size_t i = 0; edges_wanted(request) && i < sizeof closer / sizeof closer[0]; i++)
+        kinds[n++] = closer[i];
+    return n;
+}
+
+static bool planes_wanted(const struct frame_request *request)
+{
+    return request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE);
 }
 
 bool stage_shade_init(struct renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
+    static const GLuint nothing[3] = {0, 1, 1};
     static const struct frame_request usual;
-    static const enum shaded of_a_picture[] = {SHADED_ALL, SHADED_EDGES, SHADED_TURNS,
-                                               SHADED_ROUNDED};
-    for (size_t i = 0; i < sizeof of_a_picture / sizeof of_a_picture[0]; i++)
-        if (!shade_program(r, &usual, &usual.lights[0], of_a_picture[i], error))
+    enum shaded kinds[SHADED_KINDS];
+    for (int k = kinds_of(&usual, kinds); k-- > 0;)
+        if (!shade_programs_compile(&r->shading, key_of(&usual, &usual.lights[0], kinds[k]), error))
             return false;
     glCreateBuffers(1, &r->light_buffer);
     glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
+    glCreateBuffers(1, &r->no_groups);
+    glNamedBufferStorage(r->no_groups, sizeof nothing, nothing, 0);
     glCreateTextures(GL_TEXTURE_2D, 1, &r->blank_texture);
     glTextureStorage2D(r->blank_texture, 1, GL_RGBA8, 1, 1);
     glTextureSubImage2D(r->blank_texture, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
@@ -253,80 +259,130 @@ static void bind_picture(const struct renderer *r, const struct frame_request *r
                         rectangle || sphere ? GL_CLAMP_TO_EDGE : GL_REPEAT);
 }
 
-static void bind_planes(const struct target *target)
+static void bind_planes(const struct target *target, enum shaded which)
 {
     glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
     glBindImageTexture(3, target->colour, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
+    if (which == SHADED_PLANES) {
+        glBindImageTexture(4, target->light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+        glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+        glBindImageTexture(6, target->light_change, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    } else {
+        glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
+        glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+    }
+}
+
+/* Runs a program over nothing, with all that it will find when it runs over pixels: a software
+ * device makes its code then, which takes most of a compilation. */
+static void run_over_nothing(const struct renderer *r, const struct frame_request *request,
+                             const struct light *light, struct shade_program *program)
+{
+    bind_picture(r, request, light);
+    bind_planes(&r->target, (enum shaded)program->key.which);
+    glUseProgram(program->name);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->no_groups);
+    glDispatchComputeIndirect(0);
+    program->is_made = true;
+}
+
+bool stage_shade_prepare(struct renderer *r, const struct frame_request *request, bool *is_ready,
+                         struct error *error)
+{
+    const struct light *missing_light = NULL;
+    struct shade_key missing = {0};
+    enum shaded kinds[SHADED_KINDS];
+    int n_kinds = kinds_of(request, kinds);
+    shade_programs_begin(&r->shading);
+    /* The last one is the planes', of the foremost light. All are looked for, so that they stay. */
+    for (uint32_t i = 0; i < request->n_lights * (uint32_t)n_kinds + planes_wanted(request); i++) {
+        uint32_t of = i / (uint32_t)n_kinds;
+        bool is_planes = of == request->n_lights;
+        const struct light *light = &request->lights[is_planes ? 0 : of];
+        struct shade_key key =
+            key_of(request, light, is_planes ? SHADED_PLANES : kinds[i % (uint32_t)n_kinds]);
+        const struct shade_program *program = shade_programs_find(&r->shading, key);
+        if (program && program->is_made)
+            continue;
+        missing_light = light;
+        missing = key;
+    }
+    *is_ready = !missing_light;
+    if (*is_ready)
+        return true;
+    struct shade_program *program = shade_programs_find(&r->shading, missing);
+    if (!program)
+        program = shade_programs_compile(&r->shading, missing, error);
+    if (program)
+        run_over_nothing(r, request, missing_light, program);
+    return program;
 }
 
 /* After all covered pixels, those that stage_edges listed: their colours anew. */
-static void dispatch_listed(const struct target *target, GLuint program, GLuint list)
+static void dispatch_listed(GLuint program, GLuint list)
 {
-    glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
-    glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
     glUseProgram(program);
     glDispatchComputeIndirect(0);
 }
 
-/* Of the foremost light, whose block is in place. */
-static bool shade_planes(struct renderer *r, const struct frame_request *request,
-                         struct error *error)
+/* One that stage_shade_prepare() has made. */
+static GLuint program_of(struct renderer *r, const struct frame_request *request,
+                         const struct light *light, enum shaded which)
 {
-    if (!(request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE)))
-        return true;
-    GLuint program = shade_program(r, request, &request->lights[0], SHADED_PLANES, error);
-    if (!program)
-        return false;
-    const struct target *target = &r->target;
-    glBindImageTexture(4, target->light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-    glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
-    glBindImageTexture(6, target->light_change, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-    dispatch_groups(program, target->groups);
-    return true;
+    return shade_programs_find(&r->shading, key_of(request, light, which))->name;
 }
 
-static bool shade_light(struct renderer *r, const struct frame_request *request, uint32_t i,
-                        struct error *error)
+/* Of the foremost light, whose block is in place. */
+static void shade_planes(struct renderer *r, const struct frame_request *request)
+{
+    bind_planes(&r->target, SHADED_PLANES);
+    dispatch_groups(program_of(r, request, &request->lights[0], SHADED_PLANES), r->target.groups);
+}
+
+/* The pixels that are listed, by how they are shaded. */
+static void shade_listed(struct renderer *r, const struct frame_request *request,
+                         const struct light *light)
+{
+    GLuint rounded = program_of(r, request, light, SHADED_ROUNDED);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_COMMAND_BARRIER_BIT);
+    dispatch_listed(program_of(r, request, light, SHADED_EDGES), r->target.edges);
+    dispatch_listed(program_of(r, request, light, SHADED_TURNS), r->target.turns);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
+    glProgramUniform1ui(rounded, glGetUniformLocation(rounded, "max_rounded"),
+                        r->target.max_rounded);
+    dispatch_listed(rounded, r->target.rounded);
+}
+
+static void shade_light(struct renderer *r, const struct frame_request *request, uint32_t i)
 {
     const struct light *light = &request->lights[i];
-    bool closer = edges_wanted(request);
-    GLuint all = shade_program(r, request, light,
-                               request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL, error);
-    GLuint edges = all && closer ? shade_program(r, request, light, SHADED_EDGES, error) : 0;
-    GLuint turns = edges ? shade_program(r, request, light, SHADED_TURNS, error) : 0;
-    GLuint rounded = turns ? shade_program(r, request, light, SHADED_ROUNDED, error) : 0;
-    if (!all || (closer && !rounded))
-        return false;
+    enum shaded all = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
     struct light_block block;
     fill_block(&block, request, i);
     glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
     bind_picture(r, request, light);
-    bind_planes(&r->target);
+    bind_planes(&r->target, all);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    dispatch_groups(all, r->target.groups);
-    if (closer) {
-        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                        GL_COMMAND_BARRIER_BIT);
-        dispatch_listed(&r->target, edges, r->target.edges);
-        dispatch_listed(&r->target, turns, r->target.turns);
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
-        glProgramUniform1ui(rounded, glGetUniformLocation(rounded, "max_rounded"),
-                            r->target.max_rounded);
-        dispatch_listed(&r->target, rounded, r->target.rounded);
-    }
-    return true;
+    dispatch_groups(program_of(r, request, light, all), r->target.groups);
+    if (edges_wanted(request))
+        shade_listed(r, request, light);
 }
 
 bool stage_shade(struct renderer *r, const struct frame_request *request, struct error *error)
 {
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
     clear_planes(r, request);
-    for (uint32_t i = request->n_lights; i-- > 0;)
-        if (!watch_check(&r->watch, error) || !shade_light(r, request, i, error))
+    for (uint32_t i = request->n_lights; i-- > 0;) {
+        if (!watch_check(&r->watch, error))
             return false;
-    return shade_planes(r, request, error);
+        shade_light(r, request, i);
+    }
+    if (planes_wanted(request))
+        shade_planes(r, request);
+    return true;
 }

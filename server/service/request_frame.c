@@ -369,7 +369,7 @@ static void step_done(struct work *work)
     struct session_host *host = request->host;
     request->is_busy = false;
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
-                      request->step == FRAME_MORE);
+                      request->step == FRAME_MORE || request->step == FRAME_PROGRAM);
     if (request->step == FRAME_MORE || request->step == FRAME_DONE) {
         note_polygons(request);
         costs_learn(&host->costs, request->cost_key, next_tile_px(request), request->step_us);

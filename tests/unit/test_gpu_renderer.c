@@ -220,6 +220,17 @@ static void test_tiles(void **state)
     scene_finish(&scene);
 }
 
+/* The next tile, and whatever has to be made ready for it. */
+static enum frame_step draw_tile(struct renderer *renderer, struct renderer_model *model,
+                                 struct frame_work *work, struct frame *frame, struct error *error)
+{
+    enum frame_step step;
+    do
+        step = renderer_step(renderer, model, work, frame, error);
+    while (step == FRAME_PROGRAM);
+    return step;
+}
+
 static struct frame render_in_tiles(struct renderer *renderer, struct renderer_model *model,
                                     const struct frame_request *request, uint64_t tile_px,
                                     unsigned *n_steps)
@@ -231,7 +242,7 @@ static struct frame render_in_tiles(struct renderer *renderer, struct renderer_m
     if (!renderer_begin(renderer, &work, &frame, &error))
         fail_msg("%s", error.text);
     for (*n_steps = 0; step == FRAME_MORE; ++*n_steps)
-        step = renderer_step(renderer, model, &work, &frame, &error);
+        step = draw_tile(renderer, model, &work, &frame, &error);
     if (step != FRAME_DONE)
         fail_msg("%s", error.text);
     return frame;
@@ -327,7 +338,7 @@ static void test_frames_interleave(void **state)
     struct frame_work work = {.request = &batch, .tile_px = 1};
     assert_true(renderer_begin(renderer, &work, &cut, &error));
     for (unsigned k = 0; k < n_steps; k++) {
-        enum frame_step step = renderer_step(renderer, large, &work, &cut, &error);
+        enum frame_step step = draw_tile(renderer, large, &work, &cut, &error);
         assert_int_equal(step, k + 1 < n_steps ? FRAME_MORE : FRAME_DONE);
         struct frame same = render(renderer, model, &moving);
         assert_int_equal(same.times.evaluate_us, 0);
@@ -367,6 +378,8 @@ static void test_abandoned(void **state)
     for (int k = 0; k < 2; k++) {
         struct frame_request request = request_for(&scene, 300, 300);
         struct countdown countdown = {k == 0 ? 4 : 2};
+        struct frame frame = render(renderer, model, &request); /* whose programs are there then */
+        frame_finish(&frame);
         if (k == 1) { /* asked at the start, and before the second of eight lights */
             request.n_lights = MAX_LIGHTS;
             for (int i = 1; i < MAX_LIGHTS; i++)
@@ -374,7 +387,6 @@ static void test_abandoned(void **state)
         }
         struct frame_work work = {
             .request = &request, .tile_px = k == 0 ? 1 : 0, .watch = {is_over, &countdown}};
-        struct frame frame;
         struct error error = {0};
         enum frame_step step = FRAME_MORE;
         assert_true(renderer_begin(renderer, &work, &frame, &error));
@@ -410,7 +422,7 @@ static void draw_polygons(struct renderer *renderer, struct renderer_model *mode
     struct renderer_polygons *polygons = NULL;
     request.surface = (struct surface){SURFACE_WIREFRAME, level};
     assert_true(renderer_begin(renderer, &work, &frame, &error));
-    enum frame_step step = renderer_step(renderer, model, &work, &frame, &error);
+    enum frame_step step = draw_tile(renderer, model, &work, &frame, &error);
     if (step == FRAME_POLYGONS) {
         ++*n_asked;
         polygons = renderer_polygons_create(&scene->tables, level, &work.watch, &error);
@@ -418,7 +430,7 @@ static void draw_polygons(struct renderer *renderer, struct renderer_model *mode
         step = FRAME_MORE;
     }
     while (step == FRAME_MORE)
-        step = renderer_step(renderer, model, &work, &frame, &error);
+        step = draw_tile(renderer, model, &work, &frame, &error);
     assert_int_equal(step, FRAME_DONE);
     assert_true(hits(&frame) > 100);
     renderer_polygons_destroy(polygons);

@@ -26,11 +26,14 @@ static void begin(struct scene *scene, struct drawn *drawn, const struct frame_r
     assert_true(renderer_begin(scene->renderer, &drawn->work, &drawn->frame, &drawn->error));
 }
 
-/* One step, and the polygons before it if they are asked for. */
+/* One step, with the programs and the polygons before it that are asked for. */
 static enum frame_step step(struct scene *scene, struct drawn *drawn)
 {
-    enum frame_step step =
-        renderer_step(scene->renderer, scene->model, &drawn->work, &drawn->frame, &drawn->error);
+    enum frame_step step;
+    do
+        step = renderer_step(scene->renderer, scene->model, &drawn->work, &drawn->frame,
+                             &drawn->error);
+    while (step == FRAME_PROGRAM);
     if (step == FRAME_POLYGONS) {
         assert_null(drawn->polygons);
         drawn->polygons = renderer_polygons_create(&scene->tables, drawn->request.surface.level,

@@ -1,0 +1,184 @@
+/* The programs that are kept on the device: made one a step, and no more of them than there is room
+ * for. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "server/cage/read/read.h"
+#include "server/gpu/gpu.h"
+
+struct scene {
+    struct cage cage;
+    struct limit_tables tables;
+    struct renderer *renderer;
+    struct renderer_model *model;
+    struct frame_request request;
+};
+
+static void scene_init(struct scene *scene)
+{
+    static const char tetrahedron[] = "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\n"
+                                      "f 1 3 2\nf 1 4 3\nf 1 2 4\nf 2 3 4\n";
+    struct error error = {0};
+    const struct renderer_options options = {.device = "auto"};
+    *scene = (struct scene){.request = {.width_px = 48,
+                                        .height_px = 40,
+                                        .n_lights = 1,
+                                        .lights = {{.pattern = {.count = 40,
+                                                                .duty = 0.5,
+                                                                .opacity = 1,
+                                                                .foreground = {1, 1, 1, 1}}}},
+                                        .planes = PLANE_COLOUR}};
+    assert_true(cage_read(&scene->cage, tetrahedron, sizeof tetrahedron - 1, "scene.obj", &error));
+    struct limit_plan *plan = limit_plan_create(&scene->cage, NULL, &error);
+    assert_non_null(plan);
+    assert_true(limit_tables_init(&scene->tables, plan, &error));
+    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, NULL, &error));
+    limit_plan_destroy(plan);
+    scene->renderer = renderer_create(&options, &error);
+    if (!scene->renderer)
+        fail_msg("%s", error.text);
+    scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
+    assert_non_null(scene->model);
+    const double *low = scene->tables.box_min, *high = scene->tables.box_max;
+    renderer_default_camera(low, high, 48, 40, &scene->request.camera);
+    renderer_default_light(low, high, &scene->request.camera, &scene->request.lights[0]);
+}
+
+static void scene_finish(struct scene *scene)
+{
+    renderer_model_destroy(scene->renderer, scene->model);
+    renderer_destroy(scene->renderer);
+    limit_tables_finish(&scene->tables);
+    cage_finish(&scene->cage);
+}
+
+static enum frame_step step(struct scene *scene, struct frame_work *work, struct frame *frame)
+{
+    struct error error = {0};
+    enum frame_step step = renderer_step(scene->renderer, scene->model, work, frame, &error);
+    if (step == FRAME_FAILED)
+        fail_msg("%s", error.text);
+    return step;
+}
+
+/* One frame of one tile. Returns how many steps made a program. */
+static unsigned draw(struct scene *scene, struct frame_work *work, struct frame *frame)
+{
+    struct error error = {0};
+    unsigned n_programs = 0;
+    enum frame_step next;
+    assert_true(renderer_begin(scene->renderer, work, frame, &error));
+    while ((next = step(scene, work, frame)) == FRAME_PROGRAM)
+        n_programs++;
+    assert_int_equal(next, FRAME_DONE);
+    return n_programs;
+}
+
+static unsigned draw_anew(struct scene *scene, const struct frame_request *request)
+{
+    struct frame frame;
+    struct frame_work work = {.request = request};
+    unsigned n_programs = draw(scene, &work, &frame);
+    frame_finish(&frame);
+    return n_programs;
+}
+
+/* Each program of a frame takes a step, once; other frames go in between. */
+static void test_one_a_step(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene);
+    struct frame_request usual = scene.request, other = scene.request;
+    assert_int_equal(draw_anew(&scene, &usual), 4);
+    assert_int_equal(draw_anew(&scene, &usual), 0);
+    other.lights[0].pattern.kind = PATTERN_CIRCLES;
+    other.planes |= PLANE_CURVATURE;
+    struct error error = {0};
+    struct frame frame, alone;
+    struct frame_work work = {.request = &other};
+    assert_true(renderer_begin(scene.renderer, &work, &frame, &error));
+    for (int k = 0; k < 5; k++) {
+        assert_int_equal(step(&scene, &work, &frame), FRAME_PROGRAM);
+        assert_int_equal(draw_anew(&scene, &usual), 0);
+    }
+    assert_int_equal(step(&scene, &work, &frame), FRAME_DONE);
+    struct frame_work again = {.request = &other};
+    assert_int_equal(draw(&scene, &again, &alone), 0);
+    assert_memory_equal(frame.plane[0], alone.plane[0], (size_t)48 * 40 * 4);
+    frame_finish(&frame);
+    frame_finish(&alone);
+    scene_finish(&scene);
+}
+
+/* Frames that take turns cannot keep each other from being drawn. */
+static void test_ends(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene);
+    struct error error = {0};
+    struct frame frame;
+    struct frame_work work = {.request = &scene.request};
+    assert_true(renderer_begin(scene.renderer, &work, &frame, &error));
+    work.n_programs = MAX_FRAME_PROGRAMS; /* others have taken all of them away */
+    assert_int_equal(step(&scene, &work, &frame), FRAME_DONE);
+    frame_finish(&frame);
+    scene_finish(&scene);
+}
+
+/* The i-th of many keys whose programs are quickly compiled. */
+static struct shade_key key(int i)
+{
+    return (struct shade_key){.family = (uint8_t)(i / 28),
+                              .light = (uint8_t)(i / 7 % 4),
+                              .pattern = (uint8_t)(i % 7),
+                              .which = SHADED_PLANES};
+}
+
+/* With no room left, the program goes that has not been asked for for longest. */
+static void test_room(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct error error = {0};
+    static struct shade_programs programs;
+    GLuint name[MAX_SHADE_PROGRAMS];
+    scene_init(&scene);
+    programs = (struct shade_programs){0};
+    shade_programs_begin(&programs);
+    for (int i = 0; i < MAX_SHADE_PROGRAMS; i++) {
+        assert_null(shade_programs_find(&programs, key(i)));
+        struct shade_program *made = shade_programs_compile(&programs, key(i), &error);
+        if (!made)
+            fail_msg("%s", error.text);
+        name[i] = made->name;
+        if (i == 2)
+            shade_programs_begin(&programs);
+    }
+    shade_programs_begin(&programs);
+    assert_int_equal(shade_programs_find(&programs, key(0))->name, name[0]);
+    assert_non_null(shade_programs_compile(&programs, key(MAX_SHADE_PROGRAMS), &error));
+    assert_non_null(shade_programs_compile(&programs, key(MAX_SHADE_PROGRAMS + 1), &error));
+    for (int i = 0; i < MAX_SHADE_PROGRAMS; i++) {
+        bool is_gone = i == 1 || i == 2;
+        assert_int_equal(glIsProgram(name[i]), !is_gone);
+        assert_int_equal(shade_programs_find(&programs, key(i)) == NULL, is_gone);
+    }
+    scene_finish(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_one_a_step),
+        cmocka_unit_test(test_ends),
+        cmocka_unit_test(test_room),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
