@@ -97,6 +97,10 @@ static void test_one_a_step(void **state)
     struct frame_request usual = scene.request, other = scene.request;
     assert_int_equal(draw_anew(&scene, &usual), 4);
     assert_int_equal(draw_anew(&scene, &usual), 0);
+    usual.width_px = usual.height_px =
+        64; /* a power of two, for which drivers have code of its own */
+    assert_int_equal(draw_anew(&scene, &usual), 0);
+    assert_int_equal(scene.renderer->target.width, 65);
     other.lights[0].pattern.kind = PATTERN_CIRCLES;
     other.planes |= PLANE_CURVATURE;
     struct error error = {0};
