@@ -27,6 +27,7 @@ struct table_programs {
     int point_banks, node_banks, adjacency_banks;
     bool ptex;
     GLuint visibility, evaluate, unsolved, rounded;
+    uint64_t used; /* by the clock of struct renderer */
 };
 
 /* Which context of the renderer an object's GL names are of. Those of an earlier one went with it:
@@ -153,7 +154,8 @@ struct stage_clock {
     uint64_t since_us;                   /* when the clock was last read */
 };
 
-enum { MAX_PROGRAM_SETS = 32 };
+/* Most models take one or two: their tables fill a bank each. */
+enum { MAX_PROGRAM_SETS = 4 };
 
 struct renderer {
     struct egl egl;
@@ -175,6 +177,7 @@ struct renderer {
     struct canvas_set *canvases; /* they stay where they are when the device is lost */
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
+    uint64_t programs_clock;
     struct shade_programs shading;
     GLuint edges_find;
     GLuint view_buffer, light_buffer, piece_buffer;
@@ -225,7 +228,9 @@ bool image_upload(struct renderer *renderer, struct renderer_image *image, struc
 /* Every bank of a set bound to texture units from `unit`; returns the next free unit. */
 int banks_bind(const struct bank_set *set, int unit);
 
-/* The programs for a model that is on the device, compiled when first asked for. */
+/* The programs for a model that is on the device, until the next call: compiled where they are not
+ * kept, in place of those not asked for for longest where there is no room. NULL with ERROR_DEVICE
+ * when the driver cannot. */
 const struct table_programs *programs_for(struct renderer *renderer,
                                           const struct renderer_model *model, bool ptex,
                                           struct error *error);

@@ -5,6 +5,27 @@
 
 #include "server/gpu/program.h"
 
+static void delete_all(const struct table_programs *programs)
+{
+    glDeleteProgram(programs->visibility);
+    glDeleteProgram(programs->evaluate);
+    glDeleteProgram(programs->unsolved);
+    glDeleteProgram(programs->rounded);
+}
+
+/* A free place, made free if need be. */
+static struct table_programs *make_room(struct renderer *r)
+{
+    if (r->n_programs < MAX_PROGRAM_SETS)
+        return &r->programs[r->n_programs++];
+    struct table_programs *oldest = &r->programs[0];
+    for (int i = 1; i < r->n_programs; i++)
+        if (r->programs[i].used < oldest->used)
+            oldest = &r->programs[i];
+    delete_all(oldest);
+    return oldest;
+}
+
 const struct table_programs *programs_for(struct renderer *r, const struct renderer_model *model,
                                           bool ptex, struct error *error)
 {
@@ -22,14 +43,12 @@ const struct table_programs *programs_for(struct renderer *r, const struct rende
                                           "rounded_solve.comp.glsl", NULL};
 #undef STAGE_2
     for (int i = 0; i < r->n_programs; i++) {
-        const struct table_programs *p = &r->programs[i];
+        struct table_programs *p = &r->programs[i];
         if (p->point_banks == point_banks && p->node_banks == node_banks &&
-            p->adjacency_banks == adjacency_banks && p->ptex == ptex)
+            p->adjacency_banks == adjacency_banks && p->ptex == ptex) {
+            p->used = ++r->programs_clock;
             return p;
-    }
-    if (r->n_programs == MAX_PROGRAM_SETS) {
-        error_set(error, ERROR_DEVICE, "models of too many different sizes at once");
-        return NULL;
+        }
     }
     char defines[256];
     snprintf(defines, sizeof defines,
@@ -39,21 +58,20 @@ const struct table_programs *programs_for(struct renderer *r, const struct rende
              point_banks, node_banks, adjacency_banks, r->info.max_texels,
              r->info.max_texels / 3 * 3, point_banks + node_banks + adjacency_banks,
              ptex ? "#define PTEX\n" : "");
-    struct table_programs *p = &r->programs[r->n_programs];
-    p->visibility = program_raster(defines, vertex, fragment, error);
-    p->evaluate = p->visibility ? program_compute(defines, evaluate, error) : 0;
-    p->unsolved = p->evaluate ? program_compute(defines, unsolved, error) : 0;
-    p->rounded = p->unsolved ? program_compute(defines, rounded, error) : 0;
-    if (!p->rounded) {
-        glDeleteProgram(p->visibility);
-        glDeleteProgram(p->evaluate);
-        glDeleteProgram(p->unsolved);
+    struct table_programs made = {.point_banks = point_banks,
+                                  .node_banks = node_banks,
+                                  .adjacency_banks = adjacency_banks,
+                                  .ptex = ptex,
+                                  .used = ++r->programs_clock};
+    made.visibility = program_raster(defines, vertex, fragment, error);
+    made.evaluate = made.visibility ? program_compute(defines, evaluate, error) : 0;
+    made.unsolved = made.evaluate ? program_compute(defines, unsolved, error) : 0;
+    made.rounded = made.unsolved ? program_compute(defines, rounded, error) : 0;
+    if (!made.rounded) {
+        delete_all(&made);
         return NULL;
     }
-    p->point_banks = point_banks;
-    p->node_banks = node_banks;
-    p->adjacency_banks = adjacency_banks;
-    p->ptex = ptex;
-    r->n_programs++;
+    struct table_programs *p = make_room(r);
+    *p = made;
     return p;
 }

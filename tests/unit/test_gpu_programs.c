@@ -136,6 +136,15 @@ static void test_ends(void **state)
     scene_finish(&scene);
 }
 
+/* Names may be another program's by now. */
+static int count_programs(void)
+{
+    int n = 0;
+    for (GLuint name = 1; name < 10000; name++)
+        n += glIsProgram(name);
+    return n;
+}
+
 /* The i-th of many keys whose programs are quickly compiled. */
 static struct shade_key key(int i)
 {
@@ -152,28 +161,50 @@ static void test_room(void **state)
     struct scene scene;
     struct error error = {0};
     static struct shade_programs programs;
-    GLuint name[MAX_SHADE_PROGRAMS];
     scene_init(&scene);
     programs = (struct shade_programs){0};
     shade_programs_begin(&programs);
     for (int i = 0; i < MAX_SHADE_PROGRAMS; i++) {
         assert_null(shade_programs_find(&programs, key(i)));
-        struct shade_program *made = shade_programs_compile(&programs, key(i), &error);
-        if (!made)
+        if (!shade_programs_compile(&programs, key(i), &error))
             fail_msg("%s", error.text);
-        name[i] = made->name;
         if (i == 2)
             shade_programs_begin(&programs);
     }
     shade_programs_begin(&programs);
-    assert_int_equal(shade_programs_find(&programs, key(0))->name, name[0]);
+    assert_non_null(shade_programs_find(&programs, key(0)));
+    int n = count_programs();
     assert_non_null(shade_programs_compile(&programs, key(MAX_SHADE_PROGRAMS), &error));
     assert_non_null(shade_programs_compile(&programs, key(MAX_SHADE_PROGRAMS + 1), &error));
-    for (int i = 0; i < MAX_SHADE_PROGRAMS; i++) {
-        bool is_gone = i == 1 || i == 2;
-        assert_int_equal(glIsProgram(name[i]), !is_gone);
-        assert_int_equal(shade_programs_find(&programs, key(i)) == NULL, is_gone);
+    for (int i = 0; i < MAX_SHADE_PROGRAMS + 2; i++)
+        assert_int_equal(shade_programs_find(&programs, key(i)) == NULL, i == 1 || i == 2);
+    assert_int_equal(count_programs(), n);
+    scene_finish(&scene);
+}
+
+/* Models of any number of different sizes are drawn: the programs asked for last are there. */
+static void test_table_sets(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct error error = {0};
+    struct renderer_model model = {.points.n = 1, .nodes.n = 1, .adjacency.n = 1};
+    scene_init(&scene);
+    GLuint first = programs_for(scene.renderer, &model, false, &error)->evaluate;
+    for (model.points.n = 2; model.points.n <= MAX_PROGRAM_SETS; model.points.n++)
+        assert_non_null(programs_for(scene.renderer, &model, false, &error));
+    model.points.n = 1;
+    assert_int_equal(programs_for(scene.renderer, &model, false, &error)->evaluate, first);
+    int n = count_programs();
+    for (int k = 1; k <= 2; k++) {
+        model.points.n = MAX_PROGRAM_SETS + k;
+        if (!programs_for(scene.renderer, &model, k == 1, &error))
+            fail_msg("%s", error.text);
     }
+    assert_int_equal(count_programs(), n);
+    model.points.n = 1; /* asked for later than the others */
+    assert_int_equal(programs_for(scene.renderer, &model, false, &error)->evaluate, first);
+    assert_int_equal(draw_anew(&scene, &scene.request), 4);
     scene_finish(&scene);
 }
 
@@ -183,6 +214,7 @@ int main(void)
         cmocka_unit_test(test_one_a_step),
         cmocka_unit_test(test_ends),
         cmocka_unit_test(test_room),
+        cmocka_unit_test(test_table_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
