@@ -272,7 +272,7 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
     bool is_whole = false;
     *next = FRAME_PROGRAM;
     if (ok && !is_ready)
-        return !is_of_polygons(work) || canvas_set_aside(r, model, work, frame, error);
+        return !frame->canvas || canvas_set_aside(r, model, work, frame, error);
     ok = ok && render_tile(r, model, work, &view, &drawn, &tile, frame, &is_whole, error);
     *next = is_whole ? FRAME_DONE : FRAME_MORE;
     if (ok && is_whole && is_single(work))
