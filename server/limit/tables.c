@@ -71,6 +71,12 @@ size_t limit_tables_bytes(const struct limit_tables *tables)
            tables->n_texels * sizeof *tables->texels;
 }
 
+size_t limit_tables_host_bytes(const struct limit_tables *tables)
+{
+    return limit_tables_bytes(tables) + tables->n_nodes * sizeof *tables->bound_first +
+           tables->n_bounds * sizeof *tables->bounds;
+}
+
 bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,
                        size_t last, const struct limit_watch *watch, struct error *error)
 {

@@ -8,6 +8,8 @@
 
 #define MAX_RANGES 256 /* even shares for many cores, and a progress bar that moves */
 #define MIN_FACES_PER_RANGE 16
+/* Of a model however small: its names, its buffers and their textures. */
+#define OVERHEAD_BYTES ((size_t)8192)
 
 struct model_build;
 
@@ -188,9 +190,11 @@ static void read_done(struct work *work)
     struct model_build *build = work->owner;
     const struct build_order *order = &build->order;
     if (build->ok) {
-        build->model->reserved_bytes = limit_tables_bytes(&build->model->tables);
-        build->ok = order->reserve(order->owner, build->model->reserved_bytes, &build->error) &&
-                    start_ranges(build);
+        const struct limit_tables *tables = &build->model->tables;
+        build->model->device_bytes = limit_tables_bytes(tables);
+        size_t bytes =
+            build->model->device_bytes + limit_tables_host_bytes(tables) + OVERHEAD_BYTES;
+        build->ok = order->reserve(order->owner, bytes, &build->error) && start_ranges(build);
     }
     if (!build->ok)
         end_build(build, false);

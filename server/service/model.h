@@ -15,7 +15,7 @@ struct model {
     struct cage_survey survey;
     size_t n_vertices, n_faces; /* of the cage */
     char *warnings;             /* lines, or NULL */
-    size_t reserved_bytes;      /* what order->reserve() was asked for */
+    size_t device_bytes;        /* of its tables on the device */
     uint64_t build_us;          /* reading, building and uploading */
     struct work destroy_work;
 };

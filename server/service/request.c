@@ -249,7 +249,7 @@ static void answer_query(struct request *request)
         .strip_patches = (uint32_t)tables->n_strip,
         .split_nodes = (uint32_t)tables->n_split,
         .hole_nodes = (uint32_t)tables->n_hole,
-        .table_bytes = model->reserved_bytes,
+        .table_bytes = model->device_bytes,
         .regular_bytes = node_bytes + LIMIT_PATCH_TEXELS * sizeof *tables->texels,
         .corner_bytes = node_bytes + LIMIT_CORNER_TEXELS(LIMIT_MAX_LEVELS) * sizeof *tables->texels,
         .tables_us = model->build_us,

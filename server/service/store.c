@@ -432,7 +432,7 @@ struct store_counts store_count(const struct store *store)
             continue;
         counts.models += asset->kind == ASSET_MODEL;
         counts.images += asset->kind == ASSET_IMAGE;
-        counts.model_bytes += asset->model ? asset->model->reserved_bytes : 0;
+        counts.model_bytes += asset->model ? asset->model->device_bytes : 0;
     }
     return counts;
 }

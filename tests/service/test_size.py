@@ -5,6 +5,7 @@ import wire
 from daemon import DaemonCase, grid
 
 LARGE = 200  # faces along an edge: 40,000
+MEMORY_BYTES, TABLE_BYTES = 23, 16  # fields of Stats and ModelInfo
 
 
 class Large(DaemonCase):
@@ -14,6 +15,21 @@ class Large(DaemonCase):
         colours = {frame.data[i:i + 4] for i in range(0, len(frame.data), 4)}
         self.assertEqual(len(frame.data), 320 * 240 * 4)
         self.assertGreater(len(colours), 16, "a picture of nothing")
+
+
+class Counted(DaemonCase):
+    """What a model takes of the budget: its tables on the device and those that it is drawn by."""
+
+    def test_both_copies_count(self):
+        with wire.Client(self.daemon.unix) as client:
+            before = client.stats()[MEMORY_BYTES][0]
+            model = client.upload(grid(LARGE), "large.obj")
+            client.render(model)
+            taken = client.stats()[MEMORY_BYTES][0] - before
+            tables = client.query(model)[TABLE_BYTES][0]
+        self.assertGreater(tables, 10 << 20)
+        self.assertGreater(taken, 2 * tables)
+        self.assertLess(taken, 2.3 * tables)
 
 
 class TooLarge(DaemonCase):
