@@ -95,16 +95,19 @@ bool message_hello_encode(uint32_t seq, const uint8_t model_id[static MODEL_ID_B
     return true;
 }
 
-static bool decode(const pb_msgdesc_t *fields, const uint8_t *bytes, size_t length, void *body)
+/* nanopb keeps what follows a zero byte in a text, where nobody would look. */
+static bool decode(uint8_t type, const uint8_t *bytes, size_t length, size_t prefix,
+                   const pb_msgdesc_t *fields, void *body)
 {
-    pb_istream_t stream = pb_istream_from_buffer(bytes, length);
-    return pb_decode(&stream, fields, body);
+    char fault[MESSAGE_TEXT_BYTES];
+    pb_istream_t stream = pb_istream_from_buffer(bytes + prefix, length - prefix);
+    return pb_decode(&stream, fields, body) && !message_find_fault(type, bytes, length, fault);
 }
 
 bool message_decode(uint8_t type, const uint8_t *bytes, size_t length, void *body)
 {
     const pb_msgdesc_t *fields = message_fields(type);
-    return fields && decode(fields, bytes, length, body);
+    return fields && decode(type, bytes, length, 0, fields, body);
 }
 
 bool message_hello_decode(const uint8_t *bytes, size_t length,
@@ -113,5 +116,5 @@ bool message_hello_decode(const uint8_t *bytes, size_t length,
     if (length < MODEL_ID_BYTES)
         return false;
     memcpy(model_id, bytes, MODEL_ID_BYTES);
-    return decode(sheen_Hello_fields, bytes + MODEL_ID_BYTES, length - MODEL_ID_BYTES, hello);
+    return decode(MESSAGE_HELLO, bytes, length, MODEL_ID_BYTES, sheen_Hello_fields, hello);
 }

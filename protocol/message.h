@@ -35,9 +35,10 @@ bool message_hello_decode(const uint8_t *bytes, size_t length,
                           uint8_t model_id[static MODEL_ID_BYTES], sheen_Hello *hello);
 
 /* Says why one of these two refused a body, in one line: the field that is over its bound, with the
- * bound, or the one that is missing, or that the body is not well-formed. Reads no further than
- * `length`, whatever the bytes are. */
-void message_find_fault(uint8_t type, const uint8_t *bytes, size_t length,
+ * bound, or the one that is missing, or the text with a zero byte in it; then true. False: the body
+ * has none of these, and the line says that it is not well-formed. Reads no further than `length`,
+ * whatever the bytes are. */
+bool message_find_fault(uint8_t type, const uint8_t *bytes, size_t length,
                         char text[static MESSAGE_TEXT_BYTES]);
 
 /* The schema of a type's struct; NULL for types without, and for HELLO. */

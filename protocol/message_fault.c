@@ -6,6 +6,7 @@
 #include <pb_decode.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 /* The schema's own names, which nanopb's descriptors leave out. Each list ends with tag 0. */
 struct field_name {
@@ -96,6 +97,17 @@ static bool fault_within(const struct part *part, const pb_field_iter_t *field,
     return find_fault(&inner, stream);
 }
 
+static bool has_nul(pb_istream_t *stream)
+{
+    pb_byte_t bytes[64];
+    while (stream->bytes_left > 0) {
+        size_t n = stream->bytes_left < sizeof bytes ? stream->bytes_left : sizeof bytes;
+        if (!pb_read(stream, bytes, n) || memchr(bytes, 0, n))
+            return true;
+    }
+    return false;
+}
+
 /* Of a string, bytes, a message, or numbers packed together. */
 static bool fault_in_bytes(const struct part *part, const pb_field_iter_t *field,
                            pb_istream_t *stream, uint32_t *count)
@@ -104,8 +116,10 @@ static bool fault_in_bytes(const struct part *part, const pb_field_iter_t *field
     switch (PB_LTYPE(field->type)) {
     case PB_LTYPE_STRING: /* whose 0 does not travel */
         ++*count;
-        return length >= size &&
-               fault_at(part, field, "has %zu bytes; it may have at most %zu", length, size - 1);
+        if (length >= size)
+            return fault_at(part, field, "has %zu bytes; it may have at most %zu", length,
+                            size - 1);
+        return has_nul(stream) && fault_at(part, field, "has a zero byte; texts have none");
     case PB_LTYPE_FIXED_LENGTH_BYTES:
         ++*count;
         return length != size &&
@@ -180,7 +194,7 @@ static bool find_fault(const struct part *part, pb_istream_t *stream)
     return end && fault_in_counts(part, counts);
 }
 
-void message_find_fault(uint8_t type, const uint8_t *bytes, size_t length,
+bool message_find_fault(uint8_t type, const uint8_t *bytes, size_t length,
                         char text[static MESSAGE_TEXT_BYTES])
 {
     bool is_hello = type == MESSAGE_HELLO;
@@ -188,7 +202,7 @@ void message_find_fault(uint8_t type, const uint8_t *bytes, size_t length,
     size_t prefix = is_hello ? MODEL_ID_BYTES : 0;
     snprintf(text, MESSAGE_TEXT_BYTES, "it is not well-formed");
     if (!whole.fields || length < prefix)
-        return;
+        return false;
     pb_istream_t stream = pb_istream_from_buffer(bytes + prefix, length - prefix);
-    find_fault(&whole, &stream);
+    return find_fault(&whole, &stream);
 }

@@ -63,6 +63,17 @@ static void faults_are_named(void **state)
     memcpy(bytes + MODEL_ID_BYTES, "\x08\x00\x12\x40", 4);
     assert_string_equal(fault_of(MESSAGE_HELLO, bytes, MODEL_ID_BYTES + 4 + 64),
                         "client has 64 bytes; it may have at most 63");
+    memcpy(bytes + MODEL_ID_BYTES,
+           "\x08\x00\x12\x03"
+           "a\0b",
+           7);
+    assert_string_equal(fault_of(MESSAGE_HELLO, bytes, MODEL_ID_BYTES + 7),
+                        "client has a zero byte; texts have none");
+    uint8_t id[MODEL_ID_BYTES];
+    sheen_Hello hello;
+    assert_false(message_hello_decode(bytes, MODEL_ID_BYTES + 7, id, &hello));
+    bytes[MODEL_ID_BYTES + 5] = 'c';
+    assert_true(message_hello_decode(bytes, MODEL_ID_BYTES + 7, id, &hello));
     assert_string_equal(fault_of(MESSAGE_HELLO, bytes, 31), NOT_WELL_FORMED);
     assert_string_equal(fault_of(MESSAGE_STATS_QUERY, bytes, 4), NOT_WELL_FORMED);
 }
