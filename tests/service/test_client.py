@@ -212,7 +212,7 @@ class Client(unittest.TestCase):
         """Its block is pasted as it stands: the client must not come before the daemon."""
         with open(os.path.join(MODELS, "..", "..", "README.md"), encoding="utf-8") as file:
             block = re.search(r"To share one:\n\n((?:    .*\n)+)", file.read()).group(1)
-        for theirs, ours in (("build/", BUILD + "/"), ("/tmp/", self.folder + "/"),
+        for theirs, ours in (("/tmp/", self.folder + "/"), (" build/", f" {BUILD}/"),
                              ("part.obj", FENDER), ("part.png", self.path("part.png"))):
             self.assertIn(theirs, block)
             block = block.replace(theirs, ours)

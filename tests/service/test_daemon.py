@@ -394,9 +394,9 @@ class Budget(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_least_recently_used_goes_first(self):
-        """Room for two sheets of about 1.6 MB of tables, not for three."""
+        """Room for two sheets of about 3.4 MB with their tables, not for three."""
         sheets = [grid(70) + f"# {i}\n".encode() for i in range(3)]
-        daemon = Daemon("--memory-budget", "4M")
+        daemon = Daemon("--memory-budget", "8M")
         with Client(daemon.unix) as client:
             ids = [client.upload(data, f"{i}.obj") for i, data in enumerate(sheets[:2])]
             for model in ids:
