@@ -146,6 +146,12 @@ const struct renderer_info *renderer_info(const struct renderer *r)
     return &r->info;
 }
 
+size_t renderer_image_bytes(const struct image *image)
+{
+    size_t texels = (size_t)image->width_px * image->height_px;
+    return (texels + texels / 3) * (image->is_float ? 8 : 4); /* RGBA16F or RGBA8 */
+}
+
 bool image_upload(struct renderer *r, struct renderer_image *image, struct error *error)
 {
     if (is_current(r, image->context))

@@ -106,6 +106,8 @@ struct renderer_model *renderer_model_create(struct renderer *renderer,
                                              struct error *error);
 void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model);
 
+/* What an image takes on the device, with all its smaller copies. Any thread. */
+size_t renderer_image_bytes(const struct image *image);
 /* Uploads an image, which must stay as tables do. */
 struct renderer_image *renderer_image_create(struct renderer *renderer, const struct image *image,
                                              struct error *error);

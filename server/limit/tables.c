@@ -40,7 +40,7 @@ bool limit_tables_init(struct limit_tables *tables, const struct limit_plan *pla
     tables->bounds = malloc((tables->n_bounds + 1) * sizeof *tables->bounds);
     if (!tables->nodes || !tables->adjacency || !tables->texels || !tables->bound_first ||
         !tables->bounds) {
-        size_t bytes = limit_tables_bytes(tables);
+        size_t bytes = limit_tables_host_bytes(tables);
         limit_tables_finish(tables);
         return error_set(error, ERROR_SERVER, "out of memory: the tables need %zu bytes", bytes);
     }

@@ -135,7 +135,7 @@ bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *pla
 
 /* Bytes that the GPU holds for these tables: nodes + adjacency + texels. */
 size_t limit_tables_bytes(const struct limit_tables *tables);
-/* Bytes of the tables themselves. */
+/* Bytes that they take in main memory, from limit_tables_init() on: the same and the bounds. */
 size_t limit_tables_host_bytes(const struct limit_tables *tables);
 
 #endif

@@ -51,7 +51,8 @@ static void decode_done(struct work *work)
     struct image_build *build = work->owner;
     const struct build_order *order = &build->order;
     if (build->ok) {
-        build->image->reserved_bytes = image_bytes(&build->image->pixels);
+        const struct image *pixels = &build->image->pixels;
+        build->image->reserved_bytes = image_bytes(pixels) + renderer_image_bytes(pixels);
         build->ok = order->reserve(order->owner, build->image->reserved_bytes, &build->error);
     }
     if (!build->ok) {

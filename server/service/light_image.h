@@ -7,7 +7,8 @@
 struct light_image {
     struct image pixels;        /* stay as long as `gpu` */
     struct renderer_image *gpu; /* for the GL thread only */
-    size_t reserved_bytes;      /* what order->reserve() was asked for: its texels */
+    size_t reserved_bytes;      /* what order->reserve() was asked for: its texels, in
+                                   memory and on the GPU */
     struct work destroy_work;
 };
 

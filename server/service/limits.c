@@ -25,7 +25,9 @@
 #define AT(member) offsetof(struct limits, member)
 
 const struct limits_row LIMITS[] = {
-    {"memory-budget", UNIT_BYTES, "most that files, models, images and frames may take together",
+    {"memory-budget", UNIT_BYTES,
+     "most that files, models, images and frames may take together, in main memory and\non the "
+     "device",
      LEAST_MEMORY, MOST_BYTES, 4 * GIB, AT(memory_budget)},
     {"peer-memory", UNIT_BYTES,
      "most that uploads under way and frames of one user (Unix socket) or address\nmay take",
