@@ -30,7 +30,9 @@ const struct limits_row LIMITS[] = {
      "device",
      LEAST_MEMORY, MOST_BYTES, 4 * GIB, AT(memory_budget)},
     {"peer-memory", UNIT_BYTES,
-     "most that uploads under way and frames of one user (Unix socket) or address\nmay take",
+     "most that uploads under way and frames of one user (Unix socket) or address\nmay take; "
+     "models and images that are stored are not in it: whoever holds more than\nan equal share of "
+     "the budget makes room first",
      LEAST_MEMORY, MOST_BYTES, 2 * GIB, AT(peer_memory)},
     {"spare-memory", UNIT_BYTES,
      "memory of sent frames that is kept for the next ones, at most, beside the budget;\n"

@@ -31,17 +31,18 @@ static bool fits_patient(const struct memory *memory, uint64_t bytes)
            memory->patient_bytes + bytes <= memory->limits->memory_budget / 2;
 }
 
-static bool take(struct memory *memory, struct peer *peer, bool is_patient, uint64_t bytes,
-                 struct error *error)
+static bool take(struct memory *memory, struct peer *peer, const uint8_t *asker, bool is_patient,
+                 uint64_t bytes, struct error *error)
 {
     if (is_patient && !fits_patient(memory, bytes))
         return false; /* there are others: later */
     if (!fits_peer(memory, peer, bytes))
         return refuse_peer(memory, peer, "a frame", bytes, error);
-    return store_reserve(memory->store, bytes, "a frame", ERROR_REQUEST, error);
+    return store_reserve(memory->store, asker, bytes, "a frame", ERROR_REQUEST, error);
 }
 
 enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
+                                       const uint8_t asker[static STORE_OWNER_BYTES],
                                        enum request_class request_class, uint64_t bytes,
                                        struct memory_charge **charge, struct error *error)
 {
@@ -51,7 +52,7 @@ enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
         error_set(error, ERROR_SERVER, "no memory for a frame: try again later");
         return MEMORY_FAILED;
     }
-    if (!take(memory, peer, is_patient, bytes, error)) {
+    if (!take(memory, peer, asker, is_patient, bytes, error)) {
         spares_give(memory->spares, made);
         return memory->frame_bytes > 0 ? MEMORY_LATER : MEMORY_FAILED;
     }
@@ -86,12 +87,13 @@ void memory_charge_release(void *owner)
     spares_give(charge->memory->spares, charge);
 }
 
-bool memory_charge_upload(struct memory *memory, struct peer *peer, uint64_t bytes,
+bool memory_charge_upload(struct memory *memory, struct peer *peer,
+                          const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
                           const char *name, enum error_kind permanent, struct error *error)
 {
     if (!fits_peer(memory, peer, bytes))
         return refuse_peer(memory, peer, name, bytes, error);
-    if (!store_reserve(memory->store, bytes, name, permanent, error))
+    if (!store_reserve(memory->store, asker, bytes, name, permanent, error))
         return false;
     peer->memory_bytes += bytes;
     return true;

@@ -28,17 +28,20 @@ enum memory_result {
     MEMORY_FAILED,
 };
 
-/* Charges what a frame takes. `bytes` is no more than limits->memory_budget and peer_memory. */
+/* Charges what a frame takes. `bytes` is no more than limits->memory_budget and peer_memory;
+ * `asker` as in store_reserve(). */
 enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
+                                       const uint8_t asker[static STORE_OWNER_BYTES],
                                        enum request_class request_class, uint64_t bytes,
                                        struct memory_charge **charge, struct error *error);
 /* It takes no more than this after all. */
 void memory_charge_shrink(struct memory_charge *charge, uint64_t bytes);
 void memory_charge_release(void *charge); /* NULL is safe */
 
-/* The same for the bytes of an upload as they come. `name` is the file's; `permanent` as in
- * store_reserve(). */
-bool memory_charge_upload(struct memory *memory, struct peer *peer, uint64_t bytes,
+/* The same for the bytes of an upload as they come. `name` is the file's; `asker` and
+ * `permanent` as in store_reserve(). */
+bool memory_charge_upload(struct memory *memory, struct peer *peer,
+                          const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
                           const char *name, enum error_kind permanent, struct error *error);
 /* They are gone, or the store's: then they stay charged to the budget. */
 void memory_release_upload(struct memory *memory, struct peer *peer, uint64_t bytes, bool stored);

@@ -17,6 +17,7 @@ struct load {
     struct work work;
     struct model_file_order order;
     char name[STORE_NAME_BYTES]; /* without folders */
+    uint8_t holder[HOLDER_ID_BYTES];
     int fd;
     uint8_t *bytes;
     size_t size;
@@ -96,8 +97,8 @@ static void load_done(struct work *work)
         error_set(&error, ERROR_SERVER, "%s: it could not be read to its end: try again",
                   load->name);
     } else {
-        ok = store_add(order->store, STORE_SHARED, ASSET_MODEL, load->sha256, load->name,
-                       load->bytes, load->size, &error);
+        ok = store_add(order->store, STORE_SHARED, load->holder, ASSET_MODEL, load->sha256,
+                       load->name, load->bytes, load->size, &error);
         load->bytes = NULL; /* the store's */
     }
     order->loaded(order->owner, ok ? load->sha256 : NULL, &error);
@@ -110,6 +111,7 @@ bool model_file_load(const struct model_file_order *order, struct error *error)
     if (!load)
         return error_set(error, ERROR_SERVER, "no memory to read a file");
     load->order = *order;
+    memcpy(load->holder, order->holder, sizeof load->holder);
     const char *slash = strrchr(order->name, '/');
     snprintf(load->name, sizeof load->name, "%s", slash ? slash + 1 : order->name);
     const char *wrong = open_file(load, order->name);
@@ -117,7 +119,8 @@ bool model_file_load(const struct model_file_order *order, struct error *error)
         log_event(LOG_INFO, "model file refused", log_text("file", order->name),
                   log_text("text", wrong));
         error_set(error, ERROR_MODEL, "no model file '%.200s' at this daemon", order->name);
-    } else if (store_reserve(order->store, load->size, load->name, ERROR_MODEL, error)) {
+    } else if (store_reserve(order->store, load->holder, load->size, load->name, ERROR_MODEL,
+                             error)) {
         load->work = (struct work){load_run, load_done, load, NULL};
         pool_submit(order->pool, &load->work, POOL_LATER);
         return true;

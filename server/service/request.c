@@ -284,6 +284,7 @@ static void load_file(struct request *request, const char *name)
         .folder_fd = host->models_fd,
         .name = name,
         .max_bytes = host->max_upload_bytes,
+        .holder = request->asker,
         .pool = host->pool,
         .store = host->store,
         .loaded = file_loaded,

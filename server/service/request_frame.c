@@ -109,7 +109,7 @@ static void start_polygons(struct request *request)
     uint32_t level = request->frame_request.surface.level;
     size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
     if (!store_charge_polygons(asset, level, &request->failure) ||
-        !store_reserve(request->host->store, bytes, asset->name, ERROR_REQUEST,
+        !store_reserve(request->host->store, request->asker, bytes, asset->name, ERROR_REQUEST,
                        &request->failure)) {
         request_fail(request, &request->failure);
         return;
@@ -394,8 +394,9 @@ static bool take_memory(struct request *request)
     struct session_host *host = request->host;
     if (request->charge)
         return true;
-    switch (memory_charge_frame(&host->memory, request->session->peer, request->entry.request_class,
-                                request->frame_bytes, &request->charge, &request->failure)) {
+    switch (memory_charge_frame(&host->memory, request->session->peer, request->asker,
+                                request->entry.request_class, request->frame_bytes,
+                                &request->charge, &request->failure)) {
     case MEMORY_CHARGED:
         return true;
     case MEMORY_LATER:

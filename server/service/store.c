@@ -14,6 +14,7 @@ struct store {
     size_t budget_bytes, used_bytes;
     uint32_t max_image_px;
     size_t n_assets;
+    struct holders holders;
     uint64_t n_hits, n_misses, n_evictions;
     unsigned n_building;
     const struct asset *building[STORE_MAX_BUILDS];
@@ -65,14 +66,27 @@ static void link_newest(struct store *store, struct asset *asset)
     store->newest = asset;
 }
 
+/* Bytes that have been reserved are the asset's now. */
+static void charge(struct asset *asset, size_t bytes)
+{
+    asset->charged_bytes += bytes;
+    asset->holder->held[HOLDING_BYTES] += bytes;
+}
+
+static void uncharge(struct asset *asset, size_t bytes)
+{
+    asset->charged_bytes -= bytes;
+    asset->holder->held[HOLDING_BYTES] -= bytes;
+    store_release(asset->store, bytes);
+}
+
 static void drop_file(struct asset *asset)
 {
     if (!asset->file)
         return;
     free(asset->file);
     asset->file = NULL;
-    asset->charged_bytes -= asset->file_bytes;
-    store_release(asset->store, asset->file_bytes);
+    uncharge(asset, asset->file_bytes);
 }
 
 static void asset_destroy(struct asset *asset)
@@ -85,7 +99,9 @@ static void asset_destroy(struct asset *asset)
     unlink_by_use(store, asset);
     store->n_assets--;
     drop_file(asset);
-    store_release(store, asset->charged_bytes);
+    uncharge(asset, asset->charged_bytes);
+    asset->holder->held[HOLDING_ASSETS]--;
+    holder_put(&store->holders, asset->holder);
     if (asset->model)
         model_destroy(asset->model, store->render_thread);
     if (asset->image)
@@ -107,29 +123,74 @@ static bool is_evictable(const struct asset *asset)
     return asset->users == 0 && asset->state != ASSET_BUILDING;
 }
 
-static bool evict_one(struct store *store)
+/* --- making room */
+
+/* What is wanted: `needed` bytes, or entries. */
+struct want {
+    enum holding what;
+    size_t needed;
+};
+
+static size_t all_of(const struct store *store, enum holding what)
 {
-    for (struct asset *asset = store->oldest; asset; asset = asset->newer) {
-        if (!is_evictable(asset))
+    return what == HOLDING_BYTES ? store->budget_bytes : STORE_MAX_ASSETS;
+}
+
+static bool is_there(const struct store *store, const struct want *want)
+{
+    size_t used = want->what == HOLDING_BYTES ? store->used_bytes : store->n_assets;
+    return want->needed <= all_of(store, want->what) - used;
+}
+
+static bool could_be_there(const struct store *store, const struct want *want)
+{
+    size_t used = want->what == HOLDING_BYTES ? store->used_bytes : store->n_assets;
+    size_t room = all_of(store, want->what) - used;
+    for (const struct asset *asset = store->oldest; asset && room < want->needed;
+         asset = asset->newer)
+        if (is_evictable(asset))
+            room += want->what == HOLDING_BYTES ? asset->charged_bytes : 1;
+    return room >= want->needed;
+}
+
+/* Of the holder's, or of all for NULL, what has not been used for longest, until there is room or
+ * he has no more than `keep` of it. */
+static void evict(struct store *store, const struct want *want, const struct holder *holder,
+                  size_t keep)
+{
+    for (struct asset *asset = store->oldest, *newer; asset && !is_there(store, want);
+         asset = newer) {
+        newer = asset->newer;
+        if (holder && holder->held[want->what] <= keep)
+            return;
+        if (!is_evictable(asset) || (holder && asset->holder != holder))
             continue;
         asset_destroy(asset);
         store->n_evictions++;
-        return true;
     }
-    return false;
 }
 
-/* Evicts only if that is enough. */
-static bool make_room(struct store *store, size_t bytes)
+/* Who wants more than an equal share makes room by what is his own; then those do who hold more
+ * than a share, the largest first; then whatever has not been used for longest goes. Evicts only if
+ * that is enough. */
+static bool make_room(struct store *store, const uint8_t *asker, const struct want *want)
 {
-    size_t room = store->budget_bytes - store->used_bytes, evictable = 0;
-    for (const struct asset *asset = store->oldest; asset && room + evictable < bytes;
-         asset = asset->newer)
-        evictable += is_evictable(asset) ? asset->charged_bytes : 0;
-    if (room + evictable < bytes)
+    if (is_there(store, want))
+        return true;
+    if (!could_be_there(store, want))
         return false;
-    while (bytes > store->budget_bytes - store->used_bytes && evict_one(store))
-        ;
+    struct holder *own = holder_find(&store->holders, asker), *other;
+    size_t share = all_of(store, want->what) / (store->holders.n + !own);
+    if (own && own->held[want->what] + want->needed > share)
+        evict(store, want, own, 0);
+    holder_put(&store->holders, own);
+    holders_begin(&store->holders);
+    while (!is_there(store, want) && (other = holders_next(&store->holders, want->what, share))) {
+        other->references++; /* his last asset may go */
+        evict(store, want, other, share);
+        holder_put(&store->holders, other);
+    }
+    evict(store, want, NULL, 0);
     return true;
 }
 
@@ -165,15 +226,16 @@ void store_share(struct asset *asset)
         memcpy(asset->owner, STORE_SHARED, sizeof asset->owner);
 }
 
-bool store_reserve(struct store *store, size_t bytes, const char *what, enum error_kind permanent,
-                   struct error *error)
+bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES], size_t bytes,
+                   const char *what, enum error_kind permanent, struct error *error)
 {
+    const struct want want = {HOLDING_BYTES, bytes};
     if (bytes > store->budget_bytes)
         return error_set(error, permanent,
                          "%s needs %zu bytes and the daemon's memory budget is %zu: start sheend "
                          "with a larger --memory-budget",
                          what, bytes, store->budget_bytes);
-    if (bytes > store->budget_bytes - store->used_bytes && !make_room(store, bytes))
+    if (!make_room(store, asker, &want))
         return error_set(error, ERROR_SERVER,
                          "%s needs %zu bytes; of the daemon's memory budget of %zu, %zu are in use "
                          "now: try again later",
@@ -195,20 +257,39 @@ static void take_file(struct asset *asset, const char *name, uint8_t *file, size
     asset->state = ASSET_STORED;
     asset->file = file;
     asset->file_bytes = file_bytes;
-    asset->charged_bytes += file_bytes;
+    charge(asset, file_bytes);
+}
+
+/* An entry without a file. NULL when there is no room for another, or no memory. */
+static struct asset *add_entry(struct store *store, const uint8_t *holder)
+{
+    static const struct want one = {HOLDING_ASSETS, 1};
+    if (!make_room(store, holder, &one))
+        return NULL;
+    struct asset *asset = calloc(1, sizeof *asset);
+    if (asset && !(asset->holder = holder_get(&store->holders, holder))) {
+        free(asset);
+        return NULL;
+    }
+    if (asset) {
+        asset->store = store;
+        asset->holder->held[HOLDING_ASSETS]++;
+    }
+    return asset;
 }
 
 bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
-               enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES], const char *name,
-               uint8_t *file, size_t file_bytes, struct error *error)
+               const uint8_t holder[static HOLDER_ID_BYTES], enum asset_kind kind,
+               const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
+               size_t file_bytes, struct error *error)
 {
     struct asset *asset = NULL, *known = find_owned(store, owner, kind, sha256);
     if (known && known->state != ASSET_BUILDING && !store_is_known_as(known, name)) {
         take_file(known, name, file, file_bytes);
         return true;
     }
-    if (!known && (store->n_assets < STORE_MAX_ASSETS || evict_one(store)))
-        asset = calloc(1, sizeof *asset);
+    if (!known)
+        asset = add_entry(store, holder);
     if (!asset) {
         free(file);
         store_release(store, file_bytes);
@@ -216,7 +297,6 @@ bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES
                                   "%s: no room for another model or image: try again later", name);
     }
     asset->kind = kind;
-    asset->store = store;
     memcpy(asset->sha256, sha256, MODEL_ID_BYTES);
     memcpy(asset->owner, owner, sizeof asset->owner);
     take_file(asset, name, file, file_bytes);
@@ -252,8 +332,7 @@ static void build_ended(struct asset *asset, const struct error *failure)
     } else {
         /* What the file causes stays so; what the moment causes may pass. */
         bool bad_file = failure->kind == ERROR_MODEL || failure->kind == ERROR_IMAGE;
-        store_release(asset->store, asset->charged_bytes - asset->file_bytes);
-        asset->charged_bytes = asset->file_bytes;
+        uncharge(asset, asset->charged_bytes - asset->file_bytes);
         asset->state = bad_file ? ASSET_FAILED : ASSET_STORED;
         asset->failure = *failure;
         if (bad_file)
@@ -286,9 +365,9 @@ static bool build_reserve(void *owner, size_t bytes, struct error *error)
 {
     struct asset *asset = owner;
     enum error_kind permanent = asset->kind == ASSET_MODEL ? ERROR_MODEL : ERROR_IMAGE;
-    if (!store_reserve(asset->store, bytes, asset->name, permanent, error))
+    if (!store_reserve(asset->store, asset->holder->id, bytes, asset->name, permanent, error))
         return false;
-    asset->charged_bytes += bytes;
+    charge(asset, bytes);
     return true;
 }
 
@@ -393,9 +472,9 @@ bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *er
     if (asset->polygon_levels & 1u << level)
         return true;
     size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
-    if (!store_reserve(asset->store, bytes, asset->name, ERROR_REQUEST, error))
+    if (!store_reserve(asset->store, asset->holder->id, bytes, asset->name, ERROR_REQUEST, error))
         return false;
-    asset->charged_bytes += bytes;
+    charge(asset, bytes);
     asset->polygon_levels |= 1u << level;
     return true;
 }

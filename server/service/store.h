@@ -3,14 +3,16 @@
  * holds.
  *
  * An asset is built on first use, once, however many requests wait for it, and a few at a time.
- * What no request uses is evicted, least recently used first, when room is needed; the client is
- * then told that the model is unknown and uploads it again. Nothing in use is ever evicted.
+ * What no request uses is evicted when room is needed, of those first who hold more than an equal
+ * share, and of each the least recently used first; the client is then told that the model is
+ * unknown and uploads it again. Nothing in use is ever evicted.
  * Thread: the loop's. */
 #ifndef SHEEN_SERVICE_STORE_H
 #define SHEEN_SERVICE_STORE_H
 
 #include "protocol/frame.h"
 #include "server/service/build.h"
+#include "server/service/holders.h"
 #include "server/service/light_image.h"
 #include "server/service/model.h"
 
@@ -51,6 +53,7 @@ struct asset {
 
     /* The store's own. */
     struct store *store;
+    struct holder *holder;
     unsigned users; /* requests that wait for it or use it */
     size_t charged_bytes;
     unsigned polygon_levels; /* bits: levels whose polygons are charged */
@@ -94,19 +97,22 @@ bool store_is_known_as(const struct asset *asset, const char *name);
 /* From now on everybody may use it. */
 void store_share(struct asset *asset);
 
-/* Charges bytes that are about to be allocated for `what` (a file's name), evicting if need be.
+/* Charges bytes that are about to be allocated for `what` (a file's name), evicting if need be: the
+ * asker's own, if he would hold more than an equal share of the budget, then of those who do.
  * The error names the need and the budget: `permanent` kind if it can never fit, else
  * ERROR_SERVER. */
-bool store_reserve(struct store *store, size_t bytes, const char *what, enum error_kind permanent,
-                   struct error *error);
+bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES], size_t bytes,
+                   const char *what, enum error_kind permanent, struct error *error);
 void store_release(struct store *store, size_t bytes);
 
-/* Takes over a malloc'd file whose bytes have been charged, and whose hash has been checked. A file
- * that is here already, and known as this, is freed. ERROR_SERVER when there is no room for another
+/* Takes over a malloc'd file whose bytes have been charged, and whose hash has been checked. It
+ * counts for `holder`, the identity of whoever brought it, also where all may use it. A file that
+ * is here already, and known as this, is freed. ERROR_SERVER when there is no room for another
  * entry; the file is freed then too. */
 bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
-               enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES], const char *name,
-               uint8_t *file, size_t file_bytes, struct error *error);
+               const uint8_t holder[static HOLDER_ID_BYTES], enum asset_kind kind,
+               const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
+               size_t file_bytes, struct error *error);
 
 enum acquire_result { ACQUIRE_READY, ACQUIRE_WAIT, ACQUIRE_FAILED };
 

@@ -10,7 +10,7 @@ struct upload {
     struct memory *memory;
     struct peer *peer;
     sheen_UploadBegin begin;
-    uint8_t owner[STORE_OWNER_BYTES];
+    uint8_t owner[STORE_OWNER_BYTES], holder[HOLDER_ID_BYTES];
     uint8_t *file; /* grows, and is charged, as bytes come: announcing costs nothing */
     size_t received, capacity;
     EVP_MD_CTX *hash;
@@ -23,6 +23,7 @@ static enum error_kind kind_of_error(const sheen_UploadBegin *begin)
 
 struct upload *upload_create(struct memory *memory, struct peer *peer,
                              const uint8_t owner[static STORE_OWNER_BYTES],
+                             const uint8_t holder[static HOLDER_ID_BYTES],
                              const sheen_UploadBegin *begin, struct error *error)
 {
     struct upload *upload = calloc(1, sizeof *upload);
@@ -37,6 +38,7 @@ struct upload *upload_create(struct memory *memory, struct peer *peer,
     upload->peer = peer;
     upload->begin = *begin;
     memcpy(upload->owner, begin->share ? STORE_SHARED : owner, sizeof upload->owner);
+    memcpy(upload->holder, holder, sizeof upload->holder);
     upload->hash = hash;
     return upload;
 }
@@ -62,8 +64,8 @@ static bool grow(struct upload *upload, size_t needed, struct error *error)
     if (capacity > begin->size_bytes)
         capacity = begin->size_bytes;
     size_t more = capacity - upload->capacity;
-    if (!memory_charge_upload(upload->memory, upload->peer, more, begin->name, kind_of_error(begin),
-                              error))
+    if (!memory_charge_upload(upload->memory, upload->peer, upload->holder, more, begin->name,
+                              kind_of_error(begin), error))
         return false;
     uint8_t *file = realloc(upload->file, capacity);
     if (!file) {
@@ -93,8 +95,8 @@ static enum upload_state finish(struct upload *upload, struct error *error)
     upload->capacity = 0;
     upload->file = NULL;
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
-    bool ok = store_add(upload->memory->store, upload->owner, kind, sha256, begin->name, file,
-                        upload->received, error);
+    bool ok = store_add(upload->memory->store, upload->owner, upload->holder, kind, sha256,
+                        begin->name, file, upload->received, error);
     return ok ? UPLOAD_STORED : UPLOAD_NO_ROOM;
 }
 

@@ -8,7 +8,7 @@ import unittest
 
 import wire
 from authority import Authority, context
-from daemon import CUBE, SHEEN, Daemon
+from daemon import CUBE, SHEEN, Daemon, grid
 from test_access import Case, tls_address, token_line
 from wire import Client
 
@@ -154,6 +154,52 @@ class Owners(Case):
                 else:
                     self.assert_unknown(other, model)
         self.assertEqual(daemon.stop(), 0)
+
+
+class Room(unittest.TestCase):
+    """Who makes room in the store: there are two owners, whoever comes over TCP and the user."""
+
+    def setUp(self):
+        self.daemon = Daemon("--memory-budget", "8M")
+        self.many, self.other = Client(self.daemon.unix), Client(self.daemon.tcp)
+
+    def tearDown(self):
+        self.many.socket.close()
+        self.other.socket.close()
+        self.assertEqual(self.daemon.stop(), 0)
+
+    def stream(self, n, share=False):
+        """One owner's models, each of a third of the budget."""
+        for i in range(n):
+            self.last = self.many.upload(grid(65) + b"# %d\n" % i, "large.obj", share=share)
+            self.many.render(self.last)
+
+    def test_one_who_streams_pushes_out_his_own(self):
+        for share in (False, True):
+            small = self.other.upload(CUBE, "cube.obj")
+            self.other.render(small)
+            self.stream(8, share)
+            self.assertEqual(self.other.render(small).tables_us, 0)
+            self.assertEqual(self.many.render(self.last).tables_us, 0)
+
+    def test_who_holds_most_makes_room(self):
+        """Also for one who has little, and has used it before all of that."""
+        small = self.other.upload(CUBE, "cube.obj")
+        self.other.render(small)
+        self.stream(3)
+        model = self.other.upload(grid(65), "mine.obj")
+        self.other.render(model)
+        for mine in (small, model):
+            self.assertEqual(self.other.render(mine).tables_us, 0)
+        self.assertEqual(self.many.render(self.last).tables_us, 0)
+
+    def test_entries_too(self):
+        """There are 4096 of them."""
+        small = self.other.upload(CUBE, "cube.obj")
+        self.other.render(small)
+        for i in range(4100):
+            self.many.upload(b"# %d\n" % i, "tiny.obj")
+        self.assertEqual(self.other.render(small).tables_us, 0)
 
 
 class Files(Case):
