@@ -242,13 +242,38 @@ static bool resize(struct conn *conn, size_t capacity)
 
 static bool read_more(struct conn *conn);
 
+/* A message of this size has begun. */
+static void expect(struct conn *conn, const struct message_header *header, size_t size)
+{
+    if (size <= conn->in_capacity)
+        return;
+    if (conn->handler->make_room(conn->owner, header, size)) {
+        if (!resize(conn, size))
+            conn_close(conn);
+    } else if (conn->state == CONN_OPEN && !conn->held) {
+        conn->skipped = size - conn->in_used;
+        conn->in_used = 0;
+    }
+}
+
+/* Throws away what has come of a message without room. */
+static void skip(struct conn *conn)
+{
+    size_t n = conn->in_used < conn->skipped ? conn->in_used : conn->skipped;
+    conn->skipped -= n;
+    conn->in_used -= n;
+    if (n > 0)
+        memmove(conn->in, conn->in + n, conn->in_used);
+}
+
 /* The whole messages that are there. */
 static void deliver(struct conn *conn)
 {
     size_t used = 0, wanted = 0;
+    struct message_header header = {0};
+    skip(conn);
     while (conn->state == CONN_OPEN && !conn->held &&
            conn->in_used - used >= MESSAGE_HEADER_BYTES) {
-        struct message_header header = {0};
         enum header_error error = message_header_decode(&header, conn->in + used);
         if (error != HEADER_OK) {
             refuse_input(conn, &header, error);
@@ -273,8 +298,8 @@ static void deliver(struct conn *conn)
         memmove(conn->in, conn->in + used, conn->in_used);
         conn->message_since_us = loop_now_us();
     }
-    if (wanted > conn->in_capacity && !resize(conn, wanted))
-        conn_close(conn);
+    if (wanted > 0)
+        expect(conn, &header, wanted);
 }
 
 void conn_trim(struct conn *conn)
@@ -314,7 +339,7 @@ static bool read_more(struct conn *conn)
     }
     if (open) {
         conn->last_in_us = loop_now_us();
-        if (conn->in_used == 0)
+        if (conn->in_used == 0 && conn->skipped == 0)
             conn->message_since_us = conn->last_in_us;
         conn->in_used += (size_t)n;
     }

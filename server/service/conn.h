@@ -31,6 +31,10 @@ struct conn_handler {
     /* The input is no message. It has been thrown away and the conn is held: the owner closes it.
      * Of *header only what the error leaves known is set. */
     void (*malformed)(void *owner, const struct message_header *header, enum header_error error);
+    /* A message begins for which the buffer is too small: may it have so many bytes from now on,
+     * until conn_trim() or the end? If not, and the conn goes on, its body is thrown away as it
+     * comes. */
+    bool (*make_room)(void *owner, const struct message_header *header, size_t bytes);
 };
 
 /* How bytes move: over the plain socket, or TLS (conn_tls.h). */
@@ -66,6 +70,7 @@ struct conn {
 
     uint8_t *in;
     size_t in_used, in_capacity;
+    size_t skipped;  /* bytes to come that are thrown away: of a message that has no room */
     bool held;       /* no message is delivered and nothing read */
     bool peer_ended; /* the peer will send no more */
 

@@ -26,13 +26,13 @@
 
 const struct limits_row LIMITS[] = {
     {"memory-budget", UNIT_BYTES,
-     "most that files, models, images and frames may take together, in main memory and\non the "
-     "device",
+     "most that files, models, images, long messages under way and frames may take\ntogether, in "
+     "main memory and on the device",
      LEAST_MEMORY, MOST_BYTES, 4 * GIB, AT(memory_budget)},
     {"peer-memory", UNIT_BYTES,
-     "most that uploads under way and frames of one user (Unix socket) or address\nmay take; "
-     "models and images that are stored are not in it: whoever holds more than\nan equal share of "
-     "the budget makes room first",
+     "most that uploads, long messages under way and frames of one user (Unix socket) or\naddress "
+     "may take; models and images that are stored are not in it: whoever holds more\nthan an equal "
+     "share of the budget makes room first",
      LEAST_MEMORY, MOST_BYTES, 2 * GIB, AT(peer_memory)},
     {"spare-memory", UNIT_BYTES,
      "memory of sent frames that is kept for the next ones, at most, beside the budget;\n"

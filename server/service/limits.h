@@ -14,12 +14,12 @@
 
 struct limits {
     /* Memory, in bytes. */
-    uint64_t memory_budget;  /* files, tables, polygons, texels, frames: all together,
-                                in main memory and on the device */
-    uint64_t peer_memory;    /* uploads under way and frames of one user or address */
-    uint64_t spare_memory;   /* of frames that have gone, kept for the next (server/spares.h) */
-    uint64_t max_upload;     /* one file */
-    uint64_t max_frame;      /* one frame's planes */
+    uint64_t memory_budget; /* files, tables, polygons, texels, frames: all together,
+                               in main memory and on the device */
+    uint64_t peer_memory;   /* uploads, long messages under way and frames of one user or address */
+    uint64_t spare_memory;  /* of frames that have gone, kept for the next (server/spares.h) */
+    uint64_t max_upload;    /* one file */
+    uint64_t max_frame;     /* one frame's planes */
     uint64_t max_image_side; /* px of a light image, either way */
 
     /* Connections. */

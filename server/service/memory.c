@@ -87,9 +87,9 @@ void memory_charge_release(void *owner)
     spares_give(charge->memory->spares, charge);
 }
 
-bool memory_charge_upload(struct memory *memory, struct peer *peer,
-                          const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
-                          const char *name, enum error_kind permanent, struct error *error)
+bool memory_charge_input(struct memory *memory, struct peer *peer,
+                         const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
+                         const char *name, enum error_kind permanent, struct error *error)
 {
     if (!fits_peer(memory, peer, bytes))
         return refuse_peer(memory, peer, name, bytes, error);
@@ -99,7 +99,7 @@ bool memory_charge_upload(struct memory *memory, struct peer *peer,
     return true;
 }
 
-void memory_release_upload(struct memory *memory, struct peer *peer, uint64_t bytes, bool stored)
+void memory_release_input(struct memory *memory, struct peer *peer, uint64_t bytes, bool stored)
 {
     peer->memory_bytes -= bytes;
     if (!stored)

@@ -1,6 +1,6 @@
-/* The memory budget as clients take from it: every upload under way and every frame, from its
- * first tile until its last byte has gone to the socket, is charged to the store's budget and to
- * the peer that asked. Thread: the loop's. */
+/* The memory budget as clients take from it: every upload and long message under way and every
+ * frame, from its first tile until its last byte has gone to the socket, is charged to the store's
+ * budget and to the peer that asked. Thread: the loop's. */
 #ifndef SHEEN_SERVICE_MEMORY_H
 #define SHEEN_SERVICE_MEMORY_H
 
@@ -38,12 +38,12 @@ enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
 void memory_charge_shrink(struct memory_charge *charge, uint64_t bytes);
 void memory_charge_release(void *charge); /* NULL is safe */
 
-/* The same for the bytes of an upload as they come. `name` is the file's; `asker` and
- * `permanent` as in store_reserve(). */
-bool memory_charge_upload(struct memory *memory, struct peer *peer,
-                          const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
-                          const char *name, enum error_kind permanent, struct error *error);
+/* The same for what comes in: the bytes of an upload as they come, and messages on their way.
+ * `name` is the file's; `asker` and `permanent` as in store_reserve(). */
+bool memory_charge_input(struct memory *memory, struct peer *peer,
+                         const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
+                         const char *name, enum error_kind permanent, struct error *error);
 /* They are gone, or the store's: then they stay charged to the budget. */
-void memory_release_upload(struct memory *memory, struct peer *peer, uint64_t bytes, bool stored);
+void memory_release_input(struct memory *memory, struct peer *peer, uint64_t bytes, bool stored);
 
 #endif

@@ -143,7 +143,7 @@ static void write_store(const struct session_host *host, struct report *report)
     put(report, "models", "gauge", counts.models, "Models ready to be rendered.");
     put(report, "images", "gauge", counts.images, "Light images ready to be used.");
     put(report, "model_cache_bytes", "gauge", counts.used_bytes,
-        "Memory of files, tables, texels and frames, on the GPU too.");
+        "Memory of files, tables, texels, messages and frames, on the GPU too.");
     put(report, "model_cache_limit_bytes", "gauge", counts.budget_bytes, "The most they may take.");
     put(report, "model_cache_hits_total", "counter", counts.hits,
         "Uses of a model or image that was ready.");

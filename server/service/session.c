@@ -112,22 +112,6 @@ static void update_hold(struct session *session)
     conn_hold(&session->conn, clogged || full || session->refused);
 }
 
-/* NULL, or what is wrong with a message of this type now. */
-static const char *out_of_order(const struct session *session, const struct message_header *header)
-{
-    if (header->seq == 0)
-        return "its number is 0, which is no request's";
-    if (!session->greeted)
-        return header->type == MESSAGE_HELLO ? NULL : "the first message must be HELLO";
-    if (header->type == MESSAGE_HELLO)
-        return "a second HELLO";
-    if (header->type == MESSAGE_CANCEL)
-        return session->minor > 0 ? NULL : "a message of minor version 1";
-    if (session->upload && header->type != MESSAGE_UPLOAD_CHUNK)
-        return "an upload is under way and not complete";
-    return NULL;
-}
-
 static bool is_over_credit(const struct session *session, const struct message_header *header)
 {
     bool asks = header->type != MESSAGE_HELLO && header->type != MESSAGE_CANCEL &&
@@ -138,10 +122,9 @@ static bool is_over_credit(const struct session *session, const struct message_h
 static void on_message(void *owner, const struct message_header *header, const uint8_t *body)
 {
     struct session *session = owner;
-    const char *wrong = out_of_order(session, header);
-    if (wrong) {
-        session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
-                       message_type_name(header->type), wrong);
+    const char *disorder = session_find_disorder(session, header);
+    if (disorder) {
+        session_refuse_disorder(session, header, disorder);
         return;
     }
     if (is_over_credit(session, header)) {
@@ -197,7 +180,7 @@ struct session *session_create(struct session_host *host, int fd,
                                const struct session_client *client, struct peer *peer,
                                struct error *error)
 {
-    static const struct conn_handler handler = {on_message, on_malformed};
+    static const struct conn_handler handler = {on_message, on_malformed, session_make_room};
     struct session *session = calloc(1, sizeof *session);
     if (!session) {
         close(fd);
@@ -248,6 +231,7 @@ void session_destroy(struct session *session)
     answer_list_finish(&session->answers);
     upload_destroy(session->upload);
     conn_finish(&session->conn);
+    session_release_input(session);
     host->n_strangers -= !session->admitted;
     session->peer->n_connections--;
     peer_put(&host->memory.peers, session->peer);
@@ -282,7 +266,7 @@ void session_tick(struct session *session, uint64_t now_us)
     if (session->conn.state != CONN_OPEN)
         return;
     if (now_us - session->conn.last_in_us > SESSION_TRIM_US)
-        conn_trim(&session->conn);
+        session_trim_input(session);
     if (session_host_overdue_us(session->host, now_us) > 0)
         request_shut_down_all(session);
     request_end_late(session, now_us);

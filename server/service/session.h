@@ -85,7 +85,8 @@ struct session {
     uint64_t over_soft_since_us;     /* 0: no more is unsent than the soft limit allows */
     bool refused;                    /* the last answer is on its way: nothing is read any more */
     struct upload *upload;           /* NULL: none under way */
-    uint32_t upload_seq;             /* of the upload, or of the last one that failed */
+    uint32_t upload_seq;             /* of the upload, or of the last one that failed; else 0 */
+    size_t input_bytes;              /* charged for conn.in where it is larger than most are */
     struct request *requests;
     struct session *next; /* the service's list */
 };

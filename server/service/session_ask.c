@@ -48,9 +48,9 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
 
 void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
 {
-    if (seq != session->upload_seq || length == 0) {
-        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "UPLOAD_CHUNK %s",
-                       length == 0 ? "without a byte" : "of no upload under way");
+    if (length == 0) {
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL,
+                       "UPLOAD_CHUNK: it comes without a byte");
         return;
     }
     if (!session->upload)

@@ -1,4 +1,5 @@
-/* What the files of sessions share: session.c has the protocol's order and a session's life,
+/* What the files of sessions share: session.c has a session's life and its messages,
+ * session_input.c their order and the room for long ones,
  * session_answer.c how answers leave, session_ask.c what each request asks for, session_stats.c
  * the answer to STATS_QUERY, session_access.c who the client is, session_watch.c what clients may
  * not do too long or too much of. Private to them. Thread: the loop's. */
@@ -12,6 +13,19 @@
 /* The connection cannot go on: answers what came before, says why, and closes. */
 void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code, const char *format,
                     ...) __attribute__((format(printf, 4, 5)));
+
+/* --- session_input.c */
+
+/* NULL, or what is wrong with a message of this type and number now. */
+const char *session_find_disorder(const struct session *session,
+                                  const struct message_header *header);
+void session_refuse_disorder(struct session *session, const struct message_header *header,
+                             const char *disorder);
+/* conn_handler's. When there is no memory the request has its answer: try again later. */
+bool session_make_room(void *owner, const struct message_header *header, size_t bytes);
+/* Gives the room of long messages back, if there is none in it; once the conn is finished. */
+void session_trim_input(struct session *session);
+void session_release_input(struct session *session);
 
 /* --- session_answer.c */
 

@@ -98,7 +98,7 @@ static void check_input(struct session *session, uint64_t now)
         return;
     if (!session->greeted && now - session->start_us > limits->handshake_s * 1000000)
         refuse_late(session, END_HELLO, "no HELLO within %llu s", limits->handshake_s);
-    else if (!conn->held && conn->in_used > 0 &&
+    else if (!conn->held && (conn->in_used > 0 || conn->skipped > 0) &&
              now - conn->message_since_us > limits->message_s * 1000000)
         refuse_late(session, END_STALLED, "a message has not come to its end within %llu s",
                     limits->message_s);

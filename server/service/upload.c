@@ -47,7 +47,7 @@ void upload_destroy(struct upload *upload)
 {
     if (!upload)
         return;
-    memory_release_upload(upload->memory, upload->peer, upload->capacity, false);
+    memory_release_input(upload->memory, upload->peer, upload->capacity, false);
     EVP_MD_CTX_free(upload->hash);
     free(upload->file);
     free(upload);
@@ -64,12 +64,12 @@ static bool grow(struct upload *upload, size_t needed, struct error *error)
     if (capacity > begin->size_bytes)
         capacity = begin->size_bytes;
     size_t more = capacity - upload->capacity;
-    if (!memory_charge_upload(upload->memory, upload->peer, upload->holder, more, begin->name,
-                              kind_of_error(begin), error))
+    if (!memory_charge_input(upload->memory, upload->peer, upload->holder, more, begin->name,
+                             kind_of_error(begin), error))
         return false;
     uint8_t *file = realloc(upload->file, capacity);
     if (!file) {
-        memory_release_upload(upload->memory, upload->peer, more, false);
+        memory_release_input(upload->memory, upload->peer, more, false);
         return error_set(error, ERROR_SERVER, "%s: no memory for its %llu bytes", begin->name,
                          (unsigned long long)begin->size_bytes);
     }
@@ -91,7 +91,7 @@ static enum upload_state finish(struct upload *upload, struct error *error)
         return UPLOAD_BAD;
     }
     uint8_t *file = upload->file;
-    memory_release_upload(upload->memory, upload->peer, upload->capacity, true);
+    memory_release_input(upload->memory, upload->peer, upload->capacity, true);
     upload->capacity = 0;
     upload->file = NULL;
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;

@@ -17,6 +17,7 @@ from test_untrusted import children, image_pattern, workers
 from wire import BATCH, INTERACTIVE, Client, field, message
 
 MIB = 1 << 20
+LONG_MESSAGE_BYTES = 16 + 262144 - 4096  # beyond the room that every client has for its messages
 
 
 def interlaced_png(width, height):
@@ -215,7 +216,7 @@ class Memory(DaemonCase):
         holders = []
         for _ in range(3):
             client = self.client()
-            seq = self.begin(client, 4 * MIB)
+            seq = self.begin(client, 4 * MIB - LONG_MESSAGE_BYTES)
             client.expect(wire.UPLOAD_STATE, seq)
             client.send(b"".join(message(wire.UPLOAD_CHUNK, seq, bytes(262144))
                                  for _ in range(15)))
@@ -234,6 +235,46 @@ class Memory(DaemonCase):
             client.socket.close()
         time.sleep(0.1)
         other.render(other.upload(CUBE + b"# late\n", "late.obj"))
+
+    def test_messages_on_their_way_count(self):
+        """Each a byte short of its end: the user has room for 48 of them."""
+        clients, before = [], self.client().stats()[23][0]
+        for _ in range(48):
+            client = self.client()
+            seq = self.begin(client, 4 * MIB)
+            client.expect(wire.UPLOAD_STATE, seq)
+            client.send(message(wire.UPLOAD_CHUNK, seq, bytes(262144))[:-1])
+            clients.append(client)
+        other = self.client()
+        deadline = time.monotonic() + 10
+        while other.stats()[23][0] < before + 48 * LONG_MESSAGE_BYTES:
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        seq = self.begin(other, 4 * MIB)
+        other.expect(wire.UPLOAD_STATE, seq)
+        chunk = message(wire.UPLOAD_CHUNK, seq, bytes(262144))
+        other.send(chunk[:5000])
+        self.assert_refused(other, wire.ERROR_OVERLOADED, "--peer-memory", seq)
+        other.send(chunk[5000:] + chunk)  # it had sent them already, perhaps
+        other.stats()
+        far = self.client(self.daemon.tcp)
+        far.upload(CUBE + b"#" * 300000, "far.obj")
+        for client in clients:
+            client.socket.close()
+        while other.stats()[23][0] > before + MIB:
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        other.upload(CUBE + b"#" * 200000, "long.obj")
+
+    def test_no_room_out_of_turn(self):
+        """A long message that breaks the protocol is refused by its header."""
+        for greet, words in ((False, "the first message must be HELLO"),
+                             (True, "no upload of its number is under way")):
+            client = Client(self.daemon.unix, greet=greet)
+            self.addCleanup(client.socket.close)
+            client.send(message(wire.UPLOAD_CHUNK, 9, length=262144))
+            self.assert_refused(client, wire.ERROR_PROTOCOL, words, 9)
+            self.assertTrue(client.at_end())
 
     def test_frames_wait_for_memory(self):
         """More frames at once than the budget holds: all of them come in the end."""

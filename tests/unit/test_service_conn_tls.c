@@ -107,7 +107,7 @@ static void ask_and_read(const struct fixture *f, struct tls_channel *channel)
 
 static void test_certificates_larger_than_the_buffer(void **state)
 {
-    static const struct conn_handler handler = {on_message, on_malformed};
+    static const struct conn_handler handler = {.message = on_message, .malformed = on_malformed};
     static struct fixture f;
     const struct certificates *files = *state;
     const struct loop_hooks hooks = {after, tick, &f};
