@@ -144,6 +144,8 @@ class Tls(Case):
         self.assert_turned_away("not one of the daemon's",
                                 lambda: self.client(token=secrets.token_urlsafe(32)))
         self.assert_turned_away("not one of the daemon's", lambda: self.client(token=self.token[1:]))
+        self.assert_turned_away("HELLO: token has a zero byte",
+                                lambda: self.client(token=self.token + "\0more"))
 
     def test_expired_token(self):
         self.assert_turned_away("token:old has expired", lambda: self.client(token=self.expired))
