@@ -72,39 +72,91 @@ static const struct option_row *find_row(const char *name)
 
 struct file_reader {
     struct settings *settings;
-    struct error *error;
+    FILE *file;
+    int line;                   /* the last that was read; no other is once there is an error */
+    bool seen[OPTION_MAX_ROWS]; /* rows that a line was for */
+    struct error error;
 };
 
-/* inih's handler: 0 is an error. Only the first counts. */
+/* What inih would cut short, or make something else of, without a word. */
+static bool check_line(const char *line, size_t length, bool is_whole, struct error *error)
+{
+    static const char blank[] = " \t\v\f\r\n";
+    const char *first = line + strspn(line, blank), *behind = strchr(first, ']');
+    if (memchr(line, 0, length))
+        return error_set(error, ERROR_REQUEST, "there is a zero byte in the line");
+    if (!is_whole)
+        return error_set(error, ERROR_REQUEST, "the line has more than %zu bytes", length);
+    if (first > line && *first && !strchr("#;", *first))
+        return error_set(error, ERROR_REQUEST,
+                         "the line is indented; 'name = value' stands on a line of its own and "
+                         "begins with its name");
+    if (*first == '[' && behind && behind[1 + strspn(behind + 1, blank)])
+        return error_set(error, ERROR_REQUEST, "nothing may stand behind a section's name");
+    return true;
+}
+
+static bool is_at_end(FILE *file)
+{
+    int c = getc(file);
+    return c == EOF || ungetc(c, file) == EOF;
+}
+
+/* inih's reader: as fgets(). */
+static char *read_line(char *text, int capacity, void *stream)
+{
+    struct file_reader *reader = stream;
+    size_t n = 0, most = (size_t)capacity - 1;
+    int c = 0;
+    if (reader->error.kind != ERROR_NONE)
+        return NULL;
+    while (n < most && c != '\n' && (c = getc(reader->file)) != EOF)
+        text[n++] = (char)c;
+    text[n] = 0;
+    if (n == 0)
+        return NULL;
+    reader->line++;
+    bool is_whole = n < most || c == '\n' || is_at_end(reader->file);
+    return check_line(text, n, is_whole, &reader->error) ? text : NULL;
+}
+
+/* inih's handler: 0 is an error. */
 static int file_value(void *user, const char *section, const char *name, const char *value)
 {
     struct file_reader *reader = user;
-    if (reader->error->kind != ERROR_NONE)
-        return 0;
     if (*section && strcmp(section, "sheend") != 0)
-        return error_set(reader->error, ERROR_REQUEST, "unknown section [%s]; use [sheend]",
+        return error_set(&reader->error, ERROR_REQUEST, "unknown section [%s]; use [sheend]",
                          section);
     const struct option_row *row = find_row(name);
     if (!row || !(row->flags & OPTION_IN_FILE))
-        return error_set(reader->error, ERROR_REQUEST,
+        return error_set(&reader->error, ERROR_REQUEST,
                          "unknown name '%s'; sheend --help lists them", name);
-    return option_set(row, reader->settings, value, reader->error);
+    size_t n;
+    bool *seen = &reader->seen[row - option_rows(&n)];
+    if (*seen && row->type != OPTION_LIST)
+        return error_set(&reader->error, ERROR_REQUEST, "%s has a line before this one", name);
+    *seen = true;
+    return option_set(row, reader->settings, value, &reader->error);
 }
 
 static bool read_file(struct settings *settings, struct error *error)
 {
-    struct error found = {0};
-    struct file_reader reader = {settings, &found};
+    struct file_reader reader = {.settings = settings};
     if (!plain_file_check(settings->config, error))
         return false;
-    int line = ini_parse(settings->config, file_value, &reader);
-    if (line == 0)
-        return true;
-    if (line < 0)
+    if (!(reader.file = fopen(settings->config, "re")))
         return error_set(error, ERROR_REQUEST, "cannot read %s: %s", settings->config,
                          strerror(errno));
-    return error_set(error, ERROR_REQUEST, "%s:%d: %s", settings->config, line,
-                     found.kind != ERROR_NONE ? found.text : "a line must be 'name = value'");
+    int wrong = ini_parse_stream(read_line, &reader, file_value, &reader);
+    bool is_read = !ferror(reader.file) && wrong >= 0, has_error = reader.error.kind != ERROR_NONE;
+    fclose(reader.file);
+    if (!is_read)
+        return error_set(error, ERROR_REQUEST, "cannot read %s to its end", settings->config);
+    if (wrong > 0 && (!has_error || wrong < reader.line)) /* inih's own: the first that is wrong */
+        return error_set(error, ERROR_REQUEST, "%s:%d: a line must be 'name = value'",
+                         settings->config, wrong);
+    return !has_error || error_set(error, ERROR_REQUEST, "%s:%d: %s", settings->config, reader.line,
+                                   reader.error.text);
 }
 
 /* One option of the command line. `seen` tells whether it has been there before. */

@@ -194,7 +194,9 @@ static const struct option_row OWN_ROWS[] = {
     {"log-format", "FORMAT", OPTION_OTHER, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.log_format), 0, 0, NULL, "logfmt", "logfmt or json", set_log_format},
     {"config", "FILE", OPTION_TEXT, 0, VALUE(config), 0, 0, NULL, NULL,
-     "lines 'name = value' with the names above; options given here go first", NULL},
+     "lines 'name = value' with the names above, once each but for those that may be\n"
+     "given several times; options given here go first",
+     NULL},
     {"check-config", NULL, OPTION_FLAG, 0, VALUE(check_config), 0, 0, NULL, NULL,
      "check the options and the file, then exit", NULL},
     {"session-fd", "N", OPTION_OTHER, 0, VALUE(service.session_fd), 0, 0, NULL, "none",

@@ -76,6 +76,25 @@ class Options(unittest.TestCase):
                 write("[sheend]\nthreads = 1\n" + line + "\n")
                 self.assert_fails(2, words, "--config", path)
                 self.assert_fails(2, f"{path}:{4 if line[0] == '[' else 3}:", "--config", path)
+            for line, words in (("threads = 2", "threads has a line before this one"),
+                                ("  2", "the line is indented"),
+                                ("\tdevice = software", "the line is indented"),
+                                ("device = software\0, or not", "zero byte in the line"),
+                                ("\0", "zero byte in the line"),
+                                ("#\0", "zero byte in the line"),
+                                ("[sheend] device = auto", "behind a section's name"),
+                                ("# " + 300 * "a", "more than 199 bytes")):
+                for end in ("\n", "\nnothing = 1\nwords\n", ""):
+                    write("[sheend]\nthreads = 1\n" + line + end)
+                    self.assert_fails(2, f"{path}:3: ", "--config", path)
+                    self.assert_fails(2, words, "--config", path)
+            write("words\n[sheend]\nthreads = many\n")
+            self.assert_fails(2, f"{path}:1: a line must be", "--config", path)
+            write("  # ours\n[sheend]  \n\n \t\nthreads = 1 ; one\nlisten = tcp:127.0.0.1:0\n"
+                  "allow-uid = 1\nallow-gid = 2\nallow-uid = 2\nlisten = tcp:127.0.0.1:0\n;" +
+                  198 * "a")
+            done = run("--config", path, "--check-config")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
             write("listen = tcp:0.0.0.0:1\n")
             self.assert_fails(2, "loopback", "--config", path, "--check-config")
             # What the command line says goes first.

@@ -50,11 +50,16 @@ class Table(unittest.TestCase):
             file.flush()
             done = run("--config", file.name, "--check-config")
             self.assertEqual((done.returncode, done.stderr), (0, ""))
-            file.write("credits = 65\n")
-            file.flush()
-            done = run("--config", file.name, "--check-config")
-            self.assertEqual(done.returncode, 2)
-            self.assertIn(f"{file.name}:{len(rows) + 1}: credits is '65'", done.stderr)
+            for last, words in (("credits = 65", "credits is '65'"),
+                                ("output-hard = 1G", "output-hard has a line before this one")):
+                file.seek(0)
+                file.truncate()
+                file.write("".join(f"{name} = {fallback}\n" for name, fallback in rows
+                                   if name != "credits") + last + "\n")
+                file.flush()
+                done = run("--config", file.name, "--check-config")
+                self.assertEqual(done.returncode, 2)
+                self.assertIn(f"{file.name}:{len(rows)}: {words}", done.stderr)
 
 
 class Workers(unittest.TestCase):
