@@ -174,6 +174,54 @@ static void test_view_errors(void **state)
     }
 }
 
+/* All that tinygltf would take for 0. */
+static void test_offsets_and_strides(void **state)
+{
+    (void)state;
+    static const char *const values[] = {
+        "-4",   "-0",    "1.5", "0.0",  "1e1", "18446744073709551616", "99999999999999999999999",
+        "null", "\"4\"", "[0]", "true", "{}",
+    };
+    static const char *const shown[] = {
+        "-4",   "-0",    "1.5", "0.0",  "1e1", "18446744073709551616", "99999999999999999999999",
+        "null", "\"4\"", "[0",  "true", "{",
+    };
+    static const char *const keys[] = {"byteOffset", "byteStride"};
+    char text[300], message[200];
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        snprintf(text, sizeof text,
+                 POSITIONS ",{\"bufferView\":1,\"byteOffset\" :\n %s,\"componentType\":5123,"
+                           "\"type\":\"SCALAR\",\"count\":12}",
+                 values[i]);
+        snprintf(message, sizeof message,
+                 "part.glb: accessor 1: byteOffset is %s; it must be a whole number from 0 up",
+                 shown[i]);
+        expect_bad(&(struct sample){.accessors = text}, message);
+        for (int k = 0; k < 2; k++) {
+            snprintf(text, sizeof text,
+                     "{\"buffer\":0,\"byteLength\":72,\"%s\":%s},"
+                     "{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24}",
+                     keys[k], values[i]);
+            snprintf(message, sizeof message,
+                     "part.glb: buffer view 0: %s is %s; it must be a whole number from 0 up",
+                     keys[k], shown[i]);
+            expect_bad(&(struct sample){.views = text}, message);
+        }
+    }
+    expect_bad(&(struct sample){.views = "{\"buffer\":0,\"byteLength\":72,\"byte\\u004fffset\":-4},"
+                                         "{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24}"},
+               "part.glb: a key of buffer view 0 is spelt with escapes");
+    /* What is no key of theirs may say what it likes. */
+    struct sample good = {.views =
+                              "{\"name\":\"byteOffset\",\"buffer\":0,\"byteLength\":72,"
+                              "\"extras\":{\"byteOffset\":-4}},{\"name\":\"\\\"x\",\"buffer\":0,"
+                              "\"byteOffset\" : 72 ,\"byteLength\":24}"};
+    struct cage cage;
+    read_good(&cage, &good);
+    assert_int_equal(cage.n_faces, 2);
+    cage_finish(&cage);
+}
+
 static void test_coordinates(void **state)
 {
     (void)state;
@@ -363,12 +411,19 @@ static void test_bombs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_node_errors),      cmocka_unit_test(test_deep_nodes),
-        cmocka_unit_test(test_primitive_errors), cmocka_unit_test(test_accessor_errors),
-        cmocka_unit_test(test_view_errors),      cmocka_unit_test(test_coordinates),
-        cmocka_unit_test(test_other_files),      cmocka_unit_test(test_data_uri),
-        cmocka_unit_test(test_glb_header),       cmocka_unit_test(test_truncated),
-        cmocka_unit_test(test_bad_json),         cmocka_unit_test(test_bombs),
+        cmocka_unit_test(test_node_errors),
+        cmocka_unit_test(test_deep_nodes),
+        cmocka_unit_test(test_primitive_errors),
+        cmocka_unit_test(test_accessor_errors),
+        cmocka_unit_test(test_view_errors),
+        cmocka_unit_test(test_offsets_and_strides),
+        cmocka_unit_test(test_coordinates),
+        cmocka_unit_test(test_other_files),
+        cmocka_unit_test(test_data_uri),
+        cmocka_unit_test(test_glb_header),
+        cmocka_unit_test(test_truncated),
+        cmocka_unit_test(test_bad_json),
+        cmocka_unit_test(test_bombs),
     };
     return cmocka_run_group_tests_name("cage/gltf_bad", tests, NULL, NULL);
 }

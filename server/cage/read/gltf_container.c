@@ -18,31 +18,106 @@ static uint32_t read_u32(const unsigned char *at)
     return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
+/* Arrays of the top level. */
+enum json_part { PART_OTHER, PART_BUFFERS, PART_VIEWS, PART_ACCESSORS, N_PARTS };
+
+static const struct {
+    const char *key, *element;
+} PARTS[N_PARTS] = {[PART_OTHER] = {"", ""},
+                    [PART_BUFFERS] = {"buffers", "buffer"},
+                    [PART_VIEWS] = {"bufferViews", "buffer view"},
+                    [PART_ACCESSORS] = {"accessors", "accessor"}};
+
 struct json_scan {
     const char *at, *end;
     int depth;
     unsigned values;
-    unsigned buffers; /* objects in the top-level array "buffers" */
-    bool in_buffers;
+    enum json_part part; /* that `at` is in */
+    unsigned objects[N_PARTS];
 };
 
-/* From the opening quote to past the closing one. A key of the top level must be spelt plainly so
- * that "buffers" can be told. */
-static bool scan_string(struct json_scan *scan)
+struct json_text {
+    const char *start;
+    size_t length;
+    bool escaped;
+};
+
+static bool is_text(const struct json_text *text, const char *other)
 {
-    const char *start = ++scan->at;
-    bool escaped = false;
+    return text->length == strlen(other) && memcmp(text->start, other, text->length) == 0;
+}
+
+/* From the opening quote to past the closing one. */
+static struct json_text scan_string(struct json_scan *scan)
+{
+    struct json_text text = {.start = ++scan->at};
     while (scan->at < scan->end && *scan->at != '"') {
-        escaped |= *scan->at == '\\';
+        text.escaped |= *scan->at == '\\';
         scan->at += *scan->at == '\\' && scan->at + 1 < scan->end ? 2 : 1;
     }
-    size_t length = (size_t)(scan->at - start);
+    text.length = (size_t)(scan->at - text.start);
     if (scan->at < scan->end)
         scan->at++;
+    return text;
+}
+
+static const char *skip_blanks(const char *at, const char *end)
+{
+    while (at < end && memchr(" \t\r\n", *at, 4))
+        at++;
+    return at;
+}
+
+/* A whole number below 2^64: of what else stands there tinygltf makes 0 without a word. */
+static bool is_unsigned(const char *at, const char *end)
+{
+    const char *first = at;
+    uint64_t number = 0;
+    for (; at < end && *at >= '0' && *at <= '9'; at++)
+        if (__builtin_mul_overflow(number, 10, &number) ||
+            __builtin_add_overflow(number, (uint64_t)(*at - '0'), &number))
+            return false;
+    return at > first && !(at < end && memchr(".eE", *at, 3));
+}
+
+/* What has been scanned may be a key of a buffer view or accessor, before its value. */
+static bool check_layout(const struct json_scan *scan, const struct json_text *key,
+                         const char *name, struct error *error)
+{
+    const char *at = skip_blanks(scan->at, scan->end);
+    const char *element = PARTS[scan->part].element;
+    unsigned index = scan->objects[scan->part] - 1;
+    if (at == scan->end || *at != ':')
+        return true;
+    if (key->escaped)
+        return error_set(error, ERROR_MODEL, "%s: a key of %s %u is spelt with escapes", name,
+                         element, index);
+    at = skip_blanks(at + 1, scan->end);
+    if ((!is_text(key, "byteOffset") && !is_text(key, "byteStride")) || is_unsigned(at, scan->end))
+        return true;
+    int shown = 0;
+    while (at + shown < scan->end && shown < 24 && !strchr(" \t\r\n,]}", at[shown]))
+        shown++;
+    return error_set(error, ERROR_MODEL,
+                     "%s: %s %u: %.*s is %.*s; it must be a whole number from "
+                     "0 up",
+                     name, element, index, (int)key->length, key->start, shown, at);
+}
+
+/* Keys that are looked for must be spelt plainly, so that they can be told. */
+static bool check_string(struct json_scan *scan, const struct json_text *text, const char *name,
+                         struct error *error)
+{
+    if (scan->depth == 3 && (scan->part == PART_VIEWS || scan->part == PART_ACCESSORS))
+        return check_layout(scan, text, name, error);
     if (scan->depth != 1)
         return true;
-    scan->in_buffers = length == strlen("buffers") && memcmp(start, "buffers", length) == 0;
-    return !escaped;
+    scan->part = N_PARTS - 1;
+    while (scan->part > PART_OTHER && !is_text(text, PARTS[scan->part].key))
+        scan->part--;
+    return !text->escaped ||
+           error_set(error, ERROR_MODEL, "%s: a top-level key of the JSON is spelt with escapes",
+                     name);
 }
 
 static bool scan_json(struct json_scan *scan, const char *name, struct error *error)
@@ -50,16 +125,16 @@ static bool scan_json(struct json_scan *scan, const char *name, struct error *er
     while (scan->at < scan->end) {
         char c = *scan->at;
         if (c == '"') {
-            if (!scan_string(scan))
-                return error_set(error, ERROR_MODEL,
-                                 "%s: a top-level key of the JSON is spelt with escapes", name);
+            struct json_text text = scan_string(scan);
+            if (!check_string(scan, &text, name, error))
+                return false;
             continue;
         }
         if (c == '{' || c == '[') {
             if (++scan->depth > MAX_JSON_DEPTH)
                 return error_set(error, ERROR_MODEL, "%s: JSON nested deeper than %d levels", name,
                                  MAX_JSON_DEPTH);
-            scan->buffers += scan->in_buffers && scan->depth == 3;
+            scan->objects[scan->part] += scan->depth == 3;
         } else if (c == '}' || c == ']') {
             scan->depth--;
         }
@@ -125,8 +200,8 @@ bool gltf_container_check(struct gltf_container *container, const void *bytes, s
     }
     if (!scan_json(&scan, name, error))
         return false;
-    if (container->binary && scan.buffers > MAX_BUFFERS_BESIDE_CHUNK)
+    if (container->binary && scan.objects[PART_BUFFERS] > MAX_BUFFERS_BESIDE_CHUNK)
         return error_set(error, ERROR_MODEL, "%s: %u buffers in a GLB, at most %u are read", name,
-                         scan.buffers, MAX_BUFFERS_BESIDE_CHUNK);
+                         scan.objects[PART_BUFFERS], MAX_BUFFERS_BESIDE_CHUNK);
     return true;
 }

@@ -2,7 +2,9 @@
  *
  * tinygltf recurses over nested values, copies the binary chunk for each buffer that names no
  * URI, and spends hundreds of bytes on each value in `extras`: a small hostile file could take
- * the stack or the memory. These checks bound all three and give GLB's own header clear errors. */
+ * the stack or the memory. It also takes an offset or stride that is no whole number from 0 up for
+ * 0. These checks bound the former three, refuse the latter, and give GLB's own header clear
+ * errors. */
 #ifndef SHEEN_CAGE_READ_GLTF_CONTAINER_H
 #define SHEEN_CAGE_READ_GLTF_CONTAINER_H
 
