@@ -12,10 +12,10 @@
 struct http_connection {
     struct loop_source source; /* fd -1: free */
     struct http *http;
-    uint64_t start_us;
+    enum { HTTP_READING, HTTP_ANSWERING, HTTP_LINGERING } state;
+    uint64_t end_us; /* when it is closed at the latest */
     size_t received;
     char request[HTTP_MAX_REQUEST_BYTES + 1];
-    bool answering;
     char head[HEAD_BYTES];
     size_t head_length, sent; /* sent: of head and body together */
     struct report body;
@@ -57,7 +57,27 @@ static const char *reason_of(int status)
     }
 }
 
-/* Writes as much of the answer as the socket takes, and closes behind the last byte. */
+/* The peer must see the answer before the end: closing a socket with unread input would reset the
+ * connection, and what it has not read is lost. */
+static void linger(struct http_connection *connection)
+{
+    uint64_t end_us = loop_now_us() + HTTP_LINGER_US;
+    connection->state = HTTP_LINGERING;
+    if (end_us < connection->end_us)
+        connection->end_us = end_us;
+    shutdown(connection->source.fd, SHUT_WR);
+    loop_change(connection->http->loop, &connection->source, EPOLLIN);
+}
+
+/* Throws away what comes, until the peer has closed too. */
+static void throw_away(struct http_connection *connection)
+{
+    ssize_t n = read(connection->source.fd, connection->request, HTTP_MAX_REQUEST_BYTES);
+    if (n == 0 || (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR))
+        drop(connection);
+}
+
+/* Writes as much of the answer as the socket takes, and ends behind the last byte. */
 static void send_some(struct http_connection *connection)
 {
     size_t all = connection->head_length + connection->body.length;
@@ -74,11 +94,13 @@ static void send_some(struct http_connection *connection)
             loop_change(connection->http->loop, &connection->source, EPOLLOUT);
             return;
         }
-        if (sent < 0)
-            break;
+        if (sent < 0) {
+            drop(connection);
+            return;
+        }
         connection->sent += (size_t)sent;
     }
-    drop(connection);
+    linger(connection);
 }
 
 static void answer(struct http_connection *connection, int status)
@@ -96,7 +118,7 @@ static void answer(struct http_connection *connection, int status)
                  "charset=utf-8\r\nContent-Length: %zu\r\n%sConnection: close\r\n\r\n",
                  status, reason_of(status), body->length, status == 405 ? "Allow: GET\r\n" : "");
     connection->head_length = (size_t)n;
-    connection->answering = true;
+    connection->state = HTTP_ANSWERING;
     send_some(connection);
 }
 
@@ -146,10 +168,12 @@ static void read_some(struct http_connection *connection)
 static void connection_ready(struct loop_source *source, uint32_t events)
 {
     struct http_connection *connection = source->owner;
-    if (connection->answering && events & (EPOLLHUP | EPOLLERR))
+    if (connection->state != HTTP_READING && events & (EPOLLHUP | EPOLLERR))
         drop(connection);
-    else if (connection->answering)
+    else if (connection->state == HTTP_ANSWERING)
         send_some(connection);
+    else if (connection->state == HTTP_LINGERING)
+        throw_away(connection);
     else
         read_some(connection);
 }
@@ -179,20 +203,34 @@ void http_destroy(struct http *http)
     free(http);
 }
 
+/* A free one, or that which has lingered longest: it has had its answer. NULL: all are in use. */
+static struct http_connection *find_place(struct http *http)
+{
+    struct http_connection *longest = NULL;
+    for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++) {
+        struct http_connection *connection = &http->connections[i];
+        if (connection->source.fd < 0)
+            return connection;
+        if (connection->state == HTTP_LINGERING &&
+            (!longest || connection->end_us < longest->end_us))
+            longest = connection;
+    }
+    if (longest)
+        drop(longest);
+    return longest;
+}
+
 void http_accept(struct http *http, int fd)
 {
-    struct http_connection *connection = NULL;
-    for (int i = 0; i < HTTP_MAX_CONNECTIONS && !connection; i++)
-        if (http->connections[i].source.fd < 0)
-            connection = &http->connections[i];
+    struct http_connection *connection = find_place(http);
     if (!connection) {
         close(fd);
         return;
     }
     connection->source = (struct loop_source){fd, connection_ready, connection};
-    connection->start_us = loop_now_us();
+    connection->end_us = loop_now_us() + HTTP_TIMEOUT_US;
     connection->received = connection->sent = connection->head_length = 0;
-    connection->answering = false;
+    connection->state = HTTP_READING;
     report_init(&connection->body, HTTP_MAX_ANSWER_BYTES);
     if (!loop_watch(http->loop, &connection->source, EPOLLIN, NULL))
         close(fd);
@@ -201,6 +239,6 @@ void http_accept(struct http *http, int fd)
 void http_tick(struct http *http, uint64_t now_us)
 {
     for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++)
-        if (now_us - http->connections[i].start_us > HTTP_TIMEOUT_US)
+        if (now_us > http->connections[i].end_us)
             drop(&http->connections[i]);
 }

@@ -1,7 +1,8 @@
 /* A web server of the least kind, for health and metrics on loopback or a Unix socket: HTTP/1.1,
  * GET only, one request a connection, no body in, no keep-alive. Everything is bounded: a request
- * of HTTP_MAX_REQUEST_BYTES, HTTP_MAX_CONNECTIONS at once, HTTP_TIMEOUT_US from accept to the last
- * byte sent. What goes over a bound is closed. Thread: the loop's. */
+ * of HTTP_MAX_REQUEST_BYTES, HTTP_MAX_CONNECTIONS at once, HTTP_TIMEOUT_US from accept to the end,
+ * HTTP_LINGER_US of it for the peer to read the answer and close. What goes over a bound is closed.
+ * Thread: the loop's. */
 #ifndef SHEEN_SERVICE_HTTP_H
 #define SHEEN_SERVICE_HTTP_H
 
@@ -15,6 +16,7 @@
 #define HTTP_MAX_CONNECTIONS 8
 #define HTTP_MAX_ANSWER_BYTES (256u * 1024)
 #define HTTP_TIMEOUT_US 5000000u
+#define HTTP_LINGER_US 2000000u
 
 struct http;
 
@@ -33,7 +35,8 @@ struct http *http_create(struct loop *loop, const struct http_handler *handler,
                          struct error *error);
 void http_destroy(struct http *http); /* closes all; NULL is safe */
 
-/* Takes a connection over. With HTTP_MAX_CONNECTIONS there already, it is closed. */
+/* Takes a connection over. With HTTP_MAX_CONNECTIONS there already, one that has its answer and
+ * does not close makes room; if none has, the new one is closed. */
 void http_accept(struct http *http, int fd);
 /* Closes what has taken too long. */
 void http_tick(struct http *http, uint64_t now_us);

@@ -498,6 +498,43 @@ class Metrics(unittest.TestCase):
                 self.assertEqual(fetch(self.address, request)[0], status)
         self.assertEqual(fetch(self.address, "GET /healthz HTTP/1.1\r\nA: b\r\n\r\n")[0], 200)
 
+    def connect(self):
+        host, port = self.address[4:].rsplit(":", 1)
+        connection = socket.create_connection((host, int(port)), 10)
+        self.addCleanup(connection.close)
+        return connection
+
+    def read_to_end(self, connection):
+        """A reset raises."""
+        answer = b""
+        while part := connection.recv(65536):
+            answer += part
+        return answer
+
+    def test_a_refusal_is_read_to_its_end(self):
+        """Whatever of the request the daemon has not read."""
+        for status, request in ((431, b"GET / HTTP/1.1\r\nA: " + 100000 * b"a"),
+                                (405, b"POST / HTTP/1.1\r\n\r\n" + 100000 * b"a")):
+            connection = self.connect()
+            connection.sendall(request)
+            time.sleep(0.1)
+            self.assertTrue(self.read_to_end(connection).startswith(b"HTTP/1.1 %d " % status))
+            connection.sendall(1000 * b"a")  # it goes on for a while
+
+    def test_who_does_not_close_takes_no_place(self):
+        staying = [self.connect() for _ in range(8)]
+        for connection in staying:
+            connection.sendall(b"GET /healthz HTTP/1.1\r\n\r\n")
+            self.assertTrue(self.read_to_end(connection).endswith(b"ok\n"))
+        for _ in range(2):
+            self.assertEqual(get(self.address, "/healthz")[0], 200)
+        start = time.monotonic()
+        with self.assertRaises(OSError):  # nor does the last of them for long
+            while True:
+                staying[-1].send(b"a")
+                self.assertLess(time.monotonic(), start + 5)
+                time.sleep(0.05)
+
     def test_a_byte_at_a_time(self):
         host, port = self.address[4:].rsplit(":", 1)
         with socket.create_connection((host, int(port))) as slow:
