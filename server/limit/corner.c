@@ -5,16 +5,24 @@
 
 #include "server/limit/bound.h"
 #include "server/limit/crease.h"
-#include "server/limit/modes.h"
+#include "server/limit/shared.h"
 #include "server/limit/texels.h"
 
-/* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the vertex's ring. */
+/* What a vertex's own rule takes that a window of its ring lacks. */
+enum window {
+    WINDOW_NONE, /* the ring is whole, or its vertex sharp */
+    WINDOW_SUMS, /* over all edges and over all faces of a smooth ring */
+    WINDOW_ENDS, /* of a crease: the ring's first edge and its last */
+};
+
+/* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the vertex's ring, of a large one
+ * only a window. */
 struct net {
     struct vec grid[5][5];
     struct ring ring;
-    /* Of a large closed ring only a window is kept, and the sums that its vertex's rule takes. */
-    double window_of; /* the whole ring's valence, or 0 */
-    struct vec edges, faces;
+    enum window window;
+    double n_faces; /* of the whole ring */
+    struct vec edges, faces, end[2];
 };
 
 /* Each level spoils one more edge at either end of a window; what the grid takes stays whole. */
@@ -22,26 +30,47 @@ enum { WINDOW_SIDE = LIMIT_MAX_LEVELS + 3, WINDOW = 2 * WINDOW_SIDE };
 
 static bool needs_window(const struct ring *ring)
 {
-    return ring->closed && ring->n_faces > WINDOW + 2 && !ring->creases.edge &&
-           !(ring->sharpness > 0);
+    return ring->n_faces > WINDOW + 2 && !ring->creases.edge;
 }
 
-/* ring_limit(), by the sums. */
+/* The first edge of the window, counted round a closed ring. */
+static uint32_t window_start(const struct ring *ring)
+{
+    if (ring->closed)
+        return (ring->at + ring->n_faces - WINDOW_SIDE) % ring->n_faces;
+    uint32_t last = ring->n_faces - WINDOW;
+    uint32_t first = ring->at < WINDOW_SIDE ? 0 : ring->at - WINDOW_SIDE;
+    return first < last ? first : last;
+}
+
+/* ring_limit(), by what the window lacks. */
 static struct vec window_limit(const struct net *net)
 {
-    double n = net->window_of;
+    double n = net->n_faces;
+    if (net->window == WINDOW_ENDS) {
+        struct vec ends = vec_add(net->end[0], net->end[1]);
+        return vec_mad(vec_scale(net->ring.centre, 2.0 / 3), 1.0 / 6, ends);
+    }
     struct vec limit = vec_scale(net->ring.centre, n / (n + 5));
     limit = vec_mad(limit, 4 / (n * (n + 5)), net->edges);
     return vec_mad(limit, 1 / (n * (n + 5)), net->faces);
 }
 
-/* The rules of ring_refine() for the vertex, and for the sums over all edges and faces. */
+/* The rules of ring_refine() for a crease's vertex and its ends. */
+static void refine_window_ends(const struct net *in, struct net *out)
+{
+    struct vec ends = vec_add(in->end[0], in->end[1]);
+    for (int k = 0; k < 2; k++)
+        out->end[k] = vec_scale(vec_add(in->ring.centre, in->end[k]), 0.5);
+    out->ring.centre = vec_mad(vec_scale(in->ring.centre, 0.75), 0.125, ends);
+}
+
+/* The same for a smooth vertex, and for the sums over all edges and faces. */
 static void refine_window_sums(const struct net *in, struct net *out)
 {
-    double n = in->window_of;
+    double n = in->n_faces;
     struct vec whole = vec_scale(in->ring.centre, n);
     struct vec both = vec_mad(in->faces, 2, in->edges);
-    out->window_of = n;
     out->faces = vec_scale(vec_add(whole, both), 0.25);
     out->edges = vec_scale(vec_mad(vec_add(whole, in->edges), 2, out->faces), 0.25);
     struct vec sum = vec_add(in->edges, out->faces);
@@ -50,7 +79,7 @@ static void refine_window_sums(const struct net *in, struct net *out)
 
 static struct vec limit_position(const struct ring *ring, const struct ring_modes *modes)
 {
-    return ring_is_dart(ring) ? ring_mode_apply(modes->position, ring) : ring_limit(ring);
+    return ring_is_dart(ring) ? ring_mode_apply(modes->position, ring) : shared_limit(ring);
 }
 
 static struct vec to_frame(struct vec p, struct vec origin, const struct vec axis[3])
@@ -72,18 +101,17 @@ static void phantom_points(const struct ring *ring, struct vec grid[5][5])
 }
 
 /* The net of level 0 in the vertex's frame: only i,j <= 2 are set. */
-static void first_net(const struct quad *quad, struct vec origin, const struct vec axis[3],
-                      struct net *net)
+static void first_net(const struct quad *quad, const struct vertex_facts *facts, struct net *net)
 {
-    struct vec grid[4][4];
+    struct vec grid[4][4], origin = facts->limit;
+    const struct vec *axis = facts->axis;
     quad_grid(quad, grid);
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 4; i++)
             net->grid[j][i] = to_frame(grid[j][i], origin, axis);
     const struct ring *ring = &quad->corner[0];
-    bool window = needs_window(ring);
-    uint32_t n = ring_edges(ring), shift = window ? ring->at + n - WINDOW_SIDE : 0;
-    net->ring.at = window ? WINDOW_SIDE : ring->at;
+    uint32_t n = ring_edges(ring), shift = needs_window(ring) ? window_start(ring) : 0;
+    net->ring.at = (ring->at + n - shift) % n;
     net->ring.sharpness = ring->sharpness;
     net->ring.centre = to_frame(ring->centre, origin, axis);
     for (uint32_t k = 0; k < ring_edges(&net->ring); k++)
@@ -92,11 +120,13 @@ static void first_net(const struct quad *quad, struct vec origin, const struct v
         net->ring.face[k] = to_frame(ring->face[(k + shift) % n], origin, axis);
     for (uint32_t k = 0; ring->creases.edge && k < n; k++)
         net->ring.creases.edge[k] = net->ring.creases.far[k] = ring->creases.edge[k];
-    net->window_of = window ? ring->n_faces : 0;
-    for (uint32_t k = 0; window && k < n; k++) {
-        net->edges = vec_add(net->edges, to_frame(ring->edge[k], origin, axis));
-        net->faces = vec_add(net->faces, to_frame(ring->face[k], origin, axis));
-    }
+    net->n_faces = ring->n_faces;
+    if (needs_window(ring) && !(ring->sharpness > 0))
+        net->window = ring->closed ? WINDOW_SUMS : WINDOW_ENDS;
+    net->edges = facts->edges;
+    net->faces = facts->faces;
+    for (int k = 0; k < 2; k++)
+        net->end[k] = to_frame(ring->edge[k ? n - 1 : 0], origin, axis);
     phantom_points(&net->ring, net->grid);
 }
 
@@ -150,14 +180,20 @@ static void next_net(const struct net *in, const struct ring_modes *modes, struc
             if (i > 1 || j > 1)
                 out->grid[j + 1][i + 1] = refine_point(coarse, i, j);
     ring_refine(&in->ring, &out->ring);
-    if (in->window_of > 0)
+    out->window = in->window;
+    out->n_faces = in->n_faces;
+    if (in->window == WINDOW_SUMS)
         refine_window_sums(in, out);
+    else if (in->window == WINDOW_ENDS)
+        refine_window_ends(in, out);
     ring_points(&out->ring, out->grid);
     phantom_points(&out->ring, out->grid);
 
-    struct vec limit = in->window_of > 0 ? window_limit(out) : limit_position(&out->ring, modes);
-    out->edges = vec_mad(out->edges, -in->window_of, limit);
-    out->faces = vec_mad(out->faces, -in->window_of, limit);
+    struct vec limit = in->window ? window_limit(out) : limit_position(&out->ring, modes);
+    out->edges = vec_mad(out->edges, -in->n_faces, limit);
+    out->faces = vec_mad(out->faces, -in->n_faces, limit);
+    for (int k = 0; k < 2; k++)
+        out->end[k] = vec_sub(out->end[k], limit);
     for (int j = 0; j < 5; j++)
         for (int i = 0; i < 5; i++)
             out->grid[j][i] = vec_sub(out->grid[j][i], limit);
@@ -210,6 +246,18 @@ static bool vertex_frame(const struct ring *ring, struct ring_modes *modes, stru
     return ring_frame(ring, t1, t2, axis) && has_normal;
 }
 
+static void find_facts(struct vertex_facts *facts, const struct ring *ring, struct arena *arena)
+{
+    facts->has_normal = vertex_frame(ring, &facts->modes, facts->axis, arena);
+    facts->limit = limit_position(ring, &facts->modes);
+    facts->edges = facts->faces = (struct vec){0, 0, 0};
+    for (uint32_t k = 0; ring->closed && needs_window(ring) && k < ring->n_faces; k++) {
+        facts->edges = vec_add(facts->edges, to_frame(ring->edge[k], facts->limit, facts->axis));
+        facts->faces = vec_add(facts->faces, to_frame(ring->face[k], facts->limit, facts->axis));
+    }
+    facts->is_known = true;
+}
+
 unsigned corner_levels(const struct ring *ring)
 {
     const double pixel = 0x1p-24, pi = 3.14159265358979323846;
@@ -229,28 +277,31 @@ bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena,
                   struct limit_bound *bounds, double origin[3])
 {
     const struct ring *ring = &quad->corner[0];
-    struct ring_modes modes;
-    struct vec axis[3];
-    bool has_normal = vertex_frame(ring, &modes, axis, arena);
-    struct vec limit = limit_position(ring, &modes);
+    struct vertex_facts own, *facts = shared_facts(ring);
+    if (!facts) {
+        facts = &own;
+        facts->is_known = false;
+    }
+    if (!facts->is_known)
+        find_facts(facts, ring, arena);
     struct net net[2] = {0};
     for (int k = 0; k < 2; k++)
         net[k].ring = needs_window(ring)
                           ? ring_take(arena, WINDOW, false, false)
                           : ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
-    first_net(quad, limit, axis, &net[0]);
-    write_frame(axis, texels[0]);
+    first_net(quad, facts, &net[0]);
+    write_frame(facts->axis, texels[0]);
     float *scales = texels[1];
     memset(scales, 0, (LIMIT_CORNER_HEAD(levels) - 1) * sizeof *texels);
     texels += LIMIT_CORNER_HEAD(levels);
     for (unsigned n = 0; n < levels; n++) {
         struct net *fine = &net[(n + 1) & 1];
-        next_net(&net[n & 1], &modes, fine);
+        next_net(&net[n & 1], &facts->modes, fine);
         scales[n] = texels_write_level(fine->grid, texels + n * LIMIT_LEVEL_TEXELS);
         bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true, n < WEIGHED_LEVELS);
     }
-    origin[0] = limit.x;
-    origin[1] = limit.y;
-    origin[2] = limit.z;
-    return has_normal;
+    origin[0] = facts->limit.x;
+    origin[1] = facts->limit.y;
+    origin[2] = facts->limit.z;
+    return facts->has_normal;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "server/cage/cage.h"
+#include "server/limit/shared.h"
 
 static bool is_infinite(float sharpness)
 {
@@ -112,7 +113,6 @@ static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t 
     out.centre = ring->centre;
     out.cut_extraordinary = ring->cut_extraordinary || ring->n_faces != (ring->closed ? 4 : 2);
     out.sharpness = sharp ? CAGE_SHARPNESS_INFINITE : 0;
-    out.at = (ring->at + n - first) % n;
     for (uint32_t k = 0; k <= n_faces; k++)
         out.edge[k] = ring->edge[(first + k) % n];
     for (uint32_t k = 0; k < n_faces; k++)
@@ -139,8 +139,13 @@ struct ring crease_settle(const struct ring *ring, struct arena *arena)
         first = (first + n - 1) % n;
     while (crease_edge(ring, last) <= 0)
         last = (last + 1) % n;
-    uint32_t n_faces = (last + n - first) % n;
-    return cut_sector(ring, first, n_faces ? n_faces : n, rule == RULE_CORNER, arena);
+    if (!shared_find_derived(ring, first, &out)) {
+        uint32_t n_faces = (last + n - first) % n;
+        out = cut_sector(ring, first, n_faces ? n_faces : n, rule == RULE_CORNER, arena);
+        out = shared_keep_derived(ring, first, &out);
+    }
+    out.at = (ring->at + n - first) % n;
+    return out;
 }
 
 bool crease_is_regular(const struct ring *settled)

@@ -61,11 +61,29 @@ static void set_far_sharpness(const struct topology *t, const struct sector *sec
     }
 }
 
-static struct ring vertex_ring(const struct topology *t, uint32_t c, struct arena *arena)
+/* Keeps a large ring for all the corners of its sector. */
+static void share(const struct topology *t, struct shared_rings *rings, int level,
+                  const struct sector *sector, struct ring *ring)
 {
-    struct sector sector;
-    struct ring ring = cage_ring(t, c, true, &sector, arena);
-    set_far_sharpness(t, &sector, &ring, arena);
+    struct shared_ring *kept;
+    if (!shared_keep(rings, level, ring, &kept))
+        return;
+    for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at))
+        shared_see_from(rings, level, at, kept, k);
+    *ring = kept->ring;
+    ring->at = sector->at;
+}
+
+static struct ring vertex_ring(const struct topology *t, uint32_t c, struct shared_rings *rings,
+                               struct arena *arena)
+{
+    struct ring ring;
+    if (!shared_find(rings, 0, c, &ring)) {
+        struct sector sector;
+        ring = cage_ring(t, c, true, &sector, arena);
+        set_far_sharpness(t, &sector, &ring, arena);
+        share(t, rings, 0, &sector, &ring);
+    }
     return crease_settle(&ring, arena);
 }
 
@@ -85,21 +103,26 @@ static struct ring refine_cage_ring(const struct topology *t, const struct vec *
 /* The same with the points that all share: a smooth triangle's edges are not its ring's. */
 static struct ring refined_vertex_ring(const struct topology *t,
                                        const struct refined_points *points, uint32_t c,
-                                       struct arena *arena)
+                                       struct shared_rings *rings, struct arena *arena)
 {
     struct sector sector;
-    struct ring ring = refine_cage_ring(t, points->face, c, &sector, arena);
+    struct ring ring;
+    if (shared_find(rings, 1, c, &ring))
+        return ring;
+    ring = refine_cage_ring(t, points->face, c, &sector, arena);
     for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at)) {
         ring.edge[k] = points->edge[at];
         if (!sector.closed && k + 1 == sector.n_faces)
             ring.edge[k + 1] = points->edge[corner_prev(t, at)];
     }
+    share(t, rings, 1, &sector, &ring);
     return ring;
 }
 
 /* Around the edge point of half-edge c, listed from its far end: end, face, start, face across. */
 static struct ring refined_edge_ring(const struct topology *t, const struct refined_points *points,
-                                     uint32_t c, uint32_t at, struct arena *arena)
+                                     uint32_t c, uint32_t at, struct shared_rings *rings,
+                                     struct arena *arena)
 {
     uint32_t twin = t->twin[c];
     bool closed = twin != CORNER_NONE;
@@ -119,8 +142,8 @@ static struct ring refined_edge_ring(const struct topology *t, const struct refi
         ring.face[3] = points->edge[corner_prev(t, twin)];
     }
     if (creased) {
-        struct ring end = refined_vertex_ring(t, points, twin, arena);
-        struct ring start = refined_vertex_ring(t, points, c, arena);
+        struct ring end = refined_vertex_ring(t, points, twin, rings, arena);
+        struct ring start = refined_vertex_ring(t, points, c, rings, arena);
         ring.creases.edge[0] = crease_edge(&end, end.at);
         ring.creases.far[0] = crease_child(&end, end.at);
         ring.creases.edge[2] = crease_edge(&start, start.at);
@@ -143,11 +166,12 @@ static struct ring refined_face_ring(const struct topology *t, const struct refi
     return ring;
 }
 
-struct quad extract_quad(const struct topology *t, uint32_t c, struct arena *arena)
+struct quad extract_quad(const struct topology *t, uint32_t c, struct shared_rings *rings,
+                         struct arena *arena)
 {
     struct quad quad;
     for (unsigned i = 0; i < 4; i++, c = corner_next(t, c))
-        quad.corner[i] = vertex_ring(t, c, arena);
+        quad.corner[i] = vertex_ring(t, c, rings, arena);
     return quad;
 }
 
@@ -166,15 +190,15 @@ void extract_plain_grid(const struct topology *t, uint32_t c, struct vec grid[4]
 }
 
 struct quad extract_refined_quad(const struct topology *t, const struct refined_points *points,
-                                 uint32_t c, struct arena *arena)
+                                 uint32_t c, struct shared_rings *rings, struct arena *arena)
 {
     struct quad quad;
     uint32_t before = corner_prev(t, c);
-    struct ring vertex = refined_vertex_ring(t, points, c, arena);
+    struct ring vertex = refined_vertex_ring(t, points, c, rings, arena);
     quad.corner[0] = crease_settle(&vertex, arena);
-    quad.corner[1] = refined_edge_ring(t, points, c, 1, arena);
+    quad.corner[1] = refined_edge_ring(t, points, c, 1, rings, arena);
     quad.corner[2] = refined_face_ring(t, points, before, arena);
-    quad.corner[3] = refined_edge_ring(t, points, before, 0, arena);
+    quad.corner[3] = refined_edge_ring(t, points, before, 0, rings, arena);
     return quad;
 }
 

@@ -6,6 +6,7 @@
 #define SHEEN_LIMIT_EXTRACT_H
 
 #include "server/limit/quad.h"
+#include "server/limit/shared.h"
 #include "server/limit/tables.h"
 #include "server/limit/topology.h"
 
@@ -20,8 +21,10 @@ bool refined_points_init(struct refined_points *points, const struct topology *t
                          struct arena *arena, const struct limit_watch *watch, struct error *error);
 void refined_points_finish(struct refined_points *points);
 
-/* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (crease.h). */
-struct quad extract_quad(const struct topology *topology, uint32_t c, struct arena *arena);
+/* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (crease.h). Large
+ * ones are kept in `rings`, where they are looked for first. */
+struct quad extract_quad(const struct topology *topology, uint32_t c, struct shared_rings *rings,
+                         struct arena *arena);
 
 /* The 4x4 control points of a plain quad (topology.h), as quad_grid() gives them, without its
  * rings. */
@@ -31,7 +34,7 @@ void extract_plain_grid(const struct topology *topology, uint32_t c, struct vec 
  * point (its corner 2). */
 struct quad extract_refined_quad(const struct topology *topology,
                                  const struct refined_points *points, uint32_t c,
-                                 struct arena *arena);
+                                 struct shared_rings *rings, struct arena *arena);
 
 /* The most faces around any vertex, or corners of any face, of the cage. */
 size_t extract_largest_ring(const struct topology *topology);

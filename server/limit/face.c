@@ -123,7 +123,7 @@ static void measure_extent(struct face_builder *b, const struct quad *quad)
     struct vec grid[4][4], middle = {0, 0, 0};
     for (unsigned i = 0; i < 4; i++)
         if (!ring_is_dart(&quad->corner[i]))
-            extend_box(b, ring_limit(&quad->corner[i]));
+            extend_box(b, shared_limit(&quad->corner[i]));
     if (quad_extraordinary(quad))
         return;
     static const double weight[4] = {1.0 / 48, 23.0 / 48, 23.0 / 48, 1.0 / 48};
@@ -246,16 +246,16 @@ void face_build(struct face_builder *b, uint32_t ptex)
     }
     struct quad quad, child[4];
     if (face_size(t, face) != 4) {
-        quad = extract_refined_quad(t, &plan->refined, c, &b->arena);
+        quad = extract_refined_quad(t, &plan->refined, c, &b->rings, &b->arena);
         build_node(b, ptex, &quad);
     } else if (plan->refined.face && touches_ngon(t, c)) {
         for (unsigned i = 0; i < 4; i++, c = corner_next(t, c)) {
-            quad = extract_refined_quad(t, &plan->refined, c, &b->arena);
+            quad = extract_refined_quad(t, &plan->refined, c, &b->rings, &b->arena);
             child[i] = quad_rotated(&quad, (4 - i) & 3);
         }
         build_split(b, ptex, child);
     } else {
-        quad = extract_quad(t, c, &b->arena);
+        quad = extract_quad(t, c, &b->rings, &b->arena);
         build_node(b, ptex, &quad);
     }
 }

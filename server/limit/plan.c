@@ -39,6 +39,7 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
                                    .box_max = {-INFINITY, -INFINITY, -INFINITY}};
     if (!arena_init(&measure.arena, plan->arena_bytes))
         return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
+    shared_rings_init(&measure.rings, plan->cage->face_start[plan->cage->n_faces]);
     uint64_t node = plan->n_ptex, texel = 0, bound = 0;
     bool ok = true;
     for (uint32_t p = 0; p < plan->n_ptex && ok && (ok = limit_goes_on(watch, error)); p++) {
@@ -70,6 +71,7 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
         plan->box_min[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_min[k] : 0;
         plan->box_max[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_max[k] : 0;
     }
+    shared_rings_finish(&measure.rings);
     arena_finish(&measure.arena);
     return ok;
 }

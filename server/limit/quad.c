@@ -1,6 +1,7 @@
 #include "server/limit/quad.h"
 
 #include "server/limit/crease.h"
+#include "server/limit/shared.h"
 
 unsigned quad_extraordinary(const struct quad *quad)
 {
@@ -73,14 +74,23 @@ static struct ring seen_from(struct ring ring, uint32_t at, struct arena *arena)
     return crease_settle(&ring, arena);
 }
 
+static struct ring refined(const struct ring *ring, struct arena *arena)
+{
+    struct ring fine;
+    if (!shared_find_derived(ring, SHARED_REFINED, &fine)) {
+        fine = ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
+        ring_refine(ring, &fine);
+        fine = shared_keep_derived(ring, SHARED_REFINED, &fine);
+    }
+    fine.at = ring->at;
+    return fine;
+}
+
 void quad_refine(const struct quad *quad, struct arena *arena, struct quad child[4])
 {
     struct ring fine[4], edge[4], face;
-    for (unsigned i = 0; i < 4; i++) {
-        const struct ring *ring = &quad->corner[i];
-        fine[i] = ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
-        ring_refine(ring, &fine[i]);
-    }
+    for (unsigned i = 0; i < 4; i++)
+        fine[i] = refined(&quad->corner[i], arena);
     for (unsigned i = 0; i < 4; i++)
         edge[i] = edge_ring(fine, i, arena);
     face = face_ring(fine, arena);

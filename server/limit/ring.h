@@ -31,8 +31,9 @@ struct ring {
     float sharpness;             /* of the vertex; CAGE_SHARPNESS_INFINITE: interpolated */
     struct ring_creases creases; /* edge is NULL: smooth, but for the ends of an open ring */
     struct vec centre;
-    struct vec *edge; /* [n_faces + !closed] */
-    struct vec *face; /* [n_faces] */
+    struct vec *edge;           /* [n_faces + !closed] */
+    struct vec *face;           /* [n_faces] */
+    struct shared_ring *shared; /* where it is kept for all its corners (shared.h); NULL: nowhere */
 };
 
 /* A smooth ring with room for its points; with_creases: and for sharpness, all zero. */

@@ -35,7 +35,8 @@
 #define LIMIT_CORNER_TEXELS(levels) (LIMIT_CORNER_HEAD(levels) + (levels)*LIMIT_LEVEL_TEXELS)
 #define LIMIT_NO_NORMAL 0x80u /* added to a CORNER's levels */
 #define LIMIT_NO_FACE UINT32_MAX
-/* The cost of a corner grows with its valence, and a vertex has as many corners. */
+/* Building holds dozens of rings at once (plan.c), and makes one anew for each corner of an n-gon.
+ */
 #define LIMIT_MAX_VALENCE 4096
 
 enum limit_kind { LIMIT_REGULAR, LIMIT_CORNER, LIMIT_SPLIT, LIMIT_HOLE, LIMIT_STRIP };

@@ -26,6 +26,7 @@ struct walk {
     const limit_plan *plan;
     const osd_levels *truth;
     struct arena arena;
+    struct shared_rings rings;
     double distance[n_levels + 1] = {};
     size_t n_faces[n_levels + 1] = {};
 
@@ -65,13 +66,14 @@ void compare_face(walk *walk, uint32_t face)
     uint32_t first = t.cage->face_start[face], n = face_size(&t, face);
     walk->arena.used = 0;
     if (n == 4 && !touches_ngon(t, first)) {
-        quad quad = extract_quad(&t, first, &walk->arena);
+        quad quad = extract_quad(&t, first, &walk->rings, &walk->arena);
         walk->compare(quad, 0, (int)face);
         return;
     }
     for (uint32_t k = 0; k < n; k++) {
         walk->arena.used = 0;
-        quad quad = extract_refined_quad(&t, &walk->plan->refined, first + k, &walk->arena);
+        quad quad =
+            extract_refined_quad(&t, &walk->plan->refined, first + k, &walk->rings, &walk->arena);
         if (n == 4)
             quad = quad_rotated(&quad, (4 - k) & 3); /* a quad's children keep its orientation */
         walk->compare(quad, 1, walk->truth->child(0, (int)face, (int)k));
@@ -106,6 +108,7 @@ void judge(const std::string &path, verdict *verdict)
     walk.truth = &truth;
     if (!arena_init(&walk.arena, plan->arena_bytes))
         throw std::runtime_error("out of memory");
+    shared_rings_init(&walk.rings, cage->face_start[cage->n_faces]);
     for (uint32_t face = 0; face < cage->n_faces; face++)
         compare_face(&walk, face);
     arena_finish(&walk.arena);

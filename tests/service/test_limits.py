@@ -1,6 +1,7 @@
 """Every limit of `sheend --help`, hit: what is over it is refused in words that name it, or ends the
 connection with the reason in the log, and costs nobody else anything."""
 import contextlib
+import math
 import os
 import re
 import resource
@@ -107,22 +108,31 @@ class Workers(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     @staticmethod
-    def fan(valence, comment=""):
-        """Triangles, each of which has to do with all the others: slow to build."""
-        lines = ["v 0 0 0"] + [f"v {i} {i * i % 97} {i * i % 89}" for i in range(valence + 1)]
-        lines += [f"f 1 {i + 2} {i + 3}" for i in range(valence)]
-        return "\n".join([*lines, "# " + comment, ""]).encode()
+    def slow(comment=""):
+        """Vertices of up to 64 faces, at which a crease ends or which are sharp: what such surfaces
+        tend to is found by iteration, for each number of faces and its kind."""
+        lines, tags, first = [], [], 0
+        for n in [*range(24, 65)] * 2:
+            lines += ["v 0 0 1"] + [f"v {math.cos(math.pi * k / n)} {math.sin(math.pi * k / n)} "
+                                    f"{k % 3 / 50}" for k in range(2 * n)]
+            lines += [f"f {first + 1} {first + 2 + 2 * k} {first + 3 + 2 * k} "
+                      f"{first + 2 + (2 * k + 2) % (2 * n)}" for k in range(n)]
+            is_dart = len(tags) > 40
+            tags.append(f"t crease 2/1/0 {first} {first + 1} 10" if is_dart
+                        else f"t corner 1/1/0 {first} 10")
+            first += 2 * n + 1
+        return "\n".join([*lines, *tags, "# " + comment, ""]).encode()
 
     def test_tables_cpu(self):
         daemon = Daemon("--tables-cpu", "1", "--threads", "2", tcp=False)
         with Client(daemon.unix, timeout=60) as client:
-            model = client.upload(self.fan(4000), "fan.obj")
+            model = client.upload(self.slow(), "slow.obj")
             for seq in (70, 71):
                 client.send(wire.render(seq, model))
                 with self.assertRaises(wire.Refused) as caught:
                     client.read_frame(seq)
                 self.assertEqual(caught.exception.code, wire.ERROR_MODEL)
-                self.assertIn("fan.obj: its tables take more than 1 s of processor time "
+                self.assertIn("slow.obj: its tables take more than 1 s of processor time "
                               "(--tables-cpu)", caught.exception.text)
             client.render(client.upload(CUBE, "cube.obj"))
         self.assertEqual(daemon.stop(), 0)
@@ -132,7 +142,7 @@ class Workers(unittest.TestCase):
         n_slow = 8
         daemon = Daemon("--tables-cpu", "1", "--threads", "2")
         with Client(daemon.tcp, minor=1, timeout=60) as many, Client(daemon.unix) as one:
-            slow = [many.upload(self.fan(4000, str(i)), "fan.obj") for i in range(n_slow)]
+            slow = [many.upload(self.slow(str(i)), "slow.obj") for i in range(n_slow)]
             quick = one.upload(CUBE, "cube.obj")
             many.send(b"".join(wire.message(wire.MODEL_QUERY, 100 + i, wire.field(1, model))
                                for i, model in enumerate(slow)))

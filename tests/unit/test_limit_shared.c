@@ -1,0 +1,150 @@
+/* Rings of large vertices: made once for all the quads around, whatever follows from them too, and
+ * of tables' windows onto them the same surface. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "server/cage/read/read.h"
+#include "server/limit/crease.h"
+#include "server/limit/evaluate.h"
+#include "server/limit/extract.h"
+#include "server/limit/plan.h"
+
+enum { N = 150 }; /* faces: more than a table's window */
+
+struct fan {
+    struct cage cage;
+    struct limit_plan *plan;
+    struct shared_rings rings;
+    struct arena arena;
+};
+
+/* Quads about vertex 0, all round or not, rough; tags are lines of OBJ. */
+static void fan_init(struct fan *fan, bool closed, const char *tags)
+{
+    static char text[1 << 16];
+    struct error error = {0};
+    const int n_rim = 2 * N + !closed;
+    int used = snprintf(text, sizeof text, "v 0 0 0.4\n");
+    for (int k = 0; k < n_rim; k++) {
+        double angle = 6.2 * k / n_rim, radius = k % 2 ? 1.3 : 1;
+        used += snprintf(text + used, sizeof text - (size_t)used, "v %.9f %.9f %.9f\n",
+                         radius * cos(angle), radius * sin(angle), 0.02 * (k * k % 7));
+    }
+    for (int k = 0; k < N; k++)
+        used += snprintf(text + used, sizeof text - (size_t)used, "f 1 %d %d %d\n", 2 + 2 * k,
+                         3 + 2 * k, 2 + (2 * k + 2) % n_rim);
+    used += snprintf(text + used, sizeof text - (size_t)used, "%s", tags);
+    if (!cage_read(&fan->cage, text, (size_t)used, "fan.obj", &error))
+        fail_msg("%s", error.text);
+    fan->plan = limit_plan_create(&fan->cage, NULL, &error);
+    if (!fan->plan)
+        fail_msg("%s", error.text);
+    shared_rings_init(&fan->rings, 4 * N);
+    assert_true(arena_init(&fan->arena, fan->plan->arena_bytes));
+}
+
+static void fan_finish(struct fan *fan)
+{
+    arena_finish(&fan->arena);
+    shared_rings_finish(&fan->rings);
+    limit_plan_destroy(fan->plan);
+    cage_finish(&fan->cage);
+}
+
+/* Every quad around, and each of its refinements, holds the same ring and not a copy. */
+static void assert_made_once(bool closed, const char *tags, int n_sectors)
+{
+    enum { DEPTH = 3 };
+    struct fan fan;
+    fan_init(&fan, closed, tags);
+    const struct vec *last[DEPTH] = {NULL};
+    int n_changes = 0;
+    for (uint32_t face = 0; face < N; face++) {
+        fan.arena.used = 0;
+        struct quad quad = extract_quad(&fan.plan->topology, 4 * face, &fan.rings, &fan.arena);
+        for (int depth = 0; depth < DEPTH; depth++) {
+            const struct ring *ring = &quad.corner[0];
+            assert_true(ring->n_faces >= SHARED_MIN_FACES);
+            n_changes += depth == 0 && ring->edge != last[0];
+            if (n_sectors == 1 && face > 0)
+                assert_ptr_equal(ring->edge, last[depth]);
+            last[depth] = ring->edge;
+            struct vec next = ring_edge(ring, 0);
+            assert_memory_equal(&next, &quad.corner[1].centre, sizeof next);
+            struct quad child[4];
+            quad_refine(&quad, &fan.arena, child);
+            quad = child[0];
+        }
+    }
+    assert_int_equal(n_changes, n_sectors);
+    fan_finish(&fan);
+}
+
+static void test_made_once(void **state)
+{
+    (void)state;
+    assert_made_once(true, "", 1);
+    assert_made_once(false, "", 1);
+    assert_made_once(true, "t corner 1/1/0 0 10\n", 1);
+    assert_made_once(true, "t crease 2/1/0 0 1 3.5\n", 1);
+    assert_made_once(true, "t crease 2/1/0 0 1 10\nt crease 2/1/0 0 61 10\n", 2);
+    assert_made_once(true, "t crease 2/1/0 0 21 10\nt crease 2/1/0 0 61 10\n", 3); /* one twice */
+    assert_made_once(false, "t crease 2/1/0 0 61 10\n", 2);
+}
+
+/* The quarter at corner 0, again and again: what refining whole rings says of S(2^-k, 2^-k). */
+static void assert_table_right(struct fan *fan, const struct limit_tables *tables, uint32_t face)
+{
+    fan->arena.used = 0;
+    struct quad quad = extract_quad(&fan->plan->topology, 4 * face, &fan->rings, &fan->arena);
+    for (int k = 1; k <= 6; k++) {
+        struct quad child[4];
+        quad_refine(&quad, &fan->arena, child);
+        quad = child[0];
+        struct limit_point p;
+        struct vec truth = ring_limit(&quad.corner[2]);
+        assert_true(limit_evaluate(tables, face, ldexp(1, -k), ldexp(1, -k), &p));
+        double off = vec_length(vec_sub(p.s, truth));
+        if (!(off < 1e-6))
+            fail_msg("face %u, step %d: %g off", face, k, off);
+    }
+}
+
+static void test_windows(void **state)
+{
+    (void)state;
+    static const char *const tags[] = {"", "t corner 1/1/0 0 10\n",
+                                       "t crease 2/1/0 0 1 10\nt crease 2/1/0 0 201 10\n"};
+    static const uint32_t faces[] = {0, 1, 20, 44, 70, 104, 105, 106, 107, 130, N - 2, N - 1};
+    for (int closed = 0; closed < 2; closed++) {
+        for (size_t i = 0; i < sizeof tags / sizeof tags[0]; i++) {
+            struct fan fan;
+            struct limit_tables tables;
+            struct error error = {0};
+            fan_init(&fan, closed, tags[i]);
+            assert_true(limit_tables_init(&tables, fan.plan, &error));
+            assert_true(limit_build_faces(&tables, fan.plan, 0, N, NULL, &error));
+            for (size_t k = 0; k < sizeof faces / sizeof faces[0]; k++)
+                assert_table_right(&fan, &tables, faces[k]);
+            limit_tables_finish(&tables);
+            fan_finish(&fan);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_made_once),
+        cmocka_unit_test(test_windows),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
