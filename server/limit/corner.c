@@ -239,7 +239,7 @@ static bool vertex_frame(const struct ring *ring, struct ring_modes *modes, stru
     struct vec t1, t2;
     bool has_normal = ring_tangents(ring, &t1, &t2);
     if (ring_is_dart(ring) || (!has_normal && ring->n_faces <= MODES_MAX_VALENCE)) {
-        ring_modes_init(modes, ring, arena);
+        shared_find_modes(ring, arena, modes);
         t1 = ring_mode_apply(modes->tangent[0], ring);
         t2 = ring_mode_apply(modes->tangent[1], ring);
     }

@@ -140,11 +140,40 @@ static void test_windows(void **state)
     }
 }
 
+/* Darts of the same ring and edge, wherever they lie, have the same modes: found once. */
+static void test_modes(void **state)
+{
+    (void)state;
+    struct ring_modes own, found[4];
+    struct shared_rings rings;
+    struct arena arena;
+    shared_rings_init(&rings, 1);
+    assert_true(arena_init(&arena, 1 << 16));
+    for (int i = 0; i < 4; i++) {
+        struct shared_ring *kept;
+        struct ring ring = ring_take(&arena, 12, true, true);
+        ring.creases.edge[i == 2] = CAGE_SHARPNESS_INFINITE;
+        ring.sharpness = i == 3 ? CAGE_SHARPNESS_INFINITE : 0;
+        ring.centre = (struct vec){i, 0, 0};
+        for (int k = 0; k < 12; k++)
+            ring.edge[k] = ring.face[k] = (struct vec){k, i, 1};
+        assert_true(shared_keep(&rings, 0, &ring, &kept));
+        shared_find_modes(&kept->ring, &arena, &found[i]);
+        ring_modes_init(&own, &ring, &arena);
+        assert_memory_equal(&found[i].position, &own.position, 25 * sizeof(double));
+        assert_memory_equal(&found[i].tangent[1], &own.tangent[1], 25 * sizeof(double));
+        assert_int_equal(rings.n_modes, i < 2 ? 1 : i);
+    }
+    arena_finish(&arena);
+    shared_rings_finish(&rings);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_made_once),
         cmocka_unit_test(test_windows),
+        cmocka_unit_test(test_modes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
