@@ -27,30 +27,55 @@ float crease_child_vertex(float sharpness)
     return is_infinite(sharpness) ? sharpness : sharpness > 1 ? sharpness - 1 : 0;
 }
 
+void crease_add(struct crease_sum *sum, float sharpness)
+{
+    sum->sum += is_semisharp(sharpness) ? sharpness : 0;
+    sum->n += is_semisharp(sharpness);
+}
+
+float crease_child_chaikin(float sharpness, const struct crease_sum *sum)
+{
+    if (is_semisharp(sharpness) && sum->n > 1) {
+        float others = (sum->sum - sharpness) / (float)(sum->n - 1);
+        sharpness = 0.75f * sharpness + 0.25f * others;
+    }
+    return crease_child_vertex(sharpness);
+}
+
+static struct crease_sum sum_of(const struct ring *ring)
+{
+    struct crease_sum sum = {0, 0};
+    for (uint32_t k = 0; ring->creases.chaikin && k < ring_edges(ring); k++)
+        crease_add(&sum, crease_edge(ring, k));
+    return sum;
+}
+
+static float child_of(const struct ring *ring, uint32_t k, const struct crease_sum *sum)
+{
+    float sharpness = crease_edge(ring, k);
+    return ring->creases.chaikin ? crease_child_chaikin(sharpness, sum)
+                                 : crease_child_vertex(sharpness);
+}
+
 float crease_child(const struct ring *ring, uint32_t k)
 {
-    float sharpness = crease_edge(ring, k), sum = 0;
-    if (!is_semisharp(sharpness) || !ring->creases.chaikin)
-        return crease_child_vertex(sharpness);
-    uint32_t n = 0;
-    for (uint32_t j = 0; j < ring_edges(ring); j++) {
-        float other = crease_edge(ring, j);
-        sum += is_semisharp(other) ? other : 0;
-        n += is_semisharp(other);
-    }
-    if (n > 1)
-        sharpness = 0.75f * sharpness + 0.25f * ((sum - sharpness) / (float)(n - 1));
-    return sharpness > 1 ? sharpness - 1 : 0;
+    const struct crease_sum sum = sum_of(ring);
+    return child_of(ring, k, &sum);
+}
+
+double crease_weight(float sharpness, float child, float far)
+{
+    if (sharpness <= 0)
+        return 0;
+    return is_infinite(sharpness) || (child > 0 && far > 0) ? 1 : sharpness;
 }
 
 double crease_edge_weight(const struct ring *in, uint32_t k)
 {
     float sharpness = crease_edge(in, k);
-    if (sharpness <= 0)
-        return 0;
-    if (is_infinite(sharpness))
-        return 1;
-    return crease_child(in, k) > 0 && in->creases.far[k] > 0 ? 1 : sharpness;
+    if (!is_semisharp(sharpness))
+        return crease_weight(sharpness, sharpness, sharpness);
+    return crease_weight(sharpness, crease_child(in, k), in->creases.far[k]);
 }
 
 /* At the new vertex on an edge only its two halves are sharp: what half `own` becomes there. */
@@ -67,8 +92,9 @@ void crease_refine(const struct ring *in, struct ring *out)
     out->creases.chaikin = in->creases.chaikin;
     if (!in->creases.edge)
         return;
+    const struct crease_sum sum = sum_of(in);
     for (uint32_t k = 0; k < ring_edges(in); k++) {
-        out->creases.edge[k] = crease_child(in, k);
+        out->creases.edge[k] = child_of(in, k, &sum);
         out->creases.far[k] =
             child_at_edge_point(out->creases.edge[k], in->creases.far[k], in->creases.chaikin);
     }

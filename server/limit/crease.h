@@ -11,14 +11,28 @@ enum crease_rule { RULE_SMOOTH, RULE_DART, RULE_CREASE, RULE_CORNER };
 /* Sharpness of edge k; the ends of an open ring are infinitely sharp. */
 float crease_edge(const struct ring *ring, uint32_t k);
 
+/* The sum of the semi-sharp edges around a vertex, in the ring's order, for Chaikin's rule. Begins
+ * with zeros. */
+struct crease_sum {
+    float sum;
+    uint32_t n;
+};
+void crease_add(struct crease_sum *sum, float sharpness);
+/* What becomes by Chaikin's rule of the half, at that vertex, of an edge among them. */
+float crease_child_chaikin(float sharpness, const struct crease_sum *sum);
+
 /* What the half of edge k at this vertex has after one step: one less, or Chaikin's mean with the
  * other edges less one. Never below 0; infinite stays. */
 float crease_child(const struct ring *ring, uint32_t k);
 
-/* How much of the crease rule the new vertex on edge k takes: all of it where both halves stay
+/* How much of the crease rule the new vertex on an edge takes, by what its halves at both ends
+ * become: all of it where both halves stay
  * sharp, else the sharpness. That is at most 1 but where Chaikin's mean wipes out a sharper edge;
  * OpenSubdiv then takes more than all (sdc/scheme.h, ComputeEdgeVertexMask given the child's rule),
- * and so do we. Needs creases.far where creases.edge is set. */
+ * and so do we. */
+double crease_weight(float sharpness, float child, float far);
+
+/* The same for edge k. Needs creases.far where creases.edge is set. */
 double crease_edge_weight(const struct ring *ring, uint32_t k);
 
 /* Sharpness of a vertex after one step. */

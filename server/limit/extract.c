@@ -36,28 +36,20 @@ static struct ring cage_ring(const struct topology *t, uint32_t c, bool quads,
 }
 
 /* What the half of half-edge c at its start will have after one step. */
-static float child_sharpness(const struct topology *t, uint32_t c, struct arena *arena)
+static float child_sharpness(const struct topology *t, uint32_t c)
 {
-    float sharpness = edge_sharpness(t, c);
-    if (!t->cage->chaikin || sharpness <= 0)
-        return crease_child_vertex(sharpness);
-    size_t mark = arena->used;
-    struct sector sector;
-    struct ring ring = cage_ring(t, c, false, &sector, arena);
-    float child = crease_child(&ring, ring.at);
-    arena->used = mark;
-    return child;
+    return t->child_sharpness ? t->child_sharpness[c] : crease_child_vertex(edge_sharpness(t, c));
 }
 
 static void set_far_sharpness(const struct topology *t, const struct sector *sector,
-                              struct ring *ring, struct arena *arena)
+                              struct ring *ring)
 {
     if (!ring->creases.edge)
         return;
     for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at)) {
         uint32_t twin = t->twin[at];
         ring->creases.far[k] =
-            twin == CORNER_NONE ? CAGE_SHARPNESS_INFINITE : child_sharpness(t, twin, arena);
+            twin == CORNER_NONE ? CAGE_SHARPNESS_INFINITE : child_sharpness(t, twin);
     }
 }
 
@@ -81,7 +73,7 @@ static struct ring vertex_ring(const struct topology *t, uint32_t c, struct shar
     if (!shared_find(rings, 0, c, &ring)) {
         struct sector sector;
         ring = cage_ring(t, c, true, &sector, arena);
-        set_far_sharpness(t, &sector, &ring, arena);
+        set_far_sharpness(t, &sector, &ring);
         share(t, rings, 0, &sector, &ring);
     }
     return crease_settle(&ring, arena);
@@ -92,7 +84,7 @@ static struct ring refine_cage_ring(const struct topology *t, const struct vec *
                                     uint32_t c, struct sector *sector, struct arena *arena)
 {
     struct ring ring = cage_ring(t, c, false, sector, arena);
-    set_far_sharpness(t, sector, &ring, arena);
+    set_far_sharpness(t, sector, &ring);
     struct ring out = ring_take(arena, ring.n_faces, ring.closed, ring.creases.edge);
     for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at))
         out.face[k] = face_points[t->face[at]];
@@ -239,21 +231,9 @@ static double smooth_triangle_weight(const struct topology *t, uint32_t corner)
     return face_size(t, t->face[corner]) == 3 ? 0.470 : 0.25;
 }
 
-static double crease_weight(const struct topology *t, uint32_t c, struct arena *arena)
-{
-    size_t mark = arena->used;
-    struct sector sector;
-    struct ring ring = cage_ring(t, c, false, &sector, arena);
-    set_far_sharpness(t, &sector, &ring, arena);
-    double weight = crease_edge_weight(&ring, ring.at);
-    arena->used = mark;
-    return weight;
-}
-
 /* TRI_SUB_SMOOTH: edges beside triangles lean on the face points, in the first step only. */
 static bool refine_smooth_triangle_edges(const struct topology *t, struct refined_points *points,
-                                         struct arena *arena, const struct limit_watch *watch,
-                                         struct error *error)
+                                         const struct limit_watch *watch, struct error *error)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
     for (uint32_t c = 0; c < n_corners; c++) {
@@ -262,7 +242,8 @@ static bool refine_smooth_triangle_edges(const struct topology *t, struct refine
             continue;
         if (!limit_goes_on(watch, error))
             return false;
-        double crease = crease_weight(t, c, arena);
+        double crease =
+            crease_weight(edge_sharpness(t, c), child_sharpness(t, c), child_sharpness(t, twin));
         double face = 0.5 * (smooth_triangle_weight(t, c) + smooth_triangle_weight(t, twin));
         struct vec ends = vec_add(position(t, c), position(t, corner_next(t, c)));
         struct vec faces = vec_add(points->face[t->face[c]], points->face[t->face[twin]]);
@@ -296,8 +277,7 @@ bool refined_points_init(struct refined_points *points, const struct topology *t
         if (!done[c] && (ok = limit_goes_on(watch, error)))
             refine_sector(t, points, c, done, arena);
     free(done);
-    return ok && (!cage->smooth_triangles ||
-                  refine_smooth_triangle_edges(t, points, arena, watch, error));
+    return ok && (!cage->smooth_triangles || refine_smooth_triangle_edges(t, points, watch, error));
 }
 
 void refined_points_finish(struct refined_points *points)

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/limit/crease.h"
+
 /* Edges around each vertex, counted while the half-edges are paired. */
 struct vertex_count {
     uint32_t edges, boundary, nonmanifold, faces;
@@ -217,6 +219,30 @@ static bool sharpen_vertices(struct topology *t, struct error *error)
     return true;
 }
 
+/* All edges around a vertex count for each: summed once. */
+static bool find_child_sharpness(struct topology *t)
+{
+    uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
+    if (!t->cage->chaikin || !t->edge_sharpness)
+        return true;
+    t->child_sharpness = malloc(n_corners * sizeof *t->child_sharpness);
+    if (!t->child_sharpness)
+        return false;
+    for (uint32_t c = 0; c < n_corners; c++)
+        t->child_sharpness[c] = -1;
+    for (uint32_t c = 0; c < n_corners; c++) {
+        if (t->child_sharpness[c] >= 0)
+            continue;
+        struct sector sector = topology_sector(t, c);
+        struct crease_sum sum = {0, 0};
+        for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at))
+            crease_add(&sum, edge_sharpness(t, at));
+        for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at))
+            t->child_sharpness[at] = crease_child_chaikin(edge_sharpness(t, at), &sum);
+    }
+    return true;
+}
+
 bool topology_init(struct topology *t, const struct cage *cage, struct error *error)
 {
     size_t n_corners = cage->face_start[cage->n_faces];
@@ -242,6 +268,8 @@ bool topology_init(struct topology *t, const struct cage *cage, struct error *er
         goto no_memory;
     flag_vertices(t, count);
     flag_creased_vertices(t);
+    if (!find_child_sharpness(t))
+        goto no_memory;
     free(count);
     return true;
 
@@ -259,6 +287,7 @@ void topology_finish(struct topology *t)
     free(t->face);
     free(t->vertex_flags);
     free(t->edge_sharpness);
+    free(t->child_sharpness);
     free(t->vertex_sharpness);
     *t = (struct topology){0};
 }

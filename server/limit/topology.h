@@ -21,6 +21,8 @@ struct topology {
     uint32_t *face;          /* [corners]: the face it belongs to */
     uint8_t *vertex_flags;   /* [vertices] */
     float *edge_sharpness;   /* [corners], twins alike; NULL: no creases in the cage */
+    float *child_sharpness;  /* [corners]: of the half at the corner after one step, by Chaikin's
+                                rule; NULL: without that, or no creases */
     float *vertex_sharpness; /* [vertices]; NULL: no sharp vertices in the cage */
     bool quads_only;
 };

@@ -168,12 +168,34 @@ static void test_modes(void **state)
     shared_rings_finish(&rings);
 }
 
+/* Chaikin's rule, of which every edge around a vertex takes its part: summed once a vertex, as the
+ * ring says. */
+static void test_chaikin(void **state)
+{
+    (void)state;
+    struct fan fan;
+    fan_init(&fan, true,
+             "t creasemethod 0/0/1 chaikin\nt crease 2/1/0 0 1 3.5\nt crease 2/1/0 0 41 2.25\n"
+             "t crease 2/1/0 0 101 1.5\nt crease 2/1/0 101 102 4\n");
+    const struct topology *t = &fan.plan->topology;
+    const float mean = (2.25f + 1.5f) / 2;
+    struct quad quad = extract_quad(t, 0, &fan.rings, &fan.arena);
+    assert_float_equal(t->child_sharpness[0], 0.75f * 3.5f + 0.25f * mean - 1, 1e-6);
+    for (uint32_t face = 0; face < N; face++) {
+        assert_true(t->child_sharpness[4 * face] == crease_child(&quad.corner[0], face));
+        assert_true(t->child_sharpness[4 * face + 1] >= 0);
+    }
+    assert_true(t->child_sharpness[4 * 50 + 1] == CAGE_SHARPNESS_INFINITE); /* the rim */
+    fan_finish(&fan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_made_once),
         cmocka_unit_test(test_windows),
         cmocka_unit_test(test_modes),
+        cmocka_unit_test(test_chaikin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
