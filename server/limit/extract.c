@@ -54,14 +54,14 @@ static void set_far_sharpness(const struct topology *t, const struct sector *sec
 }
 
 /* Keeps a large ring for all the corners of its sector. */
-static void share(const struct topology *t, struct shared_rings *rings, int level,
+static void share(const struct topology *t, struct shared_rings *rings, enum shared_kind kind,
                   const struct sector *sector, struct ring *ring)
 {
     struct shared_ring *kept;
-    if (!shared_keep(rings, level, ring, &kept))
+    if (!shared_keep(rings, kind, ring, &kept))
         return;
     for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at))
-        shared_see_from(rings, level, at, kept, k);
+        shared_see_from(rings, kind, at, kept, k);
     *ring = kept->ring;
     ring->at = sector->at;
 }
@@ -70,11 +70,11 @@ static struct ring vertex_ring(const struct topology *t, uint32_t c, struct shar
                                struct arena *arena)
 {
     struct ring ring;
-    if (!shared_find(rings, 0, c, &ring)) {
+    if (!shared_find(rings, SHARED_CAGE, c, &ring)) {
         struct sector sector;
         ring = cage_ring(t, c, true, &sector, arena);
         set_far_sharpness(t, &sector, &ring);
-        share(t, rings, 0, &sector, &ring);
+        share(t, rings, SHARED_CAGE, &sector, &ring);
     }
     return crease_settle(&ring, arena);
 }
@@ -99,7 +99,7 @@ static struct ring refined_vertex_ring(const struct topology *t,
 {
     struct sector sector;
     struct ring ring;
-    if (shared_find(rings, 1, c, &ring))
+    if (shared_find(rings, SHARED_REFINED_CAGE, c, &ring))
         return ring;
     ring = refine_cage_ring(t, points->face, c, &sector, arena);
     for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at)) {
@@ -107,7 +107,7 @@ static struct ring refined_vertex_ring(const struct topology *t,
         if (!sector.closed && k + 1 == sector.n_faces)
             ring.edge[k + 1] = points->edge[corner_prev(t, at)];
     }
-    share(t, rings, 1, &sector, &ring);
+    share(t, rings, SHARED_REFINED_CAGE, &sector, &ring);
     return ring;
 }
 
@@ -144,17 +144,31 @@ static struct ring refined_edge_ring(const struct topology *t, const struct refi
     return crease_settle(&ring, arena);
 }
 
-/* Around the face point, listed from half-edge c; quad k lies beyond corner next(c) + k. */
+/* Around the face point, seen from the quad at cage corner c, from which a small face is listed; a
+ * large one, alike for all its corners, from its first. Each quad lies between the edge points
+ * before and after its corner. */
 static struct ring refined_face_ring(const struct topology *t, const struct refined_points *points,
-                                     uint32_t c, struct arena *arena)
+                                     uint32_t c, struct shared_rings *rings, struct arena *arena)
 {
-    uint32_t n = face_size(t, t->face[c]);
-    struct ring ring = ring_take(arena, n, true, false);
+    uint32_t start = t->cage->face_start[t->face[c]], n = face_size(t, t->face[c]);
+    uint32_t first = n < SHARED_MIN_FACES ? c : start;
+    struct shared_ring *kept;
+    struct ring ring;
+    if (shared_find(rings, SHARED_FACE, c, &ring))
+        return ring;
+    ring = ring_take(arena, n, true, false);
+    ring.at = c - first;
     ring.centre = points->face[t->face[c]];
-    for (uint32_t k = 0, at = c; k < n; k++, at = corner_next(t, at)) {
-        ring.edge[k] = points->edge[at];
-        ring.face[k] = points->vertex[corner_vertex(t, corner_next(t, at))];
+    for (uint32_t k = 0, at = first; k < n; k++, at = corner_next(t, at)) {
+        ring.edge[k] = points->edge[corner_prev(t, at)];
+        ring.face[k] = points->vertex[corner_vertex(t, at)];
     }
+    if (!shared_keep(rings, SHARED_FACE, &ring, &kept))
+        return ring;
+    for (uint32_t k = 0; k < n; k++)
+        shared_see_from(rings, SHARED_FACE, start + k, kept, k);
+    ring = kept->ring;
+    ring.at = c - start;
     return ring;
 }
 
@@ -189,7 +203,7 @@ struct quad extract_refined_quad(const struct topology *t, const struct refined_
     struct ring vertex = refined_vertex_ring(t, points, c, rings, arena);
     quad.corner[0] = crease_settle(&vertex, arena);
     quad.corner[1] = refined_edge_ring(t, points, c, 1, rings, arena);
-    quad.corner[2] = refined_face_ring(t, points, before, arena);
+    quad.corner[2] = refined_face_ring(t, points, c, rings, arena);
     quad.corner[3] = refined_edge_ring(t, points, before, 0, rings, arena);
     return quad;
 }

@@ -22,8 +22,8 @@ void shared_rings_finish(struct shared_rings *rings)
         older = kept->older;
         free(kept);
     }
-    free(rings->place[0]);
-    free(rings->place[1]);
+    for (int kind = 0; kind < SHARED_KINDS; kind++)
+        free(rings->place[kind]);
     *rings = (struct shared_rings){0};
 }
 
@@ -53,30 +53,31 @@ static struct shared_ring *copy(struct shared_rings *rings, const struct ring *r
     return shared;
 }
 
-bool shared_find(const struct shared_rings *rings, int level, uint32_t corner, struct ring *out)
+bool shared_find(const struct shared_rings *rings, enum shared_kind kind, uint32_t corner,
+                 struct ring *out)
 {
-    if (!rings->place[level] || !rings->place[level][corner].shared)
+    if (!rings->place[kind] || !rings->place[kind][corner].shared)
         return false;
-    *out = rings->place[level][corner].shared->ring;
-    out->at = rings->place[level][corner].at;
+    *out = rings->place[kind][corner].shared->ring;
+    out->at = rings->place[kind][corner].at;
     return true;
 }
 
-bool shared_keep(struct shared_rings *rings, int level, const struct ring *ring,
+bool shared_keep(struct shared_rings *rings, enum shared_kind kind, const struct ring *ring,
                  struct shared_ring **kept)
 {
     if (ring->n_faces < SHARED_MIN_FACES)
         return false;
-    if (!rings->place[level])
-        rings->place[level] = calloc(rings->n_corners, sizeof *rings->place[level]);
-    *kept = rings->place[level] ? copy(rings, ring) : NULL;
+    if (!rings->place[kind])
+        rings->place[kind] = calloc(rings->n_corners, sizeof *rings->place[kind]);
+    *kept = rings->place[kind] ? copy(rings, ring) : NULL;
     return *kept;
 }
 
-void shared_see_from(struct shared_rings *rings, int level, uint32_t corner,
+void shared_see_from(struct shared_rings *rings, enum shared_kind kind, uint32_t corner,
                      struct shared_ring *shared, uint32_t at)
 {
-    rings->place[level][corner] = (struct shared_place){shared, at};
+    rings->place[kind][corner] = (struct shared_place){shared, at};
 }
 
 bool shared_find_derived(const struct ring *from, uint32_t key, struct ring *out)

@@ -35,7 +35,10 @@ struct shared_ring {
     struct arena memory; /* the ring's */
 };
 
-/* In which ring a corner of the cage is, of how many times refined a cage (0 or 1). */
+/* Which ring a corner of the cage is in: of its vertex in the cage, of that in the refined cage, or
+ * of its face's point there. */
+enum shared_kind { SHARED_CAGE, SHARED_REFINED_CAGE, SHARED_FACE, SHARED_KINDS };
+
 struct shared_place {
     struct shared_ring *shared;
     uint32_t at;
@@ -55,20 +58,21 @@ struct shared_rings {
     struct shared_ring *newest;
     struct shared_modes *modes;
     int n_modes;
-    struct shared_place *place[2]; /* [corners], NULL until one is kept */
+    struct shared_place *place[SHARED_KINDS]; /* [corners], NULL until one is kept */
     size_t n_corners;
 };
 
 void shared_rings_init(struct shared_rings *rings, size_t n_corners);
 void shared_rings_finish(struct shared_rings *rings);
 
-/* The whole ring of a corner's vertex, as seen from there. False where it is not kept. */
-bool shared_find(const struct shared_rings *rings, int level, uint32_t corner, struct ring *out);
+/* The whole ring that a corner is in, as seen from there. False where it is not kept. */
+bool shared_find(const struct shared_rings *rings, enum shared_kind kind, uint32_t corner,
+                 struct ring *out);
 /* Keeps a copy, if it is large. shared_see_from() then tells from which corners it is seen. False
  * where it is not kept. */
-bool shared_keep(struct shared_rings *rings, int level, const struct ring *ring,
+bool shared_keep(struct shared_rings *rings, enum shared_kind kind, const struct ring *ring,
                  struct shared_ring **kept);
-void shared_see_from(struct shared_rings *rings, int level, uint32_t corner,
+void shared_see_from(struct shared_rings *rings, enum shared_kind kind, uint32_t corner,
                      struct shared_ring *shared, uint32_t at);
 
 /* The ring that follows from a kept one: SHARED_REFINED, or the sector that begins at edge `key`.

@@ -35,8 +35,7 @@
 #define LIMIT_CORNER_TEXELS(levels) (LIMIT_CORNER_HEAD(levels) + (levels)*LIMIT_LEVEL_TEXELS)
 #define LIMIT_NO_NORMAL 0x80u /* added to a CORNER's levels */
 #define LIMIT_NO_FACE UINT32_MAX
-/* Building holds dozens of rings at once (plan.c), and makes one anew for each corner of an n-gon.
- */
+/* Building holds dozens of rings at once (plan.c). */
 #define LIMIT_MAX_VALENCE 4096
 
 enum limit_kind { LIMIT_REGULAR, LIMIT_CORNER, LIMIT_SPLIT, LIMIT_HOLE, LIMIT_STRIP };

@@ -26,11 +26,22 @@ struct fan {
     struct arena arena;
 };
 
+static void fan_read(struct fan *fan, const char *text, size_t size)
+{
+    struct error error = {0};
+    if (!cage_read(&fan->cage, text, size, "fan.obj", &error))
+        fail_msg("%s", error.text);
+    fan->plan = limit_plan_create(&fan->cage, NULL, &error);
+    if (!fan->plan)
+        fail_msg("%s", error.text);
+    shared_rings_init(&fan->rings, fan->cage.face_start[fan->cage.n_faces]);
+    assert_true(arena_init(&fan->arena, fan->plan->arena_bytes));
+}
+
 /* Quads about vertex 0, all round or not, rough; tags are lines of OBJ. */
 static void fan_init(struct fan *fan, bool closed, const char *tags)
 {
     static char text[1 << 16];
-    struct error error = {0};
     const int n_rim = 2 * N + !closed;
     int used = snprintf(text, sizeof text, "v 0 0 0.4\n");
     for (int k = 0; k < n_rim; k++) {
@@ -42,13 +53,7 @@ static void fan_init(struct fan *fan, bool closed, const char *tags)
         used += snprintf(text + used, sizeof text - (size_t)used, "f 1 %d %d %d\n", 2 + 2 * k,
                          3 + 2 * k, 2 + (2 * k + 2) % n_rim);
     used += snprintf(text + used, sizeof text - (size_t)used, "%s", tags);
-    if (!cage_read(&fan->cage, text, (size_t)used, "fan.obj", &error))
-        fail_msg("%s", error.text);
-    fan->plan = limit_plan_create(&fan->cage, NULL, &error);
-    if (!fan->plan)
-        fail_msg("%s", error.text);
-    shared_rings_init(&fan->rings, 4 * N);
-    assert_true(arena_init(&fan->arena, fan->plan->arena_bytes));
+    fan_read(fan, text, (size_t)used);
 }
 
 static void fan_finish(struct fan *fan)
@@ -98,6 +103,36 @@ static void test_made_once(void **state)
     assert_made_once(true, "t crease 2/1/0 0 1 10\nt crease 2/1/0 0 61 10\n", 2);
     assert_made_once(true, "t crease 2/1/0 0 21 10\nt crease 2/1/0 0 61 10\n", 3); /* one twice */
     assert_made_once(false, "t crease 2/1/0 0 61 10\n", 2);
+}
+
+/* All quads of a large face, too, whatever corner they are at. */
+static void test_face(void **state)
+{
+    (void)state;
+    enum { CORNERS = 12 };
+    char text[2000];
+    int used = 0;
+    for (int k = 0; k < CORNERS; k++)
+        used += sprintf(text + used, "v %.9f %.9f %d\n", cos(k * 0.5), sin(k * 0.5), k % 3);
+    used += sprintf(text + used, "f");
+    for (int k = 0; k < CORNERS; k++)
+        used += sprintf(text + used, " %d", k + 1);
+    struct fan fan;
+    fan_read(&fan, text, (size_t)used);
+    const struct vec *first = NULL;
+    for (uint32_t c = 0; c < CORNERS; c++) {
+        struct quad quad = extract_refined_quad(&fan.plan->topology, &fan.plan->refined, c,
+                                                &fan.rings, &fan.arena);
+        const struct ring *ring = &quad.corner[2];
+        first = c ? first : ring->edge;
+        assert_ptr_equal(ring->edge, first);
+        const struct vec seen[3] = {ring_face(ring, 0), ring_edge(ring, 0), ring_edge(ring, 1)};
+        assert_memory_equal(&seen[0], &quad.corner[0].centre, sizeof seen[0]);
+        assert_memory_equal(&seen[1], &quad.corner[3].centre, sizeof seen[1]);
+        assert_memory_equal(&seen[2], &quad.corner[1].centre, sizeof seen[2]);
+        fan.arena.used = 0;
+    }
+    fan_finish(&fan);
 }
 
 /* The quarter at corner 0, again and again: what refining whole rings says of S(2^-k, 2^-k). */
@@ -157,7 +192,7 @@ static void test_modes(void **state)
         ring.centre = (struct vec){i, 0, 0};
         for (int k = 0; k < 12; k++)
             ring.edge[k] = ring.face[k] = (struct vec){k, i, 1};
-        assert_true(shared_keep(&rings, 0, &ring, &kept));
+        assert_true(shared_keep(&rings, SHARED_CAGE, &ring, &kept));
         shared_find_modes(&kept->ring, &arena, &found[i]);
         ring_modes_init(&own, &ring, &arena);
         assert_memory_equal(&found[i].position, &own.position, 25 * sizeof(double));
@@ -192,9 +227,8 @@ static void test_chaikin(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_made_once),
-        cmocka_unit_test(test_windows),
-        cmocka_unit_test(test_modes),
+        cmocka_unit_test(test_made_once), cmocka_unit_test(test_face),
+        cmocka_unit_test(test_windows),   cmocka_unit_test(test_modes),
         cmocka_unit_test(test_chaikin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
