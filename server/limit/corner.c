@@ -230,25 +230,31 @@ static void write_frame(const struct vec axis[3], float texel[4])
         texel[n] = (float)(r[n] / length);
 }
 
+bool corner_needs_modes(const struct ring *ring)
+{
+    return ring_is_dart(ring) || (!ring_has_one_normal(ring) && ring->n_faces <= MODES_MAX_VALENCE);
+}
+
 /* The frame in which single precision keeps everything: axis[2] is the normal where there is one. A
  * cone's tip becomes a needle (its axis shrinks more slowly than what lies across), so axis[0] then
  * lies along it, or the digits of the other coordinates would drown. */
-static bool vertex_frame(const struct ring *ring, struct ring_modes *modes, struct vec axis[3],
-                         struct arena *arena)
+static bool vertex_frame(const struct ring *ring, const struct known_modes *known,
+                         struct ring_modes *modes, struct vec axis[3], struct arena *arena)
 {
     struct vec t1, t2;
     bool has_normal = ring_tangents(ring, &t1, &t2);
-    if (ring_is_dart(ring) || (!has_normal && ring->n_faces <= MODES_MAX_VALENCE)) {
-        shared_find_modes(ring, arena, modes);
+    if (corner_needs_modes(ring)) {
+        known_modes_find(known, ring, arena, modes);
         t1 = ring_mode_apply(modes->tangent[0], ring);
         t2 = ring_mode_apply(modes->tangent[1], ring);
     }
     return ring_frame(ring, t1, t2, axis) && has_normal;
 }
 
-static void find_facts(struct vertex_facts *facts, const struct ring *ring, struct arena *arena)
+static void find_facts(struct vertex_facts *facts, const struct ring *ring,
+                       const struct known_modes *known, struct arena *arena)
 {
-    facts->has_normal = vertex_frame(ring, &facts->modes, facts->axis, arena);
+    facts->has_normal = vertex_frame(ring, known, &facts->modes, facts->axis, arena);
     facts->limit = limit_position(ring, &facts->modes);
     facts->edges = facts->faces = (struct vec){0, 0, 0};
     for (uint32_t k = 0; ring->closed && needs_window(ring) && k < ring->n_faces; k++) {
@@ -273,8 +279,9 @@ unsigned corner_levels(const struct ring *ring)
  */
 enum { WEIGHED_LEVELS = 6 };
 
-bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[4],
-                  struct limit_bound *bounds, double origin[3])
+bool corner_table(const struct quad *quad, unsigned levels, const struct known_modes *known,
+                  struct arena *arena, float (*texels)[4], struct limit_bound *bounds,
+                  double origin[3])
 {
     const struct ring *ring = &quad->corner[0];
     struct vertex_facts own, *facts = shared_facts(ring);
@@ -283,7 +290,7 @@ bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena,
         facts->is_known = false;
     }
     if (!facts->is_known)
-        find_facts(facts, ring, arena);
+        find_facts(facts, ring, known, arena);
     struct net net[2] = {0};
     for (int k = 0; k < 2; k++)
         net[k].ring = needs_window(ring)

@@ -9,6 +9,7 @@
 #ifndef SHEEN_LIMIT_CORNER_H
 #define SHEEN_LIMIT_CORNER_H
 
+#include "server/limit/known_modes.h"
 #include "server/limit/quad.h"
 #include "server/limit/tables.h"
 
@@ -17,10 +18,14 @@
  * 2^-24 of the face. LIMIT_MIN_LEVELS to LIMIT_MAX_LEVELS. */
 unsigned corner_levels(const struct ring *ring);
 
+/* Whether the table of a settled extraordinary ring is made by its modes. */
+bool corner_needs_modes(const struct ring *ring);
+
 /* Writes LIMIT_CORNER_TEXELS(levels) texels, the bounds of every level and the origin (the limit
- * position, world). The extraordinary vertex is corner 0; nothing is semi-sharp. Returns
- * whether the vertex has a limit normal. */
-bool corner_table(const struct quad *quad, unsigned levels, struct arena *arena, float (*texels)[4],
-                  struct limit_bound *bounds, double origin[3]);
+ * position, world). The extraordinary vertex is corner 0; nothing is semi-sharp. `known` may have
+ * its modes. Returns whether the vertex has a limit normal. */
+bool corner_table(const struct quad *quad, unsigned levels, const struct known_modes *known,
+                  struct arena *arena, float (*texels)[4], struct limit_bound *bounds,
+                  double origin[3]);
 
 #endif

@@ -46,15 +46,18 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
     unsigned levels = corner_levels(ring);
     if (ring_is_dart(ring) && ring->n_faces > MODES_MAX_VALENCE) {
         b->dart_valence = ring->n_faces;
-    } else if (b->tables) {
+    } else if (!b->tables) {
+        if (corner_needs_modes(ring))
+            known_modes_add(b->modes, ring, &b->arena);
+    } else {
         struct limit_node *out = &b->tables->nodes[node];
         struct quad turned = quad_rotated(quad, corner);
         out->kind = LIMIT_CORNER;
         out->rotation = (uint8_t)corner;
         out->first = b->next.texel;
-        bool has_normal =
-            corner_table(&turned, levels, &b->arena, b->tables->texels + b->next.texel,
-                         b->tables->bounds + b->next.bound, out->origin);
+        bool has_normal = corner_table(&turned, levels, b->plan->modes, &b->arena,
+                                       b->tables->texels + b->next.texel,
+                                       b->tables->bounds + b->next.bound, out->origin);
         out->levels = (uint8_t)(has_normal ? levels : levels | LIMIT_NO_NORMAL);
     }
     b->next.texel += LIMIT_CORNER_TEXELS(levels);

@@ -5,6 +5,7 @@
 
 #include "server/limit/modes.h"
 #include "server/limit/face.h"
+#include "server/limit/known_modes.h"
 
 /* Boundary mode NONE: faces at a boundary are support only, unless all boundary edges at their
  * vertices are sharp by themselves (OpenSubdiv sdc/options.h). */
@@ -35,6 +36,7 @@ static bool mark_holes(struct limit_plan *plan)
 static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, struct error *error)
 {
     struct face_builder measure = {.plan = plan,
+                                   .modes = &plan->modes,
                                    .box_min = {INFINITY, INFINITY, INFINITY},
                                    .box_max = {-INFINITY, -INFINITY, -INFINITY}};
     if (!arena_init(&measure.arena, plan->arena_bytes))
@@ -168,6 +170,7 @@ void limit_plan_destroy(struct limit_plan *plan)
         return;
     topology_finish(&plan->topology);
     refined_points_finish(&plan->refined);
+    known_modes_finish(&plan->modes);
     free(plan->first_ptex);
     free(plan->corner);
     free(plan->hole);

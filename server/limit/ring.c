@@ -214,7 +214,7 @@ static void lens_tangents(const struct ring *ring, struct vec *t1, struct vec *t
     *t2 = vec_sub(ring->face[0], ring->face[1]);
 }
 
-static bool has_one_normal(const struct ring *ring)
+bool ring_has_one_normal(const struct ring *ring)
 {
     return !(ring->sharpness > 0) || (!ring->closed && ring->n_faces == 1);
 }
@@ -235,7 +235,7 @@ bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
     } else {
         corner_tangents(ring, t1, t2);
     }
-    return has_one_normal(ring);
+    return ring_has_one_normal(ring);
 }
 
 bool ring_frame(const struct ring *ring, struct vec t1, struct vec t2, struct vec axis[3])

@@ -83,9 +83,12 @@ void ring_refine_around(const struct ring *in, struct ring *out);
 /* Where the vertex of a settled ring (crease.h) lies on the limit surface. */
 struct vec ring_limit(const struct ring *ring);
 
+/* Whether the surface has one normal at the vertex of a settled ring: not at a cone's tip. */
+bool ring_has_one_normal(const struct ring *ring);
+
 /* Two tangents at the limit position of a settled ring that is no dart, such that their product is
- * the limit normal along the winding. Returns false when the surface has no one normal there (a
- * cone's tip); the tangents then are some directions. */
+ * the limit normal along the winding. Returns ring_has_one_normal(); without one the tangents are
+ * some directions. */
 bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2);
 
 /* The right-handed orthonormal frame of two tangents: axis[0] along t1, axis[2] along t1 x t2.

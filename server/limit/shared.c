@@ -3,8 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/limit/crease.h"
-
 void shared_rings_init(struct shared_rings *rings, size_t n_corners)
 {
     *rings = (struct shared_rings){.n_corners = n_corners};
@@ -17,10 +15,6 @@ void shared_rings_finish(struct shared_rings *rings)
         arena_finish(&shared->memory);
         free(shared->facts);
         free(shared);
-    }
-    for (struct shared_modes *kept = rings->modes, *older; kept; kept = older) {
-        older = kept->older;
-        free(kept);
     }
     for (int kind = 0; kind < SHARED_KINDS; kind++)
         free(rings->place[kind]);
@@ -112,30 +106,6 @@ struct vertex_facts *shared_facts(const struct ring *ring)
     if (ring->shared && !ring->shared->facts)
         ring->shared->facts = calloc(1, sizeof *ring->shared->facts);
     return ring->shared ? ring->shared->facts : NULL;
-}
-
-void shared_find_modes(const struct ring *ring, struct arena *arena, struct ring_modes *modes)
-{
-    struct shared_rings *rings = ring->shared ? ring->shared->owner : NULL;
-    uint32_t end[2] = {UINT32_MAX};
-    bool sharp = ring->sharpness > 0;
-    if (ring_is_dart(ring))
-        crease_vertex_rule(ring, end);
-    for (const struct shared_modes *kept = rings ? rings->modes : NULL; kept; kept = kept->older) {
-        if (kept->n_faces == ring->n_faces && kept->closed == ring->closed &&
-            kept->sharp == sharp && kept->crease == end[0]) {
-            *modes = kept->modes;
-            return;
-        }
-    }
-    ring_modes_init(modes, ring, arena);
-    struct shared_modes *kept =
-        rings && rings->n_modes < SHARED_MAX_MODES ? malloc(sizeof *kept) : NULL;
-    if (!kept)
-        return;
-    *kept = (struct shared_modes){ring->n_faces, end[0], ring->closed, sharp, *modes, rings->modes};
-    rings->modes = kept;
-    rings->n_modes++;
 }
 
 struct vec shared_limit(const struct ring *ring)

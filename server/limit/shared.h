@@ -44,20 +44,8 @@ struct shared_place {
     uint32_t at;
 };
 
-/* Modes are the same for all rings of the same faces and creases, wherever their points lie. */
-struct shared_modes {
-    uint32_t n_faces, crease; /* a dart's edge, else UINT32_MAX */
-    bool closed, sharp;       /* sharp: the vertex */
-    struct ring_modes modes;
-    struct shared_modes *older;
-};
-/* 3 KB each. Later ones are found anew for each vertex. */
-enum { SHARED_MAX_MODES = 256 };
-
 struct shared_rings {
     struct shared_ring *newest;
-    struct shared_modes *modes;
-    int n_modes;
     struct shared_place *place[SHARED_KINDS]; /* [corners], NULL until one is kept */
     size_t n_corners;
 };
@@ -84,9 +72,6 @@ struct ring shared_keep_derived(const struct ring *from, uint32_t key, const str
 
 /* Of a kept ring, to be filled in; NULL where there is none. */
 struct vertex_facts *shared_facts(const struct ring *ring);
-
-/* ring_modes_init(), unless they are known. */
-void shared_find_modes(const struct ring *ring, struct arena *arena, struct ring_modes *modes);
 
 /* ring_limit() of a settled ring that is no dart. */
 struct vec shared_limit(const struct ring *ring);

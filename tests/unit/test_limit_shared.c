@@ -15,6 +15,7 @@
 #include "server/limit/crease.h"
 #include "server/limit/evaluate.h"
 #include "server/limit/extract.h"
+#include "server/limit/known_modes.h"
 #include "server/limit/plan.h"
 
 enum { N = 150 }; /* faces: more than a table's window */
@@ -175,32 +176,47 @@ static void test_windows(void **state)
     }
 }
 
-/* Darts of the same ring and edge, wherever they lie, have the same modes: found once. */
+/* Modes of darts and sharp vertices depend on the number of faces alone: found once, and turned to
+ * where a dart's edge is. */
 static void test_modes(void **state)
 {
     (void)state;
-    struct ring_modes own, found[4];
-    struct shared_rings rings;
+    enum { FACES = 12, POINTS = 2 * FACES + 1 };
+    struct ring_modes own, found;
+    struct known_modes *known = NULL;
     struct arena arena;
-    shared_rings_init(&rings, 1);
     assert_true(arena_init(&arena, 1 << 16));
-    for (int i = 0; i < 4; i++) {
-        struct shared_ring *kept;
-        struct ring ring = ring_take(&arena, 12, true, true);
-        ring.creases.edge[i == 2] = CAGE_SHARPNESS_INFINITE;
+    for (uint32_t i = 0; i < 4; i++) {
+        struct ring ring = ring_take(&arena, FACES, true, true);
+        const struct known_modes *newest = known;
+        ring.creases.edge[i == 2 ? 7 : i] = CAGE_SHARPNESS_INFINITE;
         ring.sharpness = i == 3 ? CAGE_SHARPNESS_INFINITE : 0;
-        ring.centre = (struct vec){i, 0, 0};
-        for (int k = 0; k < 12; k++)
-            ring.edge[k] = ring.face[k] = (struct vec){k, i, 1};
-        assert_true(shared_keep(&rings, SHARED_CAGE, &ring, &kept));
-        shared_find_modes(&kept->ring, &arena, &found[i]);
+        known_modes_add(&known, &ring, &arena);
+        assert_int_equal(known != newest, i == 0 || i == 3);
+        known_modes_find(known, &ring, &arena, &found);
         ring_modes_init(&own, &ring, &arena);
-        assert_memory_equal(&found[i].position, &own.position, 25 * sizeof(double));
-        assert_memory_equal(&found[i].tangent[1], &own.tangent[1], 25 * sizeof(double));
-        assert_int_equal(rings.n_modes, i < 2 ? 1 : i);
+        for (int k = 0; k < POINTS && i < 3; k++) {
+            assert_float_equal(found.position[k], own.position[k], 1e-12);
+            assert_float_equal(fabs(found.tangent[0][k]), fabs(own.tangent[0][k]), 1e-9);
+            assert_float_equal(fabs(found.tangent[1][k]), fabs(own.tangent[1][k]), 1e-9);
+        }
     }
+    known_modes_finish(&known);
     arena_finish(&arena);
-    shared_rings_finish(&rings);
+}
+
+/* The plan of a cage knows them. */
+static void test_plan_knows_modes(void **state)
+{
+    (void)state;
+    struct fan fan;
+    fan_init(&fan, false, "t corner 1/1/0 0 10\nt crease 2/1/0 0 41 10\nt crease 2/1/0 0 81 10\n");
+    const struct known_modes *modes = fan.plan->modes; /* of two sectors of 20: the third has 110 */
+    assert_non_null(modes);
+    assert_int_equal(modes->n_faces, 20);
+    assert_true(modes->sharp && !modes->closed && !modes->dart);
+    assert_null(modes->older);
+    fan_finish(&fan);
 }
 
 /* Chaikin's rule, of which every edge around a vertex takes its part: summed once a vertex, as the
@@ -227,9 +243,9 @@ static void test_chaikin(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_made_once), cmocka_unit_test(test_face),
-        cmocka_unit_test(test_windows),   cmocka_unit_test(test_modes),
-        cmocka_unit_test(test_chaikin),
+        cmocka_unit_test(test_made_once),        cmocka_unit_test(test_face),
+        cmocka_unit_test(test_windows),          cmocka_unit_test(test_modes),
+        cmocka_unit_test(test_plan_knows_modes), cmocka_unit_test(test_chaikin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
