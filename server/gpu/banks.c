@@ -3,6 +3,18 @@
 
 #include <stdlib.h>
 
+/* Read only, and what pads it is never read. */
+static void store(GLuint buffer, const void *texels, size_t n, size_t texel_bytes)
+{
+    size_t room = no_power_of_two(n); /* a texel's bytes are one */
+    if (room == n) {
+        glNamedBufferStorage(buffer, (GLsizeiptr)(n * texel_bytes), texels, 0);
+        return;
+    }
+    glNamedBufferStorage(buffer, (GLsizeiptr)(room * texel_bytes), NULL, GL_DYNAMIC_STORAGE_BIT);
+    glNamedBufferSubData(buffer, 0, (GLsizeiptr)(n * texel_bytes), texels);
+}
+
 static bool upload(struct bank_set *set, int max_banks, GLenum format, const void *data,
                    size_t n_texels, size_t texel_bytes, size_t max_texels, const char *what,
                    struct error *error)
@@ -19,9 +31,7 @@ static bool upload(struct bank_set *set, int max_banks, GLenum format, const voi
     for (size_t b = 0; b < n_banks; b++) {
         size_t first = b * max_texels;
         size_t n = n_texels - first < max_texels ? n_texels - first : max_texels;
-        const char *from = (const char *)data + first * texel_bytes;
-        glNamedBufferStorage(set->buffer[b], (GLsizeiptr)((n ? n : 1) * texel_bytes),
-                             n ? from : NULL, 0);
+        store(set->buffer[b], (const char *)data + first * texel_bytes, n, texel_bytes);
         glTextureBuffer(set->texture[b], format, set->buffer[b]);
     }
     return gpu_check(what, error);

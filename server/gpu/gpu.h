@@ -12,6 +12,15 @@
 #include "server/gpu/shade_programs.h"
 #include "server/gpu/view.h"
 
+/* The least from `size` on that is no power of two: for images with such a side and buffer textures
+ * of so many bytes software devices make the code of every program anew. */
+static inline size_t no_power_of_two(size_t size)
+{
+    while (!(size & (size - 1)))
+        size++;
+    return size;
+}
+
 /* How many buffer textures each table may be spread over (shaders/tables.glsl). */
 enum { MAX_POINT_BANKS = 8, MAX_NODE_BANKS = 4, MAX_ADJACENCY_BANKS = 2 };
 

@@ -61,21 +61,13 @@ static void choose_size(const struct target *target, uint32_t *width, uint32_t *
     *height = both[1];
 }
 
-/* Software devices make every program anew for images with a side that is a power of two. */
-static uint32_t no_power_of_two(uint32_t side)
-{
-    while (!(side & (side - 1)))
-        side++;
-    return side;
-}
-
 bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error)
 {
     if (width <= target->width && height <= target->height)
         return true;
     choose_size(target, &width, &height);
-    width = no_power_of_two(width);
-    height = no_power_of_two(height);
+    width = (uint32_t)no_power_of_two(width);
+    height = (uint32_t)no_power_of_two(height);
     target_finish(target);
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         GLuint *name = image_name(target, i);

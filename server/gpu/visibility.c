@@ -86,9 +86,11 @@ static size_t cut(size_t i, size_t low, size_t high)
 static void draw_range(struct renderer *r, GLuint program, size_t begin, size_t end)
 {
     const struct pieces *pieces = &r->pieces;
-    size_t cells = 0;
-    glNamedBufferData(r->piece_buffer, (GLsizeiptr)((end - begin) * sizeof *pieces->piece),
-                      pieces->piece + begin, GL_STREAM_DRAW);
+    size_t cells = 0, piece_bytes = sizeof *pieces->piece; /* a power of two */
+    glNamedBufferData(r->piece_buffer, (GLsizeiptr)(no_power_of_two(end - begin) * piece_bytes),
+                      NULL, GL_STREAM_DRAW);
+    glNamedBufferSubData(r->piece_buffer, 0, (GLsizeiptr)((end - begin) * piece_bytes),
+                         pieces->piece + begin);
     glTextureBuffer(r->piece_texture, GL_RGBA32UI, r->piece_buffer);
     for (int g = 0; g < PIECE_GRIDS; g++) {
         size_t first = cut(pieces->first[g], begin, end);
