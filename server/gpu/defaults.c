@@ -79,9 +79,15 @@ void renderer_default_camera(const double box_min[3], const double box_max[3], u
 {
     /* Y up is glTF's and most modellers' convention, Z up that of CAD: a body is rarely thinner
      * along a horizontal axis than along its up axis, so the thinner of the two is up. */
-    bool z_up = box_max[2] - box_min[2] <= box_max[1] - box_min[1];
+    double side[3];
+    for (int i = 0; i < 3; i++)
+        side[i] = box_max[i] - box_min[i];
+    bool z_up = side[2] <= side[1];
     struct vec up = z_up ? (struct vec){0, 0, 1} : (struct vec){0, 1, 0};
-    double azimuth = -60 * DEGREE, elevation = 45 * DEGREE, fov_deg = 35, margin = 0.92;
+    /* The longer of the horizontal sides lies across the picture rather than into it; clearly
+     * longer, so that rounding does not turn what is as long as wide. */
+    double azimuth = (side[z_up ? 1 : 2] > 1.1 * side[0] ? -30 : -60) * DEGREE;
+    double elevation = 45 * DEGREE, fov_deg = 35, margin = 0.92;
     double east = cos(elevation) * cos(azimuth), south = cos(elevation) * sin(azimuth);
     struct vec from = z_up ? (struct vec){east, south, sin(elevation)}
                            : (struct vec){east, sin(elevation), -south};

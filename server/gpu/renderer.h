@@ -191,8 +191,9 @@ void renderer_polygons_destroy(struct renderer_polygons *polygons); /* NULL is s
 size_t renderer_plane_bytes(enum renderer_plane plane);
 
 /* A camera that frames the box (three-quarter view from above, z up when the box is flatter in z,
- * 35 degrees, 4 % of the picture free at the two opposite edges that its corners come nearest to),
- * and a light that hangs over it, larger than the model. */
+ * its longer horizontal side more across the picture than into it, 35 degrees, 4 % of the picture
+ * free at the two opposite edges that its corners come nearest to), and a light that hangs over it,
+ * larger than the model. */
 void renderer_default_camera(const double box_min[3], const double box_max[3], uint32_t width_px,
                              uint32_t height_px, struct camera *camera);
 /* Sets centre, u and v for the light's kind. */

@@ -67,6 +67,29 @@ static void test_the_box_fills_the_picture(void **state)
         }
 }
 
+/* The longer of the two horizontal sides is seen across, whichever it is and whatever is up, and
+ * x if neither is by much; the picture's size changes nothing. */
+static void test_the_longer_side_lies_across(void **state)
+{
+    (void)state;
+    static const struct {
+        double size[3];
+        int across, into;
+    } cases[] = {{{4, 1.8, 1.3}, 0, 1}, {{1.8, 4, 1.3}, 1, 0}, {{4, 1.3, 1.8}, 0, 2},
+                 {{1.8, 1.3, 4}, 2, 0}, {{2, 2.1, 1}, 0, 1},   {{2, 1, 2.1}, 0, 2}};
+    static const uint32_t sizes[][2] = {{640, 480}, {100, 400}};
+    static const double zero[3] = {0, 0, 0};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
+            struct camera camera;
+            renderer_default_camera(zero, cases[i].size, sizes[k][0], sizes[k][1], &camera);
+            int across = cases[i].across, into = cases[i].into;
+            double view_across = fabs(camera.target[across] - camera.eye[across]);
+            double view_into = fabs(camera.target[into] - camera.eye[into]);
+            assert_true(fabs(view_across / view_into - tan(30 * acos(-1) / 180)) < 1e-9);
+        }
+}
+
 /* A box without size is looked at from some distance. */
 static void test_a_point(void **state)
 {
@@ -86,6 +109,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_box_fills_the_picture),
+        cmocka_unit_test(test_the_longer_side_lies_across),
         cmocka_unit_test(test_a_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
