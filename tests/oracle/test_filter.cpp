@@ -204,7 +204,7 @@ void judge_model(const std::string &sheen, const std::string &path, verdict *ver
     };
     std::vector<size> sizes = {{640, 480, is_car ? max_p99_small_car : max_p99}};
     if (is_car)
-        sizes.insert(sizes.end(), {{1280, 720, max_p99}, {1920, 1080, max_p99}});
+        sizes.insert(sizes.end(), {{1280, 720, max_p99}, {1440, 810, max_p99}});
     for (const size &size : sizes) {
         std::string name = path.substr(path.rfind('/') + 1) + " " + std::to_string(size.width_px) +
                            "x" + std::to_string(size.height_px);
