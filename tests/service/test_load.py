@@ -65,11 +65,12 @@ class Misbehaviour(unittest.TestCase):
                 client.socket.recv(1000)
 
     def floods(self):
+        flood = b"".join(wire.render(9 + i, self.model, kind=INTERACTIVE, view=i)
+                         for i in range(200))
         while not self.gone.wait(0.01):  # others share this process and its processor
             with Client(self.daemon.unix, minor=1) as client, contextlib.suppress(OSError):
-                model = client.upload(CUBE, "cube.obj")
-                client.send(b"".join(wire.render(9 + i, model, kind=INTERACTIVE, view=i)
-                                     for i in range(200)))
+                client.upload(CUBE, "cube.obj")
+                client.send(flood)
                 while client.socket.recv(1 << 20):
                     pass
 
