@@ -8,11 +8,10 @@
 
 #include <cmocka.h>
 
-#include "server/cage/read/read.h"
 #include "server/gpu/gpu.h"
+#include "tests/unit/cage_tables.h"
 
 struct scene {
-    struct cage cage;
     struct limit_tables tables;
     struct renderer *renderer;
     struct renderer_model *model;
@@ -34,12 +33,7 @@ static void scene_init(struct scene *scene, const char *text)
                                                                 .opacity = 1,
                                                                 .foreground = {1, 1, 1, 1}}}},
                                         .planes = PLANE_COLOUR}};
-    assert_true(cage_read(&scene->cage, text, strlen(text), "scene.obj", &error));
-    struct limit_plan *plan = limit_plan_create(&scene->cage, NULL, &error);
-    assert_non_null(plan);
-    assert_true(limit_tables_init(&scene->tables, plan, &error));
-    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, NULL, &error));
-    limit_plan_destroy(plan);
+    build(text, strlen(text), &scene->tables);
     scene->renderer = renderer_create(&options, &error);
     if (!scene->renderer)
         fail_msg("%s", error.text);
@@ -55,7 +49,6 @@ static void scene_finish(struct scene *scene)
     renderer_model_destroy(scene->renderer, scene->model);
     renderer_destroy(scene->renderer);
     limit_tables_finish(&scene->tables);
-    cage_finish(&scene->cage);
 }
 
 static enum frame_step step(struct scene *scene, struct frame_work *work, struct frame *frame)

@@ -11,13 +11,12 @@
 
 #include <cmocka.h>
 
-#include "server/cage/read/read.h"
 #include "server/gpu/renderer.h"
+#include "tests/unit/cage_tables.h"
 
 enum { WIDTH = 96, HEIGHT = 64, SIDE = 8 }; /* SIDE x SIDE samples a pixel */
 
 struct scene {
-    struct cage cage;
     struct limit_tables tables;
     struct renderer *renderer;
     struct renderer_model *model;
@@ -43,12 +42,7 @@ static void scene_init(struct scene *scene, int n, int ridge, double sharpness)
             ADD("t crease 2/1/0 %d %d %g\n", y * (n + 1) + x, (y + 1) * (n + 1) + x, sharpness);
 #undef ADD
     *scene = (struct scene){0};
-    assert_true(cage_read(&scene->cage, text, used, "roof.obj", &error));
-    struct limit_plan *plan = limit_plan_create(&scene->cage, NULL, &error);
-    assert_non_null(plan);
-    assert_true(limit_tables_init(&scene->tables, plan, &error));
-    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, NULL, &error));
-    limit_plan_destroy(plan);
+    build(text, used, &scene->tables);
     const struct renderer_options options = {.device = "auto"};
     scene->renderer = renderer_create(&options, &error);
     if (!scene->renderer)
@@ -62,7 +56,6 @@ static void scene_finish(struct scene *scene)
     renderer_model_destroy(scene->renderer, scene->model);
     renderer_destroy(scene->renderer);
     limit_tables_finish(&scene->tables);
-    cage_finish(&scene->cage);
 }
 
 /* The ridge from above, aslant, `quad_px` pixels a quad; its middle, of width x height such pixels.

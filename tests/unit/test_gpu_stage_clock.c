@@ -9,15 +9,14 @@
 
 #include <cmocka.h>
 
-#include "server/cage/read/read.h"
 #include "server/gpu/renderer.h"
+#include "tests/unit/cage_tables.h"
 
 static const char CUBE[] = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n"
                            "v 1 1 1\nv -1 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\n"
                            "f 3 4 8 7\nf 4 1 5 8\n";
 
 struct scene {
-    struct cage cage;
     struct limit_tables tables;
     struct renderer *renderer;
     struct renderer_model *model;
@@ -36,12 +35,7 @@ static void scene_init(struct scene *scene, bool device_times)
                                                                 .duty = 0.5,
                                                                 .opacity = 1}}},
                                         .planes = PLANE_COLOUR}};
-    assert_true(cage_read(&scene->cage, CUBE, strlen(CUBE), "cube.obj", &error));
-    struct limit_plan *plan = limit_plan_create(&scene->cage, NULL, &error);
-    assert_non_null(plan);
-    assert_true(limit_tables_init(&scene->tables, plan, &error));
-    assert_true(limit_build_faces(&scene->tables, plan, 0, scene->tables.n_faces, NULL, &error));
-    limit_plan_destroy(plan);
+    build(CUBE, strlen(CUBE), &scene->tables);
     scene->renderer = renderer_create(&options, &error);
     if (!scene->renderer)
         fail_msg("%s", error.text);
@@ -57,7 +51,6 @@ static void scene_finish(struct scene *scene)
     renderer_model_destroy(scene->renderer, scene->model);
     renderer_destroy(scene->renderer);
     limit_tables_finish(&scene->tables);
-    cage_finish(&scene->cage);
 }
 
 static uint64_t now_us(void)

@@ -11,36 +11,12 @@
 
 #include <cmocka.h>
 
-#include "server/cage/read/read.h"
 #include "server/limit/evaluate.h"
+#include "tests/unit/cage_tables.h"
 
 #define CUBE                                                                                       \
     "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"         \
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
-
-static void build(const char *bytes, size_t size, struct limit_tables *tables)
-{
-    struct cage cage;
-    struct error error = {0};
-    if (!cage_read(&cage, bytes, size, "test.obj", &error))
-        fail_msg("%s", error.text);
-    struct limit_plan *plan = limit_plan_create(&cage, NULL, &error);
-    assert_non_null(plan);
-    assert_true(limit_tables_init(tables, plan, &error));
-    assert_true(limit_build_faces(tables, plan, 0, tables->n_faces, NULL, &error));
-    limit_plan_destroy(plan);
-    cage_finish(&cage);
-}
-
-static void build_file(const char *path, struct limit_tables *tables)
-{
-    static char bytes[1 << 20];
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    size_t size = fread(bytes, 1, sizeof bytes, file);
-    fclose(file);
-    build(bytes, size, tables);
-}
 
 static void assert_near(struct vec a, struct vec b, double most)
 {
