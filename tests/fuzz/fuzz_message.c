@@ -42,7 +42,9 @@ static void check(uint8_t type, const union body *body)
         check_render(&body->render);
     else if (type == MESSAGE_UPLOAD_BEGIN)
         MUST(message_check_upload_begin(&body->upload_begin, text) || text[0]);
-    else if (type != MESSAGE_MODEL_QUERY)
+    else if (type == MESSAGE_MODEL_QUERY)
+        MUST(message_check_model_query(&body->model_query, text) || text[0]);
+    else
         MUST(message_check_answer(type, body, text) || text[0]);
 }
 
