@@ -93,9 +93,11 @@ struct renderer_model *renderer_model_create(struct renderer *renderer,
     model->tables = tables;
     model->serial = ++renderer->next_serial;
     /* On a device that is lost meanwhile it comes with its first frame. */
-    if (!renderer_ready(renderer, error) || model_upload(renderer, model, error) ||
-        renderer_check_lost(renderer))
+    if (clusters_init(&model->clusters, tables, error) &&
+        (!renderer_ready(renderer, error) || model_upload(renderer, model, error) ||
+         renderer_check_lost(renderer)))
         return model;
+    clusters_finish(&model->clusters);
     free(model);
     return NULL;
 }
@@ -108,5 +110,6 @@ void renderer_model_destroy(struct renderer *renderer, struct renderer_model *mo
         polygons_forget(&renderer->polygons, model->serial);
         take_down(model);
     }
+    clusters_finish(&model->clusters);
     free(model);
 }

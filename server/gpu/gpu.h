@@ -45,6 +45,7 @@ typedef uint32_t context_number; /* from 1; 0: of none, the object is not on the
 
 struct renderer_model {
     const struct limit_tables *tables;
+    struct clusters clusters; /* of the tables */
     context_number context;
     struct bank_set points, nodes, adjacency;
     uint64_t serial; /* never reused: tells whose planes are kept */

@@ -304,6 +304,33 @@ static void choose_corner(struct chooser *c, uint32_t node)
     emit(c, 0, (struct piece){node, level, 0, 0}, &extent);
 }
 
+static void choose_node(struct chooser *c, uint32_t node)
+{
+    switch (c->tables->nodes[node].kind) {
+    case LIMIT_REGULAR:
+        choose_regular(c, node);
+        break;
+    case LIMIT_CORNER:
+        choose_corner(c, node);
+        break;
+    case LIMIT_STRIP:
+        choose_strip(c, node);
+        break;
+    }
+}
+
+static void choose_cluster(struct chooser *c, const struct clusters *clusters, size_t k)
+{
+    const struct cluster *cluster = &clusters->cluster[k];
+    double centre[3];
+    view_transform(c->view, cluster->centre, centre);
+    if (cluster->radius < 0 || view_sides_exclude(&c->sides, centre, cluster->radius))
+        return;
+    size_t end = (k + 1) * CLUSTER_NODES, n = c->tables->n_nodes;
+    for (size_t node = k * CLUSTER_NODES; node < (end < n ? end : n); node++)
+        choose_node(c, (uint32_t)node);
+}
+
 static bool reserve_blocks(struct chooser *c, struct error *error)
 {
     struct pieces *out = c->out;
@@ -335,20 +362,15 @@ static void list_blocks(struct chooser *c)
 }
 
 bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
-                   const struct view *view, const struct tile *tile, struct error *error)
+                   const struct clusters *clusters, const struct view *view,
+                   const struct tile *tile, struct error *error)
 {
     struct chooser c = {.out = pieces, .tables = tables, .view = view, .tile = tile};
     if (!reserve_blocks(&c, error))
         return false;
     view_sides_init(&c.sides, view, tile);
-    for (uint32_t node = 0; node < tables->n_nodes; node++) {
-        if (tables->nodes[node].kind == LIMIT_REGULAR)
-            choose_regular(&c, node);
-        else if (tables->nodes[node].kind == LIMIT_CORNER)
-            choose_corner(&c, node);
-        else if (tables->nodes[node].kind == LIMIT_STRIP)
-            choose_strip(&c, node);
-    }
+    for (size_t k = 0; k < clusters->n; k++)
+        choose_cluster(&c, clusters, k);
     sort_by_grid(&c);
     list_blocks(&c);
     if (c.no_memory)

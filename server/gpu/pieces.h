@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "server/error.h"
+#include "server/gpu/clusters.h"
 #include "server/gpu/view.h"
 #include "server/limit/tables.h"
 
@@ -41,12 +42,13 @@ struct pieces {
     size_t block_capacity;
 };
 
-/* Chooses the pieces that the tile may show. Lists keep their memory from call to call; zero them
- * before the first. ERROR_REQUEST when the view would need more grid vertices than a frame may
- * take (a surface that is millions of times larger than the picture and runs along the view),
- * ERROR_SERVER when memory is short. */
+/* Chooses the pieces that the tile may show; `clusters` are those of the tables. Lists keep their
+ * memory from call to call; zero them before the first. ERROR_REQUEST when the view would need more
+ * grid vertices than a frame may take (a surface that is millions of times larger than the picture
+ * and runs along the view), ERROR_SERVER when memory is short. */
 bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
-                   const struct view *view, const struct tile *tile, struct error *error);
+                   const struct clusters *clusters, const struct view *view,
+                   const struct tile *tile, struct error *error);
 /* No pieces, and every block of the tile: for what is drawn in another way. */
 bool pieces_cover_all(struct pieces *pieces, const struct tile *tile, struct error *error);
 void pieces_finish(struct pieces *pieces);

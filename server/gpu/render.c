@@ -64,7 +64,7 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
 {
     if (is_kept(&r->kept, model, request))
         return true;
-    if (!pieces_choose(&r->pieces, model->tables, view, tile, error))
+    if (!pieces_choose(&r->pieces, model->tables, &model->clusters, view, tile, error))
         return false;
     const struct table_programs *programs =
         programs_for(r, model, request->planes & PLANE_PTEX, error);

@@ -1,5 +1,6 @@
-/* The pieces that stage 1 draws: no triangle strays further from the surface than is allowed, and
- * no grid is finer than its piece bends in either direction. */
+/* The pieces that stage 1 draws: no triangle strays further from the surface than is allowed, no
+ * grid is finer than its piece bends in either direction, and clusters of nodes leave out nothing.
+ */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,22 +18,33 @@
 
 enum { WIDTH = 960, HEIGHT = 540 };
 
+static const struct tile WHOLE = {0, 0, WIDTH, HEIGHT};
+
 struct scene {
     struct limit_tables tables;
+    struct clusters clusters;
     struct view view;
     struct pieces pieces;
 };
 
+/* The tables are there already. */
+static void scene_ready(struct scene *scene)
+{
+    struct error error = {0};
+    if (!clusters_init(&scene->clusters, &scene->tables, &error))
+        fail_msg("%s", error.text);
+}
+
 static void scene_finish(struct scene *scene)
 {
     pieces_finish(&scene->pieces);
+    clusters_finish(&scene->clusters);
     limit_tables_finish(&scene->tables);
 }
 
-/* What the default camera shows, from `closer` times as near to the middle of the box. */
-static void choose(struct scene *scene, bool orthographic, double closer)
+/* The default camera, from `closer` times as near to the middle of the box. */
+static void look(struct scene *scene, bool orthographic, double closer)
 {
-    struct error error = {0};
     struct camera camera;
     const struct limit_tables *t = &scene->tables;
     renderer_default_camera(t->box_min, t->box_max, WIDTH, HEIGHT, &camera);
@@ -47,8 +59,13 @@ static void choose(struct scene *scene, bool orthographic, double closer)
             1.2 * (t->box_max[2] - t->box_min[2] + t->box_max[0] - t->box_min[0]) / closer;
     }
     view_init(&scene->view, &camera, WIDTH, HEIGHT, t->hull_min, t->hull_max);
-    const struct tile whole = {0, 0, WIDTH, HEIGHT};
-    if (!pieces_choose(&scene->pieces, t, &scene->view, &whole, &error))
+}
+
+static void choose(const struct scene *scene, const struct clusters *clusters,
+                   const struct tile *tile, struct pieces *pieces)
+{
+    struct error error = {0};
+    if (!pieces_choose(pieces, &scene->tables, clusters, &scene->view, tile, &error))
         fail_msg("%s", error.text);
 }
 
@@ -139,8 +156,10 @@ static void test_no_triangle_strays(void **state)
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         struct scene scene = {0};
         build_file(paths[i], &scene.tables);
+        scene_ready(&scene);
         for (int view = 0; view < 4; view++) {
-            choose(&scene, view & 1, view & 2 ? 20 : 1);
+            look(&scene, view & 1, view & 2 ? 20 : 1);
+            choose(&scene, &scene.clusters, &WHOLE, &scene.pieces);
             double most = largest_stray_px(&scene);
             if (!(most <= 0.5 && most >= 0.1))
                 fail_msg("%s, view %d: %.3f px", paths[i], view, most);
@@ -168,7 +187,9 @@ static void test_one_way(void **state)
     }
     struct scene scene = {0};
     build(text, used, &scene.tables);
-    choose(&scene, false, 1);
+    scene_ready(&scene);
+    look(&scene, false, 1);
+    choose(&scene, &scene.clusters, &WHOLE, &scene.pieces);
     assert_int_equal(scene.pieces.first[PIECE_GRIDS], 64);
     for (int g = 0; g < PIECE_GRIDS; g++) {
         if (scene.pieces.first[g] == scene.pieces.first[g + 1])
@@ -179,11 +200,76 @@ static void test_one_way(void **state)
     scene_finish(&scene);
 }
 
+/* --- */
+
+/* How many clusters the tile cannot show. */
+static size_t n_outside(const struct scene *scene, const struct tile *tile)
+{
+    struct view_sides sides;
+    size_t n = 0;
+    view_sides_init(&sides, &scene->view, tile);
+    for (size_t k = 0; k < scene->clusters.n; k++) {
+        double centre[3];
+        view_transform(&scene->view, scene->clusters.cluster[k].centre, centre);
+        n += view_sides_exclude(&sides, centre, scene->clusters.cluster[k].radius);
+    }
+    return n;
+}
+
+static void assert_same_pieces(const struct pieces *a, const struct pieces *b)
+{
+    assert_memory_equal(a->first, b->first, sizeof a->first);
+    assert_memory_equal(a->piece, b->piece, a->first[PIECE_GRIDS] * sizeof *a->piece);
+    assert_int_equal(a->n_blocks, b->n_blocks);
+    assert_memory_equal(a->block, b->block, a->n_blocks * sizeof *a->block);
+}
+
+/* In every tile those that it cannot show are passed over, and nothing else is missed: the pieces
+ * are those of clusters that reach everywhere. */
+static void test_clusters_leave_out_nothing(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"tests/models/fender.obj", "tests/models/creases.obj",
+                                        "tests/models/nonmanifold.obj", NULL};
+    enum { N = 5 };
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        struct scene scene = {0};
+        struct clusters all = {0};
+        struct pieces expected = {0};
+        struct error error = {0};
+        size_t n_passed_over = 0;
+        if (paths[i])
+            build_file(paths[i], &scene.tables);
+        else
+            build_torus(40, &scene.tables);
+        scene_ready(&scene);
+        assert_true(clusters_init(&all, &scene.tables, &error));
+        for (size_t k = 0; k < all.n; k++)
+            all.cluster[k].radius = INFINITY;
+        for (int view = 0; view < 4; view++) {
+            look(&scene, view & 1, view & 2 ? 8 : 1);
+            for (uint32_t k = 0; k < N * N; k++) {
+                const struct tile tile = {k % N * WIDTH / N, k / N * HEIGHT / N, WIDTH / N,
+                                          HEIGHT / N};
+                choose(&scene, &scene.clusters, &tile, &scene.pieces);
+                choose(&scene, &all, &tile, &expected);
+                assert_same_pieces(&scene.pieces, &expected);
+                n_passed_over += n_outside(&scene, &tile);
+            }
+        }
+        assert_true(n_passed_over > N * N); /* of 4 N N n */
+        pieces_finish(&expected);
+        clusters_finish(&all);
+        scene_finish(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_no_triangle_strays),
         cmocka_unit_test(test_one_way),
+        cmocka_unit_test(test_clusters_leave_out_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
