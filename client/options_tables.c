@@ -314,7 +314,8 @@ const struct option_row OPTIONS_SCENE[] = {
     {"target", 0, "X,Y,Z", "the point it looks at; with --eye", apply_target},
     {"up", 0, "X,Y,Z",
      "its upward direction, any length (default: 0,0,1 with --eye and --target;\n"
-     "alone it turns the camera that frames the model, whose own is y or z)",
+     "else y or z, in which the model is thinner: where that is wrong, as for a\n"
+     "door that stands, say it; the camera then frames the model from above that)",
      apply_up},
     {"fov", 0, "DEG",
      "vertical field of view, above 0 and below 180 degrees (default: 35);\n"

@@ -209,7 +209,7 @@ enum sheen_projection {
 
 struct sheen_camera {
     enum sheen_projection projection;
-    bool auto_view, auto_up;  /* eye and target, or up, are as the daemon frames the model */
+    bool auto_view, auto_up;  /* eye and target, or up, are the daemon's, which frames the model */
     double eye[3], target[3]; /* not the same point */
     double up[3];             /* not along the line of sight; need not be perpendicular */
     double fov_deg;           /* perspective: vertical, (0, 180) */

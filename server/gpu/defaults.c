@@ -74,27 +74,45 @@ static void frame_box(const double box_min[3], const double box_max[3], struct v
     put(vec_mad(target, distance > 0 ? -distance : -1, forward), camera->eye);
 }
 
-void renderer_default_camera(const double box_min[3], const double box_max[3], uint32_t width_px,
-                             uint32_t height_px, struct camera *camera)
+/* Y up is glTF's and most modellers' convention, Z up that of CAD: a body is rarely thinner along a
+ * horizontal axis than along its up axis, so the thinner of the two is up. */
+static struct vec guess_up(const double box_min[3], const double box_max[3])
 {
-    /* Y up is glTF's and most modellers' convention, Z up that of CAD: a body is rarely thinner
-     * along a horizontal axis than along its up axis, so the thinner of the two is up. */
-    double side[3];
-    for (int i = 0; i < 3; i++)
-        side[i] = box_max[i] - box_min[i];
-    bool z_up = side[2] <= side[1];
-    struct vec up = z_up ? (struct vec){0, 0, 1} : (struct vec){0, 1, 0};
+    bool z_up = box_max[2] - box_min[2] <= box_max[1] - box_min[1];
+    return z_up ? (struct vec){0, 0, 1} : (struct vec){0, 1, 0};
+}
+
+/* The horizontal direction that azimuth is counted from: the world's x axis, or y where x is up. */
+static struct vec horizontal_axis(struct vec up)
+{
+    bool x_up = fabs(up.x) > 1 - 1e-9;
+    struct vec axis = x_up ? (struct vec){0, 1, 0} : (struct vec){1, 0, 0};
+    return vec_unit(vec_mad(axis, -vec_dot(axis, up), up));
+}
+
+static double extent(const double box_min[3], const double box_max[3], struct vec axis)
+{
+    return fabs(axis.x) * (box_max[0] - box_min[0]) + fabs(axis.y) * (box_max[1] - box_min[1]) +
+           fabs(axis.z) * (box_max[2] - box_min[2]);
+}
+
+void renderer_default_camera(const double box_min[3], const double box_max[3], const double up[3],
+                             uint32_t width_px, uint32_t height_px, struct camera *camera)
+{
+    struct vec upward = up ? vec_unit(get(up)) : guess_up(box_min, box_max);
+    struct vec e1 = horizontal_axis(upward), e2 = vec_cross(upward, e1);
     /* The longer of the horizontal sides lies across the picture rather than into it; clearly
      * longer, so that rounding does not turn what is as long as wide. */
-    double azimuth = (side[z_up ? 1 : 2] > 1.1 * side[0] ? -30 : -60) * DEGREE;
+    bool turned = extent(box_min, box_max, e2) > 1.1 * extent(box_min, box_max, e1);
+    double azimuth = (turned ? -30 : -60) * DEGREE;
     double elevation = 45 * DEGREE, fov_deg = 35, margin = 0.92;
-    double east = cos(elevation) * cos(azimuth), south = cos(elevation) * sin(azimuth);
-    struct vec from = z_up ? (struct vec){east, south, sin(elevation)}
-                           : (struct vec){east, sin(elevation), -south};
+    struct vec from = vec_scale(upward, sin(elevation));
+    from = vec_mad(from, cos(elevation) * cos(azimuth), e1);
+    from = vec_mad(from, cos(elevation) * sin(azimuth), e2);
     double tan_y = margin * tan(0.5 * fov_deg * DEGREE), tan_x = tan_y * width_px / height_px;
     *camera = (struct camera){.kind = CAMERA_PERSPECTIVE, .fov_deg = fov_deg};
-    put(up, camera->up);
-    frame_box(box_min, box_max, vec_scale(from, -1), up, tan_x, tan_y, camera);
+    put(up ? get(up) : upward, camera->up);
+    frame_box(box_min, box_max, vec_scale(from, -1), upward, tan_x, tan_y, camera);
 }
 
 void renderer_default_light(const double box_min[3], const double box_max[3],

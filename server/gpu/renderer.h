@@ -190,12 +190,12 @@ void renderer_polygons_destroy(struct renderer_polygons *polygons); /* NULL is s
 /* Bytes of one pixel of a plane (a single bit). */
 size_t renderer_plane_bytes(enum renderer_plane plane);
 
-/* A camera that frames the box (three-quarter view from above, z up when the box is flatter in z,
- * its longer horizontal side more across the picture than into it, 35 degrees, 4 % of the picture
- * free at the two opposite edges that its corners come nearest to), and a light that hangs over it,
- * larger than the model. */
-void renderer_default_camera(const double box_min[3], const double box_max[3], uint32_t width_px,
-                             uint32_t height_px, struct camera *camera);
+/* A camera that frames the box (three-quarter view from above, its longer horizontal side more
+ * across the picture than into it, 35 degrees, 4 % of the picture free at the two opposite edges
+ * that its corners come nearest to), and a light that hangs over it, larger than the model. `up`
+ * says where above is, of any length; NULL: z when the box is no thicker in z than in y, else y. */
+void renderer_default_camera(const double box_min[3], const double box_max[3], const double up[3],
+                             uint32_t width_px, uint32_t height_px, struct camera *camera);
 /* Sets centre, u and v for the light's kind. */
 void renderer_default_light(const double box_min[3], const double box_max[3],
                             const struct camera *camera, struct light *light);

@@ -55,8 +55,6 @@ static void to_camera(const sheen_Camera *from, const double box_min[3], const d
         wire_to_vec3(&from->eye, to->eye);
     if (from->has_target)
         wire_to_vec3(&from->target, to->target);
-    if (from->has_up)
-        wire_to_vec3(&from->up, to->up);
     if (from->has_fov_deg)
         to->fov_deg = from->fov_deg;
     if (!from->has_ortho_height)
@@ -104,8 +102,11 @@ void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
         .n_lights = render->lights_count ? render->lights_count : 1,
         .surface = {(enum surface_kind)render->surface, render->surface_level},
     };
-    renderer_default_camera(box_min, box_max, render->width_px, render->height_px,
-                            &request->camera);
+    double up[3];
+    wire_to_vec3(&render->camera.up, up);
+    renderer_default_camera(box_min, box_max,
+                            render->has_camera && render->camera.has_up ? up : NULL,
+                            render->width_px, render->height_px, &request->camera);
     if (render->has_camera)
         to_camera(&render->camera, box_min, box_max, &request->camera);
     wire_to_lines(&render->lines, &request->lines);

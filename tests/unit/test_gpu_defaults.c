@@ -11,17 +11,20 @@
 
 #define MARGIN 0.92 /* of the half picture, which the box fills */
 
+static const double ups[][3] = {{0, 0, 1},  {0, 1, 0},   {1, 0, 0},
+                                {0, 0, -2}, {-50, 0, 0}, {1, -9, 8}};
+
 /* How far the box reaches to either side of the picture's middle, in halves of the picture. */
 struct reach {
     double low[2], high[2]; /* across, down */
 };
 
-static struct reach reach_of(const double box_min[3], const double box_max[3], uint32_t width_px,
-                             uint32_t height_px)
+static struct reach reach_of(const double box_min[3], const double box_max[3], const double up[3],
+                             uint32_t width_px, uint32_t height_px)
 {
     struct camera camera;
     struct view view;
-    renderer_default_camera(box_min, box_max, width_px, height_px, &camera);
+    renderer_default_camera(box_min, box_max, up, width_px, height_px, &camera);
     view_init(&view, &camera, width_px, height_px, box_min, box_max);
     const double half[2] = {0.5 * width_px, 0.5 * height_px};
     struct reach reach = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
@@ -40,7 +43,19 @@ static struct reach reach_of(const double box_min[3], const double box_max[3], u
     return reach;
 }
 
-/* All of the box is in the picture, and it could not be larger there. */
+static void assert_fills(struct reach reach)
+{
+    bool touches = false;
+    for (int axis = 0; axis < 2; axis++) {
+        double least = fmin(-reach.low[axis], reach.high[axis]);
+        double most = fmax(-reach.low[axis], reach.high[axis]);
+        assert_true(most < MARGIN * (1 + 1e-6));
+        touches = touches || least > 0.99 * MARGIN;
+    }
+    assert_true(touches);
+}
+
+/* All of the box is in the picture, and it could not be larger there, whatever is up. */
 static void test_the_box_fills_the_picture(void **state)
 {
     (void)state;
@@ -55,16 +70,34 @@ static void test_the_box_fills_the_picture(void **state)
     static const uint32_t sizes[][2] = {{640, 480}, {100, 400}, {1920, 300}};
     for (size_t i = 0; i < sizeof boxes / sizeof boxes[0]; i++)
         for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
-            struct reach reach = reach_of(boxes[i][0], boxes[i][1], sizes[k][0], sizes[k][1]);
-            bool touches = false;
-            for (int axis = 0; axis < 2; axis++) {
-                double least = fmin(-reach.low[axis], reach.high[axis]);
-                double most = fmax(-reach.low[axis], reach.high[axis]);
-                assert_true(most < MARGIN * (1 + 1e-6));
-                touches = touches || least > 0.99 * MARGIN;
-            }
-            assert_true(touches);
+            const double *low = boxes[i][0], *high = boxes[i][1];
+            assert_fills(reach_of(low, high, NULL, sizes[k][0], sizes[k][1]));
+            for (size_t n = 0; n < sizeof ups / sizeof ups[0]; n++)
+                assert_fills(reach_of(low, high, ups[n], sizes[k][0], sizes[k][1]));
         }
+}
+
+/* The camera stands 45 degrees above the horizon of the up that it is given, whose length does not
+ * matter; what would have been chosen gives the same camera as when nothing is said. */
+static void test_up_is_above(void **state)
+{
+    (void)state;
+    static const double zero[3] = {0, 0, 0}, door[3] = {1100, 90, 800};
+    struct camera camera, guessed;
+    for (size_t n = 0; n < sizeof ups / sizeof ups[0]; n++) {
+        renderer_default_camera(zero, door, ups[n], 640, 480, &camera);
+        double rise = 0, distance = 0, length = 0;
+        for (int i = 0; i < 3; i++) {
+            rise += (camera.eye[i] - camera.target[i]) * ups[n][i];
+            distance = hypot(distance, camera.eye[i] - camera.target[i]);
+            length = hypot(length, ups[n][i]);
+            assert_true(camera.up[i] == ups[n][i]);
+        }
+        assert_true(fabs(rise / distance / length - sqrt(0.5)) < 1e-9);
+    }
+    renderer_default_camera(zero, door, NULL, 640, 480, &guessed);
+    renderer_default_camera(zero, door, guessed.up, 640, 480, &camera);
+    assert_memory_equal(&camera, &guessed, sizeof camera);
 }
 
 /* The longer of the two horizontal sides is seen across, whichever it is and whatever is up, and
@@ -82,7 +115,7 @@ static void test_the_longer_side_lies_across(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
             struct camera camera;
-            renderer_default_camera(zero, cases[i].size, sizes[k][0], sizes[k][1], &camera);
+            renderer_default_camera(zero, cases[i].size, NULL, sizes[k][0], sizes[k][1], &camera);
             int across = cases[i].across, into = cases[i].into;
             double view_across = fabs(camera.target[across] - camera.eye[across]);
             double view_into = fabs(camera.target[into] - camera.eye[into]);
@@ -96,7 +129,7 @@ static void test_a_point(void **state)
     (void)state;
     const double point[3] = {5, 6, 7};
     struct camera camera;
-    renderer_default_camera(point, point, 640, 480, &camera);
+    renderer_default_camera(point, point, NULL, 640, 480, &camera);
     double distance = 0;
     for (int i = 0; i < 3; i++) {
         assert_true(camera.target[i] == point[i]);
@@ -109,6 +142,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_box_fills_the_picture),
+        cmocka_unit_test(test_up_is_above),
         cmocka_unit_test(test_the_longer_side_lies_across),
         cmocka_unit_test(test_a_point),
     };

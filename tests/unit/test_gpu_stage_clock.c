@@ -42,7 +42,7 @@ static void scene_init(struct scene *scene, bool device_times)
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
     assert_non_null(scene->model);
     const double *low = scene->tables.box_min, *high = scene->tables.box_max;
-    renderer_default_camera(low, high, 640, 480, &scene->request.camera);
+    renderer_default_camera(low, high, NULL, 640, 480, &scene->request.camera);
     renderer_default_light(low, high, &scene->request.camera, &scene->request.lights[0]);
 }
 

@@ -98,9 +98,10 @@ static void test_cameras_in_part(void **state)
     (void)state;
     const struct camera whole = camera_for(NULL);
     const sheen_Camera turned = {.has_up = true, .up = {1, 0, 0}};
-    struct camera camera = camera_for(&turned);
-    assert_memory_equal(camera.eye, whole.eye, sizeof camera.eye);
-    assert_memory_equal(camera.target, whole.target, sizeof camera.target);
+    struct camera camera = camera_for(&turned), framed;
+    renderer_default_camera(BOX_MIN, BOX_MAX, (const double[]){1, 0, 0}, 640, 480, &framed);
+    assert_memory_equal(camera.eye, framed.eye, sizeof camera.eye);
+    assert_memory_equal(camera.target, framed.target, sizeof camera.target);
     assert_true(camera.up[0] == 1 && camera.fov_deg == whole.fov_deg);
 
     const sheen_Camera zoomed = {.has_fov_deg = true, .fov_deg = 10};
