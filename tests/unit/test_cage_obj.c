@@ -147,7 +147,8 @@ static void test_geometry_errors(void **state)
         const char *text, *message;
     } bad[] = {
         {"", "part.obj: the file is empty"},
-        {"# nothing\n", "part.obj: no face at all (0 vertices): a cage needs at least one face"},
+        {"# nothing\n", "part.obj: no vertex and no face, as of no OBJ file; what is read is OBJ, "
+                        "glTF and GLB, the last two from .gltf and .glb"},
         {SQUARE, "part.obj: no face at all (4 vertices): a cage needs at least one face"},
         {"v\n", "part.obj:1: v has 0 coordinates, needs 3"},
         {SQUARE "v 1\n", "part.obj:5: v has 1 coordinate, needs 3"},
@@ -200,7 +201,8 @@ static void test_bytes_that_are_no_text(void **state)
     for (int round = 0; round < 200; round++) {
         for (size_t i = 0; i < sizeof bytes; i++) {
             random = random * 1664525 + 1013904223;
-            bytes[i] = round % 2 ? (char)(random >> 24) : "vft 0123/-\\\n\r#."[random >> 28];
+            bytes[i] =
+                round % 2 ? (char)(1 + (random >> 24) % 255) : "vft 0123/-\\\n\r#."[random >> 28];
         }
         struct cage cage;
         struct error error = {0};
@@ -209,6 +211,11 @@ static void test_bytes_that_are_no_text(void **state)
         else
             assert_true(error.text[0] && !strpbrk(error.text, "\n\r\x1b"));
     }
+    static const char other[] = SQUARE "f 1 2 3 4\n\0";
+    struct cage cage;
+    struct error error = {0};
+    assert_false(cage_read(&cage, other, sizeof other - 1, "part.obj", &error));
+    assert_non_null(strstr(error.text, "part.obj: byte 42 is 0, as in no OBJ file"));
 }
 
 /* Tags */

@@ -171,6 +171,13 @@ static bool read_all(struct obj_reader *reader)
 bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, const char *name,
               struct error *error)
 {
+    const char *zero = memchr(bytes, 0, size);
+    if (zero)
+        return error_set(
+            error, ERROR_MODEL,
+            "%s: byte %zu is 0, as in no OBJ file: it is damaged, UTF-16 or of another "
+            "kind; what is read is OBJ, glTF and GLB",
+            name, (size_t)(zero - (const char *)bytes));
     locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!c_locale)
         return error_set(error, ERROR_SERVER, "%s: not enough memory to read it", name);
@@ -184,6 +191,12 @@ bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, cons
     if (size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0)
         reader.text.at += 3; /* a byte order mark, as some Windows programs write */
     bool ok = read_all(&reader);
+    const struct cage *cage = &builder->cage;
+    if (ok && cage->n_vertices == 0 && cage->n_faces == 0)
+        ok = error_set(error, ERROR_MODEL,
+                       "%s: no vertex and no face, as of no OBJ file; what is read is OBJ, glTF "
+                       "and GLB, the last two from .gltf and .glb",
+                       name);
     freelocale(c_locale);
     return ok;
 }
