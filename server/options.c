@@ -26,8 +26,13 @@ static void print_row(const struct option_row *row)
         *c == '\n' ? (void)printf("\n%-*s", HELP_COLUMN, "") : (void)putchar(*c);
     if (row->type == OPTION_NUMBER)
         printf(", %llu to %llu", (unsigned long long)row->min, (unsigned long long)row->max);
+    char range[LIMITS_RANGE_BYTES + 2] = "";
+    if (option_limit(row)) {
+        memcpy(range, "; ", 2);
+        limits_range(option_limit(row), range + 2);
+    }
     if (row->initial)
-        printf(" (default: %s)", row->initial);
+        printf(" (default: %s%s)", row->initial, range);
     putchar('\n');
 }
 

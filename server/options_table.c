@@ -231,9 +231,9 @@ static void fill_limit(struct option_row *row, const struct limits_row *limit,
 
 static struct option_row rows[OPTION_MAX_ROWS]; /* own, then limits; filled once */
 
-static const struct limits_row *limit_of(const struct option_row *row)
+const struct limits_row *option_limit(const struct option_row *row)
 {
-    return &LIMITS[row - rows - N_OWN_ROWS];
+    return row->type == OPTION_LIMIT ? &LIMITS[row - rows - N_OWN_ROWS] : NULL;
 }
 
 const struct option_row *option_rows(size_t *n)
@@ -288,7 +288,7 @@ bool option_set(const struct option_row *row, struct settings *settings, const c
     case OPTION_NUMBER:
         return set_number(row, value, text, error);
     case OPTION_LIMIT:
-        return limits_set(&settings->service.limits, limit_of(row), text, error);
+        return limits_set(&settings->service.limits, option_limit(row), text, error);
     case OPTION_TEXT:
         return set_text(row, value, text, error);
     case OPTION_FLAG:

@@ -41,6 +41,9 @@ struct option_row {
 /* All rows: those of this table, then the limits. */
 const struct option_row *option_rows(size_t *n);
 
+/* The row's limit, which says what values it takes; NULL when it is none. */
+const struct limits_row *option_limit(const struct option_row *row);
+
 /* Reads `text` into the row's value. ERROR_REQUEST names the option and its range. */
 bool option_set(const struct option_row *row, struct settings *settings, const char *text,
                 struct error *error);

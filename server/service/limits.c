@@ -167,3 +167,14 @@ void limits_format(const struct limits_row *row, uint64_t value, char text[LIMIT
     snprintf(text, LIMITS_TEXT_BYTES, n ? "%" PRIu64 "%c" : "%" PRIu64, value,
              n ? suffixes[n - 1] : 0);
 }
+
+void limits_range(const struct limits_row *row, char text[LIMITS_RANGE_BYTES])
+{
+    char low[LIMITS_TEXT_BYTES], high[LIMITS_TEXT_BYTES];
+    limits_format(row, row->low, low);
+    limits_format(row, row->high, high);
+    if (row->high == MOST_BYTES)
+        snprintf(text, LIMITS_RANGE_BYTES, "%s or more", low);
+    else
+        snprintf(text, LIMITS_RANGE_BYTES, "%s to %s", low, high);
+}

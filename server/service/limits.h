@@ -71,6 +71,10 @@ const char *limits_argument(const struct limits_row *row);
 /* A number of bytes with the largest suffix that keeps it whole ("4G"); other units as they are. */
 enum { LIMITS_TEXT_BYTES = 24 };
 void limits_format(const struct limits_row *row, uint64_t value, char text[LIMITS_TEXT_BYTES]);
+/* The values that the row takes, so written: "64K to 1G", or "1M or more" without a limit but the
+ * type's. */
+enum { LIMITS_RANGE_BYTES = 2 * LIMITS_TEXT_BYTES + 8 };
+void limits_range(const struct limits_row *row, char text[LIMITS_RANGE_BYTES]);
 
 /* A whole number from low to high; with suffixes K, M, G or T multiply by powers of 1024. */
 bool number_parse(const char *value, uint64_t low, uint64_t high, bool suffixes, uint64_t *number);

@@ -43,9 +43,16 @@ class Table(unittest.TestCase):
 
     def test_help_and_file_have_the_same_limits(self):
         text = run("--help").stdout
-        rows = re.findall(r"^[ *] --([a-z-]+) (?:BYTES|PX|N|SECONDS)\b.*?\(default: (\w+)\)",
+        said = re.findall(r"^[ *] --([a-z-]+) (?:BYTES|PX|N|SECONDS)\b.*?"
+                          r"\(default: (\w+); (\w+) (?:to (\w+)|or more)\)",
                           text[text.index("limits;"):], re.S | re.M)
-        self.assertEqual(len(rows), 26, rows)
+        self.assertEqual(len(said), 26, said)
+        for name, _, low, high in said:
+            for value, code in ((low, 0), (high or low, 0), (high and high + "0", 2)):
+                if value:
+                    done = run(f"--{name}", value, "--check-config")
+                    self.assertEqual(done.returncode, code, (name, value, done.stderr))
+        rows = [row[:2] for row in said]
         with tempfile.NamedTemporaryFile("w", suffix=".conf") as file:
             file.write("".join(f"{name} = {fallback}\n" for name, fallback in rows))
             file.flush()

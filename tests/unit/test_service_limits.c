@@ -155,6 +155,11 @@ static void test_formats(void **state)
     }
     limits_format(row_of("credits"), 1024, text);
     assert_string_equal(text, "1024");
+    char range[LIMITS_RANGE_BYTES];
+    limits_range(budget, range);
+    assert_string_equal(range, "4M or more");
+    limits_range(row_of("max-upload"), range);
+    assert_string_equal(range, "64K to 1G");
     assert_string_equal(limits_argument(budget), "BYTES");
     assert_string_equal(limits_argument(row_of("idle-timeout")), "SECONDS");
 }
