@@ -21,11 +21,13 @@ static double box_radius(const double box_min[3], const double box_max[3])
     return radius > 0 ? radius : 1;
 }
 
+/* Without -0, which JSON readers make 0 of: what was chosen, asked for again, is the same request.
+ */
 static void put(struct vec v, double out[3])
 {
-    out[0] = v.x;
-    out[1] = v.y;
-    out[2] = v.z;
+    out[0] = v.x + 0.0;
+    out[1] = v.y + 0.0;
+    out[2] = v.z + 0.0;
 }
 
 static struct vec get(const double a[3])

@@ -155,6 +155,17 @@ class Client(unittest.TestCase):
                             "reconnect"}
         self.assertEqual(options - not_of_the_frame, set(said))
 
+    def test_json_asked_again(self):
+        """What --json says of a view that was chosen is, asked for, the same file to the byte."""
+        found, picture = self.render("a.exr", "--server", self.daemon.unix, "--aov", "P,N")
+        places = {"--" + name: found["camera"][name] for name in ("eye", "target", "up")}
+        for name in ("center", "u", "v"):
+            places["--light-" + name] = found["light"][name]
+        again = (word for option, value in places.items()
+                 for word in (option, ",".join(repr(number) for number in value)))
+        self.assertEqual(self.render("b.exr", "--server", self.daemon.unix, *again, "--aov",
+                                     "P,N")[1], picture)
+
     def test_cameras_in_part(self):
         """--fov and --ortho alone change the camera that frames the model; --up alone frames it."""
         whole = self.render("a.png", "--server", self.daemon.unix)
