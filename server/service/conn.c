@@ -260,10 +260,13 @@ static void expect(struct conn *conn, const struct message_header *header, size_
 static void skip(struct conn *conn)
 {
     size_t n = conn->in_used < conn->skipped ? conn->in_used : conn->skipped;
+    if (n == 0)
+        return;
     conn->skipped -= n;
     conn->in_used -= n;
-    if (n > 0)
-        memmove(conn->in, conn->in + n, conn->in_used);
+    memmove(conn->in, conn->in + n, conn->in_used);
+    if (conn->skipped == 0)
+        conn->message_since_us = loop_now_us(); /* the next one's */
 }
 
 /* The whole messages that are there. */

@@ -499,6 +499,28 @@ class Input(unittest.TestCase):
             other.stats()
         self.assertEqual(daemon.stop(), 0)
 
+    def test_thrown_away_in_time(self):
+        """Each of the long messages that there is no memory for has its own time."""
+        daemon = Daemon("--message-timeout", "1", "--memory-budget", "4M")
+        with Client(daemon.unix) as holder, Client(daemon.unix) as client:
+            for who, size in ((holder, 4 * MIB), (client, 2 * MIB)):
+                who.send(wire.upload_begin(2, bytes(32), size, "a.obj"))
+                who.expect(wire.UPLOAD_STATE, 2)
+            holder.send(b"".join(message(wire.UPLOAD_CHUNK, 2, bytes(4000)) for _ in range(530)))
+            deadline = time.monotonic() + 10
+            with Client(daemon.unix) as third:
+                while third.stats()[23][0] < 4 * MIB - MIB // 8 and time.monotonic() < deadline:
+                    time.sleep(0.01)
+            chunks = message(wire.UPLOAD_CHUNK, 2, bytes(262144)) * 8
+            for at in range(0, len(chunks), 100000):  # ends of messages within what comes at once
+                client.send(chunks[at:at + 100000])
+                time.sleep(0.1)
+            with self.assertRaises(wire.Refused) as caught:
+                client.receive()
+            self.assertEqual(caught.exception.code, wire.ERROR_OVERLOADED)
+            client.stats()
+        self.assertEqual(daemon.stop(), 0)
+
     def test_an_upload_that_stops(self):
         daemon = Daemon("--stall-timeout", "1")
         with Client(daemon.unix) as client:
