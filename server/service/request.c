@@ -74,11 +74,23 @@ void request_fail(struct request *request, const struct error *error)
     request_end(request);
 }
 
-/* The request goes on without a session, if it must: nobody waits for what it makes. */
+static void stop_waiting(struct request *request, struct needed *needed)
+{
+    if (!store_stop_waiting(&needed->waiter))
+        return;
+    needed->asset = NULL;
+    request->n_awaited--;
+}
+
+/* The request goes on without a session, if it must: nobody waits for what it makes. Not for a
+ * build, which may take minutes: others would come meanwhile without end, and be taken back. */
 static void let_go_of_session(struct request *request)
 {
     atomic_store(&request->abandoned, true);
     leave_session(request);
+    stop_waiting(request, &request->model);
+    for (int i = 0; i < MAX_LIGHTS; i++)
+        stop_waiting(request, &request->images[i]);
     scheduler_leave(&request->host->scheduler, &request->entry);
     if (request->n_awaited == 0 && !request->is_busy)
         request_end(request);
@@ -180,7 +192,7 @@ static void acquire(struct request *request, struct needed *needed, enum asset_k
                     const uint8_t *sha256)
 {
     needed->request = request;
-    needed->waiter = (struct asset_waiter){asset_ready, needed, NULL};
+    needed->waiter = (struct asset_waiter){.ready = asset_ready, .owner = needed};
     needed->asset = store_find(request->host->store, request->owner, kind, sha256);
     request->n_awaited++;
     switch (store_acquire(needed->asset, request->asker, &needed->waiter, &request->failure)) {

@@ -319,6 +319,7 @@ static void wake_waiters(struct asset *asset, const struct error *failure)
         struct asset_waiter *next = waiter->next;
         if (failure)
             asset->users--;
+        waiter->asset = NULL;
         waiter->ready(waiter, failure);
         waiter = next;
     }
@@ -444,6 +445,16 @@ static void queue_build(struct asset *asset, const uint8_t asker[static STORE_OW
     start_builds(store);
 }
 
+static void add_waiter(struct asset *asset, struct asset_waiter *waiter)
+{
+    waiter->asset = asset;
+    waiter->previous = NULL;
+    waiter->next = asset->waiters;
+    if (waiter->next)
+        waiter->next->previous = waiter;
+    asset->waiters = waiter;
+}
+
 enum acquire_result store_acquire(struct asset *asset,
                                   const uint8_t asker[static STORE_OWNER_BYTES],
                                   struct asset_waiter *waiter, struct error *error)
@@ -460,8 +471,7 @@ enum acquire_result store_acquire(struct asset *asset,
         return ACQUIRE_READY;
     }
     asset->store->n_misses++;
-    waiter->next = asset->waiters;
-    asset->waiters = waiter;
+    add_waiter(asset, waiter);
     if (asset->state == ASSET_STORED)
         queue_build(asset, asker);
     return ACQUIRE_WAIT;
@@ -482,6 +492,19 @@ bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *er
 void store_unuse(struct asset *asset)
 {
     asset->users--;
+}
+
+bool store_stop_waiting(struct asset_waiter *waiter)
+{
+    struct asset *asset = waiter->asset;
+    if (!asset)
+        return false;
+    *(waiter->previous ? &waiter->previous->next : &asset->waiters) = waiter->next;
+    if (waiter->next)
+        waiter->next->previous = waiter->previous;
+    waiter->asset = NULL;
+    asset->users--;
+    return true;
 }
 
 void store_cancel_builds(struct store *store)

@@ -69,7 +69,10 @@ struct asset {
 struct asset_waiter {
     void (*ready)(struct asset_waiter *waiter, const struct error *failure);
     void *owner;
-    struct asset_waiter *next;
+
+    /* The store's own. */
+    struct asset *asset; /* that it waits for, or NULL */
+    struct asset_waiter *next, *previous;
 };
 
 struct store_counts {
@@ -123,6 +126,9 @@ enum acquire_result store_acquire(struct asset *asset,
                                   const uint8_t asker[static STORE_OWNER_BYTES],
                                   struct asset_waiter *waiter, struct error *error);
 void store_unuse(struct asset *asset);
+/* The waiter wants the asset no more: ready() will not be called. False if it does not wait. The
+ * build goes on. Not from within another's ready(). */
+bool store_stop_waiting(struct asset_waiter *waiter);
 
 /* A model in use will be drawn as polygons of this level (0 to 6): they are charged once, until the
  * model goes. False as store_reserve(). */

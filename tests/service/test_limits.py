@@ -144,6 +144,29 @@ class Workers(unittest.TestCase):
             client.render(client.upload(CUBE, "cube.obj"))
         self.assertEqual(daemon.stop(), 0)
 
+    def test_who_takes_back_waits_no_more(self):
+        """Frames that are asked for and taken back while a model is built leave nothing behind."""
+        n = 1000  # of some 100 KB each
+        daemon = Daemon("--tables-cpu", "8", "--threads", "2", tcp=False)
+        with Client(daemon.unix, minor=1, timeout=60) as client:
+            model = client.upload(self.slow(), "slow.obj")
+            query = client.next_seq()
+            client.send(message(wire.MODEL_QUERY, query, field(1, model)))
+            client.stats()
+            before = resident_kb(daemon.process.pid)
+            for first in range(0, n, 100):
+                client.send(b"".join(wire.render(1000 + i, model, kind=kind) +
+                                     (message(wire.CANCEL, 1000 + i) if kind == BATCH else b"")
+                                     for i in range(first, first + 100)
+                                     for kind in (INTERACTIVE if i % 2 else BATCH,)))
+                for _ in range(99 if first == 0 else 100):  # one waits until it is superseded
+                    seq, _ = client.answer()
+                    self.assertNotEqual(seq, query)
+            self.assertLess(resident_kb(daemon.process.pid) - before, 20 * 1024)
+            client.send(message(wire.CANCEL, query))
+            self.assertEqual(client.answer()[0], query)
+        self.assertEqual(daemon.stop(), 0)
+
     def test_builds_have_turns(self):
         """Who asks for many slow models holds up who asks for one by those that have begun."""
         n_slow = 8
