@@ -311,18 +311,25 @@ bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES
 
 static void start_builds(struct store *store);
 
+static void unlink_waiter(struct asset_waiter *waiter)
+{
+    *(waiter->previous ? &waiter->previous->next : &waiter->asset->waiters) = waiter->next;
+    if (waiter->next)
+        waiter->next->previous = waiter->previous;
+    waiter->asset = NULL;
+}
+
+/* One by one: what one of them does may make others stop waiting, and room where this was. */
 static void wake_waiters(struct asset *asset, const struct error *failure)
 {
-    struct asset_waiter *waiter = asset->waiters;
-    asset->waiters = NULL;
-    while (waiter) {
-        struct asset_waiter *next = waiter->next;
+    asset->users++;
+    for (struct asset_waiter *waiter; (waiter = asset->waiters);) {
+        unlink_waiter(waiter);
         if (failure)
             asset->users--;
-        waiter->asset = NULL;
         waiter->ready(waiter, failure);
-        waiter = next;
     }
+    asset->users--;
 }
 
 static void build_ended(struct asset *asset, const struct error *failure)
@@ -499,10 +506,7 @@ bool store_stop_waiting(struct asset_waiter *waiter)
     struct asset *asset = waiter->asset;
     if (!asset)
         return false;
-    *(waiter->previous ? &waiter->previous->next : &asset->waiters) = waiter->next;
-    if (waiter->next)
-        waiter->next->previous = waiter->previous;
-    waiter->asset = NULL;
+    unlink_waiter(waiter);
     asset->users--;
     return true;
 }

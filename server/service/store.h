@@ -127,7 +127,7 @@ enum acquire_result store_acquire(struct asset *asset,
                                   struct asset_waiter *waiter, struct error *error);
 void store_unuse(struct asset *asset);
 /* The waiter wants the asset no more: ready() will not be called. False if it does not wait. The
- * build goes on. Not from within another's ready(). */
+ * build goes on. */
 bool store_stop_waiting(struct asset_waiter *waiter);
 
 /* A model in use will be drawn as polygons of this level (0 to 6): they are charged once, until the
