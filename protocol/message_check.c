@@ -235,7 +235,8 @@ static bool check_light(const sheen_Light *light, char *text)
         !check_vec3(&light->u, "light.u", text) || !check_vec3(&light->v, "light.v", text))
         return false;
     return !is_parallel(&light->u, &light->v) ||
-           refuse(text, "light.u and light.v span no light: one is zero or both are parallel");
+           refuse(text, "light.u and light.v (--light-u, --light-v) span no light: one is zero or "
+                        "both are parallel");
 }
 
 static bool check_direction(const sheen_Vec3 *v, const char *field, char *text)
