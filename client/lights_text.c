@@ -80,7 +80,8 @@ const struct text_row TEXT_PATTERN_KEYS[] = {
     {"soft", "share of a period (lines: of the width) that each edge takes", "0 to 1; default 0"},
     {"opacity", "over the shaded base (--base)", "0 to 1; default 1"},
     {"fg, bg", "colours of bright and dark", "#rrggbb or #rrggbbaa; default white and black"},
-    {"at", "lines: where, with slashes between", "up to 16 places from 0 to 1; default 0.5"},
+    {"at", "lines: where, with slashes between",
+     "up to 16 places, 0 and 1 at the edges; default 0.5"},
     {"width", "lines: of each, as a share of the light", "above 0, at most 1; default 0.01"},
     {0},
 };
