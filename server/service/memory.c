@@ -24,17 +24,19 @@ static bool refuse_peer(const struct memory *memory, const struct peer *peer, co
                      what, bytes, memory->limits->peer_memory, peer->name, peer->memory_bytes);
 }
 
-/* Stills and batches leave room for interactive frames. */
-static bool fits_patient(const struct memory *memory, uint64_t bytes)
+/* Stills and batches leave room for interactive frames, and those of one peer for others': he may
+ * read them as slowly as stall-timeout lets him. */
+static bool fits_patient(const struct memory *memory, const struct peer *peer, uint64_t bytes)
 {
+    uint64_t most = memory->limits->memory_budget / 2;
     return memory->patient_bytes == 0 ||
-           memory->patient_bytes + bytes <= memory->limits->memory_budget / 2;
+           (memory->patient_bytes + bytes <= most && peer->patient_bytes <= most / 2);
 }
 
 static bool take(struct memory *memory, struct peer *peer, const uint8_t *asker, bool is_patient,
                  uint64_t bytes, struct error *error)
 {
-    if (is_patient && !fits_patient(memory, bytes))
+    if (is_patient && !fits_patient(memory, peer, bytes))
         return false; /* there are others: later */
     if (!fits_peer(memory, peer, bytes))
         return refuse_peer(memory, peer, "a frame", bytes, error);
@@ -60,6 +62,7 @@ enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
     peer->memory_bytes += bytes;
     memory->frame_bytes += bytes;
     memory->patient_bytes += is_patient ? bytes : 0;
+    peer->patient_bytes += is_patient ? bytes : 0;
     *charge = made;
     return MEMORY_CHARGED;
 }
@@ -74,6 +77,7 @@ void memory_charge_shrink(struct memory_charge *charge, uint64_t bytes)
     charge->peer->memory_bytes -= less;
     memory->frame_bytes -= less;
     memory->patient_bytes -= charge->is_patient ? less : 0;
+    charge->peer->patient_bytes -= charge->is_patient ? less : 0;
     store_release(memory->store, less);
 }
 

@@ -16,7 +16,8 @@ struct memory {
     struct spares *spares; /* where charges lie, or NULL */
     struct peers peers;
     uint64_t frame_bytes;   /* of all frames */
-    uint64_t patient_bytes; /* of stills and batches: at most half of the budget, or one frame */
+    uint64_t patient_bytes; /* of stills and batches: at most half of the budget, or one frame; of
+                             * one peer at most a quarter and one frame */
 };
 
 /* One frame's. On the heap: it may outlive the request and its session. */

@@ -12,8 +12,9 @@
 struct peer {
     char name[PEER_NAME_BYTES]; /* "user 1000", "127.0.0.1" */
     uint32_t n_connections;
-    uint64_t memory_bytes; /* uploads and long messages under way, frames not yet sent */
-    uint64_t key[2];       /* the module's own */
+    uint64_t memory_bytes;  /* uploads and long messages under way, frames not yet sent */
+    uint64_t patient_bytes; /* of these, stills and batches */
+    uint64_t key[2];        /* the module's own */
     unsigned references;
     struct peer *next;
 };

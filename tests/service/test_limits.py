@@ -334,6 +334,22 @@ class Memory(DaemonCase):
                 self.assertIn((client, seq), asked)
         self.assertLess(clients[0].stats()[23][0], 2 * MIB)  # all but the model given back
 
+    def test_unread_stills_of_one_leave_room(self):
+        """One user's, on connections that do not read: who comes from elsewhere does not wait."""
+        clients = [self.client() for _ in range(6)]
+        other = self.client(self.daemon.tcp)
+        model, theirs = clients[0].upload(CUBE, "cube.obj"), other.upload(CUBE, "cube.obj")
+        for client in clients:
+            for _ in range(8):
+                client.ask(model, 500, 500)
+        held, before = 0, -1
+        while held != before:
+            time.sleep(0.5)
+            before, held = held, other.stats()[23][0]
+        self.assertGreater(held, 4 * MIB)
+        other.socket.settimeout(10)
+        other.render(theirs, 500, 500)
+
     def test_polygons_count(self):
         client = self.client()
         model = client.upload(grid(20), "sheet.obj")
