@@ -148,7 +148,8 @@ struct schedule_entry *scheduler_hold(struct schedule_entry *entry)
 /* --- whose turn it is */
 
 /* The flow's entry that may draw now, or NULL. It draws one frame after the other: what begins late
- * may be replaced until then. */
+ * may be replaced until then. No other begins before one that waits: its answer would stand behind
+ * that one's, and its memory be what the other waits for. */
 static struct schedule_entry *drawable(const struct scheduler *scheduler,
                                        const struct schedule_flow *flow,
                                        enum request_class request_class)
@@ -156,6 +157,7 @@ static struct schedule_entry *drawable(const struct scheduler *scheduler,
     bool may_begin = !flow->held && flow->begun < SCHEDULER_PER_QUEUE &&
                      scheduler->classes[request_class].begun < SCHEDULER_PER_CLASS;
     struct schedule_entry *first_ready = NULL;
+    bool one_waits = false;
     for (struct schedule_entry *entry = flow->queue->head; entry; entry = entry->next) {
         if (entry->request_class != request_class)
             continue;
@@ -163,7 +165,8 @@ static struct schedule_entry *drawable(const struct scheduler *scheduler,
             return NULL;
         if (entry->state == SCHEDULE_BEGUN)
             return entry;
-        if (entry->state == SCHEDULE_READY && !first_ready)
+        one_waits = one_waits || entry->state == SCHEDULE_WAITING;
+        if (entry->state == SCHEDULE_READY && !first_ready && !one_waits)
             first_ready = entry;
     }
     return may_begin ? first_ready : NULL;

@@ -334,6 +334,20 @@ class Memory(DaemonCase):
                 self.assertIn((client, seq), asked)
         self.assertLess(clients[0].stats()[23][0], 2 * MIB)  # all but the model given back
 
+    def test_no_frame_waits_for_one_behind_it(self):
+        """The second has no room beside its model. The third's memory must not be what it waits
+        for: its answer comes behind the second's."""
+        client = self.client()
+        model = client.upload(grid(170), "large.obj")
+        client.query(model)
+        self.assertGreater(client.stats()[23][0], 15 * MIB)
+        seqs = [client.ask(model, 400, 300, encoding=wire.PNG),
+                client.ask(model, 1200, 1200, encoding=wire.ZSTD), client.ask(model)]
+        answers = dict(client.answer() for _ in seqs)
+        self.assertIsInstance(answers[seqs[0]], wire.Frame)
+        self.assertEqual(answers[seqs[1]].code, wire.ERROR_OVERLOADED)
+        self.assertIsInstance(answers[seqs[2]], wire.Frame)
+
     def test_unread_stills_of_one_leave_room(self):
         """One user's, on connections that do not read: who comes from elsewhere does not wait."""
         clients = [self.client() for _ in range(6)]
