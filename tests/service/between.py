@@ -60,11 +60,11 @@ class Between:
             server = socket.socket(socket.AF_UNIX)
             self.sockets += client, server
             server.connect(self.daemon.path)
+            connection, self.n_connections = self.n_connections, self.n_connections + 1
             for work in (self.requests, self.answers):
-                thread = threading.Thread(target=work, args=(self.n_connections, client, server))
+                thread = threading.Thread(target=work, args=(connection, client, server))
                 self.threads.append(thread)
                 thread.start()
-            self.n_connections += 1
 
     def requests(self, connection, client, server):
         try:
