@@ -19,7 +19,7 @@ static double radius_of(const struct limit_tables *tables, size_t node)
     return tables->bounds[tables->bound_first[node]].radius;
 }
 
-/* About the middle of the box of the nodes' own spheres. */
+/* About the middle of the box of the nodes' origins. */
 static struct cluster enclose(const struct limit_tables *tables, size_t first, size_t end)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -27,8 +27,9 @@ static struct cluster enclose(const struct limit_tables *tables, size_t first, s
     for (size_t i = first; i < end; i++) {
         const struct limit_node *node = &tables->nodes[i];
         for (int k = 0; k < 3 && has_surface(node); k++) {
-            low[k] = fmin(low[k], node->origin[k] - radius_of(tables, i));
-            high[k] = fmax(high[k], node->origin[k] + radius_of(tables, i));
+            double x = node->origin[k]; /* finite: no fmin(), which costs a call */
+            low[k] = x < low[k] ? x : low[k];
+            high[k] = x > high[k] ? x : high[k];
         }
     }
     for (int k = 0; k < 3; k++)
@@ -39,7 +40,8 @@ static struct cluster enclose(const struct limit_tables *tables, size_t first, s
             continue;
         struct vec away = {node->origin[0] - cluster.centre[0], node->origin[1] - cluster.centre[1],
                            node->origin[2] - cluster.centre[2]};
-        cluster.radius = fmax(cluster.radius, SLACK * (vec_length(away) + radius_of(tables, i)));
+        double reach = SLACK * (vec_length(away) + radius_of(tables, i));
+        cluster.radius = reach > cluster.radius ? reach : cluster.radius;
     }
     return cluster;
 }
