@@ -28,6 +28,8 @@ FUZZ ?=
 COVERAGE ?=
 SECONDS ?= 60
 RUNS ?= 9
+# Programs at work at once in `make check` and `make demo`.
+JOBS ?= $(shell nproc)
 
 comma := ,
 BUILD := build$(if $(FUZZ),/fuzz,$(if $(COVERAGE),/coverage,$(if $(SANITIZE),$(if $(filter thread,$(SANITIZE)),/thread,/sanitize))))
@@ -221,16 +223,15 @@ sheen-bench: $(BUILD)/sheen-bench
 .PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench sheen-bench lint format demo deps install clean
 tests: all $(BUILD)/sheend-faults $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH) $(BUILD)/sheen-bench
 unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
-	sh tests/run.sh unit $(BUILD)
+	bash tests/run.sh unit $(BUILD)
 service: all $(BUILD)/sheend-faults
-	sh tests/run.sh service $(BUILD)
+	bash tests/run.sh service $(BUILD)
 oracle: all $(ORACLE_TESTS)
-	sh tests/run.sh oracle $(BUILD)
+	bash tests/run.sh oracle $(BUILD)
 check:
 	$(MAKE) deps
-	$(MAKE) lint
-	$(MAKE) tests
-	sh tests/run.sh all $(BUILD)
+	$(MAKE) -j$(JOBS) lint tests
+	bash tests/run.sh all $(BUILD)
 
 fuzz-targets: $(FUZZ_TARGETS)
 fuzz:
@@ -258,7 +259,7 @@ format:
 # --- for users -----------------------------------------------------------------------------------
 demo:
 	$(MAKE) deps
-	$(MAKE) all
+	$(MAKE) -j$(JOBS) all
 	$(BUILD)/sheen render tests/models/fender.gltf -o $(BUILD)/demo.png
 	@echo "The demo model's reflection lines are in $(BUILD)/demo.png"
 

@@ -1,8 +1,11 @@
-#!/bin/sh
+#!/bin/bash
 # run.sh unit|fuzz|bench|service|oracle|all BUILD: runs the tests of one kind, or all, and ends with their sum,
-# "N passed, N failed". Each program's full output is kept in BUILD/tests/NAME.log.
+# "N passed, N failed". Each program's full output is kept in BUILD/tests/NAME.log. Programs that judge
+# nothing but answers run side by side, one for each processor; the service's tests run alone, since they
+# also judge who is served first.
 set -u
 kind=$1 build=$2
+processors=$(nproc)
 shapes=../shared/shapes
 # In builds with sanitizers: what libraries lose by themselves is not ours to report.
 export LSAN_OPTIONS="suppressions=tests/lsan.supp:print_suppressions=0"
@@ -33,6 +36,14 @@ run() { # name, command...
     [ "$bad" = 0 ] || { tail -n 40 "$log"; }
 }
 
+# The same beside others, as soon as fewer than one for each processor are at work. `wait` ends them all.
+beside() { # name, command...
+    while [ "$(jobs -rp | wc -l)" -ge "$processors" ]; do
+        wait -n
+    done
+    run "$@" &
+}
+
 # The Catmull-Clark cages there; and all, since any cage is one.
 shapes_of() { # pattern
     [ -d "$shapes" ] || return 0
@@ -50,18 +61,20 @@ unit() {
         name=$(basename "$test" .c)
         case $name in
         # OpenImageIO's own losses are only told from ours by whole stacks.
-        test_image) run "$name" env ASAN_OPTIONS=fast_unwind_on_malloc=0 "$build/tests/$name" ;;
-        *) run "$name" "$build/tests/$name" ;;
+        test_image) beside "$name" env ASAN_OPTIONS=fast_unwind_on_malloc=0 "$build/tests/$name" ;;
+        *) beside "$name" "$build/tests/$name" ;;
         esac
     done
+    wait
 }
 
 # Every input that fuzzing has left, over the code of this build.
 fuzz() {
     for corpus in tests/fuzz/corpus/*; do
         name=fuzz_$(basename "$corpus")
-        run "$name" "$build/tests/$name" "$corpus"
+        beside "$name" "$build/tests/$name" "$corpus"
     done
+    wait
 }
 
 bench() {
@@ -77,34 +90,32 @@ service() {
 oracle() {
     [ -d "$shapes" ] || echo "note: $shapes is not here: the oracles judge tests/models only"
     cages=$(shapes_of 'catmark_*.obj') all=$(shapes_of '*.obj')
-    run oracle_self sh tests/oracle/self_test.sh "$build/tests"
-    run oracle_osd "$build/tests/test_oracle"
-    # shellcheck disable=SC2086 # a list of files without spaces
-    {
-        run limit "$build/tests/test_limit" tests/models/*.obj $all
-        run refine "$build/tests/test_refine" tests/models/*.obj tests/models/*.gltf $all
-        # The surface of loop_val2_interior folds onto itself and has no normal along the fold.
-        run twin "$build/tests/test_twin" tests/models/*.obj \
-            $(printf '%s\n' $all | grep -v loop_val2_interior)
-        run exact "$build/tests/test_exact" "$build/sheen" tests/models/*.obj tests/models/*.gltf \
-            $cages &
-        run coverage "$build/tests/test_coverage" "$build/sheen" tests/models/*.obj $cages &
-        wait
-    }
-    run deep "$build/tests/test_deep"
+    beside oracle_self sh tests/oracle/self_test.sh "$build/tests"
+    beside oracle_osd "$build/tests/test_oracle"
+    # shellcheck disable=SC2046,SC2086 # lists of files without spaces
+    beside limit "$build/tests/test_limit" tests/models/*.obj $all
+    beside refine "$build/tests/test_refine" tests/models/*.obj tests/models/*.gltf $all
+    # The surface of loop_val2_interior folds onto itself and has no normal along the fold.
+    beside twin "$build/tests/test_twin" tests/models/*.obj \
+        $(printf '%s\n' $all | grep -v loop_val2_interior)
+    beside exact "$build/tests/test_exact" "$build/sheen" tests/models/*.obj tests/models/*.gltf \
+        $cages
+    beside coverage "$build/tests/test_coverage" "$build/sheen" tests/models/*.obj $cages
+    beside deep "$build/tests/test_deep"
     car=$shapes/catmark_car.obj
     [ -f "$car" ] || car=tests/models/creases.obj
-    run far "$build/tests/test_far" "$build/sheen" tests/models/fender.obj "$car"
-    run zoom "$build/tests/test_zoom" "$build/sheen" tests/models/body.obj tests/models/fender.obj \
+    beside far "$build/tests/test_far" "$build/sheen" tests/models/fender.obj "$car"
+    beside zoom "$build/tests/test_zoom" "$build/sheen" tests/models/body.obj tests/models/fender.obj \
         tests/models/creases.obj tests/models/pole.obj "$car"
-    run filter "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
+    beside filter "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
-    run patterns "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
-    run lines "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
+    beside patterns "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
+    beside lines "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/creases.obj tests/models/pole.obj "$car"
-    run fine "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
-    run isophotes "$build/tests/test_isophotes" "$build/sheen" tests/models/body.obj
-    run mirror "$build/tests/test_mirror" "$build/sheen"
+    beside fine "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
+    beside isophotes "$build/tests/test_isophotes" "$build/sheen" tests/models/body.obj
+    beside mirror "$build/tests/test_mirror" "$build/sheen"
+    wait
 }
 
 case $kind in
