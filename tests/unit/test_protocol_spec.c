@@ -58,7 +58,7 @@ static void count_id(uint8_t id[32])
 
 static void check_hello(const uint8_t *bytes, size_t size)
 {
-    const sheen_Hello hello = {.minor = 1, .client = "sheen 0.1.0"};
+    const sheen_Hello hello = {.minor = PROTOCOL_MINOR, .client = "sheen 0.1.0"};
     uint8_t id[32], buffer[256], decoded_id[32];
     size_t length = 0;
     count_id(id);
@@ -73,7 +73,7 @@ static void check_hello(const uint8_t *bytes, size_t size)
     assert_int_equal(header.type, MESSAGE_HELLO);
     assert_true(message_hello_decode(bytes + 16, header.length, decoded_id, &decoded));
     assert_memory_equal(decoded_id, id, 32);
-    assert_int_equal(decoded.minor, 1);
+    assert_int_equal(decoded.minor, PROTOCOL_MINOR);
     assert_string_equal(decoded.client, "sheen 0.1.0");
 }
 
@@ -93,7 +93,7 @@ static void check_hello_token(const uint8_t *bytes, size_t size)
 
 static void check_hello_ok(const uint8_t *bytes, size_t size)
 {
-    const sheen_HelloOk ok = {.minor = 1,
+    const sheen_HelloOk ok = {.minor = PROTOCOL_MINOR,
                               .server = "0.1.0",
                               .device = "llvmpipe",
                               .driver = "Mesa",
@@ -446,8 +446,32 @@ static void every_example_is_what_the_codecs_say(void **state)
             fail_msg("%s lacks the example '%s'", SPECIFICATION, EXAMPLES[i].name);
 }
 
+static bool file_has_line(const char *path, const char *begin)
+{
+    char line[400];
+    bool has = false;
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (!has && fgets(line, sizeof line, file))
+        has = strncmp(line, begin, strlen(begin)) == 0;
+    fclose(file);
+    return has;
+}
+
+static void the_version_is_that_of_the_page(void **state)
+{
+    (void)state;
+    char title[80], entry[80];
+    snprintf(title, sizeof title, "# sheen's wire protocol, version %d.%d\n", PROTOCOL_MAJOR,
+             PROTOCOL_MINOR);
+    snprintf(entry, sizeof entry, "* %d.%d: ", PROTOCOL_MAJOR, PROTOCOL_MINOR);
+    assert_true(file_has_line(SPECIFICATION, title));
+    assert_true(file_has_line("CHANGELOG.md", entry));
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_example_is_what_the_codecs_say)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_example_is_what_the_codecs_say),
+                                       cmocka_unit_test(the_version_is_that_of_the_page)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
