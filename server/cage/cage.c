@@ -46,3 +46,26 @@ void cage_warn(struct cage *cage, const char *format, ...)
     bool fits = used + strlen(line) + 1 + sizeof MORE_WARNINGS <= CAGE_WARNINGS_BYTES;
     snprintf(cage->warnings + used, CAGE_WARNINGS_BYTES - used, "%s", fits ? line : MORE_WARNINGS);
 }
+
+void cage_found(struct cage *cage, const struct cage_finding *finding, const char *name,
+                const char *format, ...)
+{
+    char text[320];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    size_t i = 0;
+    while (i < cage->n_findings && cage->finding[i].kind != finding->kind)
+        i++;
+    if (i < cage->n_findings)
+        cage->finding[i].count += finding->count;
+    else
+        cage->finding[cage->n_findings++] = *finding;
+    if (finding->line)
+        cage_warn(cage, "%s:%u: %s", name, finding->line, text);
+    else if (finding->face != CAGE_NO_FACE)
+        cage_warn(cage, "%s: face %u (counting from 0): %s", name, finding->face, text);
+    else
+        cage_warn(cage, "%s: %s", name, text);
+}

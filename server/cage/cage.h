@@ -23,6 +23,8 @@
 #define CAGE_MAX_COORDINATE 1e30
 /* Of cage.warnings, with its end. */
 #define CAGE_WARNINGS_BYTES 4096
+/* A finding's place that is no face. */
+#define CAGE_NO_FACE UINT32_MAX
 
 /* Boundary interpolation (OpenSubdiv Sdc::Options::VtxBoundaryInterpolation). */
 enum cage_boundary {
@@ -45,6 +47,31 @@ struct cage_crease {
 struct cage_corner {
     uint32_t vertex;
     float sharpness; /* as cage_crease.sharpness */
+};
+
+/* What a file has that it is probably not meant to have; its warning says so in words. */
+enum cage_finding_kind {
+    /* Damaged elements, and what they cost. */
+    CAGE_FOUND_REPEATED_CORNER, /* faces that lost a corner which repeats its neighbour */
+    CAGE_FOUND_FEW_CORNERS,     /* faces passed over: fewer than three different corners */
+    CAGE_FOUND_KEYHOLE, /* faces passed over: one vertex at corners that are no neighbours */
+    CAGE_FOUND_CREASE,  /* creases passed over: on no edge */
+    CAGE_FOUND_CORNER,  /* corner tags passed over: on no vertex */
+    CAGE_FOUND_HOLE,    /* holes passed over: of no face */
+    /* Doubts about what is drawn as it is. */
+    CAGE_FOUND_UNWELDED,   /* no face shares a vertex; repeated positions */
+    CAGE_FOUND_TRIANGLES,  /* plain triangles: faces */
+    CAGE_FOUND_WOUND,      /* edges that two faces run along in one direction */
+    CAGE_FOUND_FACE_TWICE, /* faces that are there a second time */
+    CAGE_FOUND_INSIDE_OUT, /* closed bodies whose faces turn inwards */
+    N_CAGE_FINDINGS,
+};
+
+struct cage_finding {
+    enum cage_finding_kind kind;
+    uint32_t count; /* of what the kind says, from 1 */
+    uint32_t line;  /* of the file, from 1: where the first is; 0: it has no such place */
+    uint32_t face;  /* where the file has no lines, the first face, from 0, else CAGE_NO_FACE */
 };
 
 struct cage {
@@ -70,6 +97,8 @@ struct cage {
     /* Things the user should know (ignored tags, a plain triangle mesh): lines joined by '\n',
      * or NULL. At most CAGE_WARNINGS_BYTES; owned by the cage. */
     char *warnings;
+    size_t n_findings;
+    struct cage_finding finding[N_CAGE_FINDINGS]; /* at most one of each kind */
 };
 
 /* Frees what the cage owns and zeroes it. Safe on a zeroed cage. */
@@ -83,5 +112,10 @@ bool cage_check(const struct cage *cage, const char *name, struct error *error);
 /* Appends one line to cage->warnings (dropped silently once they are full, the last line then says
  * that more followed). */
 void cage_warn(struct cage *cage, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Keeps a finding, or adds to the count of one of its kind, and warns of it in one line:
+ * "NAME:LINE: " or what else its place is called, and the text. */
+void cage_found(struct cage *cage, const struct cage_finding *finding, const char *name,
+                const char *format, ...) __attribute__((format(printf, 4, 5)));
 
 #endif

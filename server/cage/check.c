@@ -9,24 +9,19 @@
 
 struct check {
     const struct cage *cage;
-    const struct cage_lines *lines;
     const char *name;
     struct error *error;
 };
 
-/* What is being complained about: "part.obj:12: face" or "part.glb: face 11 (counting from 0)". */
-__attribute__((format(printf, 5, 6))) static bool fail(const struct check *check, const char *what,
-                                                       const uint32_t *lines, size_t index,
-                                                       const char *format, ...)
+/* What is being complained about: "part.glb: face 11 (counting from 0)". */
+__attribute__((format(printf, 4, 5))) static bool fail(const struct check *check, const char *what,
+                                                       size_t index, const char *format, ...)
 {
     char text[256];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    if (lines && lines[index])
-        return error_set(check->error, ERROR_MODEL, "%s:%u: %s %s", check->name, lines[index], what,
-                         text);
     return error_set(check->error, ERROR_MODEL, "%s: %s %zu (counting from 0) %s", check->name,
                      what, index, text);
 }
@@ -58,10 +53,9 @@ static bool check_positions(const struct check *check)
         for (int i = 0; i < 3; i++) {
             double value = cage->position[v][i];
             if (!isfinite(value))
-                return fail(check, "vertex", NULL, v, "has a coordinate %c that is not finite",
-                            "xyz"[i]);
+                return fail(check, "vertex", v, "has a coordinate %c that is not finite", "xyz"[i]);
             if (fabs(value) > CAGE_MAX_COORDINATE)
-                return fail(check, "vertex", NULL, v,
+                return fail(check, "vertex", v,
                             "has coordinate %c = %g, beyond the largest that is read, %g", "xyz"[i],
                             value, CAGE_MAX_COORDINATE);
         }
@@ -73,23 +67,21 @@ static bool check_positions(const struct check *check)
 static bool check_face(const struct check *check, size_t face, uint32_t *seen)
 {
     const struct cage *cage = check->cage;
-    const uint32_t *lines = check->lines->face;
     uint32_t first = cage->face_start[face], last = cage->face_start[face + 1];
     if (last < first || last > cage->face_start[cage->n_faces])
-        return fail(check, "face", lines, face, "has a broken corner list");
+        return fail(check, "face", face, "has a broken corner list");
     if (last - first < 3)
-        return fail(check, "face", lines, face, "has %u corner%s, needs at least 3", last - first,
+        return fail(check, "face", face, "has %u corner%s, needs at least 3", last - first,
                     last - first == 1 ? "" : "s");
     for (uint32_t c = first; c < last; c++) {
         uint32_t vertex = cage->face_vertex[c];
         if (vertex >= cage->n_vertices)
-            return fail(check, "face", lines, face,
+            return fail(check, "face", face,
                         "has vertex %u (counting from 0) at corner %u, but there are %zu vertices",
                         vertex, c - first + 1, cage->n_vertices);
         if (seen[vertex] == face + 1)
-            return fail(check, "face", lines, face,
-                        "has vertex %u twice: give every corner its own vertex",
-                        lines && lines[face] ? vertex + 1 : vertex);
+            return fail(check, "face", face,
+                        "has vertex %u twice: give every corner its own vertex", vertex);
         seen[vertex] = (uint32_t)face + 1;
     }
     return true;
@@ -121,26 +113,26 @@ static bool check_tag_values(const struct check *check)
         const struct cage_crease *crease = &cage->crease[i];
         for (int e = 0; e < 2; e++)
             if (crease->vertex[e] >= cage->n_vertices)
-                return fail(check, "crease", check->lines->crease, i,
+                return fail(check, "crease", i,
                             "refers to vertex %u (counting from 0), but there are %zu vertices",
                             crease->vertex[e], cage->n_vertices);
         if (!sharpness_is_good(crease->sharpness))
-            return fail(check, "crease", check->lines->crease, i,
-                        "has sharpness %g, needs a number from 0", (double)crease->sharpness);
+            return fail(check, "crease", i, "has sharpness %g, needs a number from 0",
+                        (double)crease->sharpness);
     }
     for (size_t i = 0; i < cage->n_corners; i++) {
         const struct cage_corner *corner = &cage->corner[i];
         if (corner->vertex >= cage->n_vertices)
-            return fail(check, "corner", check->lines->corner, i,
+            return fail(check, "corner", i,
                         "refers to vertex %u (counting from 0), but there are %zu vertices",
                         corner->vertex, cage->n_vertices);
         if (!sharpness_is_good(corner->sharpness))
-            return fail(check, "corner", check->lines->corner, i,
-                        "has sharpness %g, needs a number from 0", (double)corner->sharpness);
+            return fail(check, "corner", i, "has sharpness %g, needs a number from 0",
+                        (double)corner->sharpness);
     }
     for (size_t i = 0; i < cage->n_holes; i++)
         if (cage->hole[i] >= cage->n_faces)
-            return fail(check, "hole", check->lines->hole, i,
+            return fail(check, "hole", i,
                         "refers to face %u (counting from 0), but there are %zu faces",
                         cage->hole[i], cage->n_faces);
     return true;
@@ -180,7 +172,8 @@ static bool edge_set_init(struct edge_set *set, const struct cage *cage)
         return false;
     for (size_t i = 0; i < cage->n_creases; i++) {
         uint64_t key = edge_key(cage->crease[i].vertex[0], cage->crease[i].vertex[1]);
-        set->edge[edge_slot(set, key)] = key;
+        if (key != 0) /* as of vertex 0 with itself, which no face has */
+            set->edge[edge_slot(set, key)] = key;
     }
     return true;
 }
@@ -194,47 +187,56 @@ static void mark_face_edges(struct edge_set *set, const uint32_t *vertex, uint32
     }
 }
 
-/* Every crease lies on an edge of some face. Indices have been checked. */
-static bool check_crease_edges(const struct check *check)
+static void edge_set_finish(struct edge_set *set)
 {
-    const struct cage *cage = check->cage;
-    const uint32_t *lines = check->lines->crease;
-    if (cage->n_creases == 0)
-        return true;
-    for (size_t i = 0; i < cage->n_creases; i++)
-        if (cage->crease[i].vertex[0] == cage->crease[i].vertex[1])
-            return fail(check, "crease", lines, i, "joins vertex %u (counting from 0) with itself",
-                        cage->crease[i].vertex[0]);
+    free(set->edge);
+    free(set->found);
+}
+
+bool cage_find_creases(const struct cage *cage, uint8_t *is_edge)
+{
     struct edge_set set = {0};
     bool ok = edge_set_init(&set, cage);
-    if (!ok)
-        error_set(check->error, ERROR_SERVER, "%s: not enough memory to check %zu creases",
-                  check->name, cage->n_creases);
     for (size_t f = 0; ok && f < cage->n_faces; f++)
         mark_face_edges(&set, &cage->face_vertex[cage->face_start[f]],
                         cage->face_start[f + 1] - cage->face_start[f]);
     for (size_t i = 0; ok && i < cage->n_creases; i++) {
         const uint32_t *vertex = cage->crease[i].vertex;
-        if (!set.found[edge_slot(&set, edge_key(vertex[0], vertex[1]))])
-            ok = fail(check, "crease", lines, i,
-                      "joins vertices %u and %u (counting from 0), which no face has as an edge",
-                      vertex[0], vertex[1]);
+        is_edge[i] =
+            vertex[0] != vertex[1] && set.found[edge_slot(&set, edge_key(vertex[0], vertex[1]))];
     }
-    free(set.edge);
-    free(set.found);
+    edge_set_finish(&set);
     return ok;
 }
 
-bool cage_check_lines(const struct cage *cage, const struct cage_lines *lines, const char *name,
-                      struct error *error)
+/* Every crease lies on an edge of some face. Indices have been checked. */
+static bool check_crease_edges(const struct check *check)
 {
-    const struct check check = {cage, lines, name, error};
-    return check_counts(&check) && check_positions(&check) && check_faces(&check) &&
-           check_tag_values(&check) && check_crease_edges(&check);
+    const struct cage *cage = check->cage;
+    if (cage->n_creases == 0)
+        return true;
+    uint8_t *is_edge = malloc(cage->n_creases);
+    bool ok = is_edge && cage_find_creases(cage, is_edge);
+    if (!ok)
+        error_set(check->error, ERROR_SERVER, "%s: not enough memory to check %zu creases",
+                  check->name, cage->n_creases);
+    for (size_t i = 0; ok && i < cage->n_creases; i++) {
+        const uint32_t *vertex = cage->crease[i].vertex;
+        if (vertex[0] == vertex[1])
+            ok = fail(check, "crease", i, "joins vertex %u (counting from 0) with itself",
+                      vertex[0]);
+        else if (!is_edge[i])
+            ok = fail(check, "crease", i,
+                      "joins vertices %u and %u (counting from 0), which no face has as an edge",
+                      vertex[0], vertex[1]);
+    }
+    free(is_edge);
+    return ok;
 }
 
 bool cage_check(const struct cage *cage, const char *name, struct error *error)
 {
-    const struct cage_lines none = {0};
-    return cage_check_lines(cage, &none, name ? name : "cage", error);
+    const struct check check = {cage, name ? name : "cage", error};
+    return check_counts(&check) && check_positions(&check) && check_faces(&check) &&
+           check_tag_values(&check) && check_crease_edges(&check);
 }

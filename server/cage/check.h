@@ -1,20 +1,11 @@
-/* cage_check() for a cage whose lines in the file are known. Internal to server/cage. */
+/* What cage_check() and the readers' mending both look for. Internal to server/cage. */
 #ifndef SHEEN_CAGE_CHECK_H
 #define SHEEN_CAGE_CHECK_H
 
 #include "server/cage/cage.h"
 
-/* The line (from 1) of each part, for messages; NULL arrays where the file has no lines. */
-struct cage_lines {
-    const uint32_t *face;   /* [n_faces] */
-    const uint32_t *crease; /* [n_creases] */
-    const uint32_t *corner; /* [n_corners] */
-    const uint32_t *hole;   /* [n_holes] */
-};
-
-/* As cage_check(); texts say `name`:line where the line is known and not 0. ERROR_SERVER when
- * there is no memory to check with. */
-bool cage_check_lines(const struct cage *cage, const struct cage_lines *lines, const char *name,
-                      struct error *error);
+/* Says in is_edge[n_creases] which creases lie on an edge of some face: 1 or 0. Faces are in range;
+ * the ends of creases may be any numbers. Linear in the size of the cage. False: no memory. */
+bool cage_find_creases(const struct cage *cage, uint8_t *is_edge);
 
 #endif

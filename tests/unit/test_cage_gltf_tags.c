@@ -136,10 +136,20 @@ static void test_tag_errors(void **state)
         snprintf(message, sizeof message, "part.glb: mesh 0 primitive 0: %s", bad[i].message);
         expect_bad(&(struct sample){.primitive = bad[i].primitive}, message);
     }
-    expect_bad(&(struct sample){.primitive = TAGGED("\"creaseIndices\":[0,4],\"creaseLengths\":[2],"
-                                                    "\"creaseSharpnesses\":[1]")},
-               "part.glb: crease 0 (counting from 0) joins vertices 0 and 4 (counting from 0), "
-               "which no face has as an edge");
+}
+
+static void test_crease_on_no_edge(void **state)
+{
+    (void)state;
+    struct cage cage;
+    read_good(&cage, &(struct sample){.primitive = TAGGED("\"creaseIndices\":[0,4,0,1],"
+                                                          "\"creaseLengths\":[2,2],"
+                                                          "\"creaseSharpnesses\":[1,2]")});
+    assert_int_equal(cage.n_creases, 1);
+    assert_int_equal(cage.crease[0].vertex[1], 1);
+    assert_true(cage.crease[0].sharpness == 2);
+    assert_string_equal(cage.warnings, "part.glb: a crease on no edge is passed over");
+    cage_finish(&cage);
 }
 
 static void test_tags_of_several_primitives(void **state)
@@ -170,6 +180,7 @@ int main(void)
         cmocka_unit_test(test_creases),
         cmocka_unit_test(test_settings),
         cmocka_unit_test(test_tag_errors),
+        cmocka_unit_test(test_crease_on_no_edge),
         cmocka_unit_test(test_tags_of_several_primitives),
     };
     return cmocka_run_group_tests_name("cage/gltf_tags", tests, NULL, NULL);

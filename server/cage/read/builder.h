@@ -1,5 +1,5 @@
 /* A cage under construction: arrays that grow while a reader walks a file, and the line each part
- * came from, so that checks made at the end can name it.
+ * came from, so that warnings made at the end can name it.
  *
  * The caller owns the struct: zero it, hand it to a reader, then either take `cage` out (and zero
  * it) or drop all with cage_builder_finish(), which must be called in both cases. Every function
@@ -28,7 +28,7 @@ void cage_builder_finish(struct cage_builder *builder);
 bool cage_builder_vertex(struct cage_builder *builder, const double position[3],
                          struct error *error);
 /* Adds a corner to the face being built; cage_builder_end_face() ends it. Nothing is checked here
- * but the counts: cage_check() sees the whole. */
+ * but the counts: cage_mend() and cage_check() see the whole. */
 bool cage_builder_face_vertex(struct cage_builder *builder, uint32_t vertex, struct error *error);
 bool cage_builder_end_face(struct cage_builder *builder, uint32_t line, struct error *error);
 

@@ -5,6 +5,8 @@
 
 #include "server/cage/read/decimal.h"
 
+#define NO_INDEX UINT32_MAX
+
 /* "t NAME ints/floats/strings ..." */
 struct tag {
     struct obj_field name;
@@ -50,17 +52,22 @@ static bool missing(const struct obj_reader *reader, const struct tag *tag, cons
                     OBJ_SHOWN(&tag->name), what, tag->n_ints, tag->n_floats, tag->n_strings);
 }
 
-/* A zero-based index: tags count from 0 where faces count from 1. */
+/* A zero-based index: tags count from 0 where faces count from 1. A number that can be none, below
+ * 0 or too large, becomes NO_INDEX, which cage_mend() passes over like others without element. */
 static bool read_index(struct obj_reader *reader, const struct tag *tag, uint32_t *index)
 {
     struct obj_field field;
     if (!obj_text_field(&reader->text, &field))
         return missing(reader, tag, "integer");
-    const char *p = field.text;
-    if (!scan_count(&p, field.text + field.length, index) || p != field.text + field.length)
-        return obj_fail(reader, "t %.*s: not an index: '%.*s'", OBJ_SHOWN(&tag->name),
-                        OBJ_SHOWN(&field));
-    return true;
+    const char *p = field.text, *end = p + field.length;
+    if (scan_count(&p, end, index) && p == end)
+        return true;
+    p = field.text + (field.length > 1 && field.text[0] == '-');
+    while (p < end && *p >= '0' && *p <= '9')
+        p++;
+    *index = NO_INDEX;
+    return p == end || obj_fail(reader, "t %.*s: not an index: '%.*s'", OBJ_SHOWN(&tag->name),
+                                OBJ_SHOWN(&field));
 }
 
 /* To OpenSubdiv negative sharpness is smooth, too. */
@@ -164,8 +171,9 @@ static bool read_interpolate_boundary(struct obj_reader *reader, const struct ta
     if (!read_index(reader, tag, &mode))
         return false;
     if (mode >= sizeof modes / sizeof *modes)
-        return obj_fail(
-            reader, "t interpolateboundary is %u: 0 is none, 1 edge and corner, 2 edge only", mode);
+        return obj_fail(reader,
+                        "t interpolateboundary is none of 0 (none), 1 (edge and corner), 2 (edge "
+                        "only)");
     reader->builder->cage.boundary = modes[mode];
     return true;
 }

@@ -3,9 +3,9 @@
 #include <string.h>
 #include <strings.h>
 
-#include "server/cage/check.h"
 #include "server/cage/read/builder.h"
 #include "server/cage/read/gltf.h"
+#include "server/cage/read/mend.h"
 #include "server/cage/read/obj.h"
 
 /* Messages have room for what is wrong only if the name leaves it. */
@@ -51,12 +51,8 @@ bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *na
     if (size == 0)
         return error_set(error, ERROR_MODEL, "%s: the file is empty", name);
     struct cage_builder builder = {0};
-    bool ok = choose_reader(name, bytes, size)(&builder, bytes, size, name, error);
-    if (ok) {
-        const struct cage_lines lines = {builder.face_line, builder.crease_line,
-                                         builder.corner_line, builder.hole_line};
-        ok = cage_check_lines(&builder.cage, &lines, name, error);
-    }
+    bool ok = choose_reader(name, bytes, size)(&builder, bytes, size, name, error) &&
+              cage_mend(&builder, name, error) && cage_check(&builder.cage, name, error);
     if (ok) {
         *cage = builder.cage;
         builder.cage = (struct cage){0};
