@@ -54,11 +54,29 @@ static enum sheen_status read_file(struct job *job, const char *path, enum sheen
     return status ? status : keep_id(job, kept, id, bad, path);
 }
 
+static bool is_at_server(const char *model)
+{
+    return model && strncmp(model, AT_SERVER, strlen(AT_SERVER)) == 0;
+}
+
+/* The id that a balancer picks a node by. A file at the server has none before a server is asked:
+ * its name stands for it then, and each time again, so that the choice stays the same. */
+static enum sheen_status greeting_id(struct job *job, const char *model, uint8_t id[SHEEN_ID_BYTES])
+{
+    if (is_at_server(model))
+        return identify(job, (const uint8_t *)model, strlen(model), id);
+    memcpy(id, job->model_id, SHEEN_ID_BYTES);
+    return SHEEN_OK;
+}
+
 /* `timeout_ms` is for connecting; 0: as for everything. */
 static enum sheen_status connect_server(struct job *job, const struct options *options,
                                         uint32_t timeout_ms)
 {
     struct sheen_connect_options connect = SHEEN_CONNECT_DEFAULTS;
+    enum sheen_status status = greeting_id(job, options->model, connect.model_id);
+    if (status)
+        return status;
     connect.connect_timeout_ms = timeout_ms;
     connect.address = options->server;
     connect.device = options->device;
@@ -66,11 +84,9 @@ static enum sheen_status connect_server(struct job *job, const struct options *o
     connect.cert = options->cert;
     connect.key = options->key;
     connect.share = options->share;
-    memcpy(connect.model_id, job->model_id, SHEEN_ID_BYTES);
     char token[TOKEN_BYTES];
     if (options->token_file) {
-        enum sheen_status status =
-            file_read_line(options->token_file, token, sizeof(token), &job->error);
+        status = file_read_line(options->token_file, token, sizeof(token), &job->error);
         if (status)
             return status;
         connect.token = token;
@@ -90,10 +106,7 @@ static enum sheen_status connect_and_upload(struct job *job, const struct option
 {
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
-    const char *at_server =
-        options->model && strncmp(options->model, AT_SERVER, strlen(AT_SERVER)) == 0
-            ? options->model + strlen(AT_SERVER)
-            : NULL;
+    bool at_server = is_at_server(options->model);
     bool local = options->model && !at_server;
     enum sheen_status status = SHEEN_OK;
     job->has_images = false;
@@ -102,7 +115,7 @@ static enum sheen_status connect_and_upload(struct job *job, const struct option
     if (!status)
         status = connect_server(job, options, timeout_ms);
     if (!status && at_server)
-        status = find_model(job, at_server);
+        status = find_model(job, options->model + strlen(AT_SERVER));
     if (!status && local)
         status = upload(job, SHEEN_FILE_MODEL, options->model, bytes, n_bytes, job->model_id);
     free(bytes);

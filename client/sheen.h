@@ -77,8 +77,10 @@ struct sheen_connect_options {
     const char *address; /* unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; NULL: a private daemon */
     const char *device;  /* private daemon: "auto", "software" or a number; NULL: auto */
     uint32_t timeout_ms; /* with no byte moved; 0: for ever */
-    uint32_t connect_timeout_ms;      /* the same, until the daemon has greeted; 0: timeout_ms */
-    uint8_t model_id[SHEEN_ID_BYTES]; /* a balancer picks a node by it; zeros: any */
+    uint32_t connect_timeout_ms; /* the same, until the daemon has greeted; 0: timeout_ms */
+    /* A balancer picks a node by it: of the model that will be asked for, and where that is a file
+     * at the server, sheen_file_id() of the text "server:" NAME. Zeros: any node. */
+    uint8_t model_id[SHEEN_ID_BYTES];
     /* For tls: addresses; PEM files. The daemon's certificate is checked against `ca`, NULL: what
      * the system trusts. It may want cert and key, or a token, of the client. */
     const char *ca, *cert, *key;

@@ -1,4 +1,5 @@
 """The client goes on with the next daemon: nothing is lost, nothing counted twice."""
+import hashlib
 import json
 import os
 import shutil
@@ -165,6 +166,30 @@ class NextDaemon(Reconnect):
         self.assertEqual((client.returncode, out), (3, ""), said)
         self.assertIn("part.obj: it has changed", said)
         self.assertEqual(after.stop(), 0)
+
+
+    def test_what_a_balancer_sees(self):
+        """The id that a connection begins with: the file's, or of the name of a file at the server;
+        the same when it begins anew, when the client knows more."""
+        daemon = self.daemon("--models", MODELS)
+        with open(FENDER, "rb") as file:
+            own = hashlib.sha256(file.read()).digest()
+        for model, greeted in ((FENDER, own),
+                               ("server:fender.obj", hashlib.sha256(b"server:fender.obj").digest())):
+            for command in (("info",), ("render", "-o", self.file("a.png"), *SMALL)):
+                seen = []
+                cut = cut_at(wire.MODEL_QUERY if command[0] == "info" else wire.RENDER)
+
+                def judge(connection, kind, seq, body, client):
+                    if kind == wire.HELLO:
+                        seen.append(body[:32])
+                    return cut(connection, kind, seq, body, client)
+
+                with self.subTest(model=model, command=command[0]), Between(daemon, judge) as between:
+                    done = sheen(*command, model, "--server", between.unix)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assertEqual(seen, [greeted, greeted])
+        self.assertEqual(daemon.stop(), 0)
 
 
 class Broken(Reconnect):
