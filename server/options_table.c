@@ -184,8 +184,14 @@ static const struct option_row OWN_ROWS[] = {
      NULL},
     {"metrics", "ADDRESS", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.metrics), 0, 0, NULL, NULL,
      "serve GET /metrics, /healthz and /readyz there: unix:PATH or\n"
-     "tcp:HOST:PORT, loopback only (default: nowhere)",
+     "tcp:HOST:PORT, loopback only without --metrics-open (default: nowhere)",
      set_metrics},
+    {"metrics-open", NULL, OPTION_FLAG, OPTION_IN_FILE, VALUE(service.metrics_open), 0, 0, NULL,
+     NULL,
+     "--metrics may be beyond the loopback, for probes and scrapers: whoever reaches\n"
+     "it reads counts, times, the device and the version, and no name of a model, a\n"
+     "file or a client; without TLS",
+     NULL},
     {"log-level", "LEVEL", OPTION_OTHER, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.log_level),
      0, 0, NULL, "info",
      "error, warn, info (sessions, refused requests) or debug (every request),\n"

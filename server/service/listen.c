@@ -48,7 +48,8 @@ static bool is_loopback(const struct sockaddr *address)
            (IN6_IS_ADDR_V4MAPPED(&v6.sin6_addr) && v6.sin6_addr.s6_addr[12] == 127);
 }
 
-static bool resolve(const struct address *address, struct addrinfo **found, struct error *error)
+static bool resolve(const struct address *address, enum listener_reach reach,
+                    struct addrinfo **found, struct error *error)
 {
     char port[8];
     snprintf(port, sizeof port, "%u", (unsigned)address->port);
@@ -58,7 +59,7 @@ static bool resolve(const struct address *address, struct addrinfo **found, stru
         return error_set(error, ERROR_SERVER, "cannot find the address of '%s': %s", address->host,
                          gai_strerror(code));
     for (const struct addrinfo *a = *found; a; a = a->ai_next) {
-        if (address->kind == ADDRESS_TLS || is_loopback(a->ai_addr))
+        if (address->kind == ADDRESS_TLS || reach == LISTENER_ANYWHERE || is_loopback(a->ai_addr))
             continue;
         freeaddrinfo(*found);
         return error_set(error, ERROR_REQUEST,
@@ -71,12 +72,12 @@ static bool resolve(const struct address *address, struct addrinfo **found, stru
     return true;
 }
 
-bool listener_check(const struct address *address, struct error *error)
+bool listener_check(const struct address *address, enum listener_reach reach, struct error *error)
 {
     if (address->kind == ADDRESS_UNIX)
         return true;
     struct addrinfo *found;
-    if (!resolve(address, &found, error))
+    if (!resolve(address, reach, &found, error))
         return false;
     freeaddrinfo(found);
     return true;
@@ -183,10 +184,10 @@ static void describe_tcp(struct listener *listener, const struct sockaddr *name,
              address_scheme(listener->address.kind), host, port);
 }
 
-static bool open_tcp(struct listener *listener, struct error *error)
+static bool open_tcp(struct listener *listener, enum listener_reach reach, struct error *error)
 {
     struct addrinfo *found;
-    if (!resolve(&listener->address, &found, error))
+    if (!resolve(&listener->address, reach, &found, error))
         return false;
     bool ok = false;
     for (const struct addrinfo *a = found; a && !ok; a = a->ai_next)
@@ -297,18 +298,20 @@ static struct listener *start(struct listener *listener, bool ok, struct error *
 }
 
 struct listener *listener_open(struct loop *loop, const struct address *address,
-                               const struct listener_handler *handler, struct error *error)
+                               enum listener_reach reach, const struct listener_handler *handler,
+                               struct error *error)
 {
     struct listener *listener = create(loop, -1, handler, error);
     if (!listener)
         return NULL;
     listener->address = *address;
-    bool ok =
-        address->kind == ADDRESS_UNIX ? open_unix(listener, error) : open_tcp(listener, error);
+    bool ok = address->kind == ADDRESS_UNIX ? open_unix(listener, error)
+                                            : open_tcp(listener, reach, error);
     return start(listener, ok, error);
 }
 
-static bool adopt(struct listener *listener, bool tls, struct error *error)
+static bool adopt(struct listener *listener, bool tls, enum listener_reach reach,
+                  struct error *error)
 {
     union {
         struct sockaddr any;
@@ -327,17 +330,18 @@ static bool adopt(struct listener *listener, bool tls, struct error *error)
                  name.local.sun_path[0] ? name.local.sun_path : "@");
         return true;
     }
-    listener->address.kind = tls || !is_loopback(&name.any) ? ADDRESS_TLS : ADDRESS_TCP;
+    bool is_near = reach == LISTENER_ANYWHERE || is_loopback(&name.any);
+    listener->address.kind = tls || !is_near ? ADDRESS_TLS : ADDRESS_TCP;
     describe_tcp(listener, &name.any, size);
     return true;
 }
 
-struct listener *listener_adopt(struct loop *loop, int fd, bool tls,
+struct listener *listener_adopt(struct loop *loop, int fd, bool tls, enum listener_reach reach,
                                 const struct listener_handler *handler, struct error *error)
 {
     struct listener *listener = create(loop, fd, handler, error);
     if (listener)
-        return start(listener, adopt(listener, tls, error), error);
+        return start(listener, adopt(listener, tls, reach, error), error);
     close(fd);
     return NULL;
 }

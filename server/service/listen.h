@@ -11,9 +11,12 @@
 
 struct listener;
 
-/* May a daemon listen there? TCP only on loopback addresses: without TLS everybody on the way could
- * read and change what is sent. ERROR_REQUEST if not; ERROR_SERVER if the name is unknown. */
-bool listener_check(const struct address *address, struct error *error);
+/* Which TCP addresses may be listened on without TLS, where everybody on the way could read and
+ * change what is sent. */
+enum listener_reach { LISTENER_LOOPBACK, LISTENER_ANYWHERE };
+
+/* May a daemon listen there? ERROR_REQUEST if not; ERROR_SERVER if the name is unknown. */
+bool listener_check(const struct address *address, enum listener_reach reach, struct error *error);
 
 /* Where a daemon listens when nobody says where: $XDG_RUNTIME_DIR/sheen.sock, else a socket in a
  * folder of this user's alone under /tmp, which is made if need be. ERROR_SERVER when somebody else
@@ -29,10 +32,11 @@ struct listener_handler {
 /* Opens the socket. A Unix socket is made with mode 0600; one that a dead daemon left behind is
  * replaced, one that somebody answers on, or a file of another kind, is not. NULL on failure. */
 struct listener *listener_open(struct loop *loop, const struct address *address,
-                               const struct listener_handler *handler, struct error *error);
+                               enum listener_reach reach, const struct listener_handler *handler,
+                               struct error *error);
 /* Takes over a listening socket that somebody else has opened; its file stays when it closes.
- * It is one for TLS if `tls` or if it is TCP beyond loopback. Closes fd on failure. */
-struct listener *listener_adopt(struct loop *loop, int fd, bool tls,
+ * It is one for TLS if `tls` or if it is TCP beyond `reach`. Closes fd on failure. */
+struct listener *listener_adopt(struct loop *loop, int fd, bool tls, enum listener_reach reach,
                                 const struct listener_handler *handler, struct error *error);
 enum address_kind listener_kind(const struct listener *listener);
 /* Gives the file of a Unix socket made here mode 0666, for a daemon that looks at each peer itself,

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "server/service/http.h"
-#include "server/service/listen.h"
 #include "server/service/log.h"
 #include "server/service/metrics.h"
 #include "server/service/notify.h"
@@ -155,24 +154,29 @@ static bool open_http(struct monitor *monitor, struct error *error)
     return monitor->http != NULL;
 }
 
-bool monitor_listen(struct monitor *monitor, const struct address *address, struct error *error)
+bool monitor_listen(struct monitor *monitor, const struct address *address,
+                    enum listener_reach reach, struct error *error)
 {
     const struct listener_handler handler = {accepted, monitor};
     if (!open_http(monitor, error))
         return false;
-    monitor->listener = listener_open(monitor->host->loop, address, &handler, error);
+    monitor->listener = listener_open(monitor->host->loop, address, reach, &handler, error);
     return monitor->listener != NULL;
 }
 
-bool monitor_adopt(struct monitor *monitor, int fd, struct error *error)
+bool monitor_adopt(struct monitor *monitor, int fd, enum listener_reach reach, struct error *error)
 {
     const struct listener_handler handler = {accepted, monitor};
     if (!open_http(monitor, error)) {
         close(fd);
         return false;
     }
-    monitor->listener = listener_adopt(monitor->host->loop, fd, false, &handler, error);
-    return monitor->listener != NULL;
+    monitor->listener = listener_adopt(monitor->host->loop, fd, false, reach, &handler, error);
+    if (!monitor->listener || listener_kind(monitor->listener) != ADDRESS_TLS)
+        return monitor->listener != NULL;
+    return error_set(error, ERROR_REQUEST,
+                     "the service manager's socket for metrics is beyond the loopback: give it an "
+                     "address on loopback, or start sheend with --metrics-open");
 }
 
 const char *monitor_address(const struct monitor *monitor)

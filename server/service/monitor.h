@@ -5,10 +5,10 @@
 #define SHEEN_SERVICE_MONITOR_H
 
 #include "protocol/address.h"
+#include "server/service/listen.h"
 #include "server/service/session.h"
 
 struct monitor;
-struct listener;
 
 /* stuck_us: a thread that is at one piece of work for longer is taken for stuck. *host and what it
  * names stay until monitor_destroy(). */
@@ -16,10 +16,11 @@ struct monitor *monitor_create(const struct session_host *host, uint64_t stuck_u
                                struct error *error);
 void monitor_destroy(struct monitor *monitor); /* NULL is safe */
 
-/* Serves GET /metrics, /healthz and /readyz at this address (loopback or Unix), or on a listening
- * socket of the service manager's, which it closes on failure. */
-bool monitor_listen(struct monitor *monitor, const struct address *address, struct error *error);
-bool monitor_adopt(struct monitor *monitor, int fd, struct error *error);
+/* Serves GET /metrics, /healthz and /readyz at this address, or on a listening socket of the
+ * service manager's, which it closes on failure: Unix, or TCP within `reach`, without TLS. */
+bool monitor_listen(struct monitor *monitor, const struct address *address,
+                    enum listener_reach reach, struct error *error);
+bool monitor_adopt(struct monitor *monitor, int fd, enum listener_reach reach, struct error *error);
 /* "" without one. */
 const char *monitor_address(const struct monitor *monitor);
 

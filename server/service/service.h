@@ -25,6 +25,7 @@ struct service_listen {
 struct service_options {
     struct service_listen listen;
     struct service_listen metrics;     /* of health and metrics: none or one */
+    bool metrics_open;                 /* they may be beyond the loopback */
     int session_fd;                    /* serve this connected socket alone; -1: listen */
     char device[SERVICE_DEVICE_BYTES]; /* as renderer_options.device */
     uint64_t n_threads;                /* of the pool, 1 to POOL_MAX_THREADS */

@@ -1,6 +1,7 @@
 """What the people who run the daemon rely on: service manager, reload, logs, metrics, health."""
 import ctypes
 import fcntl
+import hashlib
 import json
 import os
 import re
@@ -230,7 +231,7 @@ class ServiceManager(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
         manager.socket.close()
 
-    def start_activated(self, sockets, names="", pid="os.getpid()", n=None):
+    def start_activated(self, sockets, names="", pid="os.getpid()", n=None, options=()):
         """As a service manager does it: sockets from descriptor 3 on, and three variables."""
         high = [fcntl.fcntl(one.fileno(), fcntl.F_DUPFD, 50) for one in sockets]
         script = ("import os, sys\n"
@@ -238,7 +239,7 @@ class ServiceManager(unittest.TestCase):
                   f"os.environ['LISTEN_PID'] = str({pid})\n"
                   "os.execv(sys.argv[1], sys.argv[1:])\n")
         process = subprocess.Popen(
-            ["/usr/bin/python3", "-c", script, SHEEND, "--device", "software"], pass_fds=high,
+            ["/usr/bin/python3", "-c", script, SHEEND, "--device", "software", *options], pass_fds=high,
             stderr=subprocess.PIPE, text=True,
             env={**os.environ, "XDG_RUNTIME_DIR": self.folder, "LISTEN_FDNAMES": names,
                  "LISTEN_FDS": str(len(high) if n is None else n)})
@@ -274,6 +275,26 @@ class ServiceManager(unittest.TestCase):
             self.assertEqual(process.wait(20), 0)
             self.assertTrue(os.path.exists(path), "the socket is the service manager's")
             self.assertFalse(os.path.exists(os.path.join(self.folder, "sheen.sock")))
+
+    def test_metrics_socket_beyond_the_loopback(self):
+        """The service manager's are no more open than the daemon's own."""
+        for options, answers in (((), False), (("--metrics-open",), True)):
+            with self.subTest(options=options), socket.socket(socket.AF_UNIX) as unix, socket.socket() as web:
+                path = os.path.join(self.folder, f"given-{answers}.sock")
+                unix.bind(path)
+                web.bind(("0.0.0.0", 0))
+                for one in (unix, web):
+                    one.listen()
+                process = self.start_activated([unix, web], "sheen:metrics", options=options)
+                if answers:
+                    port = web.getsockname()[1]
+                    self.assertIn(f"metrics=tcp:0.0.0.0:{port}\n", process.stderr.readline())
+                    self.assertEqual(get(f"tcp:127.0.0.1:{port}", "/healthz")[0], 200)
+                    process.terminate()
+                    self.assertEqual(process.wait(20), 0)
+                else:
+                    self.assertEqual(process.wait(20), 2)
+                    self.assertIn("--metrics-open", process.stderr.read())
 
     def test_sockets_for_somebody_else(self):
         """LISTEN_PID of another process: an inherited environment."""
@@ -571,19 +592,42 @@ class Metrics(unittest.TestCase):
 
     def test_loopback_only(self):
         """And the advice is one that can be taken."""
-        for address in ("tcp:0.0.0.0:9477", "tcp:192.0.2.1:9477", "tls:0.0.0.0:9477",
-                        "tls:127.0.0.1:9477"):
+        for address in ("tcp:0.0.0.0:9477", "tcp:192.0.2.1:9477", "tcp:[::]:9477"):
             with self.subTest(address=address):
                 done = run("--metrics", address, "--check-config")
                 self.assertEqual(done.returncode, 2)
-                self.assertIn(f"metrics go to this machine alone, and not to {address}: ",
-                              done.stderr)
+                host = address.replace("[", "").replace("]", "")
+                self.assertIn(f"metrics go to this machine alone, and not to {host}: ", done.stderr)
                 for words in ("--tls", "use tls:"):
                     self.assertNotIn(words, done.stderr)
                 advised, = re.findall(r"as (tcp:\S+);", done.stderr)
                 self.assertEqual(run("--metrics", advised, "--check-config").returncode, 0)
+                self.assertEqual(run("--metrics", address, "--metrics-open", "--check-config").returncode, 0)
+        for options in ((), ("--metrics-open",)):
+            done = run("--metrics", "tls:0.0.0.0:9477", *options, "--check-config")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("metrics are served without TLS, and not at tls:0.0.0.0:9477", done.stderr)
         done = run("--metrics", "tcp:a..b:9477", "--check-config")
         self.assertIn("cannot find the address of 'a..b'", done.stderr)
+
+    def test_beyond_the_loopback_when_told_to(self):
+        """By an option or the configuration; and what is read there names nobody."""
+        with tempfile.NamedTemporaryFile("w", suffix=".conf") as config:
+            config.write("metrics = tcp:0.0.0.0:0\nmetrics-open = yes\n")
+            config.flush()
+            for options in (("--metrics", "tcp:0.0.0.0:0", "--metrics-open"), ("--config", config.name)):
+                daemon = Daemon(*options)
+                address = metrics_address(daemon)
+                self.assertRegex(address, r"^tcp:0\.0\.0\.0:\d+$")
+                with Client(daemon.unix) as client:
+                    client.render(client.upload(CUBE, "secret-car.obj"))
+                    text = get(address, "/metrics")[1]
+                self.assertEqual(read_metrics(text)["sheen_models"], 1)
+                for name in ("secret-car", hashlib.sha256(CUBE).hexdigest(), daemon.folder, "uid"):
+                    self.assertNotIn(name, text)
+                for path in ("/healthz", "/readyz"):
+                    self.assertEqual(get(address, path), (200, "ok\n"))
+                self.assertEqual(daemon.stop(), 0)
 
 
 class Stats(unittest.TestCase):
