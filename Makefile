@@ -158,6 +158,11 @@ $(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST
 	@mkdir -p $(@D)
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(TEST_LIBS)
+# Hides libraries from the loader: tests/service/test_libraries.py.
+$(BUILD)/tests/no_library.so: tests/service/no_library.c
+	@mkdir -p $(@D)
+	$(call say,LD $@)
+	$(Q)$(CC) -std=c11 -D_GNU_SOURCE $(CWARN) -O2 -fPIC -shared -o $@ $<
 $(BUILD)/tests/test_service_worker: | $(BUILD)/tests/bad_worker
 $(BUILD)/tests/bad_worker: $(call obj,tests/worker/bad_worker.c) $(WORKER_OBJ)
 	@mkdir -p $(@D)
@@ -221,10 +226,10 @@ $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 sheen-bench: $(BUILD)/sheen-bench
 
 .PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench sheen-bench lint format demo deps install clean
-tests: all $(BUILD)/sheend-faults $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH) $(BUILD)/sheen-bench
+tests: all $(BUILD)/sheend-faults $(BUILD)/tests/no_library.so $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH) $(BUILD)/sheen-bench
 unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 	bash tests/run.sh unit $(BUILD)
-service: all $(BUILD)/sheend-faults
+service: all $(BUILD)/sheend-faults $(BUILD)/tests/no_library.so
 	bash tests/run.sh service $(BUILD)
 oracle: all $(ORACLE_TESTS)
 	bash tests/run.sh oracle $(BUILD)

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/gpu/libraries.h"
+
 enum { MAX_DEVICES = 64 };
 
 static bool has_word(const char *list, const char *word)
@@ -94,6 +96,8 @@ bool egl_init(struct egl *egl, const char *device, struct error *error)
     *egl = (struct egl){.display = EGL_NO_DISPLAY, .context = EGL_NO_CONTEXT};
     EGLDeviceEXT all[MAX_DEVICES], chosen[MAX_DEVICES];
     EGLint n = 0;
+    if (!libraries_load(error))
+        return false;
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
         !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base"))
         return error_set(error, ERROR_DEVICE,
