@@ -8,7 +8,11 @@ layout(binding = 4, rg32f) writeonly uniform image2D light_st;
 layout(binding = 5, rg32f) writeonly uniform image2D curvature;
 layout(binding = 6, rgba32f) writeonly uniform image2D light_change;
 
-const vec4 NOTHING = vec4(uintBitsToFloat(0x7fc00000u));
+// No global constant: not every compiler takes uintBitsToFloat() for a constant expression.
+vec4 nothing()
+{
+    return vec4(uintBitsToFloat(0x7fc00000u));
+}
 
 vec2 principal_curvatures(vec3 h)
 {
@@ -25,9 +29,9 @@ void main()
     Met met = meet(sample_at(pixel_offset(p), 1.0, hit.depth, hit.n, hit.h, hit.n));
     bool inside = mirrors(hit) && met.cover > 0.0 && met.inside;
     if (want.x != 0)
-        imageStore(light_st, p, inside ? (met.q / size.xy + 0.5).xyxy : NOTHING);
+        imageStore(light_st, p, inside ? (met.q / size.xy + 0.5).xyxy : nothing());
     if (want.y != 0)
-        imageStore(curvature, p, mirrors(hit) ? principal_curvatures(hit.h).xyxy : NOTHING);
+        imageStore(curvature, p, mirrors(hit) ? principal_curvatures(hit.h).xyxy : nothing());
     if (want.z != 0)
-        imageStore(light_change, p, inside ? vec4(met.ds, met.dt) / size.xxyy : NOTHING);
+        imageStore(light_change, p, inside ? vec4(met.ds, met.dt) / size.xxyy : nothing());
 }

@@ -5,17 +5,7 @@
 
 bool stage_edges_init(struct renderer *r, struct error *error)
 {
-    static const char *const files[] = {"view.glsl",
-                                        "list.glsl",
-                                        "basis.glsl",
-                                        "hit.glsl",
-                                        "border.glsl",
-                                        "edges.glsl",
-                                        "rounded.glsl",
-                                        "groups.glsl",
-                                        "edges_find.comp.glsl",
-                                        NULL};
-    r->edges_find = program_compute("", files, error);
+    r->edges_find = program_create_single(PROGRAM_EDGES_FIND, error);
     return r->edges_find;
 }
 

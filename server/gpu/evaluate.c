@@ -5,9 +5,7 @@
 
 bool stage_evaluate_init(struct renderer *r, struct error *error)
 {
-    static const char *const files[] = {"view.glsl",   "list.glsl",       "seen.glsl",
-                                        "groups.glsl", "doubt.comp.glsl", NULL};
-    r->doubt = program_compute("#define TEXTURES_FREE 0\n", files, error);
+    r->doubt = program_create_single(PROGRAM_DOUBT, error);
     return r->doubt;
 }
 

@@ -5,9 +5,7 @@
 
 bool stage_gather_init(struct renderer *r, struct error *error)
 {
-    static const char *const files[] = {"view.glsl",   "list.glsl",        "seen.glsl",
-                                        "groups.glsl", "gather.comp.glsl", NULL};
-    r->gather = program_compute("#define TEXTURES_FREE 0\n", files, error);
+    r->gather = program_create_single(PROGRAM_GATHER, error);
     glCreateBuffers(1, &r->block_buffer);
     return r->gather;
 }

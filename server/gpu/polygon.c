@@ -8,13 +8,10 @@
 
 static bool compile(struct polygons *p, struct error *error)
 {
-    static const char *const vertex[] = {"view.glsl", "polygon.vert.glsl", NULL};
-    static const char *const planes[] = {"view.glsl", "basis.glsl", "polygon.frag.glsl", NULL};
-    static const char *const edges[] = {"wireframe.frag.glsl", NULL};
     if (!p->fill)
-        p->fill = program_raster("", vertex, planes, error);
+        p->fill = program_create_single(PROGRAM_POLYGONS, error);
     if (p->fill && !p->edges)
-        p->edges = program_raster("", vertex, edges, error);
+        p->edges = program_create_single(PROGRAM_WIREFRAME, error);
     return p->fill && p->edges;
 }
 

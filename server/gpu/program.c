@@ -1,39 +1,13 @@
 #include "server/gpu/program.h"
 
-#include <stdio.h>
-#include <string.h>
-
-#include "server/gpu/shaders.h"
-
-enum { MAX_PARTS = 32 };
-
-static const char *shader_text(const char *name)
+/* The source's k-th shader. */
+static GLuint compile(GLenum type, const struct program_source *source, int k, struct error *error)
 {
-    for (const struct shader_file *file = shader_files; file->name; file++)
-        if (strcmp(file->name, name) == 0)
-            return file->text;
-    return NULL;
-}
-
-static GLuint compile(GLenum type, const char *defines, const char *const *files,
-                      struct error *error)
-{
-    /* #line N F gives errors the number of the file in the list. */
-    const char *parts[MAX_PARTS] = {"#version 450 core\n", defines};
-    int n = 2;
-    char lines[MAX_PARTS][32];
-    for (int i = 0; files[i]; i++) {
-        const char *text = shader_text(files[i]);
-        if (!text || n + 2 > MAX_PARTS) {
-            error_set(error, ERROR_DEVICE, "shader file %s is not built in", files[i]);
-            return 0;
-        }
-        snprintf(lines[i], sizeof lines[i], "#line 1 %d\n", i);
-        parts[n++] = lines[i];
-        parts[n++] = text;
-    }
+    struct shader_text text;
+    if (!shader_text_init(&text, source, k, error))
+        return 0;
     GLuint shader = glCreateShader(type);
-    glShaderSource(shader, n, parts, NULL);
+    glShaderSource(shader, text.n, text.part, NULL);
     glCompileShader(shader);
     GLint ok = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
@@ -41,7 +15,7 @@ static GLuint compile(GLenum type, const char *defines, const char *const *files
         return shader;
     char log[300] = "";
     glGetShaderInfoLog(shader, sizeof log, NULL, log);
-    error_set(error, ERROR_DEVICE, "the driver cannot compile %s: %s", files[0], log);
+    error_set(error, ERROR_DEVICE, "the driver cannot compile %s: %s", source->files[k][0], log);
     glDeleteShader(shader);
     return 0;
 }
@@ -65,23 +39,25 @@ static GLuint link_program(const GLuint *shaders, int n, struct error *error)
     return 0;
 }
 
-GLuint program_compute(const char *defines, const char *const *files, struct error *error)
+GLuint program_create(const struct program_source *source, struct error *error)
 {
-    GLuint shader = compile(GL_COMPUTE_SHADER, defines, files, error);
-    return shader ? link_program(&shader, 1, error) : 0;
-}
-
-GLuint program_raster(const char *defines, const char *const *vertex_files,
-                      const char *const *fragment_files, struct error *error)
-{
+    bool is_raster = source->files[1];
     GLuint shaders[2];
-    shaders[0] = compile(GL_VERTEX_SHADER, defines, vertex_files, error);
+    shaders[0] = compile(is_raster ? GL_VERTEX_SHADER : GL_COMPUTE_SHADER, source, 0, error);
     if (!shaders[0])
         return 0;
-    shaders[1] = compile(GL_FRAGMENT_SHADER, defines, fragment_files, error);
+    if (!is_raster)
+        return link_program(shaders, 1, error);
+    shaders[1] = compile(GL_FRAGMENT_SHADER, source, 1, error);
     if (!shaders[1]) {
         glDeleteShader(shaders[0]);
         return 0;
     }
     return link_program(shaders, 2, error);
+}
+
+GLuint program_create_single(enum single_program program, struct error *error)
+{
+    const struct program_source source = source_of_single(program);
+    return program_create(&source, error);
 }

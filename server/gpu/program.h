@@ -1,15 +1,13 @@
-/* GL programs out of the embedded shader files. */
+/* GL programs out of their sources. GL thread only. */
 #ifndef SHEEN_GPU_PROGRAM_H
 #define SHEEN_GPU_PROGRAM_H
 
 #include <epoxy/gl.h>
 
-#include "server/error.h"
+#include "server/gpu/sources.h"
 
-/* Compiles and links. Each stage is `defines` ("#define A 1\n...") followed by files in order, a
- * NULL at the end. 0 on failure, with the compiler's first line in the error. */
-GLuint program_compute(const char *defines, const char *const *files, struct error *error);
-GLuint program_raster(const char *defines, const char *const *vertex_files,
-                      const char *const *fragment_files, struct error *error);
+/* Compiles and links. 0 on failure, with the compiler's first line in the error. */
+GLuint program_create(const struct program_source *source, struct error *error);
+GLuint program_create_single(enum single_program program, struct error *error);
 
 #endif

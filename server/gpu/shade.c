@@ -20,11 +20,6 @@ struct light_block {
     int32_t want[4];
 };
 
-static bool is_at_infinity(enum line_family family)
-{
-    return family == LINES_ISOPHOTE || family == LINES_ZEBRA || family == LINES_ENVIRONMENT;
-}
-
 /* What a software device makes a program anew for: an image whose texels are others, or which has a
  * side that is a power of two. */
 static uint8_t picture_kind(const struct image *pixels)
@@ -41,7 +36,7 @@ static struct shade_key key_of(const struct frame_request *request, const struct
     const struct pattern *pattern = &light->pattern;
     const struct renderer_image *image = pattern->kind == PATTERN_IMAGE ? pattern->image : NULL;
     return (struct shade_key){.family = (uint8_t)family,
-                              .light = is_at_infinity(family) ? 0 : (uint8_t)light->kind,
+                              .light = shade_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
                               .pattern = (uint8_t)pattern->kind,
                               .soft = pattern->soft > 0,
                               .picture = image ? picture_kind(image->pixels) : 0,
@@ -217,7 +212,7 @@ static void fill_block(struct light_block *block, const struct frame_request *re
     *block = (struct light_block){.is_hindmost = i + 1 == request->n_lights, .is_foremost = i == 0};
     fill_eye(block, request);
     put(vec_sub(get(light->centre), get(request->camera.eye)), block->centre);
-    if (is_at_infinity(request->lines.family))
+    if (shade_is_at_infinity(request->lines.family))
         fill_family(block, request);
     else
         fill_light(block, light);
@@ -251,7 +246,7 @@ static void bind_picture(const struct renderer *r, const struct frame_request *r
     glBindTextureUnit(0, image ? image->texture : r->blank_texture);
     if (!image)
         return;
-    bool sphere = is_at_infinity(request->lines.family) || light->kind == LIGHT_SPHERE;
+    bool sphere = shade_is_at_infinity(request->lines.family) || light->kind == LIGHT_SPHERE;
     bool rectangle = !sphere && light->kind == LIGHT_RECTANGLE;
     glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S,
                         rectangle ? GL_CLAMP_TO_EDGE : GL_REPEAT);

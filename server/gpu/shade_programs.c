@@ -1,7 +1,6 @@
 #include "server/gpu/shade_programs.h"
 
 #include <assert.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "server/gpu/program.h"
@@ -26,31 +25,6 @@ struct shade_program *shade_programs_find(struct shade_programs *programs, struc
     return NULL;
 }
 
-static GLuint compile(struct shade_key key, struct error *error)
-{
-#define COMMON                                                                                     \
-    "view.glsl", "list.glsl", "basis.glsl", "hit.glsl", "coverage.glsl", "lines.glsl",             \
-        "patterns.glsl"
-    static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
-    static const char *const edges[] = {COMMON,        "border.glsl",   "edges.glsl",
-                                        "pieces.glsl", "rounding.glsl", "edges_shade.comp.glsl",
-                                        NULL};
-    static const char *const turns[] = {COMMON,        "border.glsl",           "edges.glsl",
-                                        "pieces.glsl", "turns_shade.comp.glsl", NULL};
-    static const char *const rounded[] = {COMMON,        "border.glsl",  "edges.glsl",
-                                          "pieces.glsl", "rounded.glsl", "rounded_shade.comp.glsl",
-                                          NULL};
-    static const char *const planes[] = {COMMON, "groups.glsl", "shade_planes.comp.glsl", NULL};
-#undef COMMON
-    static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns, rounded, planes};
-    char defines[160];
-    snprintf(defines, sizeof defines,
-             "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n%s%s", key.family, key.light,
-             key.pattern, key.soft ? "#define SOFT\n" : "",
-             key.which == SHADED_UNFILTERED ? "#define UNFILTERED\n" : "");
-    return program_compute(defines, files[key.which], error);
-}
-
 /* A free place, made free if need be. */
 static struct shade_program *make_room(struct shade_programs *programs)
 {
@@ -68,7 +42,8 @@ static struct shade_program *make_room(struct shade_programs *programs)
 struct shade_program *shade_programs_compile(struct shade_programs *programs, struct shade_key key,
                                              struct error *error)
 {
-    GLuint name = compile(key, error);
+    const struct program_source source = source_of_shading(key);
+    GLuint name = program_create(&source, error);
     if (!name)
         return NULL;
     struct shade_program *program = make_room(programs);

@@ -36,6 +36,12 @@ struct shade_key {
     uint8_t which;         /* enum shaded */
 };
 
+/* Families that need no light: one program stands for all kinds. */
+static inline bool shade_is_at_infinity(enum line_family family)
+{
+    return family == LINES_ISOPHOTE || family == LINES_ZEBRA || family == LINES_ENVIRONMENT;
+}
+
 struct shade_program {
     struct shade_key key;
     GLuint name;
