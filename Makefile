@@ -77,7 +77,7 @@ SHADERS := $(sort $(wildcard shaders/*.glsl))
 
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(LIMIT_SRC) server/error.c)
-RENDER_OBJ := $(call obj,$(GPU_SRC)) $(BUILD)/obj/gen/shaders.c.o
+RENDER_OBJ := $(call obj,$(GPU_SRC) protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,server/main.c server/fault.c server/spares.c $(wildcard server/options*.c) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.

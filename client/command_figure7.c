@@ -233,7 +233,9 @@ static int run(const struct options *options)
 static const struct option_row ROWS[] = {
     {"output", 'o', "FILE", "the picture, a PNG of three rows and three columns of panels",
      apply_output},
-    {"size", 0, "WxH", "of one panel, in pixels, from 1x1 to the device's limit (default: 480x360)",
+    {"size", 0, "WxH",
+     "width and height of one panel (default: 480x360)\n"
+     "each {}; a device's own limit may be lower",
      options_apply_size},
     {0},
 };

@@ -9,6 +9,7 @@
 /* Name, meaning (which may have several lines) and, indented below, the example. */
 static void print_rows(const char *title, const struct text_row *rows, const char *prefix)
 {
+    char example[TEXT_EXAMPLE_BYTES];
     printf("%s\n", title);
     for (; rows->name; rows++) {
         const char *meaning = rows->meaning;
@@ -17,7 +18,8 @@ static void print_rows(const char *title, const struct text_row *rows, const cha
             printf("  %-12s %.*s\n", line ? "" : rows->name, length, meaning);
             meaning += length + (meaning[length] == '\n');
         }
-        printf("  %-12s %s%s\n", "", prefix, rows->example);
+        text_row_example(rows, example);
+        printf("  %-12s %s%s\n", "", prefix, example);
     }
     printf("\n");
 }
@@ -25,12 +27,14 @@ static void print_rows(const char *title, const struct text_row *rows, const cha
 static void json_rows(struct json *json, const char *name, const struct text_row *rows,
                       const char *example)
 {
+    char text[TEXT_EXAMPLE_BYTES];
     json_array_begin(json, name);
     for (; rows->name; rows++) {
         json_object_begin(json, NULL);
         json_string(json, "name", rows->name);
         json_string(json, "meaning", rows->meaning);
-        json_string(json, example, rows->example);
+        text_row_example(rows, text);
+        json_string(json, example, text);
         json_object_end(json);
     }
     json_array_end(json);

@@ -10,7 +10,6 @@
 #include "client/status.h"
 #include "client/values.h"
 
-#define MAX_FRAMES 1000000u
 #define IN_FLIGHT 2u    /* the next request waits at the daemon while a frame travels */
 #define LIGHT_SWING 0.1 /* of the light's u edge */
 
@@ -281,15 +280,12 @@ static int run(const struct options *options)
 static bool apply_frames(struct options *options, const char *value, char *why)
 {
     options->given |= GIVEN_FRAMES;
-    return (value_uint32(value, &options->frames) && options->frames > 0 &&
-            options->frames <= MAX_FRAMES) ||
-           options_refuse(why, "must be a whole number from 1 to %u", MAX_FRAMES);
+    return options_whole(&OPTION_RANGES[OPTION_RANGE_FRAMES], value, &options->frames, why);
 }
 
 static bool apply_orbit(struct options *options, const char *value, char *why)
 {
-    return (value_double(value, &options->orbit_deg) && fabs(options->orbit_deg) <= 360) ||
-           options_refuse(why, "must be a number of degrees from -360 to 360");
+    return options_number(&OPTION_RANGES[OPTION_RANGE_ORBIT], value, &options->orbit_deg, why);
 }
 
 static bool apply_light_only(struct options *options, const char *value, char *why)
@@ -307,10 +303,10 @@ static bool check(struct options *options, char *why)
 }
 
 static const struct option_row ROWS[] = {
-    {"frames", 'n', "N", "how many, from 1 to 1000000", apply_frames},
+    {"frames", 'n', "N", "how many, {}", apply_frames},
     {"orbit", 0, "DEG",
      "the camera goes about the target by so many degrees a frame,\n"
-     "from -360 to 360 (default: 1)",
+     "{} (default: 1)",
      apply_orbit},
     {"light-only", 0, NULL,
      "the light swings along its u edge by a tenth of it instead, a full swing\n"

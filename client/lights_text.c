@@ -50,41 +50,54 @@ const struct text_row TEXT_PATTERNS[] = {
     {0},
 };
 
-static const char LIGHT_UNITS[] =
-    "above 0, instead of count, in the model's units; degrees at infinity";
-
 /* Numbers among a pattern's keys. */
 static const struct number_key {
     const char *name;
     size_t member;
-    double low, high;
-    bool above_low; /* low itself is out of range */
+    enum range_name range;
 } NUMBERS[] = {
-    {"count", offsetof(struct sheen_pattern, count), 0, 100000, true},
-    {"period", offsetof(struct sheen_pattern, period), 0, 1e30, true},
-    {"duty", offsetof(struct sheen_pattern, duty), 0, 1, false},
-    {"rotation", offsetof(struct sheen_pattern, rotation_deg), -1e6, 1e6, false},
-    {"offset", offsetof(struct sheen_pattern, offset), -1e6, 1e6, false},
-    {"soft", offsetof(struct sheen_pattern, soft), 0, 1, false},
-    {"opacity", offsetof(struct sheen_pattern, opacity), 0, 1, false},
-    {"width", offsetof(struct sheen_pattern, width), 0, 1, true},
+    {"count", offsetof(struct sheen_pattern, count), RANGE_COUNT},
+    {"period", offsetof(struct sheen_pattern, period), RANGE_PERIOD},
+    {"duty", offsetof(struct sheen_pattern, duty), RANGE_DUTY},
+    {"rotation", offsetof(struct sheen_pattern, rotation_deg), RANGE_ROTATION},
+    {"offset", offsetof(struct sheen_pattern, offset), RANGE_OFFSET},
+    {"soft", offsetof(struct sheen_pattern, soft), RANGE_SOFT},
+    {"opacity", offsetof(struct sheen_pattern, opacity), RANGE_OPACITY},
+    {"width", offsetof(struct sheen_pattern, width), RANGE_WIDTH},
 };
+#define N_NUMBERS (sizeof(NUMBERS) / sizeof(*NUMBERS))
 
 const struct text_row TEXT_PATTERN_KEYS[] = {
-    {"count", "periods across the light (circles: to its nearer edge)",
-     "above 0, at most 100000; default 40"},
-    {"period", "length of one period", LIGHT_UNITS},
-    {"duty", "bright share of a period", "0 to 1; default 0.5"},
-    {"rotation", "of the pattern on the light", "degrees; default 0"},
-    {"offset", "shift of the pattern", "periods; default 0"},
-    {"soft", "share of a period (lines: of the width) that each edge takes", "0 to 1; default 0"},
-    {"opacity", "over the shaded base (--base)", "0 to 1; default 1"},
+    {"count", "periods across the light (circles: to its nearer edge)", "default 40"},
+    {"period", "length of one period, instead of count",
+     "in the model's units; degrees at infinity; default: by count"},
+    {"duty", "bright share of a period", "default 0.5"},
+    {"rotation", "of the pattern on the light", "default 0"},
+    {"offset", "shift of the pattern", "default 0"},
+    {"soft", "share of a period (lines: of the width) that each edge takes", "default 0"},
+    {"opacity", "over the shaded base (--base)", "default 1"},
     {"fg, bg", "colours of bright and dark", "#rrggbb or #rrggbbaa; default white and black"},
-    {"at", "lines: where, with slashes between",
-     "up to 16 places, 0 and 1 at the edges; default 0.5"},
-    {"width", "lines: of each, as a share of the light", "above 0, at most 1; default 0.01"},
+    {"at", "lines: up to 16 places with slashes between, 0 and 1 at the edges", "default 0.5"},
+    {"width", "lines: of each, as a share of the light", "default 0.01"},
     {0},
 };
+
+/* Of the number that a pattern's part is; NULL: it is none. */
+static const struct range *range_of_part(const char *name)
+{
+    for (size_t i = 0; i < N_NUMBERS; i++)
+        if (strcmp(name, NUMBERS[i].name) == 0)
+            return &RANGES[NUMBERS[i].range];
+    return strcmp(name, "at") == 0 ? &RANGES[RANGE_AT] : NULL;
+}
+
+void text_row_example(const struct text_row *row, char text[static TEXT_EXAMPLE_BYTES])
+{
+    const struct range *range = range_of_part(row->name);
+    char wanted[RANGE_TEXT_BYTES];
+    snprintf(text, TEXT_EXAMPLE_BYTES, "%s%s%s", range ? range_text(range, wanted) : "",
+             range ? "; " : "", row->example);
+}
 
 static bool __attribute__((format(printf, 2, 3))) refuse(char *why, const char *format, ...)
 {
@@ -106,11 +119,17 @@ static int find_row(const struct text_row *rows, const char *text, size_t length
 
 static bool parse_at(char *value, struct sheen_pattern *pattern, char *why)
 {
-    char *rest = value, *part;
+    char *rest = value, *part, places[RANGE_TEXT_BYTES], wanted[RANGE_TEXT_BYTES];
     pattern->n_at = 0;
-    while ((part = strsep(&rest, "/")))
-        if (pattern->n_at == SHEEN_MAX_LINES || !value_double(part, &pattern->at[pattern->n_at++]))
-            return refuse(why, "at must be 1 to %d numbers with slashes between", SHEEN_MAX_LINES);
+    while ((part = strsep(&rest, "/"))) {
+        double *at = &pattern->at[pattern->n_at];
+        if (!range_holds(&RANGES[RANGE_LINES], pattern->n_at + 1) || !value_double(part, at) ||
+            !range_holds(&RANGES[RANGE_AT], *at))
+            return refuse(why, "at must be %s numbers with slashes between, each %s",
+                          range_text(&RANGES[RANGE_LINES], places),
+                          range_text(&RANGES[RANGE_AT], wanted));
+        pattern->n_at++;
+    }
     return true;
 }
 
@@ -118,12 +137,10 @@ static bool parse_number(const struct number_key *key, const char *value,
                          struct sheen_pattern *pattern, char *why)
 {
     double *number = (double *)(void *)((char *)pattern + key->member);
-    if (value_double(value, number) && *number <= key->high &&
-        (key->above_low ? *number > key->low : *number >= key->low))
-        return true;
-    return refuse(why, "%s must be a number %s %g %s %g", key->name,
-                  key->above_low ? "above" : "from", key->low,
-                  key->above_low ? "and at most" : "to", key->high);
+    char wanted[RANGE_TEXT_BYTES];
+    return (value_double(value, number) && range_holds(&RANGES[key->range], *number)) ||
+           refuse(why, "%s must be a number %s", key->name,
+                  range_text(&RANGES[key->range], wanted));
 }
 
 static bool parse_part(char *part, struct sheen_pattern *pattern, char *why)
@@ -132,7 +149,7 @@ static bool parse_part(char *part, struct sheen_pattern *pattern, char *why)
     if (!value)
         return refuse(why, "a part has no '='; sheen patterns lists them");
     *value++ = 0;
-    for (size_t i = 0; i < sizeof(NUMBERS) / sizeof(*NUMBERS); i++)
+    for (size_t i = 0; i < N_NUMBERS; i++)
         if (strcmp(part, NUMBERS[i].name) == 0)
             return parse_number(&NUMBERS[i], value, pattern, why);
     if (strcmp(part, "at") == 0)
@@ -212,8 +229,8 @@ bool text_lines(const char *text, struct sheen_lines *value, char why[static LIG
         return true;
     if (family == SHEEN_REFLECTION || family == SHEEN_HIGHLIGHT)
         return refuse(why, "a direction belongs to isophote, zebra and environment");
-    return value_vec3(text + length + 1, value->direction) ||
-           refuse(why, "the direction must be three numbers X,Y,Z");
+    return value_direction(text + length + 1, value->direction) ||
+           refuse(why, "the direction must be three numbers X,Y,Z, not 0,0,0");
 }
 
 bool text_line_eye(const char *text, struct sheen_lines *value, char why[static LIGHTS_WHY_BYTES])
@@ -224,8 +241,8 @@ bool text_line_eye(const char *text, struct sheen_lines *value, char why[static 
         return true;
     }
     value->eye_kind = is_direction ? SHEEN_EYE_DIRECTION : SHEEN_EYE_POINT;
-    return value_vec3(is_direction ? text + 4 : text, value->eye) ||
-           refuse(why, "must be camera, a point X,Y,Z or a direction of view dir:X,Y,Z");
+    return (is_direction ? value_direction(text + 4, value->eye) : value_vec3(text, value->eye)) ||
+           refuse(why, "must be camera, a point X,Y,Z or a direction of view dir:X,Y,Z, not 0,0,0");
 }
 
 static const struct text_row SHOW_KINDS[] = {
@@ -239,10 +256,8 @@ bool text_show(const char *text, struct sheen_show *value, char why[static LIGHT
     if (kind < 0 || (kind != SHEEN_SHOW_DRAFT && text[length]))
         return refuse(why, "must be curvature, gaussian, mean, normal, ptex, draft:X,Y,Z or lines");
     value->kind = (enum sheen_show_kind)kind;
-    const double *d = value->direction;
     return kind != SHEEN_SHOW_DRAFT ||
-           (text[length] && value_vec3(text + length + 1, value->direction) &&
-            (d[0] != 0 || d[1] != 0 || d[2] != 0)) ||
+           (text[length] && value_direction(text + length + 1, value->direction)) ||
            refuse(why, "draft needs the pull direction, as draft:0,0,1; not 0,0,0");
 }
 

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "client/sheen.h"
+#include "protocol/ranges.h"
 
 #define LIGHTS_WHY_BYTES 200
 
@@ -38,9 +39,13 @@ const char *text_show_kind(enum sheen_show_kind kind);
 struct text_row {
     const char *name;
     const char *meaning;
-    const char *example; /* options of sheen render */
+    const char *example; /* options of sheen render; of a part: its default */
 };
 extern const struct text_row TEXT_FAMILIES[], TEXT_LIGHTS[], TEXT_PATTERNS[];
-extern const struct text_row TEXT_PATTERN_KEYS[]; /* example: range and default */
+extern const struct text_row TEXT_PATTERN_KEYS[];
+
+/* The range, where it is the part of a pattern that is a number, and the example. */
+#define TEXT_EXAMPLE_BYTES 240
+void text_row_example(const struct text_row *row, char text[static TEXT_EXAMPLE_BYTES]);
 
 #endif

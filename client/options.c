@@ -5,10 +5,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "client/lights_text.h"
+#include "client/values.h"
+
 #define MAX_OPTIONS 64
 #define FIRST_LONG 256 /* getopt's number of row 0; letters are below */
 #define HELP_COLUMN 30
+#define HELP_BYTES 1024 /* of one option */
 #define DEFAULT_RECONNECT_S 30
+
+const struct range OPTION_RANGES[N_OPTION_RANGES] = {
+    [OPTION_RANGE_FRAMES] = {NULL, "--frames", 1, 1000000, false, ""},
+    [OPTION_RANGE_ORBIT] = {NULL, "--orbit", -360, 360, false, "degrees"},
+    [OPTION_RANGE_RECONNECT] = {NULL, "--reconnect", 0, 86400, false, "seconds"},
+};
 
 bool options_refuse(char *why, const char *format, ...)
 {
@@ -19,6 +29,20 @@ bool options_refuse(char *why, const char *format, ...)
     return false;
 }
 
+bool options_number(const struct range *range, const char *value, double *number, char *why)
+{
+    char wanted[RANGE_TEXT_BYTES];
+    return (value_double(value, number) && range_holds(range, *number)) ||
+           options_refuse(why, "must be a number %s", range_text(range, wanted));
+}
+
+bool options_whole(const struct range *range, const char *value, uint32_t *number, char *why)
+{
+    char wanted[RANGE_TEXT_BYTES];
+    return (value_uint32(value, number) && range_holds(range, *number)) ||
+           options_refuse(why, "must be a whole number %s", range_text(range, wanted));
+}
+
 bool options_check_light(struct options *options, char *why)
 {
     unsigned whole = GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V;
@@ -27,6 +51,16 @@ bool options_check_light(struct options *options, char *why)
         return options_refuse(why, "--light-center, --light-u and --light-v come together");
     options->request.lights[options->request.n_lights - 1].is_placed = light != 0;
     return true;
+}
+
+/* The range may be given before its kind. */
+static bool check_show(const struct sheen_show *show, char *why)
+{
+    char wanted[RANGE_TEXT_BYTES];
+    const struct range *range = &RANGES[show->kind == SHEEN_SHOW_DRAFT ? RANGE_DRAFT : RANGE_SHOW];
+    return show->range == 0 || range_holds(range, show->range) ||
+           options_refuse(why, "--show-range '%.9g': must be a number %s for --show %s",
+                          show->range, range_text(range, wanted), text_show_kind(show->kind));
 }
 
 bool options_check_scene(struct options *options, char *why)
@@ -42,7 +76,7 @@ bool options_check_scene(struct options *options, char *why)
                                                  : SHEEN_PROJECTION_PERSPECTIVE;
     options->request.camera.auto_view = camera == 0;
     options->request.camera.auto_up = camera == 0 && !(options->given & GIVEN_UP);
-    return options_check_light(options, why);
+    return check_show(&options->request.show, why) && options_check_light(options, why);
 }
 
 /* All rows of a command in one list. */
@@ -150,13 +184,51 @@ enum options_result options_parse(const struct command *command, int argc, char 
     return !command->check || command->check(options, why) ? OPTIONS_RUN : OPTIONS_WRONG;
 }
 
+static bool names_option(const struct range *range, const char *name)
+{
+    const char *at = range->option ? strstr(range->option, name) : NULL;
+    return at && strncmp(at - 2, "--", 2) == 0 && strchr(", ", at[strlen(name)]);
+}
+
+/* The range of the option that is the `n`-th of it; NULL: there are fewer. */
+static const struct range *range_of_option(const char *name, size_t n)
+{
+    for (size_t i = 0; i < N_RANGES + N_OPTION_RANGES; i++) {
+        const struct range *range = i < N_RANGES ? &RANGES[i] : &OPTION_RANGES[i - N_RANGES];
+        if (names_option(range, name) && n-- == 0)
+            return range;
+    }
+    return NULL;
+}
+
+/* The row's help with its ranges in place. */
+static void fill_help(const struct option_row *row, char help[static HELP_BYTES])
+{
+    char text[RANGE_TEXT_BYTES];
+    size_t used = 0, n = 0;
+    for (const char *from = row->help; *from && used + 1 < HELP_BYTES;) {
+        const struct range *range =
+            strncmp(from, "{}", 2) == 0 ? range_of_option(row->name, n) : NULL;
+        if (range) {
+            used += (size_t)snprintf(help + used, HELP_BYTES - used, "%s", range_text(range, text));
+            from += 2;
+            n++;
+        } else {
+            help[used++] = *from++;
+        }
+    }
+    help[used < HELP_BYTES ? used : HELP_BYTES - 1] = 0;
+}
+
 static void help_row(const struct option_row *row, FILE *out)
 {
+    char help[HELP_BYTES];
+    fill_help(row, help);
     int column = row->letter ? fprintf(out, "  -%c, --%s", row->letter, row->name)
                              : fprintf(out, "      --%s", row->name);
     if (row->argument)
         column += fprintf(out, " %s", row->argument);
-    for (const char *line = row->help; *line;) {
+    for (const char *line = help; *line;) {
         int length = (int)strcspn(line, "\n");
         if (column >= HELP_COLUMN) {
             fputc('\n', out);

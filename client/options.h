@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #include "client/sheen.h"
+#include "protocol/ranges.h"
 
 #define OPTIONS_WHY_BYTES 240
 
@@ -53,7 +54,9 @@ struct option_row {
     const char *name;
     char letter;          /* short form, 0: none */
     const char *argument; /* what --help calls the value; NULL: a flag */
-    const char *help;     /* meaning, range, unit, default; '\n' begins a new line */
+    /* Meaning, range, unit, default. '\n' begins a new line; {} stands for the next range of
+     * RANGES and OPTION_RANGES that names the option. */
+    const char *help;
     bool (*apply)(struct options *options, const char *value, char *why);
 };
 
@@ -68,6 +71,11 @@ struct command {
     bool (*check)(struct options *options, char *why);
     int (*run)(const struct options *options); /* returns the exit code */
 };
+
+/* Ranges of what is not in a request. */
+enum option_range_name { OPTION_RANGE_FRAMES, OPTION_RANGE_ORBIT, OPTION_RANGE_RECONNECT };
+#define N_OPTION_RANGES 3
+extern const struct range OPTION_RANGES[N_OPTION_RANGES];
 
 enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };
 
@@ -94,6 +102,10 @@ bool options_check_scene(struct options *options, char *why);
 
 /* Ends the options of one light: its place is given whole or not at all. */
 bool options_check_light(struct options *options, char *why);
+
+/* Reads a number of this range, or a whole one; false says in `why` what it must be. */
+bool options_number(const struct range *range, const char *value, double *number, char *why);
+bool options_whole(const struct range *range, const char *value, uint32_t *number, char *why);
 
 /* Writes one formatted reason and returns false. */
 bool options_refuse(char *why, const char *format, ...) __attribute__((format(printf, 2, 3)));

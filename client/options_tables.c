@@ -5,13 +5,14 @@
 #include "client/options.h"
 #include "client/values.h"
 
-#define MAX_RECONNECT_S 86400u
-
 static bool apply_vec3(struct options *options, const char *value, double *target, unsigned given,
                        char *why)
 {
+    char wanted[RANGE_TEXT_BYTES];
     options->given |= given;
-    return value_vec3(value, target) || options_refuse(why, "must be three numbers X,Y,Z");
+    return value_vec3(value, target) ||
+           options_refuse(why, "must be three numbers X,Y,Z, each %s",
+                          range_text(&RANGES[RANGE_COORDINATE], wanted));
 }
 
 static bool apply_server(struct options *options, const char *value, char *why)
@@ -81,16 +82,16 @@ static bool apply_quiet(struct options *options, const char *value, char *why)
 
 static bool apply_reconnect(struct options *options, const char *value, char *why)
 {
-    return (value_uint32(value, &options->reconnect_s) &&
-            options->reconnect_s <= MAX_RECONNECT_S) ||
-           options_refuse(why, "must be whole seconds from 0 to %u", MAX_RECONNECT_S);
+    return options_whole(&OPTION_RANGES[OPTION_RANGE_RECONNECT], value, &options->reconnect_s, why);
 }
 
 bool options_apply_size(struct options *options, const char *value, char *why)
 {
+    char wanted[RANGE_TEXT_BYTES];
     options->given |= GIVEN_SIZE;
     return value_size(value, &options->request.width_px, &options->request.height_px) ||
-           options_refuse(why, "must be WIDTHxHEIGHT in whole pixels, 1 or more");
+           options_refuse(why, "must be WIDTHxHEIGHT, each %s",
+                          range_text(&RANGES[RANGE_SIDE], wanted));
 }
 
 static bool apply_eye(struct options *options, const char *value, char *why)
@@ -105,23 +106,22 @@ static bool apply_target(struct options *options, const char *value, char *why)
 
 static bool apply_up(struct options *options, const char *value, char *why)
 {
-    return apply_vec3(options, value, options->request.camera.up, GIVEN_UP, why);
+    double *up = options->request.camera.up;
+    return apply_vec3(options, value, up, GIVEN_UP, why) &&
+           (!range_is_zero(up) || options_refuse(why, "must not be 0,0,0"));
 }
 
 static bool apply_fov(struct options *options, const char *value, char *why)
 {
-    double *fov = &options->request.camera.fov_deg;
     options->given |= GIVEN_FOV;
-    return (value_double(value, fov) && *fov > 0 && *fov < 180) ||
-           options_refuse(why, "must be a number of degrees above 0 and below 180");
+    return options_number(&RANGES[RANGE_FOV], value, &options->request.camera.fov_deg, why);
 }
 
 static bool apply_ortho(struct options *options, const char *value, char *why)
 {
-    double *height = &options->request.camera.ortho_height;
     options->given |= GIVEN_ORTHO;
-    return (value_double(value, height) && *height > 0) ||
-           options_refuse(why, "must be a number above 0 in the model's units");
+    return options_number(&RANGES[RANGE_ORTHO_HEIGHT], value, &options->request.camera.ortho_height,
+                          why);
 }
 
 /* The light that options speak of: the latest. */
@@ -133,8 +133,8 @@ static struct sheen_light *latest(struct options *options)
 static bool apply_light(struct options *options, const char *value, char *why)
 {
     if (options->given & GIVEN_LIGHT) {
-        if (options->request.n_lights == SHEEN_MAX_LIGHTS)
-            return options_refuse(why, "there may be %d lights", SHEEN_MAX_LIGHTS);
+        if (!range_holds(&RANGES[RANGE_LIGHTS], options->request.n_lights + 1))
+            return options_refuse(why, "there may be %g lights", RANGES[RANGE_LIGHTS].greatest);
         if (!options_check_light(options, why))
             return false;
         options->request.n_lights++;
@@ -151,14 +151,23 @@ static bool apply_light_center(struct options *options, const char *value, char 
     return apply_vec3(options, value, latest(options)->centre, GIVEN_LIGHT_CENTER, why);
 }
 
+static bool apply_edge(struct options *options, const char *value, double *edge, unsigned given,
+                       char *why)
+{
+    char wanted[RANGE_TEXT_BYTES];
+    return apply_vec3(options, value, edge, given, why) &&
+           (range_holds(&RANGES[RANGE_EDGE], range_length(edge)) ||
+            options_refuse(why, "must have a length %s", range_text(&RANGES[RANGE_EDGE], wanted)));
+}
+
 static bool apply_light_u(struct options *options, const char *value, char *why)
 {
-    return apply_vec3(options, value, latest(options)->u, GIVEN_LIGHT_U, why);
+    return apply_edge(options, value, latest(options)->u, GIVEN_LIGHT_U, why);
 }
 
 static bool apply_light_v(struct options *options, const char *value, char *why)
 {
-    return apply_vec3(options, value, latest(options)->v, GIVEN_LIGHT_V, why);
+    return apply_edge(options, value, latest(options)->v, GIVEN_LIGHT_V, why);
 }
 
 static bool apply_pattern(struct options *options, const char *value, char *why)
@@ -212,8 +221,10 @@ static bool apply_empty(struct options *options, const char *value, char *why)
 
 static bool apply_surface(struct options *options, const char *value, char *why)
 {
+    char wanted[RANGE_TEXT_BYTES];
     return value_surface(value, &options->request.surface, &options->request.surface_level) ||
-           options_refuse(why, "must be exact, polygon:LEVEL or wireframe:LEVEL, LEVEL 0 to 6");
+           options_refuse(why, "must be exact, polygon:LEVEL or wireframe:LEVEL, LEVEL %s",
+                          range_text(&RANGES[RANGE_LEVEL], wanted));
 }
 
 static bool apply_show(struct options *options, const char *value, char *why)
@@ -224,9 +235,7 @@ static bool apply_show(struct options *options, const char *value, char *why)
 
 static bool apply_show_range(struct options *options, const char *value, char *why)
 {
-    double *range = &options->request.show.range;
-    return (value_double(value, range) && *range > 0) ||
-           options_refuse(why, "must be a number above 0");
+    return options_number(&RANGES[RANGE_SHOW], value, &options->request.show.range, why);
 }
 
 static bool apply_class(struct options *options, const char *value, char *why)
@@ -238,9 +247,7 @@ static bool apply_class(struct options *options, const char *value, char *why)
 
 static bool apply_deadline(struct options *options, const char *value, char *why)
 {
-    uint32_t *deadline_ms = &options->request.deadline_ms;
-    return (value_uint32(value, deadline_ms) && *deadline_ms > 0 && *deadline_ms <= 3600000) ||
-           options_refuse(why, "must be milliseconds from 1 to 3600000");
+    return options_whole(&RANGES[RANGE_DEADLINE], value, &options->request.deadline_ms, why);
 }
 
 const struct option_row OPTIONS_SCHEDULE[] = {
@@ -250,8 +257,8 @@ const struct option_row OPTIONS_SCHEDULE[] = {
      "stream: interactive)",
      apply_class},
     {"deadline", 0, "MS",
-     "of no use later than this after the daemon has read the request, 1 to\n"
-     "3600000 milliseconds (default: none)",
+     "of no use later than this after the daemon has read the request,\n"
+     "{} (default: none)",
      apply_deadline},
     {0},
 };
@@ -288,8 +295,8 @@ const struct option_row OPTIONS_RECONNECT[] = {
     {"reconnect", 0, "SECONDS",
      "how long to go on connecting when the server of --server shuts down or breaks\n"
      "the connection: what has no answer is asked again of the one that takes its\n"
-     "place, 0 to 86400 (default: 30; 0: give up at once). A server that was never\n"
-     "there, and a private daemon, are not waited for",
+     "place, {} (default: 30; 0: give up at once). A server that\n"
+     "was never there, and a private daemon, are not waited for",
      apply_reconnect},
     {0},
 };
@@ -301,7 +308,10 @@ const struct option_row OPTIONS_OUTPUT[] = {
 };
 
 const struct option_row OPTIONS_SIZE[] = {
-    {"size", 0, "WxH", "pixels, from 1x1 to the device's limit (default: 1280x720)",
+    {"size", 0, "WxH",
+     "width and height of the picture (default: 1280x720)\n"
+     "each {} (JPEG: {}); a device's\n"
+     "own limit may be lower",
      options_apply_size},
     {0},
 };
@@ -318,12 +328,13 @@ const struct option_row OPTIONS_SCENE[] = {
      "door that stands, say it; the camera then frames the model from above that)",
      apply_up},
     {"fov", 0, "DEG",
-     "vertical field of view, above 0 and below 180 degrees (default: 35);\n"
+     "vertical field of view, {} (default: 35);\n"
      "without --eye and --target it zooms from where the default camera stands",
      apply_fov},
     {"ortho", 0, "HEIGHT",
-     "orthographic: units from top to bottom of the picture, above 0; without\n"
-     "--eye and --target it looks at the model as the default camera does",
+     "orthographic: units from top to bottom of the picture,\n"
+     "{}; without --eye and --target it looks at the\n"
+     "model as the default camera does",
      apply_ortho},
     {"lines", 0, "FAMILY",
      "reflection, highlight, isophote, zebra or environment, the last three with\n"
@@ -339,9 +350,14 @@ const struct option_row OPTIONS_SCENE[] = {
      "or round the model, above it in the direction of the camera's up, and\n"
      "turned with the camera)",
      apply_light_center},
-    {"light-u", 0, "X,Y,Z", "its edge that stripes are counted along; a tunnel's radius",
+    {"light-u", 0, "X,Y,Z",
+     "its edge that stripes are counted along; a tunnel's radius; its length is\n"
+     "{}",
      apply_light_u},
-    {"light-v", 0, "X,Y,Z", "its other edge; the axis of a tunnel or sphere", apply_light_v},
+    {"light-v", 0, "X,Y,Z",
+     "its other edge, not along --light-u; the axis of a tunnel or sphere; its\n"
+     "length is {}",
+     apply_light_v},
     {"pattern", 0, "PATTERN",
      "of the latest light: stripes, lattice, circles, lines, rainbow or distance,\n"
      "then :count=40,duty=0.5,... as far as wanted, or image:FILE (PNG,\n"
@@ -371,8 +387,8 @@ const struct option_row OPTIONS_SCENE[] = {
 const struct option_row OPTIONS_SURFACE[] = {
     {"surface", 0, "KIND",
      "exact (default): the limit surface; for comparison polygon:LEVEL, the cage\n"
-     "subdivided LEVEL times (0 to 6), normals interpolated as a graphics card\n"
-     "does, or wireframe:LEVEL, the edges of those polygons",
+     "subdivided LEVEL times ({}), normals interpolated as a graphics\n"
+     "card does, or wireframe:LEVEL, the edges of those polygons",
      apply_surface},
     {"show", 0, "KIND",
      "false colour with a legend: curvature (the principal curvature of larger\n"
@@ -381,8 +397,8 @@ const struct option_row OPTIONS_SURFACE[] = {
      apply_show},
     {"show-range", 0, "VALUE",
      "where the colours of --show end, both ways: 1/unit, gaussian 1/unit^2,\n"
-     "above 0 (default: 98 of 100 pixels are inside), draft in degrees, at most\n"
-     "90 (default: 3)",
+     "{} (default: 98 of 100 pixels are inside); draft\n"
+     "{} (default: 3)",
      apply_show_range},
     {0},
 };

@@ -214,7 +214,7 @@ struct sheen_camera {
     bool auto_view, auto_up;  /* eye and target, or up, are the daemon's, which frames the model */
     double eye[3], target[3]; /* not the same point */
     double up[3];             /* not along the line of sight; need not be perpendicular */
-    double fov_deg;           /* perspective: vertical, (0, 180) */
+    double fov_deg;           /* perspective: vertical, 1e-6 to 179 */
     double ortho_height;      /* orthographic: units from top to bottom, > 0 */
 };
 

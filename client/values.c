@@ -1,14 +1,13 @@
 #include "client/values.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-#include "protocol/limits.h"
+#include "protocol/ranges.h"
 
 bool value_double(const char *text, double *value)
 {
@@ -16,9 +15,8 @@ bool value_double(const char *text, double *value)
     if (strspn(text, "+-.0123456789eE") != strlen(text) || *text == 0)
         return false;
     char *end;
-    errno = 0;
     *value = strtod(text, &end);
-    return *end == 0 && end != text && isfinite(*value) && !(errno == ERANGE && *value != 0);
+    return *end == 0 && end != text && isfinite(*value);
 }
 
 bool value_uint32(const char *text, uint32_t *value)
@@ -54,17 +52,23 @@ bool value_vec3(const char *text, double value[static 3])
     for (int i = 0; i < 3; i++) {
         bool has_comma = strchr(text, ',') != NULL;
         if (has_comma != (i < 2) || !next_part(&text, ',', part, sizeof(part)) ||
-            !value_double(part, &value[i]))
+            !value_double(part, &value[i]) || !range_holds(&RANGES[RANGE_COORDINATE], value[i]))
             return false;
     }
     return true;
+}
+
+bool value_direction(const char *text, double value[static 3])
+{
+    return value_vec3(text, value) && !range_is_zero(value);
 }
 
 bool value_size(const char *text, uint32_t *width, uint32_t *height)
 {
     char part[16];
     return strchr(text, 'x') && next_part(&text, 'x', part, sizeof(part)) &&
-           value_uint32(part, width) && value_uint32(text, height) && *width > 0 && *height > 0;
+           value_uint32(part, width) && value_uint32(text, height) &&
+           range_holds(&RANGES[RANGE_SIDE], *width) && range_holds(&RANGES[RANGE_SIDE], *height);
 }
 
 bool value_colour(const char *text, float value[static 4])
@@ -131,7 +135,7 @@ bool value_surface(const char *text, enum sheen_surface *surface, uint32_t *leve
         if (strcmp(kind, kinds[k]) == 0)
             *surface = (enum sheen_surface)k;
     return *surface != SHEEN_SURFACE_EXACT && value_uint32(text, level) &&
-           *level <= PROTOCOL_MAX_SURFACE_LEVEL;
+           range_holds(&RANGES[RANGE_LEVEL], *level);
 }
 
 bool value_format(const char *path, enum sheen_format *format)

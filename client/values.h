@@ -1,4 +1,5 @@
-/* The values of command-line options: text to numbers, strictly (the whole string, finite).
+/* The values of command-line options: text to numbers, strictly (the whole string, finite), and
+ * within the ranges of protocol/ranges.h.
  *
  * Every function returns false for text that is not such a value and then leaves *value undefined.
  * Pure, any thread. */
@@ -12,14 +13,15 @@
 
 bool value_double(const char *text, double *value);                   /* 1, -0.5, 1e3 */
 bool value_uint32(const char *text, uint32_t *value);                 /* decimal digits */
-bool value_vec3(const char *text, double value[static 3]);            /* X,Y,Z */
-bool value_size(const char *text, uint32_t *width, uint32_t *height); /* 1280x720, not 0 */
+bool value_vec3(const char *text, double value[static 3]);            /* X,Y,Z: coordinates */
+bool value_direction(const char *text, double value[static 3]);       /* the same, not zero */
+bool value_size(const char *text, uint32_t *width, uint32_t *height); /* 1280x720 */
 bool value_colour(const char *text, float value[static 4]);           /* #rrggbb or #rrggbbaa */
 bool value_planes(const char *text, uint32_t *planes); /* P,N,ptex,light,k,dlight,coverage */
 /* The name of a plane beside colour, one bit of those; NULL when `plane` is none. */
 const char *value_plane_name(uint32_t plane);
 
-/* exact, polygon:LEVEL or wireframe:LEVEL, LEVEL 0 to 6. */
+/* exact, polygon:LEVEL or wireframe:LEVEL. */
 bool value_surface(const char *text, enum sheen_surface *surface, uint32_t *level);
 
 /* The format of a file by its ending, in any case: .png .exr .jpg .jpeg .tif .tiff. */

@@ -5,6 +5,7 @@
 #include <zstd.h>
 
 #include "protocol/limits.h"
+#include "protocol/ranges.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "planes travel as they lie in memory: sheen runs on little-endian machines"
@@ -48,8 +49,8 @@ static size_t strips_of_plane(const struct codec_layout *layout, unsigned plane)
 bool codec_layout_init(struct codec_layout *layout, uint32_t width_px, uint32_t height_px,
                        uint32_t planes)
 {
-    if (width_px == 0 || width_px > PROTOCOL_MAX_SIZE_PX || height_px == 0 ||
-        height_px > PROTOCOL_MAX_SIZE_PX || planes == 0 || planes & ~CODEC_ALL_PLANES)
+    if (!range_holds(&RANGES[RANGE_SIDE], width_px) ||
+        !range_holds(&RANGES[RANGE_SIDE], height_px) || planes == 0 || planes & ~CODEC_ALL_PLANES)
         return false;
     *layout = (struct codec_layout){.width_px = width_px, .height_px = height_px, .planes = planes};
     /* Sizes are below 2^16 and a pixel's planes below 2^6 bytes: 64 bits cannot overflow. */

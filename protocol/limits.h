@@ -26,12 +26,11 @@
 #define PROTOCOL_MAX_IN_FLIGHT 4u
 #define PROTOCOL_MAX_CREDITS 64u
 
-/* Ranges of numbers in requests. */
+/* Ends of ranges that code besides the checks is built by; ranges.h has all of them. */
 #define PROTOCOL_MAX_SURFACE_LEVEL 6
 #define PROTOCOL_MAX_COORDINATE 1e30 /* absolute; squares stay finite in double */
-#define PROTOCOL_MAX_PATTERN_COUNT 100000.0
-#define PROTOCOL_MAX_DEADLINE_MS 3600000u
-#define PROTOCOL_MAX_PATTERN_TURNS 1e6 /* absolute: degrees of rotation, periods of offset */
+#define PROTOCOL_MAX_LIGHTS 8
+#define PROTOCOL_MAX_LINES 16 /* of one pattern */
 
 /* Strips of an ENCODING_ZSTD frame hold this many bytes of a plane, or one row if that is more. */
 #define PROTOCOL_STRIP_BYTES (512u * 1024)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "protocol/codec.h"
+#include "protocol/ranges.h"
 
 static bool __attribute__((format(printf, 2, 3))) refuse(char *text, const char *format, ...)
 {
@@ -57,26 +58,31 @@ static bool check_text(const char *value, const char *field, char *text)
            refuse(text, "%s is not UTF-8 text without control characters", field);
 }
 
+/* "deadline_ms (--deadline) is 0; it must be from 1 to 3600000 milliseconds". */
+static bool check_named(double value, const struct range *range, const char *field, char *text)
+{
+    char wanted[RANGE_TEXT_BYTES];
+    const char *option = range->option;
+    return range_holds(range, value) ||
+           refuse(text, "%s%s%s%s is %.9g; it must be %s", field, option ? " (" : "",
+                  option ? option : "", option ? ")" : "", value, range_text(range, wanted));
+}
+
+static bool check_number(double value, enum range_name name, char *text)
+{
+    return check_named(value, &RANGES[name], RANGES[name].field, text);
+}
+
 static bool check_vec3(const sheen_Vec3 *v, const char *field, char *text)
 {
     const double value[3] = {v->x, v->y, v->z};
-    for (int i = 0; i < 3; i++)
-        if (!(fabs(value[i]) <= PROTOCOL_MAX_COORDINATE))
-            return refuse(text, "%s.%c is %g; it must be a number from -%g to %g", field, "xyz"[i],
-                          value[i], PROTOCOL_MAX_COORDINATE, PROTOCOL_MAX_COORDINATE);
+    char name[64];
+    for (int i = 0; i < 3; i++) {
+        snprintf(name, sizeof name, "%s.%c", field, "xyz"[i]);
+        if (!check_named(value[i], &RANGES[RANGE_COORDINATE], name, text))
+            return false;
+    }
     return true;
-}
-
-static bool check_range(double value, double low, double high, const char *field, char *text)
-{
-    return (value >= low && value <= high) ||
-           refuse(text, "%s is %g; it must be from %g to %g", field, value, low, high);
-}
-
-static bool check_positive(double value, double high, const char *field, char *text)
-{
-    return (value > 0 && value <= high) ||
-           refuse(text, "%s is %g; it must be above 0 and at most %g", field, value, high);
 }
 
 static bool check_enum(unsigned value, unsigned last, const char *field, char *text)
@@ -87,10 +93,12 @@ static bool check_enum(unsigned value, unsigned last, const char *field, char *t
 static bool check_colour(const sheen_Colour *colour, const char *field, char *text)
 {
     const float value[4] = {colour->r, colour->g, colour->b, colour->a};
-    for (int i = 0; i < 4; i++)
-        if (!(value[i] >= 0 && value[i] <= 1))
-            return refuse(text, "%s.%c is %g; it must be from 0 to 1", field, "rgba"[i],
-                          (double)value[i]);
+    char name[64];
+    for (int i = 0; i < 4; i++) {
+        snprintf(name, sizeof name, "%s.%c", field, "rgba"[i]);
+        if (!check_named((double)value[i], &RANGES[RANGE_COLOUR], name, text))
+            return false;
+    }
     return true;
 }
 
@@ -103,19 +111,16 @@ static bool check_colours(const sheen_Colour *miss, const sheen_Colour *empty,
            (!base || check_colour(base, "base", text));
 }
 
-/* |a x b|^2 <= 1e-24 |a|^2 |b|^2 after scaling both to size one, so that nothing overflows. Zero
- * vectors are parallel to everything. */
+static bool is_zero(const sheen_Vec3 *v)
+{
+    const double value[3] = {v->x, v->y, v->z};
+    return range_is_zero(value);
+}
+
 static bool is_parallel(const sheen_Vec3 *a, const sheen_Vec3 *b)
 {
-    double scale_a = fmax(fabs(a->x), fmax(fabs(a->y), fabs(a->z)));
-    double scale_b = fmax(fabs(b->x), fmax(fabs(b->y), fabs(b->z)));
-    if (!(scale_a > 0 && scale_b > 0))
-        return true;
-    const double p[3] = {a->x / scale_a, a->y / scale_a, a->z / scale_a};
-    const double q[3] = {b->x / scale_b, b->y / scale_b, b->z / scale_b};
-    const double c[3] = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
-                         p[0] * q[1] - p[1] * q[0]};
-    return c[0] * c[0] + c[1] * c[1] + c[2] * c[2] <= 1e-24;
+    const double p[3] = {a->x, a->y, a->z}, q[3] = {b->x, b->y, b->z};
+    return range_is_parallel(p, q);
 }
 
 /* Eye, target and up, as far as they are there. */
@@ -129,11 +134,11 @@ static bool check_view(const sheen_Camera *camera, char *text)
         return refuse(text, "camera.eye and camera.target come together");
     const sheen_Vec3 view = {camera->target.x - camera->eye.x, camera->target.y - camera->eye.y,
                              camera->target.z - camera->eye.z};
-    if (camera->has_eye && view.x == 0 && view.y == 0 && view.z == 0)
+    if (camera->has_eye && is_zero(&view))
         return refuse(text, "camera.eye and camera.target are the same point");
     static const sheen_Vec3 y_axis = {0, 1, 0};
-    bool zero_up = camera->up.x == 0 && camera->up.y == 0 && camera->up.z == 0;
-    if (camera->has_up && (zero_up || (camera->has_eye && is_parallel(&view, &camera->up))))
+    if (camera->has_up &&
+        (is_zero(&camera->up) || (camera->has_eye && is_parallel(&view, &camera->up))))
         return refuse(text,
                       "camera.up (--up) is zero or along the line of sight: give another, as --up "
                       "%s",
@@ -147,11 +152,9 @@ static bool check_camera(const sheen_Camera *camera, char *text)
         return false;
     if (camera->has_fov_deg && camera->has_ortho_height)
         return refuse(text, "camera.fov_deg and camera.ortho_height exclude each other");
-    if (camera->has_ortho_height)
-        return check_positive(camera->ortho_height, PROTOCOL_MAX_COORDINATE, "camera.ortho_height",
-                              text);
-    return !camera->has_fov_deg || (camera->fov_deg > 0 && camera->fov_deg < 180) ||
-           refuse(text, "camera.fov_deg is %g; it must be above 0 and below 180", camera->fov_deg);
+    return (!camera->has_ortho_height ||
+            check_number(camera->ortho_height, RANGE_ORTHO_HEIGHT, text)) &&
+           (!camera->has_fov_deg || check_number(camera->fov_deg, RANGE_FOV, text));
 }
 
 /* A frame says all of the camera that made it. */
@@ -165,18 +168,24 @@ static bool check_whole_camera(const sheen_Camera *camera, char *text)
 
 static bool check_period(const sheen_Pattern *pattern, char *text)
 {
-    const double turns = PROTOCOL_MAX_PATTERN_TURNS;
-    return (!pattern->has_count ||
-            check_positive(pattern->count, PROTOCOL_MAX_PATTERN_COUNT, "pattern.count", text)) &&
-           (!pattern->has_period ||
-            check_positive(pattern->period, PROTOCOL_MAX_COORDINATE, "pattern.period", text)) &&
-           (!pattern->has_duty || check_range(pattern->duty, 0, 1, "pattern.duty", text)) &&
-           (!pattern->has_rotation_deg ||
-            check_range(pattern->rotation_deg, -turns, turns, "pattern.rotation_deg", text)) &&
-           (!pattern->has_offset ||
-            check_range(pattern->offset, -turns, turns, "pattern.offset", text)) &&
-           (!pattern->has_soft || check_range(pattern->soft, 0, 1, "pattern.soft", text)) &&
-           (!pattern->has_opacity || check_range(pattern->opacity, 0, 1, "pattern.opacity", text));
+    const struct {
+        bool is_there;
+        double value;
+        enum range_name range;
+    } numbers[] = {
+        {pattern->has_count, pattern->count, RANGE_COUNT},
+        {pattern->has_period, pattern->period, RANGE_PERIOD},
+        {pattern->has_duty, pattern->duty, RANGE_DUTY},
+        {pattern->has_rotation_deg, pattern->rotation_deg, RANGE_ROTATION},
+        {pattern->has_offset, pattern->offset, RANGE_OFFSET},
+        {pattern->has_soft, pattern->soft, RANGE_SOFT},
+        {pattern->has_opacity, pattern->opacity, RANGE_OPACITY},
+        {pattern->has_width, pattern->width, RANGE_WIDTH},
+    };
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (numbers[i].is_there && !check_number(numbers[i].value, numbers[i].range, text))
+            return false;
+    return true;
 }
 
 static bool check_single_lines(const sheen_Pattern *pattern, char *text)
@@ -186,10 +195,9 @@ static bool check_single_lines(const sheen_Pattern *pattern, char *text)
         return refuse(text, "pattern.at: the places of 1 to 16 lines belong to a lines pattern and "
                             "to no other");
     for (size_t i = 0; i < pattern->at_count; i++)
-        if (!check_range(pattern->at[i], -PROTOCOL_MAX_PATTERN_TURNS, PROTOCOL_MAX_PATTERN_TURNS,
-                         "pattern.at", text))
+        if (!check_number(pattern->at[i], RANGE_AT, text))
             return false;
-    return !pattern->has_width || check_positive(pattern->width, 1, "pattern.width", text);
+    return true;
 }
 
 static bool check_pattern(const sheen_Pattern *pattern, char *text)
@@ -216,6 +224,15 @@ bool message_check_model_query(const sheen_ModelQuery *query, char text[static M
     return (*query->file || refuse(text, "file is empty")) && check_text(query->file, "file", text);
 }
 
+static bool check_edge(const sheen_Vec3 *edge, const char *field, char *text)
+{
+    const double value[3] = {edge->x, edge->y, edge->z};
+    char name[64];
+    snprintf(name, sizeof name, "the length of %s", field);
+    return check_vec3(edge, field, text) &&
+           check_named(range_length(value), &RANGES[RANGE_EDGE], name, text);
+}
+
 static bool check_light(const sheen_Light *light, char *text)
 {
     if (!check_enum(light->kind, sheen_LightKind_LIGHT_SPHERE, "light.kind", text) ||
@@ -232,18 +249,18 @@ static bool check_light(const sheen_Light *light, char *text)
     if (!light->has_centre)
         return true;
     if (!check_vec3(&light->centre, "light.centre", text) ||
-        !check_vec3(&light->u, "light.u", text) || !check_vec3(&light->v, "light.v", text))
+        !check_edge(&light->u, "light.u", text) || !check_edge(&light->v, "light.v", text))
         return false;
     return !is_parallel(&light->u, &light->v) ||
-           refuse(text, "light.u and light.v (--light-u, --light-v) span no light: one is zero or "
-                        "both are parallel");
+           refuse(text, "light.u and light.v (--light-u, --light-v) span no light: they are "
+                        "parallel");
 }
 
 static bool check_direction(const sheen_Vec3 *v, const char *field, char *text)
 {
     if (!check_vec3(v, field, text))
         return false;
-    return v->x != 0 || v->y != 0 || v->z != 0 || refuse(text, "%s is 0,0,0, no direction", field);
+    return !is_zero(v) || refuse(text, "%s is 0,0,0, no direction", field);
 }
 
 /* What families say of themselves and of their lights. */
@@ -328,13 +345,13 @@ bool message_check_upload_begin(const sheen_UploadBegin *begin,
 static bool check_surface(const sheen_Render *render, char *text)
 {
     bool exact = !render->has_surface || render->surface == sheen_SurfaceKind_SURFACE_EXACT;
-    uint32_t last = exact ? 0 : PROTOCOL_MAX_SURFACE_LEVEL;
     if (render->has_surface &&
         !check_enum(render->surface, sheen_SurfaceKind_SURFACE_WIREFRAME, "surface", text))
         return false;
-    return !render->has_surface_level || render->surface_level <= last ||
-           refuse(text, "surface_level is %u; it must be from 0 to %u%s", render->surface_level,
-                  last, exact ? " for the exact surface" : "");
+    if (exact && render->has_surface_level && render->surface_level > 0)
+        return refuse(text, "surface_level is %u; the exact surface has none",
+                      render->surface_level);
+    return !render->has_surface_level || check_number(render->surface_level, RANGE_LEVEL, text);
 }
 
 uint32_t message_render_planes(const sheen_Render *render)
@@ -368,8 +385,7 @@ static bool check_show(const sheen_Render *render, char *text)
         return false;
     if (show->has_range && !is_scale)
         return refuse(text, "show.range (--show-range) is for curvature, gaussian, mean and draft");
-    if (show->has_range &&
-        !check_positive(show->range, is_draft ? 90 : PROTOCOL_MAX_COORDINATE, "show.range", text))
+    if (show->has_range && !check_number(show->range, is_draft ? RANGE_DRAFT : RANGE_SHOW, text))
         return false;
     if (show->kind == sheen_ShowKind_SHOW_LINES)
         return true;
@@ -386,20 +402,21 @@ static bool check_schedule(const sheen_Render *render, char *text)
     if (render->has_view && render->request_class == sheen_RequestClass_CLASS_BATCH)
         return refuse(text, "view is for interactive requests and stills; a batch is never "
                             "replaced");
-    return !render->has_deadline_ms ||
-           (render->deadline_ms > 0 && render->deadline_ms <= PROTOCOL_MAX_DEADLINE_MS) ||
-           refuse(text, "deadline_ms (--deadline) is %u; it must be from 1 to %u",
-                  render->deadline_ms, PROTOCOL_MAX_DEADLINE_MS);
+    return !render->has_deadline_ms || check_number(render->deadline_ms, RANGE_DEADLINE, text);
 }
 
 static bool check_side(uint32_t side_px, uint32_t max_px, unsigned encoding, const char *name,
                        char *text)
 {
-    if (side_px == 0 || side_px > max_px)
-        return refuse(text, "%s is %u px; it must be from 1 to %u", name, side_px, max_px);
-    return encoding != sheen_Encoding_ENCODING_JPEG || side_px <= PROTOCOL_MAX_JPEG_PX ||
-           refuse(text, "%s is %u px; a JPEG file has at most %u: ask for another format", name,
-                  side_px, PROTOCOL_MAX_JPEG_PX);
+    struct range range = RANGES[RANGE_SIDE];
+    range.greatest = fmin(range.greatest, max_px);
+    range.option = NULL;
+    if (!check_named(side_px, &range, name, text))
+        return false;
+    return encoding != sheen_Encoding_ENCODING_JPEG ||
+           range_holds(&RANGES[RANGE_JPEG_SIDE], side_px) ||
+           refuse(text, "%s is %u; a JPEG file has at most %g pixels: ask for another format", name,
+                  side_px, RANGES[RANGE_JPEG_SIDE].greatest);
 }
 
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
@@ -436,7 +453,7 @@ static bool check_frame(const sheen_Frame *frame, char *text)
                       (unsigned long long)frame->data_bytes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
     if (frame->has_show_range &&
-        !check_positive(frame->show_range, PROTOCOL_MAX_COORDINATE, "show_range", text))
+        !check_named(frame->show_range, &RANGES[RANGE_SHOW], "show_range", text))
         return false;
     if (!check_colours(frame->has_miss ? &frame->miss : NULL,
                        frame->has_empty ? &frame->empty : NULL,

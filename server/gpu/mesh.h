@@ -16,7 +16,6 @@
 
 #include "server/gpu/renderer.h"
 
-enum { MESH_MAX_LEVEL = 6 };
 #define MESH_MAX_VERTICES ((uint64_t)8 << 20) /* of one mesh: 256 MiB, and 192 MiB of indices */
 #define MESH_IS_FAN 0x80000000u
 

@@ -3,58 +3,68 @@
 
 #include <math.h>
 
-#include "server/gpu/mesh.h"
+#include "protocol/ranges.h"
 #include "server/limit/vec.h"
-
-/* Squares of lengths on the light stay normal numbers in single precision. */
-static const double LEAST_LENGTH = 1e-18, LARGEST_LENGTH = 1e18;
-
-static bool finite3(const double v[3])
-{
-    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-}
 
 static struct vec get(const double a[3])
 {
     return (struct vec){a[0], a[1], a[2]};
 }
 
+static bool check_number(double value, enum range_name name, const char *what, struct error *error)
+{
+    char wanted[RANGE_TEXT_BYTES];
+    return range_holds(&RANGES[name], value) ||
+           error_set(error, ERROR_REQUEST, "%s is %.9g; it must be %s", what, value,
+                     range_text(&RANGES[name], wanted));
+}
+
+static bool check_point(const double v[3], const char *what, struct error *error)
+{
+    for (int i = 0; i < 3; i++)
+        if (!check_number(v[i], RANGE_COORDINATE, what, error))
+            return false;
+    return true;
+}
+
+static bool check_direction(const double v[3], const char *what, struct error *error)
+{
+    return check_point(v, what, error) &&
+           (!range_is_zero(v) ||
+            error_set(error, ERROR_REQUEST, "%s is 0,0,0, no direction", what));
+}
+
 static bool check_camera(const struct camera *camera, struct error *error)
 {
-    if (!finite3(camera->eye) || !finite3(camera->target) || !finite3(camera->up))
-        return error_set(error, ERROR_REQUEST, "camera: eye, target and up must be finite numbers");
-    struct vec forward = vec_sub(get(camera->target), get(camera->eye));
-    if (!(vec_length(forward) > 0) || !isfinite(vec_length(forward)))
+    double view[3];
+    if (!check_point(camera->eye, "camera: eye", error) ||
+        !check_point(camera->target, "camera: target", error) ||
+        !check_point(camera->up, "camera: up", error))
+        return false;
+    for (int i = 0; i < 3; i++)
+        view[i] = camera->target[i] - camera->eye[i];
+    if (range_is_zero(view))
         return error_set(error, ERROR_REQUEST, "camera: eye and target are the same point");
-    struct vec side = vec_cross(vec_unit(forward), vec_unit(get(camera->up)));
-    if (!(vec_length(side) > 1e-9))
+    if (range_is_parallel(view, camera->up))
         return error_set(error, ERROR_REQUEST,
                          "camera: up is zero or parallel to the line from eye to target: choose "
                          "another (--up 0,1,0)");
-    if (camera->kind == CAMERA_PERSPECTIVE && !(camera->fov_deg >= 1e-6 && camera->fov_deg <= 179))
-        return error_set(error, ERROR_REQUEST, "camera: fov %g is not in 1e-6 to 179 degrees",
-                         camera->fov_deg);
-    if (camera->kind == CAMERA_ORTHOGRAPHIC &&
-        !(camera->ortho_height > 0 && camera->ortho_height <= 1e30))
-        return error_set(error, ERROR_REQUEST, "camera: orthographic height %g is not above 0",
-                         camera->ortho_height);
-    return true;
+    return camera->kind == CAMERA_PERSPECTIVE
+               ? check_number(camera->fov_deg, RANGE_FOV, "camera: fov", error)
+               : check_number(camera->ortho_height, RANGE_ORTHO_HEIGHT,
+                              "camera: orthographic height", error);
 }
 
 static bool check_light(const struct light *light, struct error *error)
 {
-    if (!finite3(light->centre) || !finite3(light->u) || !finite3(light->v))
-        return error_set(error, ERROR_REQUEST, "light: centre, u and v must be finite numbers");
-    const double sides[] = {vec_length(get(light->u)), vec_length(get(light->v))};
-    for (int k = 0; k < 2; k++)
-        if (!(sides[k] == 0) && !(sides[k] >= LEAST_LENGTH && sides[k] <= LARGEST_LENGTH))
-            return error_set(error, ERROR_REQUEST,
-                             "light: %c is %g units long; lines are computed for %g to %g", "uv"[k],
-                             sides[k], LEAST_LENGTH, LARGEST_LENGTH);
-    struct vec m = vec_cross(vec_unit(get(light->u)), vec_unit(get(light->v)));
-    if (!(vec_length(m) > 1e-9))
+    if (!check_point(light->centre, "light: centre", error) ||
+        !check_point(light->u, "light: u", error) || !check_point(light->v, "light: v", error) ||
+        !check_number(range_length(light->u), RANGE_EDGE, "light: the length of u", error) ||
+        !check_number(range_length(light->v), RANGE_EDGE, "light: the length of v", error))
+        return false;
+    if (range_is_parallel(light->u, light->v))
         return error_set(error, ERROR_REQUEST,
-                         "light: u and v are zero or parallel, the light has no area");
+                         "light: u and v are parallel, the light has no area");
     if (light->one_sided && light->kind != LIGHT_RECTANGLE && light->kind != LIGHT_PLANE)
         return error_set(error, ERROR_REQUEST,
                          "light: one-sided is for rectangles and planes; tunnel and sphere are "
@@ -62,44 +72,52 @@ static bool check_light(const struct light *light, struct error *error)
     return true;
 }
 
+static bool check_colour(const float colour[4], const char *what, struct error *error)
+{
+    for (int k = 0; k < 4; k++)
+        if (!check_number((double)colour[k], RANGE_COLOUR, what, error))
+            return false;
+    return true;
+}
+
 static bool check_pattern(const struct pattern *pattern, struct error *error)
 {
-    if (!(pattern->count > 0 && pattern->count <= 100000))
-        return error_set(error, ERROR_REQUEST, "pattern: count %g is not in (0, 100000]",
-                         pattern->count);
-    const struct {
-        const char *name;
-        double value;
-    } shares[] = {{"duty", pattern->duty}, {"soft", pattern->soft}, {"opacity", pattern->opacity}};
-    for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++)
-        if (!(shares[i].value >= 0 && shares[i].value <= 1))
-            return error_set(error, ERROR_REQUEST, "pattern: %s %g is not in [0, 1]",
-                             shares[i].name, shares[i].value);
-    if (!isfinite(pattern->period) || !isfinite(pattern->rotation_deg) ||
-        !isfinite(pattern->offset) || pattern->period < 0)
-        return error_set(error, ERROR_REQUEST,
-                         "pattern: period, rotation and offset must be finite numbers");
-    if (pattern->period > 0 &&
-        !(pattern->period >= LEAST_LENGTH && pattern->period <= LARGEST_LENGTH))
-        return error_set(error, ERROR_REQUEST, "pattern: period %g is not in %g to %g",
-                         pattern->period, LEAST_LENGTH, LARGEST_LENGTH);
+    if (!check_number(pattern->count, RANGE_COUNT, "pattern: count", error) ||
+        (pattern->period != 0 &&
+         !check_number(pattern->period, RANGE_PERIOD, "pattern: period", error)) ||
+        !check_number(pattern->duty, RANGE_DUTY, "pattern: duty", error) ||
+        !check_number(pattern->rotation_deg, RANGE_ROTATION, "pattern: rotation", error) ||
+        !check_number(pattern->offset, RANGE_OFFSET, "pattern: offset", error) ||
+        !check_number(pattern->soft, RANGE_SOFT, "pattern: soft", error) ||
+        !check_number(pattern->opacity, RANGE_OPACITY, "pattern: opacity", error) ||
+        !check_colour(pattern->foreground, "pattern: foreground", error) ||
+        !check_colour(pattern->background, "pattern: background", error))
+        return false;
     if (pattern->kind == PATTERN_IMAGE && !pattern->image)
         return error_set(error, ERROR_REQUEST, "pattern: kind image without an image");
-    if (pattern->kind == PATTERN_LINES &&
-        !(pattern->n_at > 0 && pattern->n_at <= MAX_LINES && pattern->width > 0))
-        return error_set(error, ERROR_REQUEST,
-                         "pattern: lines needs 1 to %d places and a width above 0", MAX_LINES);
+    if (pattern->kind != PATTERN_LINES)
+        return true;
+    if (!check_number(pattern->n_at, RANGE_LINES, "pattern: the number of lines", error) ||
+        !check_number(pattern->width, RANGE_WIDTH, "pattern: width", error))
+        return false;
+    for (uint32_t i = 0; i < pattern->n_at; i++)
+        if (!check_number(pattern->at[i], RANGE_AT, "pattern: at", error))
+            return false;
     return true;
 }
 
 static bool check_lines(const struct lines *lines, struct error *error)
 {
-    if (!finite3(lines->direction) || !finite3(lines->eye))
-        return error_set(error, ERROR_REQUEST, "lines: direction and eye must be finite numbers");
-    if (lines->has_direction && !(vec_length(get(lines->direction)) > 0))
-        return error_set(error, ERROR_REQUEST, "lines: direction is 0,0,0");
-    if (lines->eye_kind == LINE_EYE_DIRECTION && !(vec_length(get(lines->eye)) > 0))
-        return error_set(error, ERROR_REQUEST, "lines: the direction of view is 0,0,0");
+    if (lines->has_direction && !check_direction(lines->direction, "lines: direction", error))
+        return false;
+    switch (lines->eye_kind) {
+    case LINE_EYE_POINT:
+        return check_point(lines->eye, "lines: eye", error);
+    case LINE_EYE_DIRECTION:
+        return check_direction(lines->eye, "lines: the direction of view", error);
+    case LINE_EYE_CAMERA:
+        break;
+    }
     return true;
 }
 
@@ -127,9 +145,7 @@ static bool check_surface(const struct surface *surface, struct error *error)
 {
     if (surface->kind > SURFACE_WIREFRAME)
         return error_set(error, ERROR_REQUEST, "surface: there is no kind %d", surface->kind);
-    return surface->level <= MESH_MAX_LEVEL ||
-           error_set(error, ERROR_REQUEST, "surface: level %u is not in 0 to %d", surface->level,
-                     MESH_MAX_LEVEL);
+    return check_number(surface->level, RANGE_LEVEL, "surface: level", error);
 }
 
 static bool check_planes(const struct frame_request *request, struct error *error)
@@ -148,9 +164,10 @@ bool request_check(const struct renderer_info *info, const struct frame_request 
         return error_set(
             error, ERROR_REQUEST, "size %ux%u is not in 1x1 to %ux%u, the limit of this device",
             request->width_px, request->height_px, info->max_width_px, info->max_height_px);
-    if (request->n_lights < 1 || request->n_lights > MAX_LIGHTS)
-        return error_set(error, ERROR_REQUEST, "%u lights; there must be 1 to %d",
-                         request->n_lights, MAX_LIGHTS);
+    if (request->n_lights < 1)
+        return error_set(error, ERROR_REQUEST, "no light: there must be one");
+    if (!check_number(request->n_lights, RANGE_LIGHTS, "the number of lights", error))
+        return false;
     if (!check_camera(&request->camera, error) || !check_lines(&request->lines, error))
         return false;
     for (uint32_t i = 0; i < request->n_lights; i++)
@@ -158,5 +175,8 @@ bool request_check(const struct renderer_info *info, const struct frame_request 
             !check_pattern(&request->lights[i].pattern, error) ||
             !check_eye_off_light(request, &request->lights[i], error))
             return false;
-    return check_surface(&request->surface, error) && check_planes(request, error);
+    return check_colour(request->miss, "miss", error) &&
+           check_colour(request->empty, "empty", error) &&
+           check_colour(request->base, "base", error) && check_surface(&request->surface, error) &&
+           check_planes(request, error);
 }

@@ -15,7 +15,7 @@ enum camera_kind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC };
 struct camera {
     enum camera_kind kind;
     double eye[3], target[3], up[3];
-    double fov_deg;      /* perspective: vertical field of view, (0, 180) */
+    double fov_deg;      /* perspective: vertical field of view, 1e-6 to 179 */
     double ortho_height; /* orthographic: world units from top to bottom of the picture */
 };
 

@@ -11,6 +11,7 @@
 
 #include "protocol/codec.h"
 #include "protocol/message.h"
+#include "protocol/ranges.h"
 
 #define SPECIFICATION "protocol/README.md"
 #define MAX_EXAMPLE_BYTES 4096
@@ -469,9 +470,33 @@ static void the_version_is_that_of_the_page(void **state)
     assert_true(file_has_line("CHANGELOG.md", entry));
 }
 
+/* The whole table of chapter 7, and no row more. */
+static void the_ranges_are_those_of_the_table(void **state)
+{
+    (void)state;
+    static char page[1 << 17];
+    char wanted[8000] = "\n\n| field | range | option |\n|---|---|---|\n", text[RANGE_TEXT_BYTES];
+    for (size_t i = 0; i < N_RANGES; i++) {
+        size_t used = strlen(wanted);
+        snprintf(wanted + used, sizeof(wanted) - used, "| %s | %s | %s |\n", RANGES[i].field,
+                 range_text(&RANGES[i], text), RANGES[i].option ? RANGES[i].option : "");
+    }
+    strcat(wanted, "\n");
+    FILE *file = fopen(SPECIFICATION, "r");
+    assert_non_null(file);
+    size_t n = fread(page, 1, sizeof(page) - 1, file);
+    fclose(file);
+    assert_true(n > 0 && n < sizeof(page) - 1);
+    if (!strstr(page, wanted)) {
+        fprintf(stderr, "%s, chapter 7, must have this table:%s", SPECIFICATION, wanted);
+        fail();
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_example_is_what_the_codecs_say),
-                                       cmocka_unit_test(the_version_is_that_of_the_page)};
+                                       cmocka_unit_test(the_version_is_that_of_the_page),
+                                       cmocka_unit_test(the_ranges_are_those_of_the_table)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,60 @@
+/* The ranges of a request's numbers, each in one place: client, protocol and renderer check by this
+ * table, --help prints it, and README.md repeats it for people.
+ *
+ * Constant data and pure functions, any thread. */
+#ifndef SHEEN_PROTOCOL_RANGES_H
+#define SHEEN_PROTOCOL_RANGES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum range_name {
+    RANGE_SIDE,      /* a device's own limit is lower */
+    RANGE_JPEG_SIDE, /* libjpeg's limit */
+    RANGE_COORDINATE,
+    RANGE_FOV,
+    RANGE_ORTHO_HEIGHT,
+    RANGE_LIGHTS,
+    RANGE_EDGE, /* length of a light's u and v */
+    RANGE_COUNT,
+    RANGE_PERIOD,
+    RANGE_DUTY,
+    RANGE_ROTATION,
+    RANGE_OFFSET,
+    RANGE_SOFT,
+    RANGE_OPACITY,
+    RANGE_LINES,
+    RANGE_AT,
+    RANGE_WIDTH,
+    RANGE_COLOUR,
+    RANGE_SHOW,  /* of curvatures */
+    RANGE_DRAFT, /* of the same field, for draft */
+    RANGE_LEVEL,
+    RANGE_DEADLINE,
+    N_RANGES
+};
+
+struct range {
+    const char *field;  /* of the request, as sheen.proto has it; NULL: it is none */
+    const char *option; /* of the command line, NULL: none */
+    double least, greatest;
+    bool above_least; /* `least` itself is out of range */
+    const char *unit; /* what follows the numbers; "" where there is nothing to say */
+};
+extern const struct range RANGES[N_RANGES];
+
+/* False for NaN. */
+bool range_holds(const struct range *range, double value);
+
+/* Writes "from 1e-6 to 179 degrees" or "above 0 and at most 100000"; returns `text`. */
+#define RANGE_TEXT_BYTES 80
+const char *range_text(const struct range *range, char text[static RANGE_TEXT_BYTES]);
+
+/* No direction: no coordinate is as large as 1e-30. Squares of what is larger do not vanish. */
+bool range_is_zero(const double v[3]);
+/* What RANGE_EDGE is about. */
+double range_length(const double v[3]);
+/* The sine of the angle between them is 1e-9 at most, or one of them is zero. */
+bool range_is_parallel(const double a[3], const double b[3]);
+
+#endif
