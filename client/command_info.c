@@ -125,5 +125,6 @@ const struct command COMMAND_INFO = {
     .examples = "  sheen info hood.obj\n"
                 "  sheen info hood.obj --json\n",
     .takes_model = true,
+    .codes = CODE_FILES | CODE_SERVER,
     .run = run,
 };

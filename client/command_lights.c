@@ -89,6 +89,7 @@ const struct command COMMAND_LIGHTS = {
     .summary = "Lists line families and lights, with an example of each.",
     .tables = TABLES,
     .examples = "  sheen lights\n",
+    .codes = CODE_OUTPUT,
     .run = run_lights,
 };
 
@@ -98,5 +99,6 @@ const struct command COMMAND_PATTERNS = {
     .summary = "Lists the patterns that lights show and their parts, with ranges and defaults.",
     .tables = TABLES,
     .examples = "  sheen patterns\n",
+    .codes = CODE_OUTPUT,
     .run = run_patterns,
 };

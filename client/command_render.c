@@ -27,12 +27,6 @@ static bool check(struct options *options, char *why)
         return options_refuse(why, "-o FILE is missing");
     if (options->aov_planes && options->request.format != SHEEN_FILE_EXR)
         return options_refuse(why, "--aov needs an output that ends in .exr");
-    const struct range *jpeg = &RANGES[RANGE_JPEG_SIDE];
-    if (options->request.format == SHEEN_FILE_JPEG &&
-        !(range_holds(jpeg, options->request.width_px) &&
-          range_holds(jpeg, options->request.height_px)))
-        return options_refuse(why, "--size: a JPEG file has at most %g pixels a side",
-                              jpeg->greatest);
     options->request.planes |= options->aov_planes;
     return options_check_scene(options, why);
 }
@@ -155,5 +149,6 @@ const struct command COMMAND_RENDER = {
         "--token-file token\n",
     .takes_model = true,
     .check = check,
+    .codes = CODE_FILES | CODE_SERVER,
     .run = run,
 };

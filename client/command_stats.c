@@ -170,5 +170,6 @@ const struct command COMMAND_STATS = {
     .examples = "  sheen stats --server unix:/run/sheen/sheen.sock\n"
                 "  sheen stats --json\n",
     .check = check,
+    .codes = CODE_OUTPUT | CODE_SERVER,
     .run = run,
 };

@@ -1,11 +1,13 @@
 /* sheen stream: requests back to back while the camera or the light moves, and what each stage
  * took. */
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "client/clock.h"
 #include "client/commands.h"
+#include "client/file.h"
 #include "client/job.h"
 #include "client/status.h"
 #include "client/values.h"
@@ -39,6 +41,7 @@ struct stream {
     struct sheen_frame frame;
     struct record *records;                /* [frames], by the frame's number */
     uint32_t n_drawn, n_late;              /* frames that came, and that were not drawn in time */
+    uint64_t written_bytes;                /* of their files, if there are any */
     struct sent sent[SHEEN_MAX_IN_FLIGHT]; /* by the request's number modulo its size */
     int64_t start_us, elapsed_us; /* of all frames but the first, which may wait for tables */
 };
@@ -88,7 +91,26 @@ static enum sheen_status send_one(struct job *job, struct stream *stream, uint32
     return status;
 }
 
-static enum sheen_status receive_one(struct job *job, struct stream *stream)
+/* A frame's file. It counts as drawn when it is there: after a loss of the server what has no file
+ * is asked for again, and nothing else. */
+static enum sheen_status write_one(struct job *job, struct stream *stream,
+                                   const struct options *options, uint32_t number)
+{
+    if (!options->output)
+        return SHEEN_OK;
+    char *path = frame_names_path(&options->frame_names, number);
+    if (!path)
+        return status_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
+    enum sheen_status status =
+        file_write(path, stream->frame.file, stream->frame.file_bytes, &job->error);
+    free(path);
+    if (!status)
+        stream->written_bytes += stream->frame.file_bytes;
+    return status;
+}
+
+static enum sheen_status receive_one(struct job *job, struct stream *stream,
+                                     const struct options *options)
 {
     enum sheen_status status =
         sheen_receive(job->session, &job->report, &stream->frame, &job->error);
@@ -104,6 +126,9 @@ static enum sheen_status receive_one(struct job *job, struct stream *stream)
     }
     const struct sheen_times *times = &stream->frame.times;
     uint64_t round_trip_us = (uint64_t)(clock_now_us() - sent->us);
+    status = write_one(job, stream, options, sent->frame);
+    if (status)
+        return status;
     stream->n_drawn++;
     stream->records[sent->frame] = (struct record){
         .state = DRAWN,
@@ -122,7 +147,7 @@ static enum sheen_status first_frame(struct job *job, struct stream *stream,
     stream->request.deadline_ms = 0;
     enum sheen_status status = send_one(job, stream, 0);
     if (!status)
-        status = receive_one(job, stream);
+        status = receive_one(job, stream, options);
     if (status)
         return status;
     stream->request.deadline_ms = options->request.deadline_ms;
@@ -155,7 +180,7 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
             status = send_one(job, stream, next++);
             n_in_flight++;
         } else {
-            status = receive_one(job, stream);
+            status = receive_one(job, stream, options);
             n_in_flight--;
             job->report.report(job->report.context, "frames", n_answered(stream), options->frames);
         }
@@ -187,7 +212,8 @@ static int compare_us(const void *a, const void *b)
 }
 
 /* sorted[] is scratch of n_frames. */
-static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t *sorted)
+static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t *sorted,
+                        const struct options *options)
 {
     const struct sheen_frame *frame = &stream->frame;
     printf("%u frames, %ux%u, %s\n", n_frames, frame->width_px, frame->height_px, frame->device);
@@ -204,10 +230,21 @@ static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t
            n_frames > 1 ? ", the first left out" : "");
     if (stream->n_late > 0)
         printf("%u more were late\n", stream->n_late);
+    if (options->output)
+        printf("%s: %u files, %" PRIu64 " bytes\n", options->output, n_frames,
+               stream->written_bytes);
+}
+
+static void json_file(struct json *json, const struct options *options, uint32_t number)
+{
+    char *path = options->output ? frame_names_path(&options->frame_names, number) : NULL;
+    if (path)
+        json_string(json, "file", path);
+    free(path);
 }
 
 static void print_json(struct json *json, const struct stream *stream, uint32_t n_frames,
-                       const struct job *job)
+                       const struct job *job, const struct options *options)
 {
     const struct sheen_frame *frame = &stream->frame;
     json_object_begin(json, NULL);
@@ -220,11 +257,17 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
     json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
     json_uint(json, "late", stream->n_late);
+    if (options->output) {
+        json_string(json, "output", options->output);
+        json_uint(json, "written", n_frames);
+        json_uint(json, "written_bytes", stream->written_bytes);
+    }
     job_json_schedule(json, &stream->request);
     json_array_begin(json, "frames");
     for (uint32_t i = 0; i < n_frames; i++) {
         json_object_begin(json, NULL);
         json_uint(json, "number", stream->records[i].number);
+        json_file(json, options, stream->records[i].number);
         for (int stage = 0; stage < N_STAGES; stage++) {
             char key[24];
             snprintf(key, sizeof(key), "%s_us", STAGE_NAMES[stage]);
@@ -237,10 +280,26 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
     json_object_end(json);
 }
 
+/* Before the work, by the first file's name. */
+static enum sheen_status check_writable(struct job *job, const struct options *options)
+{
+    if (!options->output)
+        return SHEEN_OK;
+    char *path = frame_names_path(&options->frame_names, 0);
+    enum sheen_status status =
+        path ? file_check_writable(path, &job->error)
+             : status_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
+    free(path);
+    return status;
+}
+
 static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_t *sorted,
                                  const struct options *options)
 {
-    enum sheen_status status = job_init(job, options);
+    enum sheen_status status = check_writable(job, options);
+    if (status)
+        return status;
+    status = job_init(job, options);
     if (!status)
         status = run_frames(job, stream, options);
     while (status && job_resume(job, options, &status))
@@ -250,11 +309,11 @@ static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_
         return status;
     keep_drawn(stream, options->frames);
     if (!options->json) {
-        print_table(stream, stream->n_drawn, sorted);
+        print_table(stream, stream->n_drawn, sorted, options);
         return SHEEN_OK;
     }
     struct json json = {.out = stdout};
-    print_json(&json, stream, stream->n_drawn, job);
+    print_json(&json, stream, stream->n_drawn, job, options);
     return job_finish_json(job, &json);
 }
 
@@ -262,7 +321,8 @@ static int run(const struct options *options)
 {
     struct job job = {0};
     struct stream stream = {.request = options->request};
-    stream.request.format = SHEEN_PLANES_ZSTD;
+    if (!options->output)
+        stream.request.format = SHEEN_PLANES_ZSTD;
     if (!(options->given & GIVEN_CLASS))
         stream.request.request_class = SHEEN_INTERACTIVE;
     stream.records = calloc(options->frames, sizeof(*stream.records));
@@ -281,6 +341,19 @@ static bool apply_frames(struct options *options, const char *value, char *why)
 {
     options->given |= GIVEN_FRAMES;
     return options_whole(&OPTION_RANGES[OPTION_RANGE_FRAMES], value, &options->frames, why);
+}
+
+static bool apply_output(struct options *options, const char *value, char *why)
+{
+    static const char example[] = "as FRAME_%04d.png";
+    options->output = value;
+    if (!frame_names_parse(value, &options->frame_names))
+        return options_refuse(why,
+                              "must have one %%d, or one like %%04d (a width of 1 to 9), in the "
+                              "file's name and no other %%, %s",
+                              example);
+    return value_format(value, &options->request.format) ||
+           options_refuse(why, "must end in .png .exr .jpg .jpeg .tif or .tiff, %s", example);
 }
 
 static bool apply_orbit(struct options *options, const char *value, char *why)
@@ -308,6 +381,12 @@ static const struct option_row ROWS[] = {
      "the camera goes about the target by so many degrees a frame,\n"
      "{} (default: 1)",
      apply_orbit},
+    {"output", 'o', "PATTERN",
+     "writes each frame into a file, as FRAME_%04d.png: one %d, or one like %04d\n"
+     "(a width of 1 to 9), stands for its number, from 0; the ending tells the\n"
+     "format: .png .exr .jpg .jpeg .tif .tiff (default: lossless planes are asked\n"
+     "for, and dropped). A late frame has no file",
+     apply_output},
     {"light-only", 0, NULL,
      "the light swings along its u edge by a tenth of it instead, a full swing\n"
      "in 360 degrees of --orbit; only the shade stage runs anew",
@@ -328,14 +407,17 @@ static const struct option_row *const TABLES_LIST[] = {ROWS,
 const struct command COMMAND_STREAM = {
     .name = "stream",
     .arguments = "MODEL --frames N [option]...",
-    .summary = "Asks for frames back to back, lossless, at most two in flight, and prints the time "
-               "of each stage.",
+    .summary = "Asks for frames back to back, at most two in flight, and prints the time of each "
+               "stage;\n"
+               "with -o writes them, as a turntable.",
     .tables = TABLES_LIST,
     .examples = "  sheen stream hood.obj --frames 100\n"
+                "  sheen stream hood.obj --frames 72 --orbit 5 -o hood_%04d.png\n"
                 "  sheen stream hood.obj --frames 100 --light-only --size 1920x1080\n"
                 "  sheen stream hood.obj --frames 100 --class batch --deadline 500\n"
                 "  sheen stream hood.obj --frames 360 --server unix:/run/sheen/sheen.sock --json\n",
     .takes_model = true,
     .check = check,
+    .codes = CODE_FILES | CODE_SERVER,
     .run = run,
 };

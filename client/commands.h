@@ -10,6 +10,6 @@ extern const struct command COMMAND_INFO;
 extern const struct command COMMAND_STATS;
 extern const struct command COMMAND_LIGHTS;
 extern const struct command COMMAND_PATTERNS;
-extern const struct command COMMAND_FIGURE7;
+extern const struct command COMMAND_LEVELS;
 
 #endif

@@ -7,8 +7,8 @@
 #define EXIT_WRONG_USAGE 2
 
 static const struct command *const COMMANDS[] = {
-    &COMMAND_RENDER, &COMMAND_STREAM,   &COMMAND_INFO,   &COMMAND_STATS,
-    &COMMAND_LIGHTS, &COMMAND_PATTERNS, &COMMAND_FIGURE7};
+    &COMMAND_RENDER, &COMMAND_STREAM,   &COMMAND_INFO,  &COMMAND_STATS,
+    &COMMAND_LIGHTS, &COMMAND_PATTERNS, &COMMAND_LEVELS};
 #define N_COMMANDS (sizeof(COMMANDS) / sizeof(*COMMANDS))
 
 static void print_help(FILE *out)
@@ -35,6 +35,12 @@ static int end_output(int code)
     return sheen_status_exit_code(SHEEN_BAD_IMAGE);
 }
 
+static bool is_called(const struct command *command, const char *name)
+{
+    return strcmp(name, command->name) == 0 ||
+           (command->old_name && strcmp(name, command->old_name) == 0);
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
@@ -47,7 +53,7 @@ int main(int argc, char **argv)
         return 0;
     }
     for (size_t i = 0; i < N_COMMANDS; i++) {
-        if (strcmp(name, COMMANDS[i]->name) != 0)
+        if (!is_called(COMMANDS[i], name))
             continue;
         struct options options;
         char why[OPTIONS_WHY_BYTES];

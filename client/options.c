@@ -63,6 +63,14 @@ static bool check_show(const struct sheen_show *show, char *why)
                           show->range, range_text(range, wanted), text_show_kind(show->kind));
 }
 
+static bool check_size(const struct sheen_request *request, char *why)
+{
+    const struct range *range = &RANGES[RANGE_JPEG_SIDE];
+    return request->format != SHEEN_FILE_JPEG ||
+           (range_holds(range, request->width_px) && range_holds(range, request->height_px)) ||
+           options_refuse(why, "--size: a JPEG file has at most %g pixels a side", range->greatest);
+}
+
 bool options_check_scene(struct options *options, char *why)
 {
     unsigned camera = options->given & (GIVEN_EYE | GIVEN_TARGET);
@@ -76,7 +84,8 @@ bool options_check_scene(struct options *options, char *why)
                                                  : SHEEN_PROJECTION_PERSPECTIVE;
     options->request.camera.auto_view = camera == 0;
     options->request.camera.auto_up = camera == 0 && !(options->given & GIVEN_UP);
-    return check_show(&options->request.show, why) && options_check_light(options, why);
+    return check_size(&options->request, why) && check_show(&options->request.show, why) &&
+           options_check_light(options, why);
 }
 
 /* All rows of a command in one list. */
@@ -252,8 +261,14 @@ void options_help(const struct command *command, FILE *out)
               "--server gives\n"
               "with --models.\n",
               out);
-    fprintf(out,
-            "\nexamples:\n%s\nExit codes: 0 done, 1 the answer is \"no\", 2 wrong usage, "
-            "3 bad model or image,\n4 no or lost server, 5 device failed.\n",
-            command->examples);
+    if (command->old_name)
+        fprintf(out, "\nThe command's old name, %s, still works.\n", command->old_name);
+    fprintf(out, "\nexamples:\n%s\nExit codes: 0 done, 2 wrong usage", command->examples);
+    if (command->codes & CODE_FILES)
+        fputs(", 3 bad model or image, or what cannot be written", out);
+    else if (command->codes & CODE_OUTPUT)
+        fputs(", 3 standard output cannot be written", out);
+    if (command->codes & CODE_SERVER)
+        fputs(",\n4 no or lost server, 5 device failed", out);
+    fputs(".\n", out);
 }

@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "client/frame_names.h"
 #include "client/sheen.h"
 #include "protocol/ranges.h"
 
@@ -40,7 +41,8 @@ struct options {
     unsigned given; /* enum options_given */
     struct sheen_request request;
     const char *image_path[SHEEN_MAX_LIGHTS]; /* --pattern image:FILE of a light, else NULL */
-    const char *output;                       /* render: where the picture goes */
+    const char *output;                       /* where the picture goes; stream: NULL, nowhere */
+    struct frame_names frame_names;           /* stream: of `output` */
     uint32_t aov_planes;                      /* render: planes beside colour */
     uint32_t frames;                          /* stream: 1 to 1000000 */
     uint32_t reconnect_s;                     /* after a loss; 0 to 86400, 0: not at all */
@@ -60,13 +62,22 @@ struct option_row {
     bool (*apply)(struct options *options, const char *value, char *why);
 };
 
+/* Exit codes besides 0 and 2, which every command has. */
+enum command_codes {
+    CODE_OUTPUT = 1 << 0, /* 3: standard output cannot be written */
+    CODE_FILES = 1 << 1,  /* 3: a model, an image or the file that is written, too */
+    CODE_SERVER = 1 << 2, /* 4 and 5 */
+};
+
 struct command {
     const char *name;
+    const char *old_name;  /* which still works; NULL: none */
     const char *arguments; /* for the usage line */
     const char *summary;
     const struct option_row *const *tables; /* ends with NULL */
     const char *examples;
     bool takes_model;
+    unsigned codes; /* enum command_codes */
     /* What no single option can know; false with the reason in `why`. NULL: nothing. */
     bool (*check)(struct options *options, char *why);
     int (*run)(const struct options *options); /* returns the exit code */

@@ -141,7 +141,7 @@ class NextDaemon(Reconnect):
         for address in ("unix:" + self.file("none"), "tcp:127.0.0.1:1"):
             for command in (("render", FENDER, "-o", self.file("a.png")), ("info", FENDER),
                             ("stream", FENDER, "--frames", "2"),
-                            ("figure7", FENDER, "-o", self.file("a.png"))):
+                            ("levels", FENDER, "-o", self.file("a.png"))):
                 with self.subTest(address=address, command=command[0]):
                     done = sheen(*command, "--server", address, "--reconnect", "86400")
                     self.assertEqual(done.returncode, 4)
@@ -219,7 +219,7 @@ class Broken(Reconnect):
                                (cut_at(wire.UPLOAD_BEGIN, 2), ("render", *SMALL, "--pattern",
                                                                "image:" + image)),
                                (cut_at(wire.RENDER), ("render", *SMALL)),
-                               (cut_at(wire.RENDER, 4), ("figure7", *SMALL))):
+                               (cut_at(wire.RENDER, 4), ("levels", *SMALL))):
             arguments = (command[0], FENDER, *command[1:])
             done = sheen(*arguments, "-o", whole, "--server", self.served.unix)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -241,7 +241,7 @@ class Broken(Reconnect):
             uploads[connection] += kind == wire.UPLOAD_BEGIN
             return cut(connection, kind, *rest)
 
-        for command in (("stream", "--frames", "4"), ("figure7", "-o", self.file("seven.png"))):
+        for command in (("stream", "--frames", "4"), ("levels", "-o", self.file("levels.png"))):
             with self.subTest(command=command[0]), Between(self.served, judge) as between:
                 self.run_through(between, command[0], FENDER, *command[1:], *SMALL, "--pattern",
                                  "image:" + image)

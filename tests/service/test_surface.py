@@ -1,4 +1,4 @@
-"""--surface: polygons and their wireframe beside the exact surface, and figure7."""
+"""--surface: polygons and their wireframe beside the exact surface, and levels."""
 import json
 import math
 import os
@@ -137,10 +137,10 @@ class Surface(DaemonCase):
                 with open(path, "rb") as file:
                     self.assertIn(b"sheen:surface\0" + name.encode(), file.read())
 
-    def test_figure7(self):
+    def test_levels(self):
         with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "seven.png")
-            done = self.sheen("figure7", BODY, "-o", path, "--size", "240x180", "--json")
+            path = os.path.join(folder, "levels.png")
+            done = self.sheen("levels", BODY, "-o", path, "--size", "240x180", "--json")
             self.assertEqual(done.returncode, 0, done.stderr)
             answer = json.loads(done.stdout)
             width, height, rows = read_png(path)
@@ -151,7 +151,7 @@ class Surface(DaemonCase):
                 self.assertLess(better["max_deg"], worse["max_deg"] / 1.5)
                 self.assertLess(better["mean_deg"], worse["mean_deg"] / 3.4)
             self.check_panels(rows, height)
-            text = self.sheen("figure7", BODY, "-o", path, "--size", "240x180")
+            text = self.sheen("figure7", BODY, "-o", path, "--size", "240x180")  # its old name
             self.assertEqual(len(text.stdout.splitlines()), 3)
             self.assertIn(f"up to {answer['levels'][0]['max_deg']:.3g} deg", text.stdout)
 
@@ -176,7 +176,7 @@ class Surface(DaemonCase):
                    for at in (gap, 246 + gap, 492 + gap)]
             self.assertTrue(ink[1] > ink[0] > ink[2] > 20, ink)
 
-    def test_figure7_refuses(self):
+    def test_levels_refuses(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "x.png")
             cube = os.path.join(folder, "cube.obj")
@@ -190,7 +190,7 @@ class Surface(DaemonCase):
                     (3, "cube.obj", cube, "-o", path),
                     (3, "nowhere", BODY, "-o", os.path.join(folder, "nowhere", "x.png"))):
                 with self.subTest(words=words):
-                    done = self.sheen("figure7", *arguments)
+                    done = self.sheen("levels", *arguments)
                     self.assertEqual(done.returncode, code, done.stderr)
                     self.assertIn(words, done.stderr)
                     self.assertEqual(len(done.stderr.splitlines()), 1)

@@ -178,6 +178,37 @@ static enum options_result parse(const struct command *command, const char *line
     return options_parse(command, argc, argv, options, why);
 }
 
+/* A pattern that is not strictly one number would write over files, or read what is not there. */
+static void frames_have_names(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *pattern, *seven, *million;
+    } good[] = {{"FRAME_%04d.png", "FRAME_0007.png", "FRAME_999999.png"},
+                {"a/b.c/%d.exr", "a/b.c/7.exr", "a/b.c/999999.exr"},
+                {"%3d.jpg", "  7.jpg", "999999.jpg"},
+                {"x%09dy.tif", "x000000007y.tif", "x000999999y.tif"},
+                {"%1d", "7", "999999"}};
+    static const char *const bad[] = {
+        "",         "a.png",   "%",        "%d%d.png",  "%%d.png",  "%d%%",     "%s.png",
+        "%n.png",   "%ld.png", "%-4d.png", "%+d",       "%.3d.png", "%010d",    "%12d.png",
+        "%0d.png",  "%00d",    "%u.png",   "%i.png",    "%x.png",   "%*d.png",  "% 4d",
+        "%4",       "%04",     "%0",       "a%d/b.png", "%d/%d",    "%1$d.png", "%d.png%",
+        "%hhd.png", "%'d.png", "a%D.png"};
+    struct frame_names names;
+    for (size_t i = 0; i < sizeof(good) / sizeof(*good); i++) {
+        assert_true(frame_names_parse(good[i].pattern, &names));
+        char *seven = frame_names_path(&names, 7), *million = frame_names_path(&names, 999999);
+        assert_string_equal(seven, good[i].seven);
+        assert_string_equal(million, good[i].million);
+        free(seven);
+        free(million);
+    }
+    for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++)
+        if (frame_names_parse(bad[i], &names))
+            fail_msg("'%s' is taken", bad[i]);
+}
+
 static void good_command_lines(void **state)
 {
     (void)state;
@@ -251,7 +282,7 @@ static void good_command_lines(void **state)
     assert_int_equal(options.reconnect_s, 30);
     assert_int_equal(parse(&COMMAND_INFO, "m.obj --reconnect 0", &options, why), OPTIONS_RUN);
     assert_int_equal(options.reconnect_s, 0);
-    assert_int_equal(parse(&COMMAND_FIGURE7, "m.obj -o a.png --reconnect 86400", &options, why),
+    assert_int_equal(parse(&COMMAND_LEVELS, "m.obj -o a.png --reconnect 86400", &options, why),
                      OPTIONS_RUN);
     assert_int_equal(options.reconnect_s, 86400);
     assert_int_equal(parse(&COMMAND_STATS, "--device 1", &options, why), OPTIONS_RUN);
@@ -338,7 +369,7 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png --class urgent", "interactive, still or batch"},
         {&COMMAND_STREAM, "m.obj --frames 5 --deadline 0", "--deadline '0'"},
         {&COMMAND_RENDER, "m.obj -o a.png --deadline 3600001", "from 1 to 3600000 milliseconds"},
-        {&COMMAND_FIGURE7, "m.obj -o a.png --class batch", "--class"},
+        {&COMMAND_LEVELS, "m.obj -o a.png --class batch", "--class"},
         {&COMMAND_RENDER, "m.obj -o a.png --pattern dots", "--pattern 'dots'"},
         {&COMMAND_RENDER, "m.obj -o a.png --empty red", "#rrggbb"},
         {&COMMAND_RENDER, "m.obj -o a.png --nonsense", "--nonsense"},
@@ -350,7 +381,9 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_STREAM, "m.obj --frames 0", "--frames '0'"},
         {&COMMAND_STREAM, "m.obj --frames 1000001", "--frames"},
         {&COMMAND_STREAM, "m.obj --frames 5 --orbit 361", "--orbit"},
-        {&COMMAND_STREAM, "m.obj --frames 5 -o a.png", "-o"},
+        {&COMMAND_STREAM, "m.obj --frames 5 -o a.png", "as FRAME_%04d.png"},
+        {&COMMAND_STREAM, "m.obj --frames 5 -o a_%d.gif", "as FRAME_%04d.png"},
+        {&COMMAND_STREAM, "m.obj --frames 5 -o a_%d.jpg --size 65501x1", "65500"},
         {&COMMAND_INFO, "m.obj --size 4x4", "--size"},
         {&COMMAND_INFO, "m.obj --reconnect 86401", "0 to 86400"},
         {&COMMAND_RENDER, "m.obj -o a.png --reconnect -1", "--reconnect '-1'"},
@@ -387,7 +420,7 @@ static void help_shows_every_option(void **state)
 {
     (void)state;
     static const struct command *const commands[] = {
-        &COMMAND_RENDER, &COMMAND_STREAM, &COMMAND_INFO, &COMMAND_STATS, &COMMAND_FIGURE7};
+        &COMMAND_RENDER, &COMMAND_STREAM, &COMMAND_INFO, &COMMAND_STATS, &COMMAND_LEVELS};
     for (size_t i = 0; i < 5; i++) {
         char *text = NULL;
         size_t size = 0;
@@ -406,6 +439,57 @@ static void help_shows_every_option(void **state)
     }
 }
 
+/* Valid until the next. */
+static const char *help_of(const struct command *command)
+{
+    static char text[1 << 15];
+    FILE *out = fmemopen(text, sizeof(text), "w");
+    options_help(command, out);
+    fclose(out);
+    return text;
+}
+
+/* Each its own, and none promises an answer to a question that it does not ask. */
+static void help_has_the_commands_exit_codes(void **state)
+{
+    (void)state;
+    static const struct {
+        const struct command *command;
+        const char *codes; /* in this order */
+    } cases[] = {{&COMMAND_RENDER, "02345"}, {&COMMAND_STREAM, "02345"}, {&COMMAND_INFO, "02345"},
+                 {&COMMAND_LEVELS, "02345"}, {&COMMAND_STATS, "02345"},  {&COMMAND_LIGHTS, "023"},
+                 {&COMMAND_PATTERNS, "023"}};
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        char found[11] = "";
+        const char *codes = strstr(help_of(cases[i].command), "Exit codes: ");
+        assert_non_null(codes);
+        for (; *codes; codes++) {
+            const char digit[] = {*codes, 0};
+            if (strchr("0123456789", *codes) && codes[1] == ' ')
+                strcat(found, digit);
+        }
+        assert_string_equal(found, cases[i].codes);
+    }
+    const char *text = help_of(&COMMAND_LEVELS);
+    assert_non_null(strstr(text, "usage: sheen levels "));
+    assert_non_null(strstr(text, "old name, figure7, still works"));
+}
+
+/* No place of a range is left open. */
+static void help_has_the_ranges(void **state)
+{
+    (void)state;
+    static const struct command *const commands[] = {&COMMAND_RENDER, &COMMAND_STREAM,
+                                                     &COMMAND_LEVELS};
+    static const char *const wanted[] = {"from 1e-6 to 179 degrees", "from 1 to 1000000",
+                                         "each from 1 to 65536 pixels"};
+    for (size_t i = 0; i < 3; i++) {
+        const char *text = help_of(commands[i]);
+        assert_null(strstr(text, "{}"));
+        assert_non_null(strstr(text, wanted[i]));
+    }
+}
+
 /* The size that --help says is the one that a command takes without --size. */
 static void help_says_its_own_default_size(void **state)
 {
@@ -415,7 +499,7 @@ static void help_says_its_own_default_size(void **state)
         const char *line;
     } cases[] = {{&COMMAND_RENDER, "m.obj -o a.png"},
                  {&COMMAND_STREAM, "m.obj --frames 1"},
-                 {&COMMAND_FIGURE7, "m.obj -o a.png"}};
+                 {&COMMAND_LEVELS, "m.obj -o a.png"}};
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct options options;
         char why[OPTIONS_WHY_BYTES], wanted[40], *text = NULL;
@@ -479,11 +563,14 @@ int main(void)
         cmocka_unit_test(planes_and_formats),
         cmocka_unit_test(patterns),
         cmocka_unit_test(families_and_lights),
+        cmocka_unit_test(frames_have_names),
         cmocka_unit_test(good_command_lines),
         cmocka_unit_test(cameras_in_part),
         cmocka_unit_test(bad_command_lines_name_the_option),
         cmocka_unit_test(the_environment_names_a_server),
         cmocka_unit_test(help_shows_every_option),
+        cmocka_unit_test(help_has_the_commands_exit_codes),
+        cmocka_unit_test(help_has_the_ranges),
         cmocka_unit_test(help_says_its_own_default_size),
         cmocka_unit_test(json_is_json),
     };

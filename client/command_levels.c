@@ -1,4 +1,4 @@
-/* sheen figure7: the paper's comparison (Yasui and Kanai 2004, figure 7) of one model: wireframe,
+/* sheen levels: the paper's comparison (Yasui and Kanai 2004, figure 7) of one model: wireframe,
  * polygons and the exact surface side by side, and how far the polygons' normals are off. */
 #include <inttypes.h>
 #include <math.h>
@@ -243,8 +243,9 @@ static const struct option_row ROWS[] = {
 static const struct option_row *const TABLES[] = {
     ROWS, OPTIONS_SCENE, OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
 
-const struct command COMMAND_FIGURE7 = {
-    .name = "figure7",
+const struct command COMMAND_LEVELS = {
+    .name = "levels",
+    .old_name = "figure7",
     .arguments = "MODEL -o FILE.png [option]...",
     .summary =
         "Shows what polygons do to reflection lines: the cage subdivided 1, 2 and 3 times as a\n"
@@ -252,9 +253,10 @@ const struct command COMMAND_FIGURE7 = {
         "angle between the polygons' normals and the surface's, at pixels that show both on the\n"
         "same face.",
     .tables = TABLES,
-    .examples = "  sheen figure7 hood.obj -o hood7.png\n"
-                "  sheen figure7 hood.glb -o hood7.png --size 800x600 --pattern stripes:count=80\n",
+    .examples = "  sheen levels hood.obj -o levels.png\n"
+                "  sheen levels hood.glb -o levels.png --size 800x600 --pattern stripes:count=80\n",
     .takes_model = true,
     .check = check,
+    .codes = CODE_FILES | CODE_SERVER,
     .run = run,
 };
