@@ -48,10 +48,6 @@ beside() { # name, command...
 shapes_of() { # pattern
     [ -d "$shapes" ] || return 0
     for shape in "$shapes"/$1; do
-        case $shape in
-        # Faces that repeat a vertex: refused by name.
-        */catmark_nonman_edges.obj | */loop_nonman_edges.obj | */catmark_nonman_quadpole8.obj) continue ;;
-        esac
         echo "$shape"
     done
 }

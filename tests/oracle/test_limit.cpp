@@ -20,7 +20,7 @@ namespace
 const double max_normal_p999_rad = 2e-6, max_position_p999 = 1e-6; /* as test_exact */
 const double max_seam_rad = 5e-6; /* both sides are single precision */
 const double max_seam = 2e-6;     /* of the ring's size */
-const size_t n_samples = 40000, min_samples = 2000;
+const size_t n_samples = 40000, min_samples = 1000;
 
 /* A random point of a random face: half of them uniform, half at distances from a corner that are
  * uniform in the logarithm, so that every ring is met; some on an edge. */
