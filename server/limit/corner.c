@@ -12,7 +12,7 @@
 enum window {
     WINDOW_NONE, /* the ring is whole, or its vertex sharp */
     WINDOW_SUMS, /* over all edges and over all faces of a smooth ring */
-    WINDOW_ENDS, /* of a crease: the ring's first edge and its last */
+    WINDOW_ENDS, /* of a crease: the ring's first edge and its last, or a foreign crease's */
 };
 
 /* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the vertex's ring, of a large one
@@ -121,12 +121,14 @@ static void first_net(const struct quad *quad, const struct vertex_facts *facts,
     for (uint32_t k = 0; ring->creases.edge && k < n; k++)
         net->ring.creases.edge[k] = net->ring.creases.far[k] = ring->creases.edge[k];
     net->n_faces = ring->n_faces;
-    if (needs_window(ring) && !(ring->sharpness > 0))
-        net->window = ring->closed ? WINDOW_SUMS : WINDOW_ENDS;
+    bool is_foreign = ring_has_foreign_crease(ring);
+    if (is_foreign || (needs_window(ring) && !(ring->sharpness > 0)))
+        net->window = ring->closed && !is_foreign ? WINDOW_SUMS : WINDOW_ENDS;
     net->edges = facts->edges;
     net->faces = facts->faces;
     for (int k = 0; k < 2; k++)
-        net->end[k] = to_frame(ring->edge[k ? n - 1 : 0], origin, axis);
+        net->end[k] =
+            to_frame(is_foreign ? ring->sheets.end[k] : ring->edge[k ? n - 1 : 0], origin, axis);
     phantom_points(&net->ring, net->grid);
 }
 
@@ -232,7 +234,8 @@ static void write_frame(const struct vec axis[3], float texel[4])
 
 bool corner_needs_modes(const struct ring *ring)
 {
-    return ring_is_dart(ring) || (!ring_has_one_normal(ring) && ring->n_faces <= MODES_MAX_VALENCE);
+    return ring_is_dart(ring) || (ring->n_faces <= MODES_MAX_VALENCE &&
+                                  (ring_has_foreign_crease(ring) || !ring_has_one_normal(ring)));
 }
 
 /* The frame in which single precision keeps everything: axis[2] is the normal where there is one. A
@@ -242,7 +245,7 @@ static bool vertex_frame(const struct ring *ring, const struct known_modes *know
                          struct ring_modes *modes, struct vec axis[3], struct arena *arena)
 {
     struct vec t1, t2;
-    bool has_normal = ring_tangents(ring, &t1, &t2);
+    bool has_normal = ring_tangents(ring, &t1, &t2) && !ring_has_foreign_crease(ring);
     if (corner_needs_modes(ring)) {
         known_modes_find(known, ring, arena, modes);
         t1 = ring_mode_apply(modes->tangent[0], ring);
@@ -269,7 +272,9 @@ unsigned corner_levels(const struct ring *ring)
     const double pixel = 0x1p-24, pi = 3.14159265358979323846;
     /* What lies round a dart's crease counts as a sector that is closed by it. */
     bool is_whole = ring->closed && !ring->creases.edge;
-    double c = cos((is_whole ? 2 : 1) * pi / ring->n_faces);
+    /* Where a whole ring's vertex does not follow it, all its points come nearer alike. */
+    bool is_tip = is_whole && (ring->sharpness > 0 || ring_has_foreign_crease(ring));
+    double c = is_tip ? 1 : cos((is_whole ? 2 : 1) * pi / ring->n_faces);
     double eigenvalue = fmax((5 + c + sqrt((c + 9) * (c + 1))) / 16, 0.5);
     double levels = ceil(log(pixel) / log(eigenvalue)) + 2;
     return (unsigned)fmin(fmax(levels, LIMIT_MIN_LEVELS), LIMIT_MAX_LEVELS);

@@ -4,6 +4,7 @@
 
 #include "server/cage/cage.h"
 #include "server/limit/shared.h"
+#include "server/limit/sheets.h"
 
 static bool is_infinite(float sharpness)
 {
@@ -45,6 +46,8 @@ float crease_child_chaikin(float sharpness, const struct crease_sum *sum)
 static struct crease_sum sum_of(const struct ring *ring)
 {
     struct crease_sum sum = {0, 0};
+    if (ring->sheets.level)
+        return ring->sheets.level->semisharp;
     for (uint32_t k = 0; ring->creases.chaikin && k < ring_edges(ring); k++)
         crease_add(&sum, crease_edge(ring, k));
     return sum;
@@ -90,6 +93,9 @@ void crease_refine(const struct ring *in, struct ring *out)
 {
     out->sharpness = crease_child_vertex(in->sharpness);
     out->creases.chaikin = in->creases.chaikin;
+    out->sheets = in->sheets;
+    if (in->sheets.level && !in->sheets.level->is_last)
+        out->sheets.level++;
     if (!in->creases.edge)
         return;
     const struct crease_sum sum = sum_of(in);
@@ -103,6 +109,8 @@ void crease_refine(const struct ring *in, struct ring *out)
 bool crease_is_semisharp(const struct ring *ring)
 {
     if (is_semisharp(ring->sharpness))
+        return true;
+    if (ring->sheets.level && ring->sheets.level->semisharp.n && !is_infinite(ring->sharpness))
         return true;
     for (uint32_t k = 0; ring->creases.edge && k < ring_edges(ring); k++)
         if (is_semisharp(crease_edge(ring, k)))
@@ -125,6 +133,8 @@ enum crease_rule crease_vertex_rule(const struct ring *ring, uint32_t end[2])
             end[n] = k;
         n++;
     }
+    if (ring->sheets.level)
+        n = ring->sheets.level->n_sharp;
     if (ring->sharpness > 0 || n > 2)
         return RULE_CORNER;
     return n == 2 ? RULE_CREASE : n == 1 ? RULE_DART : RULE_SMOOTH;
@@ -139,6 +149,7 @@ static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t 
     out.centre = ring->centre;
     out.cut_extraordinary = ring->cut_extraordinary || ring->n_faces != (ring->closed ? 4 : 2);
     out.sharpness = sharp ? CAGE_SHARPNESS_INFINITE : 0;
+    out.sheets = ring->sheets;
     for (uint32_t k = 0; k <= n_faces; k++)
         out.edge[k] = ring->edge[(first + k) % n];
     for (uint32_t k = 0; k < n_faces; k++)
@@ -146,11 +157,27 @@ static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t 
     return out;
 }
 
+/* Without other sheets, which matter no more but where they hold the crease. */
+static struct ring alone(const struct ring *ring)
+{
+    struct ring out = *ring;
+    const struct sheet_level *sheets = ring->sheets.level;
+    if (!sheets)
+        return out;
+    if (sheets->n_sharp > 2)
+        out.sharpness = CAGE_SHARPNESS_INFINITE;
+    if (out.sharpness > 0 || !ring->sheets.ends_outside)
+        out.sheets = (struct ring_sheets){0};
+    return out;
+}
+
 struct ring crease_settle(const struct ring *ring, struct arena *arena)
 {
-    if (!ring->creases.edge || crease_is_semisharp(ring))
+    if (crease_is_semisharp(ring))
         return *ring;
-    struct ring out = *ring;
+    struct ring out = alone(ring);
+    if (!ring->creases.edge)
+        return out;
     uint32_t end[2], n = ring_edges(ring), n_sharp = 0;
     for (uint32_t k = 0; k < n; k++)
         n_sharp += crease_edge(ring, k) > 0;
@@ -159,7 +186,7 @@ struct ring crease_settle(const struct ring *ring, struct arena *arena)
             out.creases.edge = out.creases.far = NULL;
         return out;
     }
-    enum crease_rule rule = crease_vertex_rule(ring, end);
+    enum crease_rule rule = crease_vertex_rule(&out, end);
     uint32_t first = ring->at, last = (ring->at + 1) % n;
     while (crease_edge(ring, first) <= 0)
         first = (first + n - 1) % n;
@@ -167,7 +194,8 @@ struct ring crease_settle(const struct ring *ring, struct arena *arena)
         last = (last + 1) % n;
     if (!shared_find_derived(ring, first, &out)) {
         uint32_t n_faces = (last + n - first) % n;
-        out = cut_sector(ring, first, n_faces ? n_faces : n, rule == RULE_CORNER, arena);
+        const struct ring whole = out;
+        out = cut_sector(&whole, first, n_faces ? n_faces : n, rule == RULE_CORNER, arena);
         out = shared_keep_derived(ring, first, &out);
     }
     out.at = (ring->at + n - first) % n;
@@ -176,7 +204,7 @@ struct ring crease_settle(const struct ring *ring, struct arena *arena)
 
 bool crease_is_regular(const struct ring *settled)
 {
-    if (settled->creases.edge || settled->cut_extraordinary)
+    if (settled->creases.edge || settled->cut_extraordinary || ring_has_foreign_crease(settled))
         return false;
     bool sharp = settled->sharpness > 0;
     if (settled->closed)

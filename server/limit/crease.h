@@ -44,12 +44,14 @@ void crease_refine(const struct ring *in, struct ring *out);
 /* Whether an edge or the vertex is sharp but not infinitely so: rules will still change. */
 bool crease_is_semisharp(const struct ring *ring);
 
-/* The vertex rule and the two ends of a crease (RULE_CREASE), or the edge of a dart in end[0]. */
+/* The vertex rule and the two ends of a crease (RULE_CREASE), or the edge of a dart in end[0].
+ * Where several sheets meet, all of them count, and a crease's ends are those of ring->sheets. */
 enum crease_rule crease_vertex_rule(const struct ring *ring, uint32_t end[2]);
 
 /* A ring without semi-sharp tags, cut to the sector that holds the quad at ring->at: beyond an
  * infinitely sharp edge nothing matters. What stays is open, or closed and smooth, or closed with
- * one sharp edge (a dart), or closed with a sharp vertex. Rings with semi-sharp tags stay whole. */
+ * one sharp edge (a dart), or closed with a sharp vertex, or has a foreign crease (ring.h). Rings
+ * with semi-sharp tags stay whole. */
 struct ring crease_settle(const struct ring *ring, struct arena *arena);
 
 /* Settled, and with its quads plain B-spline patches (phantom points beyond a sector's end). Not so

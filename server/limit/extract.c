@@ -3,11 +3,34 @@
 #include <stdlib.h>
 
 #include "server/limit/crease.h"
+#include "server/limit/sheets.h"
+
+static struct vec vertex_position(const struct topology *t, uint32_t vertex)
+{
+    const double *p = t->cage->position[vertex];
+    return (struct vec){p[0], p[1], p[2]};
+}
 
 static struct vec position(const struct topology *t, uint32_t corner)
 {
-    const double *p = t->cage->position[corner_vertex(t, corner)];
-    return (struct vec){p[0], p[1], p[2]};
+    return vertex_position(t, corner_vertex(t, corner));
+}
+
+static struct ring_sheets sheets_beside(const struct topology *t, const struct sector *sector)
+{
+    const struct vertex_sheets *sheets = sheets_at(t, sector->first);
+    if (!sheets)
+        return (struct ring_sheets){0};
+    uint32_t last = sector->first;
+    for (uint32_t k = 1; k < sector->n_faces; k++)
+        last = corner_ccw(t, last);
+    bool runs_through = !sector->closed && corner_vertex(t, corner_next(t, sector->first)) !=
+                                               corner_vertex(t, corner_prev(t, last));
+    return (struct ring_sheets){
+        .level = &t->sheet_level[sheets->first_level],
+        .end = {vertex_position(t, sheets->end[0]), vertex_position(t, sheets->end[1])},
+        .ends_outside = !runs_through,
+    };
 }
 
 /* The ring of corner c's vertex in the cage. Quads around it or not: ring.face is only set when
@@ -21,6 +44,7 @@ static struct ring cage_ring(const struct topology *t, uint32_t c, bool quads,
     ring.at = sector->at;
     ring.sharpness = vertex_sharpness(t, c);
     ring.creases.chaikin = t->cage->chaikin;
+    ring.sheets = sheets_beside(t, sector);
     ring.centre = position(t, c);
     for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at)) {
         uint32_t next = corner_next(t, at);

@@ -9,7 +9,8 @@ static const struct known_modes *look_up(const struct known_modes *list, const s
 {
     for (; list; list = list->older)
         if (list->n_faces == ring->n_faces && list->closed == ring->closed &&
-            list->dart == ring_is_dart(ring) && list->sharp == (ring->sharpness > 0))
+            list->dart == ring_is_dart(ring) && list->sharp == (ring->sharpness > 0) &&
+            list->foreign_crease == ring_has_foreign_crease(ring))
             return list;
     return NULL;
 }
@@ -25,10 +26,12 @@ void known_modes_add(struct known_modes **list, const struct ring *ring, struct 
                                  .closed = ring->closed,
                                  .dart = ring_is_dart(ring),
                                  .sharp = ring->sharpness > 0,
+                                 .foreign_crease = ring_has_foreign_crease(ring),
                                  .older = *list};
     size_t mark = arena->used;
     struct ring like = ring_take(arena, ring->n_faces, ring->closed, made->dart);
     like.sharpness = ring->sharpness;
+    like.sheets = ring->sheets;
     if (made->dart)
         like.creases.edge[0] = CAGE_SHARPNESS_INFINITE;
     ring_modes_init(&made->modes, &like, arena);

@@ -1,5 +1,6 @@
-/* The modes (modes.h) of a cage's darts and sharp vertices of many faces: found while its plan is
- * made, since they take 0.1 s at 64 faces and are the same wherever the ring's points lie. */
+/* The modes (modes.h) of a cage's darts, sharp vertices and foreign creases of many faces: found
+ * while its plan is made, since they take 0.1 s at 64 faces and are the same wherever the ring's
+ * points lie. */
 #ifndef SHEEN_LIMIT_KNOWN_MODES_H
 #define SHEEN_LIMIT_KNOWN_MODES_H
 
@@ -8,10 +9,11 @@
 /* Rings of fewer faces take 0.3 ms. */
 enum { KNOWN_MODES_MIN_FACES = 9 };
 
-/* A list, empty: NULL; 4 for each number of faces at most. A dart's edge is the ring's first. */
+/* A list, empty: NULL; 6 for each number of faces at most. A dart's edge is the ring's first. */
 struct known_modes {
     uint32_t n_faces;
     bool closed, dart, sharp; /* sharp: the vertex */
+    bool foreign_crease;      /* ring.h */
     struct ring_modes modes;
     struct known_modes *older;
 };

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "server/limit/crease.h"
+#include "server/limit/sheets.h"
 #include "server/limit/tables.h"
 
 static const double PI = 3.14159265358979323846;
@@ -59,7 +59,9 @@ static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
     if (rule == RULE_CORNER)
         return in->centre;
     if (rule == RULE_CREASE) {
-        struct vec ends = vec_add(in->edge[end[0]], in->edge[end[1]]);
+        const struct vec *foreign = in->sheets.level ? in->sheets.end : NULL;
+        struct vec ends =
+            foreign ? vec_add(foreign[0], foreign[1]) : vec_add(in->edge[end[0]], in->edge[end[1]]);
         return vec_mad(vec_scale(in->centre, 0.75), 0.125, ends);
     }
     double n = in->n_faces;
@@ -73,19 +75,18 @@ static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
  * single precision as sharpness is everywhere. */
 static double rule_weight(const struct ring *in, const struct ring *out)
 {
-    float sum = 0;
-    uint32_t n = 0;
-    if (in->sharpness > 0 && out->sharpness <= 0) {
-        sum += in->sharpness;
-        n++;
+    const struct sheet_level *sheets = in->sheets.level;
+    struct crease_sum ending = {0, 0};
+    if (out->sharpness <= 0)
+        crease_add(&ending, in->sharpness);
+    for (uint32_t k = 0; !sheets && in->creases.edge && k < ring_edges(in); k++)
+        if (crease_edge(out, k) <= 0)
+            crease_add(&ending, crease_edge(in, k));
+    if (sheets) {
+        ending.sum += sheets->ending.sum;
+        ending.n += sheets->ending.n;
     }
-    for (uint32_t k = 0; in->creases.edge && k < ring_edges(in); k++) {
-        if (crease_edge(in, k) > 0 && crease_edge(out, k) <= 0) {
-            sum += crease_edge(in, k);
-            n++;
-        }
-    }
-    return n ? fmin((double)(sum / (float)n), 1) : 0;
+    return ending.n ? fmin((double)(ending.sum / (float)ending.n), 1) : 0;
 }
 
 static struct vec refine_centre(const struct ring *in, const struct ring *out)
@@ -109,6 +110,8 @@ void ring_refine_around(const struct ring *in, struct ring *out)
     out->cut_extraordinary = in->cut_extraordinary;
     crease_refine(in, out);
     refine_edges(in, out);
+    for (int k = 0; k < 2; k++)
+        out->sheets.end[k] = vec_scale(vec_add(in->centre, in->sheets.end[k]), 0.5);
     out->centre = refine_centre(in, out);
 }
 
@@ -122,8 +125,10 @@ struct vec ring_limit(const struct ring *ring)
 {
     if (ring->sharpness > 0)
         return ring->centre;
-    if (!ring->closed) {
-        struct vec ends = vec_add(ring->edge[0], ring->edge[ring->n_faces]);
+    if (!ring->closed || ring_has_foreign_crease(ring)) {
+        struct vec ends = ring_has_foreign_crease(ring)
+                              ? vec_add(ring->sheets.end[0], ring->sheets.end[1])
+                              : vec_add(ring->edge[0], ring->edge[ring->n_faces]);
         return vec_mad(vec_scale(ring->centre, 2.0 / 3), 1.0 / 6, ends);
     }
     double n = ring->n_faces;

@@ -23,6 +23,13 @@ struct ring_creases {
     bool chaikin;
 };
 
+/* What the vertex has beside this sheet, where several meet (server/limit/sheets.h). */
+struct ring_sheets {
+    const struct sheet_level *level; /* NULL: this sheet is all */
+    struct vec end[2];               /* far ends of the crease that ends all its sheets */
+    bool ends_outside;               /* this sheet's own two ends are not these two */
+};
+
 struct ring {
     uint32_t n_faces; /* valence of a closed ring */
     uint32_t at;      /* which quad of the ring is the one that it is looked at from */
@@ -30,6 +37,7 @@ struct ring {
     bool cut_extraordinary;      /* a sector of a vertex that is extraordinary as a whole */
     float sharpness;             /* of the vertex; CAGE_SHARPNESS_INFINITE: interpolated */
     struct ring_creases creases; /* edge is NULL: smooth, but for the ends of an open ring */
+    struct ring_sheets sheets;
     struct vec centre;
     struct vec *edge;           /* [n_faces + !closed] */
     struct vec *face;           /* [n_faces] */
@@ -44,6 +52,13 @@ size_t ring_bytes(size_t n_faces, bool with_creases);
 static inline uint32_t ring_edges(const struct ring *ring)
 {
     return ring->n_faces + !ring->closed;
+}
+
+/* Whether a settled ring (crease.h) is of a crease that does not end it: a sheet closed by itself,
+ * or between two sides of the same edge, at a vertex where other sheets have the crease. */
+static inline bool ring_has_foreign_crease(const struct ring *settled)
+{
+    return settled->sheets.level;
 }
 
 /* Edge and face by steps from the quad at ring->at: edge(0) is the quad's next corner, edge(1) its

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/limit/crease.h"
+#include "server/limit/sheets.h"
 
 /* Edges around each vertex, counted while the half-edges are paired. */
 struct vertex_count {
@@ -90,15 +90,20 @@ static bool pair_half_edges(struct topology *t, struct vertex_count *count)
     return true;
 }
 
+static bool vertex_is_manifold(const struct topology *t, uint32_t corner,
+                               const struct vertex_count *count)
+{
+    return count->nonmanifold == 0 && topology_sector(t, corner).n_faces == count->faces;
+}
+
 /* OpenSubdiv's rule for which vertices are interpolated: see topologyRefinerFactory.cpp. */
-static bool vertex_is_sharp(const struct topology *t, uint32_t corner,
+static bool vertex_is_sharp(const struct topology *t, bool manifold,
                             const struct vertex_count *count)
 {
     if (count->faces == 1 && count->edges == 2 &&
         t->cage->boundary == CAGE_BOUNDARY_EDGE_AND_CORNER)
         return true;
-    bool one_sector = topology_sector(t, corner).n_faces == count->faces;
-    if (one_sector && count->nonmanifold == 0)
+    if (manifold)
         return false;
     /* A fin: two opposite edges of several faces each, no boundary. The crease rule holds there. */
     return !(count->nonmanifold == 2 && count->boundary == 0 && count->faces > count->edges);
@@ -117,7 +122,10 @@ static void flag_vertices(struct topology *t, struct vertex_count *count)
             *flags |= VERTEX_BY_NGON;
         if (count[v].faces == 0)
             continue; /* done already at an earlier corner */
-        if (vertex_is_sharp(t, c, &count[v]))
+        bool manifold = vertex_is_manifold(t, c, &count[v]);
+        if (!manifold)
+            *flags |= VERTEX_NON_MANIFOLD;
+        if (vertex_is_sharp(t, manifold, &count[v]))
             *flags |= VERTEX_SHARP;
         if (count[v].faces == 4 && count[v].edges == 4 && !count[v].boundary &&
             !count[v].nonmanifold)
@@ -219,6 +227,18 @@ static bool sharpen_vertices(struct topology *t, struct error *error)
     return true;
 }
 
+/* The semi-sharp edges around a vertex. */
+static struct crease_sum sum_creases(const struct topology *t, const struct sector *sector)
+{
+    const struct vertex_sheets *sheets = sheets_at(t, sector->first);
+    struct crease_sum sum = {0, 0};
+    if (sheets)
+        return t->sheet_level[sheets->first_level].semisharp;
+    for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at))
+        crease_add(&sum, edge_sharpness(t, at));
+    return sum;
+}
+
 /* All edges around a vertex count for each: summed once. */
 static bool find_child_sharpness(struct topology *t)
 {
@@ -234,9 +254,7 @@ static bool find_child_sharpness(struct topology *t)
         if (t->child_sharpness[c] >= 0)
             continue;
         struct sector sector = topology_sector(t, c);
-        struct crease_sum sum = {0, 0};
-        for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at))
-            crease_add(&sum, edge_sharpness(t, at));
+        struct crease_sum sum = sum_creases(t, &sector);
         for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at))
             t->child_sharpness[at] = crease_child_chaikin(edge_sharpness(t, at), &sum);
     }
@@ -268,7 +286,7 @@ bool topology_init(struct topology *t, const struct cage *cage, struct error *er
         goto no_memory;
     flag_vertices(t, count);
     flag_creased_vertices(t);
-    if (!find_child_sharpness(t))
+    if (!sheets_init(t) || !find_child_sharpness(t))
         goto no_memory;
     free(count);
     return true;
@@ -289,6 +307,8 @@ void topology_finish(struct topology *t)
     free(t->edge_sharpness);
     free(t->child_sharpness);
     free(t->vertex_sharpness);
+    free(t->sheets);
+    free(t->sheet_level);
     *t = (struct topology){0};
 }
 

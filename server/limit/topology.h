@@ -24,6 +24,9 @@ struct topology {
     float *child_sharpness;  /* [corners]: of the half at the corner after one step, by Chaikin's
                                 rule; NULL: without that, or no creases */
     float *vertex_sharpness; /* [vertices]; NULL: no sharp vertices in the cage */
+    struct vertex_sheets *sheets;    /* [n_sheets], by vertex: sheets.h */
+    struct sheet_level *sheet_level; /* [n_sheet_levels] */
+    size_t n_sheets, n_sheet_levels;
     bool quads_only;
 };
 
@@ -34,6 +37,7 @@ enum {
     VERTEX_CREASED = 8, /* an inner edge with sharpness ends here */
     VERTEX_TAGGED = 16, /* it has sharpness of its own */
     VERTEX_PLAIN = 32,  /* four faces, four edges, all manifold: alone, a regular vertex of quads */
+    VERTEX_NON_MANIFOLD = 64, /* its faces form several sheets, or an edge that is no two faces' */
 };
 
 /* ERROR_SERVER when memory is short; ERROR_MODEL for a crease where no edge is. */

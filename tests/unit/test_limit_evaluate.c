@@ -76,6 +76,12 @@ static void test_no_normal_at_a_tip(void **state)
     assert_near(p.n, (struct vec){0, 0, 0}, 0);
     assert_true(limit_evaluate(&tables, 0, 1e-3, 1e-3, &p));
     assert_true(p.has_normal);
+    /* What the table leaves out is no pixel of 2^-24 of the face, which is two units wide. */
+    const struct limit_node *node = &tables.nodes[tables.nodes[0].first];
+    assert_int_equal(node->kind, LIMIT_CORNER);
+    double last = ldexp(1, -1 - (node->levels & ~(int)LIMIT_NO_NORMAL));
+    assert_true(limit_evaluate(&tables, 0, last, last, &p));
+    assert_near(p.s, (struct vec){-1, -1, -1}, 2 * 0x1p-24);
     limit_tables_finish(&tables);
 }
 
