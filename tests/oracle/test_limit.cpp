@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tests/oracle/limit_samples.h"
 #include "tests/oracle/model.h"
 #include "tests/oracle/tables.h"
 #include "tests/oracle/verdict.h"
@@ -22,53 +22,11 @@ const double max_seam_rad = 5e-6; /* both sides are single precision */
 const double max_seam = 2e-6;     /* of the ring's size */
 const size_t n_samples = 40000, min_samples = 1000;
 
-/* A random point of a random face: half of them uniform, half at distances from a corner that are
- * uniform in the logarithm, so that every ring is met; some on an edge. */
-void draw_place(std::mt19937_64 *random, uint32_t n_faces, uint32_t *face, double *u, double *v)
-{
-    std::uniform_real_distribution<double> unit(0, 1);
-    *face = (uint32_t)(unit(*random) * n_faces);
-    *u = unit(*random);
-    *v = unit(*random);
-    if (unit(*random) < 0.5) {
-        double reach = std::pow(2.0, -9 * unit(*random));
-        *u *= reach;
-        *v *= reach;
-        (*u > *v ? *u : *v) = reach;
-        *u = unit(*random) < 0.5 ? *u : 1 - *u;
-        *v = unit(*random) < 0.5 ? *v : 1 - *v;
-    }
-    if (unit(*random) < 0.05)
-        (unit(*random) < 0.5 ? *u : *v) = unit(*random) < 0.5 ? 0 : 1;
-}
-
 struct figures {
-    std::vector<double> normal_rad, position, seam_rad, seam;
-    size_t presence = 0; /* places where one has a surface and the other has none */
+    limit_samples samples;
+    std::vector<double> seam_rad, seam;
     size_t adjacency = 0;
 };
-
-void compare_samples(const model &model, const table_evaluator &tables, figures *f)
-{
-    std::mt19937_64 random(20040617);
-    for (size_t i = 0; i < n_samples; i++) {
-        uint32_t face;
-        double u, v;
-        draw_place(&random, (uint32_t)tables.tables.n_faces, &face, &u, &v);
-        if (!osd_oracle_is_exact(u, v))
-            continue;
-        osd_sample truth;
-        surface_point ours;
-        bool has_truth = model.oracle->evaluate(face, u, v, &truth);
-        bool has_ours = tables.evaluate(face, u, v, &ours);
-        f->presence += has_truth != has_ours;
-        if (!has_truth || !has_ours)
-            continue;
-        f->position.push_back(length(ours.p - truth.p) / model.diagonal());
-        if (truth.has_normal())
-            f->normal_rad.push_back(angle(cross(ours.du, ours.dv), truth.normal()));
-    }
-}
 
 /* On the seam max(a,b) = 2^-n, ring n from outside and ring n + 1 from inside are one surface. */
 void compare_seams(const table_evaluator &tables, figures *f)
@@ -182,7 +140,7 @@ void judge(const model &model, verdict *verdict)
         if (!verdict->check(tables.tables.n_faces == model.oracle->n_ptex_faces(),
                             what + "the number of Ptex faces is not libosd's"))
             return;
-        compare_samples(model, tables, &f);
+        f.samples = compare_limit(*model.oracle, tables, n_samples, 20040617);
         compare_seams(tables, &f);
         if (!model.oracle->non_manifold())
             compare_adjacency(model, tables, &f);
@@ -190,15 +148,17 @@ void judge(const model &model, verdict *verdict)
         verdict->check(false, what + failure.what());
         return;
     }
-    double n999 = quantile(f.normal_rad, 0.999), p999 = quantile(f.position, 0.999);
+    limit_samples &at = f.samples;
+    double n999 = quantile(at.normal_rad, 0.999), diagonal = model.diagonal();
+    double p999 = quantile(at.position, 0.999) / diagonal;
     double seam_rad = quantile(f.seam_rad, 0.999), seam = quantile(f.seam, 0.999);
     std::printf("%-28s %6zu | %7.1e %7.1e %7.1e | %7.1e %7.1e | %8zu %7.1e %7.1e\n",
-                model.name.c_str(), f.normal_rad.size(), quantile(f.normal_rad, 0.5), n999,
-                quantile(f.normal_rad, 1), p999, quantile(f.position, 1), f.seam.size(), seam,
-                seam_rad);
-    verdict->check(f.normal_rad.size() > min_samples, what + "too few places compared");
-    verdict->check(f.presence == 0,
-                   what + std::to_string(f.presence) + " places where only one has a surface");
+                model.name.c_str(), at.normal_rad.size(), quantile(at.normal_rad, 0.5), n999,
+                quantile(at.normal_rad, 1), p999, quantile(at.position, 1) / diagonal,
+                f.seam.size(), seam, seam_rad);
+    verdict->check(at.normal_rad.size() > min_samples, what + "too few places compared");
+    verdict->check(at.presence == 0,
+                   what + std::to_string(at.presence) + " places where only one has a surface");
     verdict->check(f.adjacency == 0, what + std::to_string(f.adjacency) + " wrong neighbours");
     verdict->at_most(n999, max_normal_p999_rad, what + "normal p99.9 (rad)");
     verdict->at_most(p999, max_position_p999, what + "position p99.9 (diagonals)");
