@@ -100,11 +100,11 @@ static void phantom_points(const struct ring *ring, struct vec grid[5][5])
     }
 }
 
-/* The net of level 0 in the vertex's frame: only i,j <= 2 are set. */
-static void first_net(const struct quad *quad, const struct vertex_facts *facts, struct net *net)
+/* The net of level 0 in a frame: only i,j <= 2 are set. */
+static void first_net(const struct quad *quad, const struct vertex_facts *facts,
+                      const struct vec axis[3], struct net *net)
 {
     struct vec grid[4][4], origin = facts->limit;
-    const struct vec *axis = facts->axis;
     quad_grid(quad, grid);
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 4; i++)
@@ -232,21 +232,14 @@ static void write_frame(const struct vec axis[3], float texel[4])
         texel[n] = (float)(r[n] / length);
 }
 
-bool corner_needs_modes(const struct ring *ring)
-{
-    return ring_is_dart(ring) || (ring->n_faces <= MODES_MAX_VALENCE &&
-                                  (ring_has_foreign_crease(ring) || !ring_has_one_normal(ring)));
-}
-
-/* The frame in which single precision keeps everything: axis[2] is the normal where there is one. A
- * cone's tip becomes a needle (its axis shrinks more slowly than what lies across), so axis[0] then
- * lies along it, or the digits of the other coordinates would drown. */
+/* The frame in which single precision keeps everything: axis[2] is the normal where there is one.
+ */
 static bool vertex_frame(const struct ring *ring, const struct known_modes *known,
                          struct ring_modes *modes, struct vec axis[3], struct arena *arena)
 {
     struct vec t1, t2;
-    bool has_normal = ring_tangents(ring, &t1, &t2) && !ring_has_foreign_crease(ring);
-    if (corner_needs_modes(ring)) {
+    bool has_normal = ring_tangents(ring, &t1, &t2);
+    if (ring_is_dart(ring)) {
         known_modes_find(known, ring, arena, modes);
         t1 = ring_mode_apply(modes->tangent[0], ring);
         t2 = ring_mode_apply(modes->tangent[1], ring);
@@ -267,6 +260,28 @@ static void find_facts(struct vertex_facts *facts, const struct ring *ring,
     facts->is_known = true;
 }
 
+/* At a vertex without one normal each quad gets a frame of its own, by what its corner at the
+ * vertex has come to at this level: deep enough that levels near it and beyond lose nothing, where
+ * single precision has least to spare, and not so deep that those before it do. */
+enum { FRAME_LEVEL = 28 };
+
+/* axis[2] is the normal of that corner. axis[0] lies along its slowest direction: a cone becomes a
+ * needle there, a sector of many quads a fan that one wave stretches, and the digits of what lies
+ * across would drown in any other axis. Takes the vertex's frame, in which net[0] is. */
+static void own_frame(struct net net[2], const struct ring_modes *modes, struct vec axis[3])
+{
+    for (unsigned n = 0; n < FRAME_LEVEL; n++)
+        next_net(&net[n & 1], modes, &net[(n + 1) & 1]);
+    const struct ring *ring = &net[FRAME_LEVEL & 1].ring;
+    struct vec a = ring_edge(ring, 0), b = ring_edge(ring, 1), turned[3], out[3];
+    ring_frame(ring, vec_add(a, b), b, turned);
+    for (int k = 0; k < 3; k++) {
+        out[k] = vec_scale(axis[0], turned[k].x);
+        out[k] = vec_mad(vec_mad(out[k], turned[k].y, axis[1]), turned[k].z, axis[2]);
+    }
+    memcpy(axis, out, sizeof out);
+}
+
 unsigned corner_levels(const struct ring *ring)
 {
     const double pixel = 0x1p-24, pi = 3.14159265358979323846;
@@ -274,8 +289,8 @@ unsigned corner_levels(const struct ring *ring)
     bool is_whole = ring->closed && !ring->creases.edge;
     /* Where a whole ring's vertex does not follow it, all its points come nearer alike. */
     bool is_tip = is_whole && (ring->sharpness > 0 || ring_has_foreign_crease(ring));
-    double c = is_tip ? 1 : cos((is_whole ? 2 : 1) * pi / ring->n_faces);
-    double eigenvalue = fmax((5 + c + sqrt((c + 9) * (c + 1))) / 16, 0.5);
+    double angle = is_tip ? 0 : (is_whole ? 2 : 1) * pi / ring->n_faces;
+    double eigenvalue = fmax(ring_eigenvalue(angle), 0.5);
     double levels = ceil(log(pixel) / log(eigenvalue)) + 2;
     return (unsigned)fmin(fmax(levels, LIMIT_MIN_LEVELS), LIMIT_MAX_LEVELS);
 }
@@ -301,8 +316,13 @@ bool corner_table(const struct quad *quad, unsigned levels, const struct known_m
         net[k].ring = needs_window(ring)
                           ? ring_take(arena, WINDOW, false, false)
                           : ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
-    first_net(quad, facts, &net[0]);
-    write_frame(facts->axis, texels[0]);
+    struct vec axis[3] = {facts->axis[0], facts->axis[1], facts->axis[2]};
+    first_net(quad, facts, axis, &net[0]);
+    if (!ring_has_one_normal(ring)) {
+        own_frame(net, &facts->modes, axis);
+        first_net(quad, facts, axis, &net[0]);
+    }
+    write_frame(axis, texels[0]);
     float *scales = texels[1];
     memset(scales, 0, (LIMIT_CORNER_HEAD(levels) - 1) * sizeof *texels);
     texels += LIMIT_CORNER_HEAD(levels);

@@ -183,7 +183,7 @@ void limit_patch_evaluate(const struct limit_tables *tables, const struct limit_
     *out = (struct limit_point){0};
     if (patch->is_vertex) {
         out->has_normal = !(node->levels & LIMIT_NO_NORMAL);
-        out->n = (struct vec){0, 0, out->has_normal};
+        out->n = (struct vec){0, 0, 1};
     } else {
         sum_points(patch, out);
         set_normal(patch, out); /* in the node's own frame, as on the GPU */

@@ -19,7 +19,10 @@ struct limit_place {
     double a, b;
 };
 
-/* World. At an extraordinary vertex itself all derivatives are zero: only the normal is known. */
+/* World. At an extraordinary vertex itself all derivatives are zero: only the normal is known.
+ *
+ * Where the vertex has no single normal (ring.h) has_normal is false, and n is the normal that the
+ * face's own corner comes to there: for who must draw something. */
 struct limit_point {
     struct vec s;
     struct vec su, sv, suu, suv, svv; /* by u and v, or by the place's a and b */

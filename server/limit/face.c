@@ -47,7 +47,7 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
     if (ring_is_dart(ring) && ring->n_faces > MODES_MAX_VALENCE) {
         b->dart_valence = ring->n_faces;
     } else if (!b->tables) {
-        if (corner_needs_modes(ring))
+        if (ring_is_dart(ring))
             known_modes_add(b->modes, ring, &b->arena);
     } else {
         struct limit_node *out = &b->tables->nodes[node];

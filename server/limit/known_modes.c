@@ -7,12 +7,9 @@
 
 static const struct known_modes *look_up(const struct known_modes *list, const struct ring *ring)
 {
-    for (; list; list = list->older)
-        if (list->n_faces == ring->n_faces && list->closed == ring->closed &&
-            list->dart == ring_is_dart(ring) && list->sharp == (ring->sharpness > 0) &&
-            list->foreign_crease == ring_has_foreign_crease(ring))
-            return list;
-    return NULL;
+    while (list && list->n_faces != ring->n_faces)
+        list = list->older;
+    return list;
 }
 
 void known_modes_add(struct known_modes **list, const struct ring *ring, struct arena *arena)
@@ -22,18 +19,10 @@ void known_modes_add(struct known_modes **list, const struct ring *ring, struct 
     struct known_modes *made = malloc(sizeof *made);
     if (!made)
         return;
-    *made = (struct known_modes){.n_faces = ring->n_faces,
-                                 .closed = ring->closed,
-                                 .dart = ring_is_dart(ring),
-                                 .sharp = ring->sharpness > 0,
-                                 .foreign_crease = ring_has_foreign_crease(ring),
-                                 .older = *list};
+    *made = (struct known_modes){.n_faces = ring->n_faces, .older = *list};
     size_t mark = arena->used;
-    struct ring like = ring_take(arena, ring->n_faces, ring->closed, made->dart);
-    like.sharpness = ring->sharpness;
-    like.sheets = ring->sheets;
-    if (made->dart)
-        like.creases.edge[0] = CAGE_SHARPNESS_INFINITE;
+    struct ring like = ring_take(arena, ring->n_faces, true, true);
+    like.creases.edge[0] = CAGE_SHARPNESS_INFINITE;
     ring_modes_init(&made->modes, &like, arena);
     arena->used = mark;
     *list = made;
@@ -67,9 +56,6 @@ void known_modes_find(const struct known_modes *list, const struct ring *ring, s
         ring_modes_init(modes, ring, arena);
         return;
     }
-    *modes = known->modes;
-    if (!known->dart)
-        return;
     uint32_t edge[2];
     crease_vertex_rule(ring, edge);
     turn(known->modes.position, ring->n_faces, edge[0], modes->position);

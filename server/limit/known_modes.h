@@ -1,6 +1,5 @@
-/* The modes (modes.h) of a cage's darts, sharp vertices and foreign creases of many faces: found
- * while its plan is made, since they take 0.1 s at 64 faces and are the same wherever the ring's
- * points lie. */
+/* The modes (modes.h) of a cage's darts of many faces: found while its plan is made, since they
+ * take 0.1 s at 64 faces and are the same wherever the ring's points lie. */
 #ifndef SHEEN_LIMIT_KNOWN_MODES_H
 #define SHEEN_LIMIT_KNOWN_MODES_H
 
@@ -9,16 +8,14 @@
 /* Rings of fewer faces take 0.3 ms. */
 enum { KNOWN_MODES_MIN_FACES = 9 };
 
-/* A list, empty: NULL; 6 for each number of faces at most. A dart's edge is the ring's first. */
+/* A list, empty: NULL; one for each number of faces. The sharp edge is the ring's first. */
 struct known_modes {
     uint32_t n_faces;
-    bool closed, dart, sharp; /* sharp: the vertex */
-    bool foreign_crease;      /* ring.h */
     struct ring_modes modes;
     struct known_modes *older;
 };
 
-/* Adds those of a settled ring of at most MODES_MAX_VALENCE faces, unless it has few, or they are
+/* Adds those of a dart's ring of at most MODES_MAX_VALENCE faces, unless it has few, or they are
  * there, or memory is short. */
 void known_modes_add(struct known_modes **list, const struct ring *ring, struct arena *arena);
 void known_modes_finish(struct known_modes **list);

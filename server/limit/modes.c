@@ -3,60 +3,49 @@
 #include <math.h>
 #include <string.h>
 
+enum { MAX_SIZE = 2 * MODES_MAX_VALENCE + 2 };
 /* The slowest ratio of eigenvalues at MODES_MAX_VALENCE is about 0.99. */
 static const int ITERATIONS = 4000;
 
-/* The ring's points as one array: the vertex, its edges, its faces, the ends of a foreign crease.
- */
+/* The ring's points as one array: the vertex, its edges, its faces. */
+static struct vec *ring_point(const struct ring *ring, uint32_t i)
+{
+    uint32_t n = ring_edges(ring);
+    return i <= n ? &ring->edge[i - 1] : &ring->face[i - 1 - n];
+}
+
 static uint32_t ring_size(const struct ring *ring)
 {
-    return 1 + ring_edges(ring) + ring->n_faces + (ring_has_foreign_crease(ring) ? 2 : 0);
+    return 1 + ring_edges(ring) + ring->n_faces;
 }
 
 static struct vec point(const struct ring *ring, uint32_t i)
 {
-    uint32_t faces = 1 + ring_edges(ring), ends = faces + ring->n_faces;
-    return i == 0      ? ring->centre
-           : i < faces ? ring->edge[i - 1]
-           : i < ends  ? ring->face[i - faces]
-                       : ring->sheets.end[i - ends];
-}
-
-static void set_point(struct ring *ring, uint32_t i, struct vec to)
-{
-    uint32_t faces = 1 + ring_edges(ring), ends = faces + ring->n_faces;
-    struct vec *at = i == 0      ? &ring->centre
-                     : i < faces ? &ring->edge[i - 1]
-                     : i < ends  ? &ring->face[i - faces]
-                                 : &ring->sheets.end[i - ends];
-    *at = to;
+    return i == 0 ? ring->centre : *ring_point(ring, i);
 }
 
 /* matrix[i][j]: what new point i takes of old point j. */
-static void subdivision_matrix(const struct ring *ring,
-                               double matrix[MODES_MAX_POINTS][MODES_MAX_POINTS],
+static void subdivision_matrix(const struct ring *ring, double matrix[MAX_SIZE][MAX_SIZE],
                                struct arena *arena)
 {
     uint32_t n = ring_size(ring);
-    bool creased = ring->creases.edge;
-    struct ring in = ring_take(arena, ring->n_faces, ring->closed, creased);
-    struct ring out = ring_take(arena, ring->n_faces, ring->closed, creased);
-    in.sharpness = ring->sharpness;
-    in.sheets = ring->sheets;
-    for (uint32_t k = 0; creased && k < ring_edges(ring); k++)
+    struct ring in = ring_take(arena, ring->n_faces, true, true);
+    struct ring out = ring_take(arena, ring->n_faces, true, true);
+    for (uint32_t k = 0; k < ring_edges(ring); k++)
         in.creases.edge[k] = in.creases.far[k] = ring->creases.edge[k];
     for (uint32_t j = 0; j < n; j++) {
-        for (uint32_t i = 0; i < n; i++)
-            set_point(&in, i, (struct vec){i == j, 0, 0});
+        in.centre = (struct vec){j == 0, 0, 0};
+        for (uint32_t i = 1; i < n; i++)
+            *ring_point(&in, i) = (struct vec){i == j, 0, 0};
         ring_refine(&in, &out);
         for (uint32_t i = 0; i < n; i++)
             matrix[i][j] = point(&out, i).x;
     }
 }
 
-static void multiply_left(double matrix[MODES_MAX_POINTS][MODES_MAX_POINTS], uint32_t n, double *x)
+static void multiply_left(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, double *x)
 {
-    double y[MODES_MAX_POINTS] = {0};
+    double y[MAX_SIZE] = {0};
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t j = 0; j < n; j++)
             y[j] += x[i] * matrix[i][j];
@@ -100,8 +89,8 @@ static void orient(struct ring_modes *modes, const struct ring *ring, struct are
 }
 
 /* The left eigenvector of eigenvalue 1: what the vertex tends to. */
-static void find_position(double matrix[MODES_MAX_POINTS][MODES_MAX_POINTS], uint32_t n,
-                          int iterations, double *position)
+static void find_position(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int iterations,
+                          double *position)
 {
     double sum = 0;
     memset(position, 0, n * sizeof *position);
@@ -125,8 +114,8 @@ static void without_position(double *x, uint32_t n, const double *position)
 }
 
 /* The two next left eigenvectors: a the slower one, b orthogonal to it. */
-static void find_tangents(double matrix[MODES_MAX_POINTS][MODES_MAX_POINTS], uint32_t n,
-                          int iterations, const double *position, double *a, double *b)
+static void find_tangents(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int iterations,
+                          const double *position, double *a, double *b)
 {
     for (uint32_t i = 0; i < n; i++) { /* any start will do */
         a[i] = sin(1.0 + 7 * i);
@@ -148,14 +137,13 @@ static void find_tangents(double matrix[MODES_MAX_POINTS][MODES_MAX_POINTS], uin
 void ring_modes_init(struct ring_modes *modes, const struct ring *ring, struct arena *arena)
 {
     uint32_t n = ring_size(ring);
-    double matrix[MODES_MAX_POINTS][MODES_MAX_POINTS];
+    double matrix[MAX_SIZE][MAX_SIZE];
     size_t mark = arena->used;
     int iterations = ring->n_faces <= 8 ? 400 : ITERATIONS;
     subdivision_matrix(ring, matrix, arena);
     find_position(matrix, n, iterations, modes->position);
     find_tangents(matrix, n, iterations, modes->position, modes->tangent[0], modes->tangent[1]);
-    if (ring_is_dart(ring))
-        orient(modes, ring, arena);
+    orient(modes, ring, arena);
     arena->used = mark;
 }
 

@@ -142,12 +142,17 @@ struct vec ring_limit(const struct ring *ring)
     return vec_mad(limit, 1 / (n * (n + 5)), faces);
 }
 
+double ring_eigenvalue(double angle)
+{
+    double c = cos(angle);
+    return (5 + c + sqrt((c + 9) * (c + 1))) / 16;
+}
+
 /* Limit tangents of an interior vertex: the masks of limit-surface 4.6. */
 static void smooth_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
 {
     uint32_t n = ring->n_faces;
-    double c = cos(2 * PI / n);
-    double a = 1 + c + cos(PI / n) * sqrt(2 * (9 + c));
+    double a = 16 * ring_eigenvalue(2 * PI / n) - 4;
     *t1 = *t2 = (struct vec){0, 0, 0};
     /* Around the circle by rotation: sines and cosines would be most of a large ring's cost. */
     double step_x = cos(2 * PI / n), step_y = sin(2 * PI / n), x = 1, y = 0;
@@ -162,20 +167,38 @@ static void smooth_tangents(const struct ring *ring, struct vec *t1, struct vec 
     }
 }
 
-/* Tangents of a crease sector of two and more quads: along the crease, and across it (Biermann,
- * Levin and Zorin 2000; OpenSubdiv sdc/catmarkScheme.h). */
+/* Tangents of a crease sector of two and more quads: left eigenvectors x M = l x of the sector's
+ * own subdivision matrix M (old points to new ones), since what such a mask makes of the points
+ * shrinks by l in every step. Along the crease that is edge[0] - edge[n] with l = 1/2. Across it,
+ * with theta = pi/n, c = cos(theta), s = sin(theta), it is a wave, whose columns of M say:
+ *
+ *   face k,  weight sin(k theta) + sin((k + 1) theta):   1/4 + a/16 = l, so that a = 16 l - 4;
+ *   edge k inside, weight a sin(k theta):                16 l^2 - (10 + 2 c) l + 1 = 0;
+ *   edge 0 and n, weight `ends`:                         centre/8 + ends/2 + l s = l ends;
+ *   the vertex, weight `centre`:      3/4 centre + ends + (6 l - 1) sum = l centre,
+ *                                     sum = s/(1 - c) = that of sin(k theta) over the sector.
+ *
+ * The well-known mask across (Biermann, Levin and Zorin 2000; OpenSubdiv sdc/catmarkScheme.h) is
+ * that of an edge rule which these authors modified beside a crease. Catmull and Clark's rule,
+ * by which cages are refined here, has another eigenvector: with three quads and more the normals
+ * of a rough surface come to a direction degrees away from that mask's.
+ *
+ * The wave is the slower of the two, and comes first. */
 static void crease_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
 {
     uint32_t n = ring->n_faces;
-    double theta = PI / n, c = cos(theta), s = sin(theta), r = (c + 1) / s;
-    *t1 = vec_sub(ring->edge[0], ring->edge[n]);
-    *t2 = vec_scale(ring->centre, 4 * r * (c - 1));
-    *t2 = vec_mad(*t2, -r * (1 + 2 * c), vec_add(ring->edge[0], ring->edge[n]));
-    *t2 = vec_mad(*t2, s, ring->face[0]);
-    for (uint32_t k = 1; k < n; k++) {
-        *t2 = vec_mad(*t2, 4 * sin(k * theta), ring->edge[k]);
-        *t2 = vec_mad(*t2, sin(k * theta) + sin((k + 1) * theta), ring->face[k]);
+    double theta = PI / n, c = cos(theta), s = sin(theta);
+    double l = ring_eigenvalue(theta), a = 16 * l - 4, sum = s / (1 - c);
+    double ends = (sum * (6 * l - 1) - 2 * l * s * (3 - 4 * l)) / (2 * (4 * l - 1) * (l - 1));
+    double centre = (8 * l - 4) * ends - 8 * l * s;
+    *t1 = vec_scale(vec_add(ring->edge[0], ring->edge[n]), ends);
+    *t1 = vec_mad(*t1, centre, ring->centre);
+    for (uint32_t k = 0; k < n; k++) {
+        if (k > 0)
+            *t1 = vec_mad(*t1, a * sin(k * theta), ring->edge[k]);
+        *t1 = vec_mad(*t1, sin(k * theta) + sin((k + 1) * theta), ring->face[k]);
     }
+    *t2 = vec_sub(ring->edge[n], ring->edge[0]);
 }
 
 /* A smooth corner of one quad: both borders run along a, and the normal is the limit of
@@ -221,7 +244,11 @@ static void lens_tangents(const struct ring *ring, struct vec *t1, struct vec *t
 
 bool ring_has_one_normal(const struct ring *ring)
 {
-    return !(ring->sharpness > 0) || (!ring->closed && ring->n_faces == 1);
+    if (ring_has_foreign_crease(ring))
+        return false;
+    if (ring->closed)
+        return !(ring->sharpness > 0);
+    return ring->n_faces <= (ring->sharpness > 0 ? 1 : 3);
 }
 
 bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)

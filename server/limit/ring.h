@@ -98,12 +98,26 @@ void ring_refine_around(const struct ring *in, struct ring *out);
 /* Where the vertex of a settled ring (crease.h) lies on the limit surface. */
 struct vec ring_limit(const struct ring *ring);
 
-/* Whether the surface has one normal at the vertex of a settled ring: not at a cone's tip. */
+/* What a step leaves of a wave cos(angle k) or sin(angle k) over the edges of a ring: its larger
+ * eigenvalue (Stam 1998, appendix A). */
+double ring_eigenvalue(double angle);
+
+/* Whether the surface has one normal at the vertex of a settled ring.
+ *
+ * A sharp vertex of more than one quad has none, nor has one that follows a foreign crease: they
+ * are tips. Nor has a crease sector of five quads and more: the wave sin(2 pi k / n) shrinks more
+ * slowly than the crease's own direction (ring_eigenvalue() > 1/2), so that the normals inside come
+ * to one direction and those beside the crease to another. In a sector of four both shrink by 1/2
+ * and are coupled (a Jordan block): the normals turn on as 1/level, and are a degree from their
+ * limit where single precision ends.
+ *
+ * The smooth corner of one quad turns on as 1/level too, but alike in all directions. It counts as
+ * having one, which on rough cages is 0.1 degrees from those of level 30. */
 bool ring_has_one_normal(const struct ring *ring);
 
 /* Two tangents at the limit position of a settled ring that is no dart, such that their product is
- * the limit normal along the winding. Returns ring_has_one_normal(); without one the tangents are
- * some directions. */
+ * the limit normal along the winding; in a crease sector the slower one first. Returns
+ * ring_has_one_normal(); without one the tangents are some directions. */
 bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2);
 
 /* The right-handed orthonormal frame of two tangents: axis[0] along t1, axis[2] along t1 x t2.

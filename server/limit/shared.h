@@ -17,11 +17,11 @@ enum { SHARED_MIN_FACES = 9 };
 struct vertex_facts {
     bool has_limit; /* the limit position is known */
     struct vec limit;
-    bool is_known;   /* the rest is */
-    bool has_normal; /* the limit surface has one there */
-    struct vec axis[3];
+    bool is_known;      /* the rest is */
+    bool has_normal;    /* the limit surface has one there */
+    struct vec axis[3]; /* of its frame; without a normal each face finds its own by this one */
     struct vec edges, faces; /* sums over the ring in that frame */
-    struct ring_modes modes; /* where there are no masks in closed form */
+    struct ring_modes modes; /* of a dart */
 };
 
 struct shared_ring {

@@ -77,7 +77,9 @@ surface_point evaluate_ring(const limit_tables &tables, const limit_node &node, 
 
 curvatures principal_curvatures(const surface_point &s)
 {
-    double e = dot(s.du, s.du), f = dot(s.du, s.dv), g = dot(s.dv, s.dv), w = e * g - f * f;
+    double e = dot(s.du, s.du), f = dot(s.du, s.dv), g = dot(s.dv, s.dv);
+    vec3 m = cross(s.du, s.dv); /* e g - f f would cancel where du and dv are nearly parallel */
+    double w = dot(m, m);
     double mean = (e * s.lvv - 2 * f * s.luv + g * s.luu) / (2 * w);
     double gauss = (s.luu * s.lvv - s.luv * s.luv) / w;
     double half = std::sqrt(std::fmax(mean * mean - gauss, 0));

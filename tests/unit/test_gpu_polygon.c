@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "server/gpu/mesh.h"
+#include "server/limit/evaluate.h"
 #include "tests/unit/polygon_scene.h"
 
 static struct frame render(struct scene *scene, const struct frame_request *request)
@@ -195,6 +196,43 @@ static void test_edges_of_a_quad(void **state)
     close_scene(&scene);
 }
 
+/* Where the surface has no single normal a polygon still has one to be drawn with: a sharp vertex
+ * in the middle of a rough sheet, and a crease sector of six faces. */
+static void test_vertices_without_a_normal(void **state)
+{
+    (void)state;
+    enum { FACES = 6 };
+    for (int tagged = 0; tagged < 2; tagged++) {
+        char text[2000];
+        int used = sprintf(text, "v 0 0 1\n"), n_rim = 2 * FACES + !tagged;
+        for (int k = 0; k < n_rim; k++)
+            used += sprintf(text + used, "v %.9f %.9f %.9f\n", cos(k * (tagged ? 0.5236 : 0.25)),
+                            sin(k * (tagged ? 0.5236 : 0.25)), 0.1 * (k * k % 7));
+        for (int k = 0; k < FACES; k++)
+            used += sprintf(text + used, "f 1 %d %d %d\n", 2 + 2 * k, 3 + 2 * k,
+                            2 + (2 * k + 2) % n_rim);
+        if (tagged)
+            used += sprintf(text + used, "t corner 1/1/0 0 10\n");
+        struct limit_tables tables;
+        struct limit_point tip;
+        build(text, (size_t)used, &tables);
+        assert_true(limit_evaluate(&tables, 0, 0, 0, &tip) && !tip.has_normal);
+        for (uint32_t level = 0; level < 3; level++) {
+            struct mesh mesh;
+            struct error error;
+            const struct frame_watch watch = {0};
+            assert_true(mesh_init(&mesh, &tables, level, &watch, &error));
+            for (size_t k = 0; k < mesh.n_vertices; k++) {
+                const float *n = mesh.vertex[k].normal;
+                assert_true(fabsf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-5f);
+                assert_true(n[2] > 0);
+            }
+            mesh_finish(&mesh);
+        }
+        limit_tables_finish(&tables);
+    }
+}
+
 /* A light-only change draws no polygon again; another surface does, and nothing of the last one
  * shows. */
 static void test_kept_planes(void **state)
@@ -302,9 +340,13 @@ static void test_too_many(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_error_falls),     cmocka_unit_test(test_wireframe),
-        cmocka_unit_test(test_edges_of_a_quad), cmocka_unit_test(test_kept_planes),
-        cmocka_unit_test(test_ngons),           cmocka_unit_test(test_too_many),
+        cmocka_unit_test(test_error_falls),
+        cmocka_unit_test(test_wireframe),
+        cmocka_unit_test(test_vertices_without_a_normal),
+        cmocka_unit_test(test_edges_of_a_quad),
+        cmocka_unit_test(test_kept_planes),
+        cmocka_unit_test(test_ngons),
+        cmocka_unit_test(test_too_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -73,9 +73,12 @@ static void test_no_normal_at_a_tip(void **state)
     assert_true(limit_evaluate(&tables, 0, 0, 0, &p));
     assert_near(p.s, (struct vec){-1, -1, -1}, 1e-12);
     assert_false(p.has_normal);
-    assert_near(p.n, (struct vec){0, 0, 0}, 0);
-    assert_true(limit_evaluate(&tables, 0, 1e-3, 1e-3, &p));
-    assert_true(p.has_normal);
+    struct vec own = p.n; /* of this face's corner */
+    const struct limit_place beside = {.node = 0, .a = 0x1p-31, .b = 0x1p-31};
+    assert_true(limit_evaluate_at(&tables, &beside, &p) && p.has_normal);
+    assert_near(p.n, own, 1e-4);
+    assert_true(limit_evaluate(&tables, 2, 0, 0, &p) && !p.has_normal);
+    assert_true(vec_length(vec_sub(p.n, own)) > 0.1);
     /* What the table leaves out is no pixel of 2^-24 of the face, which is two units wide. */
     const struct limit_node *node = &tables.nodes[tables.nodes[0].first];
     assert_int_equal(node->kind, LIMIT_CORNER);
