@@ -98,20 +98,30 @@ void fetch_points(SubPatch patch_, out Net p, out float scale)
     }
 }
 
-// The normal of derivatives at st, and |su x sv|^2. Where a derivative vanishes or both are parallel
-// (a collapsed edge, a pole, a smooth corner of one quad) it is the limit from inside the patch, by
-// the second derivatives; zero where there is none. To be taken in the node's own frame: there each
-// coordinate keeps its digits where su and sv become parallel, and any rotation would mix them.
+// The normal of derivatives at st, and |su x sv|^2; zero where there is none. To be taken in the node's
+// own frame: there each coordinate keeps its digits where su and sv become parallel, and any rotation
+// would mix them.
+//
+// Where su x sv vanishes because a derivative does (a pole, a collapsed edge) or both are parallel (the
+// corner of a patch whose borders meet in one line) the normal is the limit from inside: su x sv as it
+// grows towards the patch's middle, to first order: du x sv + su x dv, where du and dv are what su and sv
+// gain on the way. That is exact; su x sv a little way inside would be off by its second-order terms.
+// Where both derivatives vanish that is zero too, and the second order alone is left: du x dv.
+//
+// A derivative counts as vanished below 1e-4 of the other one, both below 1e-4 of the second ones, where
+// single precision keeps no more than a few digits of them. Parallel is what is so to the last digit:
+// near the smooth corner of one quad su x sv shrinks to 1e-10 and is still right in the node's frame.
 vec3 limit_normal(vec3 su, vec3 sv, vec3 suu, vec3 suv, vec3 svv, vec2 st, out float area2)
 {
     vec3 n = cross(su, sv);
     area2 = dot(n, n);
     float u2 = dot(su, su), v2 = dot(sv, sv);
-    bool vanishes = min(u2, v2) < 1e-8 * max(u2, v2) || !(area2 > 1e-16 * u2 * v2);
-    vec2 inward = (0.5 - st) * 0.01;
-    su += inward.x * suu + inward.y * suv;
-    sv += inward.x * suv + inward.y * svv;
-    n = vanishes ? cross(su, sv) : n;
+    bool both_vanish =
+        max(u2, v2) < 1e-8 * max(max(dot(suu, suu), dot(svv, svv)), dot(suv, suv));
+    bool vanishes = both_vanish || min(u2, v2) < 1e-8 * max(u2, v2) || !(area2 > 1e-24 * u2 * v2);
+    vec2 inward = 0.5 - st;
+    vec3 du = inward.x * suu + inward.y * suv, dv = inward.x * suv + inward.y * svv;
+    n = !vanishes ? n : both_vanish ? cross(du, dv) : cross(du, sv) + cross(su, dv);
     float largest = max(max(abs(n.x), abs(n.y)), abs(n.z));
     return largest > 0.0 ? normalize(n / largest) : vec3(0.0);
 }

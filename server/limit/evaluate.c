@@ -140,17 +140,20 @@ static void sum_points(const struct limit_patch *patch, struct limit_point *out)
     }
 }
 
-/* Where a derivative vanishes or both are parallel, the limit from inside the patch (limit_normal()
- * of shaders/surface.glsl). */
+/* limit_normal() of shaders/surface.glsl, whose comment says why. */
 static void set_normal(const struct limit_patch *patch, struct limit_point *out)
 {
     struct vec su = out->su, sv = out->sv, n = vec_cross(su, sv);
     double area2 = vec_dot(n, n), u2 = vec_dot(su, su), v2 = vec_dot(sv, sv);
-    if (fmin(u2, v2) < 1e-8 * fmax(u2, v2) || !(area2 > 1e-16 * u2 * v2)) {
-        double s = (0.5 - patch->s) * 0.01, t = (0.5 - patch->t) * 0.01;
-        su = vec_mad(vec_mad(su, s, out->suu), t, out->suv);
-        sv = vec_mad(vec_mad(sv, s, out->suv), t, out->svv);
-        n = vec_cross(su, sv);
+    double bend2 = fmax(fmax(vec_dot(out->suu, out->suu), vec_dot(out->svv, out->svv)),
+                        vec_dot(out->suv, out->suv));
+    bool both_vanish = fmax(u2, v2) < 1e-8 * bend2;
+    bool vanishes = both_vanish || fmin(u2, v2) < 1e-8 * fmax(u2, v2) || !(area2 > 1e-24 * u2 * v2);
+    if (vanishes) {
+        double s = 0.5 - patch->s, t = 0.5 - patch->t;
+        struct vec du = vec_mad(vec_scale(out->suu, s), t, out->suv);
+        struct vec dv = vec_mad(vec_scale(out->suv, s), t, out->svv);
+        n = both_vanish ? vec_cross(du, dv) : vec_add(vec_cross(du, sv), vec_cross(su, dv));
     }
     double largest = fmax(fmax(fabs(n.x), fabs(n.y)), fabs(n.z));
     out->has_normal = largest > 0;

@@ -14,6 +14,7 @@
 
 #include "server/cage/read/read.h"
 #include "server/limit/tables.h"
+#include "server/limit/vec.h"
 
 static inline void build(const char *bytes, size_t size, struct limit_tables *tables)
 {
@@ -58,6 +59,43 @@ static inline void build_torus(unsigned n, struct limit_tables *tables)
     }
     build(text, used, tables);
     free(text);
+}
+
+/* One bicubic Bezier patch as a cage: its 16 B-spline points, of whose nine faces the middle one,
+ * BEZIER_FACE, has a surface (boundary mode NONE). */
+enum { BEZIER_FACE = 4 };
+
+static inline void build_bezier(struct vec bezier[4][4], struct limit_tables *tables)
+{
+    static const double weight[4][4] = {{6, -7, 2, 0}, {0, 2, -1, 0}, {0, -1, 2, 0}, {0, 2, -7, 6}};
+    char text[4000];
+    int used = 0;
+    for (int j = 0; j < 4; j++) {
+        for (int i = 0; i < 4; i++) {
+            struct vec p = {0, 0, 0};
+            for (int n = 0; n < 16; n++)
+                p = vec_mad(p, weight[j][n / 4] * weight[i][n % 4], bezier[n / 4][n % 4]);
+            used += sprintf(text + used, "v %.17g %.17g %.17g\n", p.x, p.y, p.z);
+        }
+    }
+    for (int k = 1; k <= 11; k++)
+        if (k % 4)
+            used += sprintf(text + used, "f %d %d %d %d\n", k, k + 1, k + 5, k + 4);
+    used += sprintf(text + used, "t interpolateboundary 1/0/0 0\n");
+    build(text, (size_t)used, tables);
+}
+
+/* An eighth of a sphere about the origin, nearly, whose last row (turned: column) is its north
+ * pole. */
+static inline void build_octant(bool turned, struct limit_tables *tables)
+{
+    const double k = 0.5522847498307936, arc[4][2] = {{1, 0}, {1, k}, {k, 1}, {0, 1}};
+    struct vec bezier[4][4];
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++)
+            *(turned ? &bezier[3 - i][j] : &bezier[j][i]) =
+                (struct vec){arc[j][0] * arc[i][0], arc[j][0] * arc[i][1], arc[j][1]};
+    build_bezier(bezier, tables);
 }
 
 #endif

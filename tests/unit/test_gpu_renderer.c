@@ -223,6 +223,36 @@ static void test_collapsed_edges(void **state)
     limit_tables_finish(&tables);
 }
 
+/* The pole of a sphere, so near that a derivative is lost: straight up but for the sphere's own
+ * bend. */
+static void test_pole(void **state)
+{
+    (void)state;
+    enum { SIZE = 64 };
+    struct renderer *renderer = open_renderer(0);
+    for (int turned = 0; turned < 2; turned++) {
+        struct limit_tables tables;
+        build_octant(turned, &tables);
+        struct renderer_model *model = upload(renderer, &tables);
+        struct frame_request request = request_for(&tables, SIZE, SIZE);
+        request.camera = (struct camera){
+            .kind = CAMERA_ORTHOGRAPHIC, .eye = {0, 0, 5}, .up = {0, 1, 0}, .ortho_height = 1e-4};
+        struct frame frame = render(renderer, model, &request);
+        size_t n_hits = hits(&frame);
+        if (n_hits < SIZE * SIZE / 5)
+            fail_msg("%zu pixels hit", n_hits);
+        const uint32_t(*ptex)[3] = frame.plane[3];
+        const float(*normal)[3] = frame.plane[2];
+        for (size_t k = 0; k < SIZE * SIZE; k++)
+            if (ptex[k][0] != LIMIT_NO_FACE && !(hypotf(normal[k][0], normal[k][1]) < 2e-4f))
+                fail_msg("pixel %zu: normal %g %g", k, normal[k][0], normal[k][1]);
+        frame_finish(&frame);
+        renderer_model_destroy(renderer, model);
+        limit_tables_finish(&tables);
+    }
+    renderer_destroy(renderer);
+}
+
 static void test_refused_requests(void **state)
 {
     (void)state;
@@ -273,10 +303,15 @@ static void test_unknown_devices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_point_banks),     cmocka_unit_test(test_node_banks),
-        cmocka_unit_test(test_too_few_texels),  cmocka_unit_test(test_light_only),
-        cmocka_unit_test(test_image_pattern),   cmocka_unit_test(test_no_ghost_of_the_light),
-        cmocka_unit_test(test_collapsed_edges), cmocka_unit_test(test_refused_requests),
+        cmocka_unit_test(test_point_banks),
+        cmocka_unit_test(test_node_banks),
+        cmocka_unit_test(test_too_few_texels),
+        cmocka_unit_test(test_light_only),
+        cmocka_unit_test(test_image_pattern),
+        cmocka_unit_test(test_no_ghost_of_the_light),
+        cmocka_unit_test(test_pole),
+        cmocka_unit_test(test_collapsed_edges),
+        cmocka_unit_test(test_refused_requests),
         cmocka_unit_test(test_unknown_devices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -88,6 +88,69 @@ static void test_no_normal_at_a_tip(void **state)
     limit_tables_finish(&tables);
 }
 
+static void assert_normal(const struct limit_tables *tables, double u, double v, struct vec n)
+{
+    struct limit_point p;
+    assert_true(limit_evaluate(tables, BEZIER_FACE, u, v, &p) && p.has_normal);
+    assert_near(p.n, n, 5e-6);
+}
+
+/* Straight up all along the pole, whichever derivative vanishes there. */
+static void test_pole(void **state)
+{
+    (void)state;
+    struct limit_tables tables;
+    for (int turned = 0; turned < 2; turned++) {
+        build_octant(turned, &tables);
+        for (double along = 0; along <= 1; along += 0.125)
+            assert_normal(&tables, turned ? 1 : along, turned ? along : 1, (struct vec){0, 0, 1});
+        limit_tables_finish(&tables);
+    }
+}
+
+/* At u = v = 0 su and sv are parallel: of S = (u - v, (u^2 + v^2) / 2 + u v / 4, u v + u^3 + v^3)
+ * the normal comes to (1, 0, 0) x (0, 5, 4). */
+static void test_parallel_derivatives(void **state)
+{
+    (void)state;
+    static const double linear[4] = {0, 1 / 3.0, 2 / 3.0, 1}, square[4] = {0, 0, 1 / 3.0, 1};
+    static const double cube[4] = {0, 0, 0, 1};
+    struct vec bezier[4][4];
+    struct limit_tables tables;
+    for (int j = 0; j < 4; j++) {
+        for (int i = 0; i < 4; i++) {
+            double both = linear[i] * linear[j];
+            bezier[j][i] =
+                (struct vec){linear[i] - linear[j], (square[i] + square[j]) / 2 + both / 4,
+                             both + cube[i] + cube[j]};
+        }
+    }
+    build_bezier(bezier, &tables);
+    assert_normal(&tables, 0, 0, vec_unit((struct vec){0, -4, 5}));
+    limit_tables_finish(&tables);
+}
+
+/* At u = v = 0 both derivatives vanish: of S = (u^2 + 2 u v, v^2 + u v, u^2 + v^2 + u^3) the normal
+ * towards the middle, along u = v, is (4, 1, 2) x (2, 3, 2). */
+static void test_both_derivatives_vanish(void **state)
+{
+    (void)state;
+    static const double linear[4] = {0, 1 / 3.0, 2 / 3.0, 1}, square[4] = {0, 0, 1 / 3.0, 1};
+    static const double cube[4] = {0, 0, 0, 1};
+    struct vec bezier[4][4];
+    struct limit_tables tables;
+    for (int j = 0; j < 4; j++) {
+        for (int i = 0; i < 4; i++) {
+            double both = linear[i] * linear[j];
+            bezier[j][i] = (struct vec){square[i] + 2 * both, square[j] + both,
+                                        square[i] + square[j] + cube[i]};
+        }
+    }
+    build_bezier(bezier, &tables);
+    assert_normal(&tables, 0, 0, vec_unit((struct vec){-4, -4, 10}));
+    limit_tables_finish(&tables);
+}
+
 /* A smooth corner of one quad: the normal turns on towards the corner, as 1/n at 2^-n, and must
  * come to the one that the corner itself has. */
 static void test_corner_of_one_quad(void **state)
@@ -234,7 +297,8 @@ int main(void)
         cmocka_unit_test(test_extraordinary_vertex), cmocka_unit_test(test_next_to_the_vertex),
         cmocka_unit_test(test_no_normal_at_a_tip),   cmocka_unit_test(test_hole),
         cmocka_unit_test(test_corner_of_one_quad),   cmocka_unit_test(test_derivatives),
-        cmocka_unit_test(test_corners_of_a_face),
+        cmocka_unit_test(test_corners_of_a_face),    cmocka_unit_test(test_pole),
+        cmocka_unit_test(test_parallel_derivatives), cmocka_unit_test(test_both_derivatives_vanish),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
