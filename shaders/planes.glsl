@@ -15,7 +15,8 @@ layout(binding = 3, rgba32ui) writeonly uniform uimage2D ptex;
 // border.glsl
 layout(binding = 4, r32ui) writeonly uniform uimage2D border;
 
-// Second fundamental form over first, in the basis of basis.glsl.
+// Second fundamental form over first, in the basis of basis.glsl: a and b are the steps in the surface's
+// parameters that go one unit along e1 and e2.
 vec3 shape_operator(Surface s, vec3 n_world)
 {
     if (!(s.area2 > 0.0))
@@ -24,12 +25,8 @@ vec3 shape_operator(Surface s, vec3 n_world)
     tangent_basis(n_world, e1, e2);
     e1 = to_camera(e1);
     e2 = to_camera(e2);
-    float e = dot(s.su, s.su), f = dot(s.su, s.sv), g = dot(s.sv, s.sv);
-    mat2 inverse = mat2(g, -f, -f, e) / s.area2;
-    vec2 a = inverse * vec2(dot(s.su, e1), dot(s.sv, e1));
-    vec2 b = inverse * vec2(dot(s.su, e2), dot(s.sv, e2));
-    mat2 second =
-        mat2(dot(s.suu, s.n), dot(s.suv, s.n), dot(s.suv, s.n), dot(s.svv, s.n));
+    vec2 a = vec2(dot(s.to_u, e1), dot(s.to_v, e1)), b = vec2(dot(s.to_u, e2), dot(s.to_v, e2));
+    mat2 second = mat2(s.bend.xy, s.bend.yz);
     return vec3(dot(a, second * a), dot(a, second * b), dot(b, second * b)) / s.scale;
 }
 

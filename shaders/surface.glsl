@@ -6,7 +6,9 @@
 struct Surface {
     vec3 s;               // position relative to the eye, camera space, world units
     vec3 su, sv;          // derivatives by the sub-patch's own parameters, divided by scale
-    vec3 suu, suv, svv;   // second derivatives, alike
+    vec3 to_u, to_v;      // tangents: a step d along the surface is dot(to_u, d), dot(to_v, d) in those
+                          // parameters, times scale
+    vec3 bend;            // the second derivatives uu, uv, vv along n, divided by scale
     vec3 n;               // unit normal, zero where there is none
     float area2;          // |su x sv|^2
     float scale;          // power of two
@@ -158,14 +160,19 @@ Surface patch_at(Node node, mat3 frame, Net p, float scale, vec2 st)
     vec3 suv = dv.x * (d[1] - d[0]) + dv.y * (d[2] - d[1]) + dv.z * (d[3] - d[2]);
     float area2;
     vec3 n = limit_normal(su, sv, suu, suv, svv, st, area2);
-    return Surface(node.origin + frame * (s * scale), frame * su, frame * sv, frame * suu,
-                   frame * suv, frame * svv, frame * n, area2, scale);
+    // Before any rotation as well: the gradients, since near extraordinary vertices su and sv are nearly
+    // parallel, and what is along n, since there it is far smaller than what is across.
+    float to_unit = inversesqrt(area2);
+    vec3 to_u = cross(sv, n) * to_unit, to_v = cross(n, su) * to_unit;
+    return Surface(node.origin + frame * (s * scale), frame * su, frame * sv, frame * to_u,
+                   frame * to_v, vec3(dot(suu, n), dot(suv, n), dot(svv, n)), frame * n, area2,
+                   scale);
 }
 
-// The extraordinary vertex itself, where all levels end: the origin and axes of its frame. A
-// cone's tip has no tangents.
+// The extraordinary vertex itself, where all levels end: the origin and axes of its frame. A cone's tip
+// has no tangents, nor has a crease sector of many faces one normal (server/limit/ring.h).
 Surface limit_of(Node node, mat3 frame, float scale)
 {
-    return Surface(node.origin, frame[0], frame[1], vec3(0.0), vec3(0.0), vec3(0.0),
+    return Surface(node.origin, frame[0], frame[1], frame[0], frame[1], vec3(0.0),
                    float(node.has_normal) * frame[2], 1.0, scale);
 }

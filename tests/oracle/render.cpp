@@ -85,6 +85,8 @@ void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
         {"N", "N.Z", &planes->nz},
         {"ptex", "ptex.u", &planes->u},
         {"ptex", "ptex.v", &planes->v},
+        {"k", "k.min", &planes->k_min},
+        {"k", "k.max", &planes->k_max},
         {"light", "light.s", &planes->s},
         {"light", "light.t", &planes->t},
         {"dlight", "light.dsdx", &planes->dsdx},

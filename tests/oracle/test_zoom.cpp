@@ -25,6 +25,8 @@ namespace
 const double pixel_of_face = 1.0 / (1 << 24);
 const double max_residual_px = 0.2;
 const double max_normal_p999_rad = 2e-6, max_normal_high_p999_rad = 2e-5; /* to 8 faces; beyond */
+const double max_curvature_p999 = 1e-4;   /* relative to the larger one */
+const double flat_per_pixel = 1e-12;      /* curvature times a pixel's size that counts as none */
 const double max_position_p999_px = 0.05; /* P to the surface at (face, u, v) */
 /* With the eye a face's size away and that pixel, single precision knows the eye to a pixel only:
  * measured 1.6 px for P, 0.83 px for (u, v) and 4.1 px for P along the ray. */
@@ -172,7 +174,7 @@ scene make_scene(const loose_cage &cage, const solid_cage &solid, const local_su
 struct figures {
     size_t hit = 0, elsewhere = 0, compared = 0;
     double residual_px = 0, place_px = 0; /* off the pixel's ray: P; the surface at (face, u, v) */
-    std::vector<double> normal_rad, position_px, depth;
+    std::vector<double> normal_rad, curvature, position_px, depth;
 };
 
 figures measure(const scene &scene, const planes &planes, const local_surface &surface,
@@ -202,6 +204,11 @@ figures measure(const scene &scene, const planes &planes, const local_surface &s
             continue; /* deeper still */
         worse(&f.place_px, truth.p, i);
         f.normal_rad.push_back(angle(planes.normal(i), truth.normal));
+        double size = std::fmax(std::fabs(truth.k.least), std::fabs(truth.k.most));
+        size = std::fmax(size, flat_per_pixel / scene.pixel);
+        double off = std::fmax(std::fabs((double)planes.k_min[i] - truth.k.least),
+                               std::fabs((double)planes.k_max[i] - truth.k.most));
+        f.curvature.push_back(off / size);
         f.position_px.push_back(length(planes.position(i) - truth.p) / scene.pixel);
         f.depth.push_back(-std::log2(std::fmax(planes.u[i], planes.v[i])));
     }
@@ -213,11 +220,13 @@ void judge_view(const std::string &name, const corner_vertex &v, const scene &sc
 {
     size_t all = (size_t)(width_px * height_px);
     double n999 = quantile(f.normal_rad, 0.999), p999 = quantile(f.position_px, 0.999);
+    double k999 = quantile(f.curvature, 0.999);
     std::printf("%-20s %-16s %3zu | %6zu %5zu | %4.1f %4.1f | %7.1e %7.1e | %7.1e %7.1e | %7.1e "
-                "%7.1e \n",
+                "%7.1e | %7.1e %7.1e\n",
                 name.c_str(), scene.camera.name.c_str(), v.n_faces, f.hit, f.elsewhere,
                 quantile(f.depth, 0.01), quantile(f.depth, 1), f.residual_px, f.place_px, n999,
-                quantile(f.normal_rad, 1), p999, quantile(f.position_px, 1));
+                quantile(f.normal_rad, 1), k999, quantile(f.curvature, 1), p999,
+                quantile(f.position_px, 1));
     std::string what = name + " " + scene.camera.name + " " + std::to_string(v.n_faces) + ": ";
     verdict->check(scene.whole ? f.hit == all : f.hit > all / 10,
                    what + std::to_string(f.hit) + " pixels hit");
@@ -229,6 +238,7 @@ void judge_view(const std::string &name, const corner_vertex &v, const scene &sc
     verdict->at_most(f.place_px, residual, what + "(u, v) off the pixel (px)");
     verdict->at_most(p999, scene.narrow ? max_narrow_position_px : max_position_p999_px,
                      what + "P off the surface p99.9 (px)");
+    verdict->at_most(k999, max_curvature_p999, what + "curvature p99.9 (relative)");
     verdict->at_most(n999, v.n_faces <= 8 ? max_normal_p999_rad : max_normal_high_p999_rad,
                      what + "normal p99.9 (rad)");
 }
@@ -252,7 +262,7 @@ void judge(const std::string &sheen, const std::string &name, const loose_cage &
         planes planes;
         int exit_code;
         std::string wrong =
-            render_view(sheen, file, &scene.camera, "P,N,ptex", {}, &planes, &exit_code);
+            render_view(sheen, file, &scene.camera, "P,N,ptex,k", {}, &planes, &exit_code);
         if (verdict->check(wrong.empty(), name + " " + wrong))
             judge_view(name, v, scene, measure(scene, planes, surface, corner_of_ptex), verdict);
     }
@@ -291,11 +301,11 @@ int main(int argc, char **argv)
         return 2;
     }
     verdict verdict;
-    std::printf("%-20s %-16s %3s | %12s | %9s | %15s | %15s | %15s\n", "", "", "", "pixels",
-                "log2 1/uv", "off the ray, px", "N, rad", "P off surface, px");
-    std::printf("%-20s %-16s %3s | %6s %5s | %4s %4s | %7s %7s | %7s %7s | %7s %7s\n", "model",
-                "view", "N", "hit", "else", "p1", "max", "P", "(u,v)", "p99.9", "max", "p99.9",
-                "max");
+    std::printf("%-20s %-16s %3s | %12s | %9s | %15s | %15s | %15s | %15s\n", "", "", "", "pixels",
+                "log2 1/uv", "off the ray, px", "N, rad", "curvature, rel.", "P off surface, px");
+    std::printf("%-20s %-16s %3s | %6s %5s | %4s %4s | %7s %7s | %7s %7s | %7s %7s | %7s %7s\n",
+                "model", "view", "N", "hit", "else", "p1", "max", "P", "(u,v)", "p99.9", "max",
+                "p99.9", "max", "p99.9", "max");
     for (const std::string &path : list_models(std::vector<std::string>(argv + 2, argv + argc))) {
         try {
             judge_model(argv[1], path, &verdict);
