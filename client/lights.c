@@ -72,7 +72,7 @@ static sheen_Pattern to_pattern(const struct sheen_pattern *pattern)
 static sheen_Light to_light(const struct sheen_light *light)
 {
     return (sheen_Light){
-        .has_kind = true,
+        .has_kind = light->has_kind || light->is_placed,
         .kind = (sheen_LightKind)light->kind,
         .has_one_sided = true,
         .one_sided = light->one_sided,
@@ -156,7 +156,7 @@ void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
         const sheen_Light *from = &body->lights[i];
         struct sheen_light *to = &frame->lights[i];
         to->kind = (enum sheen_light_kind)from->kind;
-        to->is_placed = true;
+        to->has_kind = to->is_placed = true;
         to->one_sided = from->one_sided;
         message_get_vec3(to->centre, &from->centre);
         message_get_vec3(to->u, &from->u);

@@ -13,11 +13,11 @@ const struct text_row TEXT_FAMILIES[] = {
      "--lines highlight"},
     {"isophote", "the angle between normal and X,Y,Z (default: the direction of the eye)",
      "--lines isophote:0,0,1 --pattern stripes:count=36"},
-    {"zebra", "the mirrored ray's elevation about X,Y,Z (default: up in the picture)",
+    {"zebra", "the mirrored ray's elevation about X,Y,Z (default: --up)",
      "--lines zebra --pattern stripes:count=30"},
     {"environment",
      "the mirrored ray finds its place on a sphere at infinity about X,Y,Z\n"
-     "(default: up): a latitude-longitude image",
+     "(default: --up): a latitude-longitude image",
      "--lines environment --pattern image:studio.hdr"},
     {0},
 };
@@ -210,6 +210,7 @@ bool text_light(const char *text, struct sheen_light *value, char why[static LIG
     if (kind < 0)
         return refuse(why, "the lights are rectangle, plane, tunnel and sphere");
     value->kind = (enum sheen_light_kind)kind;
+    value->has_kind = true;
     value->one_sided = strcmp(text + length, ":one-sided") == 0;
     if (text[length] && !value->one_sided)
         return refuse(why, "only one-sided may follow the ':'");

@@ -83,7 +83,7 @@ bool options_check_scene(struct options *options, char *why)
                                                  ? SHEEN_PROJECTION_ORTHOGRAPHIC
                                                  : SHEEN_PROJECTION_PERSPECTIVE;
     options->request.camera.auto_view = camera == 0;
-    options->request.camera.auto_up = camera == 0 && !(options->given & GIVEN_UP);
+    options->request.camera.auto_up = !(options->given & GIVEN_UP);
     return check_size(&options->request, why) && check_show(&options->request.show, why) &&
            options_check_light(options, why);
 }

@@ -323,9 +323,9 @@ const struct option_row OPTIONS_SCENE[] = {
      apply_eye},
     {"target", 0, "X,Y,Z", "the point it looks at; with --eye", apply_target},
     {"up", 0, "X,Y,Z",
-     "its upward direction, any length (default: 0,0,1 with --eye and --target;\n"
-     "else y or z, in which the model is thinner: where that is wrong, as for a\n"
-     "door that stands, say it; the camera then frames the model from above that)",
+     "which way is up, for the camera and for the light, any length (default: what\n"
+     "the file says, glTF: y; else y or z, in which the model is thinner: where that\n"
+     "is wrong, as for a door that stands, say it)",
      apply_up},
     {"fov", 0, "DEG",
      "vertical field of view, {} (default: 35);\n"
@@ -343,12 +343,12 @@ const struct option_row OPTIONS_SCENE[] = {
     {"light", 0, "KIND",
      "rectangle, plane, tunnel or sphere, the first two with :one-sided as wanted;\n"
      "each --light after the first begins another, over which the earlier lie\n"
-     "(default: rectangle)",
+     "(default: tunnel; rectangle when the light is placed)",
      apply_light},
     {"light-center", 0, "X,Y,Z",
-     "the middle of the latest light; with --light-u and --light-v (default: over\n"
-     "or round the model, above it in the direction of the camera's up, and\n"
-     "turned with the camera)",
+     "the middle of the latest light; with --light-u and --light-v (default: by the\n"
+     "model and --up alone, whatever the camera: a tunnel about the longer horizontal\n"
+     "side, which every reflected ray meets; a rectangle or plane above the model)",
      apply_light_center},
     {"light-u", 0, "X,Y,Z",
      "its edge that stripes are counted along; a tunnel's radius; its length is\n"

@@ -200,12 +200,15 @@ static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
                    .fov_deg = body->camera.fov_deg,
                    .ortho_height = body->camera.ortho_height},
         .blank = body->blank,
+        .up_source = body->has_up && body->has_up_source ? (enum sheen_up_source)body->up_source
+                                                         : SHEEN_UP_UNKNOWN,
         .times = times_from_message(&body->times),
         .software = body->software,
     };
     message_get_vec3(frame->camera.eye, &body->camera.eye);
     message_get_vec3(frame->camera.target, &body->camera.target);
     message_get_vec3(frame->camera.up, &body->camera.up);
+    message_get_vec3(frame->up, &body->up);
     lights_from_message(frame, body);
     memcpy(frame->device, body->device, sizeof(frame->device));
     memcpy(frame->driver, body->driver, sizeof(frame->driver));

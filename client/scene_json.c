@@ -30,6 +30,16 @@ static void json_camera(struct json *json, const struct sheen_camera *camera)
     json_object_end(json);
 }
 
+/* Which way is up for the model, and who says so. */
+static void json_up(struct json *json, const struct sheen_frame *frame)
+{
+    static const char *const sources[] = {"given", "file", "guessed"};
+    if (frame->up_source == SHEEN_UP_UNKNOWN)
+        return;
+    json_vec3(json, "up", frame->up);
+    json_string(json, "up_source", sources[frame->up_source]);
+}
+
 static void json_family(struct json *json, const struct sheen_lines *lines)
 {
     static const char *const eyes[] = {"camera", "point", "direction"};
@@ -113,6 +123,7 @@ void scene_json(struct json *json, const struct sheen_request *request,
 {
     static const char *const surfaces[] = {"exact", "polygon", "wireframe"};
     json_camera(json, &frame->camera);
+    json_up(json, frame);
     json_family(json, &frame->lines);
     json_lights(json, frame);
     if (frame->has_colours) {

@@ -209,6 +209,14 @@ enum sheen_projection {
     SHEEN_PROJECTION_ORTHOGRAPHIC,
 };
 
+/* Who says which way a model's up is. */
+enum sheen_up_source {
+    SHEEN_UP_GIVEN,   /* the request */
+    SHEEN_UP_FILE,    /* the model's file: glTF is Y up */
+    SHEEN_UP_GUESSED, /* nobody: z, or y where the model is thinner in y */
+    SHEEN_UP_UNKNOWN, /* the daemon is too old to say */
+};
+
 struct sheen_camera {
     enum sheen_projection projection;
     bool auto_view, auto_up;  /* eye and target, or up, are the daemon's, which frames the model */
@@ -256,7 +264,8 @@ enum sheen_light_kind { SHEEN_RECTANGLE, SHEEN_PLANE, SHEEN_TUNNEL, SHEEN_SPHERE
  * Tunnel: u is the radius, v along the axis through centre. Sphere at infinity: v is its axis. */
 struct sheen_light {
     enum sheen_light_kind kind;
-    bool is_placed; /* false: as the daemon places it over the model; centre, u, v are ignored */
+    bool has_kind;  /* false, and not placed: a tunnel about the model; kind is ignored */
+    bool is_placed; /* false: as the daemon places it about the model; centre, u, v are ignored */
     bool one_sided; /* rectangle and plane: seen only against u x v */
     double centre[3], u[3], v[3];
     struct sheen_pattern pattern;
@@ -364,7 +373,9 @@ struct sheen_frame {
     struct sheen_lines lines;
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
-    bool blank;        /* no pixel shows any of the model */
+    bool blank;   /* no pixel shows any of the model */
+    double up[3]; /* of the model, by which camera and lights were chosen as far as left out */
+    enum sheen_up_source up_source;
     double show_range; /* of false colour, as used; 0: none */
     bool has_colours;  /* the daemon says what it used: */
     float miss[4], empty[4], base[4];

@@ -238,8 +238,9 @@ static bool check_light(const sheen_Light *light, char *text)
     if (!check_enum(light->kind, sheen_LightKind_LIGHT_SPHERE, "light.kind", text) ||
         (light->has_pattern && !check_pattern(&light->pattern, text)))
         return false;
-    bool has_sides = light->kind == sheen_LightKind_LIGHT_RECTANGLE ||
-                     light->kind == sheen_LightKind_LIGHT_PLANE;
+    bool is_tunnel = !light->has_kind && !light->has_centre; /* what the server chooses */
+    bool has_sides = !is_tunnel && (light->kind == sheen_LightKind_LIGHT_RECTANGLE ||
+                                    light->kind == sheen_LightKind_LIGHT_PLANE);
     if (light->one_sided && !has_sides)
         return refuse(text,
                       "light.one_sided is for rectangles and planes; a tunnel and a sphere are "
@@ -454,6 +455,10 @@ static bool check_frame(const sheen_Frame *frame, char *text)
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
     if (frame->has_show_range &&
         !check_named(frame->show_range, &RANGES[RANGE_SHOW], "show_range", text))
+        return false;
+    if ((frame->has_up && !check_direction(&frame->up, "up", text)) ||
+        (frame->has_up_source &&
+         !check_enum(frame->up_source, sheen_UpSource_UP_GUESSED, "up_source", text)))
         return false;
     if (!check_colours(frame->has_miss ? &frame->miss : NULL,
                        frame->has_empty ? &frame->empty : NULL,

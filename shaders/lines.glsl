@@ -168,6 +168,9 @@ Met meet_plane(Sample at, vec3 r, vec3 dr[2])
     return met;
 }
 
+// A ray that runs along the tunnel meets nothing: the sine, squared, that single precision tells from 0.
+const float LEAST_ACROSS = 1e-12;
+
 // The far side of the cylinder: its inside, for what stands in the tunnel.
 Met meet_tunnel(Sample at, vec3 r, vec3 dr[2])
 {
@@ -175,7 +178,9 @@ Met meet_tunnel(Sample at, vec3 r, vec3 dr[2])
     vec3 a = axis_n.xyz, from = at.x - centre.xyz;
     float radius = axis_n.w;
     vec3 x = from - a * dot(a, from), across = r - a * dot(a, r);
-    float rr = max(dot(across, across), 1e-24), xr = dot(x, across);
+    float rr = dot(across, across), xr = dot(x, across);
+    if (rr < LEAST_ACROSS)
+        return Met(vec2(0.0), vec2(0.0), vec2(0.0), 0.0, vec2(0.0), 0.0, false);
     float inside = xr * xr - rr * (dot(x, x) - radius * radius);
     met.tau = (sqrt(max(inside, 0.0)) - xr) / rr;
     vec3 y = x + met.tau * across;

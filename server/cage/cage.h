@@ -39,6 +39,9 @@ enum cage_scheme {
     CAGE_SCHEME_BILINEAR,
 };
 
+/* Which of its axes a file says is up. */
+enum cage_up { CAGE_UP_UNSAID, CAGE_UP_X, CAGE_UP_Y, CAGE_UP_Z };
+
 struct cage_crease {
     uint32_t vertex[2]; /* end vertices of the edge */
     float sharpness;    /* >= 0, CAGE_SHARPNESS_INFINITE and more is infinite */
@@ -84,6 +87,7 @@ struct cage {
 
     enum cage_scheme scheme;
     enum cage_boundary boundary;
+    enum cage_up up;       /* of the world that the positions are in; changes no surface */
     bool chaikin;          /* creasemethod chaikin */
     bool smooth_triangles; /* smoothtriangles smooth */
 

@@ -76,12 +76,12 @@ static void frame_box(const double box_min[3], const double box_max[3], struct v
     put(vec_mad(target, distance > 0 ? -distance : -1, forward), camera->eye);
 }
 
-/* Y up is glTF's and most modellers' convention, Z up that of CAD: a body is rarely thinner along a
- * horizontal axis than along its up axis, so the thinner of the two is up. */
-static struct vec guess_up(const double box_min[3], const double box_max[3])
+/* Where no file says it: Y up is most modellers' convention, Z up that of CAD, and a body is rarely
+ * thinner along a horizontal axis than along its up axis, so the thinner of the two is up. */
+void renderer_guess_up(const double box_min[3], const double box_max[3], double up[3])
 {
     bool z_up = box_max[2] - box_min[2] <= box_max[1] - box_min[1];
-    return z_up ? (struct vec){0, 0, 1} : (struct vec){0, 1, 0};
+    put(z_up ? (struct vec){0, 0, 1} : (struct vec){0, 1, 0}, up);
 }
 
 /* The horizontal direction that azimuth is counted from: the world's x axis, or y where x is up. */
@@ -98,49 +98,106 @@ static double extent(const double box_min[3], const double box_max[3], struct ve
            fabs(axis.z) * (box_max[2] - box_min[2]);
 }
 
-void renderer_default_camera(const double box_min[3], const double box_max[3], const double up[3],
-                             uint32_t width_px, uint32_t height_px, struct camera *camera)
+/* Of the horizontal directions e1 and e2: is the box longer along the second? Clearly longer, so
+ * that neither rounding nor a small change of a model turns what is as long as wide. */
+static bool is_deeper(const double box_min[3], const double box_max[3], struct vec e1,
+                      struct vec e2)
 {
-    struct vec upward = up ? vec_unit(get(up)) : guess_up(box_min, box_max);
-    struct vec e1 = horizontal_axis(upward), e2 = vec_cross(upward, e1);
-    /* The longer of the horizontal sides lies across the picture rather than into it; clearly
-     * longer, so that rounding does not turn what is as long as wide. */
-    bool turned = extent(box_min, box_max, e2) > 1.1 * extent(box_min, box_max, e1);
-    double azimuth = (turned ? -30 : -60) * DEGREE;
-    double elevation = 45 * DEGREE, fov_deg = 35, margin = 0.92;
-    struct vec from = vec_scale(upward, sin(elevation));
+    return extent(box_min, box_max, e2) > 1.1 * extent(box_min, box_max, e1);
+}
+
+static struct vec upward_of(const double box_min[3], const double box_max[3], const double up[3])
+{
+    double guessed[3];
+    if (!up)
+        renderer_guess_up(box_min, box_max, guessed);
+    return vec_unit(get(up ? up : guessed));
+}
+
+/* Where the eye stands, seen from the model: unit. */
+static struct vec standpoint(enum default_view view, const double box_min[3],
+                             const double box_max[3], struct vec up)
+{
+    struct vec e1 = horizontal_axis(up), e2 = vec_cross(up, e1);
+    double elevation = 45 * DEGREE, azimuth = 0;
+    switch (view) {
+    case VIEW_AROUND:
+        /* The longer of the horizontal sides lies across the picture rather than into it. */
+        azimuth = (is_deeper(box_min, box_max, e1, e2) ? -30 : -60) * DEGREE;
+        break;
+    case VIEW_ISO: /* all three axes as long in the picture */
+        azimuth = -45 * DEGREE;
+        elevation = atan(sqrt(0.5));
+        break;
+    case VIEW_FRONT:
+        return vec_scale(e2, -1);
+    case VIEW_BACK:
+        return e2;
+    case VIEW_LEFT:
+        return vec_scale(e1, -1);
+    case VIEW_RIGHT:
+        return e1;
+    case VIEW_TOP:
+        return up;
+    case VIEW_BOTTOM:
+        return vec_scale(up, -1);
+    }
+    struct vec from = vec_scale(up, sin(elevation));
     from = vec_mad(from, cos(elevation) * cos(azimuth), e1);
-    from = vec_mad(from, cos(elevation) * sin(azimuth), e2);
+    return vec_mad(from, cos(elevation) * sin(azimuth), e2);
+}
+
+void renderer_default_camera(const struct limit_tables *tables, const double up[3],
+                             enum default_view view, uint32_t width_px, uint32_t height_px,
+                             struct camera *camera)
+{
+    const double *box_min = tables->box_min, *box_max = tables->box_max;
+    double fov_deg = 35, margin = 0.92;
+    struct vec upward = upward_of(box_min, box_max, up);
+    struct vec from = standpoint(view, box_min, box_max, upward);
     double tan_y = margin * tan(0.5 * fov_deg * DEGREE), tan_x = tan_y * width_px / height_px;
     *camera = (struct camera){.kind = CAMERA_PERSPECTIVE, .fov_deg = fov_deg};
     put(up ? get(up) : upward, camera->up);
-    frame_box(box_min, box_max, vec_scale(from, -1), upward, tan_x, tan_y, camera);
+    put(vec_scale(from, -1), camera->target);
+    renderer_default_roll(camera->up, camera);
+    frame_box(box_min, box_max, vec_scale(from, -1), get(camera->up), tan_x, tan_y, camera);
 }
 
-void renderer_default_light(const double box_min[3], const double box_max[3],
-                            const struct camera *camera, struct light *light)
+void renderer_default_roll(const double up[3], struct camera *camera)
 {
-    /* Low overhead and wide: whatever the surface reflects from within 76 degrees of straight up is
-     * light. Its lines run away from the viewer. */
-    double radius = box_radius(box_min, box_max), height = 2 * radius, size = 16 * radius;
-    struct vec up = vec_unit(get(camera->up));
     struct vec view = vec_unit(vec_sub(get(camera->target), get(camera->eye)));
-    struct vec away = vec_unit(vec_mad(view, -vec_dot(view, up), up));
-    struct vec middle = box_middle(box_min, box_max);
-    put(vec_scale(away, light->kind == LIGHT_SPHERE ? 1 : size), light->v);
+    struct vec upward = vec_unit(get(up));
+    struct vec ahead = vec_cross(upward, horizontal_axis(upward));
+    bool along = vec_length(vec_cross(view, upward)) < 1e-6;
+    put(!along ? get(up) : vec_dot(view, upward) < 0 ? ahead : vec_scale(ahead, -1), camera->up);
+}
+
+void renderer_default_light(const double box_min[3], const double box_max[3], const double up[3],
+                            struct light *light)
+{
+    struct vec upward = upward_of(box_min, box_max, up), middle = box_middle(box_min, box_max);
+    struct vec e1 = horizontal_axis(upward), e2 = vec_cross(upward, e1);
+    struct vec along = is_deeper(box_min, box_max, e1, e2) ? e2 : e1;
+    double radius = box_radius(box_min, box_max);
+    /* Flat: low overhead and wide, so that whatever the surface reflects from within 76 degrees of
+     * straight up is light; u x v points down. Round: so far out that lines bend with the surface
+     * rather than with the way to the light, near enough for several lines on a flat side. */
+    double height = 2 * radius, size = 16 * radius, tunnel = 3 * radius;
+    put(middle, light->centre);
+    put(along, light->v);
     switch (light->kind) {
     case LIGHT_RECTANGLE:
     case LIGHT_PLANE:
-        put(vec_mad(middle, height, up), light->centre);
-        put(vec_scale(vec_cross(away, up), size), light->u);
+        put(vec_mad(middle, height, upward), light->centre);
+        put(vec_scale(vec_cross(upward, along), size), light->u);
+        put(vec_scale(along, size), light->v);
         break;
     case LIGHT_TUNNEL:
-        put(middle, light->centre);
-        put(vec_scale(up, 1.5 * height), light->u);
+        put(vec_scale(upward, tunnel), light->u);
+        put(vec_scale(along, 360 * DEGREE * tunnel), light->v); /* as high as it is wide */
         break;
     case LIGHT_SPHERE:
-        put(middle, light->centre);
-        put(up, light->u);
+        put(upward, light->u);
         break;
     }
 }

@@ -190,14 +190,25 @@ void renderer_polygons_destroy(struct renderer_polygons *polygons); /* NULL is s
 /* Bytes of one pixel of a plane (a single bit). */
 size_t renderer_plane_bytes(enum renderer_plane plane);
 
-/* A camera that frames the box (three-quarter view from above, its longer horizontal side more
- * across the picture than into it, 35 degrees, 4 % of the picture free at the two opposite edges
- * that its corners come nearest to), and a light that hangs over it, larger than the model. `up`
- * says where above is, of any length; NULL: z when the box is no thicker in z than in y, else y. */
-void renderer_default_camera(const double box_min[3], const double box_max[3], const double up[3],
-                             uint32_t width_px, uint32_t height_px, struct camera *camera);
-/* Sets centre, u and v for the light's kind. */
-void renderer_default_light(const double box_min[3], const double box_max[3],
-                            const struct camera *camera, struct light *light);
+/* Which way is up where no file says it: z when the box is no thicker in z than in y, else y. */
+void renderer_guess_up(const double box_min[3], const double box_max[3], double up[3]);
+
+/* A camera that frames the model: 35 degrees, 4 % of the picture free at the two opposite edges
+ * that it comes nearest to. `up` says where above is, of any length; NULL: guessed. */
+void renderer_default_camera(const struct limit_tables *tables, const double up[3],
+                             enum default_view view, uint32_t width_px, uint32_t height_px,
+                             struct camera *camera);
+
+/* The camera's up, for a model whose up this is: the same, or where the camera looks along it, what
+ * the front view has behind (looking down) or before (looking up). */
+void renderer_default_roll(const double up[3], struct camera *camera);
+
+/* Sets centre, u and v for the light's kind, by the box and `up` (NULL: guessed) alone, so that
+ * lines stay where they are whoever looks. Lines run along the longer of the model's horizontal
+ * sides. A tunnel is about that direction, three times as wide as the box: every ray from the model
+ * meets it but one that runs along its axis. A sphere is that tunnel, infinitely wide; rectangle
+ * and plane hang over the model, seen from below where one-sided. */
+void renderer_default_light(const double box_min[3], const double box_max[3], const double up[3],
+                            struct light *light);
 
 #endif

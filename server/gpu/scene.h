@@ -19,6 +19,20 @@ struct camera {
     double ortho_height; /* orthographic: world units from top to bottom of the picture */
 };
 
+/* From where a camera that frames the model looks. With e1 the world's x axis made horizontal (y
+ * where x is up) and e2 = up x e1: the front is at -e2, the right at e1; around is above the front
+ * right, with the model's longer side across the picture. */
+enum default_view {
+    VIEW_AROUND,
+    VIEW_FRONT,
+    VIEW_BACK,
+    VIEW_LEFT,
+    VIEW_RIGHT,
+    VIEW_TOP,
+    VIEW_BOTTOM,
+    VIEW_ISO,
+};
+
 enum pattern_kind {
     PATTERN_STRIPES,
     PATTERN_LATTICE,

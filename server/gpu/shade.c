@@ -63,7 +63,7 @@ bool stage_shade_init(struct renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const GLuint nothing[3] = {0, 1, 1};
-    static const struct frame_request usual;
+    static const struct frame_request usual = {.lights = {{.kind = LIGHT_TUNNEL}}};
     enum shaded kinds[SHADED_KINDS];
     for (int k = kinds_of(&usual, kinds); k-- > 0;)
         if (!shade_programs_compile(&r->shading, key_of(&usual, &usual.lights[0], kinds[k]), error))
@@ -159,19 +159,12 @@ static void fill_light(struct light_block *block, const struct light *light)
     }
 }
 
-/* The axis of families that need no light: the one given, or up in the picture, or up. */
+/* The axis of families that need no light: the one given, or the camera's up. */
 static void fill_family(struct light_block *block, const struct frame_request *request)
 {
     const struct lines *lines = &request->lines;
-    const struct camera *camera = &request->camera;
-    struct vec up = vec_unit(get(camera->up));
-    struct vec view = vec_unit(vec_sub(get(camera->target), get(camera->eye)));
-    struct vec axis = lines->has_direction ? get(lines->direction)
-                      : lines->family == LINES_ZEBRA
-                          ? vec_mad(up, -vec_dot(up, view), view) /* in the picture */
-                          : up;
     struct vec x = {1, 0, 0}, y = {0, 1, 0};
-    axis = vec_unit(axis);
+    struct vec axis = vec_unit(get(lines->has_direction ? lines->direction : request->camera.up));
     fill_axis(block, axis, fabs(axis.x) < 0.999 ? x : y);
     block->has_direction = lines->has_direction;
     bool wide = lines->family == LINES_ENVIRONMENT;

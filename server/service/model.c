@@ -166,6 +166,7 @@ static bool read_cage(struct model_build *build)
         return false;
     model->n_vertices = build->cage.n_vertices;
     model->n_faces = build->cage.n_faces;
+    model->up = build->cage.up;
     if (build->cage.warnings && !(model->warnings = strdup(build->cage.warnings)))
         return error_set(&build->error, ERROR_SERVER, "%s: no memory", order->name);
     struct build_clock clock;

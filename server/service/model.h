@@ -8,17 +8,24 @@
 #include "server/cage/survey.h"
 #include "server/gpu/renderer.h"
 #include "server/service/build.h"
+#include "server/service/wire.h"
 
 struct model {
     struct limit_tables tables; /* stay as long as `gpu` */
     struct renderer_model *gpu; /* for the GL thread only */
     struct cage_survey survey;
     size_t n_vertices, n_faces; /* of the cage */
+    enum cage_up up;            /* as its file says */
     char *warnings;             /* lines, or NULL */
     size_t device_bytes;        /* of its tables on the device */
     uint64_t build_us;          /* reading, building and uploading */
     struct work destroy_work;
 };
+
+static inline struct wire_subject model_subject(const struct model *model)
+{
+    return (struct wire_subject){&model->tables, model->up};
+}
 
 /* Starts a build; finished() gets a `struct model *`. False, without finished(), when memory is
  * short. */

@@ -140,9 +140,10 @@ static void drop_polygons(struct request *request)
 void request_queue_frame(struct request *request)
 {
     struct frame_request *asked = &request->frame_request;
-    const struct limit_tables *tables = &request->model.asset->model->tables;
     const sheen_Render *render = &request->render;
-    wire_to_frame_request(render, tables->box_min, tables->box_max, asked);
+    const struct wire_subject subject = model_subject(request->model.asset->model);
+    wire_to_frame_request(render, &subject, asked);
+    request->up_source = wire_up(render, &subject, request->up);
     for (int i = 0; i < MAX_LIGHTS; i++)
         if (request->images[i].asset)
             asked->lights[i].pattern.image = request->images[i].asset->image->gpu;
@@ -191,6 +192,10 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .show_range = request->render.show.range,
         .has_blank = request->is_blank,
         .blank = request->is_blank,
+        .has_up = true,
+        .up = wire_from_vec3(request->up),
+        .has_up_source = true,
+        .up_source = request->up_source,
         .has_miss = true,
         .miss = wire_from_colour(asked->miss),
         .has_empty = true,

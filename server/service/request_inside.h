@@ -32,6 +32,8 @@ struct request {
 
     sheen_Render render;
     struct frame_request frame_request;
+    double up[3]; /* of the model, for what the request left out */
+    sheen_UpSource up_source;
     struct codec_layout layout;
     struct schedule_entry entry;
     uint64_t cost_key;

@@ -48,13 +48,14 @@ sheen_Colour wire_from_colour(const float c[4])
 }
 
 /* Puts what a request says of the camera over the one that frames the model. */
-static void to_camera(const sheen_Camera *from, const double box_min[3], const double box_max[3],
-                      struct camera *to)
+static void to_camera(const sheen_Camera *from, const struct wire_subject *subject,
+                      const double up[3], struct camera *to)
 {
     if (from->has_eye)
         wire_to_vec3(&from->eye, to->eye);
     if (from->has_target)
         wire_to_vec3(&from->target, to->target);
+    renderer_default_roll(up, to);
     if (from->has_fov_deg)
         to->fov_deg = from->fov_deg;
     if (!from->has_ortho_height)
@@ -66,7 +67,7 @@ static void to_camera(const sheen_Camera *from, const double box_min[3], const d
     /* Its height is not known to fit the model: stand outside of the box, however it is seen. */
     double diagonal = 0, distance = 0;
     for (int i = 0; i < 3; i++) {
-        diagonal = hypot(diagonal, box_max[i] - box_min[i]);
+        diagonal = hypot(diagonal, subject->tables->box_max[i] - subject->tables->box_min[i]);
         distance = hypot(distance, to->eye[i] - to->target[i]);
     }
     for (int i = 0; i < 3; i++)
@@ -90,8 +91,24 @@ sheen_Camera wire_from_camera(const struct camera *camera)
     };
 }
 
-void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
-                           const double box_max[3], struct frame_request *request)
+sheen_UpSource wire_up(const sheen_Render *render, const struct wire_subject *subject, double up[3])
+{
+    if (render->has_camera && render->camera.has_up) {
+        wire_to_vec3(&render->camera.up, up);
+        return sheen_UpSource_UP_GIVEN;
+    }
+    if (subject->up == CAGE_UP_UNSAID) {
+        renderer_guess_up(subject->tables->box_min, subject->tables->box_max, up);
+        return sheen_UpSource_UP_GUESSED;
+    }
+    up[0] = subject->up == CAGE_UP_X;
+    up[1] = subject->up == CAGE_UP_Y;
+    up[2] = subject->up == CAGE_UP_Z;
+    return sheen_UpSource_UP_FILE;
+}
+
+void wire_to_frame_request(const sheen_Render *render, const struct wire_subject *subject,
+                           struct frame_request *request)
 {
     static const sheen_Light default_light = sheen_Light_init_default;
     *request = (struct frame_request){
@@ -103,16 +120,15 @@ void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
         .surface = {(enum surface_kind)render->surface, render->surface_level},
     };
     double up[3];
-    wire_to_vec3(&render->camera.up, up);
-    renderer_default_camera(box_min, box_max,
-                            render->has_camera && render->camera.has_up ? up : NULL,
-                            render->width_px, render->height_px, &request->camera);
+    wire_up(render, subject, up);
+    renderer_default_camera(subject->tables, up, VIEW_AROUND, render->width_px, render->height_px,
+                            &request->camera);
     if (render->has_camera)
-        to_camera(&render->camera, box_min, box_max, &request->camera);
-    wire_to_lines(&render->lines, &request->lines);
+        to_camera(&render->camera, subject, up, &request->camera);
+    wire_to_lines(&render->lines, up, &request->lines);
     for (uint32_t i = 0; i < request->n_lights; i++)
-        wire_to_light(render->lights_count ? &render->lights[i] : &default_light, box_min, box_max,
-                      &request->camera, &request->lights[i]);
+        wire_to_light(render->lights_count ? &render->lights[i] : &default_light, subject, up,
+                      &request->lights[i]);
     wire_to_colour(render->has_miss ? &render->miss : &DEFAULT_MISS, request->miss);
     wire_to_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
     wire_to_colour(render->has_base ? &render->base : &DEFAULT_BASE, request->base);

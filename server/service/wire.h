@@ -8,10 +8,20 @@
 #include "server/gpu/renderer.h"
 #include "server/service/scheduler.h"
 
-/* A frame request from a message that has passed message_check_render(). What it leaves out comes
- * from the model's box; the patterns' images are left to the caller. */
-void wire_to_frame_request(const sheen_Render *render, const double box_min[3],
-                           const double box_max[3], struct frame_request *request);
+/* The model that a request is about, for what the request leaves out. */
+struct wire_subject {
+    const struct limit_tables *tables;
+    enum cage_up up; /* as its file says */
+};
+
+/* Which way is up: as the request says, else as the file does, else as the box looks. */
+sheen_UpSource wire_up(const sheen_Render *render, const struct wire_subject *subject,
+                       double up[3]);
+
+/* A frame request from a message that has passed message_check_render(). The patterns' images are
+ * left to the caller. */
+void wire_to_frame_request(const sheen_Render *render, const struct wire_subject *subject,
+                           struct frame_request *request);
 
 sheen_Camera wire_from_camera(const struct camera *camera);
 sheen_Vec3 wire_from_vec3(const double v[3]);
@@ -19,11 +29,12 @@ sheen_Colour wire_from_colour(const float c[4]);
 void wire_to_vec3(const sheen_Vec3 *from, double to[3]);
 void wire_to_colour(const sheen_Colour *from, float to[4]);
 
-/* Line families, lights and patterns (wire_light.c). `camera` and the box place lights that have
- * no place of their own. `asked` gives an image's hash; NULL: nothing was asked for. */
-void wire_to_lines(const sheen_Lines *from, struct lines *to);
-void wire_to_light(const sheen_Light *from, const double box_min[3], const double box_max[3],
-                   const struct camera *camera, struct light *to);
+/* Line families, lights and patterns (wire_light.c). The box and `up` place lights that have no
+ * place of their own, and `up` is the axis of families that are told none. `asked` gives an image's
+ * hash; NULL: nothing was asked for. */
+void wire_to_lines(const sheen_Lines *from, const double up[3], struct lines *to);
+void wire_to_light(const sheen_Light *from, const struct wire_subject *subject, const double up[3],
+                   struct light *to);
 sheen_Lines wire_from_lines(const struct lines *lines);
 sheen_Light wire_from_light(const struct light *light, const sheen_Light *asked);
 

@@ -71,17 +71,23 @@ static sheen_Pattern from_pattern(const struct pattern *pattern, const sheen_Pat
     return wire;
 }
 
-void wire_to_light(const sheen_Light *from, const double box_min[3], const double box_max[3],
-                   const struct camera *camera, struct light *to)
+/* A light of which nothing is said is one that every ray meets. */
+static enum light_kind kind_of(const sheen_Light *light)
+{
+    return light->has_kind || light->has_centre ? (enum light_kind)light->kind : LIGHT_TUNNEL;
+}
+
+void wire_to_light(const sheen_Light *from, const struct wire_subject *subject, const double up[3],
+                   struct light *to)
 {
     static const sheen_Pattern default_pattern = sheen_Pattern_init_default;
-    *to = (struct light){.kind = (enum light_kind)from->kind, .one_sided = from->one_sided};
+    *to = (struct light){.kind = kind_of(from), .one_sided = from->one_sided};
     if (from->has_centre) {
         wire_to_vec3(&from->centre, to->centre);
         wire_to_vec3(&from->u, to->u);
         wire_to_vec3(&from->v, to->v);
     } else {
-        renderer_default_light(box_min, box_max, camera, to);
+        renderer_default_light(subject->tables->box_min, subject->tables->box_max, up, to);
     }
     to_pattern(from->has_pattern ? &from->pattern : &default_pattern, &to->pattern);
 }
@@ -104,12 +110,15 @@ sheen_Light wire_from_light(const struct light *light, const sheen_Light *asked)
     };
 }
 
-void wire_to_lines(const sheen_Lines *from, struct lines *to)
+void wire_to_lines(const sheen_Lines *from, const double up[3], struct lines *to)
 {
-    *to = (struct lines){.family = (enum line_family)from->family,
-                         .has_direction = from->has_direction};
+    *to = (struct lines){.family = (enum line_family)from->family};
+    bool needs_axis = to->family == LINES_ZEBRA || to->family == LINES_ENVIRONMENT;
+    to->has_direction = from->has_direction || needs_axis;
     if (from->has_direction)
         wire_to_vec3(&from->direction, to->direction);
+    else if (needs_axis)
+        memcpy(to->direction, up, sizeof to->direction);
     if (from->has_eye || from->has_eye_direction) {
         to->eye_kind = from->has_eye ? LINE_EYE_POINT : LINE_EYE_DIRECTION;
         wire_to_vec3(from->has_eye ? &from->eye : &from->eye_direction, to->eye);

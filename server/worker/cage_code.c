@@ -3,13 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The four settings behind one another. */
+/* The five settings behind one another. */
 static void write_settings(struct sink *sink, const struct cage *cage)
 {
     sink_u32(sink, (uint32_t)cage->scheme);
     sink_u32(sink, (uint32_t)cage->boundary);
     sink_u32(sink, cage->chaikin);
     sink_u32(sink, cage->smooth_triangles);
+    sink_u32(sink, (uint32_t)cage->up);
 }
 
 void cage_write(struct sink *sink, const struct cage *cage)
@@ -58,12 +59,14 @@ static void take_settings(struct source *source, struct cage *cage)
 {
     uint32_t scheme = source_u32(source), boundary = source_u32(source);
     uint32_t chaikin = source_u32(source), smooth_triangles = source_u32(source);
+    uint32_t up = source_u32(source);
     source->ok &= scheme <= CAGE_SCHEME_BILINEAR && boundary <= CAGE_BOUNDARY_NONE &&
-                  chaikin <= 1 && smooth_triangles <= 1;
+                  chaikin <= 1 && smooth_triangles <= 1 && up <= CAGE_UP_Z;
     cage->scheme = (enum cage_scheme)scheme;
     cage->boundary = (enum cage_boundary)boundary;
     cage->chaikin = chaikin != 0;
     cage->smooth_triangles = smooth_triangles != 0;
+    cage->up = (enum cage_up)up;
 }
 
 static void take_warnings(struct taking *taking, struct cage *cage)

@@ -33,6 +33,7 @@ static void check_same(const struct cage *a, const struct cage *b)
     MUST(a->n_vertices == b->n_vertices && a->n_faces == b->n_faces);
     MUST(a->n_creases == b->n_creases && a->n_corners == b->n_corners && a->n_holes == b->n_holes);
     MUST(a->scheme == b->scheme && a->boundary == b->boundary && a->chaikin == b->chaikin);
+    MUST(a->up == b->up);
     MUST(memcmp(a->position, b->position, a->n_vertices * sizeof *a->position) == 0);
     MUST(memcmp(a->face_vertex, b->face_vertex,
                 a->face_start[a->n_faces] * sizeof *a->face_vertex) == 0);

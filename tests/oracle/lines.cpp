@@ -235,7 +235,6 @@ line_tracer::line_tracer(const line_setup &line_setup, const view &view)
 {
     forward = normalized(view.target - view.eye);
     camera_up = normalized(view.up);
-    picture_up = normalized(without_part_along(camera_up, forward));
 }
 
 vec3 line_tracer::view_from_camera(vec3 x) const
@@ -267,7 +266,7 @@ light_hit line_tracer::meet(vec3 x, vec3 n, const line_light &light) const
     case line_family::isophote:
         return isophote(n, setup.has_axis ? setup.axis : -1 * v);
     case line_family::zebra:
-        return zebra(r, setup.has_axis ? setup.axis : picture_up);
+        return zebra(r, setup.has_axis ? setup.axis : camera_up);
     case line_family::environment:
         return environment(r, setup.has_axis ? setup.axis : camera_up);
     case line_family::highlight:

@@ -80,7 +80,7 @@ class line_tracer
     vec3 view_from_camera(vec3 x) const;
     vec3 view_from_line_eye(vec3 x) const;
     view camera;
-    vec3 forward, picture_up, camera_up;
+    vec3 forward, camera_up;
 };
 
 /* The colour of a pattern at a place on its light: foreground or background, or between them where

@@ -161,8 +161,9 @@ class Client(unittest.TestCase):
         places = {"--" + name: found["camera"][name] for name in ("eye", "target", "up")}
         for name in ("center", "u", "v"):
             places["--light-" + name] = found["light"][name]
-        again = (word for option, value in places.items()
-                 for word in (option, ",".join(repr(number) for number in value)))
+        again = ["--light", found["light"]["kind"]]
+        for option, value in places.items():
+            again += option, ",".join(repr(number) for number in value)
         self.assertEqual(self.render("b.exr", "--server", self.daemon.unix, *again, "--aov",
                                      "P,N")[1], picture)
 

@@ -46,9 +46,9 @@ static inline struct frame_request request_for(const struct scene *scene)
         .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_CURVATURE,
     };
     const struct limit_tables *tables = &scene->tables;
-    renderer_default_camera(tables->box_min, tables->box_max, NULL, request.width_px,
-                            request.height_px, &request.camera);
-    renderer_default_light(tables->box_min, tables->box_max, &request.camera, &request.lights[0]);
+    renderer_default_camera(tables, NULL, VIEW_AROUND, request.width_px, request.height_px,
+                            &request.camera);
+    renderer_default_light(tables->box_min, tables->box_max, NULL, &request.lights[0]);
     return request;
 }
 

@@ -32,9 +32,8 @@ static inline struct frame_request request_for(const struct limit_tables *tables
                                 .background = {0, 0, 0, 1}}}},
         .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_LIGHT,
     };
-    const double *low = tables->box_min, *high = tables->box_max;
-    renderer_default_camera(low, high, NULL, width, height, &request.camera);
-    renderer_default_light(low, high, &request.camera, &request.lights[0]);
+    renderer_default_camera(tables, NULL, VIEW_AROUND, width, height, &request.camera);
+    renderer_default_light(tables->box_min, tables->box_max, NULL, &request.lights[0]);
     return request;
 }
 

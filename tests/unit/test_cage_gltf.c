@@ -18,6 +18,7 @@ static void test_quads(void **state)
     expect_position(&cage, 5, 2, 1, 0);
     assert_null(cage.warnings);
     assert_int_equal(cage.boundary, CAGE_BOUNDARY_EDGE_ONLY);
+    assert_int_equal(cage.up, CAGE_UP_Y);
     cage_finish(&cage);
 }
 

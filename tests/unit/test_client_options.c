@@ -219,7 +219,7 @@ static void good_command_lines(void **state)
     assert_int_equal(options.request.width_px, 1280);
     assert_int_equal(options.request.camera.projection, SHEEN_PROJECTION_AUTO);
     assert_int_equal(options.request.planes, SHEEN_COLOUR);
-    assert_false(options.request.lights[0].is_placed);
+    assert_false(options.request.lights[0].is_placed || options.request.lights[0].has_kind);
     assert_int_equal(parse(&COMMAND_RENDER,
                            "--json --size 64x32 --eye -1,-2,3 m.glb --target 0,0,0 --ortho 2 "
                            "--light-center 0,0,4 --light-u 4,0,0 --light-v 0,4,0 --output=o.exr "
@@ -228,7 +228,7 @@ static void good_command_lines(void **state)
                      OPTIONS_RUN);
     assert_int_equal(options.request.camera.projection, SHEEN_PROJECTION_ORTHOGRAPHIC);
     assert_true(options.request.camera.eye[0] == -1 && options.request.camera.up[2] == 1);
-    assert_false(options.request.camera.auto_view || options.request.camera.auto_up);
+    assert_true(!options.request.camera.auto_view && options.request.camera.auto_up);
     assert_true(options.request.lights[0].is_placed && options.json && options.quiet);
     assert_int_equal(options.request.planes, 7);
     assert_int_equal(options.request.format, SHEEN_FILE_EXR);
@@ -242,6 +242,7 @@ static void good_command_lines(void **state)
     assert_int_equal(options.request.n_lights, 3);
     const struct sheen_light *lights = options.request.lights;
     assert_true(lights[0].kind == SHEEN_TUNNEL && lights[0].pattern.kind == SHEEN_LINES);
+    assert_true(lights[0].has_kind && lights[1].has_kind);
     assert_true(lights[1].kind == SHEEN_PLANE && lights[1].pattern.kind == SHEEN_CIRCLES);
     assert_true(!lights[0].is_placed && lights[1].is_placed && !lights[2].is_placed);
     assert_true(lights[2].kind == SHEEN_SPHERE && lights[2].pattern.kind == SHEEN_STRIPES);

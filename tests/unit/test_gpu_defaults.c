@@ -4,10 +4,12 @@
 #include <stddef.h>
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
 #include "server/gpu/view.h"
+#include "server/limit/vec.h"
 
 #define MARGIN 0.92 /* of the half picture, which the box fills */
 
@@ -19,12 +21,21 @@ struct reach {
     double low[2], high[2]; /* across, down */
 };
 
+static void frame_box(const double box_min[3], const double box_max[3], const double up[3],
+                      uint32_t width_px, uint32_t height_px, struct camera *camera)
+{
+    struct limit_tables tables = {0};
+    memcpy(tables.box_min, box_min, sizeof tables.box_min);
+    memcpy(tables.box_max, box_max, sizeof tables.box_max);
+    renderer_default_camera(&tables, up, VIEW_AROUND, width_px, height_px, camera);
+}
+
 static struct reach reach_of(const double box_min[3], const double box_max[3], const double up[3],
                              uint32_t width_px, uint32_t height_px)
 {
     struct camera camera;
     struct view view;
-    renderer_default_camera(box_min, box_max, up, width_px, height_px, &camera);
+    frame_box(box_min, box_max, up, width_px, height_px, &camera);
     view_init(&view, &camera, width_px, height_px, box_min, box_max);
     const double half[2] = {0.5 * width_px, 0.5 * height_px};
     struct reach reach = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
@@ -85,7 +96,7 @@ static void test_up_is_above(void **state)
     static const double zero[3] = {0, 0, 0}, door[3] = {1100, 90, 800};
     struct camera camera, guessed;
     for (size_t n = 0; n < sizeof ups / sizeof ups[0]; n++) {
-        renderer_default_camera(zero, door, ups[n], 640, 480, &camera);
+        frame_box(zero, door, ups[n], 640, 480, &camera);
         double rise = 0, distance = 0, length = 0;
         for (int i = 0; i < 3; i++) {
             rise += (camera.eye[i] - camera.target[i]) * ups[n][i];
@@ -95,8 +106,8 @@ static void test_up_is_above(void **state)
         }
         assert_true(fabs(rise / distance / length - sqrt(0.5)) < 1e-9);
     }
-    renderer_default_camera(zero, door, NULL, 640, 480, &guessed);
-    renderer_default_camera(zero, door, guessed.up, 640, 480, &camera);
+    frame_box(zero, door, NULL, 640, 480, &guessed);
+    frame_box(zero, door, guessed.up, 640, 480, &camera);
     assert_memory_equal(&camera, &guessed, sizeof camera);
 }
 
@@ -115,11 +126,63 @@ static void test_the_longer_side_lies_across(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
             struct camera camera;
-            renderer_default_camera(zero, cases[i].size, NULL, sizes[k][0], sizes[k][1], &camera);
+            frame_box(zero, cases[i].size, NULL, sizes[k][0], sizes[k][1], &camera);
             int across = cases[i].across, into = cases[i].into;
             double view_across = fabs(camera.target[across] - camera.eye[across]);
             double view_into = fabs(camera.target[into] - camera.eye[into]);
             assert_true(fabs(view_across / view_into - tan(30 * acos(-1) / 180)) < 1e-9);
+        }
+}
+
+static struct vec vec_of(const double a[3])
+{
+    return (struct vec){a[0], a[1], a[2]};
+}
+
+/* The tunnel is about the longer horizontal side, x if neither is by much, has the middle of the
+ * box on its axis and all of the box well inside; its azimuth begins above. */
+static void test_the_tunnel(void **state)
+{
+    (void)state;
+    static const struct {
+        double size[3];
+        int up, along;
+    } cases[] = {{{4, 1.8, 1.3}, 2, 0}, {{1.8, 4, 1.3}, 2, 1},   {{1.8, 1.3, 4}, 1, 2},
+                 {{2, 2.1, 1}, 2, 0},   {{1100, 90, 800}, 2, 0}, {{9, 2, 3}, 0, 2},
+                 {{0, 0, 0}, 2, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct light light = {.kind = LIGHT_TUNNEL};
+        double low[3], high[3], up[3] = {0, 0, 0}, radius = vec_length(vec_of(cases[i].size)) / 2;
+        for (int k = 0; k < 3; k++) {
+            low[k] = 7 - k;
+            high[k] = low[k] + cases[i].size[k];
+        }
+        up[cases[i].up] = 5;
+        renderer_default_light(low, high, up, &light);
+        double tunnel = vec_length(vec_of(light.u));
+        for (int k = 0; k < 3; k++) {
+            assert_true(fabs(light.centre[k] - 0.5 * (low[k] + high[k])) < 1e-12);
+            assert_true((light.v[k] != 0) == (k == cases[i].along));
+            assert_true(k == cases[i].up ? light.u[k] > 0 : light.u[k] == 0);
+        }
+        assert_true(radius > 0 ? tunnel > 2 * radius : tunnel > 0);
+    }
+}
+
+/* What hangs over the model is seen from below. */
+static void test_flat_lights_face_the_model(void **state)
+{
+    (void)state;
+    static const double low[3] = {0, 0, 0}, high[3] = {4, 2, 1};
+    for (size_t n = 0; n < sizeof ups / sizeof ups[0]; n++)
+        for (enum light_kind kind = LIGHT_RECTANGLE; kind <= LIGHT_PLANE; kind++) {
+            struct light light = {.kind = kind};
+            renderer_default_light(low, high, ups[n], &light);
+            struct vec m = vec_unit(vec_cross(vec_of(light.u), vec_of(light.v)));
+            struct vec up = vec_unit(vec_of(ups[n]));
+            struct vec middle = {2, 1, 0.5}, above = vec_sub(vec_of(light.centre), middle);
+            assert_true(vec_dot(m, up) < -1 + 1e-12);
+            assert_true(vec_dot(vec_unit(above), up) > 1 - 1e-12);
         }
 }
 
@@ -129,7 +192,7 @@ static void test_a_point(void **state)
     (void)state;
     const double point[3] = {5, 6, 7};
     struct camera camera;
-    renderer_default_camera(point, point, NULL, 640, 480, &camera);
+    frame_box(point, point, NULL, 640, 480, &camera);
     double distance = 0;
     for (int i = 0; i < 3; i++) {
         assert_true(camera.target[i] == point[i]);
@@ -141,10 +204,9 @@ static void test_a_point(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_box_fills_the_picture),
-        cmocka_unit_test(test_up_is_above),
-        cmocka_unit_test(test_the_longer_side_lies_across),
-        cmocka_unit_test(test_a_point),
+        cmocka_unit_test(test_the_box_fills_the_picture),   cmocka_unit_test(test_up_is_above),
+        cmocka_unit_test(test_the_longer_side_lies_across), cmocka_unit_test(test_the_tunnel),
+        cmocka_unit_test(test_flat_lights_face_the_model),  cmocka_unit_test(test_a_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,7 +47,7 @@ static void look(struct scene *scene, bool orthographic, double closer)
 {
     struct camera camera;
     const struct limit_tables *t = &scene->tables;
-    renderer_default_camera(t->box_min, t->box_max, NULL, WIDTH, HEIGHT, &camera);
+    renderer_default_camera(t, NULL, VIEW_AROUND, WIDTH, HEIGHT, &camera);
     for (int i = 0; i < 3; i++) {
         double away = (camera.eye[i] - camera.target[i]) / closer;
         camera.target[i] = 0.5 * (t->box_min[i] + t->box_max[i]);

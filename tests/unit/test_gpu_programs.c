@@ -39,9 +39,9 @@ static void scene_init(struct scene *scene, const char *text)
         fail_msg("%s", error.text);
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
     assert_non_null(scene->model);
-    const double *low = scene->tables.box_min, *high = scene->tables.box_max;
-    renderer_default_camera(low, high, NULL, 48, 40, &scene->request.camera);
-    renderer_default_light(low, high, &scene->request.camera, &scene->request.lights[0]);
+    const struct limit_tables *tables = &scene->tables;
+    renderer_default_camera(tables, NULL, VIEW_AROUND, 48, 40, &scene->request.camera);
+    renderer_default_light(tables->box_min, tables->box_max, NULL, &scene->request.lights[0]);
 }
 
 static void scene_finish(struct scene *scene)

@@ -41,9 +41,9 @@ static void scene_init(struct scene *scene, bool device_times)
         fail_msg("%s", error.text);
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
     assert_non_null(scene->model);
-    const double *low = scene->tables.box_min, *high = scene->tables.box_max;
-    renderer_default_camera(low, high, NULL, 640, 480, &scene->request.camera);
-    renderer_default_light(low, high, &scene->request.camera, &scene->request.lights[0]);
+    const struct limit_tables *tables = &scene->tables;
+    renderer_default_camera(tables, NULL, VIEW_AROUND, 640, 480, &scene->request.camera);
+    renderer_default_light(tables->box_min, tables->box_max, NULL, &scene->request.lights[0]);
 }
 
 static void scene_finish(struct scene *scene)

@@ -12,7 +12,8 @@
 #include "server/service/label.h"
 #include "server/service/wire.h"
 
-static const double BOX_MIN[3] = {0, 0, 0}, BOX_MAX[3] = {4, 2, 1};
+static const struct limit_tables TABLES = {.box_max = {4, 2, 1}};
+static const struct wire_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
 
 static void test_defaults_are_valid(void **state)
 {
@@ -22,7 +23,7 @@ static void test_defaults_are_valid(void **state)
     render.height_px = 480;
     render.planes = sheen_Plane_PLANE_COLOUR;
     struct frame_request request;
-    wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &request);
+    wire_to_frame_request(&render, &SUBJECT, &request);
     const sheen_Pattern pattern = sheen_Pattern_init_default;
     assert_true(request.lights[0].pattern.count == pattern.count);
     assert_true(request.lights[0].pattern.duty == pattern.duty);
@@ -41,7 +42,7 @@ static void test_defaults_are_valid(void **state)
     if (!message_check_render(&render, 1000, 1000, text))
         fail_msg("%s", text);
     struct frame_request again;
-    wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &again);
+    wire_to_frame_request(&render, &SUBJECT, &again);
     assert_memory_equal(&again.camera.eye, &request.camera.eye, sizeof again.camera.eye);
     assert_memory_equal(&again.lights[0], &request.lights[0], sizeof again.lights[0]);
 }
@@ -68,7 +69,7 @@ static void test_what_is_given_is_kept(void **state)
     render.has_miss = true;
     render.miss = (sheen_Colour){0.25f, 0.5f, 0.75f, 1};
     struct frame_request request;
-    wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &request);
+    wire_to_frame_request(&render, &SUBJECT, &request);
     assert_int_equal(request.camera.kind, CAMERA_ORTHOGRAPHIC);
     assert_true(request.camera.ortho_height == 7 && request.camera.target[2] == 6);
     assert_true(request.camera.eye[0] == 1 && request.camera.up[1] == 1);
@@ -88,7 +89,7 @@ static struct camera camera_for(const sheen_Camera *asked)
     if (asked)
         render.camera = *asked;
     struct frame_request request;
-    wire_to_frame_request(&render, BOX_MIN, BOX_MAX, &request);
+    wire_to_frame_request(&render, &SUBJECT, &request);
     return request.camera;
 }
 
@@ -99,7 +100,7 @@ static void test_cameras_in_part(void **state)
     const struct camera whole = camera_for(NULL);
     const sheen_Camera turned = {.has_up = true, .up = {1, 0, 0}};
     struct camera camera = camera_for(&turned), framed;
-    renderer_default_camera(BOX_MIN, BOX_MAX, (const double[]){1, 0, 0}, 640, 480, &framed);
+    renderer_default_camera(&TABLES, (const double[]){1, 0, 0}, VIEW_AROUND, 640, 480, &framed);
     assert_memory_equal(camera.eye, framed.eye, sizeof camera.eye);
     assert_memory_equal(camera.target, framed.target, sizeof camera.target);
     assert_true(camera.up[0] == 1 && camera.fov_deg == whole.fov_deg);
@@ -132,8 +133,123 @@ static void test_cameras_in_part(void **state)
     for (int corner = 0; corner < 8; corner++) {
         double depth = 0;
         for (int i = 0; i < 3; i++)
-            depth += forward[i] * ((corner >> i & 1 ? BOX_MAX : BOX_MIN)[i] - camera.eye[i]);
+            depth += forward[i] *
+                     ((corner >> i & 1 ? TABLES.box_max : TABLES.box_min)[i] - camera.eye[i]);
         assert_true(depth > 0);
+    }
+}
+
+/* A number in [-1, 1). */
+static double noise(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-52 - 1;
+}
+
+static sheen_Vec3 noise_vec3(uint64_t *state, double size)
+{
+    return (sheen_Vec3){size * noise(state), size * noise(state), size * noise(state)};
+}
+
+/* Of a request for each kind of light, and one that leaves the kind out. */
+enum { UNPLACED = 5 };
+
+static void light_every_kind(sheen_Render *render)
+{
+    render->lights_count = UNPLACED;
+    for (int i = 0; i < UNPLACED; i++) {
+        render->lights[i] = (sheen_Light)sheen_Light_init_default;
+        render->lights[i].has_kind = i < UNPLACED - 1;
+        render->lights[i].kind = (sheen_LightKind)(i % (UNPLACED - 1));
+    }
+}
+
+/* Nobody who looks moves a light that has no place of its own: eye, target, field of view, height
+ * of an orthographic picture, and size. */
+static void test_lights_stay(void **state)
+{
+    (void)state;
+    uint64_t random = 3;
+    struct frame_request first, other;
+    sheen_Render render = sheen_Render_init_default;
+    render.width_px = 640;
+    render.height_px = 480;
+    light_every_kind(&render);
+    wire_to_frame_request(&render, &SUBJECT, &first);
+    assert_int_equal(first.lights[UNPLACED - 1].kind, LIGHT_TUNNEL);
+    for (int i = 0; i < 50; i++) {
+        render.width_px = 1 + (uint32_t)(2000 * fabs(noise(&random)));
+        render.height_px = 1 + (uint32_t)(2000 * fabs(noise(&random)));
+        render.has_camera = true;
+        render.camera = (sheen_Camera)sheen_Camera_init_default;
+        render.camera.has_eye = render.camera.has_target = i % 3 > 0;
+        render.camera.eye = noise_vec3(&random, 9);
+        render.camera.target = noise_vec3(&random, 9);
+        render.camera.has_ortho_height = i % 5 == 0;
+        render.camera.ortho_height = 2 + noise(&random);
+        render.camera.has_fov_deg = !render.camera.has_ortho_height;
+        render.camera.fov_deg = 90 + 89 * noise(&random);
+        wire_to_frame_request(&render, &SUBJECT, &other);
+        for (int k = 0; k < UNPLACED; k++)
+            assert_memory_equal(&other.lights[k], &first.lights[k], sizeof first.lights[k]);
+    }
+    render.camera.has_up = true;
+    render.camera.up = (sheen_Vec3){1, 0, 0};
+    wire_to_frame_request(&render, &SUBJECT, &other);
+    for (int k = 0; k < UNPLACED; k++)
+        assert_memory_not_equal(other.lights[k].u, first.lights[k].u, sizeof first.lights[k].u);
+}
+
+/* Up is what the request says, else the file, else what the box looks like; whoever looks along it
+ * sees the back of the model at the top from above, the front from below. */
+static void test_up(void **state)
+{
+    (void)state;
+    struct frame_request request;
+    struct wire_subject subject = SUBJECT;
+    sheen_Render render = sheen_Render_init_default;
+    double up[3];
+    render.width_px = render.height_px = 100;
+    assert_int_equal(wire_up(&render, &subject, up), sheen_UpSource_UP_GUESSED);
+    assert_true(up[0] == 0 && up[1] == 0 && up[2] == 1);
+    for (enum cage_up axis = CAGE_UP_X; axis <= CAGE_UP_Z; axis++) {
+        subject.up = axis;
+        assert_int_equal(wire_up(&render, &subject, up), sheen_UpSource_UP_FILE);
+        for (int i = 0; i < 3; i++)
+            assert_true(up[i] == ((int)axis - CAGE_UP_X == i));
+        wire_to_frame_request(&render, &subject, &request);
+        assert_memory_equal(request.camera.up, up, sizeof up);
+    }
+    render.has_camera = true;
+    render.camera = (sheen_Camera){.has_eye = true, .eye = {2, 1, 9}, .has_target = true};
+    render.camera.target = (sheen_Vec3){2, 1, 0};
+    wire_to_frame_request(&render, &subject, &request);
+    assert_true(request.camera.up[1] == 1 && request.camera.up[2] == 0);
+    render.camera.eye.z = -9;
+    wire_to_frame_request(&render, &subject, &request);
+    assert_true(request.camera.up[1] == -1 && request.camera.up[2] == 0);
+    render.camera.has_up = true;
+    render.camera.up = (sheen_Vec3){0, 3, 0};
+    assert_int_equal(wire_up(&render, &subject, up), sheen_UpSource_UP_GIVEN);
+    wire_to_frame_request(&render, &subject, &request);
+    assert_true(request.camera.up[1] == 3);
+}
+
+/* Zebra and environment are about up, whoever looks; what is asked for comes first. */
+static void test_axes(void **state)
+{
+    (void)state;
+    struct lines lines;
+    const double up[3] = {0, 2, 0};
+    for (int family = 0; family <= sheen_LineFamily_LINES_ENVIRONMENT; family++) {
+        sheen_Lines asked = {.family = (sheen_LineFamily)family};
+        wire_to_lines(&asked, up, &lines);
+        assert_true(lines.has_direction == (family >= sheen_LineFamily_LINES_ZEBRA));
+        assert_true(lines.direction[1] == (lines.has_direction ? 2 : 0));
+        asked.has_direction = family >= sheen_LineFamily_LINES_ISOPHOTE;
+        asked.direction = (sheen_Vec3){1, 0, 0};
+        wire_to_lines(&asked, up, &lines);
+        assert_true(!lines.has_direction || (lines.direction[0] == 1 && lines.direction[1] == 0));
     }
 }
 
@@ -187,6 +303,9 @@ int main(void)
         cmocka_unit_test(test_defaults_are_valid),
         cmocka_unit_test(test_what_is_given_is_kept),
         cmocka_unit_test(test_cameras_in_part),
+        cmocka_unit_test(test_lights_stay),
+        cmocka_unit_test(test_up),
+        cmocka_unit_test(test_axes),
         cmocka_unit_test(test_label_holds_every_digit),
         cmocka_unit_test(test_texts),
     };

@@ -444,6 +444,7 @@ extern "C" bool gltf_read(cage_builder *builder, const void *bytes, size_t size,
     try {
         gltf::Reader reader = {};
         reader.builder = builder;
+        builder->cage.up = CAGE_UP_Y; /* says the specification */
         reader.name = name;
         reader.failure = error;
         gltf::read(reader, bytes, size);
