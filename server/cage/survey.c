@@ -2,17 +2,14 @@
 
 #include <stdlib.h>
 
-/* One side of an edge: the face corner where it leaves, and the face's next one. */
-struct side {
-    uint32_t high, corner, next;
-};
+#include "server/cage/sides.h"
 
 enum { ON_BOUNDARY = 1, NON_MANIFOLD = 2, HAS_FAN = 4 };
 
-/* Sides by their lower vertex: side[start[v] .. start[v + 1]), sorted by the higher one. */
 struct edges {
-    uint32_t *start;    /* [n_vertices + 2] */
-    struct side *side;  /* [corners] */
+    const struct cage *cage;
+    struct cage_survey *survey;
+    struct cage_sides sides;
     float *sharpness;   /* [corners]: of an edge, at its first side; NULL: no creases */
     uint32_t *valence;  /* [n_vertices]: faces around it */
     uint8_t *flags;     /* [n_vertices] */
@@ -21,77 +18,31 @@ struct edges {
 
 static void edges_finish(struct edges *edges)
 {
-    free(edges->start);
-    free(edges->side);
+    cage_sides_finish(&edges->sides);
     free(edges->sharpness);
     free(edges->valence);
     free(edges->flags);
     free(edges->fan_link);
 }
 
-static bool edges_init(struct edges *edges, const struct cage *cage, struct error *error)
+static bool edges_init(struct edges *edges, const struct cage *cage, struct cage_survey *survey,
+                       struct error *error)
 {
     size_t n_corners = cage->face_start[cage->n_faces];
     *edges = (struct edges){
-        .start = calloc(cage->n_vertices + 2, sizeof *edges->start),
-        .side = calloc(n_corners + 1, sizeof *edges->side),
+        .cage = cage,
+        .survey = survey,
         .sharpness = cage->n_creases ? calloc(n_corners + 1, sizeof *edges->sharpness) : NULL,
         .valence = calloc(cage->n_vertices + 1, sizeof *edges->valence),
         .flags = calloc(cage->n_vertices + 1, 1),
         .fan_link = calloc(n_corners + 1, sizeof *edges->fan_link),
     };
-    if (edges->start && edges->side && edges->valence && edges->flags && edges->fan_link &&
-        (edges->sharpness || !cage->n_creases))
+    if (edges->valence && edges->flags && edges->fan_link &&
+        (edges->sharpness || !cage->n_creases) && cage_sides_init(&edges->sides, cage))
         return true;
     edges_finish(edges);
     return error_set(error, ERROR_SERVER, "no memory to count the edges of %zu faces",
                      cage->n_faces);
-}
-
-/* Calls visit for the edge that leaves every corner of the cage. */
-static void each_side(const struct cage *cage, struct edges *edges,
-                      void (*visit)(struct edges *edges, uint32_t low, struct side side))
-{
-    for (size_t face = 0; face < cage->n_faces; face++) {
-        uint32_t first = cage->face_start[face], last = cage->face_start[face + 1];
-        for (uint32_t i = first; i < last; i++) {
-            uint32_t next = i + 1 < last ? i + 1 : first;
-            uint32_t a = cage->face_vertex[i], b = cage->face_vertex[next];
-            visit(edges, a < b ? a : b, (struct side){a < b ? b : a, i, next});
-        }
-    }
-}
-
-/* Counts two places ahead, so that filling leaves start[v] where v's sides begin. */
-static void count_side(struct edges *edges, uint32_t low, struct side side)
-{
-    (void)side;
-    edges->start[low + 2]++;
-}
-
-static void fill_side(struct edges *edges, uint32_t low, struct side side)
-{
-    edges->side[edges->start[low + 1]++] = side;
-}
-
-static int compare_sides(const void *a, const void *b)
-{
-    const struct side *p = a, *q = b;
-    if (p->high != q->high)
-        return p->high < q->high ? -1 : 1;
-    return p->corner < q->corner ? -1 : p->corner > q->corner;
-}
-
-static void edges_sort(struct edges *edges, const struct cage *cage)
-{
-    each_side(cage, edges, count_side);
-    for (size_t v = 0; v <= cage->n_vertices; v++)
-        edges->start[v + 1] += edges->start[v];
-    each_side(cage, edges, fill_side);
-    for (size_t v = 0; v < cage->n_vertices; v++)
-        if (edges->start[v + 1] - edges->start[v] > 1)
-            qsort(edges->side + edges->start[v], edges->start[v + 1] - edges->start[v],
-                  sizeof *edges->side, compare_sides);
 }
 
 /* --- which faces hang together */
@@ -105,23 +56,24 @@ static uint32_t fan_of(struct edges *edges, uint32_t corner)
 }
 
 /* Two faces that run along an edge in opposite directions hang together at both of its ends. */
-static void join_faces(struct edges *edges, const struct side *a, const struct side *b)
+static void join_faces(struct edges *edges, const struct cage_side *a, const struct cage_side *b)
 {
     edges->fan_link[fan_of(edges, a->corner)] = fan_of(edges, b->next);
     edges->fan_link[fan_of(edges, a->next)] = fan_of(edges, b->corner);
 }
 
-static void survey_edge(const struct cage *cage, struct edges *edges, uint32_t low,
-                        const struct side *side, size_t n, struct cage_survey *survey)
+static void survey_edge(void *context, uint32_t low, const struct cage_side *side, size_t n)
 {
+    struct edges *edges = context;
+    const uint32_t *face_vertex = edges->cage->face_vertex;
     uint8_t flag = 0;
     if (n == 1) {
-        survey->n_boundary_edges++;
+        edges->survey->n_boundary_edges++;
         flag = ON_BOUNDARY;
-    } else if (n == 2 && cage->face_vertex[side[0].corner] != cage->face_vertex[side[1].corner]) {
+    } else if (n == 2 && face_vertex[side[0].corner] != face_vertex[side[1].corner]) {
         join_faces(edges, &side[0], &side[1]);
     } else {
-        survey->n_nonmanifold_edges++;
+        edges->survey->n_nonmanifold_edges++;
         flag = NON_MANIFOLD;
     }
     edges->flags[low] |= flag;
@@ -133,14 +85,7 @@ static void survey_edges(const struct cage *cage, struct edges *edges, struct ca
     size_t n_corners = cage->face_start[cage->n_faces];
     for (uint32_t c = 0; c < n_corners; c++)
         edges->fan_link[c] = c;
-    for (uint32_t v = 0; v < cage->n_vertices; v++)
-        for (uint32_t first = edges->start[v], last; first < edges->start[v + 1]; first = last) {
-            const struct side *side = edges->side;
-            for (last = first + 1;
-                 last < edges->start[v + 1] && side[last].high == side[first].high; last++)
-                ;
-            survey_edge(cage, edges, v, side + first, last - first, survey);
-        }
+    cage_each_edge(&edges->sides, cage->n_vertices, survey_edge, edges);
     for (uint32_t c = 0; c < n_corners; c++) {
         uint8_t *flags = &edges->flags[cage->face_vertex[c]];
         if (fan_of(edges, c) == c)
@@ -156,10 +101,10 @@ static void survey_edges(const struct cage *cage, struct edges *edges, struct ca
 static size_t find_edge(const struct edges *edges, uint32_t a, uint32_t b)
 {
     uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    size_t begin = edges->start[low], end = edges->start[low + 1];
+    size_t begin = edges->sides.start[low], end = edges->sides.start[low + 1];
     while (begin < end) {
         size_t middle = begin + (end - begin) / 2;
-        if (edges->side[middle].high < high)
+        if (edges->sides.side[middle].high < high)
             begin = middle + 1;
         else
             end = middle;
@@ -240,7 +185,7 @@ bool cage_survey(const struct cage *cage, struct cage_survey *survey, struct err
 {
     *survey = (struct cage_survey){0};
     struct edges edges;
-    if (!edges_init(&edges, cage, error))
+    if (!edges_init(&edges, cage, survey, error))
         return false;
     for (size_t face = 0; face < cage->n_faces; face++) {
         uint32_t n = cage->face_start[face + 1] - cage->face_start[face];
@@ -250,7 +195,6 @@ bool cage_survey(const struct cage *cage, struct cage_survey *survey, struct err
     }
     for (size_t i = 0; i < cage->face_start[cage->n_faces]; i++)
         edges.valence[cage->face_vertex[i]]++;
-    edges_sort(&edges, cage);
     survey_edges(cage, &edges, survey);
     survey_creases(cage, &edges, survey);
     bool ok = survey_vertices(cage, &edges, survey, error) && survey_tags(cage, survey, error);

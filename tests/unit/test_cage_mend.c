@@ -86,7 +86,7 @@ static void test_tags_after_faces_passed_over(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, "f 1 2\n" SIX "f 1 2 5 4\nf 1 1 1\nf 2 3 6 5\nf 1 2 6 5\n"
+    read_good(&cage, "f 1 2\n" SIX "f 1 2 5 4\nf 1 1 1\nf 2 3 6 5\nf 3 2 1\n"
                      "t hole 1/0/0 3\nt hole 3/0/0 2 0 1\nt crease 2/1/0 2 5 3\n"
                      "t crease 4/2/0 0 1 1 4 1 2\n");
     assert_int_equal(cage.n_faces, 3);

@@ -59,6 +59,14 @@ static void expect_face(const struct cage *cage, size_t face, size_t n, const ui
     expect_face(cage, face, sizeof((uint32_t[]){__VA_ARGS__}) / sizeof(uint32_t),                  \
                 (uint32_t[]){__VA_ARGS__})
 
+static size_t found(const struct cage *cage, enum cage_finding_kind kind)
+{
+    for (size_t i = 0; i < cage->n_findings; i++)
+        if (cage->finding[i].kind == kind)
+            return cage->finding[i].count;
+    return 0;
+}
+
 /* Geometry */
 
 static void test_index_forms(void **state)
@@ -76,7 +84,9 @@ static void test_index_forms(void **state)
     assert_true(cage.position[2][0] == 1 && cage.position[2][1] == 1 && cage.position[2][2] == 0);
     assert_int_equal(cage.boundary, CAGE_BOUNDARY_EDGE_ONLY);
     assert_int_equal(cage.scheme, CAGE_SCHEME_CATMULL_CLARK);
-    assert_null(cage.warnings);
+    assert_int_equal(cage.n_findings, 2);
+    assert_int_equal(found(&cage, CAGE_FOUND_FACE_TWICE), 4);
+    assert_int_equal(found(&cage, CAGE_FOUND_WOUND), 2);
     cage_finish(&cage);
 }
 
@@ -415,7 +425,10 @@ static void test_own_models(void **state)
         assert_int_equal(cage.n_vertices, models[i].n_vertices);
         assert_int_equal(cage.n_faces, models[i].n_faces);
         assert_int_equal(cage.face_start[cage.n_faces], models[i].n_corners);
-        assert_null(cage.warnings);
+        if (strcmp(models[i].name, "tetra") == 0) /* is made of triangles */
+            assert_int_equal(cage.finding[0].kind, CAGE_FOUND_TRIANGLES);
+        else
+            assert_null(cage.warnings);
         cage_finish(&cage);
         free(bytes);
     }
@@ -430,14 +443,6 @@ static const struct {
     {"loop_nonman_edges", 0, 4, 0},
     {"catmark_nonman_quadpole8", 8, 0, 0},
 };
-
-static size_t found(const struct cage *cage, enum cage_finding_kind kind)
-{
-    for (size_t i = 0; i < cage->n_findings; i++)
-        if (cage->finding[i].kind == kind)
-            return cage->finding[i].count;
-    return 0;
-}
 
 /* Returns how many of its faces are passed over. */
 static size_t check_degenerate(const char *path, const struct cage *cage)

@@ -16,6 +16,9 @@ struct cage_builder {
      * lines. As long as the cage's own arrays. */
     uint32_t *face_line, *crease_line, *corner_line, *hole_line;
 
+    /* The file has triangles that nothing says are meant as such. */
+    bool plain_triangles;
+
     /* Corners so far, finished faces and the face being built: length of cage.face_vertex. */
     size_t n_face_vertices;
 

@@ -291,7 +291,7 @@ void add_primitive(Reader &reader, Primitive &primitive, const transform &matrix
     triangles.encoded = primitive.source->extensions.count("FB_ngon_encoding") > 0;
     triangles.mirrored = mirrored;
     triangles.base = primitive.base;
-    reader.plain_triangles |= !triangles.encoded;
+    reader.builder->plain_triangles |= !triangles.encoded;
     primitive.first_face = reader.builder->cage.n_faces;
     reader.need(ngon_add_faces(reader.builder, &triangles, &reader.ngon_breaks, reader.failure));
     primitive.n_faces = reader.builder->cage.n_faces - primitive.first_face;
@@ -405,11 +405,6 @@ void add_scene(Reader &reader)
 void add_warnings(Reader &reader)
 {
     cage *target = &reader.builder->cage;
-    if (reader.plain_triangles && target->scheme == CAGE_SCHEME_CATMULL_CLARK)
-        cage_warn(target,
-                  "%s: plain triangles: Catmull-Clark over triangles, probably not what was "
-                  "modelled; export quads as OBJ or with FB_ngon_encoding",
-                  reader.name);
     if (reader.ngon_breaks > 0)
         cage_warn(target,
                   "%s: FB_ngon_encoding is broken, triangles that do not continue their polygon: "

@@ -30,7 +30,7 @@ struct Reader {
     const char *name;
     error *failure;
     bool has_scheme = false, has_boundary = false, has_triangle_rule = false;
-    bool plain_triangles = false, skinned = false, morphed = false;
+    bool skinned = false, morphed = false;
     bool warned_negative = false; /* sharpness */
     size_t ngon_breaks = 0;
 

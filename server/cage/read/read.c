@@ -4,6 +4,7 @@
 #include <strings.h>
 
 #include "server/cage/read/builder.h"
+#include "server/cage/read/doubts.h"
 #include "server/cage/read/gltf.h"
 #include "server/cage/read/mend.h"
 #include "server/cage/read/obj.h"
@@ -54,6 +55,7 @@ bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *na
     bool ok = choose_reader(name, bytes, size)(&builder, bytes, size, name, error) &&
               cage_mend(&builder, name, error) && cage_check(&builder.cage, name, error);
     if (ok) {
+        cage_doubt(&builder, name);
         *cage = builder.cage;
         builder.cage = (struct cage){0};
     }
