@@ -5,6 +5,37 @@
 #include "client/commands.h"
 #include "client/job.h"
 
+static void print_findings(struct json *json, const struct sheen_model_info *info)
+{
+    static const char *const KINDS[] = {
+        [SHEEN_FOUND_REPEATED_CORNER] = "repeated-corner",
+        [SHEEN_FOUND_FEW_CORNERS] = "few-corners",
+        [SHEEN_FOUND_KEYHOLE] = "keyhole",
+        [SHEEN_FOUND_CREASE_WITHOUT_EDGE] = "crease-without-edge",
+        [SHEEN_FOUND_CORNER_WITHOUT_VERTEX] = "corner-without-vertex",
+        [SHEEN_FOUND_HOLE_WITHOUT_FACE] = "hole-without-face",
+        [SHEEN_FOUND_UNWELDED] = "unwelded",
+        [SHEEN_FOUND_TRIANGLES] = "triangles",
+        [SHEEN_FOUND_WOUND_AGAINST] = "wound-against",
+        [SHEEN_FOUND_FACE_TWICE] = "face-twice",
+        [SHEEN_FOUND_INSIDE_OUT] = "inside-out",
+        [SHEEN_FOUND_OTHER] = "other",
+    };
+    json_array_begin(json, "findings");
+    for (uint32_t i = 0; i < info->n_findings; i++) {
+        const struct sheen_finding *finding = &info->findings[i];
+        json_object_begin(json, NULL);
+        json_string(json, "kind", KINDS[finding->kind]);
+        json_uint(json, "count", finding->count);
+        if (finding->line)
+            json_uint(json, "line", finding->line);
+        if (finding->has_face)
+            json_uint(json, "face", finding->face);
+        json_object_end(json);
+    }
+    json_array_end(json);
+}
+
 static void print_json(struct json *json, const struct sheen_model_info *info)
 {
     const struct {
@@ -52,6 +83,7 @@ static void print_json(struct json *json, const struct sheen_model_info *info)
     json_vec3(json, "box_min", info->box_min);
     json_vec3(json, "box_max", info->box_max);
     json_lines(json, "warnings", info->warnings);
+    print_findings(json, info);
     json_object_end(json);
 }
 

@@ -148,6 +148,31 @@ enum sheen_status sheen_find_model(struct sheen_session *session, const char *na
                                    const struct sheen_progress *progress,
                                    uint8_t id[SHEEN_ID_BYTES], struct sheen_error *error);
 
+/* What a file has that it is probably not meant to have; its warning says so in words. */
+enum sheen_finding_kind {
+    SHEEN_FOUND_REPEATED_CORNER,       /* faces that lost a corner which repeats its neighbour */
+    SHEEN_FOUND_FEW_CORNERS,           /* faces passed over: fewer than three different corners */
+    SHEEN_FOUND_KEYHOLE,               /* the same: a vertex at corners that are no neighbours */
+    SHEEN_FOUND_CREASE_WITHOUT_EDGE,   /* tags passed over */
+    SHEEN_FOUND_CORNER_WITHOUT_VERTEX, /* the same */
+    SHEEN_FOUND_HOLE_WITHOUT_FACE,     /* the same */
+    SHEEN_FOUND_UNWELDED,      /* repeated positions, where no face shares a vertex with another */
+    SHEEN_FOUND_TRIANGLES,     /* plain ones: faces */
+    SHEEN_FOUND_WOUND_AGAINST, /* edges that two faces run along in one direction */
+    SHEEN_FOUND_FACE_TWICE,    /* faces that are there again */
+    SHEEN_FOUND_INSIDE_OUT,    /* closed bodies whose faces turn inwards */
+    SHEEN_FOUND_OTHER,         /* what a later daemon says */
+};
+
+struct sheen_finding {
+    enum sheen_finding_kind kind;
+    uint32_t count; /* of what the kind says, from 1 */
+    uint32_t line;  /* of the file, from 1, where the first is; 0: none */
+    bool has_face;  /* where a file has no lines */
+    uint32_t face;  /* the first, from 0 */
+};
+
+#define SHEEN_MAX_FINDINGS 16
 #define SHEEN_MAX_VALENCES 64
 struct sheen_model_info {
     uint8_t id[SHEEN_ID_BYTES];
@@ -171,6 +196,8 @@ struct sheen_model_info {
     uint64_t tables_us;                   /* reading, building and uploading took this long */
     double box_min[3], box_max[3];
     char warnings[4096]; /* lines; "" when there are none */
+    uint32_t n_findings; /* at most one of each kind that is known here */
+    struct sheen_finding findings[SHEEN_MAX_FINDINGS];
 };
 
 /* What an uploaded model is and costs; builds its tables if that has not happened. */

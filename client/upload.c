@@ -93,6 +93,27 @@ broken:
     return session_fail(session, SHEEN_BAD_PEER, error);
 }
 
+static void copy_findings(struct sheen_model_info *info, const sheen_ModelInfo *body)
+{
+    _Static_assert(sizeof(info->findings) / sizeof(*info->findings) ==
+                       sizeof(body->findings) / sizeof(*body->findings),
+                   "the schema's bound");
+    _Static_assert((int)SHEEN_FOUND_OTHER - 1 == (int)_sheen_FindingKind_MAX,
+                   "the kinds have the schema's numbers");
+    info->n_findings = body->findings_count;
+    for (size_t i = 0; i < body->findings_count; i++) {
+        const sheen_Finding *from = &body->findings[i];
+        info->findings[i] = (struct sheen_finding){
+            .kind = (int)from->kind < (int)SHEEN_FOUND_OTHER ? (enum sheen_finding_kind)from->kind
+                                                             : SHEEN_FOUND_OTHER,
+            .count = from->count,
+            .line = from->has_line ? from->line : 0,
+            .has_face = from->has_face,
+            .face = from->face,
+        };
+    }
+}
+
 static void copy_info(struct sheen_model_info *info, const sheen_ModelInfo *body)
 {
     *info = (struct sheen_model_info){
@@ -129,6 +150,7 @@ static void copy_info(struct sheen_model_info *info, const sheen_ModelInfo *body
     _Static_assert(sizeof(info->warnings) == sizeof(body->warnings), "the schema's bound");
     memcpy(info->name, body->name, sizeof(info->name));
     memcpy(info->warnings, body->warnings, sizeof(info->warnings));
+    copy_findings(info, body);
     for (size_t i = 0; i < body->extraordinary_count; i++) {
         info->extraordinary[i].valence = body->extraordinary[i].valence;
         info->extraordinary[i].count = body->extraordinary[i].count;

@@ -479,6 +479,10 @@ static bool check_model_info(const sheen_ModelInfo *info, char *text)
 {
     if (!message_is_text(info->warnings, true))
         return refuse(text, "warnings are not lines of UTF-8 text");
+    for (pb_size_t i = 0; i < info->findings_count; i++)
+        if (info->findings[i].count == 0 ||
+            (info->findings[i].has_line && info->findings[i].line == 0))
+            return refuse(text, "findings[%u] is of nothing, or on line 0", (unsigned)i);
     return check_text(info->name, "name", text) && check_vec3(&info->box_min, "box_min", text) &&
            check_vec3(&info->box_max, "box_max", text);
 }

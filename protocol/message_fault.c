@@ -24,6 +24,7 @@ NAMES(sheen_UploadBegin);
 NAMES(sheen_UploadState);
 NAMES(sheen_ModelQuery);
 NAMES(sheen_ValenceCount);
+NAMES(sheen_Finding);
 NAMES(sheen_ModelInfo);
 NAMES(sheen_Camera);
 NAMES(sheen_Pattern);
@@ -49,10 +50,11 @@ static const struct {
     MESSAGE(sheen_Vec3),       MESSAGE(sheen_Colour),       MESSAGE(sheen_Hello),
     MESSAGE(sheen_HelloOk),    MESSAGE(sheen_UploadBegin),  MESSAGE(sheen_UploadState),
     MESSAGE(sheen_ModelQuery), MESSAGE(sheen_ValenceCount), MESSAGE(sheen_ModelInfo),
-    MESSAGE(sheen_Camera),     MESSAGE(sheen_Pattern),      MESSAGE(sheen_Light),
-    MESSAGE(sheen_Lines),      MESSAGE(sheen_Show),         MESSAGE(sheen_Render),
-    MESSAGE(sheen_Times),      MESSAGE(sheen_Frame),        MESSAGE(sheen_Progress),
-    MESSAGE(sheen_Latency),    MESSAGE(sheen_Stats),        MESSAGE(sheen_Error),
+    MESSAGE(sheen_Finding),    MESSAGE(sheen_Camera),       MESSAGE(sheen_Pattern),
+    MESSAGE(sheen_Light),      MESSAGE(sheen_Lines),        MESSAGE(sheen_Show),
+    MESSAGE(sheen_Render),     MESSAGE(sheen_Times),        MESSAGE(sheen_Frame),
+    MESSAGE(sheen_Progress),   MESSAGE(sheen_Latency),      MESSAGE(sheen_Stats),
+    MESSAGE(sheen_Error),
 };
 
 #define MAX_TAG 64    /* above every tag of sheen.proto */

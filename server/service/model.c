@@ -167,6 +167,8 @@ static bool read_cage(struct model_build *build)
     model->n_vertices = build->cage.n_vertices;
     model->n_faces = build->cage.n_faces;
     model->up = build->cage.up;
+    model->n_findings = build->cage.n_findings;
+    memcpy(model->finding, build->cage.finding, sizeof model->finding);
     if (build->cage.warnings && !(model->warnings = strdup(build->cage.warnings)))
         return error_set(&build->error, ERROR_SERVER, "%s: no memory", order->name);
     struct build_clock clock;

@@ -17,8 +17,10 @@ struct model {
     size_t n_vertices, n_faces; /* of the cage */
     enum cage_up up;            /* as its file says */
     char *warnings;             /* lines, or NULL */
-    size_t device_bytes;        /* of its tables on the device */
-    uint64_t build_us;          /* reading, building and uploading */
+    size_t n_findings;          /* of the cage */
+    struct cage_finding finding[N_CAGE_FINDINGS];
+    size_t device_bytes; /* of its tables on the device */
+    uint64_t build_us;   /* reading, building and uploading */
     struct work destroy_work;
 };
 

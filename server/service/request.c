@@ -245,6 +245,27 @@ static void fill_survey(sheen_ModelInfo *info, const struct cage_survey *survey)
             (sheen_ValenceCount){survey->extraordinary[i].valence, survey->extraordinary[i].count};
 }
 
+/* The wire numbers the kinds as the cage does. */
+static void fill_findings(sheen_ModelInfo *info, const struct model *model)
+{
+    _Static_assert(N_CAGE_FINDINGS <= sizeof info->findings / sizeof *info->findings,
+                   "all kinds fit the message");
+    _Static_assert((int)CAGE_FOUND_INSIDE_OUT == (int)sheen_FindingKind_FINDING_INSIDE_OUT,
+                   "the last kind here and there");
+    info->findings_count = (pb_size_t)model->n_findings;
+    for (size_t i = 0; i < model->n_findings; i++) {
+        const struct cage_finding *finding = &model->finding[i];
+        info->findings[i] = (sheen_Finding){
+            .kind = (sheen_FindingKind)finding->kind,
+            .count = finding->count,
+            .has_line = finding->line != 0,
+            .line = finding->line,
+            .has_face = finding->face != CAGE_NO_FACE,
+            .face = finding->face,
+        };
+    }
+}
+
 static void answer_query(struct request *request)
 {
     const struct asset *asset = request->model.asset;
@@ -273,6 +294,7 @@ static void answer_query(struct request *request)
     snprintf(info.warnings, sizeof info.warnings, "%s", model->warnings ? model->warnings : "");
     wire_make_text(info.warnings, true);
     fill_survey(&info, &model->survey);
+    fill_findings(&info, model);
     session_answer(request->session, request->answer, MESSAGE_MODEL_INFO, &info);
     request_end(request);
 }

@@ -13,6 +13,17 @@ static void write_settings(struct sink *sink, const struct cage *cage)
     sink_u32(sink, (uint32_t)cage->up);
 }
 
+static void write_findings(struct sink *sink, const struct cage *cage)
+{
+    sink_u32(sink, (uint32_t)cage->n_findings);
+    for (size_t i = 0; i < cage->n_findings; i++) {
+        sink_u32(sink, (uint32_t)cage->finding[i].kind);
+        sink_u32(sink, cage->finding[i].count);
+        sink_u32(sink, cage->finding[i].line);
+        sink_u32(sink, cage->finding[i].face);
+    }
+}
+
 void cage_write(struct sink *sink, const struct cage *cage)
 {
     const size_t n_face_vertices = cage->face_start[cage->n_faces];
@@ -30,6 +41,7 @@ void cage_write(struct sink *sink, const struct cage *cage)
     sink_bytes(sink, cage->corner, cage->n_corners * sizeof *cage->corner);
     sink_u64(sink, cage->n_holes);
     sink_bytes(sink, cage->hole, cage->n_holes * sizeof *cage->hole);
+    write_findings(sink, cage);
 }
 
 /* Memory that could not be had is told apart from bytes that are not there. */
@@ -81,6 +93,23 @@ static void take_warnings(struct taking *taking, struct cage *cage)
             *c = '?';
 }
 
+/* At most one of each kind, and none of nothing. */
+static void take_findings(struct source *source, struct cage *cage)
+{
+    uint32_t n = source_u32(source), seen = 0;
+    source->ok &= n <= N_CAGE_FINDINGS;
+    for (uint32_t i = 0; source->ok && i < n; i++) {
+        uint32_t kind = source_u32(source), count = source_u32(source);
+        uint32_t line = source_u32(source), face = source_u32(source);
+        source->ok &= kind < N_CAGE_FINDINGS && count > 0 && !(seen & 1u << (kind & 31u));
+        if (!source->ok)
+            return;
+        seen |= 1u << kind;
+        cage->finding[cage->n_findings++] =
+            (struct cage_finding){(enum cage_finding_kind)kind, count, line, face};
+    }
+}
+
 bool cage_take(struct source *source, struct cage *cage, const char *name, struct error *error)
 {
     struct taking taking = {source, false};
@@ -94,6 +123,7 @@ bool cage_take(struct source *source, struct cage *cage, const char *name, struc
     cage->crease = take_array(&taking, &cage->n_creases, 0, sizeof *cage->crease);
     cage->corner = take_array(&taking, &cage->n_corners, 0, sizeof *cage->corner);
     cage->hole = take_array(&taking, &cage->n_holes, 0, sizeof *cage->hole);
+    take_findings(source, cage);
     bool ok = false;
     if (taking.no_memory)
         error_set(error, ERROR_SERVER, "%s: no memory for the cage: try again later", name);

@@ -119,6 +119,16 @@ static void answers_are_checked(void **state)
     info.box_max.z = NAN;
     assert_false(message_check_answer(MESSAGE_MODEL_INFO, &info, text));
     assert_non_null(strstr(text, "box_max.z"));
+    info.box_max.z = 0;
+    info.findings_count = 2; /* of a kind that is not known here, too */
+    info.findings[0] = (sheen_Finding){.kind = (sheen_FindingKind)99, .count = 1};
+    info.findings[1] = (sheen_Finding){.count = 1, .has_line = true};
+    assert_false(message_check_answer(MESSAGE_MODEL_INFO, &info, text));
+    assert_non_null(strstr(text, "findings[1]"));
+    info.findings[1].line = 1;
+    assert_true(message_check_answer(MESSAGE_MODEL_INFO, &info, text));
+    info.findings[0].count = 0;
+    assert_false(message_check_answer(MESSAGE_MODEL_INFO, &info, text));
     sheen_Frame frame = {.width_px = 2,
                          .height_px = 2,
                          .planes = 1,
@@ -189,6 +199,10 @@ static void the_largest_messages_fit(void **state)
     info.extraordinary_count = 64;
     for (int i = 0; i < 64; i++)
         info.extraordinary[i] = (sheen_ValenceCount){UINT32_MAX, UINT32_MAX};
+    info.findings_count = 16;
+    for (int i = 0; i < 16; i++)
+        info.findings[i] =
+            (sheen_Finding){(sheen_FindingKind)10, UINT32_MAX, true, UINT32_MAX, true, UINT32_MAX};
     assert_true(message_encode(MESSAGE_MODEL_INFO, 1, &info, buffer, sizeof(buffer), &length));
     static sheen_ModelInfo decoded;
     assert_true(message_decode(MESSAGE_MODEL_INFO, buffer + 16, length - 16, &decoded));

@@ -166,7 +166,12 @@ static void check_model_info(const uint8_t *bytes, size_t size)
                             .corner_bytes = 12368,
                             .tables_us = 1500,
                             .box_min = {-0.5, -0.5, -0.5},
-                            .box_max = {0.5, 0.5, 0.5}};
+                            .box_max = {0.5, 0.5, 0.5},
+                            .findings_count = 1,
+                            .findings = {{.kind = sheen_FindingKind_FINDING_WOUND_AGAINST,
+                                          .count = 4,
+                                          .has_line = true,
+                                          .line = 10}}};
     count_id(info.sha256);
     same_message(MESSAGE_MODEL_INFO, 3, &info, bytes, size);
 }
