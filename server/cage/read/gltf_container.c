@@ -2,14 +2,14 @@
 
 #include <limits.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
-#define MAX_JSON_DEPTH 64
-#define MAX_JSON_VALUES 4000000u
 /* Each buffer without a URI is the binary chunk again; the format means one. */
 #define MAX_BUFFERS_BESIDE_CHUNK 4u
 
 #define GLB_HEADER_BYTES 20u /* magic, version, length, and the first chunk's length and type */
+#define GLB_CHUNK_BYTES 8u   /* a chunk's length and type */
 #define GLB_CHUNK_JSON 0x4e4f534au
 #define GLB_CHUNK_BIN 0x004e4942u
 
@@ -18,138 +18,52 @@ static uint32_t read_u32(const unsigned char *at)
     return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
-/* Arrays of the top level. */
-enum json_part { PART_OTHER, PART_BUFFERS, PART_VIEWS, PART_ACCESSORS, N_PARTS };
+static void write_u32(unsigned char *at, size_t value)
+{
+    for (int i = 0; i < 4; i++)
+        at[i] = (unsigned char)(value >> (8 * i));
+}
 
-static const struct {
-    const char *key, *element;
-} PARTS[N_PARTS] = {[PART_OTHER] = {"", ""},
-                    [PART_BUFFERS] = {"buffers", "buffer"},
-                    [PART_VIEWS] = {"bufferViews", "buffer view"},
-                    [PART_ACCESSORS] = {"accessors", "accessor"}};
+static size_t aligned(size_t size)
+{
+    return (size + 3) / 4 * 4;
+}
 
-struct json_scan {
-    const char *at, *end;
-    int depth;
-    unsigned values;
-    enum json_part part; /* that `at` is in */
-    unsigned objects[N_PARTS];
+struct chunks {
+    const unsigned char *json, *bin;
+    size_t json_size, bin_size; /* bin_size 0: there is none */
 };
 
-struct json_text {
-    const char *start;
-    size_t length;
-    bool escaped;
-};
-
-static bool is_text(const struct json_text *text, const char *other)
+static bool find_binary_chunk(struct chunks *chunks, const unsigned char *end, const char *name,
+                              struct error *error)
 {
-    return text->length == strlen(other) && memcmp(text->start, other, text->length) == 0;
-}
-
-/* From the opening quote to past the closing one. */
-static struct json_text scan_string(struct json_scan *scan)
-{
-    struct json_text text = {.start = ++scan->at};
-    while (scan->at < scan->end && *scan->at != '"') {
-        text.escaped |= *scan->at == '\\';
-        scan->at += *scan->at == '\\' && scan->at + 1 < scan->end ? 2 : 1;
+    const unsigned char *chunk = chunks->json + chunks->json_size;
+    size_t left = (size_t)(end - chunk), skip = aligned(chunks->json_size) - chunks->json_size;
+    if (left <= skip)
+        return true;
+    /* Some writers pad the chunk without counting the padding. */
+    if (left >= skip + GLB_CHUNK_BYTES && read_u32(chunk + 4) != GLB_CHUNK_BIN &&
+        read_u32(chunk + skip + 4) == GLB_CHUNK_BIN) {
+        chunk += skip;
+        left -= skip;
     }
-    text.length = (size_t)(scan->at - text.start);
-    if (scan->at < scan->end)
-        scan->at++;
-    return text;
+    if (left < GLB_CHUNK_BYTES || read_u32(chunk + 4) != GLB_CHUNK_BIN)
+        return error_set(error, ERROR_MODEL, "%s: the second chunk of the GLB is not BIN", name);
+    left -= GLB_CHUNK_BYTES;
+    chunks->bin = chunk + GLB_CHUNK_BYTES;
+    chunks->bin_size = read_u32(chunk);
+    return chunks->bin_size <= left ||
+           error_set(error, ERROR_MODEL,
+                     "%s: the BIN chunk says %zu bytes, but only %zu are left in the GLB", name,
+                     chunks->bin_size, left);
 }
 
-static const char *skip_blanks(const char *at, const char *end)
+static bool find_chunks(struct chunks *chunks, const unsigned char *bytes, size_t size,
+                        const char *name, struct error *error)
 {
-    while (at < end && memchr(" \t\r\n", *at, 4))
-        at++;
-    return at;
-}
-
-/* A whole number below 2^64: of what else stands there tinygltf makes 0 without a word. */
-static bool is_unsigned(const char *at, const char *end)
-{
-    const char *first = at;
-    uint64_t number = 0;
-    for (; at < end && *at >= '0' && *at <= '9'; at++)
-        if (__builtin_mul_overflow(number, 10, &number) ||
-            __builtin_add_overflow(number, (uint64_t)(*at - '0'), &number))
-            return false;
-    return at > first && !(at < end && memchr(".eE", *at, 3));
-}
-
-/* What has been scanned may be a key of a buffer view or accessor, before its value. */
-static bool check_layout(const struct json_scan *scan, const struct json_text *key,
-                         const char *name, struct error *error)
-{
-    const char *at = skip_blanks(scan->at, scan->end);
-    const char *element = PARTS[scan->part].element;
-    unsigned index = scan->objects[scan->part] - 1;
-    if (at == scan->end || *at != ':')
-        return true;
-    if (key->escaped)
-        return error_set(error, ERROR_MODEL, "%s: a key of %s %u is spelt with escapes", name,
-                         element, index);
-    at = skip_blanks(at + 1, scan->end);
-    if ((!is_text(key, "byteOffset") && !is_text(key, "byteStride")) || is_unsigned(at, scan->end))
-        return true;
-    int shown = 0;
-    while (at + shown < scan->end && shown < 24 && !strchr(" \t\r\n,]}", at[shown]))
-        shown++;
-    return error_set(error, ERROR_MODEL,
-                     "%s: %s %u: %.*s is %.*s; it must be a whole number from "
-                     "0 up",
-                     name, element, index, (int)key->length, key->start, shown, at);
-}
-
-/* Keys that are looked for must be spelt plainly, so that they can be told. */
-static bool check_string(struct json_scan *scan, const struct json_text *text, const char *name,
-                         struct error *error)
-{
-    if (scan->depth == 3 && (scan->part == PART_VIEWS || scan->part == PART_ACCESSORS))
-        return check_layout(scan, text, name, error);
-    if (scan->depth != 1)
-        return true;
-    scan->part = N_PARTS - 1;
-    while (scan->part > PART_OTHER && !is_text(text, PARTS[scan->part].key))
-        scan->part--;
-    return !text->escaped ||
-           error_set(error, ERROR_MODEL, "%s: a top-level key of the JSON is spelt with escapes",
-                     name);
-}
-
-static bool scan_json(struct json_scan *scan, const char *name, struct error *error)
-{
-    while (scan->at < scan->end) {
-        char c = *scan->at;
-        if (c == '"') {
-            struct json_text text = scan_string(scan);
-            if (!check_string(scan, &text, name, error))
-                return false;
-            continue;
-        }
-        if (c == '{' || c == '[') {
-            if (++scan->depth > MAX_JSON_DEPTH)
-                return error_set(error, ERROR_MODEL, "%s: JSON nested deeper than %d levels", name,
-                                 MAX_JSON_DEPTH);
-            scan->objects[scan->part] += scan->depth == 3;
-        } else if (c == '}' || c == ']') {
-            scan->depth--;
-        }
-        if ((c == ',' || c == '[') && ++scan->values > MAX_JSON_VALUES)
-            return error_set(error, ERROR_MODEL,
-                             "%s: more than %u values in the JSON: keep geometry in buffers", name,
-                             MAX_JSON_VALUES);
-        scan->at++;
-    }
-    return true;
-}
-
-static bool check_glb_header(const unsigned char *bytes, size_t size, const char *name,
-                             struct error *error)
-{
+    if (size >= 8 && read_u32(bytes + 4) == 1)
+        return error_set(error, ERROR_MODEL,
+                         "%s: glTF 1.0 (GLB version 1); only 2.0 is read: export it as 2.0", name);
     if (size < GLB_HEADER_BYTES)
         return error_set(error, ERROR_MODEL,
                          "%s: truncated: a GLB has at least %u bytes, the file has %zu", name,
@@ -169,39 +83,71 @@ static bool check_glb_header(const unsigned char *bytes, size_t size, const char
         return error_set(error, ERROR_MODEL,
                          "%s: the JSON chunk says %u bytes, but the GLB ends after %u", name,
                          json_length, length - (length < GLB_HEADER_BYTES ? 0 : GLB_HEADER_BYTES));
-    uint32_t left = length - GLB_HEADER_BYTES - json_length;
-    const unsigned char *chunk = bytes + GLB_HEADER_BYTES + json_length;
-    if (left == 0)
-        return true;
-    if (left < 8 || read_u32(chunk + 4) != GLB_CHUNK_BIN)
-        return error_set(error, ERROR_MODEL, "%s: the second chunk of the GLB is not BIN", name);
-    if (read_u32(chunk) > left - 8)
-        return error_set(error, ERROR_MODEL,
-                         "%s: the BIN chunk says %u bytes, but only %u are left in the GLB", name,
-                         read_u32(chunk), left - 8);
+    chunks->json = bytes + GLB_HEADER_BYTES;
+    chunks->json_size = json_length;
+    return find_binary_chunk(chunks, bytes + length, name, error);
+}
+
+/* Copies the JSON to `to` and blanks behind it. */
+static void copy_json(unsigned char *to, const struct chunks *chunks)
+{
+    memcpy(to, chunks->json, chunks->json_size);
+    memset(to + chunks->json_size, ' ', aligned(chunks->json_size) - chunks->json_size);
+}
+
+static void copy_glb(unsigned char *to, size_t size, const struct chunks *chunks)
+{
+    write_u32(to, 0x46546c67u); /* "glTF" */
+    write_u32(to + 4, 2);
+    write_u32(to + 8, size);
+    write_u32(to + 12, aligned(chunks->json_size));
+    write_u32(to + 16, GLB_CHUNK_JSON);
+    copy_json(to + GLB_HEADER_BYTES, chunks);
+    if (chunks->bin_size == 0)
+        return;
+    to += GLB_HEADER_BYTES + aligned(chunks->json_size);
+    write_u32(to, aligned(chunks->bin_size));
+    write_u32(to + 4, GLB_CHUNK_BIN);
+    memcpy(to + GLB_CHUNK_BYTES, chunks->bin, chunks->bin_size);
+    memset(to + GLB_CHUNK_BYTES + chunks->bin_size, 0,
+           aligned(chunks->bin_size) - chunks->bin_size);
+}
+
+bool gltf_container_init(struct gltf_container *container, const void *bytes, size_t size,
+                         const char *name, struct error *error)
+{
+    *container = (struct gltf_container){0};
+    struct chunks chunks = {.json = bytes, .json_size = size};
+    if (size > INT_MAX)
+        return error_set(error, ERROR_MODEL, "%s: glTF files beyond 2 GB are not read", name);
+    container->binary = size >= 4 && memcmp(bytes, "glTF", 4) == 0;
+    if (container->binary && !find_chunks(&chunks, bytes, size, name, error))
+        return false;
+    size_t json_at = container->binary ? GLB_HEADER_BYTES : 0;
+    size_t all = json_at + aligned(chunks.json_size);
+    if (chunks.bin_size > 0)
+        all += GLB_CHUNK_BYTES + aligned(chunks.bin_size);
+    container->bytes = malloc(all);
+    if (!container->bytes)
+        return error_set(error, ERROR_SERVER, "%s: not enough memory to read it", name);
+    container->size = (unsigned)all;
+    if (container->binary)
+        copy_glb(container->bytes, all, &chunks);
+    else
+        copy_json(container->bytes, &chunks);
+    container->unaligned =
+        container->binary && (chunks.json_size % 4 != 0 || chunks.bin_size % 4 != 0);
+    if (!gltf_json_prepare(&container->json, (char *)container->bytes + json_at, chunks.json_size,
+                           name, error))
+        return false;
+    if (container->binary && container->json.bare_buffers > MAX_BUFFERS_BESIDE_CHUNK)
+        return error_set(error, ERROR_MODEL, "%s: %u buffers in a GLB, at most %u are read", name,
+                         container->json.bare_buffers, MAX_BUFFERS_BESIDE_CHUNK);
     return true;
 }
 
-bool gltf_container_check(struct gltf_container *container, const void *bytes, size_t size,
-                          const char *name, struct error *error)
+void gltf_container_finish(struct gltf_container *container)
 {
-    const unsigned char *start = bytes;
-    if (size > INT_MAX)
-        return error_set(error, ERROR_MODEL, "%s: glTF files beyond 2 GB are not read", name);
-    *container = (struct gltf_container){.length = (unsigned)size};
-    struct json_scan scan = {.at = bytes, .end = (const char *)bytes + size};
-    if (size >= 4 && memcmp(bytes, "glTF", 4) == 0) {
-        if (!check_glb_header(start, size, name, error))
-            return false;
-        container->binary = true;
-        container->length = read_u32(start + 8);
-        scan.at += GLB_HEADER_BYTES;
-        scan.end = scan.at + read_u32(start + 12);
-    }
-    if (!scan_json(&scan, name, error))
-        return false;
-    if (container->binary && scan.objects[PART_BUFFERS] > MAX_BUFFERS_BESIDE_CHUNK)
-        return error_set(error, ERROR_MODEL, "%s: %u buffers in a GLB, at most %u are read", name,
-                         scan.objects[PART_BUFFERS], MAX_BUFFERS_BESIDE_CHUNK);
-    return true;
+    free(container->bytes);
+    container->bytes = NULL;
 }

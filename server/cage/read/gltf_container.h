@@ -1,30 +1,30 @@
-/* What is checked of a glTF file before a JSON library sees it. Internal to the glTF reader.
+/* A glTF file as the library can take it: JSON alone, or a GLB. Internal to the glTF reader.
  *
- * tinygltf recurses over nested values, copies the binary chunk for each buffer that names no
- * URI, and spends hundreds of bytes on each value in `extras`: a small hostile file could take
- * the stack or the memory. It also takes an offset or stride that is no whole number from 0 up for
- * 0. These checks bound the former three, refuse the latter, and give GLB's own header clear
- * errors. */
+ * GLB's own header is checked here and gets clear errors, gltf_json_prepare() does the JSON, and
+ * both chunks are copied to where the format wants them: some writers do not align them. */
 #ifndef SHEEN_CAGE_READ_GLTF_CONTAINER_H
 #define SHEEN_CAGE_READ_GLTF_CONTAINER_H
 
-#include <stdbool.h>
-#include <stddef.h>
-
-#include "server/error.h"
+#include "server/cage/read/gltf_json.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 struct gltf_container {
-    bool binary;     /* GLB */
-    unsigned length; /* bytes to hand to the library: GLB's own length, or the whole file */
+    bool binary;          /* GLB */
+    bool unaligned;       /* its chunks are not on multiples of 4 bytes in the file */
+    unsigned char *bytes; /* for the library; owned */
+    unsigned size;
+    struct gltf_json json;
 };
 
-/* ERROR_MODEL, saying `name`. Pure; any thread. */
-bool gltf_container_check(struct gltf_container *container, const void *bytes, size_t size,
-                          const char *name, struct error *error);
+/* ERROR_MODEL, saying `name`; ERROR_SERVER when memory is short. To be finished in either case.
+ * Pure; any thread. */
+bool gltf_container_init(struct gltf_container *container, const void *bytes, size_t size,
+                         const char *name, struct error *error);
+
+void gltf_container_finish(struct gltf_container *container);
 
 #ifdef __cplusplus
 }

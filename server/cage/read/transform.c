@@ -43,12 +43,11 @@ struct transform transform_compose(const double translation[3], const double rot
     return result;
 }
 
-void transform_point(const struct transform *transform, const float in[3], double out[3])
+void transform_point(const struct transform *transform, const double in[3], double out[3])
 {
     const double *m = transform->m;
     for (int i = 0; i < 3; i++)
-        out[i] =
-            m[i] * (double)in[0] + m[4 + i] * (double)in[1] + m[8 + i] * (double)in[2] + m[12 + i];
+        out[i] = m[i] * in[0] + m[4 + i] * in[1] + m[8 + i] * in[2] + m[12 + i];
 }
 
 double transform_determinant(const struct transform *transform)

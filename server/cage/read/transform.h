@@ -21,7 +21,7 @@ struct transform transform_multiply(const struct transform *a, const struct tran
 struct transform transform_compose(const double translation[3], const double rotation[4],
                                    const double scale[3]);
 
-void transform_point(const struct transform *transform, const float in[3], double out[3]);
+void transform_point(const struct transform *transform, const double in[3], double out[3]);
 
 /* Of the upper 3x3: negative where the transform mirrors. */
 double transform_determinant(const struct transform *transform);

@@ -1,5 +1,4 @@
-/* Joining vertices that stand at the same place. Internal to the glTF reader, whose files split
- * vertices where normals or texture coordinates differ. */
+/* Joining vertices that stand at the same place. Internal to server/cage/read. */
 #ifndef SHEEN_CAGE_READ_WELD_H
 #define SHEEN_CAGE_READ_WELD_H
 
@@ -9,11 +8,19 @@
 extern "C" {
 #endif
 
-/* Makes one vertex of all with exactly equal coordinates, in the order of their first; linear in
- * the size of the cage. Corners that fall together leave their face, faces and creases left with
- * too few are dropped, both with a warning; a corner that the file itself repeats stays for
- * cage_check(). All vertex indices must be in range. ERROR_SERVER when memory is short. */
-bool cage_weld(struct cage_builder *builder, const char *name, struct error *error);
+/* What stood in the builder before that which is welded; it stays as it is. Zeros: nothing. */
+struct weld_start {
+    size_t vertices, face_vertices, creases, corners;
+};
+
+struct weld_start weld_begin(const struct cage_builder *builder);
+
+/* Makes one vertex of all with exactly equal coordinates that came after `start`, in the order of
+ * their first; linear in their number. No face or tag is dropped: cage_mend() does that, and warns,
+ * where corners have become one. Vertices of faces that came after `start` must have too, and be in
+ * range. ERROR_SERVER when memory is short. */
+bool cage_weld(struct cage_builder *builder, const struct weld_start *start, const char *name,
+               struct error *error);
 
 #ifdef __cplusplus
 }
