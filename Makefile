@@ -96,8 +96,8 @@ CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 SERVER_LIBS := -lepoxy -lprotobuf-nanopb -lzstd -lturbojpeg -lssl -lcrypto -linih -lm
 CAGE_WORKER_LIBS := -ltinygltf -lm
 IMAGE_WORKER_LIBS := -lOpenImageIO -lOpenImageIO_Util -lm
-CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lssl -lcrypto -lpng -lm
-TEST_LIBS := $(SERVER_LIBS) $(CAGE_WORKER_LIBS) $(IMAGE_WORKER_LIBS) -lpng
+CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lssl -lcrypto -lpng -ljansson -lm
+TEST_LIBS := $(SERVER_LIBS) $(CAGE_WORKER_LIBS) $(IMAGE_WORKER_LIBS) -lpng -ljansson
 
 .PHONY: all
 PROGRAMS := $(BUILD)/sheend $(BUILD)/sheend-cage $(BUILD)/sheend-image $(BUILD)/sheen

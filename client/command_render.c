@@ -142,8 +142,9 @@ static const struct option_row *const TABLES[] = {ROWS,
 const struct command COMMAND_RENDER = {
     .name = "render",
     .arguments = "MODEL -o FILE [option]...",
-    .summary = "Renders the reflection lines on a model's limit surface, exact at every pixel.\n"
-               "MODEL is a control cage: OBJ, glTF or GLB.",
+    .summary =
+        "Renders the reflection lines on a model's limit surface, exact at every pixel.\n"
+        "MODEL is a control cage: OBJ, GLB, or glTF with the buffers that it names beside it.",
     .tables = TABLES,
     .examples =
         "  sheen render hood.obj -o hood.png\n"

@@ -8,6 +8,7 @@
 
 #include "client/clock.h"
 #include "client/file.h"
+#include "client/gltf_pack.h"
 #include "client/status.h"
 #include "client/values.h"
 
@@ -49,6 +50,8 @@ static enum sheen_status read_file(struct job *job, const char *path, enum sheen
 {
     uint8_t id[SHEEN_ID_BYTES];
     enum sheen_status status = file_read(path, bad, bytes, n_bytes, &job->error);
+    if (!status && bad == SHEEN_BAD_MODEL)
+        status = gltf_pack(path, bytes, n_bytes, &job->error);
     if (!status)
         status = identify(job, *bytes, *n_bytes, id);
     return status ? status : keep_id(job, kept, id, bad, path);

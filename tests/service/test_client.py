@@ -1,4 +1,5 @@
 """The real client against the real daemon, over every way to reach it."""
+import base64
 import hashlib
 import json
 import os
@@ -96,6 +97,46 @@ class Client(unittest.TestCase):
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertRegex(done.stderr, name + ": not a glTF file.*" + words)
             self.assertNotIn("exception", done.stderr)
+
+    def test_gltf_with_a_file_beside_it(self):
+        """The picture is that of the file that holds all, the model the container's bytes."""
+        with open(os.path.join(MODELS, "fender.gltf"), "rb") as file:
+            gltf = json.load(file)
+        uri = gltf["buffers"][0]["uri"]
+        binary = base64.b64decode(uri.partition(",")[2])
+        os.mkdir(self.path("a part"))
+        gltf["buffers"][0]["uri"] = "a%20part/fender.bin"
+        model, beside = self.path("fender.gltf"), self.path("a part/fender.bin")
+        with open(model, "w") as file:
+            json.dump(gltf, file)
+        with open(beside, "wb") as file:
+            file.write(binary)
+        for address in (self.daemon.unix, self.daemon.tcp):
+            embedded, picture = self.render("a.png", "--server", address,
+                                            model=os.path.join(MODELS, "fender.gltf"))
+            split, again = self.render("b.png", "--server", address, model=model)
+            self.assertEqual(pixels_of(picture), pixels_of(again))
+            self.assertNotEqual(embedded["model_sha256"], split["model_sha256"])
+        info = json.loads(sheen("info", model, "--json", "--server", self.daemon.unix).stdout)
+        self.assertGreater(info["file_bytes"], len(binary))
+        with open(beside, "ab") as file:
+            file.write(b"more than the buffer says")
+        same = json.loads(sheen("info", model, "--json", "--server", self.daemon.unix).stdout)
+        self.assertEqual(same["sha256"], info["sha256"])
+        os.rename(beside, self.path("fender.bin"))
+        self.assert_fails(3, "fender.bin: No such file", "info", model)
+        os.symlink("../../fender.bin", beside)
+        self.assert_fails(3, "fender.bin: No such file", "info", model)
+        os.unlink(beside)
+        os.symlink("../fender.bin", beside)
+        self.assertEqual(sheen("info", model, "--server", self.daemon.unix).returncode, 0)
+        for name, words in (("../x.bin", "outside of the model's folder"),
+                            ("https://localhost/x.bin", "is a URL")):
+            gltf["buffers"][0]["uri"] = name
+            with open(model, "w") as file:
+                json.dump(gltf, file)
+            self.assert_fails(3, words, "render", model, "-o", self.path("c.png"))
+            self.assertFalse(os.path.exists(self.path("c.png")))
 
     def test_json_names_every_option(self):
         """What is given comes back as used, and render --help has no option that does not."""
