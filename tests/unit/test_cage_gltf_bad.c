@@ -242,6 +242,9 @@ static void test_other_files(void **state)
                "part.glb: it refers to the file '/etc/passwd', but nothing outside");
     expect_bad(&(struct sample){.buffers = "{\"byteLength\":96,\"uri\":\"Makefile\"}"},
                "part.glb: it refers to the file 'Makefile', but nothing outside");
+    expect_bad(&(struct sample){.buffers = "{\"byteLength\":96,\"uri\":\"data:a/b,xyz\"}"},
+               "part.glb: its 'data:a/b,xyz...' is no data: URI that is read: "
+               "application/octet-stream in base64 is");
     expect_bad(&(struct sample){.buffers = "{\"byteLength\":97}"},
                "part.glb: not a glTF file that can be read: Invalid `byteLength'");
     expect_bad(&(struct sample){.buffers = "{\"byteLength\":0}"},

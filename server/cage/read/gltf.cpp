@@ -104,6 +104,10 @@ void parse(Reader &reader, const gltf_container &container)
     problem = plain_problem(problem, &broken);
     if (reader.packing && !broken) /* what is missing is packed */
         reader.need(gltf_extension_refuse_packing(reader.packing, reader.name, reader.failure));
+    if (starts_with(problem, (absent + "data:").c_str()))
+        reader.refuse("its '%.60s...' is no data: URI that is read: application/octet-stream in "
+                      "base64 is",
+                      problem.c_str() + absent.size());
     if (starts_with(problem, absent.c_str()))
         reader.refuse("it refers to the file '%.100s', but nothing outside the given file is read: "
                       "export as GLB or with embedded buffers",
