@@ -146,8 +146,8 @@ static int run(const struct options *options)
     return job_finish(&job, status);
 }
 
-static const struct option_row *const TABLES[] = {OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT,
-                                                  NULL};
+static const struct option_row *const TABLES[] = {OPTIONS_MODEL, OPTIONS_COMMON, OPTIONS_RECONNECT,
+                                                  OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_INFO = {
     .name = "info",
@@ -155,7 +155,8 @@ const struct command COMMAND_INFO = {
     .summary = "Says what a model is made of, and what its tables cost on the GPU.",
     .tables = TABLES,
     .examples = "  sheen info hood.obj\n"
-                "  sheen info hood.obj --json\n",
+                "  sheen info hood.obj --json\n"
+                "  sheen info hood.obj --weld\n",
     .takes_model = true,
     .codes = CODE_FILES | CODE_SERVER,
     .run = run,

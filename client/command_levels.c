@@ -241,7 +241,7 @@ static const struct option_row ROWS[] = {
 };
 
 static const struct option_row *const TABLES[] = {
-    ROWS, OPTIONS_SCENE, OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
+    ROWS, OPTIONS_SCENE, OPTIONS_MODEL, OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT, NULL};
 
 const struct command COMMAND_LEVELS = {
     .name = "levels",

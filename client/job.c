@@ -11,6 +11,7 @@
 #include "client/gltf_pack.h"
 #include "client/status.h"
 #include "client/values.h"
+#include "client/weld.h"
 
 #define TOKEN_BYTES 256
 #define AT_SERVER "server:" /* a MODEL that is a file below the daemon's --models */
@@ -44,17 +45,25 @@ static enum sheen_status keep_id(struct job *job, uint8_t kept[SHEEN_ID_BYTES],
     return SHEEN_OK;
 }
 
-/* A file's bytes, which are the caller's to free, whatever the status is; and its id. */
-static enum sheen_status read_file(struct job *job, const char *path, enum sheen_status bad,
-                                   uint8_t **bytes, size_t *n_bytes, uint8_t kept[SHEEN_ID_BYTES])
+static enum sheen_status take_id(struct job *job, const char *path, enum sheen_status bad,
+                                 const uint8_t *bytes, size_t n_bytes, uint8_t kept[SHEEN_ID_BYTES])
 {
     uint8_t id[SHEEN_ID_BYTES];
-    enum sheen_status status = file_read(path, bad, bytes, n_bytes, &job->error);
-    if (!status && bad == SHEEN_BAD_MODEL)
-        status = gltf_pack(path, bytes, n_bytes, &job->error);
-    if (!status)
-        status = identify(job, *bytes, *n_bytes, id);
+    enum sheen_status status = identify(job, bytes, n_bytes, id);
     return status ? status : keep_id(job, kept, id, bad, path);
+}
+
+/* The model's bytes as they are sent, which are the caller's to free, whatever the status is. */
+static enum sheen_status read_model(struct job *job, const struct options *options, uint8_t **bytes,
+                                    size_t *n_bytes)
+{
+    const char *path = options->model;
+    enum sheen_status status = file_read(path, SHEEN_BAD_MODEL, bytes, n_bytes, &job->error);
+    if (!status)
+        status = gltf_pack(path, bytes, n_bytes, &job->error);
+    if (!status && options->weld)
+        status = weld_append(path, bytes, n_bytes, &job->error);
+    return status ? status : take_id(job, path, SHEEN_BAD_MODEL, *bytes, *n_bytes, job->model_id);
 }
 
 static bool is_at_server(const char *model)
@@ -114,7 +123,12 @@ static enum sheen_status connect_and_upload(struct job *job, const struct option
     enum sheen_status status = SHEEN_OK;
     job->has_images = false;
     if (local)
-        status = read_file(job, options->model, SHEEN_BAD_MODEL, &bytes, &n_bytes, job->model_id);
+        status = read_model(job, options, &bytes, &n_bytes);
+    else if (at_server && options->weld)
+        status = status_set(&job->error, SHEEN_BAD_ARGUMENT,
+                            "%s: --weld is for a file that is sent; for one at the server put the "
+                            "line 't weld 0/0/0' into it",
+                            options->model);
     if (!status)
         status = connect_server(job, options, timeout_ms);
     if (!status && at_server)
@@ -196,7 +210,9 @@ static enum sheen_status upload_image(struct job *job, const char *path, uint8_t
 {
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
-    enum sheen_status status = read_file(job, path, SHEEN_BAD_IMAGE, &bytes, &n_bytes, id);
+    enum sheen_status status = file_read(path, SHEEN_BAD_IMAGE, &bytes, &n_bytes, &job->error);
+    if (!status)
+        status = take_id(job, path, SHEEN_BAD_IMAGE, bytes, n_bytes, id);
     if (!status)
         status = upload(job, SHEEN_FILE_IMAGE, path, bytes, n_bytes, id);
     free(bytes);

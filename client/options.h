@@ -36,6 +36,7 @@ struct options {
     const char *device;          /* NULL: auto */
     const char *ca, *cert, *key; /* of a tls: server; NULL: none */
     bool share;                  /* what is uploaded */
+    bool weld;                   /* equal positions of the model */
     const char *token_file;      /* --token-file, else SHEEN_TOKEN_FILE, else NULL */
     bool json, quiet;
     unsigned given; /* enum options_given */
@@ -90,6 +91,7 @@ extern const struct range OPTION_RANGES[N_OPTION_RANGES];
 
 enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };
 
+extern const struct option_row OPTIONS_MODEL[];     /* weld: of commands that take a model */
 extern const struct option_row OPTIONS_COMMON[];    /* server, device, quiet */
 extern const struct option_row OPTIONS_RECONNECT[]; /* of commands that call job_resume() */
 extern const struct option_row OPTIONS_OUTPUT[];    /* json, help: of every command */

@@ -50,6 +50,13 @@ static bool apply_share(struct options *options, const char *value, char *why)
     return options->share = true;
 }
 
+static bool apply_weld(struct options *options, const char *value, char *why)
+{
+    (void)value;
+    (void)why;
+    return options->weld = true;
+}
+
 static bool apply_token_file(struct options *options, const char *value, char *why)
 {
     (void)why;
@@ -260,6 +267,15 @@ const struct option_row OPTIONS_SCHEDULE[] = {
      "of no use later than this after the daemon has read the request,\n"
      "{} (default: none)",
      apply_deadline},
+    {0},
+};
+
+const struct option_row OPTIONS_MODEL[] = {
+    {"weld", 0, NULL,
+     "joins an OBJ file's vertices at exactly equal positions, as glTF's are inside\n"
+     "a mesh anyway; the file is sent with the line 't weld 0/0/0' behind it and is\n"
+     "named by the SHA-256 of both",
+     apply_weld},
     {0},
 };
 

@@ -133,7 +133,8 @@ bool sheen_file_id(const void *bytes, size_t n_bytes, uint8_t id[SHEEN_ID_BYTES]
 
 /* Makes the daemon have a file: bytes travel only if it lacks them, from where a broken upload
  * ended. `id` is what sheen_file_id() says; the daemon checks it. `name` is the file's name,
- * folders are dropped; its ending tells a model's format. progress may be NULL. Not while requests
+ * folders are dropped; its ending tells a model's format; an OBJ file with the line "t weld 0/0/0"
+ * has its equal positions joined. progress may be NULL. Not while requests
  * are in flight (SHEEN_BAD_ARGUMENT). SHEEN_TOO_BIG, SHEEN_BAD_MODEL, SHEEN_BAD_IMAGE when the
  * daemon refuses it. */
 enum sheen_status sheen_upload(struct sheen_session *session, enum sheen_file_kind kind,

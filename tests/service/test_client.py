@@ -75,8 +75,8 @@ class Client(unittest.TestCase):
     def test_bad_files(self):
         for name, data in (("empty.obj", b""), ("words.obj", b"not a model\n"),
                            ("cut.glb", b"glTF\2\0\0\0\xff\0\0\0"),
-                           ("range.obj", CUBE + b"f 1 2 99\n"), ("two.obj", CUBE + b"f 1 2\n"),
-                           ("twice.obj", CUBE + b"f 1 2 2 3\n"), ("none.obj", b"v 0 0 0\n"),
+                           ("range.obj", CUBE + b"f 1 2 99\n"), ("two.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n"),
+                           ("none.obj", b"v 0 0 0\n"),
                            ("nan.obj", CUBE.replace(b"-1", b"nan", 1)),
                            ("huge.obj", CUBE.replace(b"-1", b"1e308", 1))):
             with open(self.path(name), "wb") as file:

@@ -132,6 +132,57 @@ static void test_tags_without_element(void **state)
     cage_finish(&cage);
 }
 
+/* Two squares side by side with vertices of their own, lines 1 to 10. */
+#define APART                                                                                      \
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 -0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n"                    \
+    "f 1 2 3 4\nf 5 6 7 8\n"
+
+/* Asked for anywhere in the file, it holds for all of it; tags follow their vertices. */
+static void test_weld(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "t weld 0/0/0\n" APART "t crease 2/1/0 4 7 2\nt corner 1/1/0 7 3\nt hole 1/0/0 1\n",
+        APART "t crease 2/1/0 1 2 2\nt corner 1/1/0 2 3\nt hole 1/0/0 1\n\\\n\nt weld 0/0/0\n",
+    };
+    for (size_t i = 0; i < 2; i++) {
+        struct cage cage;
+        read_good(&cage, texts[i]);
+        assert_int_equal(cage.n_vertices, 6);
+        EXPECT_FACE(&cage, 0, 0, 1, 2, 3);
+        EXPECT_FACE(&cage, 1, 1, 4, 5, 2);
+        assert_int_equal(cage.n_creases, 1);
+        assert_int_equal(cage.crease[0].vertex[0] + cage.crease[0].vertex[1], 3);
+        assert_int_equal(cage.corner[0].vertex, 2);
+        assert_int_equal(cage.hole[0], 1);
+        assert_null(cage.warnings);
+        cage_finish(&cage);
+    }
+}
+
+/* What falls together is mended like what the file repeats itself. */
+static void test_weld_of_damage(void **state)
+{
+    (void)state;
+    struct cage cage;
+    read_good(&cage,
+              APART "v 1 0 0\nv 2 0 0\nv 2 1 0\nf 2 9 6 7 3\nf 2 5 9\nf 2 6 9 7 3\nf\nf 2 5\n"
+                    "f 1 2 7\nt hole 2/0/0 7 2\nt crease 4/2/0 1 99 1 4 1 2\nt weld 0/0/0\n");
+    assert_int_equal(cage.n_vertices, 6);
+    assert_int_equal(cage.n_faces, 4);
+    EXPECT_FACE(&cage, 2, 1, 4, 5, 2);
+    EXPECT_FACE(&cage, 3, 0, 1, 5);
+    assert_int_equal(cage.n_holes, 2);
+    assert_int_equal(cage.hole[0], 3);
+    assert_int_equal(cage.hole[1], 2);
+    assert_int_equal(cage.n_creases, 0);
+    cage_finish(&cage);
+    struct error error = {0};
+    static const char bad[] = APART "t weld 1/0/0 1\n";
+    assert_false(cage_read(&cage, bad, sizeof bad - 1, "part.obj", &error));
+    assert_string_equal(error.text, "part.obj:11: t weld needs nothing, 0/0/0");
+}
+
 /* --- random faces and tags, against what the rules say one by one */
 
 enum { VERTICES = 7, MOST_FACES = 12, MOST_CORNERS = 6, MOST_TAGS = 10 };
@@ -322,6 +373,8 @@ int main(void)
         cmocka_unit_test(test_faces_passed_over),
         cmocka_unit_test(test_tags_after_faces_passed_over),
         cmocka_unit_test(test_tags_without_element),
+        cmocka_unit_test(test_weld),
+        cmocka_unit_test(test_weld_of_damage),
         cmocka_unit_test(test_random),
     };
     return cmocka_run_group_tests_name("cage/mend", tests, NULL, NULL);

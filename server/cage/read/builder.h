@@ -16,6 +16,8 @@ struct cage_builder {
      * lines. As long as the cage's own arrays. */
     uint32_t *face_line, *crease_line, *corner_line, *hole_line;
 
+    /* The file asks for its equal positions to be joined. */
+    bool weld;
     /* The file has triangles that nothing says are meant as such. */
     bool plain_triangles;
 

@@ -194,6 +194,14 @@ static bool read_choice(struct obj_reader *reader, const struct tag *tag, const 
     return true;
 }
 
+/* A tag of sheen's own: it names nothing, since all equal positions are joined. */
+static bool read_weld(struct obj_reader *reader, const struct tag *tag)
+{
+    if (tag->n_ints != 0 || tag->n_floats != 0 || tag->n_strings != 0)
+        return obj_fail(reader, "t weld needs nothing, 0/0/0");
+    return reader->builder->weld = true;
+}
+
 /* Tags that say nothing about positions, hierarchical edits (which nobody evaluates any more) and
  * names nobody knows. */
 static void pass_over(struct obj_reader *reader, const struct tag *tag)
@@ -232,6 +240,8 @@ bool obj_read_tag(struct obj_reader *reader)
         ok = read_choice(reader, &tag, "normal", "chaikin", &cage->chaikin);
     else if (obj_field_is(&tag.name, "smoothtriangles"))
         ok = read_choice(reader, &tag, "catmark", "smooth", &cage->smooth_triangles);
+    else if (obj_field_is(&tag.name, "weld"))
+        ok = read_weld(reader, &tag);
     else {
         pass_over(reader, &tag);
         ok = true;

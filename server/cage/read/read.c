@@ -8,6 +8,7 @@
 #include "server/cage/read/gltf.h"
 #include "server/cage/read/mend.h"
 #include "server/cage/read/obj.h"
+#include "server/cage/read/weld.h"
 
 /* Messages have room for what is wrong only if the name leaves it. */
 #define SHOWN_NAME_BYTES 160
@@ -44,6 +45,13 @@ static const char *shown_name(const char *name)
     return length > SHOWN_NAME_BYTES ? name + length - SHOWN_NAME_BYTES : name;
 }
 
+/* Welding needs indices in range, and may leave faces that need mending themselves. */
+static bool mend_and_weld(struct cage_builder *builder, const char *name, struct error *error)
+{
+    return cage_mend(builder, name, error) &&
+           (!builder->weld || (cage_weld(builder, name, error) && cage_mend(builder, name, error)));
+}
+
 bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *name,
                struct error *error)
 {
@@ -53,7 +61,7 @@ bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *na
         return error_set(error, ERROR_MODEL, "%s: the file is empty", name);
     struct cage_builder builder = {0};
     bool ok = choose_reader(name, bytes, size)(&builder, bytes, size, name, error) &&
-              cage_mend(&builder, name, error) && cage_check(&builder.cage, name, error);
+              mend_and_weld(&builder, name, error) && cage_check(&builder.cage, name, error);
     if (ok) {
         cage_doubt(&builder, name);
         *cage = builder.cage;

@@ -1,4 +1,5 @@
-/* Joining vertices that stand at the same place. Internal to server/cage/read. */
+/* Joining vertices that stand at the same place: glTF files split them where normals or texture
+ * coordinates differ, and OBJ files may ask for it. Internal to server/cage/read. */
 #ifndef SHEEN_CAGE_READ_WELD_H
 #define SHEEN_CAGE_READ_WELD_H
 
