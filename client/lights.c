@@ -110,6 +110,8 @@ void lights_to_message(sheen_Render *render, const struct sheen_request *request
         .direction = message_vec3(request->show.direction),
         .has_range = request->show.range != 0,
         .range = request->show.range,
+        .has_legend = request->show.without_legend,
+        .legend = !request->show.without_legend,
     };
 }
 
@@ -134,6 +136,22 @@ static void from_pattern(struct sheen_pattern *pattern, const sheen_Pattern *mes
     get_colour(pattern->background, &message->background);
 }
 
+static void get_extreme(struct sheen_extreme *extreme, bool has_value, const sheen_Extreme *message)
+{
+    *extreme = (struct sheen_extreme){
+        .has_value = has_value,
+        .value = message->value,
+        .has_place = message->has_position,
+        .x_px = message->x_px,
+        .y_px = message->y_px,
+        .has_ptex = message->has_face,
+        .face = message->face,
+        .u = message->u,
+        .v = message->v,
+    };
+    message_get_vec3(extreme->position, &message->position);
+}
+
 void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
 {
     const sheen_Lines *lines = &body->lines;
@@ -147,6 +165,8 @@ void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
     message_get_vec3(frame->lines.direction, &lines->direction);
     message_get_vec3(frame->lines.eye, lines->has_eye ? &lines->eye : &lines->eye_direction);
     frame->show_range = body->has_show_range ? body->show_range : 0;
+    get_extreme(&frame->show_least, body->has_show_least, &body->show_least);
+    get_extreme(&frame->show_greatest, body->has_show_greatest, &body->show_greatest);
     frame->has_colours = body->has_miss && body->has_empty && body->has_base;
     get_colour(frame->miss, &body->miss);
     get_colour(frame->empty, &body->empty);

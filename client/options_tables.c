@@ -245,6 +245,13 @@ static bool apply_show_range(struct options *options, const char *value, char *w
     return options_number(&RANGES[RANGE_SHOW], value, &options->request.show.range, why);
 }
 
+static bool apply_legend(struct options *options, const char *value, char *why)
+{
+    bool *off = &options->request.show.without_legend;
+    *off = strcmp(value, "off") == 0;
+    return *off || strcmp(value, "on") == 0 || options_refuse(why, "must be on or off");
+}
+
 static bool apply_class(struct options *options, const char *value, char *why)
 {
     options->given |= GIVEN_CLASS;
@@ -416,5 +423,7 @@ const struct option_row OPTIONS_SURFACE[] = {
      "{} (default: 98 of 100 pixels are inside); draft\n"
      "{} (default: 3)",
      apply_show_range},
+    {"legend", 0, "on|off", "of --show, over the lower right corner of the picture (default: on)",
+     apply_legend},
     {0},
 };

@@ -100,13 +100,48 @@ static void json_lights(struct json *json, const struct sheen_frame *frame)
     json_array_end(json);
 }
 
-static void json_show(struct json *json, const struct sheen_show *show, double range)
+static void json_extreme(struct json *json, const char *key, const struct sheen_extreme *extreme)
+{
+    const double null = (double)NAN; /* as JSON has it */
+    if (!extreme->has_value) {
+        json_double(json, key, null);
+        return;
+    }
+    json_object_begin(json, key);
+    json_double(json, "value", extreme->value);
+    if (extreme->has_place) {
+        json_array_begin(json, "pixel");
+        json_uint(json, NULL, extreme->x_px);
+        json_uint(json, NULL, extreme->y_px);
+        json_array_end(json);
+        json_vec3(json, "position", extreme->position);
+    } else {
+        json_double(json, "pixel", null);
+        json_double(json, "position", null);
+    }
+    if (extreme->has_ptex) {
+        json_object_begin(json, "ptex");
+        json_uint(json, "face", extreme->face);
+        json_double(json, "u", extreme->u);
+        json_double(json, "v", extreme->v);
+        json_object_end(json);
+    }
+    json_object_end(json);
+}
+
+static void json_show(struct json *json, const struct sheen_show *show,
+                      const struct sheen_frame *frame)
 {
     json_string(json, "show", text_show_kind(show->kind));
     if (show->kind == SHEEN_SHOW_DRAFT)
         json_vec3(json, "show_direction", show->direction);
-    if (range > 0)
-        json_double(json, "show_range", range);
+    if (show->kind != SHEEN_SHOW_LINES)
+        json_string(json, "legend", show->without_legend ? "off" : "on");
+    if (frame->show_range > 0) {
+        json_double(json, "show_range", frame->show_range);
+        json_extreme(json, "show_least", &frame->show_least);
+        json_extreme(json, "show_greatest", &frame->show_greatest);
+    }
 }
 
 static void json_planes(struct json *json, uint32_t planes)
@@ -135,6 +170,6 @@ void scene_json(struct json *json, const struct sheen_request *request,
     json_string(json, "surface", surfaces[request->surface]);
     if (request->surface != SHEEN_SURFACE_EXACT)
         json_uint(json, "surface_level", request->surface_level);
-    json_show(json, &request->show, frame->show_range);
+    json_show(json, &request->show, frame);
     json_planes(json, frame->planes);
 }

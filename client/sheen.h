@@ -336,6 +336,19 @@ struct sheen_show {
     enum sheen_show_kind kind;
     double direction[3]; /* DRAFT: the pull direction, not zero */
     double range;        /* the colours' ends, > 0, DRAFT <= 90; 0: from the frame, DRAFT 3 */
+    bool without_legend;
+};
+
+/* The least or greatest value that a frame of false colour shows at the centre of a pixel. */
+struct sheen_extreme {
+    bool has_value; /* false: no pixel shows one, or the daemon is too old to say */
+    double value;
+    bool has_place;      /* false: it is the same all over */
+    uint32_t x_px, y_px; /* the first such pixel, from the top and then from the left */
+    double position[3];
+    bool has_ptex; /* the frame has that plane */
+    uint32_t face;
+    double u, v;
 };
 
 /* How the daemon treats a request when it has many. */
@@ -405,7 +418,8 @@ struct sheen_frame {
     double up[3]; /* of the model, by which camera and lights were chosen as far as left out */
     enum sheen_up_source up_source;
     double show_range; /* of false colour, as used; 0: none */
-    bool has_colours;  /* the daemon says what it used: */
+    struct sheen_extreme show_least, show_greatest;
+    bool has_colours; /* the daemon says what it used: */
     float miss[4], empty[4], base[4];
     struct sheen_times times;
     char device[128], driver[128], server[32];

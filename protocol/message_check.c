@@ -442,6 +442,32 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
                          render->has_base ? &render->base : NULL, text);
 }
 
+static bool check_extreme(const sheen_Frame *frame, const sheen_Extreme *extreme, const char *field,
+                          char *text)
+{
+    if (!isfinite(extreme->value))
+        return refuse(text, "%s.value is no finite number", field);
+    if (extreme->has_x_px != extreme->has_y_px || extreme->has_x_px != extreme->has_position ||
+        extreme->x_px >= frame->width_px || extreme->y_px >= frame->height_px)
+        return refuse(text, "%s has no pixel of the frame, with its position", field);
+    if (extreme->has_face != extreme->has_u || extreme->has_u != extreme->has_v ||
+        !(extreme->u >= 0 && extreme->u <= 1 && extreme->v >= 0 && extreme->v <= 1))
+        return refuse(text, "%s: face, u and v come together, u and v from 0 to 1", field);
+    return !extreme->has_position || check_vec3(&extreme->position, field, text);
+}
+
+static bool check_extremes(const sheen_Frame *frame, char *text)
+{
+    if (frame->has_show_least != frame->has_show_greatest)
+        return refuse(text, "show_least and show_greatest come together");
+    if (!frame->has_show_least)
+        return true;
+    return check_extreme(frame, &frame->show_least, "show_least", text) &&
+           check_extreme(frame, &frame->show_greatest, "show_greatest", text) &&
+           (frame->show_least.value <= frame->show_greatest.value ||
+            refuse(text, "show_least is above show_greatest"));
+}
+
 static bool check_frame(const sheen_Frame *frame, char *text)
 {
     struct codec_layout layout;
@@ -459,6 +485,8 @@ static bool check_frame(const sheen_Frame *frame, char *text)
     if ((frame->has_up && !check_direction(&frame->up, "up", text)) ||
         (frame->has_up_source &&
          !check_enum(frame->up_source, sheen_UpSource_UP_GUESSED, "up_source", text)))
+        return false;
+    if (!check_extremes(frame, text))
         return false;
     if (!check_colours(frame->has_miss ? &frame->miss : NULL,
                        frame->has_empty ? &frame->empty : NULL,

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/service/show.h"
 #include "server/service/wire.h"
 
 enum { VERSION, DEVICE, DRIVER, SOFTWARE, MODEL, CAMERA, LINES, LIGHT, COLOURS, SURFACE, SHOW };
@@ -71,6 +72,8 @@ static void describe_show(char *value, const sheen_Show *show)
             show->direction.z);
     if (show->has_range)
         add(value, " range=%.17g", show->range);
+    if (show->kind != sheen_ShowKind_SHOW_LINES && !show_has_legend(show))
+        add(value, " legend=off");
 }
 
 static void describe_pattern(char *value, const struct pattern *pattern, const sheen_Light *asked)

@@ -370,7 +370,7 @@ static bool takes_images(const sheen_Render *render)
 {
     return (render->encoding != sheen_Encoding_ENCODING_RAW &&
             render->encoding != sheen_Encoding_ENCODING_ZSTD) ||
-           render->show.kind != sheen_ShowKind_SHOW_LINES;
+           (render->show.kind != sheen_ShowKind_SHOW_LINES && show_has_legend(&render->show));
 }
 
 void request_render(struct session *session, struct answer *answer, uint32_t seq,

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "server/service/request_inside.h"
-#include "server/service/show.h"
 #include "server/service/wire.h"
 
 /* Stills and batches are drawn in tiles of so many pixels, so that others wait for one at most. The
@@ -202,6 +201,10 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .empty = wire_from_colour(asked->empty),
         .has_base = true,
         .base = wire_from_colour(asked->base),
+        .has_show_least = request->extremes.has_values,
+        .show_least = request->extremes.least,
+        .has_show_greatest = request->extremes.has_values,
+        .show_greatest = request->extremes.greatest,
     };
     for (uint32_t i = 0; i < asked->n_lights; i++)
         frame->lights[i] =
@@ -306,7 +309,7 @@ static void paint_run(struct work *work, void *worker)
     for (int i = 0; i < 3; i++)
         size = hypot(size, tables->box_max[i] - tables->box_min[i]);
     show_paint(frame, &request->host->workers, &request->render.show, size,
-               request->frame_request.miss, request->frame_request.empty);
+               request->frame_request.miss, request->frame_request.empty, &request->extremes);
     for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
         if (!(request->layout.planes & 1u << plane)) {
             spares_give(frame->spares, frame->plane[plane]);

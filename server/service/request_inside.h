@@ -5,6 +5,7 @@
 
 #include "server/service/label.h"
 #include "server/service/request.h"
+#include "server/service/show.h"
 
 /* Something from the store that a request works with. */
 struct needed {
@@ -48,6 +49,7 @@ struct request {
     struct frame frame;
     sheen_Times times;
     bool is_blank; /* no pixel shows any of the model */
+    struct show_extremes extremes;
     uint64_t encode_start_us;
     struct label label;
     struct renderer_polygons *polygons; /* until the device has them */

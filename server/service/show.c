@@ -122,14 +122,20 @@ static double round_up(double value)
     return exponent < 0 ? digits / unit : digits * unit;
 }
 
+/* Differences of values that are no larger may be rounding. */
+static double least_difference(const struct painting *painting, double size)
+{
+    if (painting->kind == sheen_ShowKind_SHOW_DRAFT)
+        return LEAST_TURN_RAD * DEG_PER_RAD;
+    double least = LEAST_TURN_RAD / fmax(size, 1 / PROTOCOL_MAX_COORDINATE);
+    return painting->kind == sheen_ShowKind_SHOW_GAUSSIAN ? least * least : least;
+}
+
 static double range_of(const struct painting *painting, double size)
 {
     if (painting->kind == sheen_ShowKind_SHOW_DRAFT)
         return DEFAULT_DRAFT_DEG;
-    double least = LEAST_TURN_RAD / fmax(size, 1 / PROTOCOL_MAX_COORDINATE);
-    if (painting->kind == sheen_ShowKind_SHOW_GAUSSIAN)
-        least *= least;
-    double value = fmax(least, percentile(painting, SHARE_INSIDE));
+    double value = fmax(least_difference(painting, size), percentile(painting, SHARE_INSIDE));
     return fmin(round_up(value), PROTOCOL_MAX_COORDINATE);
 }
 
@@ -190,8 +196,8 @@ static void ptex_colour(const struct ptex *ptex, float rgb[3])
     }
 }
 
-/* The colour of a pixel, or false where there is no value. */
-static bool colour_at(const struct painting *painting, size_t i, float rgb[3])
+/* The colour of a pixel, or false where there is no value; *value is a scale's, else left alone. */
+static bool colour_at(const struct painting *painting, size_t i, float rgb[3], double *value)
 {
     if (painting->kind == sheen_ShowKind_SHOW_PTEX) {
         ptex_colour(&painting->ptex[i], rgb);
@@ -202,10 +208,10 @@ static bool colour_at(const struct painting *painting, size_t i, float rgb[3])
             rgb[k] = 0.5f + 0.5f * painting->normal[i][k];
         return isfinite(rgb[0] + rgb[1] + rgb[2]);
     }
-    double value = value_at(painting, i);
-    if (isfinite(value))
-        scale_colour(painting, value, rgb);
-    return isfinite(value);
+    *value = value_at(painting, i);
+    if (isfinite(*value))
+        scale_colour(painting, *value, rgb);
+    return isfinite(*value);
 }
 
 static bool is_empty(const struct painting *painting, size_t i)
@@ -243,28 +249,84 @@ static void blend(const float a[4], const float b[4], float share, float mixed[4
         mixed[k] = mixed[3] > 0 ? (of_a * a[k] + of_b * b[k]) / mixed[3] : 0;
 }
 
-static void paint_pixel(const struct painting *painting, size_t i, const float miss[4],
-                        const float empty[4], float painted[4])
+/* Returns the value at the pixel's own centre; NaN: it shows none. */
+static double paint_pixel(const struct painting *painting, size_t i, const float miss[4],
+                          const float empty[4], float painted[4])
 {
+    double value = NAN;
     float share = painting->coverage ? painting->coverage[i] : !is_empty(painting, i);
     size_t from = share > 0 ? surface_near(painting, i) : painting->n_pixels;
     float shown[4] = {0, 0, 0, 1};
     if (from == painting->n_pixels)
         memcpy(painted, empty, sizeof shown);
-    else if (colour_at(painting, from, shown))
+    else if (colour_at(painting, from, shown, &value))
         blend(shown, empty, share, painted);
     else
         blend(miss, empty, share, painted);
+    return from == i && isfinite(value) ? value : NAN;
+}
+
+/* Where a value is the least or the greatest so far. */
+struct found {
+    size_t n; /* values */
+    size_t at_least, at_greatest;
+    double least, greatest;
+};
+
+static void note(struct found *found, double value, size_t i)
+{
+    if (isnan(value))
+        return;
+    if (found->n == 0 || value < found->least) {
+        found->least = value;
+        found->at_least = i;
+    }
+    if (found->n == 0 || value > found->greatest) {
+        found->greatest = value;
+        found->at_greatest = i;
+    }
+    found->n++;
 }
 
 static void paint_pixels(const struct painting *painting, uint8_t (*rgba)[4], const float miss[4],
-                         const float empty[4])
+                         const float empty[4], struct found *found)
 {
     for (size_t i = 0; i < painting->n_pixels; i++) {
         float painted[4];
-        paint_pixel(painting, i, miss, empty, painted);
+        note(found, paint_pixel(painting, i, miss, empty, painted), i);
         to_bytes(painted, rgba[i]);
     }
+}
+
+static sheen_Extreme extreme_at(const struct painting *painting, double value, size_t i,
+                                bool has_place)
+{
+    const float *position = painting->position[i];
+    sheen_Extreme extreme = {.value = value};
+    if (!has_place)
+        return extreme;
+    extreme.has_x_px = extreme.has_y_px = extreme.has_position = true;
+    extreme.x_px = (uint32_t)(i % painting->width_px);
+    extreme.y_px = (uint32_t)(i / painting->width_px);
+    extreme.position = (sheen_Vec3){(double)position[0], (double)position[1], (double)position[2]};
+    if (!painting->ptex)
+        return extreme;
+    extreme.has_face = extreme.has_u = extreme.has_v = true;
+    extreme.face = painting->ptex[i].face;
+    extreme.u = (double)painting->ptex[i].u;
+    extreme.v = (double)painting->ptex[i].v;
+    return extreme;
+}
+
+static void fill_extremes(const struct painting *painting, const struct found *found, double size,
+                          struct show_extremes *extremes)
+{
+    *extremes = (struct show_extremes){.has_values = found->n > 0};
+    if (!extremes->has_values)
+        return;
+    bool has_place = found->greatest - found->least > least_difference(painting, size);
+    extremes->least = extreme_at(painting, found->least, found->at_least, has_place);
+    extremes->greatest = extreme_at(painting, found->greatest, found->at_greatest, has_place);
 }
 
 /* --- the legend */
@@ -347,9 +409,15 @@ static void add_legend(const struct painting *painting, const struct frame *fram
         log_event(LOG_WARN, "legends lack their numbers", log_text("text", error.text));
 }
 
-void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *show, double size,
-                const float miss[4], const float empty[4])
+bool show_has_legend(const sheen_Show *show)
 {
+    return !show->has_legend || show->legend;
+}
+
+void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *show, double size,
+                const float miss[4], const float empty[4], struct show_extremes *extremes)
+{
+    struct found found = {0};
     struct painting painting = {
         .kind = show->kind,
         .width_px = frame->width_px,
@@ -371,6 +439,8 @@ void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *
         show->range = range_of(&painting, size);
     }
     painting.range = show->range;
-    paint_pixels(&painting, frame->plane[0], miss, empty);
-    add_legend(&painting, frame, workers);
+    paint_pixels(&painting, frame->plane[0], miss, empty, &found);
+    fill_extremes(&painting, &found, size, extremes);
+    if (show_has_legend(show))
+        add_legend(&painting, frame, workers);
 }

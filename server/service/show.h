@@ -16,12 +16,24 @@
 #include "server/gpu/renderer.h"
 #include "server/service/workers.h"
 
+/* The least and the greatest value of a scale, at pixels' centres that show surface. */
+struct show_extremes {
+    bool has_values; /* false: there is none */
+    /* Without a place where all values are alike: differ by no more than a turn of 1e-5 over the
+     * model makes, or 1e-5 rad of DRAFT. With face, u and v where the frame has the Ptex plane. */
+    sheen_Extreme least, greatest;
+};
+
+/* Is the legend wanted? */
+bool show_has_legend(const sheen_Show *show);
+
 /* Paints frame->plane[0]; the frame has the planes of message_render_planes(). `empty` is for
  * what no surface covers, `miss` for where it has no such value. A scale whose
  * range is left out gets it: the magnitude that 98 of 100 values do not exceed, rounded up to two
  * digits, and no less than a turn of 1e-5 over a model of this size (above 0), so that a flat one's
- * rounding is not magnified; DRAFT: 3 degrees. */
+ * rounding is not magnified; DRAFT: 3 degrees. *extremes is of kinds with a scale; else it has no
+ * values. */
 void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *show, double size,
-                const float miss[4], const float empty[4]);
+                const float miss[4], const float empty[4], struct show_extremes *extremes);
 
 #endif

@@ -178,7 +178,7 @@ class Client(unittest.TestCase):
                              hashlib.sha256(file.read()).hexdigest())
         found, _ = self.render("a.png", "--device", "software", *camera, "--ortho", "3",
                                "--surface", "polygon:2", "--show", "draft:0,1,0", "--show-range",
-                               "5")
+                               "5", "--legend", "off")
         self.assertEqual((found["filter"], found["line_eye"]), ("exact", {"kind": "camera"}))
         self.assertEqual((found["miss"], found["empty"], found["base"]),
                          ("#29303bff", "#808080ff", "#b3b8bfff"))
@@ -186,7 +186,7 @@ class Client(unittest.TestCase):
             "ortho": (found["camera"]["ortho_height"], 3),
             "surface": ((found["surface"], found["surface_level"]), ("polygon", 2)),
             "show": ((found["show"], found["show_direction"]), ("draft", [0, 1, 0])),
-            "show-range": (found["show_range"], 5),
+            "show-range": (found["show_range"], 5), "legend": (found["legend"], "off"),
             "device": ((found["address"], found["software"]), ("private", True)),
         })
         for name, (value, wanted) in said.items():

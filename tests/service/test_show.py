@@ -1,4 +1,6 @@
 """False colour end to end: --show."""
+import json
+import math
 import os
 import struct
 import unittest
@@ -8,7 +10,7 @@ from daemon import MODELS, SHEEN, DaemonCase
 from test_client import sheen
 
 CURVATURE, GAUSSIAN, MEAN, NORMAL, PTEX, DRAFT = range(1, 7)
-COLOUR, K, COVERAGE = 1, 32, 128
+COLOUR, P, PTEX_PLANE, K, COVERAGE = 1, 2, 8, 32, 128
 WIDTH, HEIGHT = 160, 110  # low enough for no legend
 EMPTY = bytes((128, 128, 128, 255))
 BODY, PLANE = os.path.join(MODELS, "body.obj"), os.path.join(MODELS, "plane.obj")
@@ -68,6 +70,40 @@ class Show(DaemonCase):
         gaussian = {p for p in pixels(self.render(BODY, show(GAUSSIAN))) if p != EMPTY}
         red = sum(p[0] > p[2] for p in gaussian)
         self.assertGreater(red, len(gaussian) / 2, "a body's Gaussian curvature is positive")
+
+    def test_extremes(self):
+        """As the planes of the same frame say, and where the Ptex plane is asked for its place."""
+        def place(extreme):
+            found = wire.decode(extreme)
+            numbers = [struct.unpack("<d", found[k][0])[0] if k in found else None
+                       for k in (1, 6, 7)]
+            at = [struct.unpack("<d", value)[0] for value, in wire.decode(found[4][0]).values()]
+            return numbers, found[2][0] + WIDTH * found[3][0], at, found.get(5)
+
+        with wire.Client(self.daemon.unix) as client:
+            model = client.upload(read(BODY), "body.obj")
+            for planes in (COLOUR | P | K, COLOUR | P | PTEX_PLANE | K):
+                seq = client.ask(model, WIDTH, HEIGHT, planes=planes, extra=show(MEAN))
+                fields = client.expect(wire.FRAME, seq)
+                data = client.read_rest(seq, fields).data[4 * WIDTH * HEIGHT:]
+                n = WIDTH * HEIGHT
+                position = list(struct.iter_unpack("<3f", data[:12 * n]))
+                ptex = list(struct.iter_unpack("<I2f", data[12 * n:-8 * n]))
+                mean = [(a + b) / 2 for a, b in struct.iter_unpack("<2f", data[-8 * n:])]
+                seen = [(value, i) for i, value in enumerate(mean) if math.isfinite(value)]
+                greatest = max(seen, key=lambda found: (found[0], -found[1]))
+                for number, (value, i) in ((30, min(seen)), (31, greatest)):
+                    numbers, at, where, face = place(fields[number][0])
+                    self.assertEqual((numbers[0], at, tuple(where)), (value, i, position[i]))
+                    if ptex:
+                        self.assertEqual((face[0], *numbers[1:]), ptex[i])
+                    else:
+                        self.assertIsNone(face)
+            for extra in (b"", show(NORMAL)):
+                seq = client.ask(model, WIDTH, HEIGHT, extra=extra)
+                fields = client.expect(wire.FRAME, seq)
+                client.read_rest(seq, fields)
+                self.assertFalse({30, 31} & set(fields))
 
     def test_a_plane_has_one_draft(self):
         for direction, colour in (((0, 0, 2), (0, 84, 38)), ((0, 0, -1), (128, 0, 13)),
@@ -147,6 +183,48 @@ class Command(DaemonCase):
         self.assertIn(b"draft direction=0,0,1 range=3", read(path))
         done, path = self.command("--json", "-q")
         self.assertNotIn("show_range", done.stdout)
+
+    def test_extremes_are_told(self):
+        done, _ = self.command("--show", "mean", "--json", "-q")
+        told = json.loads(done.stdout)
+        least, greatest = told["show_least"], told["show_greatest"]
+        self.assertTrue(least["value"] < greatest["value"] < 0, "a convex body")
+        for extreme in (least, greatest):
+            self.assertTrue(0 <= extreme["pixel"][0] < 320 and 0 <= extreme["pixel"][1] < 240)
+            self.assertEqual(len(extreme["position"]), 3)
+            self.assertNotIn("ptex", extreme)
+        # A flat one is alike all over, and one that is not seen has no value.
+        for arguments, value in (((), 90), (("--eye", "0,0,9", "--target", "0,0,20", "--up",
+                                             "0,1,0"), None)):
+            path = os.path.join(self.daemon.folder, "out.png")
+            done = sheen("render", PLANE, "-o", path, "--server", self.daemon.unix, "--size",
+                         "64x48", "--show", "draft:0,0,1", "--json", "-q", *arguments)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for key in ("show_least", "show_greatest"):
+                extreme = json.loads(done.stdout)[key]
+                self.assertEqual(extreme, value and
+                                 {"value": value, "pixel": None, "position": None})
+        for kind in ("normal", "ptex", "lines"):
+            done, _ = self.command("--show", kind, "--json", "-q")
+            self.assertNotIn("show_least", done.stdout)
+
+    def test_no_legend(self):
+        """The picture without it, but for its corner; its text says so."""
+        for legend in ("on", "off"):
+            _, path = self.command("--show", "mean", "--legend", legend, "-q")
+            self.assertEqual(b"legend=off" in read(path), legend == "off")
+        width, height = 320, 240
+        with wire.Client(self.daemon.unix) as client:
+            model = client.upload(read(BODY), "body.obj")
+            on, off = (client.render(model, width, height, extra=wire.field(13, body)).data
+                       for body in (wire.field(1, MEAN), wire.field(1, MEAN) + wire.field(4, 0)))
+        different = [i for i in range(width * height) if on[4 * i:4 * i + 4] != off[4 * i:4 * i + 4]]
+        self.assertGreater(len(different), 2000)
+        self.assertGreater(min(i % width for i in different), width // 3)
+        self.assertGreater(min(different) // width, height // 2)
+        done, _ = self.command("--legend", "no")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("on or off", done.stderr)
 
     def test_bad_values(self):
         for arguments in (("--show", "torsion"), ("--show", "draft"), ("--show", "draft:0,0,0"),

@@ -144,6 +144,40 @@ static void answers_are_checked(void **state)
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     assert_non_null(strstr(text, "show_range"));
     frame.has_show_range = false;
+    const sheen_Extreme least = {.value = -1,
+                                 .has_x_px = true,
+                                 .x_px = 1,
+                                 .has_y_px = true,
+                                 .has_position = true,
+                                 .has_face = true,
+                                 .has_u = true,
+                                 .has_v = true,
+                                 .v = 1};
+    frame.has_show_least = true;
+    frame.show_least = frame.show_greatest = least;
+    assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
+    assert_non_null(strstr(text, "come together"));
+    frame.has_show_greatest = true;
+    assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
+    frame.show_greatest = (sheen_Extreme){.value = 2};
+    assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
+#define BAD_EXTREME(field, bad, word)                                                              \
+    do {                                                                                           \
+        frame.show_least = least;                                                                  \
+        frame.show_least.field = bad;                                                              \
+        assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));                           \
+        assert_non_null(strstr(text, word));                                                       \
+    } while (0)
+    BAD_EXTREME(value, NAN, "show_least.value");
+    BAD_EXTREME(value, 3, "above show_greatest");
+    BAD_EXTREME(x_px, 2, "no pixel");
+    BAD_EXTREME(y_px, 2, "no pixel");
+    BAD_EXTREME(has_y_px, false, "no pixel");
+    BAD_EXTREME(has_position, false, "no pixel");
+    BAD_EXTREME(position.z, INFINITY, "show_least.z");
+    BAD_EXTREME(has_u, false, "face, u and v");
+    BAD_EXTREME(v, NAN, "face, u and v");
+    frame.has_show_least = frame.has_show_greatest = false;
     frame.has_miss = frame.has_base = true;
     assert_true(message_check_answer(MESSAGE_FRAME, &frame, text));
     frame.base.a = 2;

@@ -17,6 +17,8 @@ enum { MAX_PIXELS = 320 * 240 };
 
 static struct workers workers; /* draw the legend */
 
+static struct show_extremes extremes; /* of the picture painted last */
+
 static const float MISS[4] = {0, 0.2f, 0.4f, 1}, EMPTY[4] = {1, 0, 1, 0};
 
 struct ptex {
@@ -68,7 +70,7 @@ static void paint_curvatures(sheen_ShowKind kind, double range, const float (*k)
     struct frame frame = frame_of(kind, (uint32_t)n, 1);
     memcpy(planes.curvature, k, n * sizeof *k);
     sheen_Show show = {.kind = kind, .has_range = true, .range = range};
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_true(show.range == range);
 }
 
@@ -112,7 +114,7 @@ static void test_no_surface(void **state)
         for (int k = 0; k < 2; k++)
             planes.curvature[0][k] = planes.curvature[1][k] = NAN;
         sheen_Show show = {.kind = kinds[i], .has_direction = true, .direction = {0, 0, 1}};
-        show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
+        show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
         assert_colour(0, EMPTIED);
         assert_colour(1, MISSED);
     }
@@ -135,7 +137,7 @@ static void test_outline(void **state)
         planes.normal[i][0] = colour_of_x[i];
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
     const float black[4] = {0, 0, 0, 1};
-    show_paint(&frame, &workers, &show, 1, MISS, black);
+    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     assert_colour(0, 255, 128, 128, 255);
     assert_colour(1, 0, 96, 96, 255);
     assert_colour(2, 0, 64, 64, 255); /* from the left */
@@ -144,10 +146,10 @@ static void test_outline(void **state)
     assert_colour(5, 0, 0, 0, 255);
     assert_colour(6, 0, 64, 64, 255); /* from the corner */
     assert_colour(7, 0, 0, 0, 255);   /* nobody knows */
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_colour(1, 0, 128, 128, 191); /* through to what has no colour */
     planes.normal[1][0] = NAN;
-    show_paint(&frame, &workers, &show, 1, MISS, black);
+    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     assert_colour(1, 0, 38, 77, 255); /* 3/4 of MISS */
 }
 
@@ -158,7 +160,7 @@ static void test_normals(void **state)
     planes.normal[0][2] = 1;
     planes.normal[1][0] = -1;
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_colour(0, 128, 128, 255, 255);
     assert_colour(1, 0, 128, 128, 255);
     assert_false(show.has_range);
@@ -172,7 +174,7 @@ static void paint_drafts(sheen_Show *show, const double *deg, size_t n)
         planes.normal[i][0] = (float)cos(deg[i] * M_PI / 180);
         planes.normal[i][1] = -(float)sin(deg[i] * M_PI / 180);
     }
-    show_paint(&frame, &workers, show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, show, 1, MISS, EMPTY, &extremes);
 }
 
 #define YELLOW 255, 224, 64, 255
@@ -222,7 +224,7 @@ static void test_ptex(void **state)
         planes.ptex[N + i] = (struct ptex){5, i & 1 ? 1 : 0, i & 2 ? 1 : 0};
     planes.ptex[N + 4] = (struct ptex){UINT32_MAX, 0, 0};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_PTEX};
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     for (int i = 0; i < N; i++) /* neighbours in number differ widely, all differ */
         for (int j = 0; j < i; j++) {
             int apart = 0;
@@ -245,7 +247,7 @@ static double range_of(sheen_ShowKind kind, double size, double scale, size_t n)
         planes.curvature[2 * i + 1][0] = NAN;
     }
     sheen_Show show = {.kind = kind};
-    show_paint(&frame, &workers, &show, size, MISS, EMPTY);
+    show_paint(&frame, &workers, &show, size, MISS, EMPTY, &extremes);
     assert_true(show.has_range);
     return show.range;
 }
@@ -267,6 +269,102 @@ static void test_ranges(void **state)
     assert_true(range_of(mean, 4, 0, 100) == 2.5e-6);
 }
 
+static void assert_extreme(const sheen_Extreme *extreme, double value, size_t i)
+{
+    const uint32_t width = 16;
+    assert_true(extreme->value == value);
+    assert_true(extreme->has_x_px && extreme->has_y_px && extreme->has_position);
+    assert_int_equal(extreme->y_px * width + extreme->x_px, i);
+    assert_true(extreme->position.x == (double)planes.position[i][0] &&
+                extreme->position.y == (double)planes.position[i][1] &&
+                extreme->position.z == (double)planes.position[i][2]);
+    assert_true(extreme->has_face && extreme->has_u && extreme->has_v);
+    assert_int_equal(extreme->face, planes.ptex[i].face);
+    assert_true(extreme->u == (double)planes.ptex[i].u && extreme->v == (double)planes.ptex[i].v);
+}
+
+static float random_float(void)
+{
+    return (float)rand() / (float)RAND_MAX - 0.5f;
+}
+
+/* Random pictures, in which some pixels show nothing, no value or an infinite one; values repeat.
+ */
+static void test_extremes(void **state)
+{
+    (void)state;
+    enum { WIDTH = 16, N = 16 * 12 };
+    static const sheen_ShowKind kinds[] = {sheen_ShowKind_SHOW_CURVATURE,
+                                           sheen_ShowKind_SHOW_GAUSSIAN, sheen_ShowKind_SHOW_MEAN};
+    srand(14);
+    for (int run = 0; run < 300; run++) {
+        const sheen_ShowKind kind = kinds[run % 3];
+        struct frame frame = frame_of(kind, WIDTH, N / WIDTH);
+        frame.plane[3] = planes.ptex;
+        frame.plane[7] = run % 2 ? planes.coverage : NULL;
+        size_t least = N, greatest = N;
+        double values[N];
+        for (size_t i = 0; i < N; i++) {
+            bool is_empty = rand() % 4 == 0;
+            float a = roundf(8 * random_float()), b = roundf(8 * random_float());
+            float low = fminf(a, b), high = fmaxf(a, b);
+            low = rand() % 16 == 0 ? -INFINITY : low;
+            high = rand() % 16 == 0 ? NAN : high;
+            planes.curvature[i][0] = is_empty ? NAN : low;
+            planes.curvature[i][1] = is_empty ? NAN : high;
+            for (int k = 0; k < 3; k++)
+                planes.position[i][k] = is_empty ? NAN : random_float();
+            planes.coverage[i] = is_empty ? (float)(rand() % 2) / 2 : 1;
+            planes.ptex[i] = (struct ptex){is_empty ? UINT32_MAX : (uint32_t)i, 0.25f, 0.5f};
+            double x = (double)planes.curvature[i][0], y = (double)planes.curvature[i][1];
+            values[i] = kind == sheen_ShowKind_SHOW_MEAN       ? (x + y) / 2
+                        : kind == sheen_ShowKind_SHOW_GAUSSIAN ? x * y
+                        : fabs(x) > fabs(y)                    ? x
+                                                               : y;
+            if (!isfinite(values[i]))
+                continue;
+            least = least == N || values[i] < values[least] ? i : least;
+            greatest = greatest == N || values[i] > values[greatest] ? i : greatest;
+        }
+        sheen_Show show = {.kind = kind};
+        show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+        assert_true(extremes.has_values && least < N);
+        assert_extreme(&extremes.least, values[least], least);
+        assert_extreme(&extremes.greatest, values[greatest], greatest);
+    }
+}
+
+static void test_no_extremes(void **state)
+{
+    (void)state;
+    const float none[][2] = {{NAN, NAN}, {0, INFINITY}};
+    paint_curvatures(sheen_ShowKind_SHOW_MEAN, 1, none, 2);
+    assert_false(extremes.has_values);
+    /* What differs by rounding alone has a value and no place. */
+    const float flat[][2] = {{0, 1e-7f}, {-1e-7f, 0}};
+    paint_curvatures(sheen_ShowKind_SHOW_MEAN, 1, flat, 2);
+    assert_true(extremes.has_values && !extremes.least.has_position && !extremes.least.has_x_px);
+    assert_true(extremes.least.value < 0 && extremes.greatest.value > 0);
+    const float bent[][2] = {{0, 3e-5f}, {0, 0}};
+    paint_curvatures(sheen_ShowKind_SHOW_MEAN, 1, bent, 2);
+    assert_true(extremes.least.has_position && !extremes.least.has_face);
+    assert_int_equal(extremes.least.x_px, 1);
+    assert_int_equal(extremes.greatest.x_px, 0);
+    const double slopes[] = {7, 7, 7};
+    sheen_Show show = {
+        .kind = sheen_ShowKind_SHOW_DRAFT, .has_direction = true, .direction = {0, -1, 0}};
+    paint_drafts(&show, slopes, 3);
+    assert_true(fabs(extremes.least.value - 7) < 1e-5 && !extremes.least.has_position);
+    const double steps[] = {7, -8, 9};
+    paint_drafts(&show, steps, 3);
+    assert_int_equal(extremes.least.x_px, 1);
+    assert_int_equal(extremes.greatest.x_px, 2);
+    struct frame frame = frame_of(sheen_ShowKind_SHOW_NORMAL, 2, 1);
+    show = (sheen_Show){.kind = sheen_ShowKind_SHOW_NORMAL};
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    assert_false(extremes.has_values);
+}
+
 static bool is_black(size_t i)
 {
     return sum(planes.colour[i]) == 0;
@@ -281,7 +379,7 @@ static void test_legend(void **state)
         planes.position[i][0] = NAN;
     const float black[4] = {0, 0, 0, 1};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_MEAN, .has_range = true, .range = 0.25};
-    show_paint(&frame, &workers, &show, 1, MISS, black);
+    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     size_t n_white = 0, blue = 0, red = 0, outside = 0;
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
@@ -297,16 +395,25 @@ static void test_legend(void **state)
     assert_true(blue && red && blue % width < red % width);
     assert_true(red % width > width * 9 / 10);
 
+    frame = frame_of(sheen_ShowKind_SHOW_MEAN, width, height);
+    for (size_t i = 0; i < MAX_PIXELS; i++)
+        planes.position[i][0] = NAN;
+    show.has_legend = true; /* a word about it, and it is "no" */
+    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    for (size_t i = 0; i < MAX_PIXELS; i++)
+        assert_true(is_black(i));
+    show.legend = true;
+
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, width, LEGEND_MIN_HEIGHT_PX - 1);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    show_paint(&frame, &workers, &show, 1, MISS, black);
+    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, 100, 240);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    show_paint(&frame, &workers, &show, 1, MISS, black);
+    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
 }
@@ -336,6 +443,7 @@ int main(void)
         cmocka_unit_test(test_outline),    cmocka_unit_test(test_normals),
         cmocka_unit_test(test_drafts),     cmocka_unit_test(test_ptex),
         cmocka_unit_test(test_ranges),     cmocka_unit_test(test_legend),
+        cmocka_unit_test(test_extremes),   cmocka_unit_test(test_no_extremes),
     };
     return cmocka_run_group_tests(tests, start_workers, end_workers);
 }
