@@ -22,7 +22,8 @@ static enum sheen_status start_private(struct sheen_session *session,
         connection_pair(&session->connection, &peer_fd, connect_timeout_ms(options), error);
     if (status)
         return status;
-    status = private_daemon_start(&session->daemon, peer_fd, options->device, error);
+    status = private_daemon_start(&session->daemon, peer_fd, options->device,
+                                  options->memory_budget_bytes, error);
     close(peer_fd);
     return status;
 }
@@ -33,10 +34,10 @@ static enum sheen_status open_address(struct sheen_session *session,
 {
     struct address address;
     char text[ADDRESS_TEXT_BYTES];
-    if (options->device)
+    if (options->device || options->memory_budget_bytes)
         return status_set(error, SHEEN_BAD_ARGUMENT,
-                          "a device is chosen for a private daemon; the one at %s has its own",
-                          options->address);
+                          "a %s is chosen for a private daemon; the one at %s has its own",
+                          options->device ? "device" : "memory budget", options->address);
     if (!address_parse(&address, options->address, text))
         return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
     if (address.kind != ADDRESS_UNIX && address.port == 0)

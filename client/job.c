@@ -92,6 +92,7 @@ static enum sheen_status connect_server(struct job *job, const struct options *o
     connect.connect_timeout_ms = timeout_ms;
     connect.address = options->server;
     connect.device = options->device;
+    connect.memory_budget_bytes = options->memory_budget_bytes;
     connect.ca = options->ca;
     connect.cert = options->cert;
     connect.key = options->key;

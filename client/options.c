@@ -190,6 +190,12 @@ enum options_result options_parse(const struct command *command, int argc, char 
     if (options->server && options->device)
         return wrong(why, "--device is for a private daemon; the one at %.120s has its own",
                      options->server);
+    if (options->server && options->memory_budget_bytes)
+        return wrong(
+            why,
+            "--memory-budget is for a private daemon; the one at %.120s has its own, which "
+            "its operator gives to sheend",
+            options->server);
     return !command->check || command->check(options, why) ? OPTIONS_RUN : OPTIONS_WRONG;
 }
 

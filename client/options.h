@@ -31,13 +31,14 @@ enum options_given {
 };
 
 struct options {
-    const char *model;           /* the file, NULL for commands without */
-    const char *server;          /* --server, else SHEEN_SERVER, else NULL: a private daemon */
-    const char *device;          /* NULL: auto */
-    const char *ca, *cert, *key; /* of a tls: server; NULL: none */
-    bool share;                  /* what is uploaded */
-    bool weld;                   /* equal positions of the model */
-    const char *token_file;      /* --token-file, else SHEEN_TOKEN_FILE, else NULL */
+    const char *model;            /* the file, NULL for commands without */
+    const char *server;           /* --server, else SHEEN_SERVER, else NULL: a private daemon */
+    const char *device;           /* NULL: auto */
+    uint64_t memory_budget_bytes; /* of the private daemon; 0: as libsheen has it */
+    const char *ca, *cert, *key;  /* of a tls: server; NULL: none */
+    bool share;                   /* what is uploaded */
+    bool weld;                    /* equal positions of the model */
+    const char *token_file;       /* --token-file, else SHEEN_TOKEN_FILE, else NULL */
     bool json, quiet;
     unsigned given; /* enum options_given */
     struct sheen_request request;

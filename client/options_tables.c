@@ -4,6 +4,8 @@
 #include "client/lights_text.h"
 #include "client/options.h"
 #include "client/values.h"
+#include "protocol/limits.h"
+#include "protocol/number.h"
 
 static bool apply_vec3(struct options *options, const char *value, double *target, unsigned given,
                        char *why)
@@ -71,6 +73,13 @@ static bool apply_device(struct options *options, const char *value, char *why)
     return strcmp(value, "auto") == 0 || strcmp(value, "software") == 0 ||
            value_uint32(value, &number) ||
            options_refuse(why, "must be auto, software or a device's number");
+}
+
+static bool apply_memory_budget(struct options *options, const char *value, char *why)
+{
+    return number_parse(value, PROTOCOL_LEAST_MEMORY_BYTES, PROTOCOL_MOST_MEMORY_BYTES, true,
+                        &options->memory_budget_bytes) ||
+           options_refuse(why, "must be bytes, 4M or more, as 4000000000, 800M or 4G");
 }
 
 static bool apply_json(struct options *options, const char *value, char *why)
@@ -309,6 +318,12 @@ const struct option_row OPTIONS_COMMON[] = {
      "of the private daemon: auto, software, or a number from 0 (default: auto,\n"
      "a GPU when there is one)",
      apply_device},
+    {"memory-budget", 0, "BYTES",
+     "of the private daemon: most that the model, its tables, images and frames may\n"
+     "take together, in main memory and on the device, 4M or more, as 800M or 16G\n"
+     "(default: half of the memory that the machine has, or its control group may\n"
+     "take)",
+     apply_memory_budget},
     {"quiet", 'q', NULL, "no progress, summary, notices or warnings on standard error",
      apply_quiet},
     {0},

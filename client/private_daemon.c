@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
@@ -12,7 +13,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "client/machine_memory.h"
 #include "client/status.h"
+#include "protocol/limits.h"
 
 #define SESSION_FD 3 /* the first after standard error; all above are closed in the daemon */
 #define END_MS 10000 /* to finish what is in flight, once its socket is closed */
@@ -67,12 +70,31 @@ static int describe_child(posix_spawn_file_actions_t *files, posix_spawnattr_t *
                                              POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 }
 
-static int spawn(pid_t *pid, const char *path, int session_fd, int stderr_fd, const char *device)
+/* 0: as the daemon has it. */
+static uint64_t budget_bytes(uint64_t asked)
 {
-    char fd_text[12];
+    uint64_t half = machine_memory_bytes("") / 2;
+    if (asked > 0 || half == 0)
+        return asked;
+    return half > PROTOCOL_LEAST_MEMORY_BYTES ? half : PROTOCOL_LEAST_MEMORY_BYTES;
+}
+
+/* `bytes` is the memory budget, or 0. */
+static int spawn(pid_t *pid, const char *path, int session_fd, int stderr_fd, const char *device,
+                 uint64_t bytes)
+{
+    char fd_text[12], bytes_text[24];
     snprintf(fd_text, sizeof(fd_text), "%d", SESSION_FD);
-    const char *argv[] = {"sheend", "--session-fd", fd_text, device ? "--device" : NULL, device,
-                          NULL};
+    snprintf(bytes_text, sizeof(bytes_text), "%" PRIu64, bytes);
+    const char *argv[10] = {"sheend", "--session-fd", fd_text};
+    const char *const more[][2] = {{"--device", device},
+                                   {"--memory-budget", bytes ? bytes_text : NULL},
+                                   {"--peer-memory", bytes ? bytes_text : NULL}};
+    for (size_t i = 0, n = 3; i < sizeof(more) / sizeof(*more); i++)
+        if (more[i][1]) {
+            argv[n++] = more[i][0];
+            argv[n++] = more[i][1];
+        }
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
     int failed = posix_spawn_file_actions_init(&files);
@@ -97,7 +119,8 @@ finish_files:
 }
 
 enum sheen_status private_daemon_start(struct private_daemon *daemon, int session_fd,
-                                       const char *device, struct sheen_error *error)
+                                       const char *device, uint64_t memory_budget_bytes,
+                                       struct sheen_error *error)
 {
     char path[PATH_BYTES];
     int failed = 0;
@@ -109,7 +132,8 @@ enum sheen_status private_daemon_start(struct private_daemon *daemon, int sessio
     if (high_fd < 0 || daemon->stderr_fd < 0)
         failed = errno;
     else
-        failed = spawn(&daemon->pid, path, high_fd, daemon->stderr_fd, device);
+        failed = spawn(&daemon->pid, path, high_fd, daemon->stderr_fd, device,
+                       budget_bytes(memory_budget_bytes));
     if (high_fd >= 0)
         close(high_fd);
     if (memory_fd >= 0)

@@ -15,9 +15,11 @@ struct private_daemon {
 };
 
 /* Starts `sheend --session-fd N [--device DEVICE]` on `session_fd`, which stays the caller's: he
- * closes it right after. device may be NULL. SHEEN_NO_SERVER when it cannot be started. */
+ * closes it right after. device may be NULL. Its budget of memory, all of which is its one
+ * client's, is as sheen_connect_options says. SHEEN_NO_SERVER when it cannot be started. */
 enum sheen_status private_daemon_start(struct private_daemon *daemon, int session_fd,
-                                       const char *device, struct sheen_error *error);
+                                       const char *device, uint64_t memory_budget_bytes,
+                                       struct sheen_error *error);
 
 /* Once the connection is lost: waits briefly for the daemon's end and puts why it ended into
  * *error (its last line on standard error, its signal or exit code). SHEEN_DEVICE_FAILED when it

@@ -76,7 +76,10 @@ struct sheen_session;
 struct sheen_connect_options {
     const char *address; /* unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; NULL: a private daemon */
     const char *device;  /* private daemon: "auto", "software" or a number; NULL: auto */
-    uint32_t timeout_ms; /* with no byte moved; 0: for ever */
+    /* Private daemon: what files, tables and frames may take together, 4 MiB or more; 0: half of
+     * the memory that this machine has, or its control group may take. */
+    uint64_t memory_budget_bytes;
+    uint32_t timeout_ms;         /* with no byte moved; 0: for ever */
     uint32_t connect_timeout_ms; /* the same, until the daemon has greeted; 0: timeout_ms */
     /* A balancer picks a node by it: of the model that will be asked for, and where that is a file
      * at the server, sheen_file_id() of the text "server:" NAME. Zeros: any node. */

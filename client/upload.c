@@ -64,8 +64,11 @@ enum sheen_status sheen_upload(struct sheen_session *session, enum sheen_file_ki
         return status_set(error, SHEEN_BAD_ARGUMENT,
                           "an upload needs an id, bytes and a name, and no request in flight");
     if (n_bytes > session->hello.max_upload_bytes)
-        return status_set(error, SHEEN_TOO_BIG, "%s: %zu bytes, the server takes %llu at most",
-                          name, n_bytes, (unsigned long long)session->hello.max_upload_bytes);
+        return status_set(error, SHEEN_TOO_BIG, "%s: %zu bytes, the server takes %llu at most%s",
+                          name, n_bytes, (unsigned long long)session->hello.max_upload_bytes,
+                          session->daemon.pid > 0 && n_bytes <= PROTOCOL_MAX_UPLOAD_BYTES
+                              ? ": give it a larger --memory-budget"
+                              : "");
     sheen_UploadBegin begin = {.kind = kind == SHEEN_FILE_IMAGE ? sheen_UploadKind_UPLOAD_IMAGE
                                                                 : sheen_UploadKind_UPLOAD_MODEL,
                                .size_bytes = n_bytes,

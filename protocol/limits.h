@@ -20,6 +20,10 @@
 #define PROTOCOL_MAX_SIZE_PX 65536u /* width and height; the device's limit is lower */
 #define PROTOCOL_MAX_JPEG_PX 65500u /* the same of a JPEG file: libjpeg's limit */
 
+/* The budget of a daemon's memory, which a client may choose for one of its own. */
+#define PROTOCOL_LEAST_MEMORY_BYTES (4ull * 1024 * 1024)
+#define PROTOCOL_MOST_MEMORY_BYTES (UINT64_MAX / 4) /* sums of a few stay in range */
+
 /* Requests sent and not yet answered, per connection. A peer of minor version 0 has the first, and
  * more is left in the socket's buffer; to others HELLO_OK grants some, and more breaks the
  * protocol. */

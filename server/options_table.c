@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "protocol/number.h"
 #include "server/service/pool.h"
 #include "server/service/tokens.h"
 

@@ -1,12 +1,11 @@
 #include "server/service/limits.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "protocol/limits.h"
+#include "protocol/number.h"
 #include "server/service/losses.h"
 
 #define KIB ((uint64_t)1 << 10)
@@ -15,11 +14,11 @@
 /* What nobody could be served with less of: memory for a frame of 640 x 480 pixels in colour, what
  * it is encoded to (6 bytes a pixel for JPEG at most) and a small model beside it; its planes
  * alone; a small file; a part of what the socket takes. */
-#define LEAST_MEMORY (4 * MIB)
+#define LEAST_MEMORY PROTOCOL_LEAST_MEMORY_BYTES
 #define LEAST_FRAME (640u * 480 * 4)
 #define LEAST_FILE (64 * KIB)
 #define LEAST_OUTPUT (64 * KIB)
-#define MOST_BYTES (UINT64_MAX / 4) /* sums of a few stay in range */
+#define MOST_BYTES PROTOCOL_MOST_MEMORY_BYTES
 #define MOST_SECONDS 10000000u
 
 #define AT(member) offsetof(struct limits, member)
@@ -108,23 +107,6 @@ void limits_init(struct limits *limits)
 {
     for (size_t i = 0; i < N_LIMITS; i++)
         put(limits, &LIMITS[i], LIMITS[i].fallback);
-}
-
-bool number_parse(const char *value, uint64_t low, uint64_t high, bool suffixes, uint64_t *number)
-{
-    if (*value < '0' || *value > '9')
-        return false;
-    char *end;
-    errno = 0;
-    uint64_t n = strtoull(value, &end, 10);
-    const char *suffix = suffixes && *end ? strchr("KMGT", *end) : NULL;
-    if (suffix) {
-        end++;
-        for (long i = suffix - "KMGT"; errno == 0 && i >= 0; i--)
-            errno = __builtin_mul_overflow(n, 1024, &n) ? ERANGE : 0;
-    }
-    *number = n;
-    return errno == 0 && *end == 0 && n >= low && n <= high;
 }
 
 bool limits_set(struct limits *limits, const struct limits_row *row, const char *value,

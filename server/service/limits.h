@@ -76,7 +76,4 @@ void limits_format(const struct limits_row *row, uint64_t value, char text[LIMIT
 enum { LIMITS_RANGE_BYTES = 2 * LIMITS_TEXT_BYTES + 8 };
 void limits_range(const struct limits_row *row, char text[LIMITS_RANGE_BYTES]);
 
-/* A whole number from low to high; with suffixes K, M, G or T multiply by powers of 1024. */
-bool number_parse(const char *value, uint64_t low, uint64_t high, bool suffixes, uint64_t *number);
-
 #endif

@@ -411,6 +411,7 @@ static bool start(struct service *service, struct error *error)
     const struct service_options *options = &service->options;
     const struct loop_hooks hooks = {after_batch, tick, service};
     jpeg_keep_defaults();
+    host->is_private = service->single;
     if (!(host->spares = spares_create((size_t)options->limits.spare_memory)))
         return error_set(error, ERROR_SERVER, "no memory for the daemon");
     const struct renderer_options renderer = {.device = options->device, .spares = host->spares};
@@ -424,7 +425,7 @@ static bool start(struct service *service, struct error *error)
         !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_worker){0},
                                       service->completions, error)) ||
         !(host->store = store_create(host->pool, host->readers, host->render_thread, &host->workers,
-                                     &host->limits, error)))
+                                     &host->limits, host->is_private, error)))
         return false;
     const struct limits *limits = &options->limits;
     host->share_models = options->share_models;

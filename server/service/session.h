@@ -50,7 +50,8 @@ struct session_host {
     uint32_t gpu_generation;  /* 1, and one more for each time that the GPU was lost */
     uint64_t last_session_id; /* sessions are numbered in the log */
     uint64_t max_upload_bytes;
-    bool draining; /* no new request is taken, and answers must be read soon */
+    bool is_private; /* a command's own daemon: the budget of memory is its client's choice */
+    bool draining;   /* no new request is taken, and answers must be read soon */
     uint64_t drain_start_us;
 };
 

@@ -108,10 +108,13 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
             continue;
         snprintf(text, sizeof text,
                  "%ux%u px: %s take %llu bytes, over this daemon's --%s of %llu: ask for a smaller "
-                 "frame or fewer planes",
+                 "frame or fewer planes%s",
                  render->width_px, render->height_px, checks[i].what,
                  (unsigned long long)checks[i].needed, checks[i].name,
-                 (unsigned long long)checks[i].limit);
+                 (unsigned long long)checks[i].limit,
+                 session->host->is_private && checks[i].limit == limits->memory_budget
+                     ? ", or give this command a larger --memory-budget"
+                     : "");
         session_reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
         return false;
     }

@@ -1,5 +1,6 @@
 #include "server/service/store.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@ struct store {
     struct render_thread *render_thread;
     struct workers *workers;
     const struct limits *limits;
+    bool is_private; /* the daemon is */
     size_t budget_bytes, used_bytes;
     uint32_t max_image_px;
     size_t n_assets;
@@ -34,7 +36,7 @@ static struct asset **bucket_of(struct store *store, const uint8_t *sha256)
 
 struct store *store_create(struct pool *pool, struct pool *readers,
                            struct render_thread *render_thread, struct workers *workers,
-                           const struct limits *limits, struct error *error)
+                           const struct limits *limits, bool is_private, struct error *error)
 {
     struct store *store = calloc(1, sizeof *store);
     if (!store) {
@@ -47,6 +49,7 @@ struct store *store_create(struct pool *pool, struct pool *readers,
     store->render_thread = render_thread;
     store->workers = workers;
     store->limits = limits;
+    store->is_private = is_private;
     store->budget_bytes = limits->memory_budget;
     store->max_image_px = (uint32_t)limits->max_image_side;
     return store;
@@ -226,16 +229,33 @@ void store_share(struct asset *asset)
         memcpy(asset->owner, STORE_SHARED, sizeof asset->owner);
 }
 
+/* All memory is this one client's: nobody else will give any back. */
+static bool refuse_private(const struct store *store, size_t bytes, const char *what,
+                           enum error_kind permanent, struct error *error)
+{
+    const uint64_t mib = 1 << 20;
+    uint64_t enough = ((uint64_t)store->used_bytes + bytes) / 8 * 9 / mib + 1;
+    return error_set(error, permanent,
+                     "%s needs %zu bytes beside %zu in use, and this command's daemon has a memory "
+                     "budget of %zu: give more, as --memory-budget %" PRIu64
+                     "M, if the machine has "
+                     "it",
+                     what, bytes, store->used_bytes, store->budget_bytes, enough);
+}
+
 bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES], size_t bytes,
                    const char *what, enum error_kind permanent, struct error *error)
 {
     const struct want want = {HOLDING_BYTES, bytes};
-    if (bytes > store->budget_bytes)
+    if (bytes > store->budget_bytes && !store->is_private)
         return error_set(error, permanent,
-                         "%s needs %zu bytes and the daemon's memory budget is %zu: start sheend "
-                         "with a larger --memory-budget",
+                         "%s needs %zu bytes and the daemon's memory budget is %zu: ask its "
+                         "operator for more (sheend --memory-budget)",
                          what, bytes, store->budget_bytes);
-    if (!make_room(store, asker, &want))
+    bool has_room = bytes <= store->budget_bytes && make_room(store, asker, &want);
+    if (!has_room && store->is_private)
+        return refuse_private(store, bytes, what, permanent, error);
+    if (!has_room)
         return error_set(error, ERROR_SERVER,
                          "%s needs %zu bytes; of the daemon's memory budget of %zu, %zu are in use "
                          "now: try again later",

@@ -83,10 +83,11 @@ struct store_counts {
 };
 
 /* `readers` has STORE_MAX_BUILDS threads. Of the limits, which must stay, the budget and the size
- * of images are read now, the time of a build when it starts. */
+ * of images are read now, the time of a build when it starts. A private daemon's client chooses
+ * the budget himself, and errors about it tell him so. */
 struct store *store_create(struct pool *pool, struct pool *readers,
                            struct render_thread *render_thread, struct workers *workers,
-                           const struct limits *limits, struct error *error);
+                           const struct limits *limits, bool is_private, struct error *error);
 /* No build may be running. The GL thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */
 
@@ -102,8 +103,8 @@ void store_share(struct asset *asset);
 
 /* Charges bytes that are about to be allocated for `what` (a file's name), evicting if need be: the
  * asker's own, if he would hold more than an equal share of the budget, then of those who do.
- * The error names the need and the budget: `permanent` kind if it can never fit, else
- * ERROR_SERVER. */
+ * The error names the need and the budget, and what its reader can do: `permanent` kind if it can
+ * never fit, else ERROR_SERVER. */
 bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES], size_t bytes,
                    const char *what, enum error_kind permanent, struct error *error);
 void store_release(struct store *store, size_t bytes);

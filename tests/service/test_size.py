@@ -1,10 +1,13 @@
 """Models of a size: a large one renders, one that does not fit is refused with the numbers, and what is
 counted for them is what they take."""
+import os
 import re
+import tempfile
 import unittest
 
 import wire
-from daemon import CUBE, SANITIZED, Daemon, DaemonCase, grid, resident_kb
+from daemon import CUBE, SANITIZED, SHEEN, Daemon, DaemonCase, grid, resident_kb
+from test_client import sheen
 from test_untrusted import image_pattern
 
 LARGE = 200  # faces along an edge: 40,000
@@ -35,6 +38,49 @@ class Counted(DaemonCase):
         self.assertLess(taken, 2.3 * tables)
 
 
+@unittest.skipUnless(os.path.exists(SHEEN), "no client in this build")
+class Private(unittest.TestCase):
+    """A command's own daemon has the budget that the command gives it, and says how much would do."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
+        self.addCleanup(folder.cleanup)
+        self.model = os.path.join(folder.name, "large.obj")
+        self.picture = os.path.join(folder.name, "a.png")
+        with open(self.model, "wb") as file:
+            file.write(grid(LARGE))
+
+    def render(self, *arguments, size="320x240"):
+        return sheen("render", self.model, "-o", self.picture, "--size", size, "--device",
+                     "software", *arguments)
+
+    def test_what_it_asks_for_is_enough(self):
+        done = self.render("--memory-budget", "6M")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertNotIn("sheend", done.stderr)
+        asked = re.search(r"large.obj needs (\d+) bytes .* budget of 6291456: give more, as "
+                          r"(--memory-budget) (\d+M)", done.stderr)
+        self.assertIsNotNone(asked, done.stderr)
+        self.assertGreater(int(asked.group(1)), 20 << 20)
+        self.assertEqual(self.render(*asked.groups()[1:]).returncode, 0)
+        self.assertTrue(os.path.exists(self.picture))
+
+    def test_a_file_and_a_frame_over_it(self):
+        with open(self.model, "ab") as file:
+            file.write(b"# " + b"x" * (4 << 20))
+        done = self.render("--memory-budget", "4M")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("give it a larger --memory-budget", done.stderr)
+        with open(self.model, "wb") as file:
+            file.write(grid(10))
+        done = self.render("--memory-budget", "4M", size="2000x2000")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("or give this command a larger --memory-budget", done.stderr)
+        # All of the budget is one client's, over what a shared daemon gives each (--peer-memory).
+        self.assertEqual(self.render("--memory-budget", "5G").returncode, 0)
+
+
 class TooLarge(DaemonCase):
     """The file fits into the budget, its tables do not: 40,000 faces take more than 20 MB."""
     arguments = ("--memory-budget", "6M")
@@ -50,6 +96,17 @@ class TooLarge(DaemonCase):
         self.assertIsNotNone(found, text)
         self.assertGreater(int(found.group(1)), int(found.group(2)))
         self.assertEqual(int(found.group(2)), 6 << 20)
+
+    def test_its_operator_is_to_be_asked(self):
+        """A client of a shared daemon cannot start it anew."""
+        path = os.path.join(self.daemon.folder, "large.obj")
+        with open(path, "wb") as file:
+            file.write(grid(LARGE))
+        done = sheen("info", path, "--server", self.daemon.unix)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("ask its operator for more (sheend --memory-budget)", done.stderr)
+        done = sheen("info", path, "--server", self.daemon.unix, "--memory-budget", "1G")
+        self.assertEqual(done.returncode, 2, done.stderr)
 
     def test_a_model_that_fits_renders_afterwards(self):
         with wire.Client(self.daemon.unix) as client:

@@ -286,7 +286,10 @@ static void good_command_lines(void **state)
     assert_int_equal(parse(&COMMAND_LEVELS, "m.obj -o a.png --reconnect 86400", &options, why),
                      OPTIONS_RUN);
     assert_int_equal(options.reconnect_s, 86400);
+    assert_int_equal(parse(&COMMAND_STATS, "--memory-budget 3G", &options, why), OPTIONS_RUN);
+    assert_true(options.memory_budget_bytes == (uint64_t)3 << 30);
     assert_int_equal(parse(&COMMAND_STATS, "--device 1", &options, why), OPTIONS_RUN);
+    assert_int_equal(options.memory_budget_bytes, 0);
     assert_int_equal(options.reconnect_s, 0);
     assert_int_equal(parse(&COMMAND_STATS, "--help --nonsense", &options, why), OPTIONS_HELP);
 }
@@ -377,6 +380,10 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png -x", "-x"},
         {&COMMAND_RENDER, "m.obj -o a.png --device gpu", "--device 'gpu'"},
         {&COMMAND_RENDER, "m.obj -o a.png --device 0 --server unix:/s", "unix:/s"},
+        {&COMMAND_RENDER, "m.obj -o a.png --memory-budget 1G --server unix:/s", "its operator"},
+        {&COMMAND_INFO, "m.obj --memory-budget 4GB", "800M or 4G"},
+        {&COMMAND_INFO, "m.obj --memory-budget 4194303", "4M or more"},
+        {&COMMAND_INFO, "m.obj --memory-budget 99999999T", "4M or more"},
         {&COMMAND_RENDER, "m.obj -o a.png --json=yes", "--json=yes"},
         {&COMMAND_STREAM, "m.obj", "--frames"},
         {&COMMAND_STREAM, "m.obj --frames 0", "--frames '0'"},

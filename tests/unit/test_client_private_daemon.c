@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "client/connection.h"
+#include "client/machine_memory.h"
 #include "client/private_daemon.h"
 #include "client/sheen.h"
 
@@ -135,16 +136,69 @@ static void arguments_and_files(void **state)
     struct sheen_session *session;
     struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS;
     options.device = "software";
+    options.memory_budget_bytes = 5000000;
     assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_LOST_SERVER);
     read_report(report, sizeof(report));
-    assert_string_equal(report, "--session-fd 3 --device software\n0 1 2 3 4 ");
+    assert_string_equal(report, "--session-fd 3 --device software --memory-budget 5000000 "
+                                "--peer-memory 5000000\n0 1 2 3 4 ");
     options.device = NULL;
+    options.memory_budget_bytes = 0;
     assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_LOST_SERVER);
     read_report(report, sizeof(report));
-    assert_string_equal(report, "--session-fd 3\n0 1 2 3 4 ");
+    char wanted[200];
+    unsigned long long half = machine_memory_bytes("") / 2;
+    assert_true(half > 100000000);
+    snprintf(wanted, sizeof(wanted),
+             "--session-fd 3 --memory-budget %llu --peer-memory %llu\n0 1 2 3 4 ", half, half);
+    assert_string_equal(report, wanted);
     close(leaked);
     close(far);
     no_child_is_left();
+}
+
+/* A file below the folder, in folders made as needed. */
+static void put(const char *path, const char *text)
+{
+    char whole[300], *slash;
+    snprintf(whole, sizeof(whole), "%s%s", folder, path);
+    for (slash = strchr(whole + strlen(folder) + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        mkdir(whole, 0700);
+        *slash = '/';
+    }
+    FILE *file = fopen(whole, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void remove_tree(void)
+{
+    char command[200];
+    snprintf(command, sizeof(command), "rm -rf %s/proc %s/sys", folder, folder);
+    assert_int_equal(system(command), 0);
+}
+
+/* The machine's, or what the control group leaves of it: of both versions, on every level. */
+static void memory_of_the_machine(void **state)
+{
+    (void)state;
+    const uint64_t gib = (uint64_t)1 << 30;
+    assert_int_equal(machine_memory_bytes(folder), 0);
+    put("/proc/meminfo", "MemFree: 1 kB\nMemTotal:       16777216 kB\nMemAvailable: 2 kB\n");
+    assert_int_equal(machine_memory_bytes(folder), 16 * gib);
+    put("/proc/self/cgroup", "5:cpu,cpuacct:/x\n4:cpu,memory:/a/b\n0::/c/d\nnonsense\n");
+    assert_int_equal(machine_memory_bytes(folder), 16 * gib);
+    put("/sys/fs/cgroup/memory/a/memory.limit_in_bytes", "9223372036854771712\n");
+    put("/sys/fs/cgroup/c/d/memory.max", "max\n");
+    assert_int_equal(machine_memory_bytes(folder), 16 * gib);
+    put("/sys/fs/cgroup/c/memory.max", "8589934592\n");
+    assert_int_equal(machine_memory_bytes(folder), 8 * gib);
+    put("/sys/fs/cgroup/memory/a/b/memory.limit_in_bytes", "4294967296\n");
+    assert_int_equal(machine_memory_bytes(folder), 4 * gib);
+    put("/sys/fs/cgroup/memory.max", "1073741824\n"); /* a container's own root */
+    assert_int_equal(machine_memory_bytes(folder), gib);
+    remove_tree();
 }
 
 static void the_daemon_ends_with_its_socket(void **state)
@@ -156,7 +210,7 @@ static void the_daemon_ends_with_its_socket(void **state)
     int peer_fd;
     play("cat <&3 >/dev/null"); /* until the end of the stream */
     assert_int_equal(connection_pair(&connection, &peer_fd, 1000, &error), SHEEN_OK);
-    assert_int_equal(private_daemon_start(&daemon, peer_fd, NULL, &error), SHEEN_OK);
+    assert_int_equal(private_daemon_start(&daemon, peer_fd, NULL, 0, &error), SHEEN_OK);
     close(peer_fd);
     assert_int_equal(waitpid(daemon.pid, NULL, WNOHANG), 0);
     connection_finish(&connection);
@@ -173,6 +227,7 @@ int main(void)
         cmocka_unit_test(a_daemon_that_cannot_be_started),
         cmocka_unit_test(a_daemon_that_speaks_nonsense),
         cmocka_unit_test(arguments_and_files),
+        cmocka_unit_test(memory_of_the_machine),
         cmocka_unit_test(the_daemon_ends_with_its_socket),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
