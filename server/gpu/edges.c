@@ -19,7 +19,7 @@ void stage_edges(struct renderer *r)
     static const GLuint no_work[4] = {0, 1, 1, 0};
     static const GLfloat nothing[4] = {0, 0, 0, 0};
     const struct target *target = &r->target;
-    glClearTexImage(target->coverage, 0, GL_RED, GL_FLOAT, nothing);
+    clear_shaded(r, target->coverage, GL_RED, nothing);
     glNamedBufferSubData(target->edges, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->turns, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->rounded, 0, sizeof no_work, no_work);

@@ -81,6 +81,7 @@ void stage_rounded(struct renderer *r, const struct renderer_model *model,
     bind_tables(r, model);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
     glUseProgram(programs->rounded);
-    glUniform1ui(glGetUniformLocation(programs->rounded, "max_rounded"), r->target.max_rounded);
+    glUniform1ui(glGetUniformLocation(programs->rounded, "max_rounded"),
+                 target_max_rounded(&r->drawing.drawn));
     solve_listed(r->target.rounded);
 }

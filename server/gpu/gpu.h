@@ -57,6 +57,10 @@ struct renderer_image {
     GLuint texture;
 };
 
+/* A list of pixels on the device, a head before its entries; and what is known of a rounded pixel's
+ * 16 rays (shaders/list.glsl, rounded.glsl). */
+enum { LIST_BYTES = 4, LIST_HEAD_BYTES = 16, ROUNDED_BYTES = 512 };
+
 /* The images of one tile, grown to the largest tile asked for. */
 struct target {
     uint32_t width, height;
@@ -110,20 +114,46 @@ struct polygons {
     GLuint framebuffer;
 };
 
-/* What the planes of the target hold, so that a light-only change can reuse them. */
+/* What the planes of a target hold, so that a frame of the same view needs stage 3 alone. */
 struct kept {
     uint64_t model_serial; /* 0: nothing */
     uint32_t width_px, height_px;
     struct camera camera;
     struct surface surface;
     bool ptex, edges;
+    bool any_cut; /* they would be the same in tiles, and as one */
 };
 
-/* What drawing a tile fills. There are two: planes that are kept must outlive the tiles of larger
- * frames that are drawn in between. */
+/* What drawing a tile fills. */
 struct planes {
     struct target target;
     struct kept kept;
+};
+
+/* Which planes a frame is drawn into, so that those that are kept outlive what is drawn meanwhile
+ * (kept.c). */
+enum planes_of {
+    PLANES_WHOLE, /* of the last frame of one tile, kept */
+    PLANES_SMALL, /* of the last one of few pixels: it costs no larger view its planes */
+    PLANES_TILED, /* of the last frame of several tiles, each in its place; kept where no other
+                     frame came in between */
+    PLANES_APART, /* of a tile of a frame too large to be kept; and the lists of any tile */
+    PLANES_KINDS
+};
+
+/* A tile of a frame. Parts of the picture: */
+struct drawing {
+    struct tile place;  /* what the target stands for; it holds the others */
+    struct tile drawn;  /* by stages 1 and 2; a margin is there for the pixels beside it */
+    struct tile shaded; /* by stage 3: what is read back and maybe more */
+};
+
+/* The lists that stage 3 takes, of all tiles of a frame. */
+enum { COLLECTED_LISTS = 4 };
+struct collecting {
+    uint64_t frame; /* frame_work.serial of the one whose tiles have all been collected so far; 0:
+                       of none */
+    GLuint n[COLLECTED_LISTS];
 };
 
 /* What a frame of polygons has drawn of its tile, while others are drawn between its steps
@@ -177,9 +207,11 @@ struct renderer {
     /* In use: as struct planes. */
     struct target target;
     struct kept kept;
+    enum planes_of in_use;
+    struct planes resting[PLANES_KINDS]; /* the others */
+    struct collecting collecting;        /* into PLANES_TILED */
+    struct drawing drawing;
     struct stage_clock clock;
-    struct planes resting;                /* the other one */
-    bool in_tiles;                        /* those in use are for frames of several tiles */
     struct frame_watch watch;             /* of the frame being drawn */
     const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
     struct pieces pieces;
@@ -200,6 +232,7 @@ struct renderer {
     GLuint blank_texture; /* stands in where a pattern has no image */
     GLuint no_groups;     /* a buffer: the dispatch of nothing */
     uint64_t next_serial;
+    uint64_t n_begun; /* frames */
 };
 
 /* Makes sure that there is a context: opens another one in place of one that is lost, as the first
@@ -252,12 +285,18 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
 uint64_t target_bytes(uint32_t width, uint32_t height);
 /* And to hold what stage_rounded() finds, which frames of polygons do not need. */
 bool target_reserve_rounded(struct target *target, struct error *error);
+/* Of how many pixels of a tile all rays are met; it depends on the tile alone. */
+GLuint target_max_rounded(const struct tile *tile);
+/* So many or fewer, and the tile may be cut in any way. */
+enum { ROUNDED_IN_ANY_CUT = 32768 };
+/* The lists of pixels change places. */
+void target_swap_lists(struct target *a, struct target *b);
 void target_finish(struct target *target);
 
 /* The three stages, on the tile that the view block in view_buffer describes. */
 bool stage_visibility_init(struct renderer *renderer, struct error *error);
 void stage_visibility(struct renderer *renderer, const struct renderer_model *model,
-                      const struct table_programs *programs, const struct tile *tile);
+                      const struct table_programs *programs);
 bool stage_evaluate_init(struct renderer *renderer, struct error *error);
 void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
                     const struct table_programs *programs);
@@ -273,6 +312,9 @@ bool edges_wanted(const struct frame_request *request);
  * slice. */
 bool stage_polygons_begin(struct renderer *renderer, const struct tile *tile, struct error *error);
 bool stage_polygons(struct renderer *renderer, struct slice *slice, struct error *error);
+/* A plane's pixels that stage 3 is about to write. */
+void clear_shaded(const struct renderer *renderer, GLuint texture, GLenum format,
+                  const GLfloat *texel);
 bool stage_shade_init(struct renderer *renderer, struct error *error);
 /* Makes one of the programs that the frame takes and that are not there yet, or says that they are
  * all there, for the target as it is: until the next call. */
@@ -302,6 +344,23 @@ bool is_kept(const struct kept *kept, const struct renderer_model *model,
              const struct frame_request *request);
 /* The planes in use change places with others. */
 void planes_swap(struct renderer *renderer, struct planes *others);
+/* Takes into use the planes that a frame's next tile is drawn into: those that hold its view, and
+ * then all of the frame is one tile. */
+void planes_choose(struct renderer *renderer, const struct renderer_model *model,
+                   struct frame_work *work);
+/* Before a tile is drawn into PLANES_TILED: what they hold is lost, unless it is the frame's own.
+ */
+void collect_begin(struct renderer *renderer, const struct frame_work *work);
+/* After a tile: the lists of PLANES_APART join those of the tiles before, those at edges too. */
+void collect_tile(struct renderer *renderer, bool edges);
+/* After the last: the planes are kept if all tiles have been collected. */
+void collect_end(struct renderer *renderer, const struct renderer_model *model,
+                 const struct frame_request *request);
+/* After a frame of one tile: they are kept. */
+void planes_keep(struct renderer *renderer, const struct renderer_model *model,
+                 const struct frame_request *request);
+/* A part of the picture as one of the target. */
+struct tile tile_within(const struct tile *part, const struct tile *place);
 
 /* NULL when memory is short. Released once by the renderer, any thread. */
 struct canvas_set *canvases_create(void);
@@ -321,8 +380,9 @@ void canvas_give_back(struct frame *frame);
 /* Is a frame under way that is drawn of this mesh? */
 bool canvas_needs(const struct renderer *renderer, const struct polygon_mesh *mesh);
 
-/* Draws into a framebuffer from here on: the tile's viewport, nearest first by reversed depth. */
-void raster_begin(GLuint framebuffer, const struct tile *tile);
+/* Draws into a framebuffer from here on: the part of the picture that it stands for, and of that
+ * `drawn` alone; nearest first by reversed depth. */
+void raster_begin(GLuint framebuffer, const struct tile *place, const struct tile *drawn);
 
 /* After stage 1 or polygons: lists the pixels near what is seen, target.groups, over which
  * dispatch_groups() runs a program; and those that may have to ask their neighbours,

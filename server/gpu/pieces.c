@@ -383,6 +383,24 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
     return true;
 }
 
+void pieces_move_blocks(struct pieces *pieces, uint32_t x, uint32_t y)
+{
+    for (size_t i = 0; i < pieces->n_blocks; i++)
+        pieces->block[i] += x | y << 16;
+}
+
+void pieces_cut_blocks(struct pieces *pieces, const struct tile *part)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < pieces->n_blocks; i++) {
+        uint32_t block = pieces->block[i];
+        uint32_t x = (block & 0xffff) * COVER_BLOCK_PX, y = (block >> 16) * COVER_BLOCK_PX;
+        if (x >= part->x && x < part->x + part->width && y >= part->y && y < part->y + part->height)
+            pieces->block[n++] = block;
+    }
+    pieces->n_blocks = n;
+}
+
 bool pieces_cover_all(struct pieces *pieces, const struct tile *tile, struct error *error)
 {
     struct chooser c = {.out = pieces, .tile = tile};

@@ -49,6 +49,10 @@ struct pieces {
 bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
                    const struct clusters *clusters, const struct view *view,
                    const struct tile *tile, struct error *error);
+/* The blocks become those of a larger tile, at so many blocks of it. */
+void pieces_move_blocks(struct pieces *pieces, uint32_t x, uint32_t y);
+/* Drops the blocks that do not begin inside `part` of that. */
+void pieces_cut_blocks(struct pieces *pieces, const struct tile *part);
 /* No pieces, and every block of the tile: for what is drawn in another way. */
 bool pieces_cover_all(struct pieces *pieces, const struct tile *tile, struct error *error);
 void pieces_finish(struct pieces *pieces);

@@ -114,7 +114,7 @@ bool stage_polygons_begin(struct renderer *r, const struct tile *tile, struct er
     if (!p->framebuffer)
         glCreateFramebuffers(1, &p->framebuffer);
     attach_planes(r);
-    raster_begin(p->framebuffer, tile);
+    raster_begin(p->framebuffer, tile, tile);
     for (GLint k = 0; k < 3; k++)
         glClearBufferfv(GL_COLOR, k, nothing);
     glClearBufferuiv(GL_COLOR, 3, no_face);
@@ -125,7 +125,7 @@ bool stage_polygons_begin(struct renderer *r, const struct tile *tile, struct er
 bool stage_polygons(struct renderer *r, struct slice *slice, struct error *error)
 {
     attach_planes(r);
-    raster_begin(r->polygons.framebuffer, slice->tile);
+    raster_begin(r->polygons.framebuffer, slice->tile, slice->tile);
     draw(slice, r->polygons.fill);
     return gpu_check("drawing polygons", error);
 }
@@ -134,7 +134,7 @@ bool stage_wireframe(struct renderer *r, struct slice *slice, struct error *erro
 {
     struct polygons *p = &r->polygons;
     attach(r, &r->target.colour, 1);
-    raster_begin(p->framebuffer, slice->tile);
+    raster_begin(p->framebuffer, slice->tile, slice->tile);
     glDepthFunc(GL_EQUAL);
     draw(slice, p->edges);
     return gpu_check("drawing edges", error);

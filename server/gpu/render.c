@@ -1,7 +1,5 @@
-/* One frame: tiles, the three stages of each, and what is kept for a light-only change. */
+/* One frame: tiles, and the three stages of each. */
 #include "server/gpu/gpu.h"
-
-#include <string.h>
 
 #include "server/fault.h"
 
@@ -11,24 +9,6 @@ enum { TILE_MAX_PX = 4096 };
 enum { TILE_MIN_PX = 128 };
 /* Drawn around a tile and not kept: stages look at neighbours, and these at theirs. */
 enum { MARGIN_PX = COVER_BLOCK_PX };
-
-static bool same_camera(const struct camera *a, const struct camera *b)
-{
-    return a->kind == b->kind && !memcmp(a->eye, b->eye, sizeof a->eye) &&
-           !memcmp(a->target, b->target, sizeof a->target) && !memcmp(a->up, b->up, sizeof a->up) &&
-           a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
-}
-
-bool is_kept(const struct kept *kept, const struct renderer_model *model,
-             const struct frame_request *request)
-{
-    return kept->model_serial == model->serial && kept->width_px == request->width_px &&
-           kept->height_px == request->height_px && same_camera(&kept->camera, &request->camera) &&
-           kept->surface.kind == request->surface.kind &&
-           kept->surface.level == request->surface.level &&
-           (kept->ptex || !(request->planes & PLANE_PTEX)) &&
-           (kept->edges || !edges_wanted(request));
-}
 
 static bool frame_init(struct frame *frame, const struct frame_request *request,
                        struct spares *spares, struct error *error)
@@ -57,26 +37,45 @@ bool watch_check(const struct frame_watch *watch, struct error *error)
            error_set(error, ERROR_SERVER, "nobody waits for this frame any more");
 }
 
-/* Stages 1 and 2, unless the target holds their planes already. */
+struct tile tile_within(const struct tile *part, const struct tile *place)
+{
+    return (struct tile){part->x - place->x, part->y - place->y, part->width, part->height};
+}
+
+static bool is_same_tile(const struct tile *a, const struct tile *b)
+{
+    return a->x == b->x && a->y == b->y && a->width == b->width && a->height == b->height;
+}
+
+/* Stages 1 and 2, unless the target holds their planes already. Margins are evaluated, and then no
+ * more is asked of them where they are not shaded. */
 static bool draw_surface(struct renderer *r, const struct renderer_model *model,
                          const struct frame_request *request, const struct view *view,
-                         const struct tile *tile, struct frame *frame, struct error *error)
+                         struct frame *frame, struct error *error)
 {
+    const struct tile *drawn = &r->drawing.drawn, *shaded = &r->drawing.shaded;
+    const struct tile at = tile_within(drawn, &r->drawing.place);
+    const struct tile cut = tile_within(shaded, &r->drawing.place);
     if (is_kept(&r->kept, model, request))
         return true;
-    if (!pieces_choose(&r->pieces, model->tables, &model->clusters, view, tile, error))
+    if (!pieces_choose(&r->pieces, model->tables, &model->clusters, view, drawn, error))
         return false;
+    pieces_move_blocks(&r->pieces, at.x / COVER_BLOCK_PX, at.y / COVER_BLOCK_PX);
     const struct table_programs *programs =
         programs_for(r, model, request->planes & PLANE_PTEX, error);
     if (!programs)
         return false;
     stage_clock_start(r);
-    stage_visibility(r, model, programs, tile);
+    stage_visibility(r, model, programs);
     stage_gather(r);
     if (!stage_clock_end(r, &frame->times.visibility_us))
         return false;
     stage_clock_start(r);
     stage_evaluate(r, model, programs);
+    if (!is_same_tile(drawn, shaded)) {
+        pieces_cut_blocks(&r->pieces, &cut);
+        stage_gather(r);
+    }
     if (edges_wanted(request)) {
         stage_edges(r);
         stage_rounded(r, model, programs);
@@ -87,9 +86,9 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
 /* The three stages of the exact surface. */
 static bool draw_exact(struct renderer *r, const struct renderer_model *model,
                        const struct frame_request *request, const struct view *view,
-                       const struct tile *drawn, struct frame *frame, struct error *error)
+                       struct frame *frame, struct error *error)
 {
-    if (!draw_surface(r, model, request, view, drawn, frame, error))
+    if (!draw_surface(r, model, request, view, frame, error))
         return false;
     stage_clock_start(r);
     return stage_shade(r, request, error) && stage_clock_end(r, &frame->times.shade_us) &&
@@ -101,25 +100,25 @@ static bool is_of_polygons(const struct frame_work *work)
     return work->request->surface.kind != SURFACE_EXACT;
 }
 
-/* `drawn` is the tile with its margin. *is_whole: the frame has it. */
+/* *is_whole: the frame has it. */
 static bool render_tile(struct renderer *r, const struct renderer_model *model,
-                        struct frame_work *work, const struct view *view, const struct tile *drawn,
-                        const struct tile *tile, struct frame *frame, bool *is_whole,
-                        struct error *error)
+                        struct frame_work *work, const struct view *view, const struct tile *tile,
+                        struct frame *frame, bool *is_whole, struct error *error)
 {
     const struct frame_request *request = work->request;
+    const struct tile *place = &r->drawing.place;
     struct view_block block;
-    view_block_fill(&block, view, drawn);
+    view_block_fill(&block, view, place);
     glNamedBufferSubData(r->view_buffer, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
     stage_clock_begin(r);
     *is_whole = true;
     bool ok = is_of_polygons(work)
-                  ? draw_polygons(r, model, work, view, drawn, frame, is_whole, error)
-                  : draw_exact(r, model, request, view, drawn, frame, error);
+                  ? draw_polygons(r, model, work, view, place, frame, is_whole, error)
+                  : draw_exact(r, model, request, view, frame, error);
     if (!ok || !*is_whole)
         return ok;
-    if (!readback(r, request, view, drawn, tile, frame, error))
+    if (!readback(r, request, view, place, tile, frame, error))
         return false;
     frame->shows_surface = frame->shows_surface || gather_found_any(r);
     return stage_clock_wait(r, &frame->times.readback_us);
@@ -147,6 +146,15 @@ static void cut(uint32_t width_px, uint32_t height_px, uint64_t tile_px, uint32_
     *tile_height = at_most(*tile_height, TILE_MAX_PX);
 }
 
+/* Blocks of tiles that are drawn in place fall on those of the whole. */
+static void cut_frame(struct frame_work *work)
+{
+    uint32_t height_px = work->request->height_px;
+    cut(work->request->width_px, height_px, work->tile_px, &work->tile_width, &work->tile_height);
+    if (work->in_place && work->tile_height < height_px)
+        work->tile_height -= work->tile_height % COVER_BLOCK_PX;
+}
+
 uint64_t renderer_canvas_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px)
 {
     uint32_t width, height;
@@ -161,50 +169,64 @@ static bool is_single(const struct frame_work *work)
            work->tile_height == work->request->height_px;
 }
 
-/* The next tile, and what must be drawn for it. */
-static void place_tile(const struct frame_work *work, struct tile *drawn, struct tile *tile)
+_Static_assert(TILE_MIN_PX % COVER_BLOCK_PX == 0 && MARGIN_PX % COVER_BLOCK_PX == 0,
+               "whole blocks");
+
+/* The next tile, in planes that have been chosen, and what must be drawn for it. What the tiles
+ * before have left of the frame beside it is its margin there; what they have evaluated of it as
+ * their margin is done anew. */
+static struct tile place_tile(struct renderer *r, const struct frame_work *work)
 {
     const struct frame_request *request = work->request;
-    *tile = (struct tile){work->x, work->y, at_most(request->width_px - work->x, work->tile_width),
-                          at_most(request->height_px - work->y, work->tile_height)};
-    uint32_t left = at_most(tile->x, MARGIN_PX), above = at_most(tile->y, MARGIN_PX);
-    uint32_t right = at_most(request->width_px - tile->x - tile->width, MARGIN_PX);
-    uint32_t below = at_most(request->height_px - tile->y - tile->height, MARGIN_PX);
-    *drawn = (struct tile){tile->x - left, tile->y - above, left + tile->width + right,
-                           above + tile->height + below};
+    const struct tile whole = {0, 0, request->width_px, request->height_px};
+    const struct tile tile = {work->x, work->y,
+                              at_most(request->width_px - work->x, work->tile_width),
+                              at_most(request->height_px - work->y, work->tile_height)};
+    bool in_place = r->in_use == PLANES_TILED, goes_on = in_place && r->collecting.frame;
+    uint32_t left = goes_on ? 0 : at_most(tile.x, MARGIN_PX);
+    uint32_t above = goes_on ? 0 : at_most(tile.y, MARGIN_PX);
+    uint32_t right = at_most(request->width_px - tile.x - tile.width, MARGIN_PX);
+    uint32_t below = at_most(request->height_px - tile.y - tile.height, MARGIN_PX);
+    const struct tile drawn = {tile.x - left, tile.y - above, left + tile.width + right,
+                               above + tile.height + below};
+    r->drawing = (struct drawing){in_place ? whole : drawn, drawn, in_place ? tile : drawn};
+    return tile;
 }
 
-void planes_swap(struct renderer *r, struct planes *others)
+/* Memory for the tile. */
+static bool reserve(struct renderer *r, const struct frame_work *work, struct error *error)
 {
-    const struct planes used = {r->target, r->kept};
-    r->target = others->target;
-    r->kept = others->kept;
-    *others = used;
+    const struct tile *place = &r->drawing.place, *drawn = &r->drawing.drawn;
+    struct target *lists = &r->resting[PLANES_APART].target;
+    if (place->width > r->target.width || place->height > r->target.height)
+        r->kept.model_serial = 0;
+    if (!target_reserve(&r->target, place->width, place->height, error))
+        return false;
+    if (is_of_polygons(work))
+        return true;
+    return target_reserve_rounded(&r->target, error) &&
+           (r->in_use != PLANES_TILED ||
+            (target_reserve(lists, drawn->width, drawn->height, error) &&
+             target_reserve_rounded(lists, error)));
 }
 
-/* Takes the planes for frames of one tile or those for frames of several into use. */
-static void use_planes(struct renderer *r, bool in_tiles)
+/* A tile of several that stand in the target together, with lists of its own. */
+static bool render_in_place(struct renderer *r, const struct renderer_model *model,
+                            struct frame_work *work, const struct view *view,
+                            const struct tile *tile, struct frame *frame, struct error *error)
 {
-    if (r->in_tiles != in_tiles)
-        planes_swap(r, &r->resting);
-    r->in_tiles = in_tiles;
-}
-
-/* What the target holds after a frame of one tile. */
-static void keep(struct renderer *r, const struct renderer_model *model,
-                 const struct frame_request *request)
-{
-    bool again = is_kept(&r->kept, model, request);
-    bool drawn = request->surface.kind != SURFACE_EXACT; /* polygons always write ptex */
-    bool ptex = request->planes & PLANE_PTEX || (again && r->kept.ptex) || drawn;
-    bool edges = edges_wanted(request) || (again && r->kept.edges);
-    r->kept = (struct kept){model->serial,
-                            request->width_px,
-                            request->height_px,
-                            request->camera,
-                            request->surface,
-                            ptex,
-                            edges};
+    const struct frame_request *request = work->request;
+    struct target *lists = &r->resting[PLANES_APART].target;
+    bool is_whole, is_last = tile->x + tile->width == request->width_px &&
+                             tile->y + tile->height == request->height_px;
+    target_swap_lists(&r->target, lists);
+    bool ok = render_tile(r, model, work, view, tile, frame, &is_whole, error);
+    target_swap_lists(&r->target, lists);
+    if (ok)
+        collect_tile(r, edges_wanted(request));
+    if (ok && is_last)
+        collect_end(r, model, request);
+    return ok;
 }
 
 bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *frame,
@@ -215,8 +237,8 @@ bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *f
     if (!request_check(&r->info, work->request, error) ||
         !frame_init(frame, work->request, r->options.spares, error))
         return false;
-    cut(work->request->width_px, work->request->height_px, work->tile_px, &work->tile_width,
-        &work->tile_height);
+    work->serial = ++r->n_begun;
+    cut_frame(work);
     return true;
 }
 
@@ -251,33 +273,33 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
 {
     const struct frame_request *request = work->request;
     struct view view;
-    struct tile drawn, tile;
-    bool is_ready = false;
+    bool is_ready = false, is_whole = true;
     if (!upload_all(r, model, request, error))
         return false;
-    place_tile(work, &drawn, &tile);
-    use_planes(r, !is_single(work));
+    if (work->x == 0 && work->y == 0)
+        cut_frame(work);
+    planes_choose(r, model, work);
+    bool in_place = r->in_use == PLANES_TILED && !is_single(work);
+    if (in_place)
+        collect_begin(r, work);
+    const struct tile tile = place_tile(r, work);
     if (is_of_polygons(work))
         canvas_resume(r, work, frame);
     r->watch = work->watch;
     r->made = work->polygons;
-    if (drawn.width > r->target.width || drawn.height > r->target.height)
-        r->kept.model_serial = 0;
     view_init(&view, &request->camera, request->width_px, request->height_px,
               model->tables->hull_min, model->tables->hull_max);
-    bool ok = watch_check(&work->watch, error) &&
-              target_reserve(&r->target, drawn.width, drawn.height, error) &&
-              (is_of_polygons(work) || target_reserve_rounded(&r->target, error)) &&
+    bool ok = watch_check(&work->watch, error) && reserve(r, work, error) &&
               prepare(r, work, &is_ready, error);
-    bool is_whole = false;
     *next = FRAME_PROGRAM;
     if (ok && !is_ready)
         return !frame->canvas || canvas_set_aside(r, model, work, frame, error);
-    ok = ok && render_tile(r, model, work, &view, &drawn, &tile, frame, &is_whole, error);
+    ok = ok && (in_place ? render_in_place(r, model, work, &view, &tile, frame, error)
+                         : render_tile(r, model, work, &view, &tile, frame, &is_whole, error));
     *next = is_whole ? FRAME_DONE : FRAME_MORE;
     if (ok && is_whole && is_single(work))
-        keep(r, model, request);
-    else
+        planes_keep(r, model, request);
+    else if (!ok || !in_place)
         r->kept.model_serial = 0;
     if (ok && !is_whole)
         return canvas_set_aside(r, model, work, frame, error);

@@ -127,14 +127,16 @@ struct frame_watch {
 struct frame_work {
     const struct frame_request *request; /* stays until the last step, as the model does */
     uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
+    bool in_place; /* of tiles: what they show shall be what one tile would, and be kept */
     struct frame_watch watch;
     const struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
 
-    uint32_t tile_width, tile_height; /* the renderer's own from here on */
-    uint32_t x, y;                    /* of the next tile */
-    unsigned stage;                   /* of polygons: what comes next of it */
-    size_t part;                      /* and from where */
-    unsigned n_programs;              /* made for it so far */
+    uint64_t serial; /* the renderer's own from here on */
+    uint32_t tile_width, tile_height;
+    uint32_t x, y;       /* of the next tile */
+    unsigned stage;      /* of polygons: what comes next of it */
+    size_t part;         /* and from where */
+    unsigned n_programs; /* made for it so far */
 };
 
 /* So many frames of polygons may be under way, begun and neither whole nor given up; one more fails
@@ -158,11 +160,20 @@ enum frame_step {
  * thread, also when the renderer has gone. */
 bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct frame *frame,
                     struct error *error);
-/* Draws the next tile, or the next part of one, or makes ready for it. A frame of one tile that
- * differs from the last such frame in light, pattern or colours only, on the same model, reuses the
- * evaluated planes, whatever was drawn in tiles meanwhile. Cut otherwise, a frame is the same but
- * for single precision's rounding: so a tile's size must depend on the request alone where equal
- * requests shall give equal bytes. */
+/* Draws the next tile, or the next part of one, or makes ready for it.
+ *
+ * Evaluated planes are kept: those of the last frame of one tile, those of the last of fewer than
+ * 4,096 pixels, and those of the last in tiles in_place, if no other frame of the kind was drawn
+ * between its tiles. A frame of the exact surface of the same model, size and camera takes them,
+ * whatever its light, pattern, colours and tiles: it has only stage 3, and one step. (Polygons kept
+ * by a frame of one tile serve such frames.)
+ *
+ * A frame of the exact surface is the same, bit by bit, as one tile and in tiles in_place of any
+ * size, which take as much of the device's memory as one tile does. (Where more than 32,768 of its
+ * pixels show the rounding of a crease these may have more rays in tiles, and planes serve frames
+ * that are cut alike alone.) In tiles that are not in_place it is the same but for single
+ * precision's rounding: so tiles must depend on the request alone where equal requests shall give
+ * equal bytes. */
 enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error);
 

@@ -218,17 +218,24 @@ static void fill_block(struct light_block *block, const struct frame_request *re
     block->want[2] = (request->planes & PLANE_LIGHT_CHANGE) != 0;
 }
 
+void clear_shaded(const struct renderer *r, GLuint texture, GLenum format, const GLfloat *texel)
+{
+    const struct tile part = tile_within(&r->drawing.shaded, &r->drawing.place);
+    glClearTexSubImage(texture, 0, (GLint)part.x, (GLint)part.y, 0, (GLsizei)part.width,
+                       (GLsizei)part.height, 1, format, GL_FLOAT, texel);
+}
+
 /* What lies outside the groups shows no surface. */
 static void clear_planes(const struct renderer *r, const struct frame_request *request)
 {
     static const GLfloat none[4] = {NAN, NAN, NAN, NAN};
-    glClearTexImage(r->target.colour, 0, GL_RGBA, GL_FLOAT, request->empty);
+    clear_shaded(r, r->target.colour, GL_RGBA, request->empty);
     if (request->planes & PLANE_LIGHT)
-        glClearTexImage(r->target.light, 0, GL_RG, GL_FLOAT, none);
+        clear_shaded(r, r->target.light, GL_RG, none);
     if (request->planes & PLANE_CURVATURE)
-        glClearTexImage(r->target.curvature, 0, GL_RG, GL_FLOAT, none);
+        clear_shaded(r, r->target.curvature, GL_RG, none);
     if (request->planes & PLANE_LIGHT_CHANGE)
-        glClearTexImage(r->target.light_change, 0, GL_RGBA, GL_FLOAT, none);
+        clear_shaded(r, r->target.light_change, GL_RGBA, none);
 }
 
 /* Images end at the light's border, or go round with it. */
@@ -342,7 +349,7 @@ static void shade_listed(struct renderer *r, const struct frame_request *request
     dispatch_listed(program_of(r, request, light, SHADED_TURNS), r->target.turns);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
     glProgramUniform1ui(rounded, glGetUniformLocation(rounded, "max_rounded"),
-                        r->target.max_rounded);
+                        target_max_rounded(&r->drawing.drawn));
     dispatch_listed(rounded, r->target.rounded);
 }
 

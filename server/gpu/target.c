@@ -23,12 +23,11 @@ static const struct {
 };
 
 /* And its lists of pixels. */
-enum { N_LISTS = 7, LIST_BYTES = 4, LIST_HEAD_BYTES = 16 };
+enum { N_LISTS = 7 };
 
 /* One in so many pixels may be rounded and have all its 16 rays, of 32 bytes
  * (shaders/rounded.glsl). */
-enum { PX_PER_ROUNDED = 32, MIN_ROUNDED = 32768 }; /* the least even in small tiles */
-enum { ROUNDED_BYTES = 512 };
+enum { PX_PER_ROUNDED = 32, MIN_ROUNDED = ROUNDED_IN_ANY_CUT }; /* the least even in small tiles */
 
 uint64_t target_bytes(uint32_t width, uint32_t height)
 {
@@ -106,17 +105,43 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
     return true;
 }
 
+GLuint target_max_rounded(const struct tile *tile)
+{
+    uint64_t pixels = (uint64_t)tile->width * tile->height, most = pixels / PX_PER_ROUNDED;
+    most = most < MIN_ROUNDED ? MIN_ROUNDED : most;
+    return (GLuint)(most < pixels ? most : pixels);
+}
+
 bool target_reserve_rounded(struct target *target, struct error *error)
 {
-    uint64_t pixels = (uint64_t)target->width * target->height, most = pixels / PX_PER_ROUNDED;
     if (target->max_rounded)
         return true;
-    most = most < MIN_ROUNDED ? MIN_ROUNDED : most;
-    target->max_rounded = (GLuint)(most < pixels ? most : pixels);
+    target->max_rounded =
+        target_max_rounded(&(struct tile){.width = target->width, .height = target->height});
     glCreateBuffers(1, &target->rounded_hits);
     glNamedBufferData(target->rounded_hits, (GLsizeiptr)target->max_rounded * ROUNDED_BYTES, NULL,
                       GL_DYNAMIC_COPY);
     return gpu_check("the rays of a frame", error);
+}
+
+static void swap_names(GLuint *a, GLuint *b)
+{
+    GLuint name = *a;
+    *a = *b;
+    *b = name;
+}
+
+void target_swap_lists(struct target *a, struct target *b)
+{
+    swap_names(&a->groups, &b->groups);
+    swap_names(&a->restless, &b->restless);
+    swap_names(&a->strays, &b->strays);
+    swap_names(&a->unsolved, &b->unsolved);
+    swap_names(&a->edges, &b->edges);
+    swap_names(&a->turns, &b->turns);
+    swap_names(&a->rounded, &b->rounded);
+    swap_names(&a->rounded_hits, &b->rounded_hits);
+    swap_names(&a->max_rounded, &b->max_rounded);
 }
 
 void target_finish(struct target *target)

@@ -106,11 +106,12 @@ static void draw_range(struct renderer *r, GLuint program, size_t begin, size_t 
     }
 }
 
-void raster_begin(GLuint framebuffer, const struct tile *tile)
+void raster_begin(GLuint framebuffer, const struct tile *place, const struct tile *drawn)
 {
+    const struct tile part = tile_within(drawn, place);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glViewport(0, 0, (GLsizei)tile->width, (GLsizei)tile->height);
-    glScissor(0, 0, (GLsizei)tile->width, (GLsizei)tile->height);
+    glViewport(0, 0, (GLsizei)place->width, (GLsizei)place->height);
+    glScissor((GLint)part.x, (GLint)part.y, (GLsizei)part.width, (GLsizei)part.height);
     glEnable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
@@ -138,9 +139,9 @@ static void clear(const struct renderer *r, bool want_ptex)
 }
 
 void stage_visibility(struct renderer *r, const struct renderer_model *model,
-                      const struct table_programs *programs, const struct tile *tile)
+                      const struct table_programs *programs)
 {
-    raster_begin(r->target.framebuffer, tile);
+    raster_begin(r->target.framebuffer, &r->drawing.place, &r->drawing.drawn);
     clear(r, programs->ptex);
     GLuint program = programs->visibility;
     glUseProgram(program);

@@ -17,16 +17,26 @@
 #define SOFTWARE_TILE_PX (256u * 256)
 #define HARDWARE_TILE_PX (512u * 512)
 #define LIGHTS_OF_A_TILE 2 /* with more of them tiles are smaller, since each light is a pass */
-/* Interactive frames are drawn whole, since a change of light alone then reuses the planes, unless
- * they are larger than this many tiles. */
+/* Up to so many tiles interactive frames are drawn whole, and the planes of all classes are kept
+ * and serve all: a still after a drag is shaded alone, in one step, which takes others no longer
+ * than the drag's frames have. Beyond, others would wait too long, and the planes be too large. */
 #define WHOLE_TILES 32
+
+static uint64_t device_tile_px(const struct session_host *host)
+{
+    return render_thread_info(host->render_thread)->software ? SOFTWARE_TILE_PX : HARDWARE_TILE_PX;
+}
+
+static bool is_kept_whole(const struct session_host *host, const sheen_Render *render)
+{
+    return (uint64_t)render->width_px * render->height_px <= WHOLE_TILES * device_tile_px(host);
+}
 
 static uint64_t tile_px(const struct session_host *host, const sheen_Render *render)
 {
-    const struct renderer_info *info = render_thread_info(host->render_thread);
-    uint64_t px = info->software ? SOFTWARE_TILE_PX : HARDWARE_TILE_PX;
-    uint64_t whole = (uint64_t)render->width_px * render->height_px;
-    if (wire_request_class(render->request_class) == CLASS_INTERACTIVE && whole <= WHOLE_TILES * px)
+    uint64_t px = device_tile_px(host);
+    if (wire_request_class(render->request_class) == CLASS_INTERACTIVE &&
+        is_kept_whole(host, render))
         return 0;
     return render->lights_count > LIGHTS_OF_A_TILE ? px * LIGHTS_OF_A_TILE / render->lights_count
                                                    : px;
@@ -149,6 +159,7 @@ void request_queue_frame(struct request *request)
     codec_layout_init(&request->layout, render->width_px, render->height_px, render->planes);
     request->frame_work = (struct frame_work){.request = asked,
                                               .tile_px = tile_px(request->host, render),
+                                              .in_place = is_kept_whole(request->host, render),
                                               .watch = {is_abandoned, request}};
     request->cost_key = cost_key(request);
     request->entry.estimate_us =

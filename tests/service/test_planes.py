@@ -1,0 +1,52 @@
+"""What has been evaluated of a view serves every class."""
+import os
+
+import wire
+from daemon import MODELS, Daemon, DaemonCase
+from wire import BATCH, INTERACTIVE, STILL, Client, field
+
+SIZE = (400, 300)  # two tiles of stills on a software device
+RELIT = field(6, field(1, 1))  # highlight lines
+
+
+class Planes(DaemonCase):
+    def setUp(self):
+        with open(os.path.join(MODELS, "fender.obj"), "rb") as file:
+            self.fender = file.read()
+
+    def test_every_class(self):
+        """Whichever class was drawn first, the next has no stage one and two, and shows what a
+        daemon shows that has drawn nothing before."""
+        fresh = {}
+        for kind in (STILL, INTERACTIVE, BATCH):
+            daemon = Daemon()
+            with Client(daemon.unix, minor=1) as client:
+                model = client.upload(self.fender, "fender.obj")
+                frame = client.render(model, *SIZE, kind=kind, extra=RELIT)
+                self.assertGreater(min(frame.visibility_us, frame.evaluate_us), 0)
+                fresh[kind] = frame.data
+            self.assertEqual(daemon.stop(), 0)
+        with Client(self.daemon.unix, minor=1) as client:
+            for n, first in enumerate((INTERACTIVE, STILL, BATCH)):
+                # Another model each time, so that nothing is there.
+                model = client.upload(self.fender + b"# %d\n" % n, "fender.obj")
+                frame = client.render(model, *SIZE, kind=first)
+                self.assertGreater(min(frame.visibility_us, frame.evaluate_us), 0)
+                for kind in (STILL, BATCH, INTERACTIVE, STILL):
+                    with self.subTest(first=first, kind=kind):
+                        frame = client.render(model, *SIZE, kind=kind, extra=RELIT)
+                        self.assertEqual((frame.visibility_us, frame.evaluate_us), (0, 0))
+                        self.assertEqual(frame.data, fresh[kind])
+                        client.render(model, 64, 48, kind=kind)  # a thumbnail
+        self.assertEqual(len(set(fresh.values())), 1)
+
+    def test_larger_frames(self):
+        """Those of more than 32 tiles are not kept, and cost the others nothing."""
+        with Client(self.daemon.unix, minor=1) as client:
+            model = client.upload(self.fender, "fender.obj")
+            client.render(model, *SIZE, kind=STILL)
+            for _ in range(2):
+                frame = client.render(model, 2100, 1000, kind=STILL)
+                self.assertGreater(min(frame.visibility_us, frame.evaluate_us), 0)
+            frame = client.render(model, *SIZE, kind=STILL)
+            self.assertEqual((frame.visibility_us, frame.evaluate_us), (0, 0))
