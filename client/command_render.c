@@ -70,6 +70,12 @@ static void print_summary(struct job *job, const struct options *options,
         fprintf(stderr,
                 "sheen: warning: no pixel shows the surface: see --eye, --target, --fov and "
                 "--ortho; without them a camera frames the model\n");
+    if (frame->light_share < 0.5)
+        progress_note(&job->progress,
+                      "the light is met on %.2g %% of what is seen: place it with --light-center, "
+                      "--light-u and --light-v, or leave --light out for one that is met "
+                      "everywhere",
+                      100 * frame->light_share);
     fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", ", options->output, frame->width_px,
             frame->height_px);
     if (info->faces)

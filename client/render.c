@@ -1,4 +1,5 @@
 /* Requests out, frames in. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -200,6 +201,7 @@ static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
                    .fov_deg = body->camera.fov_deg,
                    .ortho_height = body->camera.ortho_height},
         .blank = body->blank,
+        .light_share = body->has_light_share ? body->light_share : NAN,
         .up_source = body->has_up && body->has_up_source ? (enum sheen_up_source)body->up_source
                                                          : SHEEN_UP_UNKNOWN,
         .times = times_from_message(&body->times),

@@ -161,6 +161,7 @@ void scene_json(struct json *json, const struct sheen_request *request,
     json_up(json, frame);
     json_family(json, &frame->lines);
     json_lights(json, frame);
+    json_double(json, "light_share", frame->light_share);
     if (frame->has_colours) {
         json_colour(json, "miss", frame->miss);
         json_colour(json, "empty", frame->empty);

@@ -417,7 +417,9 @@ struct sheen_frame {
     struct sheen_lines lines;
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];
-    bool blank;   /* no pixel shows any of the model */
+    bool blank;         /* no pixel shows any of the model */
+    double light_share; /* of the surface that is seen: where a light is met, 0 to 1; NAN where no
+                           lines are drawn, nothing is seen or the daemon is too old to say */
     double up[3]; /* of the model, by which camera and lights were chosen as far as left out */
     enum sheen_up_source up_source;
     double show_range; /* of false colour, as used; 0: none */

@@ -482,6 +482,8 @@ static bool check_frame(const sheen_Frame *frame, char *text)
     if (frame->has_show_range &&
         !check_named(frame->show_range, &RANGES[RANGE_SHOW], "show_range", text))
         return false;
+    if (frame->has_light_share && !(frame->light_share >= 0 && frame->light_share <= 1))
+        return refuse(text, "light_share is %g; it must be from 0 to 1", frame->light_share);
     if ((frame->has_up && !check_direction(&frame->up, "up", text)) ||
         (frame->has_up_source &&
          !check_enum(frame->up_source, sheen_UpSource_UP_GUESSED, "up_source", text)))

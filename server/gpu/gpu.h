@@ -212,6 +212,7 @@ struct renderer {
     struct collecting collecting;        /* into PLANES_TILED */
     struct drawing drawing;
     struct stage_clock clock;
+    struct tile inside;                   /* of the tile being drawn: without its margin */
     struct frame_watch watch;             /* of the frame being drawn */
     const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
     struct pieces pieces;
@@ -322,6 +323,9 @@ bool stage_shade_prepare(struct renderer *renderer, const struct frame_request *
                          bool *is_ready, struct error *error);
 bool stage_shade(struct renderer *renderer, const struct frame_request *request,
                  struct error *error);
+/* After stage_shade: adds to frame.seen_px and met_px what the tile has of them. */
+void shade_read_share(const struct renderer *renderer, const struct frame_request *request,
+                      bool any_seen, struct frame *frame);
 
 /* After stage_shade: the polygons' edges in place of the colour, by the depths of stage_polygons,
  * slice by slice. */

@@ -111,6 +111,7 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
     view_block_fill(&block, view, place);
     glNamedBufferSubData(r->view_buffer, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
+    r->inside = (struct tile){tile->x - drawn->x, tile->y - drawn->y, tile->width, tile->height};
     stage_clock_begin(r);
     *is_whole = true;
     bool ok = is_of_polygons(work)
@@ -120,7 +121,9 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
         return ok;
     if (!readback(r, request, view, place, tile, frame, error))
         return false;
-    frame->shows_surface = frame->shows_surface || gather_found_any(r);
+    bool any_seen = gather_found_any(r);
+    frame->shows_surface = frame->shows_surface || any_seen;
+    shade_read_share(r, request, any_seen, frame);
     return stage_clock_wait(r, &frame->times.readback_us);
 }
 

@@ -66,6 +66,7 @@ struct frame_request {
     float empty[4];                  /* colour where no surface is hit */
     float base[4];                   /* of the surface, where patterns are transparent */
     bool unfiltered;                 /* one sample a pixel, for comparison */
+    bool count_light;                /* say in frame.met_px where lights are met */
     uint32_t planes;                 /* enum renderer_plane bits to read back */
     struct surface surface;
 };
@@ -83,7 +84,11 @@ struct frame {
     uint32_t width_px, height_px;
     void *plane[PLANE_COUNT]; /* indexed by bit number */
     struct frame_times times;
-    bool shows_surface;    /* false: no pixel shows any of the model */
+    bool shows_surface; /* false: no pixel shows any of the model */
+    /* With frame_request.count_light, of the pixels that were looked at, all of small tiles and one
+     * in eight of large ones: those whose centre shows surface, and those on which any light is
+     * met. Where no light can be missed 1 and 1, or more alike. */
+    uint64_t seen_px, met_px;
     struct spares *spares; /* the renderer's: where the planes come from */
     struct canvas *canvas; /* the renderer's, between two steps; NULL once the frame is whole */
 };

@@ -35,12 +35,23 @@ static struct shade_key key_of(const struct frame_request *request, const struct
     enum line_family family = request->lines.family;
     const struct pattern *pattern = &light->pattern;
     const struct renderer_image *image = pattern->kind == PATTERN_IMAGE ? pattern->image : NULL;
+    if (which == SHADED_SHARE) /* whatever the light shows */
+        return (struct shade_key){(uint8_t)family, (uint8_t)light->kind, 0, 0, 0, (uint8_t)which};
     return (struct shade_key){.family = (uint8_t)family,
                               .light = shade_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
                               .pattern = (uint8_t)pattern->kind,
                               .soft = pattern->soft > 0,
                               .picture = image ? picture_kind(image->pixels) : 0,
                               .which = (uint8_t)which};
+}
+
+/* Are there lights that a ray may miss? What is at infinity is met wherever there is a normal. */
+static bool share_wanted(const struct frame_request *request)
+{
+    bool may_miss = request->count_light && !shade_is_at_infinity(request->lines.family);
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        may_miss = may_miss && request->lights[i].kind != LIGHT_SPHERE;
+    return may_miss;
 }
 
 /* What each of the frame's lights takes, in the order of use. */
@@ -51,6 +62,8 @@ static int kinds_of(const struct frame_request *request, enum shaded kinds[SHADE
     kinds[n++] = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
     for (size_t i = 0; edges_wanted(request) && i < sizeof closer / sizeof closer[0]; i++)
         kinds[n++] = closer[i];
+    if (share_wanted(request))
+        kinds[n++] = SHADED_SHARE;
     return n;
 }
 
@@ -63,7 +76,8 @@ bool stage_shade_init(struct renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const GLuint nothing[3] = {0, 1, 1};
-    static const struct frame_request usual = {.lights = {{.kind = LIGHT_TUNNEL}}};
+    static const struct frame_request usual = {
+        .n_lights = 1, .lights = {{.kind = LIGHT_TUNNEL}}, .count_light = true};
     enum shaded kinds[SHADED_KINDS];
     for (int k = kinds_of(&usual, kinds); k-- > 0;)
         if (!shade_programs_compile(&r->shading, key_of(&usual, &usual.lights[0], kinds[k]), error))
@@ -353,6 +367,41 @@ static void shade_listed(struct renderer *r, const struct frame_request *request
     dispatch_listed(rounded, r->target.rounded);
 }
 
+/* Beginning with as many, every pixel of a tile is one too many to look at. */
+#define SHARE_ALL_PX (1u << 18)
+enum { SHARE_STRIDE = 8 };
+
+/* Counts in a list that stage 2 is done with. */
+static void share_light(struct renderer *r, const struct frame_request *request, uint32_t i)
+{
+    static const GLuint nothing[2] = {0, 0};
+    const struct tile *inside = &r->inside;
+    GLuint program = program_of(r, request, &request->lights[i], SHADED_SHARE);
+    bool all = (uint64_t)inside->width * inside->height < SHARE_ALL_PX;
+    if (i + 1 == request->n_lights)
+        glNamedBufferSubData(r->target.unsolved, 0, sizeof nothing, nothing);
+    glProgramUniform1ui(program, glGetUniformLocation(program, "stride"), all ? 1 : SHARE_STRIDE);
+    glProgramUniform4i(program, glGetUniformLocation(program, "inside"), (GLint)inside->x,
+                       (GLint)inside->y, (GLint)inside->width, (GLint)inside->height);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.unsolved);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    dispatch_groups(program, r->target.groups);
+}
+
+void shade_read_share(const struct renderer *r, const struct frame_request *request, bool any_seen,
+                      struct frame *frame)
+{
+    GLuint counts[2] = {any_seen, any_seen};
+    if (!request->count_light)
+        return;
+    if (share_wanted(request)) {
+        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        glGetNamedBufferSubData(r->target.unsolved, 0, sizeof counts, counts);
+    }
+    frame->seen_px += counts[0];
+    frame->met_px += counts[1];
+}
+
 static void shade_light(struct renderer *r, const struct frame_request *request, uint32_t i)
 {
     const struct light *light = &request->lights[i];
@@ -366,6 +415,8 @@ static void shade_light(struct renderer *r, const struct frame_request *request,
     dispatch_groups(program_of(r, request, light, all), r->target.groups);
     if (edges_wanted(request))
         shade_listed(r, request, light);
+    if (share_wanted(request))
+        share_light(r, request, i);
 }
 
 bool stage_shade(struct renderer *r, const struct frame_request *request, struct error *error)

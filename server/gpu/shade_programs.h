@@ -10,7 +10,7 @@
 #include "server/gpu/scene.h"
 
 /* What a program of stage 3 makes: the colours of all pixels, of all by one sample each, of those
- * listed; or the planes that go with them. */
+ * listed; the planes that go with them; or the share of what is seen that the light is met on. */
 enum shaded {
     SHADED_ALL,
     SHADED_UNFILTERED,
@@ -18,12 +18,13 @@ enum shaded {
     SHADED_TURNS,
     SHADED_ROUNDED,
     SHADED_PLANES,
+    SHADED_SHARE,
     SHADED_KINDS
 };
 
 enum {
-    /* The most that one frame takes: four for each light, and one for its planes. */
-    MAX_FRAME_PROGRAMS = 4 * MAX_LIGHTS + 1,
+    /* The most that one frame takes: five for each light, and one for its planes. */
+    MAX_FRAME_PROGRAMS = 5 * MAX_LIGHTS + 1,
     /* On Mesa's software device a program takes 3.5 MB of main memory: 170 MB for all. */
     MAX_SHADE_PROGRAMS = 48
 };

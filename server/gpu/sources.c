@@ -110,8 +110,10 @@ struct program_source source_of_shading(struct shade_key key)
                                           "pieces.glsl", "rounded.glsl", "rounded_shade.comp.glsl",
                                           NULL};
     static const char *const planes[] = {COMMON, "groups.glsl", "shade_planes.comp.glsl", NULL};
+    static const char *const share[] = {COMMON, "groups.glsl", "share.comp.glsl", NULL};
 #undef COMMON
-    static const char *const *const files[SHADED_KINDS] = {all, all, edges, turns, rounded, planes};
+    static const char *const *const files[SHADED_KINDS] = {all,     all,    edges, turns,
+                                                           rounded, planes, share};
     struct program_source source = {.files = {files[key.which], NULL}};
     snprintf(source.defines, sizeof source.defines,
              "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n%s%s", key.family, key.light,

@@ -146,12 +146,19 @@ static void drop_polygons(struct request *request)
     request->polygon_bytes = 0;
 }
 
+static bool shows_lines(const sheen_Render *render)
+{
+    return render->show.kind == sheen_ShowKind_SHOW_LINES &&
+           render->surface != sheen_SurfaceKind_SURFACE_WIREFRAME;
+}
+
 void request_queue_frame(struct request *request)
 {
     struct frame_request *asked = &request->frame_request;
     const sheen_Render *render = &request->render;
     const struct wire_subject subject = model_subject(request->model.asset->model);
     wire_to_frame_request(render, &subject, asked);
+    asked->count_light = shows_lines(render);
     request->up_source = wire_up(render, &subject, request->up);
     for (int i = 0; i < MAX_LIGHTS; i++)
         if (request->images[i].asset)
@@ -202,6 +209,8 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .show_range = request->render.show.range,
         .has_blank = request->is_blank,
         .blank = request->is_blank,
+        .has_light_share = request->has_light_share,
+        .light_share = request->light_share,
         .has_up = true,
         .up = wire_from_vec3(request->up),
         .has_up_source = true,
@@ -347,6 +356,9 @@ static void frame_drawn(struct request *request)
     request->times.shade_us = times->shade_us;
     request->times.readback_us = times->readback_us;
     request->is_blank = !request->frame.shows_surface;
+    request->has_light_share = request->frame.seen_px > 0;
+    if (request->has_light_share)
+        request->light_share = (double)request->frame.met_px / (double)request->frame.seen_px;
     request->encode_start_us = loop_now_us();
     request->is_busy = true;
     if (request->render.show.kind == sheen_ShowKind_SHOW_LINES) {

@@ -50,6 +50,8 @@ struct request {
     sheen_Times times;
     bool is_blank; /* no pixel shows any of the model */
     struct show_extremes extremes;
+    bool has_light_share;
+    double light_share; /* of what is seen: where a light is met */
     uint64_t encode_start_us;
     struct label label;
     struct renderer_polygons *polygons; /* until the device has them */
