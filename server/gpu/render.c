@@ -111,7 +111,7 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
     view_block_fill(&block, view, place);
     glNamedBufferSubData(r->view_buffer, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, r->view_buffer);
-    r->inside = (struct tile){tile->x - drawn->x, tile->y - drawn->y, tile->width, tile->height};
+    r->inside = tile_within(tile, place);
     stage_clock_begin(r);
     *is_whole = true;
     bool ok = is_of_polygons(work)

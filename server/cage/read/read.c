@@ -48,8 +48,10 @@ static const char *shown_name(const char *name)
 /* Welding needs indices in range, and may leave faces that need mending themselves. */
 static bool mend_and_weld(struct cage_builder *builder, const char *name, struct error *error)
 {
+    const struct weld_start start = {0};
     return cage_mend(builder, name, error) &&
-           (!builder->weld || (cage_weld(builder, name, error) && cage_mend(builder, name, error)));
+           (!builder->weld ||
+            (cage_weld(builder, &start, name, error) && cage_mend(builder, name, error)));
 }
 
 bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *name,
