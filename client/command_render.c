@@ -28,7 +28,7 @@ static bool check(struct options *options, char *why)
     if (options->aov_planes && options->request.format != SHEEN_FILE_EXR)
         return options_refuse(why, "--aov needs an output that ends in .exr");
     options->request.planes |= options->aov_planes;
-    return options_check_scene(options, why);
+    return options_check_jpeg(options, why) && options_check_scene(options, why);
 }
 
 static void print_json(struct json *json, const struct options *options, const struct job *job,
@@ -150,6 +150,7 @@ const struct command COMMAND_RENDER = {
         "  sheen render hood.obj -o hood.png\n"
         "  sheen render hood.glb -o hood.png --size 1920x1080 --eye 3,-4,2 --target 0,0,0.5\n"
         "  sheen render hood.glb -o hood.png --pattern stripes:count=40,duty=0.3,bg=#202020\n"
+        "  sheen render hood.obj -o hood.jpg --jpeg-quality 80 --jpeg-subsampling 420\n"
         "  sheen render hood.obj -o hood.exr --aov P,N,ptex --json\n"
         "  sheen render hood.obj -o hood.png --server tls:render1:7410 --ca ours.pem "
         "--token-file token\n",

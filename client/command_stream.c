@@ -372,7 +372,7 @@ static bool check(struct options *options, char *why)
 {
     if (!(options->given & GIVEN_FRAMES))
         return options_refuse(why, "--frames N is missing");
-    return options_check_scene(options, why);
+    return options_check_jpeg(options, why) && options_check_scene(options, why);
 }
 
 static const struct option_row ROWS[] = {

@@ -28,6 +28,7 @@ enum options_given {
     GIVEN_LIGHT = 1 << 9,
     GIVEN_SIZE = 1 << 10,
     GIVEN_CLASS = 1 << 11,
+    GIVEN_JPEG = 1 << 12,
 };
 
 struct options {
@@ -100,6 +101,7 @@ extern const struct option_row OPTIONS_SIZE[];      /* of commands with no defau
 extern const struct option_row OPTIONS_SCENE[];     /* camera, light, pattern, colours */
 extern const struct option_row OPTIONS_SURFACE[];   /* surface, show, show-range */
 extern const struct option_row OPTIONS_SCHEDULE[];  /* class, deadline */
+extern const struct option_row OPTIONS_JPEG[];      /* jpeg-quality, jpeg-subsampling */
 
 /* Parses argv, whose [0] is the command's name. OPTIONS_WRONG leaves one line in `why` that names
  * the option, OPTIONS_HELP asks for options_help(). */
@@ -113,6 +115,9 @@ bool options_apply_size(struct options *options, const char *value, char *why);
 
 /* The check of commands that take OPTIONS_SCENE: camera and light are given whole or not at all. */
 bool options_check_scene(struct options *options, char *why);
+
+/* The check of commands that take OPTIONS_JPEG: they belong to JPEG files. */
+bool options_check_jpeg(const struct options *options, char *why);
 
 /* Ends the options of one light: its place is given whole or not at all. */
 bool options_check_light(struct options *options, char *why);

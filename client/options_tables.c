@@ -273,6 +273,37 @@ static bool apply_deadline(struct options *options, const char *value, char *why
     return options_whole(&RANGES[RANGE_DEADLINE], value, &options->request.deadline_ms, why);
 }
 
+static bool apply_jpeg_quality(struct options *options, const char *value, char *why)
+{
+    options->given |= GIVEN_JPEG;
+    return options_whole(&RANGES[RANGE_JPEG_QUALITY], value, &options->request.jpeg_quality, why);
+}
+
+static bool apply_jpeg_subsampling(struct options *options, const char *value, char *why)
+{
+    options->given |= GIVEN_JPEG;
+    return value_subsampling(value, &options->request.jpeg_subsampling) ||
+           options_refuse(why, "must be 444, 422 or 420");
+}
+
+bool options_check_jpeg(const struct options *options, char *why)
+{
+    return !(options->given & GIVEN_JPEG) || options->request.format == SHEEN_FILE_JPEG ||
+           options_refuse(why, "--jpeg-quality and --jpeg-subsampling need an output that ends in "
+                               ".jpg or .jpeg");
+}
+
+const struct option_row OPTIONS_JPEG[] = {
+    {"jpeg-quality", 0, "N",
+     "of a .jpg, as libjpeg has it: {}, the lower the smaller (default: 95)", apply_jpeg_quality},
+    {"jpeg-subsampling", 0, "KIND",
+     "of a .jpg's colour: 444, one sample for each pixel, 422, for two side by\n"
+     "side, or 420, for two by two: smaller files, coloured edges less sharp\n"
+     "(default: 444)",
+     apply_jpeg_subsampling},
+    {0},
+};
+
 const struct option_row OPTIONS_SCHEDULE[] = {
     {"class", 0, "CLASS",
      "what the daemon puts first when it has many: interactive, then still, then\n"

@@ -11,6 +11,7 @@
 _Static_assert((int)SHEEN_MAX_IN_FLIGHT == (int)PROTOCOL_MAX_CREDITS, "what a daemon may grant");
 _Static_assert((int)SHEEN_BATCH == (int)sheen_RequestClass_CLASS_BATCH, "same order");
 _Static_assert((int)SHEEN_FILE_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
+_Static_assert((int)SHEEN_JPEG_420 == (int)sheen_JpegSubsampling_JPEG_420, "same order");
 _Static_assert((int)SHEEN_COVERAGE == (int)sheen_Plane_PLANE_COVERAGE, "same bits");
 
 /* What a frame owns. */
@@ -56,6 +57,10 @@ static void fill_render(sheen_Render *render, const struct sheen_request *reques
         .unfiltered = request->unfiltered,
         .planes = request->planes,
         .encoding = (sheen_Encoding)request->format,
+        .has_jpeg_quality = request->jpeg_quality != 0,
+        .jpeg_quality = request->jpeg_quality,
+        .has_jpeg_subsampling = request->jpeg_subsampling != SHEEN_JPEG_444,
+        .jpeg_subsampling = (sheen_JpegSubsampling)request->jpeg_subsampling,
         .has_surface = request->surface != SHEEN_SURFACE_EXACT,
         .surface = (sheen_SurfaceKind)request->surface,
         .has_surface_level = request->surface_level != 0,
@@ -70,6 +75,12 @@ static void fill_render(sheen_Render *render, const struct sheen_request *reques
     memcpy(render->model_sha256, request->model_id, SHEEN_ID_BYTES);
     fill_camera(render, &request->camera);
     lights_to_message(render, request);
+}
+
+static enum sheen_status too_old(struct sheen_error *error, const char *what)
+{
+    return status_set(error, SHEEN_BAD_ARGUMENT,
+                      "the daemon is too old to %s: install sheen %s there", what, SHEEN_VERSION);
 }
 
 enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_request *request,
@@ -93,6 +104,9 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
     if (!message_check_render(&pending->render, session->hello.max_width_px,
                               session->hello.max_height_px, text))
         return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
+    if (session->hello.minor < 2 &&
+        (pending->render.has_jpeg_quality || pending->render.has_jpeg_subsampling))
+        return too_old(error, "choose the quality of JPEG files");
     status = session_send(session, MESSAGE_RENDER, &pending->render, &pending->seq, error);
     session->last_sent = pending->seq;
     if (!status)
@@ -123,9 +137,7 @@ enum sheen_status sheen_cancel(struct sheen_session *session, uint32_t number,
     if (find_pending(session, number) == session->n_pending)
         return status_set(error, SHEEN_BAD_ARGUMENT, "no request %u is in flight", number);
     if (session->hello.minor < 1)
-        return status_set(error, SHEEN_BAD_ARGUMENT,
-                          "the daemon is too old to take requests back: install sheen %s there",
-                          SHEEN_VERSION);
+        return too_old(error, "take requests back");
     return session_send_raw(session, MESSAGE_CANCEL, number, NULL, 0, error);
 }
 

@@ -355,6 +355,13 @@ struct sheen_extreme {
 };
 
 /* How the daemon treats a request when it has many. */
+/* Of a JPEG file's colour. */
+enum sheen_jpeg_subsampling {
+    SHEEN_JPEG_444, /* one sample for each pixel */
+    SHEEN_JPEG_422, /* for two side by side */
+    SHEEN_JPEG_420, /* for two by two */
+};
+
 enum sheen_class {
     SHEEN_STILL,       /* somebody waits for it */
     SHEEN_INTERACTIVE, /* somebody drags: first, and only the newest of a view counts */
@@ -376,6 +383,8 @@ struct sheen_request {
     struct sheen_show show;             /* in the colour plane; not with WIREFRAME */
     uint32_t planes;                    /* enum sheen_plane bits */
     enum sheen_format format;
+    uint32_t jpeg_quality; /* SHEEN_FILE_JPEG: 1 to 100; 0: the daemon's, 95 */
+    enum sheen_jpeg_subsampling jpeg_subsampling; /* the same */
     enum sheen_surface surface;
     uint32_t surface_level; /* 0 to 6; exact: 0 */
     enum sheen_class request_class;

@@ -157,6 +157,17 @@ bool value_format(const char *path, enum sheen_format *format)
     return false;
 }
 
+bool value_subsampling(const char *text, enum sheen_jpeg_subsampling *subsampling)
+{
+    static const char *const names[] = {"444", "422", "420"};
+    for (size_t i = 0; i < sizeof(names) / sizeof(*names); i++) {
+        *subsampling = (enum sheen_jpeg_subsampling)i;
+        if (strcmp(text, names[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
 static const char *const CLASS_NAMES[] = {
     [SHEEN_STILL] = "still",
     [SHEEN_INTERACTIVE] = "interactive",

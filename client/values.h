@@ -27,6 +27,9 @@ bool value_surface(const char *text, enum sheen_surface *surface, uint32_t *leve
 /* The format of a file by its ending, in any case: .png .exr .jpg .jpeg .tif .tiff. */
 bool value_format(const char *path, enum sheen_format *format);
 
+/* 444, 422 or 420. */
+bool value_subsampling(const char *text, enum sheen_jpeg_subsampling *subsampling);
+
 /* interactive, still or batch. */
 bool value_class(const char *text, enum sheen_class *request_class);
 const char *value_class_name(enum sheen_class request_class);

@@ -420,12 +420,26 @@ static bool check_side(uint32_t side_px, uint32_t max_px, unsigned encoding, con
                   side_px, RANGES[RANGE_JPEG_SIDE].greatest);
 }
 
+static bool check_jpeg(const sheen_Render *render, char *text)
+{
+    if ((render->has_jpeg_quality || render->has_jpeg_subsampling) &&
+        render->encoding != sheen_Encoding_ENCODING_JPEG)
+        return refuse(text, "jpeg_quality and jpeg_subsampling (--jpeg-quality, "
+                            "--jpeg-subsampling) are for JPEG files");
+    if (render->has_jpeg_quality && !check_number(render->jpeg_quality, RANGE_JPEG_QUALITY, text))
+        return false;
+    return !render->has_jpeg_subsampling ||
+           check_enum(render->jpeg_subsampling, sheen_JpegSubsampling_JPEG_420, "jpeg_subsampling",
+                      text);
+}
+
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES])
 {
     if (!check_side(render->width_px, max_width_px, render->encoding, "width", text) ||
         !check_side(render->height_px, max_height_px, render->encoding, "height", text) ||
-        !check_planes(render->planes, render->encoding, text) || !check_show(render, text))
+        !check_planes(render->planes, render->encoding, text) || !check_jpeg(render, text) ||
+        !check_show(render, text))
         return false;
     struct codec_layout layout;
     uint32_t planes = message_render_planes(render);

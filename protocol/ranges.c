@@ -37,6 +37,7 @@ const struct range RANGES[N_RANGES] = {
     [RANGE_COLOUR] = {"r, g, b and a of colours", NULL, 0, 1, false, ""},
     [RANGE_SHOW] = {"show.range", "--show-range", 0, GREATEST, true, ""},
     [RANGE_DRAFT] = {"show.range of draft", "--show-range", 0, 90, true, "degrees"},
+    [RANGE_JPEG_QUALITY] = {"jpeg_quality", "--jpeg-quality", 1, 100, false, ""},
     [RANGE_LEVEL] = {"surface_level", "--surface", 0, PROTOCOL_MAX_SURFACE_LEVEL, false, ""},
     [RANGE_DEADLINE] = {"deadline_ms", "--deadline", 1, 3600000, false, "milliseconds"},
 };

@@ -27,8 +27,9 @@ enum range_name {
     RANGE_AT,
     RANGE_WIDTH,
     RANGE_COLOUR,
-    RANGE_SHOW,  /* of curvatures */
-    RANGE_DRAFT, /* of the same field, for draft */
+    RANGE_SHOW,         /* of curvatures */
+    RANGE_DRAFT,        /* of the same field, for draft */
+    RANGE_JPEG_QUALITY, /* as libjpeg has it */
     RANGE_LEVEL,
     RANGE_DEADLINE,
     N_RANGES

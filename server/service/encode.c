@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "server/fault.h"
-#include "server/service/jpeg.h"
 
 #define ZSTD_LEVEL 1
 #define MAX_CHANNELS 22 /* of all planes together */
@@ -22,7 +21,7 @@ struct strip_work {
 struct encode_job {
     struct encoded *encoded;
     struct codec_layout layout;
-    sheen_Encoding encoding;
+    struct encode_format format;
     enum pool_urgency urgency;
     const struct image_attribute *attributes;
     size_t n_attributes;
@@ -245,7 +244,7 @@ static void jpeg_run(struct work *work, void *worker)
     struct strip_work *strip = work->owner;
     struct encode_job *job = strip->job;
     struct encoders *encoders = worker;
-    uint8_t *bytes = take_strip(strip, job->jpeg.strip_bound);
+    uint8_t *bytes = take_strip(strip, job->jpeg.strips.bound);
     if (bytes)
         jpeg_strip_encode(encoders->jpeg, &job->jpeg, strip->index, job->encoded->frame.plane[0],
                           bytes, &strip->start, &strip->size, &strip->error);
@@ -269,8 +268,8 @@ static bool jpeg_join(struct encode_job *job)
 
 static void start_jpeg(struct encode_job *job)
 {
-    jpeg_layout_init(&job->jpeg, job->layout.width_px, job->layout.height_px);
-    start_strips(job, job->jpeg.n_strips, jpeg_run, jpeg_join);
+    jpeg_layout_init(&job->jpeg, job->layout.width_px, job->layout.height_px, &job->format.jpeg);
+    start_strips(job, job->jpeg.strips.n, jpeg_run, jpeg_join);
 }
 
 /* --- files, by a worker process */
@@ -324,7 +323,7 @@ static void file_run(struct work *work, void *worker)
 {
     (void)worker;
     struct encode_job *job = work->owner;
-    struct picture picture = {.format = file_format(job->encoding),
+    struct picture picture = {.format = file_format(job->format.encoding),
                               .width_px = job->layout.width_px,
                               .height_px = job->layout.height_px,
                               .n_attributes = job->n_attributes};
@@ -363,22 +362,34 @@ static void start_file(struct encode_job *job)
     pool_submit(job->pool, &job->file_work, job->urgency);
 }
 
-uint64_t encode_bytes(const struct codec_layout *layout, sheen_Encoding encoding)
+_Static_assert((int)JPEG_420 == (int)sheen_JpegSubsampling_JPEG_420, "same order");
+
+struct encode_format encode_format_of(const sheen_Render *render)
+{
+    struct encode_format format = {.encoding = render->encoding, .jpeg = JPEG_DEFAULTS};
+    if (render->has_jpeg_quality)
+        format.jpeg.quality = render->jpeg_quality;
+    if (render->has_jpeg_subsampling)
+        format.jpeg.subsampling = (enum jpeg_subsampling)render->jpeg_subsampling;
+    return format;
+}
+
+uint64_t encode_bytes(const struct codec_layout *layout, const struct encode_format *format)
 {
     struct jpeg_layout jpeg;
-    switch (encoding) {
+    switch (format->encoding) {
     case sheen_Encoding_ENCODING_RAW:
         return 0;
     case sheen_Encoding_ENCODING_JPEG:
-        jpeg_layout_init(&jpeg, layout->width_px, layout->height_px);
-        return (uint64_t)jpeg.n_strips * jpeg.strip_bound;
+        jpeg_layout_init(&jpeg, layout->width_px, layout->height_px, &format->jpeg);
+        return (uint64_t)jpeg.strips.n * jpeg.strips.bound;
     default:
         return layout->raw_bytes;
     }
 }
 
 void encode_start(struct pool *pool, struct workers *workers, struct frame *frame,
-                  const struct codec_layout *layout, sheen_Encoding encoding,
+                  const struct codec_layout *layout, const struct encode_format *format,
                   enum pool_urgency urgency, const struct image_attribute *attributes,
                   size_t n_attributes,
                   void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
@@ -401,7 +412,7 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
     *job = (struct encode_job){
         .encoded = encoded,
         .layout = *layout,
-        .encoding = encoding,
+        .format = *format,
         .urgency = urgency,
         .attributes = attributes,
         .n_attributes = n_attributes,
@@ -410,12 +421,18 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
         .pool = pool,
         .workers = workers,
     };
-    if (encoding == sheen_Encoding_ENCODING_RAW)
+    switch (format->encoding) {
+    case sheen_Encoding_ENCODING_RAW:
         start_raw(job);
-    else if (encoding == sheen_Encoding_ENCODING_ZSTD)
+        break;
+    case sheen_Encoding_ENCODING_ZSTD:
         start_strips(job, layout->n_strips, zstd_run, zstd_join);
-    else if (encoding == sheen_Encoding_ENCODING_JPEG)
+        break;
+    case sheen_Encoding_ENCODING_JPEG:
         start_jpeg(job);
-    else
+        break;
+    default:
         start_file(job);
+        break;
+    }
 }

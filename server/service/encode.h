@@ -7,8 +7,18 @@
 #include "protocol/codec.h"
 #include "protocol/message.h"
 #include "server/gpu/renderer.h"
+#include "server/service/jpeg.h"
 #include "server/service/pool.h"
 #include "server/service/workers.h"
+
+/* What a frame is encoded to. */
+struct encode_format {
+    sheen_Encoding encoding;
+    struct jpeg_options jpeg; /* for JPEG */
+};
+
+/* What a request that has been checked (message_check_render()) asks for. */
+struct encode_format encode_format_of(const sheen_Render *render);
 
 /* The bytes of a frame's DATA messages, in pieces that follow one another. */
 struct encoded_piece {
@@ -34,13 +44,13 @@ struct encoded {
 extern const struct pool_worker encode_worker;
 
 /* What encoding a frame takes at most, beside its planes. */
-uint64_t encode_bytes(const struct codec_layout *layout, sheen_Encoding encoding);
+uint64_t encode_bytes(const struct codec_layout *layout, const struct encode_format *format);
 
 /* Takes *frame over in any case and zeroes it. finished() gets the bytes, or NULL and why; it may
  * be called before this returns. `layout` fits the frame, and has what the encoding asks for
  * (message_check_render()); `attributes` stay until finished(). */
 void encode_start(struct pool *pool, struct workers *workers, struct frame *frame,
-                  const struct codec_layout *layout, sheen_Encoding encoding,
+                  const struct codec_layout *layout, const struct encode_format *format,
                   enum pool_urgency urgency, const struct image_attribute *attributes,
                   size_t n_attributes,
                   void (*finished)(void *owner, struct encoded *encoded, const struct error *error),

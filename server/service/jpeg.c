@@ -4,10 +4,15 @@
 #include <string.h>
 #include <turbojpeg.h>
 
-#include "protocol/limits.h"
-
-#define QUALITY 95
-#define BLOCK_PX 8 /* without subsampling, what is coded at once */
+/* What is coded at once: a block of each colour, which is that of more pixels the fewer it has. */
+static const struct {
+    uint32_t width_px, height_px;
+    int library; /* libjpeg-turbo's number */
+} UNITS[] = {
+    [JPEG_444] = {8, 8, TJSAMP_444},
+    [JPEG_422] = {16, 8, TJSAMP_422},
+    [JPEG_420] = {16, 16, TJSAMP_420},
+};
 
 /* Segments: 0xff, their kind, the length of what follows with its own two bytes. */
 enum { SOF0 = 0xc0, RST0 = 0xd0, SOS = 0xda, DRI = 0xdd, COM = 0xfe };
@@ -37,18 +42,14 @@ void jpeg_encoder_destroy(struct jpeg_encoder *encoder)
         tjDestroy(encoder);
 }
 
-void jpeg_layout_init(struct jpeg_layout *layout, uint32_t width_px, uint32_t height_px)
+void jpeg_layout_init(struct jpeg_layout *layout, uint32_t width_px, uint32_t height_px,
+                      const struct jpeg_options *options)
 {
-    uint32_t blocks = PROTOCOL_STRIP_BYTES / (4 * BLOCK_PX * width_px);
-    uint32_t rows = BLOCK_PX * (blocks > 0 ? blocks : 1);
-    uint32_t highest = rows < height_px ? rows : height_px;
-    *layout = (struct jpeg_layout){
-        .width_px = width_px,
-        .height_px = height_px,
-        .strip_rows = rows,
-        .n_strips = (height_px + rows - 1) / rows,
-        .strip_bound = tjBufSize((int)width_px, (int)highest, TJSAMP_444),
-    };
+    struct strip_layout *strips = &layout->strips;
+    layout->options = *options;
+    strip_layout_init(strips, width_px, height_px, UNITS[options->subsampling].height_px);
+    strips->bound =
+        tjBufSize((int)width_px, (int)strip_rows(strips, 0), UNITS[options->subsampling].library);
 }
 
 /* --- strips */
@@ -72,21 +73,20 @@ bool jpeg_strip_encode(struct jpeg_encoder *encoder, const struct jpeg_layout *l
                        const uint8_t *rgba, uint8_t *bytes, size_t *start, size_t *size,
                        struct error *error)
 {
-    const size_t first = index * layout->strip_rows;
-    const size_t left = layout->height_px - first;
-    const size_t rows = left < layout->strip_rows ? left : layout->strip_rows;
+    const struct strip_layout *strips = &layout->strips;
     unsigned long length = 0;
     /* The transform that is less accurate saves no time here. */
-    if (tjCompress2(encoder, rgba + 4 * first * layout->width_px, (int)layout->width_px, 0,
-                    (int)rows, TJPF_RGBX, &bytes, &length, TJSAMP_444, QUALITY,
+    if (tjCompress2(encoder, strip_pixels(strips, index, rgba), (int)strips->width_px, 0,
+                    (int)strip_rows(strips, index), TJPF_RGBX, &bytes, &length,
+                    UNITS[layout->options.subsampling].library, (int)layout->options.quality,
                     TJFLAG_NOREALLOC | TJFLAG_ACCURATEDCT) != 0)
         return error_set(error, ERROR_SERVER,
                          "a JPEG file of %u x %u pixels cannot be written: %s: try again later",
-                         layout->width_px, layout->height_px, tjGetErrorStr2(encoder));
+                         strips->width_px, strips->height_px, tjGetErrorStr2(encoder));
     const size_t scan = find_segment(bytes, SOS);
     *start = scan + 2 + ((size_t)bytes[scan + 2] << 8 | bytes[scan + 3]);
     *size = length;
-    if (index + 1 < layout->n_strips) /* it ends with the picture's end marker */
+    if (index + 1 < strips->n) /* it ends with the picture's end marker */
         bytes[length - 1] = (uint8_t)(RST0 + index % 8);
     return true;
 }
@@ -147,11 +147,9 @@ static uint8_t *write_comment(uint8_t *bytes, const struct image_attribute *attr
 
 size_t jpeg_head_bound(size_t start, const struct image_attribute *attributes, size_t n_attributes)
 {
-    /* A camera that turns changes how many digits the label has: that is not to change which spare
-     * memory the head takes. */
-    const size_t step = 4096, text = text_bytes(attributes, n_attributes);
+    const size_t text = text_bytes(attributes, n_attributes);
     const size_t segments = (text + SEGMENT_BYTES - 1) / SEGMENT_BYTES;
-    return (start + DRI_BYTES + text + segments * SEGMENT_HEAD_BYTES + step - 1) / step * step;
+    return strip_head_bound(start + DRI_BYTES + text + segments * SEGMENT_HEAD_BYTES);
 }
 
 size_t jpeg_head_write(const struct jpeg_layout *layout, const uint8_t *strip, size_t start,
@@ -163,11 +161,14 @@ size_t jpeg_head_write(const struct jpeg_layout *layout, const uint8_t *strip, s
     at[0] = 0xff;
     at[1] = DRI;
     put_u16(at + 2, DRI_BYTES - 2);
-    const size_t blocks_wide = (layout->width_px + BLOCK_PX - 1) / BLOCK_PX;
-    put_u16(at + SEGMENT_HEAD_BYTES, blocks_wide * (layout->strip_rows / BLOCK_PX));
+    const enum jpeg_subsampling subsampling = layout->options.subsampling;
+    const uint32_t unit_px = UNITS[subsampling].width_px;
+    const uint32_t units_wide = (layout->strips.width_px + unit_px - 1) / unit_px;
+    const uint32_t units_high = layout->strips.rows / UNITS[subsampling].height_px;
+    put_u16(at + SEGMENT_HEAD_BYTES, (size_t)units_wide * units_high);
     at += DRI_BYTES;
     memcpy(at, strip + JFIF_BYTES, start - JFIF_BYTES);
     const size_t frame = find_segment(strip, SOF0);
-    put_u16(at + frame - JFIF_BYTES + SEGMENT_HEAD_BYTES + 1, layout->height_px);
+    put_u16(at + frame - JFIF_BYTES + SEGMENT_HEAD_BYTES + 1, layout->strips.height_px);
     return (size_t)(at - bytes) + start - JFIF_BYTES;
 }

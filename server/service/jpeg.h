@@ -1,5 +1,5 @@
-/* A frame's colour as a JPEG file: three channels of quality 95 without subsampling, since colour
- * lines are as sharp as grey ones. Alpha is left out. The label is the file's comment.
+/* A frame's colour as a JPEG file of three channels; alpha is left out. The label is the file's
+ * comment.
  *
  * The picture is cut into horizontal strips, so that threads can share the work: each becomes a
  * file of its own, and without its head it is one restart interval of the whole file, which is the
@@ -18,13 +18,20 @@
 #include <stdint.h>
 
 #include "server/image/image.h"
+#include "server/service/strips.h"
 
-/* How a picture is cut: strip i has the rows from i * strip_rows on, the last one what is left. */
+/* Of colour (Cb and Cr): one sample for each pixel, for two side by side, or for two by two. */
+enum jpeg_subsampling { JPEG_444, JPEG_422, JPEG_420 };
+struct jpeg_options {
+    unsigned quality; /* 1 to 100, as libjpeg has it */
+    enum jpeg_subsampling subsampling;
+};
+/* Colour lines are as sharp as grey ones. */
+#define JPEG_DEFAULTS ((struct jpeg_options){.quality = 95, .subsampling = JPEG_444})
+
 struct jpeg_layout {
-    uint32_t width_px, height_px;
-    uint32_t strip_rows; /* a multiple of 8 */
-    size_t n_strips;
-    size_t strip_bound; /* what to allocate for a strip */
+    struct strip_layout strips;
+    struct jpeg_options options;
 };
 
 struct jpeg_encoder;
@@ -37,10 +44,11 @@ struct jpeg_encoder *jpeg_encoder_create(void);          /* NULL when memory is 
 void jpeg_encoder_destroy(struct jpeg_encoder *encoder); /* NULL is safe */
 
 /* Sides are from 1 to PROTOCOL_MAX_JPEG_PX. */
-void jpeg_layout_init(struct jpeg_layout *layout, uint32_t width_px, uint32_t height_px);
+void jpeg_layout_init(struct jpeg_layout *layout, uint32_t width_px, uint32_t height_px,
+                      const struct jpeg_options *options);
 
 /* Encodes strip `index` of a picture (R, G, B, A of 8 bits, rows contiguous, top first) to `bytes`,
- * which has room for layout->strip_bound. Of the *size bytes written the file's begin at *start.
+ * which has room for layout->strips.bound. Of the *size bytes written the file's begin at *start.
  * False: ERROR_SERVER, with the library's reason; the encoder may be used again. The same input
  * gives the same bytes. */
 bool jpeg_strip_encode(struct jpeg_encoder *encoder, const struct jpeg_layout *layout, size_t index,

@@ -312,9 +312,10 @@ static void start_encoding(struct request *request)
 {
     label_init(&request->label, &request->frame_request, &request->render,
                render_thread_info(request->host->render_thread));
+    const struct encode_format format = encode_format_of(&request->render);
     encode_start(request->host->pool, &request->host->workers, &request->frame, &request->layout,
-                 request->render.encoding, urgency(request), request->label.attributes,
-                 LABEL_ATTRIBUTES, encode_finished, request);
+                 &format, urgency(request), request->label.attributes, LABEL_ATTRIBUTES,
+                 encode_finished, request);
 }
 
 static void paint_run(struct work *work, void *worker)

@@ -80,7 +80,8 @@ static uint64_t frame_bytes(const struct session *session, const sheen_Render *r
     struct codec_layout all, sent;
     codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
     codec_layout_init(&sent, render->width_px, render->height_px, render->planes);
-    return all.raw_bytes + encode_bytes(&sent, render->encoding) +
+    const struct encode_format format = encode_format_of(render);
+    return all.raw_bytes + encode_bytes(&sent, &format) +
            request_canvas_bytes(session->host, render);
 }
 
@@ -124,6 +125,8 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
 /* What a client of this minor version cannot have meant. */
 static void drop_newer_fields(const struct session *session, sheen_Render *render)
 {
+    if (session->minor < 2)
+        render->has_jpeg_quality = render->has_jpeg_subsampling = false;
     if (session->minor > 0)
         return;
     render->has_view = render->has_deadline_ms = false;

@@ -31,6 +31,9 @@ static void check_render(const sheen_Render *render)
     }
     MUST(codec_layout_init(&layout, render->width_px, render->height_px,
                            message_render_planes(render)));
+    MUST(!render->has_jpeg_quality || (render->jpeg_quality >= 1 && render->jpeg_quality <= 100));
+    MUST(!render->has_jpeg_subsampling ||
+         render->jpeg_subsampling <= sheen_JpegSubsampling_JPEG_420);
     if (render->has_camera)
         MUST(isfinite(render->camera.eye.x) && isfinite(render->camera.fov_deg));
 }

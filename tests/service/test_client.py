@@ -56,6 +56,16 @@ class Client(unittest.TestCase):
             with self.subTest(name=name):
                 self.assertEqual(len(files), 1)
 
+    def test_jpeg_quality(self):
+        at = ("--server", self.daemon.unix)
+        sizes = [len(self.render("a.jpg", *at, *options)[1])
+                 for options in ((), ("--jpeg-subsampling", "420"),
+                                 ("--jpeg-subsampling", "420", "--jpeg-quality", "40"))]
+        self.assertEqual(sizes, sorted(sizes, reverse=True))
+        self.assertEqual(len(set(sizes)), 3)
+        self.assert_fails(2, ".jpg", "render", FENDER, "-o", self.path("x.png"),
+                          "--jpeg-quality", "95")
+
     def test_second_frame_builds_nothing(self):
         model = self.path("new.obj")
         with open(model, "wb") as file:

@@ -380,6 +380,28 @@ class Renders(DaemonCase):
             self.assertEqual(sum(lengths) + 4 * n_strips, len(packed.data))
             self.assertEqual(packed.data[24:28], b"\x28\xb5\x2f\xfd")
 
+    def test_jpeg_options(self):
+        """A lower quality and fewer samples of colour are fewer bytes; a client of minor version 1,
+        which cannot have meant them, gets what it always got."""
+        quality, subsampling = wire.field(30, 40), wire.field(31, 2)
+        with Client(self.daemon.tcp, minor=2) as client, Client(self.daemon.tcp, minor=1) as older:
+            model = client.upload(CUBE, "cube.obj")
+
+            def size(client, *options):
+                return len(client.render(model, width=320, height=240, encoding=wire.JPEG,
+                                         extra=b"".join(options)).data)
+            usual = size(client)
+            self.assertEqual(size(client, wire.field(30, 95), wire.field(31, 0)), usual)
+            self.assertGreater(usual, size(client, subsampling))
+            self.assertGreater(size(client, subsampling), size(client, quality, subsampling))
+            self.assertEqual(size(older, quality, subsampling), usual)
+            for encoding, extra, words in ((wire.JPEG, wire.field(30, 101), "jpeg_quality"),
+                                           (wire.JPEG, wire.field(30, 0), "1 to 100"),
+                                           (wire.JPEG, wire.field(31, 3), "jpeg_subsampling"),
+                                           (wire.PNG, quality, "JPEG files")):
+                seq = client.ask(model, encoding=encoding, extra=extra)
+                self.assert_refused(client, wire.ERROR_REQUEST, words, seq)
+
     def test_many_ahead(self):
         """More requests than are taken at once are answered all the same."""
         with Client(self.daemon.unix) as client:

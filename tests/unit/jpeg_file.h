@@ -9,16 +9,17 @@
 
 #include "server/service/jpeg.h"
 
-static uint8_t *jpeg_file(struct jpeg_encoder *encoder, const uint8_t *rgba, uint32_t width_px,
-                          uint32_t height_px, const struct image_attribute *attributes,
-                          size_t n_attributes, size_t *size)
+static uint8_t *jpeg_file_of(struct jpeg_encoder *encoder, const struct jpeg_options *options,
+                             const uint8_t *rgba, uint32_t width_px, uint32_t height_px,
+                             const struct image_attribute *attributes, size_t n_attributes,
+                             size_t *size)
 {
     struct jpeg_layout layout;
-    jpeg_layout_init(&layout, width_px, height_px);
+    jpeg_layout_init(&layout, width_px, height_px, options);
     uint8_t *file = NULL;
     *size = 0;
-    for (size_t i = 0; i < layout.n_strips; i++) {
-        uint8_t *strip = malloc(layout.strip_bound); /* a checker sees a write past the bound */
+    for (size_t i = 0; i < layout.strips.n; i++) {
+        uint8_t *strip = malloc(layout.strips.bound); /* a checker sees a write past the bound */
         size_t start, end;
         struct error error = {0};
         assert_non_null(strip);
@@ -35,6 +36,16 @@ static uint8_t *jpeg_file(struct jpeg_encoder *encoder, const uint8_t *rgba, uin
         free(strip);
     }
     return file;
+}
+
+/* As the daemon writes them when nothing is said. */
+static inline uint8_t *jpeg_file(struct jpeg_encoder *encoder, const uint8_t *rgba,
+                                 uint32_t width_px, uint32_t height_px,
+                                 const struct image_attribute *attributes, size_t n_attributes,
+                                 size_t *size)
+{
+    return jpeg_file_of(encoder, &JPEG_DEFAULTS, rgba, width_px, height_px, attributes,
+                        n_attributes, size);
 }
 
 #endif

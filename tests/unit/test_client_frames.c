@@ -332,13 +332,27 @@ static void answers_to_nothing_are_refused(void **state)
 /* What the options say stands in the message. */
 static sheen_Render seen_render;
 
-static void serve_and_keep(int fd)
+static void keep_render(int fd)
 {
-    greet(fd);
     uint8_t body[4096];
     struct message_header header = read_message(fd, body, sizeof body);
     message_decode(MESSAGE_RENDER, body, header.length, &seen_render);
     send_error(fd, header.seq, sheen_ErrorCode_ERROR_OVERLOADED, "later");
+}
+
+static void serve_and_keep(int fd)
+{
+    greet(fd);
+    keep_render(fd);
+}
+
+static void serve_and_keep_newer(int fd)
+{
+    struct message_header hello = read_message(fd, NULL, 0);
+    sheen_HelloOk ok = HELLO_OK;
+    ok.minor = 2;
+    send_message(fd, MESSAGE_HELLO_OK, hello.seq, &ok);
+    keep_render(fd);
 }
 
 static void classes_travel(void **state)
@@ -368,6 +382,44 @@ static void classes_travel(void **state)
     sheen_frame_finish(&frame);
     sheen_close(session);
     fake_finish(&fake);
+}
+
+/* To a daemon of minor version 2 alone: another would skip them. */
+static void jpeg_options_travel(void **state)
+{
+    (void)state;
+    for (int is_newer = 0; is_newer < 2; is_newer++) {
+        struct fake fake;
+        struct sheen_error error;
+        struct sheen_session *session;
+        struct sheen_frame frame = {0};
+        struct sheen_request request = small_request(SHEEN_FILE_JPEG);
+        assert_int_equal(
+            open_session(&fake, is_newer ? serve_and_keep_newer : serve_and_keep, &session, &error),
+            SHEEN_OK);
+        request.jpeg_quality = 101;
+        assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
+        assert_non_null(strstr(error.text, "jpeg_quality"));
+        request.jpeg_quality = is_newer ? 80 : 0;
+        request.jpeg_subsampling = SHEEN_JPEG_420;
+        enum sheen_status status = sheen_send(session, &request, &error);
+        assert_int_equal(status, is_newer ? SHEEN_OK : SHEEN_BAD_ARGUMENT);
+        if (!is_newer) {
+            assert_non_null(strstr(error.text, "too old"));
+            request.jpeg_subsampling = SHEEN_JPEG_444; /* what it does anyway */
+            assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
+        }
+        assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OVERLOADED);
+        assert_int_equal(seen_render.has_jpeg_quality, is_newer);
+        assert_int_equal(seen_render.has_jpeg_subsampling, is_newer);
+        if (is_newer) {
+            assert_int_equal(seen_render.jpeg_quality, 80);
+            assert_int_equal(seen_render.jpeg_subsampling, sheen_JpegSubsampling_JPEG_420);
+        }
+        sheen_frame_finish(&frame);
+        sheen_close(session);
+        fake_finish(&fake);
+    }
 }
 
 /* ---- errors ---- */
@@ -523,6 +575,7 @@ int main(void)
         cmocka_unit_test(more_than_is_granted_is_refused),
         cmocka_unit_test(answers_to_nothing_are_refused),
         cmocka_unit_test(classes_travel),
+        cmocka_unit_test(jpeg_options_travel),
         cmocka_unit_test(every_error_has_its_status),
         cmocka_unit_test(a_lost_frame_is_asked_for_again),
         cmocka_unit_test(a_lost_frame_gives_way_to_a_newer_one),

@@ -274,6 +274,16 @@ static void good_command_lines(void **state)
     assert_true(options.given & GIVEN_CLASS);
     assert_int_equal(options.request.request_class, SHEEN_BATCH);
     assert_int_equal(options.request.deadline_ms, 250);
+    assert_int_equal(parse(&COMMAND_RENDER,
+                           "m.obj --jpeg-quality 1 -o a.JPEG --jpeg-subsampling 420", &options,
+                           why),
+                     OPTIONS_RUN);
+    assert_int_equal(options.request.jpeg_quality, 1);
+    assert_int_equal(options.request.jpeg_subsampling, SHEEN_JPEG_420);
+    assert_int_equal(
+        parse(&COMMAND_STREAM, "m.obj --frames 2 -o a%d.jpg --jpeg-quality 100", &options, why),
+        OPTIONS_RUN);
+    assert_int_equal(options.request.jpeg_quality, 100);
     assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --class interactive", &options, why),
                      OPTIONS_RUN);
     assert_int_equal(options.request.request_class, SHEEN_INTERACTIVE);
@@ -348,6 +358,14 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png --line-eye 1,2", "--line-eye '1,2'"},
         {&COMMAND_RENDER, "m.obj -o a.png --filter on", "exact or off"},
         {&COMMAND_RENDER, "m.obj -o a.png --base blue", "#rrggbb"},
+        {&COMMAND_RENDER, "m.obj -o a.jpg --jpeg-quality 0", "1 to 100"},
+        {&COMMAND_RENDER, "m.obj -o a.jpg --jpeg-quality 101", "--jpeg-quality '101'"},
+        {&COMMAND_RENDER, "m.obj -o a.jpg --jpeg-quality high", "1 to 100"},
+        {&COMMAND_RENDER, "m.obj -o a.jpg --jpeg-subsampling 411", "444, 422 or 420"},
+        {&COMMAND_RENDER, "m.obj -o a.png --jpeg-quality 95", ".jpg"},
+        {&COMMAND_STREAM, "m.obj --frames 2 --jpeg-quality 95", ".jpg"},
+        {&COMMAND_STREAM, "m.obj --frames 2 --jpeg-quality 95 -o a%d.tif", ".jpg"},
+        {&COMMAND_RENDER, "m.obj --jpeg-subsampling 444 -o a.tif", ".jpg"},
         {&COMMAND_RENDER, "m.obj -o a.png --surface polygon", "polygon:LEVEL"},
         {&COMMAND_RENDER, "m.obj -o a.png --surface polygon:", "polygon:LEVEL"},
         {&COMMAND_RENDER, "m.obj -o a.png --surface polygon:7", "LEVEL from 0 to 6"},

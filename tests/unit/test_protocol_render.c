@@ -72,6 +72,37 @@ static void render_jpeg_sizes(void **state)
     }
 }
 
+static void render_jpeg_options(void **state)
+{
+    (void)state;
+    char text[MESSAGE_TEXT_BYTES];
+    sheen_Render render = GOOD;
+    render.encoding = sheen_Encoding_ENCODING_JPEG;
+    render.has_jpeg_quality = render.has_jpeg_subsampling = true;
+    for (uint32_t quality = 0; quality <= 101; quality++) {
+        render.jpeg_quality = quality;
+        assert_int_equal(check(&render, text), quality >= 1 && quality <= 100);
+    }
+    assert_non_null(strstr(text, "jpeg_quality (--jpeg-quality) is 101; it must be from 1 to 100"));
+    render.jpeg_quality = 50;
+    for (int kind = 0; kind <= 3; kind++) {
+        render.jpeg_subsampling = (sheen_JpegSubsampling)kind;
+        assert_int_equal(check(&render, text), kind < 3);
+    }
+    assert_non_null(strstr(text, "jpeg_subsampling"));
+    render.jpeg_subsampling = sheen_JpegSubsampling_JPEG_420;
+    for (int e = 0; e <= (int)_sheen_Encoding_MAX; e++) {
+        render.encoding = (sheen_Encoding)e;
+        render.has_jpeg_quality = e % 2;
+        render.has_jpeg_subsampling = true;
+        assert_int_equal(check(&render, text), e == sheen_Encoding_ENCODING_JPEG);
+        render.has_jpeg_quality = true;
+        render.has_jpeg_subsampling = false;
+        assert_int_equal(check(&render, text), e == sheen_Encoding_ENCODING_JPEG);
+    }
+    assert_non_null(strstr(text, "are for JPEG files"));
+}
+
 static void render_floats(void **state)
 {
     (void)state;
@@ -318,15 +349,11 @@ static void render_schedules(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(render_sizes),
-        cmocka_unit_test(render_jpeg_sizes),
-        cmocka_unit_test(render_floats),
-        cmocka_unit_test(render_geometry),
-        cmocka_unit_test(cameras_in_part),
-        cmocka_unit_test(render_kinds),
-        cmocka_unit_test(render_surfaces),
-        cmocka_unit_test(false_colour),
-        cmocka_unit_test(left_out_fields_are_not_looked_at),
+        cmocka_unit_test(render_sizes),        cmocka_unit_test(render_jpeg_sizes),
+        cmocka_unit_test(render_jpeg_options), cmocka_unit_test(render_floats),
+        cmocka_unit_test(render_geometry),     cmocka_unit_test(cameras_in_part),
+        cmocka_unit_test(render_kinds),        cmocka_unit_test(render_surfaces),
+        cmocka_unit_test(false_colour),        cmocka_unit_test(left_out_fields_are_not_looked_at),
         cmocka_unit_test(render_schedules),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -243,6 +243,20 @@ static void check_render_interactive(const uint8_t *bytes, size_t size)
     same_message(MESSAGE_RENDER, 8, &render, bytes, size);
 }
 
+static void check_render_jpeg(const uint8_t *bytes, size_t size)
+{
+    sheen_Render render = {.width_px = 1280,
+                           .height_px = 720,
+                           .planes = sheen_Plane_PLANE_COLOUR,
+                           .encoding = sheen_Encoding_ENCODING_JPEG,
+                           .has_jpeg_quality = true,
+                           .jpeg_quality = 80,
+                           .has_jpeg_subsampling = true,
+                           .jpeg_subsampling = sheen_JpegSubsampling_JPEG_420};
+    count_id(render.model_sha256);
+    same_message(MESSAGE_RENDER, 10, &render, bytes, size);
+}
+
 static void check_superseded(const uint8_t *bytes, size_t size)
 {
     const sheen_Superseded superseded = {.by = 9};
@@ -388,6 +402,7 @@ static const struct {
     {"render-least", check_render_least},
     {"render-full", check_render_full},
     {"render-interactive", check_render_interactive},
+    {"render-jpeg", check_render_jpeg},
     {"superseded", check_superseded},
     {"cancel", check_cancel},
     {"frame", check_frame},

@@ -152,6 +152,8 @@ WIRE(draft, render->show = (sheen_Show){.kind = sheen_ShowKind_SHOW_DRAFT,
 WIRE(level, render->has_surface = render->has_surface_level = true;
      render->surface = sheen_SurfaceKind_SURFACE_POLYGON; render->surface_level = (uint32_t)value)
 FRAME(level, frame->surface = (struct surface){SURFACE_POLYGON, (uint32_t)value})
+WIRE(jpeg_quality, render->encoding = sheen_Encoding_ENCODING_JPEG; render->has_jpeg_quality = true;
+     render->jpeg_quality = (uint32_t)value)
 WIRE(deadline, render->has_deadline_ms = true; render->deadline_ms = (uint32_t)value)
 
 enum kind { REAL, WHOLE, SINGLE /* precision */ };
@@ -210,6 +212,8 @@ static const struct field {
     {&RANGES[RANGE_COLOUR], SINGLE, NULL, wire_base, frame_base},
     {&RANGES[RANGE_SHOW], REAL, RENDER "--show-range %.17g --show mean", wire_mean, NULL},
     {&RANGES[RANGE_DRAFT], REAL, RENDER "--show-range %.17g --show draft:0,0,1", wire_draft, NULL},
+    {&RANGES[RANGE_JPEG_QUALITY], WHOLE, "m.obj -o a.jpg --jpeg-quality %.17g", wire_jpeg_quality,
+     NULL},
     {&RANGES[RANGE_LEVEL], WHOLE, RENDER "--surface polygon:%.17g", wire_level, frame_level},
     {&RANGES[RANGE_DEADLINE], WHOLE, RENDER "--deadline %.17g", wire_deadline, NULL},
     {&OPTION_RANGES[OPTION_RANGE_FRAMES], WHOLE, "m.obj --frames %.17g", NULL, NULL},

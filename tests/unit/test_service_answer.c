@@ -104,7 +104,8 @@ static void start_encoding(struct fixture *f, uint32_t planes, sheen_Encoding en
     struct frame frame = make_frame(planes);
     struct codec_layout layout;
     assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, planes));
-    encode_start(f->pool, &f->workers, &frame, &layout, encoding, POOL_SOON, LABEL, 1,
+    const struct encode_format format = {encoding, JPEG_DEFAULTS};
+    encode_start(f->pool, &f->workers, &frame, &layout, &format, POOL_SOON, LABEL, 1,
                  encode_finished, f);
     assert_null(frame.plane[0]);
 }

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <turbojpeg.h>
 
 #include "tests/unit/jpeg_file.h"
 
@@ -133,18 +134,69 @@ static void test_what_comes_back(void **state)
         }
 }
 
+/* A whole picture as the library itself writes it; tjFree() is due. */
+static uint8_t *library_file(const uint8_t *rgba, uint32_t width, uint32_t height,
+                             const struct jpeg_options *options, unsigned long *size)
+{
+    static const int samplings[] = {TJSAMP_444, TJSAMP_422, TJSAMP_420};
+    unsigned char *file = NULL;
+    tjhandle handle = tjInitCompress();
+    assert_non_null(handle);
+    assert_int_equal(tjCompress2(handle, rgba, (int)width, 0, (int)height, TJPF_RGBX, &file, size,
+                                 samplings[options->subsampling], (int)options->quality,
+                                 TJFLAG_ACCURATEDCT),
+                     0);
+    tjDestroy(handle);
+    return file;
+}
+
+/* In strips a picture decodes to the same pixels as in one piece, whatever is asked for. */
+static void test_options(void **state)
+{
+    (void)state;
+    static const unsigned qualities[] = {1, 50, 95, 100};
+    static const uint32_t sizes[][2] = {{1, 1}, {17, 3}, {128, 1025}, {811, 323}};
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+        const uint32_t width = sizes[s][0], height = sizes[s][1];
+        uint8_t *rgba = make_picture(paint_colours, width, height);
+        for (size_t i = 0; i < 3 * sizeof qualities / sizeof *qualities; i++) {
+            const struct jpeg_options options = {qualities[i / 3], (enum jpeg_subsampling)(i % 3)};
+            size_t size;
+            unsigned long want_size = 0;
+            struct image want;
+            struct error error = {0};
+            uint8_t *file = jpeg_file_of(encoder, &options, rgba, width, height, LABEL, 2, &size);
+            uint8_t *want_file = library_file(rgba, width, height, &options, &want_size);
+            if (!image_decode(&want, want_file, want_size, "want.jpg", 65536, &error))
+                fail_msg("%s", error.text);
+            if (compare(want.pixels, file, size, width, height).worst != 0)
+                fail_msg("%u x %u, quality %u, subsampling %d", width, height, options.quality,
+                         options.subsampling);
+            image_finish(&want);
+            tjFree(want_file);
+            free(file);
+        }
+        free(rgba);
+    }
+}
+
 /* The most bytes that pixels can become; helped by a checker that knows the bound's end. */
 static void test_noise_keeps_to_the_bound(void **state)
 {
     (void)state;
     const uint32_t width = 333, height = 500;
     uint8_t *rgba = make_picture(paint_noise, width, height);
+    for (int i = 0; i < 3; i++) {
+        const struct jpeg_options most = {100, (enum jpeg_subsampling)i};
+        size_t most_size;
+        free(jpeg_file_of(encoder, &most, rgba, width, height, NULL, 0, &most_size));
+    }
     struct jpeg_layout layout;
-    jpeg_layout_init(&layout, width, height);
+    jpeg_layout_init(&layout, width, height, &JPEG_DEFAULTS);
     size_t size;
     uint8_t *file = jpeg_file(encoder, rgba, width, height, NULL, 0, &size);
     assert_true(size > (size_t)2 * width * height);
-    assert_true(size < layout.n_strips * layout.strip_bound);
+    assert_true(size < layout.strips.n * layout.strips.bound);
     assert_true(compare(rgba, file, size, width, height).psnr_db > 25);
     free(file);
     free(rgba);
@@ -156,9 +208,9 @@ static void test_strips_are_restart_intervals(void **state)
     const uint32_t width = 16384, height = 85; /* 8 rows a strip */
     uint8_t *rgba = make_picture(paint_grey, width, height);
     struct jpeg_layout layout;
-    jpeg_layout_init(&layout, width, height);
-    assert_int_equal(layout.strip_rows, 8);
-    assert_int_equal(layout.n_strips, 11);
+    jpeg_layout_init(&layout, width, height, &JPEG_DEFAULTS);
+    assert_int_equal(layout.strips.rows, 8);
+    assert_int_equal(layout.strips.n, 11);
     size_t size;
     uint8_t *file = jpeg_file(encoder, rgba, width, height, NULL, 0, &size);
     char restarts[16];
@@ -261,8 +313,8 @@ static void test_what_the_library_refuses(void **state)
     const uint32_t width = 65501;
     uint8_t *rgba = make_picture(paint_grey, width, 1);
     struct jpeg_layout layout;
-    jpeg_layout_init(&layout, width, 1);
-    uint8_t *bytes = malloc(layout.strip_bound);
+    jpeg_layout_init(&layout, width, 1, &JPEG_DEFAULTS);
+    uint8_t *bytes = malloc(layout.strips.bound);
     assert_non_null(bytes);
     size_t start, end, size;
     struct error error = {0};
@@ -347,6 +399,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_comes_back),
+        cmocka_unit_test(test_options),
         cmocka_unit_test(test_noise_keeps_to_the_bound),
         cmocka_unit_test(test_strips_are_restart_intervals),
         cmocka_unit_test(test_label),

@@ -130,7 +130,8 @@ static void test_least_memory_holds_a_frame(void **state)
     codec_layout_init(&layout, 640, 480, sheen_Plane_PLANE_COLOUR);
     assert_int_equal(row_of("max-frame")->low, layout.raw_bytes);
     for (int e = _sheen_Encoding_MIN; e <= (int)_sheen_Encoding_MAX; e++) {
-        uint64_t bytes = layout.raw_bytes + encode_bytes(&layout, (sheen_Encoding)e);
+        const struct encode_format format = {(sheen_Encoding)e, JPEG_DEFAULTS};
+        uint64_t bytes = layout.raw_bytes + encode_bytes(&layout, &format);
         assert_true(bytes <= row_of("memory-budget")->low && bytes <= row_of("peer-memory")->low);
     }
 }

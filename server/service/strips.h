@@ -1,0 +1,31 @@
+/* How a picture is cut into horizontal strips, so that threads can share the work of encoding it:
+ * what the encoders of files have in common. Pure, any thread. */
+#ifndef SHEEN_SERVICE_STRIPS_H
+#define SHEEN_SERVICE_STRIPS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Strip i has the rows from i * rows on, the last one what is left. */
+struct strip_layout {
+    uint32_t width_px, height_px;
+    uint32_t rows;
+    size_t n;
+    size_t bound; /* what to allocate for an encoded strip */
+};
+
+/* Strips of about PROTOCOL_STRIP_BYTES of 8-bit R, G, B and A; their rows are a multiple of
+ * `multiple`. Sides are from 1 to PROTOCOL_MAX_SIZE_PX. The bound is left to the encoder. */
+void strip_layout_init(struct strip_layout *layout, uint32_t width_px, uint32_t height_px,
+                       uint32_t multiple);
+
+/* Rows of a strip. */
+uint32_t strip_rows(const struct strip_layout *layout, size_t index);
+/* The first pixel of a strip in a picture whose rows are contiguous. */
+const uint8_t *strip_pixels(const struct strip_layout *layout, size_t index, const uint8_t *rgba);
+
+/* What to allocate for a file's head of so many bytes. A camera that turns changes how many digits
+ * the label has: that is not to change which spare memory the head takes. */
+size_t strip_head_bound(size_t bytes);
+
+#endif
