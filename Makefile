@@ -93,7 +93,7 @@ IMAGE_WORKER_OBJ := $(call obj,server/worker/image_main.c $(IMAGE_SRC) server/wo
                     $(IMAGE_TASKS_OBJ) $(WORKER_OBJ)
 CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 
-SERVER_LIBS := -lepoxy -lprotobuf-nanopb -lzstd -lturbojpeg -lssl -lcrypto -linih -lm
+SERVER_LIBS := -lepoxy -lprotobuf-nanopb -lzstd -lz -lturbojpeg -lssl -lcrypto -linih -lm
 CAGE_WORKER_LIBS := -ltinygltf -lm
 IMAGE_WORKER_LIBS := -lOpenImageIO -lOpenImageIO_Util -lm
 CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lssl -lcrypto -lpng -ljansson -lm

@@ -55,6 +55,8 @@ only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned fun
 only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp
 only_in '#include <turbojpeg|\btj[A-Z][A-Za-z0-9]*\(' 'libjpeg-turbo code' 'server client protocol' server/service/jpeg.c
 only_in '#include <jansson' 'jansson code' 'server client protocol' client/gltf_pack.c
+only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32)(_combine)?\(' 'zlib code' \
+    'server client protocol' server/service/png.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf
 
 cppcheck --quiet --std=c11 --language=c --inline-suppr --error-exitcode=1 -I. \

@@ -63,9 +63,9 @@ struct image_attribute {
     const char *value;
 };
 
-enum image_format { IMAGE_PNG, IMAGE_EXR, IMAGE_TIFF };
+enum image_format { IMAGE_EXR, IMAGE_TIFF };
 
-/* Encodes to a malloc'd buffer that the caller frees. PNG and TIFF take the UINT8 channels R G B
+/* Encodes to a malloc'd buffer that the caller frees. TIFF takes the UINT8 channels R G B
  * A only; EXR takes any mix of types, UINT8 colour written as HALF in [0,1]. The same input gives
  * the same bytes: no clock, host or path is written. A plane that the format cannot hold is
  * ERROR_REQUEST. */

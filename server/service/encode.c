@@ -1,8 +1,10 @@
 #include "server/service/encode.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "server/fault.h"
+#include "server/service/png.h"
 
 #define ZSTD_LEVEL 1
 #define MAX_CHANNELS 22 /* of all planes together */
@@ -15,6 +17,8 @@ struct strip_work {
     struct encode_job *job;
     size_t index;
     size_t start, size; /* of what was written, from where to where it is the frame's */
+    bool has_alpha;     /* PNG: encoded so */
+    uint32_t checksum;  /* PNG: of the strip */
     struct error error; /* why it failed */
 };
 
@@ -34,6 +38,8 @@ struct encode_job {
     struct work file_work;
     size_t file_size;
     struct jpeg_layout jpeg;
+    struct strip_layout png;
+    atomic_bool has_alpha; /* PNG: a strip has been found not to be opaque */
     struct strip_work *strips;
     size_t n_strips, n_strips_left;
     bool (*join)(struct encode_job *job); /* the strips; false: no memory */
@@ -43,6 +49,7 @@ struct encode_job {
 struct encoders {
     struct codec_encoder *zstd;
     struct jpeg_encoder *jpeg;
+    struct png_encoder *png;
 };
 
 static void stop_worker(void *worker)
@@ -50,6 +57,7 @@ static void stop_worker(void *worker)
     struct encoders *encoders = worker;
     codec_encoder_destroy(encoders->zstd);
     jpeg_encoder_destroy(encoders->jpeg);
+    png_encoder_destroy(encoders->png);
     free(encoders);
 }
 
@@ -58,7 +66,7 @@ static bool start_worker(void *owner, void **worker, struct error *error)
     (void)owner;
     struct encoders *encoders = calloc(1, sizeof *encoders);
     if (encoders && (encoders->zstd = codec_encoder_create(ZSTD_LEVEL)) &&
-        (encoders->jpeg = jpeg_encoder_create())) {
+        (encoders->jpeg = jpeg_encoder_create()) && (encoders->png = png_encoder_create())) {
         *worker = encoders;
         return true;
     }
@@ -149,11 +157,12 @@ static void start_raw(struct encode_job *job)
 static uint8_t *take_strip(struct strip_work *strip, size_t bound)
 {
     struct encoded *encoded = strip->job->encoded;
-    uint8_t *bytes = fault_at("encode") ? NULL : spares_take(encoded->spares, bound);
-    if (!bytes)
+    uint8_t **block = &encoded->blocks[1 + strip->index];
+    if (!*block) /* it has none from a first try */
+        *block = fault_at("encode") ? NULL : spares_take(encoded->spares, bound);
+    if (!*block)
         set_no_memory(strip->job, &strip->error);
-    encoded->blocks[1 + strip->index] = bytes;
-    return bytes;
+    return *block;
 }
 
 static void add_strips(struct encode_job *job)
@@ -165,13 +174,26 @@ static void add_strips(struct encode_job *job)
     }
 }
 
+/* Submits the strips that are not as the whole picture turned out to be. False: all are. */
+static bool repeat_strips(struct encode_job *job)
+{
+    for (size_t i = 0; i < job->n_strips; i++) {
+        struct strip_work *strip = &job->strips[i];
+        if (strip->has_alpha == atomic_load(&job->has_alpha))
+            continue;
+        job->n_strips_left++;
+        pool_submit(job->pool, &strip->work, job->urgency);
+    }
+    return job->n_strips_left > 0;
+}
+
 static void strip_done(struct work *work)
 {
     const struct strip_work *strip = work->owner;
     struct encode_job *job = strip->job;
     if (strip->error.kind != ERROR_NONE)
         job->error = strip->error;
-    if (--job->n_strips_left > 0)
+    if (--job->n_strips_left > 0 || (job->error.kind == ERROR_NONE && repeat_strips(job)))
         return;
     frame_finish(&job->encoded->frame);
     if (job->error.kind != ERROR_NONE)
@@ -272,6 +294,57 @@ static void start_jpeg(struct encode_job *job)
     start_strips(job, job->jpeg.strips.n, jpeg_run, jpeg_join);
 }
 
+/* --- PNG: a head and the strips, of which the last holds the tail */
+
+static void png_run(struct work *work, void *worker)
+{
+    struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    struct encoders *encoders = worker;
+    const uint8_t *rgba = job->encoded->frame.plane[0];
+    struct png_strip written = {0};
+    uint8_t *bytes = take_strip(strip, job->png.bound);
+    uint8_t *row = bytes ? spares_take(job->encoded->spares, png_row_bytes(&job->png)) : NULL;
+    /* Most pictures are opaque: none is searched for alpha before its strips are encoded. */
+    if (!atomic_load(&job->has_alpha) && !png_strip_is_opaque(&job->png, strip->index, rgba))
+        atomic_store(&job->has_alpha, true);
+    strip->has_alpha = atomic_load(&job->has_alpha);
+    if (!row)
+        set_no_memory(job, &strip->error);
+    else
+        png_strip_encode(encoders->png, &job->png, strip->index, rgba, strip->has_alpha, row, bytes,
+                         &written, &strip->error);
+    spares_give(job->encoded->spares, row);
+    strip->size = written.size;
+    strip->checksum = written.checksum;
+}
+
+static bool png_join(struct encode_job *job)
+{
+    struct encoded *encoded = job->encoded;
+    struct strip_work *last = &job->strips[job->n_strips - 1];
+    const bool has_alpha = atomic_load(&job->has_alpha);
+    uint8_t *head =
+        spares_take(encoded->spares, png_head_bound(job->attributes, job->n_attributes));
+    encoded->blocks[0] = head;
+    if (!head)
+        return false;
+    uint32_t checksum = 1;
+    for (size_t i = 0; i < job->n_strips; i++)
+        checksum = png_checksum(checksum, &job->png, i, has_alpha, job->strips[i].checksum);
+    last->size += png_tail_write(checksum, encoded->blocks[job->n_strips] + last->size);
+    add_piece(encoded, head,
+              png_head_write(&job->png, has_alpha, job->attributes, job->n_attributes, head));
+    add_strips(job);
+    return true;
+}
+
+static void start_png(struct encode_job *job)
+{
+    png_layout_init(&job->png, job->layout.width_px, job->layout.height_px);
+    start_strips(job, job->png.n, png_run, png_join);
+}
+
 /* --- files, by a worker process */
 
 /* The channels of every plane, in the order of the planes' bits. */
@@ -296,14 +369,7 @@ static const struct {
 
 static enum image_format file_format(sheen_Encoding encoding)
 {
-    switch (encoding) {
-    case sheen_Encoding_ENCODING_EXR:
-        return IMAGE_EXR;
-    case sheen_Encoding_ENCODING_TIFF:
-        return IMAGE_TIFF;
-    default:
-        return IMAGE_PNG;
-    }
+    return encoding == sheen_Encoding_ENCODING_EXR ? IMAGE_EXR : IMAGE_TIFF;
 }
 
 static void add_channels(const struct encode_job *job, struct picture *picture)
@@ -377,12 +443,16 @@ struct encode_format encode_format_of(const sheen_Render *render)
 uint64_t encode_bytes(const struct codec_layout *layout, const struct encode_format *format)
 {
     struct jpeg_layout jpeg;
+    struct strip_layout png;
     switch (format->encoding) {
     case sheen_Encoding_ENCODING_RAW:
         return 0;
     case sheen_Encoding_ENCODING_JPEG:
         jpeg_layout_init(&jpeg, layout->width_px, layout->height_px, &format->jpeg);
         return (uint64_t)jpeg.strips.n * jpeg.strips.bound;
+    case sheen_Encoding_ENCODING_PNG:
+        png_layout_init(&png, layout->width_px, layout->height_px);
+        return (uint64_t)png.n * png.bound;
     default:
         return layout->raw_bytes;
     }
@@ -427,6 +497,9 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
         break;
     case sheen_Encoding_ENCODING_ZSTD:
         start_strips(job, layout->n_strips, zstd_run, zstd_join);
+        break;
+    case sheen_Encoding_ENCODING_PNG:
+        start_png(job);
         break;
     case sheen_Encoding_ENCODING_JPEG:
         start_jpeg(job);

@@ -1,5 +1,5 @@
-/* A rendered frame turned into the bytes that the client asked for: on the pool; PNG, EXR and TIFF
- * by a worker process.
+/* A rendered frame turned into the bytes that the client asked for: on the pool; EXR and TIFF by a
+ * worker process.
  * Thread: the loop's, for all functions here. */
 #ifndef SHEEN_SERVICE_ENCODE_H
 #define SHEEN_SERVICE_ENCODE_H

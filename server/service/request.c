@@ -365,11 +365,11 @@ static void enter_queue(struct request *request)
         request_answer_superseded(replaced->owner, request->seq);
 }
 
-/* Is it written as a file, or has it a legend? */
+/* Does a worker process write it, or has it a legend? */
 static bool takes_images(const sheen_Render *render)
 {
-    return (render->encoding != sheen_Encoding_ENCODING_RAW &&
-            render->encoding != sheen_Encoding_ENCODING_ZSTD) ||
+    return render->encoding == sheen_Encoding_ENCODING_EXR ||
+           render->encoding == sheen_Encoding_ENCODING_TIFF ||
            (render->show.kind != sheen_ShowKind_SHOW_LINES && show_has_legend(&render->show));
 }
 

@@ -12,6 +12,7 @@ import unittest
 
 import wire
 from daemon import CUBE, SHEEND, Daemon, grid, run
+from test_untrusted import workers
 from wire import Client
 
 
@@ -458,6 +459,15 @@ class SessionFd(unittest.TestCase):
         self.assertEqual(process.stderr.read(), "")
         process.stderr.close()
 
+    def test_starts_no_library_for_a_picture_of_its_own(self):
+        for encoding, is_started in ((wire.PNG, False), (wire.JPEG, False), (wire.TIFF, True)):
+            ours, process = self.start()
+            with self.client(ours) as client:
+                client.render(client.upload(CUBE, "cube.obj"), encoding=encoding)
+                self.assertEqual("sheend-image" in workers(process.pid), is_started)
+            self.assertEqual(process.wait(10), 0)
+            process.stderr.close()
+
     def test_ends_when_its_client_dies_in_the_middle(self):
         ours, process = self.start()
         with self.client(ours) as client:
@@ -471,8 +481,8 @@ class SessionFd(unittest.TestCase):
         with self.client(ours) as client:
             model = client.upload(CUBE, "cube.obj")
             client.render(model)
-            client.send(b"".join(wire.render(5 + i, model, 6000, 6000, encoding=wire.PNG)
-                                 for i in range(3)))
+            client.send(b"".join(wire.render(5 + i, model, 6000, 6000, encoding=encoding)
+                                 for i, encoding in enumerate((wire.PNG, wire.TIFF, wire.PNG))))
             time.sleep(0.5)
         start = time.monotonic()
         self.assertEqual(process.wait(60), 0)

@@ -283,10 +283,10 @@ class Stuck(unittest.TestCase):
         server = Daemon("--drain-timeout", "1")
         client = wire.Client(server.unix)
         model = client.upload(CUBE, "cube.obj")
-        client.render(model, encoding=wire.PNG)
+        client.render(model, encoding=wire.TIFF)
         writer = workers(server.process.pid)["sheend-image"]
         os.kill(writer, signal.SIGSTOP)
-        self.told_at_the_end(server, client, client.ask(model, encoding=wire.PNG))
+        self.told_at_the_end(server, client, client.ask(model, encoding=wire.TIFF))
         self.assertNotIn("at work", server.errors())
         server.stop()
 

@@ -48,6 +48,12 @@ def light_at(x):
     return wire.field(5, light)
 
 
+def clear():
+    """Nothing where no surface is: some strips of a PNG file are opaque, and are encoded again."""
+    return wire.field(8, b"".join(wire.varint(i << 3 | 5) + struct.pack("<f", 0)
+                                  for i in range(1, 5)))
+
+
 class WarmFrames(unittest.TestCase):
     def serve(self, *arguments):
         """A daemon with the model, and a client that did not upload it: the room that an upload's
@@ -81,7 +87,8 @@ class WarmFrames(unittest.TestCase):
             "raw float planes": {"encoding": wire.RAW, "planes": planes},
             "in tiles": {"encoding": wire.ZSTD, "width": 640, "height": 480, "kind": wire.STILL},
             "batch": {"encoding": wire.RAW, "kind": wire.BATCH},
-            "PNG": {"encoding": wire.PNG},
+            "PNG": {"encoding": wire.PNG, "width": 640, "height": 480},
+            "PNG with alpha": {"encoding": wire.PNG, "width": 640, "height": 480, "extra": clear()},
             "JPEG": {"encoding": wire.JPEG},
             "false colour": {"encoding": wire.RAW, "width": 320, "height": 240,  # with a legend
                              "extra": wire.field(13, wire.field(1, 1))},
@@ -98,7 +105,7 @@ class WarmFrames(unittest.TestCase):
             "view, edges in slices": lambda x: camera_at(x) + sliced,
         }
         for name, extra in changes.items():
-            for encoding, planes in ((wire.ZSTD, COLOUR), (wire.JPEG, COLOUR),
+            for encoding, planes in ((wire.ZSTD, COLOUR), (wire.JPEG, COLOUR), (wire.PNG, COLOUR),
                                      (wire.ZSTD, COLOUR | P | N | PTEX | LIGHT)):
                 frames = [(model, {"kind": wire.INTERACTIVE, "encoding": encoding,
                                    "planes": planes, "extra": extra(0.1 * i)}) for i in range(20)]
@@ -120,7 +127,7 @@ class WarmFrames(unittest.TestCase):
 
     def test_nor_do_two_in_flight(self):
         server, client, model = self.serve()
-        for encoding in wire.RAW, wire.ZSTD, wire.JPEG:
+        for encoding in wire.RAW, wire.ZSTD, wire.JPEG, wire.PNG:
             # How many frames are on their way at once is up to the clock, and of what few need the
             # spares may have let go. What each frame takes is in all of these.
             counts = []

@@ -111,7 +111,7 @@ class Untrusted(DaemonCase):
 
     def test_dead_workers_are_started_again(self):
         pid = self.daemon.process.pid
-        for encoding in (wire.RAW, wire.PNG):
+        for encoding in (wire.RAW, wire.EXR):
             before = workers(pid)
             self.assertEqual(sorted(before), sorted(WORKERS))
             for worker in before.values():
@@ -127,11 +127,29 @@ class Untrusted(DaemonCase):
             self.assertEqual(sorted(after), sorted(WORKERS))
             self.assertFalse(set(before.values()) & set(after.values()))
 
+    def test_the_daemon_writes_png_and_jpeg_itself(self):
+        with Client(self.daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            client.render(model, encoding=wire.TIFF)
+            writer = workers(self.daemon.process.pid)["sheend-image"]
+            os.kill(writer, signal.SIGSTOP)
+            try:
+                for encoding in (wire.PNG, wire.JPEG):
+                    client.render(model, encoding=encoding)
+                seq = client.ask(model, encoding=wire.TIFF)
+                with self.assertRaises(TimeoutError):
+                    client.socket.settimeout(0.5)
+                    client.read_frame(seq)
+            finally:
+                os.kill(writer, signal.SIGCONT)
+            client.socket.settimeout(30)
+            client.read_frame(seq)
+
     def test_nothing_stays_of_a_job(self):
         pid = self.daemon.process.pid
         with Client(self.daemon.unix) as client:
             for i in range(5):
-                client.render(client.upload(CUBE + b"# %d\n" % i, "cube.obj"), encoding=wire.PNG)
+                client.render(client.upload(CUBE + b"# %d\n" % i, "cube.obj"), encoding=wire.EXR)
                 self.refused_image(client, b"P6\n9 9\n255\n" + bytes([i]), "cut.ppm", "cut.ppm")
             for worker in workers(pid).values():
                 self.assertEqual(children(worker), [])
@@ -159,7 +177,7 @@ class Slow(DaemonCase):
                 for i, file in enumerate(files):  # as many as are read at once
                     slow.send(wire.render(50 + i, file))
                 time.sleep(0.2)
-                for encoding in (wire.RAW, wire.ZSTD, wire.PNG):
+                for encoding in (wire.RAW, wire.ZSTD, wire.PNG, wire.TIFF):
                     other.render(model, encoding=encoding)
             finally:
                 os.kill(reader, signal.SIGCONT)

@@ -13,6 +13,7 @@
 #include "server/service/answer.h"
 #include "tests/unit/build_folder.h"
 #include "tests/unit/jpeg_file.h"
+#include "tests/unit/png_file.h"
 
 enum { WIDTH = 811, HEIGHT = 523 }; /* odd, several strips a plane, several DATA a frame */
 
@@ -99,15 +100,21 @@ static void encode_finished(void *owner, struct encoded *encoded, const struct e
     loop_stop(f->loop);
 }
 
-static void start_encoding(struct fixture *f, uint32_t planes, sheen_Encoding encoding)
+/* Takes the frame over. */
+static void start_frame(struct fixture *f, struct frame frame, uint32_t planes,
+                        sheen_Encoding encoding)
 {
-    struct frame frame = make_frame(planes);
     struct codec_layout layout;
     assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, planes));
     const struct encode_format format = {encoding, JPEG_DEFAULTS};
     encode_start(f->pool, &f->workers, &frame, &layout, &format, POOL_SOON, LABEL, 1,
                  encode_finished, f);
     assert_null(frame.plane[0]);
+}
+
+static void start_encoding(struct fixture *f, uint32_t planes, sheen_Encoding encoding)
+{
+    start_frame(f, make_frame(planes), planes, encoding);
 }
 
 /* The bytes of all pieces; freed by the caller. */
@@ -175,6 +182,41 @@ static void test_two_jpeg_files_at_once(void **state)
     free(want);
     jpeg_encoder_destroy(encoder);
     frame_finish(&frame);
+}
+
+/* A picture whose alpha is 255 but in one pixel, or in all (pixel < 0). */
+static struct frame make_picture(long pixel)
+{
+    struct frame frame = make_frame(1);
+    uint8_t *rgba = frame.plane[0];
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++)
+        rgba[4 * i + 3] = (long)i == pixel ? 77 : 255;
+    return frame;
+}
+
+/* Which strip is not opaque is found while others are being encoded: the file is the same whoever
+ * finds it first. */
+static void test_png_files(void **state)
+{
+    struct fixture *f = *state;
+    const long last = (long)WIDTH * HEIGHT - 1, cases[] = {-1, 0, last / 2, last};
+    struct png_encoder *encoder = png_encoder_create();
+    for (int i = 0; i < 24; i++) {
+        struct frame frame = make_picture(cases[i % 4]);
+        size_t size;
+        uint8_t *want = png_file(encoder, frame.plane[0], WIDTH, HEIGHT, LABEL, 1, &size);
+        f->n_encoded = 0;
+        start_frame(f, frame, 1, sheen_Encoding_ENCODING_PNG);
+        while (f->n_encoded == 0)
+            completions_deliver(f->completions);
+        uint8_t *got = join(f->encoded[0]);
+        assert_int_equal(f->encoded[0]->size, size);
+        assert_memory_equal(got, want, size);
+        free(got);
+        encoded_destroy(f->encoded[0]);
+        free(want);
+    }
+    png_encoder_destroy(encoder);
 }
 
 /* Reads exactly n bytes, letting the connection write what it holds back. */
@@ -318,6 +360,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_zstd_round_trip, setup, teardown),
         cmocka_unit_test_setup_teardown(test_two_jpeg_files_at_once, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_png_files, setup, teardown),
         cmocka_unit_test_setup_teardown(test_frame_is_cut_into_data, setup, teardown),
         cmocka_unit_test_setup_teardown(test_order_of_requests, setup, teardown),
         cmocka_unit_test_setup_teardown(test_nothing_after_the_last, setup, teardown),
