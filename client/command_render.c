@@ -65,7 +65,7 @@ static void print_summary(struct job *job, const struct options *options,
         progress_note(
             &job->progress,
             "up: %s, guessed from the model's box; where it is wrong, --up %s, or another",
-            frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "0,1,0" : "0,0,1");
+            frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "y" : "z");
     if (frame->blank)
         fprintf(stderr,
                 "sheen: warning: no pixel shows the surface: see --eye, --target, --fov and "

@@ -73,16 +73,21 @@ static bool check_size(const struct sheen_request *request, char *why)
 
 bool options_check_scene(struct options *options, char *why)
 {
-    unsigned camera = options->given & (GIVEN_EYE | GIVEN_TARGET);
-    if (camera != 0 && camera != (GIVEN_EYE | GIVEN_TARGET))
-        return options_refuse(why, "--eye and --target come together");
+    const unsigned any =
+        GIVEN_EYE | GIVEN_TARGET | GIVEN_UP | GIVEN_FOV | GIVEN_ORTHO | GIVEN_VIEW | GIVEN_ZOOM;
+    bool has_eye = options->given & GIVEN_EYE;
+    if (has_eye && !(options->given & GIVEN_TARGET))
+        return options_refuse(why, "--eye needs a --target to look at");
+    if (has_eye && options->given & GIVEN_VIEW)
+        return options_refuse(why, "--eye and --view exclude each other: --view stands by itself");
     if (options->given & GIVEN_FOV && options->given & GIVEN_ORTHO)
         return options_refuse(why, "--fov and --ortho exclude each other");
-    if (camera || options->given & (GIVEN_UP | GIVEN_FOV | GIVEN_ORTHO))
+    if (options->given & any)
         options->request.camera.projection = options->given & GIVEN_ORTHO
                                                  ? SHEEN_PROJECTION_ORTHOGRAPHIC
                                                  : SHEEN_PROJECTION_PERSPECTIVE;
-    options->request.camera.auto_view = camera == 0;
+    options->request.camera.auto_view = !has_eye;
+    options->request.camera.has_target = options->given & GIVEN_TARGET;
     options->request.camera.auto_up = !(options->given & GIVEN_UP);
     return check_size(&options->request, why) && check_show(&options->request.show, why) &&
            options_check_light(options, why);

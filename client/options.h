@@ -29,6 +29,8 @@ enum options_given {
     GIVEN_SIZE = 1 << 10,
     GIVEN_CLASS = 1 << 11,
     GIVEN_JPEG = 1 << 12,
+    GIVEN_VIEW = 1 << 13,
+    GIVEN_ZOOM = 1 << 14,
 };
 
 struct options {

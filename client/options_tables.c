@@ -123,8 +123,34 @@ static bool apply_target(struct options *options, const char *value, char *why)
 static bool apply_up(struct options *options, const char *value, char *why)
 {
     double *up = options->request.camera.up;
-    return apply_vec3(options, value, up, GIVEN_UP, why) &&
-           (!range_is_zero(up) || options_refuse(why, "must not be 0,0,0"));
+    options->given |= GIVEN_UP;
+    return value_axis(value, up) ||
+           (apply_vec3(options, value, up, GIVEN_UP, why) &&
+            (!range_is_zero(up) || options_refuse(why, "must not be 0,0,0")));
+}
+
+static bool apply_view(struct options *options, const char *value, char *why)
+{
+    options->given |= GIVEN_VIEW;
+    return value_view(value, &options->request.camera.view) ||
+           options_refuse(why, "must be front, back, left, right, top, bottom or iso");
+}
+
+static bool apply_zoom(struct options *options, const char *value, char *why)
+{
+    struct sheen_camera *camera = &options->request.camera;
+    options->given |= GIVEN_ZOOM;
+    if (!value_zoom(value, &camera->zoom, camera->zoom_at))
+        return options_refuse(why, "must be FACTOR or FACTOR@X,Y, three numbers");
+    char text[RANGE_TEXT_BYTES];
+    if (!range_holds(&RANGES[RANGE_ZOOM], camera->zoom))
+        return options_refuse(why, "FACTOR must be a number %s",
+                              range_text(&RANGES[RANGE_ZOOM], text));
+    for (int i = 0; i < 2; i++)
+        if (!range_holds(&RANGES[RANGE_ZOOM_AT], camera->zoom_at[i]))
+            return options_refuse(why, "X and Y are shares of the picture, %s, not pixels",
+                                  range_text(&RANGES[RANGE_ZOOM_AT], text));
+    return true;
 }
 
 static bool apply_fov(struct options *options, const char *value, char *why)
@@ -390,11 +416,24 @@ const struct option_row OPTIONS_SCENE[] = {
      "where the camera stands, in the model's units; with --target\n"
      "(default: a camera that frames the model)",
      apply_eye},
-    {"target", 0, "X,Y,Z", "the point it looks at; with --eye", apply_target},
+    {"target", 0, "X,Y,Z",
+     "the point it looks at; without --eye the default camera stays where it is\n"
+     "and turns to it",
+     apply_target},
+    {"view", 0, "NAME",
+     "the model framed from the front, back, left, right, top, bottom or iso (all\n"
+     "axes alike): with z up the front is at -y and the right at x, with y up at z\n"
+     "and x; not with --eye (default: from above the front right)",
+     apply_view},
+    {"zoom", 0, "FACTOR@X,Y",
+     "a closer look from the same eye, so that lines stay on the surface: FACTOR\n"
+     "{} times as close at the place X,Y of the picture,\n"
+     "0,0 its top left and 1,1 its bottom right (default: 0.5,0.5, the middle)",
+     apply_zoom},
     {"up", 0, "X,Y,Z",
-     "which way is up, for the camera and for the light, any length (default: what\n"
-     "the file says, glTF: y; else y or z, in which the model is thinner: where that\n"
-     "is wrong, as for a door that stands, say it)",
+     "which way is up, for the camera and for the light: a direction or x, y, z, -x,\n"
+     "-y, -z (default: what the file says, glTF: y; else y or z, in which the model\n"
+     "is thinner: where that is wrong, as for a door that stands, say it)",
      apply_up},
     {"fov", 0, "DEG",
      "vertical field of view, {} (default: 35);\n"

@@ -9,6 +9,7 @@
 #include "client/times.h"
 
 _Static_assert((int)SHEEN_MAX_IN_FLIGHT == (int)PROTOCOL_MAX_CREDITS, "what a daemon may grant");
+_Static_assert((int)SHEEN_VIEW_ISO == (int)sheen_View_VIEW_ISO, "same order");
 _Static_assert((int)SHEEN_BATCH == (int)sheen_RequestClass_CLASS_BATCH, "same order");
 _Static_assert((int)SHEEN_FILE_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
 _Static_assert((int)SHEEN_JPEG_420 == (int)sheen_JpegSubsampling_JPEG_420, "same order");
@@ -31,7 +32,7 @@ static void fill_camera(sheen_Render *render, const struct sheen_camera *camera)
     render->camera = (sheen_Camera){
         .has_eye = !camera->auto_view,
         .eye = message_vec3(camera->eye),
-        .has_target = !camera->auto_view,
+        .has_target = !camera->auto_view || camera->has_target,
         .target = message_vec3(camera->target),
         .has_up = !camera->auto_up,
         .up = message_vec3(camera->up),
@@ -39,6 +40,14 @@ static void fill_camera(sheen_Render *render, const struct sheen_camera *camera)
         .fov_deg = camera->fov_deg,
         .has_ortho_height = ortho,
         .ortho_height = camera->ortho_height,
+        .has_view = camera->auto_view && camera->view != SHEEN_VIEW_AROUND,
+        .view = (sheen_View)camera->view,
+        .has_zoom = camera->zoom > 0,
+        .zoom = camera->zoom,
+        .has_zoom_x = camera->zoom > 0,
+        .zoom_x = camera->zoom_at[0],
+        .has_zoom_y = camera->zoom > 0,
+        .zoom_y = camera->zoom_at[1],
     };
 }
 

@@ -40,6 +40,18 @@ static void json_up(struct json *json, const struct sheen_frame *frame)
     json_string(json, "up_source", sources[frame->up_source]);
 }
 
+/* What eye, target and field of view have become by. */
+static void json_zoom(struct json *json, const struct sheen_camera *camera)
+{
+    json_object_begin(json, "zoom");
+    json_double(json, "factor", camera->zoom);
+    json_array_begin(json, "at");
+    for (int i = 0; i < 2; i++)
+        json_double(json, NULL, camera->zoom_at[i]);
+    json_array_end(json);
+    json_object_end(json);
+}
+
 static void json_family(struct json *json, const struct sheen_lines *lines)
 {
     static const char *const eyes[] = {"camera", "point", "direction"};
@@ -159,6 +171,10 @@ void scene_json(struct json *json, const struct sheen_request *request,
     static const char *const surfaces[] = {"exact", "polygon", "wireframe"};
     json_camera(json, &frame->camera);
     json_up(json, frame);
+    if (value_view_name(request->camera.view))
+        json_string(json, "view", value_view_name(request->camera.view));
+    if (request->camera.zoom > 0)
+        json_zoom(json, &request->camera);
     json_family(json, &frame->lines);
     json_lights(json, frame);
     json_double(json, "light_share", frame->light_share);

@@ -248,9 +248,25 @@ enum sheen_up_source {
     SHEEN_UP_UNKNOWN, /* the daemon is too old to say */
 };
 
+/* From where a camera that frames the model looks: protocol/README.md, chapter 4. */
+enum sheen_view {
+    SHEEN_VIEW_AROUND, /* from above the front right, the longer side across the picture */
+    SHEEN_VIEW_FRONT,
+    SHEEN_VIEW_BACK,
+    SHEEN_VIEW_LEFT,
+    SHEEN_VIEW_RIGHT,
+    SHEEN_VIEW_TOP,
+    SHEEN_VIEW_BOTTOM,
+    SHEEN_VIEW_ISO,
+};
+
 struct sheen_camera {
     enum sheen_projection projection;
     bool auto_view, auto_up;  /* eye and target, or up, are the daemon's, which frames the model */
+    bool has_target;          /* with auto_view: the daemon's eye looks at target */
+    enum sheen_view view;     /* with auto_view */
+    double zoom;              /* the eye stays and looks so much closer, 1 to 1e6; 0: not */
+    double zoom_at[2];        /* at this place of the picture, from its left and top, 0 to 1 */
     double eye[3], target[3]; /* not the same point */
     double up[3];             /* not along the line of sight; need not be perpendicular */
     double fov_deg;           /* perspective: vertical, 1e-6 to 179 */

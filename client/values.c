@@ -188,3 +188,49 @@ const char *value_class_name(enum sheen_class request_class)
 {
     return CLASS_NAMES[request_class];
 }
+
+bool value_axis(const char *text, double value[static 3])
+{
+    bool has_sign = *text == '-' || *text == '+';
+    const char *axis = text + has_sign;
+    if (strlen(axis) != 1 || *axis < 'x' || *axis > 'z')
+        return false;
+    for (int i = 0; i < 3; i++)
+        value[i] = *axis - 'x' == i ? (*text == '-' ? -1 : 1) : 0;
+    return true;
+}
+
+static const char *const VIEW_NAMES[] = {
+    [SHEEN_VIEW_AROUND] = NULL,     [SHEEN_VIEW_FRONT] = "front", [SHEEN_VIEW_BACK] = "back",
+    [SHEEN_VIEW_LEFT] = "left",     [SHEEN_VIEW_RIGHT] = "right", [SHEEN_VIEW_TOP] = "top",
+    [SHEEN_VIEW_BOTTOM] = "bottom", [SHEEN_VIEW_ISO] = "iso",
+};
+
+bool value_view(const char *text, enum sheen_view *view)
+{
+    for (int i = SHEEN_VIEW_FRONT; i <= SHEEN_VIEW_ISO; i++) {
+        *view = (enum sheen_view)i;
+        if (strcmp(text, VIEW_NAMES[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+const char *value_view_name(enum sheen_view view)
+{
+    return VIEW_NAMES[view];
+}
+
+bool value_zoom(const char *text, double *factor, double at[static 2])
+{
+    char part[64];
+    bool has_place = strchr(text, '@') != NULL;
+    at[0] = at[1] = 0.5;
+    if (!next_part(&text, '@', part, sizeof(part)) || !value_double(part, factor))
+        return false;
+    if (!has_place)
+        return true;
+    bool has_comma = strchr(text, ',') != NULL;
+    return has_comma && next_part(&text, ',', part, sizeof(part)) && value_double(part, &at[0]) &&
+           value_double(text, &at[1]);
+}

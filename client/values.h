@@ -34,4 +34,14 @@ bool value_subsampling(const char *text, enum sheen_jpeg_subsampling *subsamplin
 bool value_class(const char *text, enum sheen_class *request_class);
 const char *value_class_name(enum sheen_class request_class);
 
+/* x, -x, +x and so on: a direction along an axis. */
+bool value_axis(const char *text, double value[static 3]);
+
+/* front, back, left, right, top, bottom or iso; the name of it, NULL for SHEEN_VIEW_AROUND. */
+bool value_view(const char *text, enum sheen_view *view);
+const char *value_view_name(enum sheen_view view);
+
+/* FACTOR or FACTOR@X,Y; without a place it is the middle. */
+bool value_zoom(const char *text, double *factor, double at[static 2]);
+
 #endif

@@ -130,8 +130,11 @@ static bool check_view(const sheen_Camera *camera, char *text)
         (camera->has_target && !check_vec3(&camera->target, "camera.target", text)) ||
         (camera->has_up && !check_vec3(&camera->up, "camera.up", text)))
         return false;
-    if (camera->has_eye != camera->has_target)
-        return refuse(text, "camera.eye and camera.target come together");
+    if (camera->has_eye && !camera->has_target)
+        return refuse(text, "camera.eye comes with camera.target");
+    if (camera->has_eye && camera->has_view && camera->view != sheen_View_VIEW_AROUND)
+        return refuse(text,
+                      "camera.view is of a camera that frames the model: not with camera.eye");
     const sheen_Vec3 view = {camera->target.x - camera->eye.x, camera->target.y - camera->eye.y,
                              camera->target.z - camera->eye.z};
     if (camera->has_eye && is_zero(&view))
@@ -154,7 +157,11 @@ static bool check_camera(const sheen_Camera *camera, char *text)
         return refuse(text, "camera.fov_deg and camera.ortho_height exclude each other");
     return (!camera->has_ortho_height ||
             check_number(camera->ortho_height, RANGE_ORTHO_HEIGHT, text)) &&
-           (!camera->has_fov_deg || check_number(camera->fov_deg, RANGE_FOV, text));
+           (!camera->has_fov_deg || check_number(camera->fov_deg, RANGE_FOV, text)) &&
+           check_enum(camera->view, sheen_View_VIEW_ISO, "camera.view", text) &&
+           (!camera->has_zoom || check_number(camera->zoom, RANGE_ZOOM, text)) &&
+           (!camera->has_zoom_x || check_number(camera->zoom_x, RANGE_ZOOM_AT, text)) &&
+           (!camera->has_zoom_y || check_number(camera->zoom_y, RANGE_ZOOM_AT, text));
 }
 
 /* A frame says all of the camera that made it. */

@@ -21,6 +21,8 @@ const struct range RANGES[N_RANGES] = {
     [RANGE_COORDINATE] = {"every coordinate", NULL, -GREATEST, GREATEST, false, ""},
     [RANGE_FOV] = {"camera.fov_deg", "--fov", 1e-6, 179, false, "degrees"},
     [RANGE_ORTHO_HEIGHT] = {"camera.ortho_height", "--ortho", 0, GREATEST, true, ""},
+    [RANGE_ZOOM] = {"camera.zoom", "--zoom", 1, 1e6, false, ""},
+    [RANGE_ZOOM_AT] = {"camera.zoom_x, zoom_y", "--zoom", 0, 1, false, ""},
     [RANGE_LIGHTS] = {"lights", "--light", 0, PROTOCOL_MAX_LIGHTS, false, ""},
     [RANGE_EDGE] = {"length of light.u, light.v", "--light-u, --light-v", LEAST_LENGTH,
                     GREATEST_LENGTH, false, "units"},

@@ -14,6 +14,8 @@ enum range_name {
     RANGE_COORDINATE,
     RANGE_FOV,
     RANGE_ORTHO_HEIGHT,
+    RANGE_ZOOM,
+    RANGE_ZOOM_AT,
     RANGE_LIGHTS,
     RANGE_EDGE, /* length of a light's u and v */
     RANGE_COUNT,

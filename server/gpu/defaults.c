@@ -35,41 +35,44 @@ static struct vec get(const double a[3])
     return (struct vec){a[0], a[1], a[2]};
 }
 
-/* Where the eye must be for all of the box to lie inside a picture, as near as can be: from the
+/* Where the eye must be for all of the model to lie inside a picture, as near as can be: from the
  * box's middle by `distance` back along the view and `side` across it. */
 struct framing {
     double distance, side;
 };
 
-/* Along one axis of the picture, `across`, of whose half angle this is the tangent. A corner is
+/* Along one axis of the picture, `across`, of whose half angle this is the tangent. A point is
  * inside when |x - side| <= tangent (distance + depth): each edge of the picture is met by the
- * corner that asks most of it. */
-static struct framing frame_axis(const struct vec corners[8], struct vec forward, struct vec across,
-                                 double tangent)
+ * point that asks most of it. */
+static struct framing frame_axis(const float (*points)[3], size_t n, struct vec forward,
+                                 struct vec across, double tangent)
 {
     double above = -INFINITY, below = -INFINITY;
-    for (int i = 0; i < 8; i++) {
-        double x = vec_dot(corners[i], across) / tangent, depth = vec_dot(corners[i], forward);
+    for (size_t i = 0; i < n; i++) {
+        struct vec point = {(double)points[i][0], (double)points[i][1], (double)points[i][2]};
+        double x = vec_dot(point, across) / tangent, depth = vec_dot(point, forward);
         above = fmax(above, x - depth);
         below = fmax(below, -x - depth);
     }
     return (struct framing){0.5 * (above + below), 0.5 * tangent * (above - below)};
 }
 
-/* Puts eye and target, which look along `forward`, for the box to fill a picture whose half angles
- * have these tangents. */
-static void frame_box(const double box_min[3], const double box_max[3], struct vec forward,
-                      struct vec up, double tan_x, double tan_y, struct camera *camera)
+/* Puts eye and target, which look along `forward`, for the model to fill a picture whose half
+ * angles have these tangents: its outermost points, or where they are not known, its box. */
+static void frame_model(const struct limit_tables *tables, struct vec forward, struct vec up,
+                        double tan_x, double tan_y, struct camera *camera)
 {
-    struct vec middle = box_middle(box_min, box_max), corners[8];
-    for (int i = 0; i < 8; i++) {
-        struct vec corner = {i & 1 ? box_max[0] : box_min[0], i & 2 ? box_max[1] : box_min[1],
-                             i & 4 ? box_max[2] : box_min[2]};
-        corners[i] = vec_sub(corner, middle);
-    }
+    struct vec middle = box_middle(tables->box_min, tables->box_max);
+    float corners[8][3];
+    for (int i = 0; i < 8; i++)
+        for (int k = 0; k < 3; k++)
+            corners[i][k] =
+                (float)((i >> k & 1 ? 0.5 : -0.5) * (tables->box_max[k] - tables->box_min[k]));
+    const float(*points)[3] = tables->n_support ? tables->support : corners;
+    size_t n = tables->n_support ? tables->n_support : 8;
     struct vec right = vec_unit(vec_cross(forward, up)), above = vec_cross(right, forward);
-    struct framing x = frame_axis(corners, forward, right, tan_x);
-    struct framing y = frame_axis(corners, forward, above, tan_y);
+    struct framing x = frame_axis(points, n, forward, right, tan_x);
+    struct framing y = frame_axis(points, n, forward, above, tan_y);
     double distance = fmax(x.distance, y.distance);
     struct vec target = vec_mad(vec_mad(middle, x.side, right), y.side, above);
     put(target, camera->target);
@@ -160,7 +163,7 @@ void renderer_default_camera(const struct limit_tables *tables, const double up[
     put(up ? get(up) : upward, camera->up);
     put(vec_scale(from, -1), camera->target);
     renderer_default_roll(camera->up, camera);
-    frame_box(box_min, box_max, vec_scale(from, -1), get(camera->up), tan_x, tan_y, camera);
+    frame_model(tables, vec_scale(from, -1), get(camera->up), tan_x, tan_y, camera);
 }
 
 void renderer_default_roll(const double up[3], struct camera *camera)
@@ -170,6 +173,24 @@ void renderer_default_roll(const double up[3], struct camera *camera)
     struct vec ahead = vec_cross(upward, horizontal_axis(upward));
     bool along = vec_length(vec_cross(view, upward)) < 1e-6;
     put(!along ? get(up) : vec_dot(view, upward) < 0 ? ahead : vec_scale(ahead, -1), camera->up);
+}
+
+void renderer_zoom(struct camera *camera, uint32_t width_px, uint32_t height_px, double factor,
+                   double x, double y)
+{
+    bool ortho = camera->kind == CAMERA_ORTHOGRAPHIC;
+    struct vec eye = get(camera->eye), view = vec_sub(get(camera->target), eye);
+    struct vec forward = vec_unit(view), right = vec_unit(vec_cross(forward, get(camera->up)));
+    struct vec above = vec_cross(right, forward);
+    double tangent = tan(0.5 * camera->fov_deg * DEGREE), distance = vec_length(view);
+    double half = ortho ? 0.5 * camera->ortho_height : tangent * distance;
+    double across = (2 * x - 1) * half * width_px / height_px, rise = (1 - 2 * y) * half;
+    struct vec move = vec_mad(vec_scale(right, across), rise, above);
+    put(vec_mad(get(camera->target), 1, move), camera->target);
+    if (ortho)
+        put(vec_mad(eye, 1, move), camera->eye);
+    camera->ortho_height /= factor;
+    camera->fov_deg = 2 * atan(tangent / factor) / DEGREE;
 }
 
 void renderer_default_light(const double box_min[3], const double box_max[3], const double up[3],

@@ -219,6 +219,12 @@ void renderer_default_camera(const struct limit_tables *tables, const double up[
  * the front view has behind (looking down) or before (looking up). */
 void renderer_default_roll(const double up[3], struct camera *camera);
 
+/* Looks closer at a place of the picture, (0,0) its top left and (1,1) its bottom right: the eye
+ * stays and turns (orthographic: moves across), so that lines stay where they are on the surface.
+ */
+void renderer_zoom(struct camera *camera, uint32_t width_px, uint32_t height_px, double factor,
+                   double x, double y);
+
 /* Sets centre, u and v for the light's kind, by the box and `up` (NULL: guessed) alone, so that
  * lines stay where they are whoever looks. Lines run along the longer of the model's horizontal
  * sides. A tunnel is about that direction, three times as wide as the box: every ray from the model

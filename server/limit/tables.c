@@ -1,5 +1,7 @@
 #include "server/limit/tables.h"
 
+#include "server/limit/support.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -62,6 +64,7 @@ void limit_tables_finish(struct limit_tables *tables)
     free(tables->texels);
     free(tables->bound_first);
     free(tables->bounds);
+    free(tables->support);
     *tables = (struct limit_tables){0};
 }
 
@@ -74,7 +77,7 @@ size_t limit_tables_bytes(const struct limit_tables *tables)
 size_t limit_tables_host_bytes(const struct limit_tables *tables)
 {
     return limit_tables_bytes(tables) + tables->n_nodes * sizeof *tables->bound_first +
-           tables->n_bounds * sizeof *tables->bounds;
+           tables->n_bounds * sizeof *tables->bounds + SUPPORT_MAX_POINTS * sizeof *tables->support;
 }
 
 bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,

@@ -96,6 +96,10 @@ struct limit_tables {
 
     double box_min[3],
         box_max[3]; /* of the surface, by its limit positions: what a camera frames */
+    /* Points of the surface that lie outermost, from the middle of the box (support.h); NULL until
+     * they are looked for. */
+    float (*support)[3];
+    size_t n_support;
     double hull_min[3], hull_max[3]; /* of the control vertices: nothing lies outside */
 
     /* Counts for `sheen info`. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "server/fault.h"
+#include "server/limit/support.h"
 #include "server/service/build_clock.h"
 
 #define MAX_RANGES 256 /* even shares for many cores, and a progress bar that moves */
@@ -119,6 +120,26 @@ static void range_run(struct work *work, void *worker)
     atomic_fetch_add(&build->order.progress->done, range->last - range->first);
 }
 
+static void support_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct model_build *build = work->owner;
+    struct build_clock clock;
+    const struct limit_watch watch = {build_clock_goes_on, &clock};
+    build_clock_start(&clock, &build->order, &build->cpu_us);
+    build->ok = check_not_cancelled(&build->order, &build->error) &&
+                limit_find_support(&build->model->tables, &watch, &build->error);
+}
+
+static void support_done(struct work *work)
+{
+    struct model_build *build = work->owner;
+    if (build->ok)
+        start_upload(build);
+    else
+        end_build(build, fail_named(build, &build->error));
+}
+
 static void range_done(struct work *work)
 {
     struct model_build *build = ((struct range *)work->owner)->build;
@@ -130,7 +151,8 @@ static void range_done(struct work *work)
         end_build(build, fail_named(build, &build->ranges[i].error));
         return;
     }
-    start_upload(build);
+    build->work = (struct work){support_run, support_done, build, NULL};
+    pool_submit(build->order.pool, &build->work, POOL_LATER);
 }
 
 static bool start_ranges(struct model_build *build)

@@ -159,7 +159,7 @@ void request_queue_frame(struct request *request)
     const struct wire_subject subject = model_subject(request->model.asset->model);
     wire_to_frame_request(render, &subject, asked);
     asked->count_light = shows_lines(render);
-    request->up_source = wire_up(render, &subject, request->up);
+    request->up_source = wire_model_up(render, &subject, request->up);
     for (int i = 0; i < MAX_LIGHTS; i++)
         if (request->images[i].asset)
             asked->lights[i].pattern.image = request->images[i].asset->image->gpu;

@@ -12,6 +12,9 @@ _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
                    (int)PLANE_LIGHT_CHANGE == (int)sheen_Plane_PLANE_LIGHT_CHANGE &&
                    (int)PLANE_COVERAGE == (int)sheen_Plane_PLANE_COVERAGE,
                "planes have the same bits on the wire");
+_Static_assert((int)VIEW_AROUND == (int)sheen_View_VIEW_AROUND &&
+                   (int)VIEW_ISO == (int)sheen_View_VIEW_ISO,
+               "views have the same numbers on the wire");
 _Static_assert((int)SURFACE_EXACT == (int)sheen_SurfaceKind_SURFACE_EXACT &&
                    (int)SURFACE_POLYGON == (int)sheen_SurfaceKind_SURFACE_POLYGON &&
                    (int)SURFACE_WIREFRAME == (int)sheen_SurfaceKind_SURFACE_WIREFRAME,
@@ -55,7 +58,8 @@ static void to_camera(const sheen_Camera *from, const struct wire_subject *subje
         wire_to_vec3(&from->eye, to->eye);
     if (from->has_target)
         wire_to_vec3(&from->target, to->target);
-    renderer_default_roll(up, to);
+    if (from->has_target && !(from->has_eye && from->has_up))
+        renderer_default_roll(up, to);
     if (from->has_fov_deg)
         to->fov_deg = from->fov_deg;
     if (!from->has_ortho_height)
@@ -91,7 +95,8 @@ sheen_Camera wire_from_camera(const struct camera *camera)
     };
 }
 
-sheen_UpSource wire_up(const sheen_Render *render, const struct wire_subject *subject, double up[3])
+sheen_UpSource wire_model_up(const sheen_Render *render, const struct wire_subject *subject,
+                             double up[3])
 {
     if (render->has_camera && render->camera.has_up) {
         wire_to_vec3(&render->camera.up, up);
@@ -111,6 +116,8 @@ void wire_to_frame_request(const sheen_Render *render, const struct wire_subject
                            struct frame_request *request)
 {
     static const sheen_Light default_light = sheen_Light_init_default;
+    static const sheen_Camera default_camera = sheen_Camera_init_default;
+    const sheen_Camera *asked = render->has_camera ? &render->camera : &default_camera;
     *request = (struct frame_request){
         .width_px = render->width_px,
         .height_px = render->height_px,
@@ -120,11 +127,13 @@ void wire_to_frame_request(const sheen_Render *render, const struct wire_subject
         .surface = {(enum surface_kind)render->surface, render->surface_level},
     };
     double up[3];
-    wire_up(render, subject, up);
-    renderer_default_camera(subject->tables, up, VIEW_AROUND, render->width_px, render->height_px,
-                            &request->camera);
-    if (render->has_camera)
-        to_camera(&render->camera, subject, up, &request->camera);
+    wire_model_up(render, subject, up);
+    renderer_default_camera(subject->tables, up, (enum default_view)asked->view, render->width_px,
+                            render->height_px, &request->camera);
+    to_camera(asked, subject, up, &request->camera);
+    if (asked->has_zoom)
+        renderer_zoom(&request->camera, render->width_px, render->height_px, asked->zoom,
+                      asked->zoom_x, asked->zoom_y);
     wire_to_lines(&render->lines, up, &request->lines);
     for (uint32_t i = 0; i < request->n_lights; i++)
         wire_to_light(render->lights_count ? &render->lights[i] : &default_light, subject, up,

@@ -15,8 +15,8 @@ struct wire_subject {
 };
 
 /* Which way is up: as the request says, else as the file does, else as the box looks. */
-sheen_UpSource wire_up(const sheen_Render *render, const struct wire_subject *subject,
-                       double up[3]);
+sheen_UpSource wire_model_up(const sheen_Render *render, const struct wire_subject *subject,
+                             double up[3]);
 
 /* A frame request from a message that has passed message_check_render(). The patterns' images are
  * left to the caller. */

@@ -183,6 +183,10 @@ class Client(unittest.TestCase):
             "server": (found["address"], self.daemon.unix), "class": (found["class"], "batch"),
             "deadline": (found["deadline_ms"], 100000),
         }
+        closer, _ = self.render("b.png", "--server", self.daemon.unix, "--view", "top", "--zoom",
+                                "4@0.25,0.75")
+        said.update({"view": (closer["view"], "top"),
+                     "zoom": (closer["zoom"], {"factor": 4, "at": [0.25, 0.75]})})
         with open(image, "rb") as file:
             self.assertEqual(found["lights"][1]["pattern"]["image_sha256"],
                              hashlib.sha256(file.read()).hexdigest())

@@ -108,6 +108,7 @@ class Frame:
         self.tables_us, self.total_us = times[1][0], times[7][0]
         self.visibility_us, self.evaluate_us = times[2][0], times[3][0]
         self.data = data
+        self.fields = fields
 
 
 class Client:

@@ -302,6 +302,17 @@ static void good_command_lines(void **state)
     assert_int_equal(options.memory_budget_bytes, 0);
     assert_int_equal(options.reconnect_s, 0);
     assert_int_equal(parse(&COMMAND_STATS, "--help --nonsense", &options, why), OPTIONS_HELP);
+    assert_int_equal(parse(&COMMAND_RENDER,
+                           "m.obj -o a.png --view left --up -y --zoom 8@0.25,1 --target 1,2,3",
+                           &options, why),
+                     OPTIONS_RUN);
+    const struct sheen_camera *camera = &options.request.camera;
+    assert_true(camera->auto_view && camera->has_target && camera->target[2] == 3);
+    assert_true(camera->view == SHEEN_VIEW_LEFT && camera->up[1] == -1 && !camera->auto_up);
+    assert_true(camera->zoom == 8 && camera->zoom_at[0] == 0.25 && camera->zoom_at[1] == 1);
+    assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --zoom 3", &options, why), OPTIONS_RUN);
+    assert_true(camera->zoom == 3 && camera->zoom_at[0] == 0.5 && camera->zoom_at[1] == 0.5);
+    assert_true(camera->auto_view && !camera->has_target && camera->auto_up);
 }
 
 /* --up, --fov and --ortho change the camera that frames the model. */
@@ -339,8 +350,15 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png --aov P", ".exr"},
         {&COMMAND_RENDER, "m.obj -o a.exr --aov depth", "P,N,ptex,light,k,dlight"},
         {&COMMAND_RENDER, "m.obj -o a.png --size 0x0", "--size '0x0'"},
-        {&COMMAND_RENDER, "m.obj -o a.png --eye 1,2,3", "come together"},
-        {&COMMAND_RENDER, "m.obj -o a.png --target 1,2,3", "come together"},
+        {&COMMAND_RENDER, "m.obj -o a.png --eye 1,2,3", "--eye needs a --target"},
+        {&COMMAND_RENDER, "m.obj -o a.png --eye 1,2,3 --target 0,0,0 --view top", "exclude"},
+        {&COMMAND_RENDER, "m.obj -o a.png --view topmost", "--view 'topmost'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --up xy", "--up 'xy'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --up -", "--up '-'"},
+        {&COMMAND_RENDER, "m.obj -o a.png --zoom 0.9", "FACTOR must be a number from 1 to"},
+        {&COMMAND_RENDER, "m.obj -o a.png --zoom 2@", "FACTOR@X,Y"},
+        {&COMMAND_RENDER, "m.obj -o a.png --zoom 2@0.5,0.5,0.5", "FACTOR@X,Y"},
+        {&COMMAND_RENDER, "m.obj -o a.png --zoom 2@0.5,1.5", "shares of the picture, from 0 to 1"},
         {&COMMAND_RENDER, "m.obj -o a.png --fov 40 --ortho 2", "exclude"},
         {&COMMAND_RENDER, "m.obj -o a.png --eye 1,1,1 --target 0,0,0 --fov 180", "--fov '180'"},
         {&COMMAND_RENDER, "m.obj -o a.png --eye 1,1,1 --target 0,0,0 --fov 30 --ortho 2",

@@ -1,15 +1,10 @@
 /* The camera that frames a model. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <math.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "server/gpu/view.h"
-#include "server/limit/vec.h"
+#include "server/limit/evaluate.h"
+#include "server/limit/support.h"
+#include "tests/unit/cage_tables.h"
 
 #define MARGIN 0.92 /* of the half picture, which the box fills */
 
@@ -134,6 +129,67 @@ static void test_the_longer_side_lies_across(void **state)
         }
 }
 
+/* Of a frame in which the points lie, the share that they take of the longer side. */
+static double fill_of(const struct limit_tables *tables, enum default_view view,
+                      const struct vec *points, size_t n)
+{
+    struct camera camera;
+    struct view seen_by;
+    renderer_default_camera(tables, NULL, view, 640, 480, &camera);
+    view_init(&seen_by, &camera, 640, 480, tables->hull_min, tables->hull_max);
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (size_t i = 0; i < n; i++) {
+        const double world[3] = {points[i].x, points[i].y, points[i].z};
+        double seen[3];
+        view_transform(&seen_by, world, seen);
+        assert_true(seen[2] > 0);
+        for (int k = 0; k < 2; k++) {
+            double place = seen[k] / seen[2] / seen_by.units_per_px / (k ? 480 : 640);
+            low[k] = fmin(low[k], place);
+            high[k] = fmax(high[k], place);
+        }
+    }
+    for (int k = 0; k < 2; k++)
+        assert_true(low[k] > -0.49 && high[k] < 0.49);
+    return fmax(high[0] - low[0], high[1] - low[1]);
+}
+
+enum { SAMPLES = 33 };
+
+/* All of the surface, sampled so much more densely than what the camera is fitted to, is in the
+ * picture, from wherever it looks, and fills it. */
+static void test_the_surface_fills_the_picture(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"body", "fender", "creases", "ngons",
+                                        "pole", "tetra",  "plane"};
+    for (size_t m = 0; m < sizeof names / sizeof names[0]; m++) {
+        char path[64];
+        struct error error = {0};
+        struct limit_tables tables;
+        snprintf(path, sizeof path, "tests/models/%s.obj", names[m]);
+        build_file(path, &tables);
+        assert_true(limit_find_support(&tables, NULL, &error));
+        assert_true(tables.n_support > 4 && tables.n_support <= SUPPORT_MAX_POINTS);
+        struct vec *points = calloc(tables.n_faces * SAMPLES * SAMPLES, sizeof *points);
+        assert_non_null(points);
+        size_t n = 0;
+        for (size_t i = 0; i < tables.n_faces * SAMPLES * SAMPLES; i++) {
+            struct limit_point point;
+            size_t x = i % SAMPLES, y = i / SAMPLES % SAMPLES;
+            if (limit_evaluate(&tables, (uint32_t)(i / SAMPLES / SAMPLES),
+                               (double)x / (SAMPLES - 1), (double)y / (SAMPLES - 1), &point))
+                points[n++] = point.s;
+        }
+        for (enum default_view view = VIEW_AROUND; view <= VIEW_ISO; view++) {
+            double fill = fill_of(&tables, view, points, n);
+            assert_true(fill > 0.90 && fill < 0.95);
+        }
+        free(points);
+        limit_tables_finish(&tables);
+    }
+}
+
 static struct vec vec_of(const double a[3])
 {
     return (struct vec){a[0], a[1], a[2]};
@@ -204,9 +260,13 @@ static void test_a_point(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_box_fills_the_picture),   cmocka_unit_test(test_up_is_above),
-        cmocka_unit_test(test_the_longer_side_lies_across), cmocka_unit_test(test_the_tunnel),
-        cmocka_unit_test(test_flat_lights_face_the_model),  cmocka_unit_test(test_a_point),
+        cmocka_unit_test(test_the_box_fills_the_picture),
+        cmocka_unit_test(test_up_is_above),
+        cmocka_unit_test(test_the_longer_side_lies_across),
+        cmocka_unit_test(test_the_surface_fills_the_picture),
+        cmocka_unit_test(test_the_tunnel),
+        cmocka_unit_test(test_flat_lights_face_the_model),
+        cmocka_unit_test(test_a_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

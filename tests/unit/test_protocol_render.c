@@ -140,8 +140,18 @@ static void render_geometry(void **state)
     REFUSED(camera.up, along, "line of sight");
     REFUSED(camera.up, zero, "line of sight");
     REFUSED(camera.up, along, "--up 0,1,0");
-    REFUSED(camera.has_eye, false, "come together");
-    REFUSED(camera.has_target, false, "come together");
+    REFUSED(camera.has_target, false, "comes with camera.target");
+    ACCEPTED(camera.has_eye, false); /* the default camera turns to the target */
+    sheen_Render framed = GOOD;
+    char why_framed[MESSAGE_TEXT_BYTES];
+    framed.camera.has_view = true;
+    framed.camera.view = sheen_View_VIEW_TOP;
+    assert_false(check(&framed, why_framed));
+    assert_non_null(strstr(why_framed, "not with camera.eye"));
+    framed.camera.has_eye = false;
+    assert_true(check(&framed, why_framed));
+    framed.camera.view = (sheen_View)(sheen_View_VIEW_ISO + 1);
+    assert_false(check(&framed, why_framed));
     REFUSED(lights[0].u, zero, "length of light.u");
     REFUSED(lights[0].v, GOOD.lights[0].u, "span no light");
     REFUSED(camera.has_ortho_height, true, "exclude");

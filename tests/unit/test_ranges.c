@@ -81,6 +81,9 @@ BOTH(fov_deg, render->camera.fov_deg, frame->camera.fov_deg)
 WIRE(ortho_height, render->camera.has_fov_deg = false; render->camera.has_ortho_height = true;
      render->camera.ortho_height = value)
 FRAME(ortho_height, frame->camera.kind = CAMERA_ORTHOGRAPHIC; frame->camera.ortho_height = value)
+WIRE(zoom, render->camera.has_zoom = true; render->camera.zoom = value)
+WIRE(zoom_x, render->camera.has_zoom_x = true; render->camera.zoom_x = value)
+WIRE(zoom_y, render->camera.has_zoom_y = true; render->camera.zoom_y = value)
 WIRE(edge_u, render->lines.family = sheen_LineFamily_LINES_HIGHLIGHT;
      render->lights[0].u = (sheen_Vec3){value, 0, 0})
 FRAME(edge_u, frame->lines.family = LINES_HIGHLIGHT; frame->lights[0].u[0] = value)
@@ -185,6 +188,9 @@ static const struct field {
     {&RANGES[RANGE_FOV], REAL, RENDER "--fov %.17g", wire_fov_deg, frame_fov_deg},
     {&RANGES[RANGE_ORTHO_HEIGHT], REAL, RENDER "--ortho %.17g", wire_ortho_height,
      frame_ortho_height},
+    {&RANGES[RANGE_ZOOM], REAL, RENDER "--zoom %.17g", wire_zoom, NULL},
+    {&RANGES[RANGE_ZOOM_AT], REAL, RENDER "--zoom 2@%.17g,0.5", wire_zoom_x, NULL},
+    {&RANGES[RANGE_ZOOM_AT], REAL, RENDER "--zoom 2@0.5,%.17g", wire_zoom_y, NULL},
     {&RANGES[RANGE_LIGHTS], WHOLE, NULL, wire_lights, frame_lights},
     {&RANGES[RANGE_EDGE], REAL, RENDER "--light-center 0,0,4 --light-u %.17g,0,0 --light-v 0,4,0",
      wire_edge_u, frame_edge_u},
@@ -260,14 +266,16 @@ static bool message_takes(const struct field *field, double value)
     return message_check_render(&render, UINT32_MAX, UINT32_MAX, text);
 }
 
+static const struct limit_tables TABLES = {.box_min = {-1, -1, -1}, .box_max = {1, 1, 1}};
+static const struct wire_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
+
 static bool renderer_takes(const struct field *field, double value)
 {
-    static const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
     const struct renderer_info info = {.max_width_px = PROTOCOL_MAX_SIZE_PX,
                                        .max_height_px = PROTOCOL_MAX_SIZE_PX};
     struct frame_request frame;
     struct error error = {0};
-    wire_to_frame_request(&GOOD, low, high, &frame);
+    wire_to_frame_request(&GOOD, &SUBJECT, &frame);
     assert_true(request_check(&info, &frame, &error));
     field->frame(&frame, value);
     return request_check(&info, &frame, &error);
@@ -335,7 +343,6 @@ static void directions_agree(void **state)
 {
     (void)state;
     const struct renderer_info info = {.max_width_px = 16384, .max_height_px = 16384};
-    static const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
     char text[MESSAGE_TEXT_BYTES];
     unsigned n_refused = 0, n_taken = 0;
     srand(7);
@@ -361,7 +368,7 @@ static void directions_agree(void **state)
         }
         struct frame_request frame;
         struct error error = {0};
-        wire_to_frame_request(&render, low, high, &frame);
+        wire_to_frame_request(&render, &SUBJECT, &frame);
         bool is_taken = message_check_render(&render, 16384, 16384, text);
         if (request_check(&info, &frame, &error) != is_taken)
             fail_msg("case %d: message %d '%s', renderer '%s'", i, is_taken, text, error.text);

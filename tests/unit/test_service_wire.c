@@ -210,11 +210,11 @@ static void test_up(void **state)
     sheen_Render render = sheen_Render_init_default;
     double up[3];
     render.width_px = render.height_px = 100;
-    assert_int_equal(wire_up(&render, &subject, up), sheen_UpSource_UP_GUESSED);
+    assert_int_equal(wire_model_up(&render, &subject, up), sheen_UpSource_UP_GUESSED);
     assert_true(up[0] == 0 && up[1] == 0 && up[2] == 1);
     for (enum cage_up axis = CAGE_UP_X; axis <= CAGE_UP_Z; axis++) {
         subject.up = axis;
-        assert_int_equal(wire_up(&render, &subject, up), sheen_UpSource_UP_FILE);
+        assert_int_equal(wire_model_up(&render, &subject, up), sheen_UpSource_UP_FILE);
         for (int i = 0; i < 3; i++)
             assert_true(up[i] == ((int)axis - CAGE_UP_X == i));
         wire_to_frame_request(&render, &subject, &request);
@@ -230,7 +230,7 @@ static void test_up(void **state)
     assert_true(request.camera.up[1] == -1 && request.camera.up[2] == 0);
     render.camera.has_up = true;
     render.camera.up = (sheen_Vec3){0, 3, 0};
-    assert_int_equal(wire_up(&render, &subject, up), sheen_UpSource_UP_GIVEN);
+    assert_int_equal(wire_model_up(&render, &subject, up), sheen_UpSource_UP_GIVEN);
     wire_to_frame_request(&render, &subject, &request);
     assert_true(request.camera.up[1] == 3);
 }

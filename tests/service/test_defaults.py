@@ -1,0 +1,242 @@
+"""What is drawn when nothing is said: the default light and camera over all models, end to end."""
+import glob
+import json
+import math
+import os
+import random
+import struct
+import subprocess
+import tempfile
+import unittest
+
+import wire
+from daemon import MODELS, SHEEN, DaemonCase
+
+POSITION, PTEX, LIGHT = 2, 8, 16
+SHAPES = os.path.join(MODELS, "..", "..", "..", "shared", "shapes")
+FRONT, TOP = 1, 5
+# A panel that stands, a little bent: thin in y, so that z is guessed to be up.
+DOOR = b"".join(b"v %g %g %g\n" % (x, 0.04 * x * x, z) for z in (0, 1, 2) for x in (-1, 0, 1)) + \
+    b"f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9 8\n"
+
+
+def vec3(v):
+    return b"".join(wire.field(k + 1, float(x)) for k, x in enumerate(v))
+
+
+def doubles(body):
+    return [struct.unpack("<d", wire.decode(body)[k][0])[0] for k in (1, 2, 3)]
+
+
+def camera(eye=None, target=None, fov=None, view=None, zoom=None):
+    """A Camera: zoom is (factor, x, y)."""
+    parts = [(1, eye and vec3(eye)), (2, target and vec3(target)), (4, fov), (6, view)]
+    parts += zip((7, 8, 9), zoom or ())
+    return wire.field(4, b"".join(wire.field(number, value) for number, value in parts
+                                  if value is not None))
+
+
+class Picture:
+    """The planes of a frame, as lists of pixels; None where there is nothing."""
+
+    def __init__(self, client, model, width, height, extra=b""):
+        self.width, self.height = width, height
+        frame = client.render(model, width, height, planes=POSITION | PTEX | LIGHT, extra=extra)
+        n = width * height
+        data = frame.data
+        self.position = list(struct.iter_unpack("<3f", data[:12 * n]))
+        faces = struct.iter_unpack("<I8x", data[12 * n:24 * n])
+        self.hit = [face != 0xffffffff for face, in faces]
+        self.light = list(struct.iter_unpack("<2f", data[24 * n:]))
+        self.fields = frame.fields
+        self.camera = wire.decode(frame.fields[7][0])
+
+    def eye(self):
+        return doubles(self.camera[1][0])
+
+    def target(self):
+        return doubles(self.camera[2][0])
+
+    def fill(self):
+        """The larger share of the picture's sides that the model takes; whether it touches them."""
+        places = [(i % self.width, i // self.width) for i, hit in enumerate(self.hit) if hit]
+        shares, touches = [], False
+        for side, size in enumerate((self.width, self.height)):
+            low, high = min(p[side] for p in places), max(p[side] for p in places)
+            shares.append((high - low + 1) / size)
+            touches = touches or low == 0 or high == size - 1
+        return max(shares), touches
+
+
+class Defaults(DaemonCase):
+    def setUp(self):
+        super().setUp()
+        self.client = wire.Client(self.daemon.unix)
+        self.client.__enter__()
+        self.addCleanup(self.client.__exit__)
+
+    def upload(self, path):
+        with open(path, "rb") as file:
+            return self.client.upload(file.read(), os.path.basename(path))
+
+    def test_all_models(self):
+        """Everywhere there is light; the model fills the picture and does not touch its border."""
+        n = 0
+        for path in sorted(glob.glob(os.path.join(MODELS, "*.obj")) +
+                           glob.glob(os.path.join(MODELS, "*.gltf")) +
+                           glob.glob(os.path.join(SHAPES, "*.obj"))):
+            model = self.upload(path)
+            for width, height in ((120, 80), (70, 100)):
+                with self.subTest(path=os.path.basename(path), size=(width, height)):
+                    try:
+                        picture = Picture(self.client, model, width, height)
+                    except wire.Refused as refused:
+                        self.assertEqual(refused.code, 4, refused.text)
+                        continue
+                    missed = sum(hit and math.isnan(st[0])
+                                 for hit, st in zip(picture.hit, picture.light))
+                    self.assertEqual(missed, 0, "pixels without light")
+                    share = struct.unpack("<d", picture.fields[32][0])[0]
+                    self.assertEqual(share, 1)
+                    fill, touches = picture.fill()
+                    self.assertGreaterEqual(fill, 0.85)
+                    self.assertFalse(touches)
+                    n += 1
+        self.assertGreaterEqual(n, 20)
+
+    def test_one_eye(self):
+        """A point of the surface shows the same place of the light, wherever the eye turns."""
+        rng = random.Random(5)
+        for name in ("fender.obj", "body.obj"):
+            model = self.upload(os.path.join(MODELS, name))
+            overview = Picture(self.client, model, 161, 121)
+            hits = [i for i, hit in enumerate(overview.hit) if hit]
+            for i in rng.sample(hits, 20):
+                size = 2 * rng.randrange(1, 20) + 1
+                extra = camera(overview.eye(), overview.position[i], 1 + 60 * rng.random())
+                closer = Picture(self.client, model, size, size, extra)
+                self.assertEqual(closer.fields[8], overview.fields[8], "the light moved")
+                middle = size * size // 2
+                for a, b in zip(closer.light[middle], overview.light[i]):
+                    self.assertLess(abs(a - b), 1e-5)
+
+    def test_zoom(self):
+        """What is at a place of the picture comes to the middle; the eye and the light stay."""
+        model = self.upload(os.path.join(MODELS, "fender.obj"))
+        for view in (None, TOP):
+            overview = Picture(self.client, model, 161, 121, camera(view=view))
+            for i in [i for i, hit in enumerate(overview.hit) if hit][::997]:
+                x, y = (i % 161 + 0.5) / 161, (i // 161 + 0.5) / 121
+                closer = Picture(self.client, model, 161, 121,
+                                 camera(view=view, zoom=(20.0, x, y)))
+                self.assertEqual(closer.eye(), overview.eye())
+                self.assertEqual(closer.fields[8], overview.fields[8])
+                middle = 161 * 60 + 80
+                self.assertLess(math.dist(closer.position[middle], overview.position[i]),
+                                1e-6 * math.dist(overview.eye(), overview.position[i]))
+                fovs = [struct.unpack("<d", p.camera[4][0])[0] for p in (overview, closer)]
+                tangents = [math.tan(math.radians(fov / 2)) for fov in fovs]
+                self.assertAlmostEqual(tangents[0] / tangents[1], 20, 9)
+
+    def test_views(self):
+        """Each looks from where it says, and fills the picture."""
+        model = self.upload(os.path.join(MODELS, "body.obj"))  # z up
+        third = math.sqrt(1 / 3)
+        for view, (toward, up) in enumerate((((0, 1, 0), (0, 0, 1)), ((0, -1, 0), (0, 0, 1)),
+                                             ((1, 0, 0), (0, 0, 1)), ((-1, 0, 0), (0, 0, 1)),
+                                             ((0, 0, -1), (0, 1, 0)), ((0, 0, 1), (0, -1, 0)),
+                                             ((-third, third, -third), (0, 0, 1))), FRONT):
+            with self.subTest(view=view):
+                self.check_view(model, view, toward, up)
+
+    def check_view(self, model, view, toward, up):
+        picture = Picture(self.client, model, 120, 80, camera(view=view))
+        away = [b - a for a, b in zip(picture.eye(), picture.target())]
+        length = math.hypot(*away)
+        for k in range(3):
+            self.assertAlmostEqual(away[k] / length, toward[k], 12)
+        self.assertEqual(doubles(picture.camera[3][0]), list(up))
+        fill, touches = picture.fill()
+        self.assertGreaterEqual(fill, 0.85)
+        self.assertFalse(touches)
+
+    def test_target_alone(self):
+        model = self.upload(os.path.join(MODELS, "body.obj"))
+        whole = Picture(self.client, model, 60, 40)
+        turned = Picture(self.client, model, 60, 40, camera(target=(0.5, 0.25, 0.125)))
+        self.assertEqual((turned.eye(), turned.target()), (whole.eye(), [0.5, 0.25, 0.125]))
+        self.assertEqual(turned.fields[8], whole.fields[8])
+
+
+class Said(DaemonCase):
+    def setUp(self):
+        super().setUp()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.door = os.path.join(self.folder, "door.obj")
+        with open(self.door, "wb") as file:
+            file.write(DOOR)
+
+    def sheen(self, model, *options, code=0):
+        """What --json says, and what is said to people."""
+        done = subprocess.run([SHEEN, "render", model, "-o", os.path.join(self.folder, "a.png"),
+                               "--size", "90x60", "--server", self.daemon.unix, "--json", *options],
+                              capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return json.loads(done.stdout) if code == 0 else None, done.stderr
+
+    def test_up(self):
+        """A file that says which way is up is believed; a guess is told, and what is given counts."""
+        said, text = self.sheen(os.path.join(MODELS, "fender.gltf"))
+        self.assertEqual((said["up"], said["up_source"]), ([0, 1, 0], "file"))
+        self.assertEqual(said["camera"]["up"], [0, 1, 0])
+        self.assertNotIn("guessed", text)
+        said, text = self.sheen(self.door)
+        self.assertEqual((said["up"], said["up_source"]), ([0, 1, 0], "guessed"))
+        self.assertIn("up: y, guessed", text)
+        self.assertIn("--up z", text)
+        for word, up in (("z", [0, 0, 1]), ("-z", [0, 0, -1]), ("+x", [1, 0, 0]),
+                         ("-y", [0, -1, 0]), ("0,0,3", [0, 0, 3])):
+            said, text = self.sheen(self.door, "--up", word)
+            self.assertEqual((said["up"], said["up_source"]), (up, "given"))
+            self.assertEqual(said["camera"]["up"], up)
+            self.assertNotIn("guessed", text)
+
+    def test_light_share(self):
+        """A light that most of what is seen misses says so, once, with what to do."""
+        said, text = self.sheen(self.door, "--up", "z")
+        self.assertEqual((said["light_share"], said["light"]["kind"]), (1, "tunnel"))
+        self.assertNotIn("is met on", text)
+        said, text = self.sheen(self.door, "--up", "z", "--light", "rectangle")
+        self.assertLess(said["light_share"], 0.5)
+        self.assertEqual(text.count("the light is met on"), 1)
+        self.assertIn("--light-center", text)
+        for options in (("--show", "mean"), ("--surface", "wireframe:2"),
+                        ("--eye", "0,-9,1", "--target", "0,-18,1")):
+            said, text = self.sheen(self.door, "--up", "z", *options)
+            self.assertIsNone(said["light_share"], options)
+            self.assertNotIn("is met on", text)
+
+    def test_straight_down(self):
+        """No --up is needed; the lines are those of every other camera."""
+        whole, _ = self.sheen(os.path.join(MODELS, "fender.obj"))
+        for height, back in ((4000, 1), (-4000, -1)):
+            said, _ = self.sheen(os.path.join(MODELS, "fender.obj"), "--eye", f"500,0,{height}",
+                                 "--target", "500,0,0")
+            self.assertEqual(said["camera"]["up"], [0, back, 0])
+            self.assertEqual(said["light"], whole["light"])
+
+    def test_refused(self):
+        for options, words in (
+                (("--eye", "1,2,3"), "--eye needs a --target"),
+                (("--eye", "1,2,3", "--target", "0,0,0", "--view", "top"), "exclude each other"),
+                (("--view", "upside"), "--view 'upside'"), (("--up", "w"), "--up 'w'"),
+                (("--zoom", "0.5"), "FACTOR must be a number from 1 to"),
+                (("--zoom", "2@640,360"), "not pixels"), (("--zoom", "2@1"), "FACTOR@X,Y")):
+            _, text = self.sheen(self.door, *options, code=2)
+            self.assertIn(words, text)
+
+
+if __name__ == "__main__":
+    unittest.main()
