@@ -92,7 +92,7 @@ class Show(DaemonCase):
                 mean = [(a + b) / 2 for a, b in struct.iter_unpack("<2f", data[-8 * n:])]
                 seen = [(value, i) for i, value in enumerate(mean) if math.isfinite(value)]
                 greatest = max(seen, key=lambda found: (found[0], -found[1]))
-                for number, (value, i) in ((30, min(seen)), (31, greatest)):
+                for number, (value, i) in ((40, min(seen)), (41, greatest)):
                     numbers, at, where, face = place(fields[number][0])
                     self.assertEqual((numbers[0], at, tuple(where)), (value, i, position[i]))
                     if ptex:
@@ -103,7 +103,7 @@ class Show(DaemonCase):
                 seq = client.ask(model, WIDTH, HEIGHT, extra=extra)
                 fields = client.expect(wire.FRAME, seq)
                 client.read_rest(seq, fields)
-                self.assertFalse({30, 31} & set(fields))
+                self.assertFalse({40, 41} & set(fields))
 
     def test_a_plane_has_one_draft(self):
         for direction, colour in (((0, 0, 2), (0, 84, 38)), ((0, 0, -1), (128, 0, 13)),

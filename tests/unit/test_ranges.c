@@ -59,7 +59,7 @@ WIRE(jpeg, render->height_px = (uint32_t)value; render->encoding = sheen_Encodin
 WIRE(eye, render->camera.eye.x = render->camera.eye.z = value)
 FRAME(eye, frame->camera.eye[0] = frame->camera.eye[2] = value)
 BOTH(target, render->camera.target.y, frame->camera.target[1])
-BOTH(up, render->camera.up.x, frame->camera.up[0])
+BOTH(upward, render->camera.up.x, frame->camera.up[0])
 BOTH(centre, render->lights[0].centre.z, frame->lights[0].centre[2])
 WIRE(direction, render->lines = (sheen_Lines){.family = sheen_LineFamily_LINES_ZEBRA,
                                               .has_direction = true,
@@ -176,7 +176,7 @@ static const struct field {
      frame_eye},
     {&RANGES[RANGE_COORDINATE], REAL, RENDER "--eye 3,-4,2 --target 0,%.17g,0", wire_target,
      frame_target},
-    {&RANGES[RANGE_COORDINATE], REAL, RENDER "--up %.17g,0,1", wire_up, frame_up},
+    {&RANGES[RANGE_COORDINATE], REAL, RENDER "--up %.17g,0,1", wire_upward, frame_upward},
     {&RANGES[RANGE_COORDINATE], REAL,
      RENDER "--light-center 0,0,%.17g --light-u 4,0,0 --light-v 0,4,0", wire_centre, frame_centre},
     {&RANGES[RANGE_COORDINATE], REAL, RENDER "--lines zebra:%.17g,0,1", wire_direction,
@@ -266,6 +266,7 @@ static bool message_takes(const struct field *field, double value)
     return message_check_render(&render, UINT32_MAX, UINT32_MAX, text);
 }
 
+/* What a request leaves out is of this model. */
 static const struct limit_tables TABLES = {.box_min = {-1, -1, -1}, .box_max = {1, 1, 1}};
 static const struct wire_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
 
@@ -369,6 +370,7 @@ static void directions_agree(void **state)
         struct frame_request frame;
         struct error error = {0};
         wire_to_frame_request(&render, &SUBJECT, &frame);
+        wire_to_vec3(&render.camera.up, frame.camera.up); /* where it is parallel, too */
         bool is_taken = message_check_render(&render, 16384, 16384, text);
         if (request_check(&info, &frame, &error) != is_taken)
             fail_msg("case %d: message %d '%s', renderer '%s'", i, is_taken, text, error.text);
