@@ -25,6 +25,12 @@ void blends(float t, out vec4 value, out vec3 first)
     first = vec3(0.5 * r * r, 0.5 + r * t, 0.5 * t * t);
 }
 
+// For limit_normal(). In a CORNER's frame what lies across a cone keeps its digits, however thin it is.
+float lost_square(Node node)
+{
+    return node.kind == CORNER ? 1e-13 : 1e-8;
+}
+
 // Columns: the frame's axes in camera space.
 mat3 frame_of(Node node)
 {
@@ -110,17 +116,17 @@ void fetch_points(SubPatch patch_, out Net p, out float scale)
 // gain on the way. That is exact; su x sv a little way inside would be off by its second-order terms.
 // Where both derivatives vanish that is zero too, and the second order alone is left: du x dv.
 //
-// A derivative counts as vanished below 1e-4 of the other one, both below 1e-4 of the second ones, where
-// single precision keeps no more than a few digits of them. Parallel is what is so to the last digit:
+// A derivative counts as vanished when its square is below `lost` of the other one's, both below 1e-8 of the
+// second ones', where single precision keeps few digits of them. Parallel is what is so to the last digit:
 // near the smooth corner of one quad su x sv shrinks to 1e-10 and is still right in the node's frame.
-vec3 limit_normal(vec3 su, vec3 sv, vec3 suu, vec3 suv, vec3 svv, vec2 st, out float area2)
+vec3 limit_normal(vec3 su, vec3 sv, vec3 suu, vec3 suv, vec3 svv, vec2 st, float lost, out float area2)
 {
     vec3 n = cross(su, sv);
     area2 = dot(n, n);
     float u2 = dot(su, su), v2 = dot(sv, sv);
     bool both_vanish =
         max(u2, v2) < 1e-8 * max(max(dot(suu, suu), dot(svv, svv)), dot(suv, suv));
-    bool vanishes = both_vanish || min(u2, v2) < 1e-8 * max(u2, v2) || !(area2 > 1e-24 * u2 * v2);
+    bool vanishes = both_vanish || min(u2, v2) < lost * max(u2, v2) || !(area2 > 1e-24 * u2 * v2);
     vec2 inward = 0.5 - st;
     vec3 du = inward.x * suu + inward.y * suv, dv = inward.x * suv + inward.y * svv;
     n = !vanishes ? n : both_vanish ? cross(du, dv) : cross(du, sv) + cross(su, dv);
@@ -159,7 +165,7 @@ Surface patch_at(Node node, mat3 frame, Net p, float scale, vec2 st)
     vec3 svv = (1.0 - st.y) * (b - a) + st.y * (g - b);
     vec3 suv = dv.x * (d[1] - d[0]) + dv.y * (d[2] - d[1]) + dv.z * (d[3] - d[2]);
     float area2;
-    vec3 n = limit_normal(su, sv, suu, suv, svv, st, area2);
+    vec3 n = limit_normal(su, sv, suu, suv, svv, st, lost_square(node), area2);
     // Before any rotation as well: the gradients, since near extraordinary vertices su and sv are nearly
     // parallel, and what is along n, since there it is far smaller than what is across.
     float to_unit = inversesqrt(area2);

@@ -98,6 +98,7 @@ oracle() {
         $cages
     beside coverage "$build/tests/test_coverage" "$build/sheen" tests/models/*.obj $cages
     beside deep "$build/tests/test_deep"
+    beside sectors "$build/tests/test_sectors"
     beside random_cages "$build/tests/test_random_cages"
     car=$shapes/catmark_car.obj
     [ -f "$car" ] || car=tests/models/creases.obj

@@ -148,7 +148,8 @@ static void set_normal(const struct limit_patch *patch, struct limit_point *out)
     double bend2 = fmax(fmax(vec_dot(out->suu, out->suu), vec_dot(out->svv, out->svv)),
                         vec_dot(out->suv, out->suv));
     bool both_vanish = fmax(u2, v2) < 1e-8 * bend2;
-    bool vanishes = both_vanish || fmin(u2, v2) < 1e-8 * fmax(u2, v2) || !(area2 > 1e-24 * u2 * v2);
+    double lost = patch->node->kind == LIMIT_CORNER ? 1e-13 : 1e-8;
+    bool vanishes = both_vanish || fmin(u2, v2) < lost * fmax(u2, v2) || !(area2 > 1e-24 * u2 * v2);
     if (vanishes) {
         double s = 0.5 - patch->s, t = 0.5 - patch->t;
         struct vec du = vec_mad(vec_scale(out->suu, s), t, out->suv);
