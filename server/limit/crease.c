@@ -94,7 +94,7 @@ void crease_refine(const struct ring *in, struct ring *out)
     out->sharpness = crease_child_vertex(in->sharpness);
     out->creases.chaikin = in->creases.chaikin;
     out->sheets = in->sheets;
-    if (in->sheets.level && !in->sheets.level->is_last)
+    if (in->sheets.level && in->sheets.level->semisharp.n)
         out->sheets.level++;
     if (!in->creases.edge)
         return;

@@ -82,9 +82,10 @@ static double rule_weight(const struct ring *in, const struct ring *out)
     for (uint32_t k = 0; !sheets && in->creases.edge && k < ring_edges(in); k++)
         if (crease_edge(out, k) <= 0)
             crease_add(&ending, crease_edge(in, k));
+    /* The rule changes where they have all run out, so that none is left over here. */
     if (sheets) {
-        ending.sum += sheets->ending.sum;
-        ending.n += sheets->ending.n;
+        ending.sum += sheets->semisharp.sum;
+        ending.n += sheets->semisharp.n;
     }
     return ending.n ? fmin((double)(ending.sum / (float)ending.n), 1) : 0;
 }

@@ -97,18 +97,16 @@ static bool add_level(struct topology *t, size_t *capacity, struct sheet_level l
     return true;
 }
 
-/* One step: what the edges come to, and what that makes of the level. */
-static void wear_off(struct sharp_edges *edges, bool chaikin, struct sheet_level *level)
+/* One step: those that are left come first. */
+static void wear_off(struct sharp_edges *edges, bool chaikin, const struct crease_sum *sum)
 {
     uint32_t left = 0;
     for (uint32_t k = 0; k < edges->n_semisharp; k++) {
         float sharpness = edges->semisharp[k];
-        float child = chaikin ? crease_child_chaikin(sharpness, &level->semisharp)
-                              : crease_child_vertex(sharpness);
+        float child =
+            chaikin ? crease_child_chaikin(sharpness, sum) : crease_child_vertex(sharpness);
         if (child > 0)
             edges->semisharp[left++] = child;
-        else
-            crease_add(&level->ending, sharpness);
     }
     edges->n_semisharp = left;
 }
@@ -117,11 +115,11 @@ static bool add_levels(struct topology *t, size_t *capacity, struct sharp_edges 
 {
     for (bool is_last = false; !is_last;) {
         is_last = edges->n_semisharp == 0;
-        struct sheet_level level = {
-            .n_sharp = edges->n_ends + edges->n_infinite + edges->n_semisharp, .is_last = is_last};
+        struct sheet_level level = {.n_sharp =
+                                        edges->n_ends + edges->n_infinite + edges->n_semisharp};
         for (uint32_t k = 0; k < edges->n_semisharp; k++)
             crease_add(&level.semisharp, edges->semisharp[k]);
-        wear_off(edges, t->cage->chaikin, &level);
+        wear_off(edges, t->cage->chaikin, &level.semisharp);
         if (!add_level(t, capacity, level))
             return false;
     }

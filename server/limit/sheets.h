@@ -14,9 +14,7 @@
  * this one. */
 struct sheet_level {
     uint32_t n_sharp;            /* with those that end the sheets, each counted once */
-    struct crease_sum semisharp; /* the semi-sharp among them, for Chaikin's rule */
-    struct crease_sum ending;    /* those that are smooth after one more step */
-    bool is_last;                /* nothing changes any more */
+    struct crease_sum semisharp; /* the semi-sharp among them; none: this level is the last */
 };
 
 struct vertex_sheets {

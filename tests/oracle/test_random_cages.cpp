@@ -55,7 +55,7 @@ void look_at_sheets(const cage &cage, census *all)
         const vertex_sheets *sheets = sheets_at(&t, c);
         if (!sheets || t.vertex_flags[corner_vertex(&t, c)] & VERTEX_SHARP)
             continue;
-        worn_off |= !t.sheet_level[sheets->first_level].is_last;
+        worn_off |= t.sheet_level[sheets->first_level].semisharp.n > 0;
         foreign |= !runs_through(t, c);
     }
     topology_finish(&t);
