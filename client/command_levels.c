@@ -193,6 +193,7 @@ static void print_json(struct json *json, const struct options *options, const s
     json_string(json, "server", exact->server);
     json_string(json, "model", options->model);
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
+    json_bool(json, "weld", options->weld);
     json_array_begin(json, "levels");
     for (int row = 0; row < N_LEVELS; row++) {
         json_object_begin(json, NULL);

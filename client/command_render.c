@@ -46,6 +46,7 @@ static void print_json(struct json *json, const struct options *options, const s
     json_string(json, "address", options->server ? options->server : "private");
     json_string(json, "model", options->model);
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
+    json_bool(json, "weld", options->weld);
     if (info->faces)
         json_uint(json, "faces", info->faces);
     json_bool(json, "blank", frame->blank);

@@ -255,6 +255,7 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
     json_bool(json, "software", frame->software);
     json_string(json, "server", frame->server);
     json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
+    json_bool(json, "weld", options->weld);
     json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
     json_uint(json, "late", stream->n_late);
     if (options->output) {

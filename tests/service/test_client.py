@@ -160,7 +160,8 @@ class Client(unittest.TestCase):
                  *first, "--light", "sphere", "--pattern", "image:" + image, "--base", "#010203",
                  "--miss", "#040506", "--empty", "#07080940", "--filter", "off", "--class",
                  "batch", "--deadline", "100000")
-        found, _ = self.render("a.exr", "--server", self.daemon.unix, *scene, "--aov", "N,k")
+        found, _ = self.render("a.exr", "--server", self.daemon.unix, *scene, "--aov", "N,k",
+                               "--weld")
         light = found["lights"][0]
         said = {
             "output": (found["file"], self.path("a.exr")), "aov": (found["aov"], ["N", "k"]),
@@ -181,7 +182,7 @@ class Client(unittest.TestCase):
             "base": (found["base"], "#010203ff"), "miss": (found["miss"], "#040506ff"),
             "empty": (found["empty"], "#07080940"), "filter": (found["filter"], "off"),
             "server": (found["address"], self.daemon.unix), "class": (found["class"], "batch"),
-            "deadline": (found["deadline_ms"], 100000),
+            "deadline": (found["deadline_ms"], 100000), "weld": (found["weld"], True),
         }
         closer, _ = self.render("b.png", "--server", self.daemon.unix, "--view", "top", "--zoom",
                                 "4@0.25,0.75")
