@@ -321,7 +321,9 @@ bool options_check_jpeg(const struct options *options, char *why)
 
 const struct option_row OPTIONS_JPEG[] = {
     {"jpeg-quality", 0, "N",
-     "of a .jpg, as libjpeg has it: {}, the lower the smaller (default: 95)", apply_jpeg_quality},
+     "of a .jpg, as libjpeg has it: {}, the lower the\n"
+     "smaller the file (default: 95)",
+     apply_jpeg_quality},
     {"jpeg-subsampling", 0, "KIND",
      "of a .jpg's colour: 444, one sample for each pixel, 422, for two side by\n"
      "side, or 420, for two by two: smaller files, coloured edges less sharp\n"
