@@ -55,13 +55,7 @@ void cage_found(struct cage *cage, const struct cage_finding *finding, const cha
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    size_t i = 0;
-    while (i < cage->n_findings && cage->finding[i].kind != finding->kind)
-        i++;
-    if (i < cage->n_findings)
-        cage->finding[i].count += finding->count;
-    else
-        cage->finding[cage->n_findings++] = *finding;
+    cage->finding[cage->n_findings++] = *finding;
     if (finding->line)
         cage_warn(cage, "%s:%u: %s", name, finding->line, text);
     else if (finding->face != CAGE_NO_FACE)

@@ -117,8 +117,8 @@ bool cage_check(const struct cage *cage, const char *name, struct error *error);
  * that more followed). */
 void cage_warn(struct cage *cage, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Keeps a finding, or adds to the count of one of its kind, and warns of it in one line:
- * "NAME:LINE: " or what else its place is called, and the text. */
+/* Keeps a finding, the first of its kind, and warns of it in one line: "NAME:LINE: " or what else
+ * its place is called, and the text. */
 void cage_found(struct cage *cage, const struct cage_finding *finding, const char *name,
                 const char *format, ...) __attribute__((format(printf, 4, 5)));
 

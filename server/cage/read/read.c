@@ -45,13 +45,12 @@ static const char *shown_name(const char *name)
     return length > SHOWN_NAME_BYTES ? name + length - SHOWN_NAME_BYTES : name;
 }
 
-/* Welding needs indices in range, and may leave faces that need mending themselves. */
-static bool mend_and_weld(struct cage_builder *builder, const char *name, struct error *error)
+/* Mending takes away what welding has made of faces and tags, too. */
+static bool weld_and_mend(struct cage_builder *builder, const char *name, struct error *error)
 {
     const struct weld_start start = {0};
-    return cage_mend(builder, name, error) &&
-           (!builder->weld ||
-            (cage_weld(builder, &start, name, error) && cage_mend(builder, name, error)));
+    return (!builder->weld || cage_weld(builder, &start, name, error)) &&
+           cage_mend(builder, name, error);
 }
 
 bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *name,
@@ -63,7 +62,7 @@ bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *na
         return error_set(error, ERROR_MODEL, "%s: the file is empty", name);
     struct cage_builder builder = {0};
     bool ok = choose_reader(name, bytes, size)(&builder, bytes, size, name, error) &&
-              mend_and_weld(&builder, name, error) && cage_check(&builder.cage, name, error);
+              weld_and_mend(&builder, name, error) && cage_check(&builder.cage, name, error);
     if (ok) {
         cage_doubt(&builder, name);
         *cage = builder.cage;
