@@ -49,6 +49,11 @@ static void print_json(struct json *json, const struct options *options, const s
     json_bool(json, "weld", options->weld);
     if (info->faces)
         json_uint(json, "faces", info->faces);
+    if (options->request.jpeg_quality)
+        json_uint(json, "jpeg_quality", options->request.jpeg_quality);
+    if (options->request.format == SHEEN_FILE_JPEG)
+        json_string(json, "jpeg_subsampling",
+                    value_subsampling_name(options->request.jpeg_subsampling));
     json_bool(json, "blank", frame->blank);
     job_json_times(json, &frame->times);
     job_json_schedule(json, &options->request);

@@ -157,15 +157,21 @@ bool value_format(const char *path, enum sheen_format *format)
     return false;
 }
 
+static const char *const SUBSAMPLINGS[] = {"444", "422", "420"};
+
 bool value_subsampling(const char *text, enum sheen_jpeg_subsampling *subsampling)
 {
-    static const char *const names[] = {"444", "422", "420"};
-    for (size_t i = 0; i < sizeof(names) / sizeof(*names); i++) {
+    for (size_t i = 0; i < sizeof(SUBSAMPLINGS) / sizeof(*SUBSAMPLINGS); i++) {
         *subsampling = (enum sheen_jpeg_subsampling)i;
-        if (strcmp(text, names[i]) == 0)
+        if (strcmp(text, SUBSAMPLINGS[i]) == 0)
             return true;
     }
     return false;
+}
+
+const char *value_subsampling_name(enum sheen_jpeg_subsampling subsampling)
+{
+    return SUBSAMPLINGS[subsampling];
 }
 
 static const char *const CLASS_NAMES[] = {

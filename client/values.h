@@ -29,6 +29,7 @@ bool value_format(const char *path, enum sheen_format *format);
 
 /* 444, 422 or 420. */
 bool value_subsampling(const char *text, enum sheen_jpeg_subsampling *subsampling);
+const char *value_subsampling_name(enum sheen_jpeg_subsampling subsampling);
 
 /* interactive, still or batch. */
 bool value_class(const char *text, enum sheen_class *request_class);

@@ -204,6 +204,10 @@ class Client(unittest.TestCase):
             "show-range": (found["show_range"], 5), "legend": (found["legend"], "off"),
             "device": ((found["address"], found["software"]), ("private", True)),
         })
+        found, _ = self.render("a.jpg", "--server", self.daemon.unix, "--jpeg-quality", "80",
+                               "--jpeg-subsampling", "420")
+        said.update({"jpeg-quality": (found["jpeg_quality"], 80),
+                     "jpeg-subsampling": (found["jpeg_subsampling"], "420")})
         for name, (value, wanted) in said.items():
             self.assertEqual(value, wanted, name)
         options = set(re.findall(r"^ +(?:-., )?--([a-z-]+)", sheen("render", "--help").stdout, re.M))
