@@ -208,7 +208,7 @@ static bool reserve(struct renderer *r, const struct frame_work *work, struct er
     if (is_of_polygons(work))
         return true;
     return target_reserve_rounded(&r->target, error) &&
-           (r->in_use != PLANES_TILED ||
+           (r->in_use != PLANES_TILED || is_single(work) ||
             (target_reserve(lists, drawn->width, drawn->height, error) &&
              target_reserve_rounded(lists, error)));
 }

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "server/gpu/gpu.h"
 #include "tests/unit/renderer_frames.h"
 
 enum { ALL_PLANES = (1 << PLANE_COUNT) - 1, MOST_TILES = 64 };
@@ -137,6 +138,8 @@ static void test_serves_every_cut(void **state)
             assert_false(is_reused(&before));
             assert_true(is_reused(&after));
             assert_same_frames(&fresh, &after);
+            /* What tiles need for themselves is no larger than one. */
+            assert_true(renderer->resting[PLANES_APART].target.width < request.width_px);
             frame_finish(&before);
             frame_finish(&after);
             renderer_model_destroy(renderer, model);
