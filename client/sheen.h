@@ -370,7 +370,6 @@ struct sheen_extreme {
     double u, v;
 };
 
-/* How the daemon treats a request when it has many. */
 /* Of a JPEG file's colour. */
 enum sheen_jpeg_subsampling {
     SHEEN_JPEG_444, /* one sample for each pixel */
@@ -378,6 +377,7 @@ enum sheen_jpeg_subsampling {
     SHEEN_JPEG_420, /* for two by two */
 };
 
+/* How the daemon treats a request when it has many. */
 enum sheen_class {
     SHEEN_STILL,       /* somebody waits for it */
     SHEEN_INTERACTIVE, /* somebody drags: first, and only the newest of a view counts */
