@@ -13,6 +13,7 @@
 #include "tests/oracle/samples.h"
 #include "tests/oracle/scene.h"
 #include "tests/oracle/verdict.h"
+#include "tests/oracle/view.h"
 
 namespace
 {
@@ -163,7 +164,13 @@ struct view_judge {
         if (count != compared_count)
             return;
         std::vector<std::string> options = colour_options;
-        options.insert(options.end(), {"--pattern", "stripes:count=" + std::to_string(count)});
+        auto text = [](const double v[3]) { return comma_separated({v[0], v[1], v[2]}); };
+        const light &light = stripes.lights[0];
+        options.insert(options.end(),
+                       {"--pattern", "stripes:count=" + std::to_string(count), "--light-center",
+                        text(light.centre), "--light-u", text(light.u), "--light-v", text(light.v),
+                        "--eye", text(stripes.camera.eye), "--target", text(stripes.camera.target),
+                        "--up", text(stripes.camera.up)});
         picture drawn = render_picture(sheen, model, width_px, height_px, options);
         std::vector<double> apart =
             differences(drawn, std::vector<double>(filtered.rgb.begin(), filtered.rgb.end()));
