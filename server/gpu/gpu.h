@@ -282,6 +282,8 @@ const struct table_programs *programs_for(struct renderer *renderer,
 /* Makes the target hold a tile, and mostly what it held before. ERROR_DEVICE when the device has no
  * memory. */
 bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error);
+/* Whether the device has images as large as a target for the whole of a frame. */
+bool target_can_hold(const struct renderer_info *info, const struct frame_request *request);
 /* What it takes then. */
 uint64_t target_bytes(uint32_t width, uint32_t height);
 /* And to hold what stage_rounded() finds, which frames of polygons do not need. */

@@ -241,6 +241,7 @@ bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *f
         !frame_init(frame, work->request, r->options.spares, error))
         return false;
     work->serial = ++r->n_begun;
+    work->in_place = work->in_place && target_can_hold(&r->info, work->request);
     cut_frame(work);
     return true;
 }

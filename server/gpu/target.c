@@ -60,6 +60,12 @@ static void choose_size(const struct target *target, uint32_t *width, uint32_t *
     *height = both[1];
 }
 
+bool target_can_hold(const struct renderer_info *info, const struct frame_request *request)
+{
+    return no_power_of_two(request->width_px) <= info->max_width_px &&
+           no_power_of_two(request->height_px) <= info->max_height_px;
+}
+
 bool target_reserve(struct target *target, uint32_t width, uint32_t height, struct error *error)
 {
     if (width <= target->width && height <= target->height)

@@ -80,12 +80,20 @@ static void add_node(struct cells *cells, const struct limit_tables *tables, uin
         }
 }
 
+size_t limit_support_room(const struct limit_tables *tables)
+{
+    const size_t of_node = (MAX_STEPS + 1) * (MAX_STEPS + 1);
+    size_t pieces = tables->n_regular + tables->n_corner + tables->n_strip;
+    return pieces < SUPPORT_MAX_POINTS / of_node ? pieces * of_node : SUPPORT_MAX_POINTS;
+}
+
 bool limit_find_support(struct limit_tables *tables, const struct limit_watch *watch,
                         struct error *error)
 {
     struct cells *cells = calloc(1, sizeof *cells);
+    size_t room = limit_support_room(tables);
     double diagonal = 0;
-    bool ok = cells && (tables->support = malloc(SUPPORT_MAX_POINTS * sizeof *tables->support));
+    bool ok = cells && (!room || (tables->support = malloc(room * sizeof *tables->support)));
     if (!ok) {
         free(cells);
         return error_set(error, ERROR_SERVER, "out of memory for the outline of a model");

@@ -10,6 +10,10 @@
 #define SUPPORT_SIDE 16
 #define SUPPORT_MAX_POINTS (6 * SUPPORT_SIDE * SUPPORT_SIDE)
 
+/* How many points tables may have, known before they are built: a model without surface has none.
+ */
+size_t limit_support_room(const struct limit_tables *tables);
+
 /* Fills in tables->support once all faces are built: the outermost of many points of the surface in
  * each cell. The surface reaches beyond them by less than 1 % of the box's diagonal. Asks the watch
  * as limit_build_faces() does. */

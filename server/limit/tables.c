@@ -77,7 +77,8 @@ size_t limit_tables_bytes(const struct limit_tables *tables)
 size_t limit_tables_host_bytes(const struct limit_tables *tables)
 {
     return limit_tables_bytes(tables) + tables->n_nodes * sizeof *tables->bound_first +
-           tables->n_bounds * sizeof *tables->bounds + SUPPORT_MAX_POINTS * sizeof *tables->support;
+           tables->n_bounds * sizeof *tables->bounds +
+           limit_support_room(tables) * sizeof *tables->support;
 }
 
 bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,
