@@ -7,10 +7,13 @@
 
 #include "client/sheen.h"
 
-/* Appends the tag that asks for it to the bytes of a file, which are malloc'd: so the request is
- * part of what the model is and is named by, and no daemon, cache or owner mixes the two. `path` is
- * for the format and for messages. SHEEN_BAD_ARGUMENT when it is not OBJ, SHEEN_NO_MEMORY; *bytes
- * is the caller's in all cases. */
+/* Appends the tag `t weld 0/0/0` to the bytes of an OBJ file. A model is known by the SHA-256 of
+ * its file, so the welded and the plain model are two models to every daemon, cache and owner.
+ *
+ * *bytes[0, *n_bytes) is malloc'd and is the caller's to free() in all cases; on success it may
+ * have moved, else it is as it was. `path` serves to tell the format (by its ending, before the
+ * bytes are looked at) and for error texts. SHEEN_BAD_ARGUMENT when the file is glTF: any other
+ * counts as OBJ. SHEEN_NO_MEMORY when memory is short. */
 enum sheen_status weld_append(const char *path, uint8_t **bytes, size_t *n_bytes,
                               struct sheen_error *error);
 

@@ -38,8 +38,9 @@ enum range_name {
 };
 
 struct range {
-    const char *field;  /* of the request, as sheen.proto has it; NULL: it is none */
-    const char *option; /* of the command line, NULL: none */
+    const char *field;  /* what error texts and README.md call it, mostly the field of sheen.proto;
+                           NULL: a number of the command line alone */
+    const char *option; /* of the command line; NULL: none */
     double least, greatest;
     bool above_least; /* `least` itself is out of range */
     const char *unit; /* what follows the numbers; "" where there is nothing to say */

@@ -47,11 +47,21 @@ void cage_warn(struct cage *cage, const char *format, ...)
     snprintf(cage->warnings + used, CAGE_WARNINGS_BYTES - used, "%s", fits ? line : MORE_WARNINGS);
 }
 
+static bool is_found(const struct cage *cage, enum cage_finding_kind kind)
+{
+    for (size_t i = 0; i < cage->n_findings; i++)
+        if (cage->finding[i].kind == kind)
+            return true;
+    return false;
+}
+
 void cage_found(struct cage *cage, const struct cage_finding *finding, const char *name,
                 const char *format, ...)
 {
     char text[320];
     va_list args;
+    if (cage->n_findings >= N_CAGE_FINDINGS || is_found(cage, finding->kind))
+        return; /* finding[] has room for one of each kind */
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);

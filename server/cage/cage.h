@@ -1,4 +1,6 @@
-/* The control cage as data: vertices, faces and subdivision tags, exactly as a file says them.
+/* The control cage as data: vertices, faces and subdivision tags as read from a file, with damaged
+ * elements taken out (read/mend.h) and equal positions joined where that was asked for or the
+ * format has it so (read/weld.h).
  *
  * A cage is plain memory that its owner frees with cage_finish(). Nothing here evaluates anything;
  * the limit surface is built by server/limit. Thread: a cage is read-only once read and may then
@@ -52,7 +54,8 @@ struct cage_corner {
     float sharpness; /* as cage_crease.sharpness */
 };
 
-/* What a file has that it is probably not meant to have; its warning says so in words. */
+/* What reading found: first kinds of damage, which cost elements, then kinds of doubt, which cost
+ * nothing. Each finding has a warning that says the same in words. */
 enum cage_finding_kind {
     /* Damaged elements, and what they cost. */
     CAGE_FOUND_REPEATED_CORNER, /* faces that lost a corner which repeats its neighbour */
@@ -62,8 +65,8 @@ enum cage_finding_kind {
     CAGE_FOUND_CORNER,  /* corner tags passed over: on no vertex */
     CAGE_FOUND_HOLE,    /* holes passed over: of no face */
     /* Doubts about what is drawn as it is. */
-    CAGE_FOUND_UNWELDED,   /* no face shares a vertex; repeated positions */
-    CAGE_FOUND_TRIANGLES,  /* plain triangles: faces */
+    CAGE_FOUND_UNWELDED,   /* corners at the position of another, though no face shares a vertex */
+    CAGE_FOUND_TRIANGLES,  /* faces that are plain triangles */
     CAGE_FOUND_WOUND,      /* edges that two faces run along in one direction */
     CAGE_FOUND_FACE_TWICE, /* faces that are there a second time */
     CAGE_FOUND_INSIDE_OUT, /* closed bodies whose faces turn inwards */
@@ -98,8 +101,9 @@ struct cage {
     size_t n_holes;
     uint32_t *hole; /* face indices */
 
-    /* Things the user should know (ignored tags, a plain triangle mesh): lines joined by '\n',
-     * or NULL. At most CAGE_WARNINGS_BYTES; owned by the cage. */
+    /* What the user should know, which is every finding and what was passed over (unknown tags):
+     * lines joined by '\n', or NULL. At most CAGE_WARNINGS_BYTES with the final 0; owned by the
+     * cage. */
     char *warnings;
     size_t n_findings;
     struct cage_finding finding[N_CAGE_FINDINGS]; /* at most one of each kind */
@@ -117,8 +121,8 @@ bool cage_check(const struct cage *cage, const char *name, struct error *error);
  * that more followed). */
 void cage_warn(struct cage *cage, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Keeps a finding, the first of its kind, and warns of it in one line: "NAME:LINE: " or what else
- * its place is called, and the text. */
+/* Keeps a finding and warns of it in one line: "NAME:LINE: " or what else its place is called, and
+ * the text. It is called at most once for a kind: a further call for it changes nothing. */
 void cage_found(struct cage *cage, const struct cage_finding *finding, const char *name,
                 const char *format, ...) __attribute__((format(printf, 4, 5)));
 

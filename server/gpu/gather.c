@@ -11,7 +11,7 @@ bool stage_gather_init(struct renderer *r, struct error *error)
 }
 
 /* Groups in one dimension are limited (to 65,535 at least), so they go in rows, as in
- * shaders/groups.glsl. */
+ * shaders/list.glsl. */
 void stage_gather(struct renderer *r)
 {
     enum { ROW = 32768, BLOCKS_PER_GROUP = 8 };

@@ -187,7 +187,7 @@ bool renderer_render(struct renderer *renderer, struct renderer_model *model,
                      const struct frame_request *request, struct frame *frame, struct error *error);
 void frame_finish(struct frame *frame);
 
-/* What the polygons of a model at a level (0 to 6) take on the device, kept from their first frame
+/* What the polygons of a model at a level (RANGE_LEVEL) take on the device, kept from their first frame
  * until the model goes. 0: they are too many, and their frame fails with the words for it. Any
  * thread. */
 size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level);

@@ -1,5 +1,7 @@
 /* What a frame shall show: camera, line family, lights and their patterns. The formulas are in
- * shaders/README.md. Plain data; no ownership but what is said. */
+ * shaders/README.md, the ranges of all numbers in protocol/ranges.h, each by its name there
+ * (RANGE_FOV); request_check() holds a request against them. Plain data; no ownership but what is
+ * said. */
 #ifndef SHEEN_GPU_SCENE_H
 #define SHEEN_GPU_SCENE_H
 
@@ -15,8 +17,9 @@ enum camera_kind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC };
 struct camera {
     enum camera_kind kind;
     double eye[3], target[3], up[3];
-    double fov_deg;      /* perspective: vertical field of view, 1e-6 to 179 */
-    double ortho_height; /* orthographic: world units from top to bottom of the picture */
+    double fov_deg;      /* perspective: vertical field of view, RANGE_FOV */
+    double ortho_height; /* orthographic: world units from top to bottom of the picture,
+                            RANGE_ORTHO_HEIGHT */
 };
 
 /* From where a camera that frames the model looks. With e1 the world's x axis made horizontal (y
@@ -42,20 +45,20 @@ enum pattern_kind {
     PATTERN_RAINBOW,
     PATTERN_DISTANCE,
 };
-/* What a light shows. Colours are RGBA in [0,1], as displayed. */
+/* What a light shows. Colours are RGBA in RANGE_COLOUR, as displayed. */
 struct pattern {
     enum pattern_kind kind;
-    double count;                 /* (0, 100000]: periods over the light's width */
+    double count;                 /* periods over the light's width */
     double period;                /* the light's units; 0: by count */
-    double duty;                  /* [0, 1]: bright part of a period */
+    double duty;                  /* bright part of a period */
     double rotation_deg;          /* on the light */
     double offset;                /* periods */
-    double soft;                  /* [0, 1]: share of a period that an edge takes; of
-                                     PATTERN_LINES, of the width */
-    double opacity;               /* [0, 1]: over the shaded base */
+    double soft;                  /* share of a period that an edge takes; of PATTERN_LINES, of
+                                     the width */
+    double opacity;               /* over the shaded base */
     double at[MAX_LINES];         /* LINES: places, in widths of the light */
-    uint32_t n_at;                /* 1 to MAX_LINES */
-    double width;                 /* LINES: (0, 1], in widths of the light */
+    uint32_t n_at;                /* LINES: how many places, from 1 */
+    double width;                 /* LINES: in widths of the light */
     float foreground[4];          /* bright part */
     float background[4];          /* dark part */
     struct renderer_image *image; /* IMAGE; must outlive the frame */
@@ -90,8 +93,8 @@ struct lines {
 };
 
 /* What is seen: the limit surface, or as the conventional picture has it the polygons of the cage
- * subdivided `level` times (0 to 6), vertices and normals on the limit surface and interpolated
- * between (mesh.h), or their edges. */
+ * subdivided `level` times (RANGE_LEVEL), vertices and normals on the limit surface and
+ * interpolated between (mesh.h), or their edges. */
 enum surface_kind { SURFACE_EXACT, SURFACE_POLYGON, SURFACE_WIREFRAME };
 struct surface {
     enum surface_kind kind;

@@ -25,9 +25,12 @@ struct ring_creases {
 
 /* What the vertex has beside this sheet, where several meet (server/limit/sheets.h). */
 struct ring_sheets {
-    const struct sheet_level *level; /* NULL: this sheet is all */
-    struct vec end[2];               /* far ends of the crease that ends all its sheets */
-    bool ends_outside;               /* this sheet's own two ends are not these two */
+    /* The vertex's sharp edges at the ring's own level of refinement. NULL: the vertex has no other
+     * sheet; after crease_settle() also: the others matter no more, since the vertex is sharp or
+     * the crease through it ends this sheet. */
+    const struct sheet_level *level;
+    struct vec end[2]; /* the far ends of the crease through the vertex, which ends its sheets */
+    bool ends_outside; /* it does not end this one, which is closed or has one edge as both ends */
 };
 
 struct ring {

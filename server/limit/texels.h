@@ -3,10 +3,14 @@
  *
  * Four points that lie in a row of a grid are three texels: their x, their y, their z. So a row is
  * fetched in three texels and meets the four blends along it as dot products.
- *   patch   a texel whose x is the scale, then rows j = -1..2 of i = -1..2;
- *   level   rows j = -1..3 of i = 0..3, then column i = -1 of j = 0..3: the 24 points that the
- * three sub-patches of a ring need; corner  the frame as a quaternion x y z w that turns its
- * coordinates into world directions, the scales of its levels, four to a texel, then the levels. */
+ *
+ * - A patch is a texel whose x is the scale, then rows j = -1..2 of i = -1..2.
+ * - A level is rows j = -1..3 of i = 0..3, then column i = -1 of j = 0..3: the 24 points that the
+ *   three sub-patches of a ring need.
+ * - A corner is the frame as a quaternion x y z w, which turns the frame's coordinates into world
+ *   directions, then the scales of the levels, four to a texel, then the levels.
+ *
+ * Pure functions on the caller's memory, any thread. */
 #ifndef SHEEN_LIMIT_TEXELS_H
 #define SHEEN_LIMIT_TEXELS_H
 

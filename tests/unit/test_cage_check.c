@@ -1,4 +1,4 @@
-/* cage_check(), cage_warn() and how cage_read() chooses a reader. */
+/* cage_check(), cage_warn(), cage_found() and how cage_read() chooses a reader. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -244,6 +244,27 @@ static void test_long_warning(void **state)
     cage_finish(&cage);
 }
 
+/* A kind that is found twice costs nobody the array's end. */
+static void test_one_finding_of_a_kind(void **state)
+{
+    (void)state;
+    struct cage cage = {0};
+    for (int i = 0; i < 3 * N_CAGE_FINDINGS; i++) {
+        const struct cage_finding finding = {(enum cage_finding_kind)(i / 3), 1 + (uint32_t)i, 0,
+                                             CAGE_NO_FACE};
+        cage_found(&cage, &finding, "part", "%d", i);
+        cage_found(&cage, &finding, "part", "%d again", i);
+    }
+    assert_int_equal(cage.n_findings, N_CAGE_FINDINGS);
+    for (uint32_t k = 0; k < N_CAGE_FINDINGS; k++) {
+        assert_int_equal(cage.finding[k].kind, k);
+        assert_int_equal(cage.finding[k].count, 1 + 3 * k);
+    }
+    assert_null(strstr(cage.warnings, "again"));
+    assert_ptr_equal(strstr(cage.warnings, "part: 0\npart: 3\npart: 6\n"), cage.warnings);
+    cage_finish(&cage);
+}
+
 static void test_choice_of_reader(void **state)
 {
     (void)state;
@@ -300,6 +321,7 @@ int main(void)
         cmocka_unit_test(test_many_creases),
         cmocka_unit_test(test_warnings),
         cmocka_unit_test(test_long_warning),
+        cmocka_unit_test(test_one_finding_of_a_kind),
         cmocka_unit_test(test_choice_of_reader),
         cmocka_unit_test(test_empty_and_long_names),
     };

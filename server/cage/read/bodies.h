@@ -12,9 +12,11 @@ struct bodies {
                                be left out */
 };
 
-/* Counts the closed bodies with a negative volume and sets *first to the first face of the first.
- * One that lies inside another closed body is that one's hollow and does not count, as far as the
- * others are among the largest. Linear. False: no memory. */
+/* Counts the closed bodies with a negative volume, and sets *first to the first face of the first
+ * of them where there is any. A body whose box lies inside the box of one of the 16 closed bodies
+ * with the largest positive volumes is taken for that one's hollow and not counted. Nor is a body
+ * counted whose volume is no more than rounding: 1e-6 of the sum of its parts' magnitudes. Linear
+ * in the number of corners. False: no memory. */
 bool bodies_inside_out(const struct bodies *bodies, uint32_t *count, uint32_t *first);
 
 #endif

@@ -11,7 +11,8 @@
  * - edges that two faces run along in the same direction, at the face with the most of them;
  * - faces with the vertices of an earlier one in the same order, either way round. The other way
  *   round it counts where an edge has more than two faces: a pillow of two faces is a body;
- * - closed bodies with a negative volume, but for hollows: those inside one of the largest others.
+ * - closed bodies with a negative volume, but for those whose box lies inside the box of one of the
+ *   16 largest outward bodies, which are taken for its hollows (bodies.h).
  * Nothing but the warnings changes. n log n in its corners, about 30 bytes for each; when memory is
  * short the one warning says so. */
 void cage_doubt(struct cage_builder *builder, const char *name);
