@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/cage/read/read.h"
+#include "tests/unit/cage_expect.h"
 
 /* Lines 1 to 8, then a cube's faces in lines 9 to 14. */
 #define CORNERS                                                                                    \
@@ -21,13 +21,6 @@
     "f -8 -5 -6 -7\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n"
 #define INWARD                                                                                     \
     "f -7 -6 -5 -8\nf -1 -2 -3 -4\nf -4 -3 -7 -8\nf -3 -2 -6 -7\nf -2 -1 -5 -6\nf -1 -4 -8 -5\n"
-
-static void read_good(struct cage *cage, const char *text)
-{
-    struct error error = {0};
-    if (!cage_read(cage, text, strlen(text), "part.obj", &error))
-        fail_msg("refused: %s", error.text);
-}
 
 static const struct cage_finding *find(const struct cage *cage, enum cage_finding_kind kind)
 {
@@ -42,7 +35,7 @@ static void expect_one(const char *text, enum cage_finding_kind kind, uint32_t c
                        const char *warnings)
 {
     struct cage cage;
-    read_good(&cage, text);
+    read_obj(&cage, text);
     assert_string_equal(cage.warnings ? cage.warnings : "", warnings);
     assert_int_equal(cage.n_findings, 1);
     assert_int_equal(cage.finding[0].kind, kind);
@@ -55,7 +48,7 @@ static void expect_one(const char *text, enum cage_finding_kind kind, uint32_t c
 static void expect_none(const char *text)
 {
     struct cage cage;
-    read_good(&cage, text);
+    read_obj(&cage, text);
     assert_string_equal(cage.warnings ? cage.warnings : "", "");
     assert_int_equal(cage.n_findings, 0);
     cage_finish(&cage);
@@ -113,12 +106,12 @@ static void test_twice(void **state)
                "part.obj:15: a face repeats the one of line 10; 3 in all, this is the first");
     /* The same vertices in another order are another face. */
     struct cage cage;
-    read_good(&cage, CUBE "f 5 7 6 8\n");
+    read_obj(&cage, CUBE "f 5 7 6 8\n");
     assert_null(find(&cage, CAGE_FOUND_FACE_TWICE));
     cage_finish(&cage);
     /* A pillow is a body; a sheet of two faces with both sides is not. */
     expect_none(CORNERS "f 1 2 3 4\nf 4 3 2 1\n");
-    read_good(&cage, CORNERS "f 1 2 6 5\nf 2 3 7 6\nf 5 6 2 1\nf 6 7 3 2\n");
+    read_obj(&cage, CORNERS "f 1 2 6 5\nf 2 3 7 6\nf 5 6 2 1\nf 6 7 3 2\n");
     assert_int_equal(find(&cage, CAGE_FOUND_FACE_TWICE)->count, 2);
     cage_finish(&cage);
 }
@@ -419,7 +412,7 @@ static void read_block(struct cage *cage, const struct block *block)
         used += (size_t)snprintf(text + used, sizeof text - used, "f %u %u %u %u\n", vertex[0] + 1,
                                  vertex[1] + 1, vertex[2] + 1, vertex[3] + 1);
     }
-    read_good(cage, text);
+    read_obj(cage, text);
 }
 
 static void expect_count(const struct cage *cage, enum cage_finding_kind kind, uint32_t count,

@@ -10,29 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/cage/read/read.h"
+#include "tests/unit/cage_expect.h"
 
 /* Lines 1 to 6: vertices 0 to 5, 0 1 2 below 3 4 5. */
 #define SIX "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
 #define KEYHOLE_TEXT                                                                               \
     "a face with a vertex at corners that are no neighbours (a keyhole: split it) is passed over"
-
-static void read_good(struct cage *cage, const char *text)
-{
-    struct error error = {0};
-    if (!cage_read(cage, text, strlen(text), "part.obj", &error))
-        fail_msg("refused: %s", error.text);
-}
-
-static void expect_face(const struct cage *cage, size_t face, size_t n, const uint32_t *vertex)
-{
-    assert_int_equal(cage->face_start[face + 1] - cage->face_start[face], n);
-    assert_memory_equal(&cage->face_vertex[cage->face_start[face]], vertex, n * sizeof *vertex);
-}
-
-#define EXPECT_FACE(cage, face, ...)                                                               \
-    expect_face(cage, face, sizeof((uint32_t[]){__VA_ARGS__}) / sizeof(uint32_t),                  \
-                (uint32_t[]){__VA_ARGS__})
 
 static void expect_finding(const struct cage *cage, size_t i, enum cage_finding_kind kind,
                            uint32_t count, uint32_t line)
@@ -49,7 +32,7 @@ static void test_repeated_corners(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, SIX "f 1 2 5 4\nf 2 2 3 6\nf 2 3 6 6 5\nf 1 2 5 1\nf 3 6 6 6 6 5 3 3\n");
+    read_obj(&cage, SIX "f 1 2 5 4\nf 2 2 3 6\nf 2 3 6 6 5\nf 1 2 5 1\nf 3 6 6 6 6 5 3 3\n");
     assert_int_equal(cage.n_faces, 5);
     EXPECT_FACE(&cage, 0, 0, 1, 4, 3);
     EXPECT_FACE(&cage, 1, 1, 2, 5);
@@ -67,7 +50,7 @@ static void test_faces_passed_over(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, SIX "f 2 5\nf 1 2 5 4\nf 4 4 5 4\nf\nf 2 3 6 2 5\nf 2 3 6 5\n");
+    read_obj(&cage, SIX "f 2 5\nf 1 2 5 4\nf 4 4 5 4\nf\nf 2 3 6 2 5\nf 2 3 6 5\n");
     assert_int_equal(cage.n_faces, 2);
     EXPECT_FACE(&cage, 0, 0, 1, 4, 3);
     EXPECT_FACE(&cage, 1, 1, 2, 5, 4);
@@ -86,9 +69,9 @@ static void test_tags_after_faces_passed_over(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, "f 1 2\n" SIX "f 1 2 5 4\nf 1 1 1\nf 2 3 6 5\nf 3 2 1\n"
-                     "t hole 1/0/0 3\nt hole 3/0/0 2 0 1\nt crease 2/1/0 2 5 3\n"
-                     "t crease 4/2/0 0 1 1 4 1 2\n");
+    read_obj(&cage, "f 1 2\n" SIX "f 1 2 5 4\nf 1 1 1\nf 2 3 6 5\nf 3 2 1\n"
+                    "t hole 1/0/0 3\nt hole 3/0/0 2 0 1\nt crease 2/1/0 2 5 3\n"
+                    "t crease 4/2/0 0 1 1 4 1 2\n");
     assert_int_equal(cage.n_faces, 3);
     assert_int_equal(cage.n_holes, 2);
     assert_int_equal(cage.hole[0], 1);
@@ -103,11 +86,11 @@ static void test_tags_without_element(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, SIX "f 1 2 5 4\nf 2 3 6 5\nf 3 6\n"
-                         "t crease 8/4/0 0 1 0 4 1 4 0 2 1 2 3 4\nt crease 2/1/0 5 5 1\n"
-                         "t crease 2/1/0 6 1 1\nt crease 2/1/0 1 -1 1\n"
-                         "t crease 2/1/0 1 99999999999999999999 1\nt crease 2/1/0 0 0 1\n"
-                         "t corner 4/4/0 5 6 -7 2 1 2 3 4\nt hole 4/0/0 3 1 -1 2\n");
+    read_obj(&cage, SIX "f 1 2 5 4\nf 2 3 6 5\nf 3 6\n"
+                        "t crease 8/4/0 0 1 0 4 1 4 0 2 1 2 3 4\nt crease 2/1/0 5 5 1\n"
+                        "t crease 2/1/0 6 1 1\nt crease 2/1/0 1 -1 1\n"
+                        "t crease 2/1/0 1 99999999999999999999 1\nt crease 2/1/0 0 0 1\n"
+                        "t corner 4/4/0 5 6 -7 2 1 2 3 4\nt hole 4/0/0 3 1 -1 2\n");
     assert_int_equal(cage.n_creases, 2);
     assert_int_equal(cage.crease[1].vertex[1], 4);
     assert_true(cage.crease[1].sharpness == 3);
@@ -147,7 +130,7 @@ static void test_weld(void **state)
     };
     for (size_t i = 0; i < 2; i++) {
         struct cage cage;
-        read_good(&cage, texts[i]);
+        read_obj(&cage, texts[i]);
         assert_int_equal(cage.n_vertices, 6);
         EXPECT_FACE(&cage, 0, 0, 1, 2, 3);
         EXPECT_FACE(&cage, 1, 1, 4, 5, 2);
@@ -165,9 +148,8 @@ static void test_weld_of_damage(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage,
-              APART "v 1 0 0\nv 2 0 0\nv 2 1 0\nf 2 9 6 7 3\nf 2 5 9\nf 2 6 9 7 3\nf\nf 2 5\n"
-                    "f 1 2 7\nt hole 2/0/0 7 2\nt crease 4/2/0 1 99 1 4 1 2\nt weld 0/0/0\n");
+    read_obj(&cage, APART "v 1 0 0\nv 2 0 0\nv 2 1 0\nf 2 9 6 7 3\nf 2 5 9\nf 2 6 9 7 3\nf\nf 2 5\n"
+                          "f 1 2 7\nt hole 2/0/0 7 2\nt crease 4/2/0 1 99 1 4 1 2\nt weld 0/0/0\n");
     assert_int_equal(cage.n_vertices, 6);
     assert_int_equal(cage.n_faces, 4);
     EXPECT_FACE(&cage, 2, 1, 4, 5, 2);

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "server/cage/read/read.h"
+#include "tests/unit/cage_expect.h"
 
 #define SHAPES "../shared/shapes"
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" /* lines 1 to 4 */
@@ -23,13 +23,6 @@
 #define NO_FACE(line, n) "part.obj:" line ": no face of " n " can be drawn; this is a face with "
 #define FEW "fewer than 3 different corners"
 #define KEYHOLE "a vertex at corners that are no neighbours (a keyhole: split it)"
-
-static void read_good(struct cage *cage, const char *text)
-{
-    struct error error = {0};
-    if (!cage_read(cage, text, strlen(text), "part.obj", &error))
-        fail_msg("refused: %s", error.text);
-}
 
 static void expect_bad(const char *text, const char *message)
 {
@@ -49,16 +42,6 @@ static void expect_bad(const char *text, const char *message)
     assert_null(cage.position);
 }
 
-static void expect_face(const struct cage *cage, size_t face, size_t n, const uint32_t *vertex)
-{
-    assert_int_equal(cage->face_start[face + 1] - cage->face_start[face], n);
-    assert_memory_equal(&cage->face_vertex[cage->face_start[face]], vertex, n * sizeof *vertex);
-}
-
-#define EXPECT_FACE(cage, face, ...)                                                               \
-    expect_face(cage, face, sizeof((uint32_t[]){__VA_ARGS__}) / sizeof(uint32_t),                  \
-                (uint32_t[]){__VA_ARGS__})
-
 static size_t found(const struct cage *cage, enum cage_finding_kind kind)
 {
     for (size_t i = 0; i < cage->n_findings; i++)
@@ -73,8 +56,8 @@ static void test_index_forms(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, SQUARE "vt 0 0\nvn 0 0 1\nf 1 2 3\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\n"
-                            "f 1/1/1 2/1/1 3/1/1\nf -4 -3 -2 -1\nf -4//-1 2/ 3// +4/1/\n");
+    read_obj(&cage, SQUARE "vt 0 0\nvn 0 0 1\nf 1 2 3\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\n"
+                           "f 1/1/1 2/1/1 3/1/1\nf -4 -3 -2 -1\nf -4//-1 2/ 3// +4/1/\n");
     assert_int_equal(cage.n_faces, 6);
     assert_int_equal(cage.n_vertices, 4);
     for (size_t f = 0; f < 4; f++)
@@ -95,7 +78,7 @@ static void test_order(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, "f 1 2 3\n" SQUARE "f -3 -2 -1\nv 5 5 5\nf -3 -2 -1\n");
+    read_obj(&cage, "f 1 2 3\n" SQUARE "f -3 -2 -1\nv 5 5 5\nf -3 -2 -1\n");
     assert_int_equal(cage.n_vertices, 5);
     EXPECT_FACE(&cage, 0, 0, 1, 2);
     EXPECT_FACE(&cage, 1, 1, 2, 3);
@@ -118,7 +101,7 @@ static void test_lines(void **state)
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct cage cage;
-        read_good(&cage, texts[i]);
+        read_obj(&cage, texts[i]);
         assert_int_equal(cage.n_vertices, 3);
         assert_int_equal(cage.n_faces, 1);
         EXPECT_FACE(&cage, 0, 0, 1, 2);
@@ -144,7 +127,7 @@ static void test_long_line(void **state)
             at += (size_t)sprintf(text + at, "%s %d/1/1", continued ? "\\\n" : "", i + 1);
         text[at] = '\0';
         struct cage cage;
-        read_good(&cage, text);
+        read_obj(&cage, text);
         assert_int_equal(cage.n_faces, 1);
         assert_int_equal(cage.face_start[1], N);
         assert_int_equal(cage.face_vertex[N - 1], N - 1);
@@ -243,12 +226,12 @@ static void test_crease_tags(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, PAIR "t crease 2/1/0 1 4 2.5\n"
-                          "t\tcrease  4/1/0\t0 1 1 2 \\\n 10\n"
-                          "t crease 4/2/0 0 3 2 5 1 2\n"
-                          "t crease 4/4/0 3 4 4 5 3 99 4 99\n"
-                          "t crease 2/2/0 0 1 7 99\n"
-                          "t crease 2/1/0 1 2 0\n");
+    read_obj(&cage, PAIR "t crease 2/1/0 1 4 2.5\n"
+                         "t\tcrease  4/1/0\t0 1 1 2 \\\n 10\n"
+                         "t crease 4/2/0 0 3 2 5 1 2\n"
+                         "t crease 4/4/0 3 4 4 5 3 99 4 99\n"
+                         "t crease 2/2/0 0 1 7 99\n"
+                         "t crease 2/1/0 1 2 0\n");
     assert_int_equal(cage.n_creases, 9);
     expect_crease(&cage, 0, 1, 4, 2.5f);
     expect_crease(&cage, 1, 0, 1, 10);
@@ -267,9 +250,9 @@ static void test_other_tags(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, "t interpolateboundary 1/0/0 1\nt creasemethod 0/0/1 chaikin\n" PAIR
-                     "t corner 1/1/0 2 3.5\nt corner 2/2/0 0 5 1 2\nt corner 2/1/0 1 3 4\n"
-                     "t hole 2/0/0 1 0\nt smoothtriangles 0/0/1 smooth\n");
+    read_obj(&cage, "t interpolateboundary 1/0/0 1\nt creasemethod 0/0/1 chaikin\n" PAIR
+                    "t corner 1/1/0 2 3.5\nt corner 2/2/0 0 5 1 2\nt corner 2/1/0 1 3 4\n"
+                    "t hole 2/0/0 1 0\nt smoothtriangles 0/0/1 smooth\n");
     assert_int_equal(cage.boundary, CAGE_BOUNDARY_EDGE_AND_CORNER);
     assert_true(cage.chaikin && cage.smooth_triangles);
     static const struct cage_corner corner[] = {{2, 3.5f}, {0, 1}, {5, 2}, {1, 4}, {3, 4}};
@@ -283,12 +266,12 @@ static void test_other_tags(void **state)
     assert_int_equal(cage.hole[1], 0);
     cage_finish(&cage);
 
-    read_good(&cage, PAIR "t interpolateboundary 1/0/0 0\nt creasemethod 0/0/1 normal\n"
-                          "t smoothtriangles 0/0/1 catmark\n");
+    read_obj(&cage, PAIR "t interpolateboundary 1/0/0 0\nt creasemethod 0/0/1 normal\n"
+                         "t smoothtriangles 0/0/1 catmark\n");
     assert_int_equal(cage.boundary, CAGE_BOUNDARY_NONE);
     assert_false(cage.chaikin || cage.smooth_triangles);
     cage_finish(&cage);
-    read_good(&cage, PAIR "t interpolateboundary 1/0/0 2\n");
+    read_obj(&cage, PAIR "t interpolateboundary 1/0/0 2\n");
     assert_int_equal(cage.boundary, CAGE_BOUNDARY_EDGE_ONLY);
     cage_finish(&cage);
 }
@@ -350,10 +333,10 @@ static void test_warnings(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, PAIR "curv 0 1\nsurf 2\ncurv 1 2\n"
-                          "t facevaryinginterpolateboundary 1/0/0 1\n"
-                          "t facevaryingpropagatecorners 1/0/0 1\n"
-                          "t vertexedit 5/4/2 0 0 1 0 0 1 2 3 4 set P\n");
+    read_obj(&cage, PAIR "curv 0 1\nsurf 2\ncurv 1 2\n"
+                         "t facevaryinginterpolateboundary 1/0/0 1\n"
+                         "t facevaryingpropagatecorners 1/0/0 1\n"
+                         "t vertexedit 5/4/2 0 0 1 0 0 1 2 3 4 set P\n");
     assert_string_equal(
         cage.warnings,
         "part.obj:9: unknown keyword 'curv' passed over, and any others\n"
@@ -367,8 +350,8 @@ static void test_negative_sharpness(void **state)
 {
     (void)state;
     struct cage cage;
-    read_good(&cage, PAIR "t crease 2/1/0 0 1 0\nt crease 4/2/0 0 1 1 2 3 -0.5\n"
-                          "t corner 1/1/0 0 -7\n");
+    read_obj(&cage, PAIR "t crease 2/1/0 0 1 0\nt crease 4/2/0 0 1 1 2 3 -0.5\n"
+                         "t corner 1/1/0 0 -7\n");
     assert_string_equal(cage.warnings, "part.obj:10: t crease: sharpness -0.5 counts as 0, as "
                                        "any other below 0");
     assert_true(cage.crease[1].sharpness == 3 && cage.crease[2].sharpness == 0);

@@ -1,6 +1,5 @@
 /* JPEG files of frames: what comes back, the label, and what the library refuses. */
 #include <math.h>
-#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,6 +8,7 @@
 #include <cmocka.h>
 #include <turbojpeg.h>
 
+#include "tests/unit/encoders_at_once.h"
 #include "tests/unit/jpeg_file.h"
 
 static const struct image_attribute LABEL[] = {
@@ -330,48 +330,27 @@ static void test_what_the_library_refuses(void **state)
     free(rgba);
 }
 
-struct task {
-    uint8_t *rgba;
-    uint8_t *file;
-    size_t size;
-};
-
-enum { TASK_WIDTH = 640, TASK_HEIGHT = 480 };
-
-static void *encode_five_times(void *argument)
+static uint8_t *encode_jpeg(const uint8_t *rgba, int n, size_t *size)
 {
-    struct task *task = argument;
     struct jpeg_encoder *own = jpeg_encoder_create();
+    uint8_t *file = NULL;
     assert_non_null(own);
-    for (int i = 0; i < 5; i++) {
-        free(task->file);
-        task->file = jpeg_file(own, task->rgba, TASK_WIDTH, TASK_HEIGHT, LABEL, 2, &task->size);
+    for (int i = 0; i < n; i++) {
+        free(file);
+        file = jpeg_file(own, rgba, AT_ONCE_WIDTH, AT_ONCE_HEIGHT, LABEL, 2, size);
     }
     jpeg_encoder_destroy(own);
-    return NULL;
+    return file;
 }
 
 static void test_two_encoders_at_once(void **state)
 {
     (void)state;
-    pthread_t threads[2];
-    struct task tasks[2];
-    for (int i = 0; i < 2; i++) {
-        uint8_t *rgba = make_picture(i ? paint_noise : paint_colours, TASK_WIDTH, TASK_HEIGHT);
-        tasks[i] = (struct task){.rgba = rgba};
-        assert_int_equal(pthread_create(&threads[i], NULL, encode_five_times, &tasks[i]), 0);
-    }
-    for (int i = 0; i < 2; i++)
-        assert_int_equal(pthread_join(threads[i], NULL), 0);
-    for (int i = 0; i < 2; i++) {
-        size_t size;
-        uint8_t *file = jpeg_file(encoder, tasks[i].rgba, TASK_WIDTH, TASK_HEIGHT, LABEL, 2, &size);
-        assert_int_equal(size, tasks[i].size);
-        assert_memory_equal(file, tasks[i].file, size);
-        free(file);
-        free(tasks[i].file);
-        free(tasks[i].rgba);
-    }
+    uint8_t *const rgba[2] = {
+        make_picture(paint_colours, AT_ONCE_WIDTH, AT_ONCE_HEIGHT),
+        make_picture(paint_noise, AT_ONCE_WIDTH, AT_ONCE_HEIGHT),
+    };
+    expect_same_at_once(encode_jpeg, rgba);
 }
 
 /* libjpeg-turbo would write arithmetic coding, other tables and more markers. */

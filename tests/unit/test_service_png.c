@@ -1,6 +1,5 @@
 /* PNG files of frames: libpng reads every pixel and text back, zlib the whole stream, and checksums
  * are counted again. */
-#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,6 +9,7 @@
 #include <png.h>
 #include <zlib.h>
 
+#include "tests/unit/encoders_at_once.h"
 #include "tests/unit/png_file.h"
 
 static const struct image_attribute LABEL[] = {
@@ -362,52 +362,27 @@ static void test_labels_of_about_one_length(void **state)
     assert_int_equal(png_head_bound(&LABEL[1], 1), png_head_bound(&longer, 1));
 }
 
-struct task {
-    uint8_t *rgba;
-    uint8_t *file;
-    size_t size;
-};
-
-enum { TASK_WIDTH = 640, TASK_HEIGHT = 480 };
-
-static void *encode_five_times(void *argument)
+static uint8_t *encode_png(const uint8_t *rgba, int n, size_t *size)
 {
-    struct task *task = argument;
     struct png_encoder *own = png_encoder_create();
+    uint8_t *file = NULL;
     assert_non_null(own);
-    for (int i = 0; i < 5; i++) {
-        free(task->file);
-        task->file =
-            png_file(own, task->rgba, TASK_WIDTH, TASK_HEIGHT, LABEL, N_LABEL, &task->size);
+    for (int i = 0; i < n; i++) {
+        free(file);
+        file = png_file(own, rgba, AT_ONCE_WIDTH, AT_ONCE_HEIGHT, LABEL, N_LABEL, size);
     }
     png_encoder_destroy(own);
-    return NULL;
+    return file;
 }
 
-/* What an encoder has done before and what others do changes no byte. */
 static void test_two_encoders_at_once(void **state)
 {
     (void)state;
-    pthread_t threads[2];
-    struct task tasks[2];
-    for (int i = 0; i < 2; i++) {
-        uint8_t *rgba =
-            make_picture(i ? paint_stripes : paint_smooth, TASK_WIDTH, TASK_HEIGHT, true);
-        tasks[i] = (struct task){.rgba = rgba};
-        assert_int_equal(pthread_create(&threads[i], NULL, encode_five_times, &tasks[i]), 0);
-    }
-    for (int i = 0; i < 2; i++)
-        assert_int_equal(pthread_join(threads[i], NULL), 0);
-    for (int i = 0; i < 2; i++) {
-        size_t size;
-        uint8_t *file =
-            png_file(encoder, tasks[i].rgba, TASK_WIDTH, TASK_HEIGHT, LABEL, N_LABEL, &size);
-        assert_int_equal(size, tasks[i].size);
-        assert_memory_equal(file, tasks[i].file, size);
-        free(file);
-        free(tasks[i].file);
-        free(tasks[i].rgba);
-    }
+    uint8_t *const rgba[2] = {
+        make_picture(paint_smooth, AT_ONCE_WIDTH, AT_ONCE_HEIGHT, true),
+        make_picture(paint_stripes, AT_ONCE_WIDTH, AT_ONCE_HEIGHT, true),
+    };
+    expect_same_at_once(encode_png, rgba);
 }
 
 int main(void)
