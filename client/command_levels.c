@@ -187,13 +187,8 @@ static void print_json(struct json *json, const struct options *options, const s
     json_string(json, "file", options->output);
     json_uint(json, "width", figure->canvas.width_px);
     json_uint(json, "height", figure->canvas.height_px);
-    json_string(json, "device", exact->device);
-    json_string(json, "driver", exact->driver);
-    json_bool(json, "software", exact->software);
-    json_string(json, "server", exact->server);
+    job_json_origin(json, job, options, exact);
     json_string(json, "model", options->model);
-    json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
-    json_bool(json, "weld", options->weld);
     json_array_begin(json, "levels");
     for (int row = 0; row < N_LEVELS; row++) {
         json_object_begin(json, NULL);

@@ -39,14 +39,9 @@ static void print_json(struct json *json, const struct options *options, const s
     json_uint(json, "file_bytes", frame->file_bytes);
     json_uint(json, "width", frame->width_px);
     json_uint(json, "height", frame->height_px);
-    json_string(json, "device", frame->device);
-    json_string(json, "driver", frame->driver);
-    json_bool(json, "software", frame->software);
-    json_string(json, "server", frame->server);
+    job_json_origin(json, job, options, frame);
     json_string(json, "address", options->server ? options->server : "private");
     json_string(json, "model", options->model);
-    json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
-    json_bool(json, "weld", options->weld);
     if (info->faces)
         json_uint(json, "faces", info->faces);
     if (options->request.jpeg_quality)

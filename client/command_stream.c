@@ -250,12 +250,7 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
     json_object_begin(json, NULL);
     json_uint(json, "width", frame->width_px);
     json_uint(json, "height", frame->height_px);
-    json_string(json, "device", frame->device);
-    json_string(json, "driver", frame->driver);
-    json_bool(json, "software", frame->software);
-    json_string(json, "server", frame->server);
-    json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
-    json_bool(json, "weld", options->weld);
+    job_json_origin(json, job, options, frame);
     json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
     json_uint(json, "late", stream->n_late);
     if (options->output) {

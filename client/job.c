@@ -283,6 +283,17 @@ void job_json_schedule(struct json *json, const struct sheen_request *request)
         json_uint(json, "deadline_ms", request->deadline_ms);
 }
 
+void job_json_origin(struct json *json, const struct job *job, const struct options *options,
+                     const struct sheen_frame *frame)
+{
+    json_string(json, "device", frame->device);
+    json_string(json, "driver", frame->driver);
+    json_bool(json, "software", frame->software);
+    json_string(json, "server", frame->server);
+    json_hex(json, "model_sha256", job->model_id, SHEEN_ID_BYTES);
+    json_bool(json, "weld", options->weld);
+}
+
 void job_json_times(struct json *json, const struct sheen_times *times)
 {
     json_uint(json, "tables_us", times->tables_us);

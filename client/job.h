@@ -57,6 +57,11 @@ void job_print_warnings(struct job *job, const char *lines);
 /* Key class, and deadline_ms where there is one. */
 void job_json_schedule(struct json *json, const struct sheen_request *request);
 
+/* Keys device, driver, software, server, model_sha256 and weld: what made the frame, and of which
+ * model. */
+void job_json_origin(struct json *json, const struct job *job, const struct options *options,
+                     const struct sheen_frame *frame);
+
 /* Keys tables_us to total_us into the object that is open. */
 void job_json_times(struct json *json, const struct sheen_times *times);
 

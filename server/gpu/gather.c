@@ -10,11 +10,9 @@ bool stage_gather_init(struct renderer *r, struct error *error)
     return r->gather;
 }
 
-/* Groups in one dimension are limited (to 65,535 at least), so they go in rows, as in
- * shaders/list.glsl. */
 void stage_gather(struct renderer *r)
 {
-    enum { ROW = 32768, BLOCKS_PER_GROUP = 8 };
+    enum { BLOCKS_PER_GROUP = 8 };
     static const GLuint no_work[4] = {0, 1, 1, 0};
     size_t n = r->pieces.n_blocks, groups = (n + BLOCKS_PER_GROUP - 1) / BLOCKS_PER_GROUP;
     glNamedBufferSubData(r->target.groups, 0, sizeof no_work, no_work);
@@ -30,7 +28,8 @@ void stage_gather(struct renderer *r)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->block_buffer);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.restless);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    glDispatchCompute((GLuint)(groups < ROW ? groups : ROW), (GLuint)((groups + ROW - 1) / ROW), 1);
+    glDispatchCompute((GLuint)(groups < GROUP_ROW ? groups : GROUP_ROW),
+                      (GLuint)((groups + GROUP_ROW - 1) / GROUP_ROW), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 

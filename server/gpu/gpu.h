@@ -61,6 +61,10 @@ struct renderer_image {
  * 16 rays (shaders/list.glsl, rounded.glsl). */
 enum { LIST_BYTES = 4, LIST_HEAD_BYTES = 16, ROUNDED_BYTES = 512 };
 
+/* Workgroups of a row: a device takes a limited number in one dimension (65,535 at least), so
+ * dispatches over more go in rows (ROW of shaders/list.glsl). */
+enum { GROUP_ROW = 32768 };
+
 /* The images of one tile, grown to the largest tile asked for. */
 struct target {
     uint32_t width, height;

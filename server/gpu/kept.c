@@ -119,9 +119,9 @@ static GLuint list_length(GLuint list)
 /* As list.glsl would have it. */
 static void write_head(GLuint list, GLuint n, GLuint per_group)
 {
-    enum { ROW = 32768 };
     GLuint groups = (n + per_group - 1) / per_group;
-    const GLuint head[4] = {groups < ROW ? groups : ROW, groups ? (groups - 1) / ROW + 1 : 1, 1, n};
+    const GLuint head[4] = {groups < GROUP_ROW ? groups : GROUP_ROW,
+                            groups ? (groups - 1) / GROUP_ROW + 1 : 1, 1, n};
     glNamedBufferSubData(list, 0, sizeof head, head);
 }
 
