@@ -1,5 +1,6 @@
-// How much of what is seen any of the lights is met on: one invocation for each group of eight pixels, of
-// which it looks at one in `stride`. A pass for each light, the hindmost first; the last one counts.
+// Counts pixels that show surface, and those of them whose reflected ray meets a light. There is one pass for
+// each light, from the hindmost; the foremost adds up. An invocation takes a group of eight pixels, of which
+// it looks at one in `stride`.
 
 layout(local_size_x = 8) in;
 

@@ -12,8 +12,9 @@
 #include "server/gpu/shade_programs.h"
 #include "server/gpu/view.h"
 
-/* The least from `size` on that is no power of two: for images with such a side and buffer textures
- * of so many bytes software devices make the code of every program anew. */
+/* The least number from `size` on that is no power of two, for the sides of images and the bytes of
+ * buffer textures. llvmpipe compiles a program anew for a texture whose size is a power of two
+ * where those before were not, which takes up to seconds; sizes that never are cost that once. */
 static inline size_t no_power_of_two(size_t size)
 {
     while (!(size & (size - 1)))
@@ -125,39 +126,45 @@ struct kept {
     struct camera camera;
     struct surface surface;
     bool ptex, edges;
-    bool any_cut; /* they would be the same in tiles, and as one */
+    bool any_cut; /* the planes are bit-equal however the frame is tiled: they serve any tiling */
 };
 
-/* What drawing a tile fills. */
+/* A target, and which view its planes hold. */
 struct planes {
     struct target target;
     struct kept kept;
 };
 
-/* Which planes a frame is drawn into, so that those that are kept outlive what is drawn meanwhile
- * (kept.c). */
+/* Which planes a frame is drawn into: there are several, so that frames of other kinds leave those
+ * that are kept alone (kept.c). */
 enum planes_of {
-    PLANES_WHOLE, /* of the last frame of one tile, kept */
-    PLANES_SMALL, /* of the last one of few pixels: it costs no larger view its planes */
-    PLANES_TILED, /* of the last frame of several tiles, each in its place; kept where no other
-                     frame came in between */
-    PLANES_APART, /* of a tile of a frame too large to be kept; and the lists of any tile */
+    PLANES_WHOLE, /* hold the last frame that was one tile; kept */
+    PLANES_SMALL, /* the last such frame of few pixels, which would otherwise cost a larger view its
+                     planes; kept */
+    PLANES_TILED, /* the last frame of several tiles in_place: the target stands for the whole
+                     picture, and each tile fills its part; kept if no other such frame came in
+                     between */
+    PLANES_APART, /* one tile of a frame in tiles that are not in_place, never kept; and the lists
+                     of a tile in_place until they are collected */
     PLANES_KINDS
 };
 
-/* A tile of a frame. Parts of the picture: */
+/* The tile being drawn, as three rectangles of the picture. */
 struct drawing {
-    struct tile place;  /* what the target stands for; it holds the others */
-    struct tile drawn;  /* by stages 1 and 2; a margin is there for the pixels beside it */
-    struct tile shaded; /* by stage 3: what is read back and maybe more */
+    struct tile place;  /* the part of it that the target's images hold, from their pixel (0, 0)
+                           on; contains the other two */
+    struct tile drawn;  /* what stages 1 and 2 draw: the tile, and a margin for stage 3, which reads
+                           the pixels beside each pixel */
+    struct tile shaded; /* what stage 3 shades: the tile, which is read back, or all of `drawn` */
 };
 
-/* The lists that stage 3 takes, of all tiles of a frame. */
+/* How far a frame in tiles in_place has come with its lists: each tile has lists of its own, which
+ * are appended to those of the whole picture, and stage 3 of a later frame runs over these. */
 enum { COLLECTED_LISTS = 4 };
 struct collecting {
-    uint64_t frame; /* frame_work.serial of the one whose tiles have all been collected so far; 0:
-                       of none */
-    GLuint n[COLLECTED_LISTS];
+    uint64_t frame; /* frame_work.serial of the frame whose tiles have all been collected so far;
+                       0: there is none, or it was given up */
+    GLuint n[COLLECTED_LISTS]; /* entries of each list so far */
 };
 
 /* What a frame of polygons has drawn of its tile, while others are drawn between its steps
@@ -349,13 +356,14 @@ void polygons_forget(struct polygons *polygons, uint64_t model_serial);
 /* Drops all after the context that they were in. */
 void polygons_lose(struct polygons *polygons);
 
-/* Whether the target's planes are those of this view already. */
+/* Whether planes hold all that stages 1 and 2 would draw for this request. */
 bool is_kept(const struct kept *kept, const struct renderer_model *model,
              const struct frame_request *request);
 /* The planes in use change places with others. */
 void planes_swap(struct renderer *renderer, struct planes *others);
-/* Takes into use the planes that a frame's next tile is drawn into: those that hold its view, and
- * then all of the frame is one tile. */
+/* Takes into use the planes that a frame's next tile is drawn into. At the first tile of a frame
+ * whose view some planes hold already, these are taken, and work->tile_width and tile_height are
+ * set to the frame's: it has only stage 3 left, in one tile. */
 void planes_choose(struct renderer *renderer, const struct renderer_model *model,
                    struct frame_work *work);
 /* Before a tile is drawn into PLANES_TILED: what they hold is lost, unless it is the frame's own.

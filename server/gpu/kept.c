@@ -1,4 +1,5 @@
-/* The planes that outlive their frame, and the planes that frames are drawn into. */
+/* Which planes a frame is drawn into, and when a later frame of the same view may reuse them
+ * instead of drawing. */
 #include "server/gpu/gpu.h"
 
 #include <stddef.h>
@@ -42,7 +43,8 @@ static void use(struct renderer *r, enum planes_of which)
     r->in_use = which;
 }
 
-/* The planes that hold the frame's view as they would be if it were drawn anew. */
+/* The planes that hold the frame's view, bit by bit as drawing it anew would; PLANES_KINDS: none.
+ */
 static enum planes_of find_kept(const struct renderer *r, const struct renderer_model *model,
                                 const struct frame_work *work, bool is_single)
 {

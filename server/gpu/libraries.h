@@ -1,5 +1,5 @@
-/* The libraries that libepoxy loads when it is first called: where one is missing, it ends the
- * process. So this comes before its first call. */
+/* Checks for the shared libraries of EGL and OpenGL. libepoxy loads them when one of its functions
+ * is first called, and ends the process where one is missing, so libraries_load() comes before. */
 #ifndef SHEEN_GPU_LIBRARIES_H
 #define SHEEN_GPU_LIBRARIES_H
 
@@ -7,8 +7,8 @@
 
 #include "server/error.h"
 
-/* Loads them, to stay. False with ERROR_DEVICE that names the missing one and its package. Any
- * thread. */
+/* Loads them for as long as the process runs. False: ERROR_DEVICE, which names the missing library
+ * and its Debian package. Any thread. */
 bool libraries_load(struct error *error);
 
 #endif

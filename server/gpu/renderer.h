@@ -1,7 +1,8 @@
 /* The renderer: limit tables in, frames out. The one header through which the service reaches the
  * GPU; no GL type or call appears here.
  *
- * Thread: all functions of one renderer are called by the one thread that created it. */
+ * Thread: functions that take a struct renderer are called by the thread that created it (the GL
+ * thread); all others by any. */
 #ifndef SHEEN_GPU_RENDERER_H
 #define SHEEN_GPU_RENDERER_H
 
@@ -85,9 +86,10 @@ struct frame {
     void *plane[PLANE_COUNT]; /* indexed by bit number */
     struct frame_times times;
     bool shows_surface; /* false: no pixel shows any of the model */
-    /* With frame_request.count_light, of the pixels that were looked at, all of small tiles and one
-     * in eight of large ones: those whose centre shows surface, and those on which any light is
-     * met. Where no light can be missed 1 and 1, or more alike. */
+    /* With frame_request.count_light: how many pixels show surface at their centre, and on how many
+     * of these the reflected ray meets a light. They are samples for a share, met_px / seen_px: all
+     * pixels of tiles of fewer than 2^18, one in eight of larger tiles; and where no light can be
+     * missed, nothing is counted and both get 1 for each tile that shows surface. */
     uint64_t seen_px, met_px;
     struct spares *spares; /* the renderer's: where the planes come from */
     struct canvas *canvas; /* the renderer's, between two steps; NULL once the frame is whole */
@@ -132,7 +134,8 @@ struct frame_watch {
 struct frame_work {
     const struct frame_request *request; /* stays until the last step, as the model does */
     uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
-    bool in_place; /* of tiles: what they show shall be what one tile would, and be kept */
+    bool in_place; /* of an exact frame in tiles: its pixels must be those of one tile, bit by bit,
+                      and its planes are kept. The planes are then as large as the whole picture */
     struct frame_watch watch;
     const struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
 
@@ -187,9 +190,9 @@ bool renderer_render(struct renderer *renderer, struct renderer_model *model,
                      const struct frame_request *request, struct frame *frame, struct error *error);
 void frame_finish(struct frame *frame);
 
-/* What the polygons of a model at a level (RANGE_LEVEL) take on the device, kept from their first frame
- * until the model goes. 0: they are too many, and their frame fails with the words for it. Any
- * thread. */
+/* What the polygons of a model at a level (RANGE_LEVEL) take on the device, kept from their first
+ * frame until the model goes. 0: they are too many, and their frame fails with the words for it.
+ * Any thread. */
 size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level);
 
 /* What a frame of polygons takes on the device between its steps, cut into such tiles. Any thread.
@@ -215,12 +218,17 @@ void renderer_default_camera(const struct limit_tables *tables, const double up[
                              enum default_view view, uint32_t width_px, uint32_t height_px,
                              struct camera *camera);
 
-/* The camera's up, for a model whose up this is: the same, or where the camera looks along it, what
- * the front view has behind (looking down) or before (looking up). */
+/* Sets camera->up for a model whose up is `up`, of any length but 0; eye and target must be set.
+ * Where the camera does not look along it (within 1e-6 rad): to `up` itself. Where it does: to the
+ * horizontal direction that the front view looks along when the camera looks down, to the opposite
+ * one when it looks up. */
 void renderer_default_roll(const double up[3], struct camera *camera);
 
-/* Looks closer at a place of the picture, (0,0) its top left and (1,1) its bottom right: the eye
- * stays and turns (orthographic: moves across), so that lines stay where they are on the surface.
+/* Looks closer at a place of the picture: (x, y) is (0, 0) at its top left and (1, 1) at its bottom
+ * right (RANGE_ZOOM_AT) and comes to lie in its middle; `factor` is RANGE_ZOOM. A perspective
+ * camera's eye stays and its target moves, so that lines stay where they are on the surface; an
+ * orthographic camera's eye and target both move across. fov_deg and ortho_height both become
+ * smaller, whichever the camera uses, and may leave their ranges, which is for the caller to check.
  */
 void renderer_zoom(struct camera *camera, uint32_t width_px, uint32_t height_px, double factor,
                    double x, double y);

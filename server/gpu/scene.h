@@ -23,8 +23,9 @@ struct camera {
 };
 
 /* From where a camera that frames the model looks. With e1 the world's x axis made horizontal (y
- * where x is up) and e2 = up x e1: the front is at -e2, the right at e1; around is above the front
- * right, with the model's longer side across the picture. */
+ * where x is up) and e2 = up x e1: the front is at -e2, the right at e1. VIEW_AROUND looks down by
+ * 45 degrees from the front right, with the model's longer side across the picture. VIEW_ISO looks
+ * from e1 - e2 + up, so that all three axes are equally long in an orthographic picture. */
 enum default_view {
     VIEW_AROUND,
     VIEW_FRONT,
@@ -66,7 +67,8 @@ struct pattern {
 
 enum light_kind { LIGHT_RECTANGLE, LIGHT_PLANE, LIGHT_TUNNEL, LIGHT_SPHERE };
 /* u and v are not parallel. Rectangle: x = centre + (s - 1/2) u + (t - 1/2) v, s and t in [0,1].
- * Tunnel: u is the radius, v the axis. Sphere at infinity: v is the axis, centre plays no part. */
+ * Plane: the same without an end, s and t of any value. Tunnel: u is the radius, v the axis. Sphere
+ * at infinity: v is the axis, centre plays no part. */
 struct light {
     enum light_kind kind;
     double centre[3], u[3], v[3];

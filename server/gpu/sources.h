@@ -1,5 +1,6 @@
-/* What every program is assembled from: files of shaders/ behind defines. No GL call is made here,
- * so that the texts can be had, and checked, without a device. Private to server/gpu. */
+/* The source text of every GPU program: #define lines, then files of shaders/ in order. No GL call
+ * is made here, so the texts can be made and checked on a machine without a device. Private to
+ * server/gpu; pure functions on constant data, any thread. */
 #ifndef SHEEN_GPU_SOURCES_H
 #define SHEEN_GPU_SOURCES_H
 
@@ -11,22 +12,23 @@ enum { PROGRAM_DEFINES_BYTES = 256, PROGRAM_MAX_FILES = 20 };
 /* A compute shader; or a vertex and a fragment shader. */
 struct program_source {
     char defines[PROGRAM_DEFINES_BYTES];
-    const char *const *files[2]; /* of each shader, a NULL at the end; files[1] NULL: compute */
+    const char *const *files[2]; /* of each shader, names that end with NULL; constant data.
+                                    files[1] NULL: a compute shader */
 };
 
-/* A shader as glShaderSource() takes it. */
+/* One shader's text as glShaderSource() takes it: part[0, n). */
 struct shader_text {
     const char *part[2 + 2 * PROGRAM_MAX_FILES];
     int n;
-    char line[PROGRAM_MAX_FILES][24]; /* parts of it: `#line 1 N` before the N-th file */
+    char line[PROGRAM_MAX_FILES][24]; /* the parts `#line 1 N`, which stand before the N-th file */
 };
 
-/* The source's k-th shader. Both stay while the text is used. ERROR_DEVICE when a file is not
- * built in. */
+/* Fills the text of shader k (0 or 1) of a source. The parts point into `text` and `source`, which
+ * must both stay in place while the text is used. ERROR_DEVICE when a file is not built in. */
 bool shader_text_init(struct shader_text *text, const struct program_source *source, int k,
                       struct error *error);
 
-/* Programs of which there is one each. */
+/* The programs of which there is one for all models and frames. */
 enum single_program {
     PROGRAM_GATHER,
     PROGRAM_DOUBT,
@@ -37,7 +39,8 @@ enum single_program {
 };
 struct program_source source_of_single(enum single_program program);
 
-/* Those that read limit tables, for each way of spreading them over buffer textures. */
+/* The programs that read limit tables: one of each for each way of spreading the tables over buffer
+ * textures. */
 enum table_program {
     PROGRAM_VISIBILITY,
     PROGRAM_EVALUATE,
@@ -53,7 +56,7 @@ struct table_layout {
 struct program_source source_of_tables(enum table_program program,
                                        const struct table_layout *layout);
 
-/* Those of stage 3. */
+/* The programs of stage 3: one for each key. */
 struct program_source source_of_shading(struct shade_key key);
 
 #endif

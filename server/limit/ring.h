@@ -5,7 +5,10 @@
  *   infinitely sharp edges): n_faces + 1 edges.
  *
  * Subdividing a ring needs nothing but itself (Catmull and Clark 1978; limit-surface 4.2, 4.5):
- * that is what makes every table a local computation. Memory is the caller's arena. */
+ * that is what makes every table a local computation.
+ *
+ * Memory is the caller's arena. No function here fails: arenas are sized before (arena.h).
+ * Functions are pure but for that, so any thread may call them, with an arena of its own. */
 #ifndef SHEEN_LIMIT_RING_H
 #define SHEEN_LIMIT_RING_H
 
@@ -19,7 +22,8 @@
 /* Crease sharpness of the edges around a vertex (server/limit/crease.h). */
 struct ring_creases {
     float *edge; /* [edges]: of each edge */
-    float *far;  /* [edges]: what the half at the edge's other end will have after one step */
+    float *far;  /* [edges]: after one step, the sharpness of the half of edge k that lies away
+                    from the vertex */
     bool chaikin;
 };
 
@@ -35,10 +39,11 @@ struct ring_sheets {
 
 struct ring {
     uint32_t n_faces; /* valence of a closed ring */
-    uint32_t at;      /* which quad of the ring is the one that it is looked at from */
+    uint32_t at;      /* index in the ring of the quad whose table is being made */
     bool closed;
     bool cut_extraordinary;      /* a sector of a vertex that is extraordinary as a whole */
-    float sharpness;             /* of the vertex; CAGE_SHARPNESS_INFINITE: interpolated */
+    float sharpness;             /* of the vertex; CAGE_SHARPNESS_INFINITE: the limit surface
+                                    passes through it */
     struct ring_creases creases; /* edge is NULL: smooth, but for the ends of an open ring */
     struct ring_sheets sheets;
     struct vec centre;
@@ -105,22 +110,25 @@ struct vec ring_limit(const struct ring *ring);
  * eigenvalue (Stam 1998, appendix A). */
 double ring_eigenvalue(double angle);
 
-/* Whether the surface has one normal at the vertex of a settled ring.
+/* Whether the surface has one normal at the vertex of a settled ring:
  *
- * A sharp vertex of more than one quad has none, nor has one that follows a foreign crease: they
- * are tips. Nor has a crease sector of five quads and more: the wave sin(2 pi k / n) shrinks more
- * slowly than the crease's own direction (ring_eigenvalue() > 1/2), so that the normals inside come
- * to one direction and those beside the crease to another. In a sector of four both shrink by 1/2
- * and are coupled (a Jordan block): the normals turn on as 1/level, and are a degree from their
- * limit where single precision ends.
- *
- * The smooth corner of one quad turns on as 1/level too, but alike in all directions. It counts as
- * having one, which on rough cages is 0.1 degrees from those of level 30. */
+ * - closed and smooth, darts too: yes.
+ * - Sharp with more than one quad, or with a foreign crease: no, the vertex is a tip.
+ * - Crease sector of 2 or 3 quads, and sharp corner of one: yes.
+ * - Crease sector of 4 quads: no. Its two slowest directions both shrink by 1/2 and are coupled (a
+ *   Jordan block), so that normals near the vertex differ from their limit by an error that falls
+ *   as 1/level only: a degree where single precision ends.
+ * - Crease sector of 5 quads and more: no. The wave sin(2 pi k / n) shrinks more slowly than the
+ *   crease's own direction (ring_eigenvalue() > 1/2): normals inside the sector and beside the
+ *   crease have different limits.
+ * - Smooth corner of one quad: treated as yes. Its normals converge as 1/level too, but alike from
+ *   all directions; from level 30 on the one taken is within 0.1 degrees of them on rough cages. */
 bool ring_has_one_normal(const struct ring *ring);
 
-/* Two tangents at the limit position of a settled ring that is no dart, such that their product is
- * the limit normal along the winding; in a crease sector the slower one first. Returns
- * ring_has_one_normal(); without one the tangents are some directions. */
+/* Two tangents at the limit position of a settled ring that is no dart, of any length. Their cross
+ * product points along the limit normal, on the side from which the faces run counter-clockwise. In
+ * a crease sector the first is the one with the larger eigenvalue. Returns ring_has_one_normal();
+ * where that is false the cross product means nothing. */
 bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2);
 
 /* The right-handed orthonormal frame of two tangents: axis[0] along t1, axis[2] along t1 x t2.

@@ -55,7 +55,7 @@ bool jpeg_strip_encode(struct jpeg_encoder *encoder, const struct jpeg_layout *l
                        const uint8_t *rgba, uint8_t *bytes, size_t *start, size_t *size,
                        struct error *error);
 
-/* What to allocate for the head; labels of about one length have the same. `start` is the first
+/* What to allocate for the head, in bytes: strip_head_bound() of its length. `start` is the first
  * strip's. */
 size_t jpeg_head_bound(size_t start, const struct image_attribute *attributes, size_t n_attributes);
 

@@ -33,27 +33,28 @@ void png_layout_init(struct strip_layout *layout, uint32_t width_px, uint32_t he
  * first. */
 bool png_strip_is_opaque(const struct strip_layout *layout, size_t index, const uint8_t *rgba);
 
-/* What an encoding thread needs beside the strip itself: room for a row. */
+/* The length of the buffer for one row that png_strip_encode() takes. */
 size_t png_row_bytes(const struct strip_layout *layout);
 
 struct png_strip {
     size_t size;       /* bytes written */
-    uint32_t checksum; /* of the pixels as they are stored */
+    uint32_t checksum; /* Adler-32 of its rows as stored: filtered, a filter's number before each */
 };
 
-/* Encodes strip `index` of a picture to `bytes`, which has room for layout->bound; `row` is for
- * png_row_bytes(). All strips of a file are encoded with alpha, or all without, which is then left
- * out. No heap. False: ERROR_SERVER; the encoder may be used again. The same input gives the same
- * bytes. */
+/* Encodes strip `index` of a picture to `bytes`, which has room for layout->bound; `row` is scratch
+ * of png_row_bytes() bytes. All strips of a file are encoded with alpha, or all without, which is
+ * then left out. No heap. False: ERROR_SERVER; the encoder may be used again. The same input gives
+ * the same bytes. */
 bool png_strip_encode(struct png_encoder *encoder, const struct strip_layout *layout, size_t index,
                       const uint8_t *rgba, bool has_alpha, uint8_t *row, uint8_t *bytes,
                       struct png_strip *strip, struct error *error);
 
-/* The checksum of the strips up to `index`, out of that of those before (1 before the first). */
+/* The Adler-32 of the rows of all strips up to `index`: of `before`, that of the strips before it
+ * (1 before the first), and `strip`, its own (png_strip.checksum). */
 uint32_t png_checksum(uint32_t before, const struct strip_layout *layout, size_t index,
                       bool has_alpha, uint32_t strip);
 
-/* What to allocate for the head; labels of about one length have the same. */
+/* What to allocate for the head, in bytes: strip_head_bound() of its length. */
 size_t png_head_bound(const struct image_attribute *attributes, size_t n_attributes);
 
 /* Writes the head and returns its length. An attribute's name has 1 to 79 bytes. */
@@ -61,7 +62,7 @@ size_t png_head_write(const struct strip_layout *layout, bool has_alpha,
                       const struct image_attribute *attributes, size_t n_attributes,
                       uint8_t *bytes);
 
-/* Writes the tail and returns its length. */
+/* Writes the tail, with the Adler-32 of all strips, and returns its length. */
 size_t png_tail_write(uint32_t checksum, uint8_t *bytes);
 
 #endif

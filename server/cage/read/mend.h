@@ -1,17 +1,21 @@
-/* What a damaged element of a file costs: itself and one warning of its kind, never the cage.
- * Internal to server/cage/read; any thread. */
+/* Takes damaged elements out of a cage. A damaged element costs itself, and all of one kind cost
+ * one warning; the rest of the cage stays. Internal to server/cage/read; any thread. */
 #ifndef SHEEN_CAGE_READ_MEND_H
 #define SHEEN_CAGE_READ_MEND_H
 
 #include "server/cage/read/builder.h"
 
-/* Takes out of a whole cage what cannot be evaluated: corners that repeat a neighbour, faces with
- * fewer than three different corners, faces with a vertex at corners that are no neighbours,
- * creases on no edge, corner tags on no vertex, holes of no face. What stays keeps its order, and
- * tags their faces, which they name by the file's own numbers. Vertex indices of faces must be in
- * range, those of tags may be any numbers. Linear in the size of the cage.
+/* Takes out of a cage that has been read to its end what cannot be evaluated: corners that repeat a
+ * neighbour, faces with fewer than three different corners, faces with a vertex at corners that are
+ * no neighbours, creases on no edge, corner tags on no vertex, holes of no face. Warns of each kind
+ * with cage_found(). It is called once for a cage.
  *
- * ERROR_MODEL when the file has faces and none can stay; ERROR_SERVER when memory is short. */
+ * Before, holes name faces by their number in the file; afterwards, by their index among the faces
+ * that stay, which keep their order. Vertex indices of faces must be in range; those of tags may be
+ * any numbers. `name` is the file's, for texts. Linear in the size of the cage.
+ *
+ * False, and the builder is only good to be freed: ERROR_MODEL when the file has faces and none of
+ * them can stay, ERROR_SERVER when memory is short. A cage without faces is left as it is. */
 bool cage_mend(struct cage_builder *builder, const char *name, struct error *error);
 
 #endif
