@@ -56,14 +56,14 @@ static const struct number_key {
     size_t member;
     enum range_name range;
 } NUMBERS[] = {
-    {"count", offsetof(struct sheen_pattern, count), RANGE_COUNT},
+    {"count", offsetof(struct sheen_pattern, count), RANGE_PATTERN_COUNT},
     {"period", offsetof(struct sheen_pattern, period), RANGE_PERIOD},
     {"duty", offsetof(struct sheen_pattern, duty), RANGE_DUTY},
     {"rotation", offsetof(struct sheen_pattern, rotation_deg), RANGE_ROTATION},
-    {"offset", offsetof(struct sheen_pattern, offset), RANGE_OFFSET},
+    {"offset", offsetof(struct sheen_pattern, offset), RANGE_PATTERN_OFFSET},
     {"soft", offsetof(struct sheen_pattern, soft), RANGE_SOFT},
     {"opacity", offsetof(struct sheen_pattern, opacity), RANGE_OPACITY},
-    {"width", offsetof(struct sheen_pattern, width), RANGE_WIDTH},
+    {"width", offsetof(struct sheen_pattern, width), RANGE_PATTERN_WIDTH},
 };
 #define N_NUMBERS (sizeof(NUMBERS) / sizeof(*NUMBERS))
 
@@ -88,7 +88,7 @@ static const struct range *range_of_part(const char *name)
     for (size_t i = 0; i < N_NUMBERS; i++)
         if (strcmp(name, NUMBERS[i].name) == 0)
             return &RANGES[NUMBERS[i].range];
-    return strcmp(name, "at") == 0 ? &RANGES[RANGE_AT] : NULL;
+    return strcmp(name, "at") == 0 ? &RANGES[RANGE_PATTERN_AT] : NULL;
 }
 
 void text_row_example(const struct text_row *row, char text[static TEXT_EXAMPLE_BYTES])
@@ -123,11 +123,11 @@ static bool parse_at(char *value, struct sheen_pattern *pattern, char *why)
     pattern->n_at = 0;
     while ((part = strsep(&rest, "/"))) {
         double *at = &pattern->at[pattern->n_at];
-        if (!range_holds(&RANGES[RANGE_LINES], pattern->n_at + 1) || !value_double(part, at) ||
-            !range_holds(&RANGES[RANGE_AT], *at))
+        if (!range_holds(&RANGES[RANGE_PATTERN_LINES], pattern->n_at + 1) ||
+            !value_double(part, at) || !range_holds(&RANGES[RANGE_PATTERN_AT], *at))
             return refuse(why, "at must be %s numbers with slashes between, each %s",
-                          range_text(&RANGES[RANGE_LINES], places),
-                          range_text(&RANGES[RANGE_AT], wanted));
+                          range_text(&RANGES[RANGE_PATTERN_LINES], places),
+                          range_text(&RANGES[RANGE_PATTERN_AT], wanted));
         pattern->n_at++;
     }
     return true;

@@ -57,7 +57,8 @@ bool options_check_light(struct options *options, char *why)
 static bool check_show(const struct sheen_show *show, char *why)
 {
     char wanted[RANGE_TEXT_BYTES];
-    const struct range *range = &RANGES[show->kind == SHEEN_SHOW_DRAFT ? RANGE_DRAFT : RANGE_SHOW];
+    const struct range *range =
+        &RANGES[show->kind == SHEEN_SHOW_DRAFT ? RANGE_SHOW_DRAFT : RANGE_SHOW_CURVATURE];
     return show->range == 0 || range_holds(range, show->range) ||
            options_refuse(why, "--show-range '%.9g': must be a number %s for --show %s",
                           show->range, range_text(range, wanted), text_show_kind(show->kind));

@@ -198,8 +198,9 @@ static bool apply_edge(struct options *options, const char *value, double *edge,
 {
     char wanted[RANGE_TEXT_BYTES];
     return apply_vec3(options, value, edge, given, why) &&
-           (range_holds(&RANGES[RANGE_EDGE], range_length(edge)) ||
-            options_refuse(why, "must have a length %s", range_text(&RANGES[RANGE_EDGE], wanted)));
+           (range_holds(&RANGES[RANGE_LIGHT_SIDE], range_length(edge)) ||
+            options_refuse(why, "must have a length %s",
+                           range_text(&RANGES[RANGE_LIGHT_SIDE], wanted)));
 }
 
 static bool apply_light_u(struct options *options, const char *value, char *why)
@@ -277,7 +278,7 @@ static bool apply_show(struct options *options, const char *value, char *why)
 
 static bool apply_show_range(struct options *options, const char *value, char *why)
 {
-    return options_number(&RANGES[RANGE_SHOW], value, &options->request.show.range, why);
+    return options_number(&RANGES[RANGE_SHOW_CURVATURE], value, &options->request.show.range, why);
 }
 
 static bool apply_legend(struct options *options, const char *value, char *why)

@@ -180,14 +180,14 @@ static bool check_period(const sheen_Pattern *pattern, char *text)
         double value;
         enum range_name range;
     } numbers[] = {
-        {pattern->has_count, pattern->count, RANGE_COUNT},
+        {pattern->has_count, pattern->count, RANGE_PATTERN_COUNT},
         {pattern->has_period, pattern->period, RANGE_PERIOD},
         {pattern->has_duty, pattern->duty, RANGE_DUTY},
         {pattern->has_rotation_deg, pattern->rotation_deg, RANGE_ROTATION},
-        {pattern->has_offset, pattern->offset, RANGE_OFFSET},
+        {pattern->has_offset, pattern->offset, RANGE_PATTERN_OFFSET},
         {pattern->has_soft, pattern->soft, RANGE_SOFT},
         {pattern->has_opacity, pattern->opacity, RANGE_OPACITY},
-        {pattern->has_width, pattern->width, RANGE_WIDTH},
+        {pattern->has_width, pattern->width, RANGE_PATTERN_WIDTH},
     };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         if (numbers[i].is_there && !check_number(numbers[i].value, numbers[i].range, text))
@@ -202,7 +202,7 @@ static bool check_single_lines(const sheen_Pattern *pattern, char *text)
         return refuse(text, "pattern.at: the places of 1 to 16 lines belong to a lines pattern and "
                             "to no other");
     for (size_t i = 0; i < pattern->at_count; i++)
-        if (!check_number(pattern->at[i], RANGE_AT, text))
+        if (!check_number(pattern->at[i], RANGE_PATTERN_AT, text))
             return false;
     return true;
 }
@@ -237,7 +237,7 @@ static bool check_edge(const sheen_Vec3 *edge, const char *field, char *text)
     char name[64];
     snprintf(name, sizeof name, "the length of %s", field);
     return check_vec3(edge, field, text) &&
-           check_named(range_length(value), &RANGES[RANGE_EDGE], name, text);
+           check_named(range_length(value), &RANGES[RANGE_LIGHT_SIDE], name, text);
 }
 
 static bool check_light(const sheen_Light *light, char *text)
@@ -393,7 +393,8 @@ static bool check_show(const sheen_Render *render, char *text)
         return false;
     if (show->has_range && !is_scale)
         return refuse(text, "show.range (--show-range) is for curvature, gaussian, mean and draft");
-    if (show->has_range && !check_number(show->range, is_draft ? RANGE_DRAFT : RANGE_SHOW, text))
+    if (show->has_range &&
+        !check_number(show->range, is_draft ? RANGE_SHOW_DRAFT : RANGE_SHOW_CURVATURE, text))
         return false;
     if (show->kind == sheen_ShowKind_SHOW_LINES)
         return true;
@@ -501,7 +502,7 @@ static bool check_frame(const sheen_Frame *frame, char *text)
                       (unsigned long long)frame->data_bytes,
                       (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
     if (frame->has_show_range &&
-        !check_named(frame->show_range, &RANGES[RANGE_SHOW], "show_range", text))
+        !check_named(frame->show_range, &RANGES[RANGE_SHOW_CURVATURE], "show_range", text))
         return false;
     if (frame->has_light_share && !(frame->light_share >= 0 && frame->light_share <= 1))
         return refuse(text, "light_share is %g; it must be from 0 to 1", frame->light_share);

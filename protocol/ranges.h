@@ -17,21 +17,21 @@ enum range_name {
     RANGE_ZOOM,
     RANGE_ZOOM_AT,
     RANGE_LIGHTS,
-    RANGE_EDGE, /* length of a light's u and v */
-    RANGE_COUNT,
+    RANGE_LIGHT_SIDE, /* length of a light's u and v */
+    RANGE_PATTERN_COUNT,
     RANGE_PERIOD,
     RANGE_DUTY,
     RANGE_ROTATION,
-    RANGE_OFFSET,
+    RANGE_PATTERN_OFFSET,
     RANGE_SOFT,
     RANGE_OPACITY,
-    RANGE_LINES,
-    RANGE_AT,
-    RANGE_WIDTH,
+    RANGE_PATTERN_LINES,
+    RANGE_PATTERN_AT,
+    RANGE_PATTERN_WIDTH,
     RANGE_COLOUR,
-    RANGE_SHOW,         /* of curvatures */
-    RANGE_DRAFT,        /* of the same field, for draft */
-    RANGE_JPEG_QUALITY, /* as libjpeg has it */
+    RANGE_SHOW_CURVATURE, /* show.range of the curvatures */
+    RANGE_SHOW_DRAFT,     /* show.range of draft */
+    RANGE_JPEG_QUALITY,   /* as libjpeg has it */
     RANGE_LEVEL,
     RANGE_DEADLINE,
     N_RANGES
@@ -54,11 +54,12 @@ bool range_holds(const struct range *range, double value);
 #define RANGE_TEXT_BYTES 80
 const char *range_text(const struct range *range, char text[static RANGE_TEXT_BYTES]);
 
-/* No direction: no coordinate is as large as 1e-30. Squares of what is larger do not vanish. */
+/* Whether v is too short to be a direction: every coordinate is smaller than 1e-30 in magnitude.
+ * Squares of larger ones do not vanish. */
 bool range_is_zero(const double v[3]);
-/* What RANGE_EDGE is about. */
+/* The Euclidean length of v, for RANGE_LIGHT_SIDE. */
 double range_length(const double v[3]);
-/* The sine of the angle between them is 1e-9 at most, or one of them is zero. */
+/* Whether the sine of the angle between a and b is 1e-9 at most, or one of them is zero. */
 bool range_is_parallel(const double a[3], const double b[3]);
 
 #endif

@@ -59,8 +59,8 @@ static bool check_light(const struct light *light, struct error *error)
 {
     if (!check_point(light->centre, "light: centre", error) ||
         !check_point(light->u, "light: u", error) || !check_point(light->v, "light: v", error) ||
-        !check_number(range_length(light->u), RANGE_EDGE, "light: the length of u", error) ||
-        !check_number(range_length(light->v), RANGE_EDGE, "light: the length of v", error))
+        !check_number(range_length(light->u), RANGE_LIGHT_SIDE, "light: the length of u", error) ||
+        !check_number(range_length(light->v), RANGE_LIGHT_SIDE, "light: the length of v", error))
         return false;
     if (range_is_parallel(light->u, light->v))
         return error_set(error, ERROR_REQUEST,
@@ -82,12 +82,12 @@ static bool check_colour(const float colour[4], const char *what, struct error *
 
 static bool check_pattern(const struct pattern *pattern, struct error *error)
 {
-    if (!check_number(pattern->count, RANGE_COUNT, "pattern: count", error) ||
+    if (!check_number(pattern->count, RANGE_PATTERN_COUNT, "pattern: count", error) ||
         (pattern->period != 0 &&
          !check_number(pattern->period, RANGE_PERIOD, "pattern: period", error)) ||
         !check_number(pattern->duty, RANGE_DUTY, "pattern: duty", error) ||
         !check_number(pattern->rotation_deg, RANGE_ROTATION, "pattern: rotation", error) ||
-        !check_number(pattern->offset, RANGE_OFFSET, "pattern: offset", error) ||
+        !check_number(pattern->offset, RANGE_PATTERN_OFFSET, "pattern: offset", error) ||
         !check_number(pattern->soft, RANGE_SOFT, "pattern: soft", error) ||
         !check_number(pattern->opacity, RANGE_OPACITY, "pattern: opacity", error) ||
         !check_colour(pattern->foreground, "pattern: foreground", error) ||
@@ -97,11 +97,11 @@ static bool check_pattern(const struct pattern *pattern, struct error *error)
         return error_set(error, ERROR_REQUEST, "pattern: kind image without an image");
     if (pattern->kind != PATTERN_LINES)
         return true;
-    if (!check_number(pattern->n_at, RANGE_LINES, "pattern: the number of lines", error) ||
-        !check_number(pattern->width, RANGE_WIDTH, "pattern: width", error))
+    if (!check_number(pattern->n_at, RANGE_PATTERN_LINES, "pattern: the number of lines", error) ||
+        !check_number(pattern->width, RANGE_PATTERN_WIDTH, "pattern: width", error))
         return false;
     for (uint32_t i = 0; i < pattern->n_at; i++)
-        if (!check_number(pattern->at[i], RANGE_AT, "pattern: at", error))
+        if (!check_number(pattern->at[i], RANGE_PATTERN_AT, "pattern: at", error))
             return false;
     return true;
 }

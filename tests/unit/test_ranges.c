@@ -192,32 +192,34 @@ static const struct field {
     {&RANGES[RANGE_ZOOM_AT], REAL, RENDER "--zoom 2@%.17g,0.5", wire_zoom_x, NULL},
     {&RANGES[RANGE_ZOOM_AT], REAL, RENDER "--zoom 2@0.5,%.17g", wire_zoom_y, NULL},
     {&RANGES[RANGE_LIGHTS], WHOLE, NULL, wire_lights, frame_lights},
-    {&RANGES[RANGE_EDGE], REAL, RENDER "--light-center 0,0,4 --light-u %.17g,0,0 --light-v 0,4,0",
-     wire_edge_u, frame_edge_u},
-    {&RANGES[RANGE_EDGE], REAL, RENDER "--light-center 0,0,4 --light-u 4,0,0 --light-v 0,%.17g,0",
-     wire_edge_v, frame_edge_v},
-    {&RANGES[RANGE_COUNT], REAL, RENDER "--pattern stripes:count=%.17g", wire_count, frame_count},
+    {&RANGES[RANGE_LIGHT_SIDE], REAL,
+     RENDER "--light-center 0,0,4 --light-u %.17g,0,0 --light-v 0,4,0", wire_edge_u, frame_edge_u},
+    {&RANGES[RANGE_LIGHT_SIDE], REAL,
+     RENDER "--light-center 0,0,4 --light-u 4,0,0 --light-v 0,%.17g,0", wire_edge_v, frame_edge_v},
+    {&RANGES[RANGE_PATTERN_COUNT], REAL, RENDER "--pattern stripes:count=%.17g", wire_count,
+     frame_count},
     {&RANGES[RANGE_PERIOD], REAL, RENDER "--pattern stripes:period=%.17g", wire_period,
      frame_period},
     {&RANGES[RANGE_DUTY], REAL, RENDER "--pattern stripes:duty=%.17g", wire_duty, frame_duty},
     {&RANGES[RANGE_ROTATION], REAL, RENDER "--pattern lattice:rotation=%.17g", wire_rotation_deg,
      frame_rotation_deg},
-    {&RANGES[RANGE_OFFSET], REAL, RENDER "--pattern circles:offset=%.17g", wire_offset,
+    {&RANGES[RANGE_PATTERN_OFFSET], REAL, RENDER "--pattern circles:offset=%.17g", wire_offset,
      frame_offset},
     {&RANGES[RANGE_SOFT], REAL, RENDER "--pattern stripes:soft=%.17g", wire_soft, frame_soft},
     {&RANGES[RANGE_OPACITY], REAL, RENDER "--pattern stripes:opacity=%.17g", wire_opacity,
      frame_opacity},
-    {&RANGES[RANGE_LINES], WHOLE, NULL, wire_n_lines, frame_n_lines},
-    {&RANGES[RANGE_AT], REAL, RENDER "--pattern lines:at=0.5/%.17g", wire_at, frame_at},
-    {&RANGES[RANGE_WIDTH], REAL, RENDER "--pattern lines:width=%.17g", wire_line_width,
+    {&RANGES[RANGE_PATTERN_LINES], WHOLE, NULL, wire_n_lines, frame_n_lines},
+    {&RANGES[RANGE_PATTERN_AT], REAL, RENDER "--pattern lines:at=0.5/%.17g", wire_at, frame_at},
+    {&RANGES[RANGE_PATTERN_WIDTH], REAL, RENDER "--pattern lines:width=%.17g", wire_line_width,
      frame_line_width},
     {&RANGES[RANGE_COLOUR], SINGLE, NULL, wire_colour, frame_colour},
     {&RANGES[RANGE_COLOUR], SINGLE, NULL, wire_dark, frame_dark},
     {&RANGES[RANGE_COLOUR], SINGLE, NULL, wire_miss, frame_miss},
     {&RANGES[RANGE_COLOUR], SINGLE, NULL, wire_empty, frame_empty},
     {&RANGES[RANGE_COLOUR], SINGLE, NULL, wire_base, frame_base},
-    {&RANGES[RANGE_SHOW], REAL, RENDER "--show-range %.17g --show mean", wire_mean, NULL},
-    {&RANGES[RANGE_DRAFT], REAL, RENDER "--show-range %.17g --show draft:0,0,1", wire_draft, NULL},
+    {&RANGES[RANGE_SHOW_CURVATURE], REAL, RENDER "--show-range %.17g --show mean", wire_mean, NULL},
+    {&RANGES[RANGE_SHOW_DRAFT], REAL, RENDER "--show-range %.17g --show draft:0,0,1", wire_draft,
+     NULL},
     {&RANGES[RANGE_JPEG_QUALITY], WHOLE, "m.obj -o a.jpg --jpeg-quality %.17g", wire_jpeg_quality,
      NULL},
     {&RANGES[RANGE_LEVEL], WHOLE, RENDER "--surface polygon:%.17g", wire_level, frame_level},
@@ -259,7 +261,7 @@ static bool message_takes(const struct field *field, double value)
     /* More than its struct holds is refused when it is read (protocol/sheen.options). */
     if (field->range == &RANGES[RANGE_LIGHTS] && value > sizeof GOOD.lights / sizeof *GOOD.lights)
         return false;
-    if (field->range == &RANGES[RANGE_LINES] &&
+    if (field->range == &RANGES[RANGE_PATTERN_LINES] &&
         value > sizeof GOOD.lights->pattern.at / sizeof *GOOD.lights->pattern.at)
         return false;
     field->wire(&render, value);
@@ -386,7 +388,8 @@ static void ranges_read_well(void **state)
     char text[RANGE_TEXT_BYTES];
     assert_string_equal(range_text(&RANGES[RANGE_FOV], text), "from 1e-6 to 179 degrees");
     assert_string_equal(range_text(&RANGES[RANGE_COORDINATE], text), "from -1e30 to 1e30");
-    assert_string_equal(range_text(&RANGES[RANGE_COUNT], text), "above 0 and at most 100000");
+    assert_string_equal(range_text(&RANGES[RANGE_PATTERN_COUNT], text),
+                        "above 0 and at most 100000");
     assert_string_equal(range_text(&RANGES[RANGE_DEADLINE], text),
                         "from 1 to 3600000 milliseconds");
     const struct range small = {NULL, NULL, -1e-100, 2.5e-10, false, ""};
