@@ -11,7 +11,7 @@
 #include "client/gltf_pack.h"
 #include "client/status.h"
 #include "client/values.h"
-#include "client/weld.h"
+#include "client/weld_tag.h"
 
 #define TOKEN_BYTES 256
 #define AT_SERVER "server:" /* a MODEL that is a file below the daemon's --models */
@@ -62,7 +62,7 @@ static enum sheen_status read_model(struct job *job, const struct options *optio
     if (!status)
         status = gltf_pack(path, bytes, n_bytes, &job->error);
     if (!status && options->weld)
-        status = weld_append(path, bytes, n_bytes, &job->error);
+        status = weld_tag_append(path, bytes, n_bytes, &job->error);
     return status ? status : take_id(job, path, SHEEN_BAD_MODEL, *bytes, *n_bytes, job->model_id);
 }
 

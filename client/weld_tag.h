@@ -1,6 +1,6 @@
 /* --weld: an OBJ file with the request to join its equal positions. Thread: any. */
-#ifndef SHEEN_CLIENT_WELD_H
-#define SHEEN_CLIENT_WELD_H
+#ifndef SHEEN_CLIENT_WELD_TAG_H
+#define SHEEN_CLIENT_WELD_TAG_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -14,7 +14,7 @@
  * have moved, else it is as it was. `path` serves to tell the format (by its ending, before the
  * bytes are looked at) and for error texts. SHEEN_BAD_ARGUMENT when the file is glTF: any other
  * counts as OBJ. SHEEN_NO_MEMORY when memory is short. */
-enum sheen_status weld_append(const char *path, uint8_t **bytes, size_t *n_bytes,
-                              struct sheen_error *error);
+enum sheen_status weld_tag_append(const char *path, uint8_t **bytes, size_t *n_bytes,
+                                  struct sheen_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "client/weld.h"
+#include "client/weld_tag.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -32,8 +32,8 @@ static bool is_gltf(const char *path, const uint8_t *bytes, size_t n_bytes)
     return at < n_bytes && bytes[at] == '{';
 }
 
-enum sheen_status weld_append(const char *path, uint8_t **bytes, size_t *n_bytes,
-                              struct sheen_error *error)
+enum sheen_status weld_tag_append(const char *path, uint8_t **bytes, size_t *n_bytes,
+                                  struct sheen_error *error)
 {
     if (is_gltf(path, *bytes, *n_bytes))
         return status_set(error, SHEEN_BAD_ARGUMENT,
