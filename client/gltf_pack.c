@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/beside.h"
+#include "client/relative_file.h"
 #include "client/status.h"
 #include "protocol/limits.h"
 
@@ -47,7 +47,7 @@ static enum sheen_status too_big(const struct pack *pack)
 static const char *file_of(const json_t *buffer)
 {
     const char *uri = json_string_value(json_object_get(buffer, "uri"));
-    return uri && !beside_is_data(uri) ? uri : NULL;
+    return uri && !relative_file_is_data(uri) ? uri : NULL;
 }
 
 static enum sheen_status append(struct pack *pack, const uint8_t *bytes, size_t n_bytes)
@@ -77,7 +77,7 @@ static enum sheen_status add_file(struct pack *pack, size_t index, const json_t 
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
     struct sheen_error inner = {0};
-    enum sheen_status status = beside_read(
+    enum sheen_status status = relative_file_read(
         pack->path, uri, PROTOCOL_MAX_UPLOAD_BYTES - pack->read_bytes, &bytes, &n_bytes, &inner);
     if (status == SHEEN_TOO_BIG)
         return too_big(pack);

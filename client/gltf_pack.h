@@ -17,7 +17,7 @@
 /* *bytes[0, *n_bytes) are those of the model file `path`. If they are a glTF in JSON whose buffers
  * name files, *bytes is freed and replaced by the container, the caller's to free(). What has no
  * such buffers, or is no JSON at all, stays as it is: the reader at the server says what is wrong
- * with it. Which files are read, and how links are followed, is said at beside_read().
+ * with it. Which files are read, and how links are followed, is said at relative_file_read().
  *
  * SHEEN_BAD_MODEL when a file cannot be read or may not be, or when a view lies beyond its buffer;
  * SHEEN_TOO_BIG when more than PROTOCOL_MAX_UPLOAD_BYTES were to be read or sent; SHEEN_NO_MEMORY.

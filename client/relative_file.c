@@ -1,4 +1,4 @@
-#include "client/beside.h"
+#include "client/relative_file.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -20,7 +20,7 @@ static bool has_scheme(const char *uri)
     return n > 0 && isalpha((unsigned char)uri[0]) && uri[n] == ':';
 }
 
-bool beside_is_data(const char *uri)
+bool relative_file_is_data(const char *uri)
 {
     return strncasecmp(uri, "data:", 5) == 0;
 }
@@ -116,8 +116,8 @@ static enum sheen_status read_below(const char *folder, const char *uri, const c
     return status;
 }
 
-enum sheen_status beside_read(const char *path, const char *uri, uint64_t most, uint8_t **bytes,
-                              size_t *n_bytes, struct sheen_error *error)
+enum sheen_status relative_file_read(const char *path, const char *uri, uint64_t most,
+                                     uint8_t **bytes, size_t *n_bytes, struct sheen_error *error)
 {
     char *relative = NULL, *joined = NULL;
     const char *problem = relative_path(uri, &relative);
