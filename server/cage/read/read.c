@@ -1,8 +1,8 @@
 #include "server/cage/read/read.h"
 
 #include <string.h>
-#include <strings.h>
 
+#include "protocol/model_format.h"
 #include "server/cage/read/builder.h"
 #include "server/cage/read/doubts.h"
 #include "server/cage/read/gltf.h"
@@ -12,29 +12,6 @@
 
 /* Messages have room for what is wrong only if the name leaves it. */
 #define SHOWN_NAME_BYTES 160
-
-static bool ends_with(const char *text, const char *ending)
-{
-    size_t length = strlen(text), n = strlen(ending);
-    return length >= n && strcasecmp(text + length - n, ending) == 0;
-}
-
-typedef bool (*reader)(struct cage_builder *builder, const void *bytes, size_t size,
-                       const char *name, struct error *error);
-
-static reader choose_reader(const char *name, const char *bytes, size_t size)
-{
-    if (ends_with(name, ".obj"))
-        return obj_read;
-    if (ends_with(name, ".gltf") || ends_with(name, ".glb"))
-        return gltf_read;
-    if (size >= 4 && memcmp(bytes, "glTF", 4) == 0)
-        return gltf_read;
-    size_t at = 0;
-    while (at < size && strchr(" \t\r\n", bytes[at]) && bytes[at])
-        at++;
-    return at < size && bytes[at] == '{' ? gltf_read : obj_read;
-}
 
 /* The file's own name is what people know it by; of an overlong one they know the end. */
 static const char *shown_name(const char *name)
@@ -61,8 +38,10 @@ bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *na
     if (size == 0)
         return error_set(error, ERROR_MODEL, "%s: the file is empty", name);
     struct cage_builder builder = {0};
-    bool ok = choose_reader(name, bytes, size)(&builder, bytes, size, name, error) &&
-              weld_and_mend(&builder, name, error) && cage_check(&builder.cage, name, error);
+    bool (*read)(struct cage_builder *, const void *, size_t, const char *, struct error *) =
+        model_format_is_gltf(name, bytes, size) ? gltf_read : obj_read;
+    bool ok = read(&builder, bytes, size, name, error) && weld_and_mend(&builder, name, error) &&
+              cage_check(&builder.cage, name, error);
     if (ok) {
         cage_doubt(&builder, name);
         *cage = builder.cage;
