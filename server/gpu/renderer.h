@@ -135,7 +135,8 @@ struct frame_work {
     const struct frame_request *request; /* stays until the last step, as the model does */
     uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
     bool in_place; /* of an exact frame in tiles: its pixels must be those of one tile, bit by bit,
-                      and its planes are kept. The planes are then as large as the whole picture */
+                      and its planes are kept. They are then as large as the whole picture;
+                      renderer_begin() clears in_place where the device has no such images */
     struct frame_watch watch;
     const struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
 
