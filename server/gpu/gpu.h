@@ -69,6 +69,7 @@ enum { GROUP_ROW = 32768 };
 /* The images of one tile, grown to the largest tile asked for. */
 struct target {
     uint32_t width, height;
+    uint64_t most_asked_px; /* pixels of the largest tile asked for */
     GLuint framebuffer;
     GLuint seen, seen_depth; /* visibility: RG32UI, DEPTH32F */
     GLuint hit_depth;        /* evaluate: R32F */

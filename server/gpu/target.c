@@ -48,13 +48,12 @@ static uint32_t larger(uint32_t a, uint32_t b)
 }
 
 /* A size that holds what is asked for and, where that wastes little, all that has been: no column
- * of pixels after a row of them may make a square. */
+ * of pixels after a row of them may make a square. Measured by what was asked for, not by what was
+ * held: else thin frames, each a little longer than the last, would double it for ever. */
 static void choose_size(const struct target *target, uint32_t *width, uint32_t *height)
 {
-    uint64_t asked_px = (uint64_t)*width * *height;
-    uint64_t held_px = (uint64_t)target->width * target->height;
     uint32_t both[2] = {larger(*width, target->width), larger(*height, target->height)};
-    if ((uint64_t)both[0] * both[1] > 2 * (asked_px + held_px))
+    if ((uint64_t)both[0] * both[1] > 2 * target->most_asked_px)
         return;
     *width = both[0];
     *height = both[1];
@@ -70,10 +69,14 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
 {
     if (width <= target->width && height <= target->height)
         return true;
+    uint64_t asked_px = (uint64_t)width * height;
+    target->most_asked_px = asked_px > target->most_asked_px ? asked_px : target->most_asked_px;
+    const uint64_t most_asked_px = target->most_asked_px;
     choose_size(target, &width, &height);
     width = (uint32_t)no_power_of_two(width);
     height = (uint32_t)no_power_of_two(height);
     target_finish(target);
+    target->most_asked_px = most_asked_px;
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         GLuint *name = image_name(target, i);
         glCreateTextures(GL_TEXTURE_2D, 1, name);

@@ -298,6 +298,18 @@ static void paint_pixels(const struct painting *painting, uint8_t (*rgba)[4], co
     }
 }
 
+/* Polygons extrapolate u and v beyond their edge, where a pixel's centre lies beyond it. */
+static double within_face(float coordinate)
+{
+    return fmin(1, fmax(0, (double)coordinate));
+}
+
+/* Rounded to single precision, a coordinate may be beyond the largest that is read. */
+static double within_range(float coordinate)
+{
+    return fmin(PROTOCOL_MAX_COORDINATE, fmax(-PROTOCOL_MAX_COORDINATE, (double)coordinate));
+}
+
 static sheen_Extreme extreme_at(const struct painting *painting, double value, size_t i,
                                 bool has_place)
 {
@@ -308,13 +320,14 @@ static sheen_Extreme extreme_at(const struct painting *painting, double value, s
     extreme.has_x_px = extreme.has_y_px = extreme.has_position = true;
     extreme.x_px = (uint32_t)(i % painting->width_px);
     extreme.y_px = (uint32_t)(i / painting->width_px);
-    extreme.position = (sheen_Vec3){(double)position[0], (double)position[1], (double)position[2]};
+    extreme.position = (sheen_Vec3){within_range(position[0]), within_range(position[1]),
+                                    within_range(position[2])};
     if (!painting->ptex)
         return extreme;
     extreme.has_face = extreme.has_u = extreme.has_v = true;
     extreme.face = painting->ptex[i].face;
-    extreme.u = (double)painting->ptex[i].u;
-    extreme.v = (double)painting->ptex[i].v;
+    extreme.u = within_face(painting->ptex[i].u);
+    extreme.v = within_face(painting->ptex[i].v);
     return extreme;
 }
 

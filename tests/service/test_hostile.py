@@ -344,6 +344,24 @@ class Renders(DaemonCase):
             self.assertEqual(client.render(model).data, want)
             self.assertLess(resident_kb(self.daemon.process.pid), before + (512 << 10))
 
+    def test_thin_frames_each_longer_than_the_last(self):
+        """What planes may waste is measured by what was asked for, not by what they have come to."""
+        with Client(self.daemon.unix) as client:
+            model = client.upload(CUBE, "cube.obj")
+            held = [512, 512]
+            client.render(model, width=held[0], height=held[1])
+            before = resident_kb(self.daemon.process.pid)
+            for turn in range(6):
+                along, across = turn % 2, 1 - turn % 2
+                side = 2 * held[along] - 8
+                thin = -(-66500 // side)  # several tiles: smaller frames have planes of their own
+                size = [0, 0]
+                size[along], size[across] = side, thin
+                client.render(model, width=size[0], height=size[1])
+                held[along] = side
+            self.assertEqual(held, [4040, 4040])
+            self.assertLess(resident_kb(self.daemon.process.pid), before + (256 << 10))
+
     def test_answers_keep_the_order_of_requests(self):
         with Client(self.daemon.unix) as client:
             model = client.upload(grid(60), "order.obj")

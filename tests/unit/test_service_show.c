@@ -334,6 +334,25 @@ static void test_extremes(void **state)
     }
 }
 
+/* What planes hold beyond a face, by extrapolation, or beyond the largest coordinate, by rounding,
+ * is told within the ranges that a client checks. */
+static void test_extremes_in_range(void **state)
+{
+    (void)state;
+    struct frame frame = frame_of(sheen_ShowKind_SHOW_MEAN, 2, 1);
+    frame.plane[3] = planes.ptex;
+    for (int i = 0; i < 2; i++) {
+        planes.curvature[i][0] = planes.curvature[i][1] = (float)i;
+        planes.position[i][0] = i ? 1e30f : -1e30f;
+        planes.position[i][1] = planes.position[i][2] = 0;
+        planes.ptex[i] = (struct ptex){0, i ? 1.00007f : -0.0004f, 0.5f};
+    }
+    sheen_Show show = {.kind = sheen_ShowKind_SHOW_MEAN};
+    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    assert_true(extremes.least.u == 0 && extremes.greatest.u == 1);
+    assert_true(extremes.least.position.x >= -1e30 && extremes.greatest.position.x <= 1e30);
+}
+
 static void test_no_extremes(void **state)
 {
     (void)state;
@@ -439,11 +458,17 @@ static int end_workers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_curvatures), cmocka_unit_test(test_no_surface),
-        cmocka_unit_test(test_outline),    cmocka_unit_test(test_normals),
-        cmocka_unit_test(test_drafts),     cmocka_unit_test(test_ptex),
-        cmocka_unit_test(test_ranges),     cmocka_unit_test(test_legend),
-        cmocka_unit_test(test_extremes),   cmocka_unit_test(test_no_extremes),
+        cmocka_unit_test(test_curvatures),
+        cmocka_unit_test(test_no_surface),
+        cmocka_unit_test(test_outline),
+        cmocka_unit_test(test_normals),
+        cmocka_unit_test(test_drafts),
+        cmocka_unit_test(test_ptex),
+        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_legend),
+        cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_no_extremes),
+        cmocka_unit_test(test_extremes_in_range),
     };
     return cmocka_run_group_tests(tests, start_workers, end_workers);
 }
