@@ -4,14 +4,18 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "client/clock.h"
 #include "client/commands.h"
 #include "client/file.h"
 #include "client/job.h"
+#include "client/lights_text.h"
 #include "client/status.h"
+#include "client/turntable.h"
 #include "client/values.h"
 
+#define PROBE_PX 64     /* the longer side of the frame that only tells the camera */
 #define IN_FLIGHT 2u    /* the next request waits at the daemon while a frame travels */
 #define LIGHT_SWING 0.1 /* of the light's u edge */
 
@@ -36,7 +40,10 @@ struct sent {
 
 struct stream {
     struct sheen_request request; /* its camera and light move */
+    bool has_camera;              /* before any frame */
     struct sheen_camera camera;   /* of the first frame */
+    double axis[3];               /* that it goes about: the model's up */
+    uint64_t tables_us;           /* that the first frame would have waited */
     struct sheen_light light;     /* the first: the one that moves */
     struct sheen_frame frame;
     struct record *records;                /* [frames], by the frame's number */
@@ -45,26 +52,6 @@ struct stream {
     struct sent sent[SHEEN_MAX_IN_FLIGHT]; /* by the request's number modulo its size */
     int64_t start_us, elapsed_us; /* of all frames but the first, which may wait for tables */
 };
-
-/* Turns the eye about the axis through the target along up. */
-static void orbit(struct sheen_camera *camera, const struct sheen_camera *start, double angle_rad)
-{
-    const double *up = start->up;
-    double length = hypot(hypot(up[0], up[1]), up[2]);
-    double axis[3], arm[3];
-    for (int i = 0; i < 3; i++) {
-        axis[i] = up[i] / length;
-        arm[i] = start->eye[i] - start->target[i];
-    }
-    double along = axis[0] * arm[0] + axis[1] * arm[1] + axis[2] * arm[2];
-    *camera = *start;
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        double across = axis[j] * arm[k] - axis[k] * arm[j];
-        camera->eye[i] = start->target[i] + arm[i] * cos(angle_rad) + across * sin(angle_rad) +
-                         axis[i] * along * (1 - cos(angle_rad));
-    }
-}
 
 static void move(struct stream *stream, const struct options *options, uint32_t number)
 {
@@ -76,7 +63,7 @@ static void move(struct stream *stream, const struct options *options, uint32_t 
     stream->request.camera = stream->camera;
     stream->request.lights[0] = stream->light;
     if (!options->light_only) {
-        orbit(&stream->request.camera, &stream->camera, angle);
+        turntable_turn(&stream->camera, stream->axis, angle, &stream->request.camera);
         return;
     }
     for (int i = 0; i < 3; i++)
@@ -109,6 +96,14 @@ static enum sheen_status write_one(struct job *job, struct stream *stream,
     return status;
 }
 
+/* The first frame's colours are those of all that follow, so that a colour is one value. */
+static void keep_range(struct stream *stream)
+{
+    struct sheen_show *show = &stream->request.show;
+    if (show->kind != SHEEN_SHOW_LINES && show->range == 0)
+        show->range = stream->frame.show_range;
+}
+
 static enum sheen_status receive_one(struct job *job, struct stream *stream,
                                      const struct options *options)
 {
@@ -124,6 +119,7 @@ static enum sheen_status receive_one(struct job *job, struct stream *stream,
         stream->n_late++;
         return SHEEN_OK;
     }
+    keep_range(stream);
     const struct sheen_times *times = &stream->frame.times;
     uint64_t round_trip_us = (uint64_t)(clock_now_us() - sent->us);
     status = write_one(job, stream, options, sent->frame);
@@ -140,6 +136,72 @@ static enum sheen_status receive_one(struct job *job, struct stream *stream,
     return SHEEN_OK;
 }
 
+static void keep_axis(struct stream *stream, const struct sheen_frame *frame)
+{
+    const double *up = frame->up_source == SHEEN_UP_UNKNOWN ? frame->camera.up : frame->up;
+    memcpy(stream->axis, up, sizeof(stream->axis));
+}
+
+/* Puts the camera of a turntable by what the daemon says of its own camera and of the model. */
+static void place_camera(struct stream *stream, const struct options *options,
+                         const struct sheen_frame *frame, const struct sheen_model_info *info)
+{
+    const struct sheen_camera *asked = &options->request.camera;
+    double middle[3];
+    for (int i = 0; i < 3; i++)
+        middle[i] = 0.5 * (info->box_min[i] + info->box_max[i]);
+    stream->camera = frame->camera;
+    keep_axis(stream, frame);
+    turntable_fit(&stream->camera, stream->axis, info->box_min, info->box_max,
+                  (double)stream->request.width_px / stream->request.height_px,
+                  asked->has_target ? NULL : middle);
+    stream->camera.projection =
+        options->given & GIVEN_ORTHO ? SHEEN_PROJECTION_ORTHOGRAPHIC : SHEEN_PROJECTION_PERSPECTIVE;
+    stream->camera.fov_deg = asked->fov_deg;
+    stream->camera.ortho_height = asked->ortho_height;
+    stream->camera.zoom = asked->zoom;
+    memcpy(stream->camera.zoom_at, asked->zoom_at, sizeof(asked->zoom_at));
+    stream->request.camera = stream->camera;
+    stream->tables_us = frame->times.tables_us;
+    stream->has_camera = true;
+}
+
+/* Where no eye is given: a small frame by the daemon's own camera tells from which side it looks
+ * and which way is up, the model's info where its middle is. */
+static enum sheen_status find_camera(struct job *job, struct stream *stream,
+                                     const struct options *options)
+{
+    struct sheen_request probe = options->request;
+    struct sheen_frame frame = {0};
+    struct sheen_model_info info;
+    memcpy(probe.model_id, job->model_id, SHEEN_ID_BYTES);
+    uint32_t longer = probe.width_px > probe.height_px ? probe.width_px : probe.height_px;
+    double scale = fmin(1, (double)PROBE_PX / longer);
+    probe.width_px = (uint32_t)fmax(1, round(scale * probe.width_px));
+    probe.height_px = (uint32_t)fmax(1, round(scale * probe.height_px));
+    probe.camera.projection = SHEEN_PROJECTION_PERSPECTIVE;
+    probe.camera.fov_deg = ((struct sheen_request)SHEEN_REQUEST_DEFAULTS).camera.fov_deg;
+    probe.camera.zoom = 0;
+    probe.n_lights = 1;
+    probe.lights[0] = (struct sheen_light){.pattern = SHEEN_PATTERN_DEFAULTS};
+    probe.show = (struct sheen_show){0};
+    probe.format = SHEEN_PLANES_ZSTD;
+    probe.jpeg_quality = 0;
+    probe.jpeg_subsampling = SHEEN_JPEG_444;
+    probe.request_class = stream->request.request_class;
+    probe.deadline_ms = 0;
+    enum sheen_status status =
+        sheen_render(job->session, &probe, &job->report, &frame, &job->error);
+    if (!status)
+        status = sheen_query_model(job->session, job->model_id, &job->report, &info, &job->error);
+    if (!status) {
+        job_answered(job);
+        place_camera(stream, options, &frame, &info);
+    }
+    sheen_frame_finish(&frame);
+    return status;
+}
+
 /* It goes alone, and has time: its answer tells the camera and the light that move. */
 static enum sheen_status first_frame(struct job *job, struct stream *stream,
                                      const struct options *options)
@@ -152,8 +214,12 @@ static enum sheen_status first_frame(struct job *job, struct stream *stream,
         return status;
     stream->request.deadline_ms = options->request.deadline_ms;
     progress_clear(&job->progress);
-    stream->camera = stream->frame.camera;
+    if (!stream->has_camera) {
+        stream->camera = stream->frame.camera;
+        keep_axis(stream, &stream->frame);
+    }
     stream->light = stream->frame.lights[0];
+    stream->records[0].stage_us[TABLES] += stream->tables_us;
     stream->start_us = clock_now_us();
     return SHEEN_OK;
 }
@@ -168,6 +234,8 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
                                     const struct options *options)
 {
     enum sheen_status status = job_upload_images(job, options, &stream->request);
+    if (!status && !stream->has_camera && options->request.camera.auto_view && !options->light_only)
+        status = find_camera(job, stream, options);
     if (!status && n_answered(stream) == 0)
         status = first_frame(job, stream, options);
     uint32_t next = 0, n_in_flight = 0, granted = sheen_server(job->session).max_in_flight;
@@ -228,6 +296,9 @@ static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t
     }
     printf("%.1f frames per second%s\n", frames_per_second(stream, n_frames),
            n_frames > 1 ? ", the first left out" : "");
+    if (stream->request.show.range > 0)
+        printf("colours of %s end at %.6g either way, in all frames\n",
+               text_show_kind(stream->request.show.kind), stream->request.show.range);
     if (stream->n_late > 0)
         printf("%u more were late\n", stream->n_late);
     if (options->output)
@@ -259,6 +330,10 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
         json_uint(json, "written_bytes", stream->written_bytes);
     }
     job_json_schedule(json, &stream->request);
+    if (stream->request.show.kind != SHEEN_SHOW_LINES)
+        json_string(json, "show", text_show_kind(stream->request.show.kind));
+    if (stream->request.show.range > 0)
+        json_double(json, "show_range", stream->request.show.range);
     json_array_begin(json, "frames");
     for (uint32_t i = 0; i < n_frames; i++) {
         json_object_begin(json, NULL);
@@ -374,8 +449,12 @@ static bool check(struct options *options, char *why)
 static const struct option_row ROWS[] = {
     {"frames", 'n', "N", "how many, {}", apply_frames},
     {"orbit", 0, "DEG",
-     "the camera goes about the target by so many degrees a frame,\n"
-     "{} (default: 1)",
+     "the camera turns by so many degrees a frame, {}\n"
+     "(default: 1), about the model's up (--up, the file's, or as guessed): without\n"
+     "--eye about the middle of the model's box, from one distance from which all of\n"
+     "it stays in the picture, the first frame included; --target alone: about that\n"
+     "point, further back where that is needed; --eye: about --target, as far as it\n"
+     "is. --fov, --ortho and --zoom then look closer, each frame alike",
      apply_orbit},
     {"output", 'o', "PATTERN",
      "writes each frame into a file, as FRAME_%04d.png: one %d, or one like %04d\n"

@@ -508,7 +508,8 @@ const struct option_row OPTIONS_SURFACE[] = {
      apply_show},
     {"show-range", 0, "VALUE",
      "where the colours of --show end, both ways: 1/unit, gaussian 1/unit^2,\n"
-     "{} (default: 98 of 100 pixels are inside); draft\n"
+     "{} (default: 98 of 100 pixels are inside,\n"
+     "stream: of the first frame's, for all frames); draft\n"
      "{} (default: 3)",
      apply_show_range},
     {"legend", 0, "on|off", "of --show, over the lower right corner of the picture (default: on)",

@@ -2,14 +2,17 @@
 import json
 import os
 import resource
+import struct
 import tempfile
 import unittest
 
 import wire
+from test_surface import read_png
 from between import FORWARD, HOLD, Between, cut_at
 from daemon import MODELS, SHEEN, DaemonCase
 from test_client import sheen
 
+BODY = os.path.join(MODELS, "body.obj")
 FENDER = os.path.join(MODELS, "fender.obj")
 SMALL = ("--size", "96x64")
 
@@ -34,7 +37,7 @@ class Turntable(DaemonCase):
         return {name: read(os.path.join(self.folder, name)) for name in os.listdir(self.folder)}
 
     def test_frames_are_pictures(self):
-        """In every format, and the first is what render draws."""
+        """In every format; where the light moves alone the first is what render draws."""
         for ending in ("png", "exr", "jpg", "tif"):
             done = self.stream("a_%03d." + ending, "--frames", "4", "--orbit", "90", "--json")
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -46,9 +49,11 @@ class Turntable(DaemonCase):
             self.assertEqual((told["written"], told["written_bytes"]),
                              (4, sum(map(len, files.values()))))
             one = os.path.join(self.folder, "one." + ending)
+            done = self.stream("a_%03d." + ending, "--frames", "1", "--light-only")
+            self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(sheen("render", FENDER, "-o", one, *SMALL, "--server",
                                    self.daemon.unix).returncode, 0)
-            self.assertEqual(read(one), files["a_000." + ending])
+            self.assertEqual(read(one), self.files()["a_000." + ending])
             for name in os.listdir(self.folder):
                 os.unlink(os.path.join(self.folder, name))
         done = self.stream("%d.png", "--frames", "2")
@@ -71,6 +76,74 @@ class Turntable(DaemonCase):
         told = json.loads(done.stdout)
         self.assertEqual(told["written_bytes"], sum(map(len, whole.values())))
         self.assertEqual([frame["number"] for frame in told["frames"]], list(range(12)))
+
+    def silhouettes(self, model, *arguments, n=8):
+        """Of each frame: left, top, right and bottom of what is not empty, and the size."""
+        done = sheen("stream", model, "-o", os.path.join(self.folder, "s%d.png"), "--frames", str(n),
+                     "--empty", "#ff00ff", "--size", "120x80", "--server", self.daemon.unix,
+                     *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for k in range(n):
+            width, height, rows = read_png(os.path.join(self.folder, f"s{k}.png"))
+            hits = [(i, y) for y, row in enumerate(rows) for i in range(width)
+                    if bytes(row[3 * i:3 * i + 3]) != b"\xff\0\xff"]
+            xs, ys = [x for x, _ in hits], [y for _, y in hits]
+            yield min(xs), min(ys), max(xs), max(ys)
+
+    def test_all_of_it_stays_in_the_picture(self):
+        for name in ("body.obj", "fender.obj", "door.obj"):
+            path = os.path.join(MODELS, name)
+            if name == "door.obj":  # thin, far from the origin, guessed to be y up
+                path = os.path.join(self.folder, name)
+                with open(path, "w", encoding="ascii") as file:
+                    file.write("v 50 7 0\nv 52 7 0\nv 52 7.1 2\nv 50 7 2\nf 1 2 3 4\n")
+            for options in ((), ("--view", "top"), ("--view", "left"), ("--up", "-x"),
+                            ("--target", "51,7,1" if name == "door.obj" else "1,0,0")):
+                widths = set()
+                for left, top, right, bottom in self.silhouettes(path, "--orbit", "45", *options):
+                    with self.subTest(name=name, options=options):
+                        self.assertGreater(min(left, top), 0)
+                        self.assertLess(right, 119)
+                        self.assertLess(bottom, 79)
+                    widths.add(right - left)
+                self.assertGreater(len(widths), 1, "it turns")
+
+    def test_a_plan_turns_in_its_plane(self):
+        """About z, though up in the picture is y: after 90 degrees it is as tall as it was wide."""
+        first, _, _, turned, *_ = self.silhouettes(BODY, "--view", "top", "--orbit", "30", n=4)
+        wide, tall = first[2] - first[0], first[3] - first[1]
+        self.assertGreater(wide, 2 * tall)
+        self.assertLessEqual(abs(turned[3] - turned[1] - wide), 1)
+        self.assertLessEqual(abs(turned[2] - turned[0] - tall), 1)
+
+    def test_colours_of_one_range(self):
+        """The first frame's, unless one is given, so that a colour is one value in all frames."""
+        ranges = []
+
+        def judge(connection, kind, seq, body, client):
+            if kind == wire.RENDER:
+                show = wire.decode(body).get(13)
+                if show:
+                    ranges.append(wire.decode(show[0]).get(3))
+            return FORWARD
+
+        with Between(self.daemon, judge) as between:
+            done = self.stream("%d.png", "--frames", "4", "--orbit", "40", "--show", "mean",
+                               "--json", server=between.unix)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told = json.loads(done.stdout)
+            self.assertEqual(told["show"], "mean")
+            asked = [value and struct.unpack("<d", value[0])[0] for value in ranges]
+            self.assertEqual(asked, [None] + 3 * [told["show_range"]])
+            ranges.clear()
+            done = self.stream("%d.png", "--frames", "2", "--show", "mean", "--show-range", "0.25",
+                               "--json", server=between.unix)
+            self.assertEqual(json.loads(done.stdout)["show_range"], 0.25)
+            asked = [struct.unpack("<d", value[0])[0] for value in ranges]
+            self.assertEqual(asked, [0.25, 0.25])
+            done = self.stream("%d.png", "--frames", "2", "--show", "mean", "--show-range", "0.25")
+            self.assertIn("colours of mean end at 0.25 either way, in all frames", done.stdout)
+            self.assertNotIn("show", self.stream("%d.png", "--frames", "1", "--json").stdout)
 
     def assert_fails(self, done, words):
         self.assertEqual((done.returncode, done.stdout), (3, ""), done.stderr)
@@ -97,7 +170,7 @@ class Turntable(DaemonCase):
 
     def test_late_frames_have_no_file(self):
         def judge(connection, kind, seq, body, client):
-            if kind == wire.RENDER and len(seen) == 2:
+            if kind == wire.RENDER and len(seen) == 3:  # the first tells the camera
                 client.sendall(wire.message(wire.ERROR, seq, wire.field(1, wire.ERROR_DEADLINE) +
                                             wire.field(2, "too late")))
                 seen.append(seq)
