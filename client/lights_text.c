@@ -231,7 +231,7 @@ bool text_lines(const char *text, struct sheen_lines *value, char why[static LIG
     if (family == SHEEN_REFLECTION || family == SHEEN_HIGHLIGHT)
         return refuse(why, "a direction belongs to isophote, zebra and environment");
     return value_direction(text + length + 1, value->direction) ||
-           refuse(why, "the direction must be three numbers X,Y,Z, not 0,0,0");
+           refuse(why, "the direction must be " VALUE_DIRECTION_WORDS);
 }
 
 bool text_line_eye(const char *text, struct sheen_lines *value, char why[static LIGHTS_WHY_BYTES])
@@ -243,7 +243,8 @@ bool text_line_eye(const char *text, struct sheen_lines *value, char why[static 
     }
     value->eye_kind = is_direction ? SHEEN_EYE_DIRECTION : SHEEN_EYE_POINT;
     return (is_direction ? value_direction(text + 4, value->eye) : value_vec3(text, value->eye)) ||
-           refuse(why, "must be camera, a point X,Y,Z or a direction of view dir:X,Y,Z, not 0,0,0");
+           refuse(why, "must be camera, a point X,Y,Z or a direction of view dir:X,Y,Z or dir:-z, "
+                       "not 0,0,0");
 }
 
 static const struct text_row SHOW_KINDS[] = {
@@ -259,7 +260,7 @@ bool text_show(const char *text, struct sheen_show *value, char why[static LIGHT
     value->kind = (enum sheen_show_kind)kind;
     return kind != SHEEN_SHOW_DRAFT ||
            (text[length] && value_direction(text + length + 1, value->direction)) ||
-           refuse(why, "draft needs the pull direction, as draft:0,0,1; not 0,0,0");
+           refuse(why, "draft needs the pull direction, as draft:0,0,1: " VALUE_DIRECTION_WORDS);
 }
 
 const char *text_pattern_kind(enum sheen_pattern_kind kind)

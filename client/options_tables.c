@@ -124,9 +124,10 @@ static bool apply_up(struct options *options, const char *value, char *why)
 {
     double *up = options->request.camera.up;
     options->given |= GIVEN_UP;
-    return value_axis(value, up) ||
-           (apply_vec3(options, value, up, GIVEN_UP, why) &&
-            (!range_is_zero(up) || options_refuse(why, "must not be 0,0,0")));
+    char wanted[RANGE_TEXT_BYTES];
+    return value_direction(value, up) ||
+           options_refuse(why, "must be " VALUE_DIRECTION_WORDS " (each %s)",
+                          range_text(&RANGES[RANGE_COORDINATE], wanted));
 }
 
 static bool apply_view(struct options *options, const char *value, char *why)
@@ -434,9 +435,11 @@ const struct option_row OPTIONS_SCENE[] = {
      "0,0 its top left and 1,1 its bottom right (default: 0.5,0.5, the middle)",
      apply_zoom},
     {"up", 0, "X,Y,Z",
-     "which way is up, for the camera and for the light: a direction or x, y, z, -x,\n"
-     "-y, -z (default: what the file says, glTF: y; else y or z, in which the model\n"
-     "is thinner: where that is wrong, as for a door that stands, say it)",
+     "which way is up, for the camera and for the light: a direction X,Y,Z or x, y,\n"
+     "z, -x, -y, -z, +x and so on (default: what the file says, glTF: y; else z, or y where the "
+     "model is\n"
+     "thinner in y by more than 1 %: where that is wrong, as for a door that stands,\n"
+     "say it)",
      apply_up},
     {"fov", 0, "DEG",
      "vertical field of view, {} (default: 35);\n"
@@ -504,7 +507,7 @@ const struct option_row OPTIONS_SURFACE[] = {
     {"show", 0, "KIND",
      "false colour with a legend: curvature (the principal curvature of larger\n"
      "magnitude), gaussian, mean, normal, ptex, draft:X,Y,Z (degrees to the pull\n"
-     "direction X,Y,Z), or lines (default: lines)",
+     "direction X,Y,Z, or a word as for --up), or lines (default: lines)",
      apply_show},
     {"show-range", 0, "VALUE",
      "where the colours of --show end, both ways: 1/unit, gaussian 1/unit^2,\n"

@@ -244,7 +244,7 @@ enum sheen_projection {
 enum sheen_up_source {
     SHEEN_UP_GIVEN,   /* the request */
     SHEEN_UP_FILE,    /* the model's file: glTF is Y up */
-    SHEEN_UP_GUESSED, /* nobody: z, or y where the model is thinner in y */
+    SHEEN_UP_GUESSED, /* nobody: z, or y where the model is thinner in y by more than 1 % */
     SHEEN_UP_UNKNOWN, /* the daemon is too old to say */
 };
 

@@ -58,9 +58,21 @@ bool value_vec3(const char *text, double value[static 3])
     return true;
 }
 
+/* x, y or z, with a sign as wanted. */
+static bool value_axis(const char *text, double value[static 3])
+{
+    bool has_sign = *text == '-' || *text == '+';
+    const char *axis = text + has_sign;
+    if (strlen(axis) != 1 || *axis < 'x' || *axis > 'z')
+        return false;
+    for (int i = 0; i < 3; i++)
+        value[i] = *axis - 'x' == i ? (*text == '-' ? -1 : 1) : 0;
+    return true;
+}
+
 bool value_direction(const char *text, double value[static 3])
 {
-    return value_vec3(text, value) && !range_is_zero(value);
+    return value_axis(text, value) || (value_vec3(text, value) && !range_is_zero(value));
 }
 
 bool value_size(const char *text, uint32_t *width, uint32_t *height)
@@ -193,17 +205,6 @@ bool value_class(const char *text, enum sheen_class *request_class)
 const char *value_class_name(enum sheen_class request_class)
 {
     return CLASS_NAMES[request_class];
-}
-
-bool value_axis(const char *text, double value[static 3])
-{
-    bool has_sign = *text == '-' || *text == '+';
-    const char *axis = text + has_sign;
-    if (strlen(axis) != 1 || *axis < 'x' || *axis > 'z')
-        return false;
-    for (int i = 0; i < 3; i++)
-        value[i] = *axis - 'x' == i ? (*text == '-' ? -1 : 1) : 0;
-    return true;
 }
 
 static const char *const VIEW_NAMES[] = {

@@ -11,10 +11,12 @@
 
 #include "client/sheen.h"
 
-bool value_double(const char *text, double *value);                   /* 1, -0.5, 1e3 */
-bool value_uint32(const char *text, uint32_t *value);                 /* decimal digits */
-bool value_vec3(const char *text, double value[static 3]);            /* X,Y,Z: coordinates */
-bool value_direction(const char *text, double value[static 3]);       /* the same, not zero */
+bool value_double(const char *text, double *value);        /* 1, -0.5, 1e3 */
+bool value_uint32(const char *text, uint32_t *value);      /* decimal digits */
+bool value_vec3(const char *text, double value[static 3]); /* X,Y,Z: coordinates */
+/* The same, not zero, or x, y or z with a sign as wanted. */
+#define VALUE_DIRECTION_WORDS "x, y, z, -x, -y, -z, or X,Y,Z in numbers, not 0,0,0"
+bool value_direction(const char *text, double value[static 3]);
 bool value_size(const char *text, uint32_t *width, uint32_t *height); /* 1280x720 */
 bool value_colour(const char *text, float value[static 4]);           /* #rrggbb or #rrggbbaa */
 bool value_planes(const char *text, uint32_t *planes); /* P,N,ptex,light,k,dlight,coverage */
@@ -34,9 +36,6 @@ const char *value_subsampling_name(enum sheen_jpeg_subsampling subsampling);
 /* interactive, still or batch. */
 bool value_class(const char *text, enum sheen_class *request_class);
 const char *value_class_name(enum sheen_class request_class);
-
-/* x, -x, +x and so on: a direction along an axis. */
-bool value_axis(const char *text, double value[static 3]);
 
 /* front, back, left, right, top, bottom or iso; the name of it, NULL for SHEEN_VIEW_AROUND. */
 bool value_view(const char *text, enum sheen_view *view);

@@ -80,10 +80,11 @@ static void frame_model(const struct limit_tables *tables, struct vec forward, s
 }
 
 /* Where no file says it: Y up is most modellers' convention, Z up that of CAD, and a body is rarely
- * thinner along a horizontal axis than along its up axis, so the thinner of the two is up. */
+ * thinner along a horizontal axis than along its up axis, so the thinner of the two is up: clearly
+ * thinner, so that rounding does not turn a model. */
 void renderer_guess_up(const double box_min[3], const double box_max[3], double up[3])
 {
-    bool z_up = box_max[2] - box_min[2] <= box_max[1] - box_min[1];
+    bool z_up = 0.99 * (box_max[2] - box_min[2]) <= box_max[1] - box_min[1];
     put(z_up ? (struct vec){0, 0, 1} : (struct vec){0, 1, 0}, up);
 }
 

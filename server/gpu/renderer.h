@@ -210,7 +210,8 @@ void renderer_polygons_destroy(struct renderer_polygons *polygons); /* NULL is s
 /* Bytes of one pixel of a plane (a single bit). */
 size_t renderer_plane_bytes(enum renderer_plane plane);
 
-/* Which way is up where no file says it: z when the box is no thicker in z than in y, else y. */
+/* Which way is up where no file says it: y when the box is thinner in y than in z by more than 1 %,
+ * else z. */
 void renderer_guess_up(const double box_min[3], const double box_max[3], double up[3]);
 
 /* A camera that frames the model: 35 degrees, 4 % of the picture free at the two opposite edges

@@ -231,7 +231,9 @@ class Said(DaemonCase):
         for options, words in (
                 (("--eye", "1,2,3"), "--eye needs a --target"),
                 (("--eye", "1,2,3", "--target", "0,0,0", "--view", "top"), "exclude each other"),
-                (("--view", "upside"), "--view 'upside'"), (("--up", "w"), "--up 'w'"),
+                (("--view", "upside"), "--view 'upside'"), (("--up", "w"), "--up 'w': must be x, y, z, -x, -y, -z, or X,Y,Z"),
+                (("--up", "Z"), "x, y, z, -x"), (("--up", "0,0,0"), "not 0,0,0"),
+                (("--show", "draft:Z"), "x, y, z, -x, -y, -z, or X,Y,Z"),
                 (("--zoom", "0.5"), "FACTOR must be a number from 1 to"),
                 (("--zoom", "2@640,360"), "not pixels"), (("--zoom", "2@1"), "FACTOR@X,Y")):
             _, text = self.sheen(self.door, *options, code=2)

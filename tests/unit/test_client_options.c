@@ -149,6 +149,14 @@ static void families_and_lights(void **state)
     assert_false(text_lines("reflection:0,0,1", &lines, why));
     assert_false(text_lines("zebras", &lines, why));
     assert_false(text_lines("isophote:1,2", &lines, why));
+    assert_true(text_lines("zebra:-y", &lines, why));
+    assert_true(lines.direction[0] == 0 && lines.direction[1] == -1 && lines.direction[2] == 0);
+    struct sheen_show show;
+    assert_true(text_show("draft:+z", &show, why));
+    assert_true(show.direction[0] == 0 && show.direction[1] == 0 && show.direction[2] == 1);
+    assert_false(text_show("draft:", &show, why));
+    assert_false(text_show("draft:zz", &show, why));
+    assert_non_null(strstr(why, "x, y, z, -x, -y, -z"));
     assert_true(text_light("plane:one-sided", &light, why));
     assert_true(light.kind == SHEEN_PLANE && light.one_sided);
     assert_true(text_light("sphere", &light, why));

@@ -106,6 +106,26 @@ static void test_up_is_above(void **state)
     assert_memory_equal(&camera, &guessed, sizeof camera);
 }
 
+/* Neither rounding nor a small change of a model that is as deep as high turns it. */
+static void test_a_near_tie_stays_z_up(void **state)
+{
+    (void)state;
+    static const struct {
+        double depth;
+        int up;
+    } cases[] = {{1, 2}, {1 - 1e-9, 2}, {1 + 1e-9, 2}, {0.991, 2}, {0.989, 1}, {0.1, 1}, {0, 1}};
+    static const double zero[3] = {0, 0, 0};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        double up[3];
+        renderer_guess_up(zero, (const double[]){1, cases[i].depth, 1}, up);
+        for (int k = 0; k < 3; k++)
+            assert_true(up[k] == (k == cases[i].up));
+    }
+    double up[3];
+    renderer_guess_up(zero, zero, up);
+    assert_true(up[2] == 1);
+}
+
 /* The longer of the two horizontal sides is seen across, whichever it is and whatever is up, and
  * x if neither is by much; the picture's size changes nothing. */
 static void test_the_longer_side_lies_across(void **state)
@@ -262,6 +282,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_box_fills_the_picture),
         cmocka_unit_test(test_up_is_above),
+        cmocka_unit_test(test_a_near_tie_stays_z_up),
         cmocka_unit_test(test_the_longer_side_lies_across),
         cmocka_unit_test(test_the_surface_fills_the_picture),
         cmocka_unit_test(test_the_tunnel),
