@@ -9,10 +9,12 @@ struct memory_charge {
     bool is_patient;
 };
 
+/* In a private daemon all of the budget is its only client's. */
 static bool fits_peer(const struct memory *memory, const struct peer *peer, uint64_t bytes)
 {
     uint64_t limit = memory->limits->peer_memory;
-    return peer->memory_bytes <= limit && bytes <= limit - peer->memory_bytes;
+    return store_is_private(memory->store) ||
+           (peer->memory_bytes <= limit && bytes <= limit - peer->memory_bytes);
 }
 
 static bool refuse_peer(const struct memory *memory, const struct peer *peer, const char *what,

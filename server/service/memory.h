@@ -29,7 +29,8 @@ enum memory_result {
     MEMORY_FAILED,
 };
 
-/* Charges what a frame takes. `bytes` is no more than limits->memory_budget and peer_memory;
+/* Charges what a frame takes. In a shared daemon `bytes` is no more than
+ * limits->memory_budget and peer_memory;
  * `asker` as in store_reserve(). */
 enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
                                        const uint8_t asker[static STORE_OWNER_BYTES],

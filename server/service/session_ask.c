@@ -85,7 +85,8 @@ static uint64_t frame_bytes(const struct session *session, const sheen_Render *r
            request_canvas_bytes(session->host, render);
 }
 
-/* Answers and returns false when the frame could never be made here. */
+/* Answers and returns false when the frame could never be made here. In a private daemon the charge
+ * says what is wrong with the budget: by then it is known what the model takes beside the frame. */
 static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render *render)
 {
     const struct limits *limits = &session->host->limits;
@@ -103,19 +104,17 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
         {all_of_it, "memory-budget", bytes, limits->memory_budget},
         {all_of_it, "peer-memory", bytes, limits->peer_memory},
     };
-    for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
+    size_t n_checks = session->host->is_private ? 1 : sizeof checks / sizeof *checks;
+    for (size_t i = 0; i < n_checks; i++) {
         char text[MESSAGE_TEXT_BYTES];
         if (checks[i].needed <= checks[i].limit)
             continue;
         snprintf(text, sizeof text,
                  "%ux%u px: %s take %llu bytes, over this daemon's --%s of %llu: ask for a smaller "
-                 "frame or fewer planes%s",
+                 "frame or fewer planes",
                  render->width_px, render->height_px, checks[i].what,
                  (unsigned long long)checks[i].needed, checks[i].name,
-                 (unsigned long long)checks[i].limit,
-                 session->host->is_private && checks[i].limit == limits->memory_budget
-                     ? ", or give this command a larger --memory-budget"
-                     : "");
+                 (unsigned long long)checks[i].limit);
         session_reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
         return false;
     }

@@ -264,6 +264,11 @@ bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_B
     return true;
 }
 
+bool store_is_private(const struct store *store)
+{
+    return store->is_private;
+}
+
 void store_release(struct store *store, size_t bytes)
 {
     store->used_bytes -= bytes;

@@ -138,6 +138,7 @@ bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *er
 /* From now on every build fails soon: nobody waits for it any more. */
 void store_cancel_builds(struct store *store);
 bool store_is_building(const struct store *store);
+bool store_is_private(const struct store *store);   /* of one client alone */
 size_t store_used_bytes(const struct store *store); /* of the budget */
 struct store_counts store_count(const struct store *store);
 
