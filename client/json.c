@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "protocol/message.h"
@@ -89,11 +90,23 @@ void json_uint(struct json *json, const char *key, uint64_t value)
     fprintf(json->out, "%" PRIu64, value);
 }
 
+/* In the fewest digits that are read back as the same number. */
+static void write_double(FILE *out, double value)
+{
+    char text[32];
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, sizeof(text), "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    fputs(text, out);
+}
+
 void json_double(struct json *json, const char *key, double value)
 {
     begin_value(json, key);
     if (isfinite(value))
-        fprintf(json->out, "%.17g", value);
+        write_double(json->out, value);
     else
         fputs("null", json->out);
 }

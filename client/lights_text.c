@@ -50,33 +50,45 @@ const struct text_row TEXT_PATTERNS[] = {
     {0},
 };
 
+#define KIND(kind) (1u << (kind))
+#define ALL_KINDS                                                                                  \
+    (KIND(SHEEN_STRIPES) | KIND(SHEEN_LATTICE) | KIND(SHEEN_CIRCLES) | KIND(SHEEN_LINES) |         \
+     KIND(SHEEN_RAINBOW) | KIND(SHEEN_DISTANCE))
+#define PERIODIC (ALL_KINDS & ~KIND(SHEEN_LINES))
+#define WAVES (PERIODIC & ~KIND(SHEEN_RAINBOW))
+#define TURNED (ALL_KINDS & ~KIND(SHEEN_CIRCLES) & ~KIND(SHEEN_DISTANCE))
+#define TWO_COLOURS (ALL_KINDS & ~KIND(SHEEN_RAINBOW))
+
 /* Numbers among a pattern's keys. */
 static const struct number_key {
     const char *name;
     size_t member;
     enum range_name range;
+    unsigned kinds; /* of the patterns that it means something to */
 } NUMBERS[] = {
-    {"count", offsetof(struct sheen_pattern, count), RANGE_PATTERN_COUNT},
-    {"period", offsetof(struct sheen_pattern, period), RANGE_PERIOD},
-    {"duty", offsetof(struct sheen_pattern, duty), RANGE_DUTY},
-    {"rotation", offsetof(struct sheen_pattern, rotation_deg), RANGE_ROTATION},
-    {"offset", offsetof(struct sheen_pattern, offset), RANGE_PATTERN_OFFSET},
-    {"soft", offsetof(struct sheen_pattern, soft), RANGE_SOFT},
-    {"opacity", offsetof(struct sheen_pattern, opacity), RANGE_OPACITY},
-    {"width", offsetof(struct sheen_pattern, width), RANGE_PATTERN_WIDTH},
+    {"count", offsetof(struct sheen_pattern, count), RANGE_PATTERN_COUNT, PERIODIC},
+    {"period", offsetof(struct sheen_pattern, period), RANGE_PERIOD, PERIODIC},
+    {"duty", offsetof(struct sheen_pattern, duty), RANGE_DUTY, WAVES},
+    {"rotation", offsetof(struct sheen_pattern, rotation_deg), RANGE_ROTATION, TURNED},
+    {"offset", offsetof(struct sheen_pattern, offset), RANGE_PATTERN_OFFSET, PERIODIC},
+    {"soft", offsetof(struct sheen_pattern, soft), RANGE_SOFT, TWO_COLOURS},
+    {"opacity", offsetof(struct sheen_pattern, opacity), RANGE_OPACITY, ALL_KINDS},
+    {"width", offsetof(struct sheen_pattern, width), RANGE_PATTERN_WIDTH, KIND(SHEEN_LINES)},
 };
 #define N_NUMBERS (sizeof(NUMBERS) / sizeof(*NUMBERS))
 
 const struct text_row TEXT_PATTERN_KEYS[] = {
-    {"count", "periods across the light (circles: to its nearer edge)", "default 40"},
-    {"period", "length of one period, instead of count",
+    {"count", "periods across the light (circles: to its nearer edge); not of lines", "default 40"},
+    {"period", "length of one period, instead of count; not of lines",
      "in the model's units; degrees at infinity; default: by count"},
-    {"duty", "bright share of a period", "default 0.5"},
-    {"rotation", "of the pattern on the light", "default 0"},
-    {"offset", "shift of the pattern", "default 0"},
-    {"soft", "share of a period (lines: of the width) that each edge takes", "default 0"},
+    {"duty", "bright share of a period; not of lines and rainbow", "default 0.5"},
+    {"rotation", "of the pattern on the light; not of circles and distance", "default 0"},
+    {"offset", "shift of the pattern, in periods; not of lines", "default 0"},
+    {"soft", "share of a period (lines: of the width) that each edge takes; not of rainbow",
+     "default 0"},
     {"opacity", "over the shaded base (--base)", "default 1"},
-    {"fg, bg", "colours of bright and dark", "#rrggbb or #rrggbbaa; default white and black"},
+    {"fg, bg", "colours of bright and dark; not of rainbow",
+     "#rrggbb or #rrggbbaa; default white and black"},
     {"at", "lines: up to 16 places with slashes between, 0 and 1 at the edges", "default 0.5"},
     {"width", "lines: of each, as a share of the light", "default 0.01"},
     {0},
@@ -133,6 +145,15 @@ static bool parse_at(char *value, struct sheen_pattern *pattern, char *why)
     return true;
 }
 
+/* A part that changes nothing is a slip: of its own name or of the pattern's. */
+static bool check_kind(unsigned kinds, const char *part, const struct sheen_pattern *pattern,
+                       char *why)
+{
+    return kinds & KIND(pattern->kind) ||
+           refuse(why, "%s changes nothing of %s; sheen patterns lists the parts", part,
+                  text_pattern_kind(pattern->kind));
+}
+
 static bool parse_number(const struct number_key *key, const char *value,
                          struct sheen_pattern *pattern, char *why)
 {
@@ -151,16 +172,17 @@ static bool parse_part(char *part, struct sheen_pattern *pattern, char *why)
     *value++ = 0;
     for (size_t i = 0; i < N_NUMBERS; i++)
         if (strcmp(part, NUMBERS[i].name) == 0)
-            return parse_number(&NUMBERS[i], value, pattern, why);
+            return check_kind(NUMBERS[i].kinds, part, pattern, why) &&
+                   parse_number(&NUMBERS[i], value, pattern, why);
     if (strcmp(part, "at") == 0)
-        return pattern->kind == SHEEN_LINES ? parse_at(value, pattern, why)
-                                            : refuse(why, "at belongs to lines");
+        return check_kind(KIND(SHEEN_LINES), part, pattern, why) && parse_at(value, pattern, why);
     bool is_foreground = strcmp(part, "fg") == 0;
     if (!is_foreground && strcmp(part, "bg") != 0)
         return refuse(why, "there is no part '%.20s'; sheen patterns lists them", part);
     pattern->has_colours = true;
-    return value_colour(value, is_foreground ? pattern->foreground : pattern->background) ||
-           refuse(why, "fg and bg must be #rrggbb or #rrggbbaa");
+    return check_kind(TWO_COLOURS, part, pattern, why) &&
+           (value_colour(value, is_foreground ? pattern->foreground : pattern->background) ||
+            refuse(why, "fg and bg must be #rrggbb or #rrggbbaa"));
 }
 
 bool text_pattern(const char *text, struct sheen_pattern *value, const char **image_path,
@@ -197,10 +219,13 @@ bool text_pattern(const char *text, struct sheen_pattern *value, const char **im
         return refuse(why, "it is longer than %zu characters", sizeof(parts));
     snprintf(parts, sizeof(parts), "%s", from);
     char *rest = *parts ? parts : NULL, *part;
-    while ((part = strsep(&rest, ",")))
+    bool has_count = false;
+    while ((part = strsep(&rest, ","))) {
         if (!parse_part(part, value, why))
             return false;
-    return true;
+        has_count = has_count || strcmp(part, "count") == 0; /* parse_part() has cut it there */
+    }
+    return !(has_count && value->period > 0) || refuse(why, "count and period exclude each other");
 }
 
 bool text_light(const char *text, struct sheen_light *value, char why[static LIGHTS_WHY_BYTES])

@@ -53,9 +53,12 @@ bool options_check_light(struct options *options, char *why)
     return true;
 }
 
-/* The range may be given before its kind. */
-static bool check_show(const struct sheen_show *show, char *why)
+/* Range and legend may be given before their kind. */
+static bool check_show(const struct options *options, char *why)
 {
+    const struct sheen_show *show = &options->request.show;
+    if (options->given & GIVEN_LEGEND && show->kind == SHEEN_SHOW_LINES)
+        return options_refuse(why, "--legend is for the false colour of --show; lines have none");
     char wanted[RANGE_TEXT_BYTES];
     const struct range *range =
         &RANGES[show->kind == SHEEN_SHOW_DRAFT ? RANGE_SHOW_DRAFT : RANGE_SHOW_CURVATURE];
@@ -90,7 +93,7 @@ bool options_check_scene(struct options *options, char *why)
     options->request.camera.auto_view = !has_eye;
     options->request.camera.has_target = options->given & GIVEN_TARGET;
     options->request.camera.auto_up = !(options->given & GIVEN_UP);
-    return check_size(&options->request, why) && check_show(&options->request.show, why) &&
+    return check_size(&options->request, why) && check_show(options, why) &&
            options_check_light(options, why);
 }
 

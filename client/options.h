@@ -31,6 +31,7 @@ enum options_given {
     GIVEN_JPEG = 1 << 12,
     GIVEN_VIEW = 1 << 13,
     GIVEN_ZOOM = 1 << 14,
+    GIVEN_LEGEND = 1 << 15,
 };
 
 struct options {

@@ -285,6 +285,7 @@ static bool apply_show_range(struct options *options, const char *value, char *w
 static bool apply_legend(struct options *options, const char *value, char *why)
 {
     bool *off = &options->request.show.without_legend;
+    options->given |= GIVEN_LEGEND;
     *off = strcmp(value, "off") == 0;
     return *off || strcmp(value, "on") == 0 || options_refuse(why, "must be on or off");
 }

@@ -110,7 +110,19 @@ static void patterns(void **state)
                              &image, why));
     assert_true(pattern.kind == SHEEN_RAINBOW && pattern.period == 3 &&
                 pattern.rotation_deg == -45 && pattern.offset == 0.25 && pattern.opacity == 0.5);
-    static const char *const bad[][2] = {{"stripes:at=1", "lines"},
+    static const char *const bad[][2] = {{"stripes:at=1", "at changes nothing of stripes"},
+                                         {"stripes:width=0.1", "width changes nothing of stripes"},
+                                         {"lines:count=4", "count changes nothing of lines"},
+                                         {"lines:period=4", "period changes"},
+                                         {"lines:duty=0.4", "duty changes"},
+                                         {"lines:offset=0.4", "offset changes"},
+                                         {"rainbow:duty=0.4", "duty changes nothing of rainbow"},
+                                         {"rainbow:soft=0.4", "soft changes"},
+                                         {"rainbow:fg=#ff0000", "fg changes"},
+                                         {"circles:rotation=4", "rotation changes"},
+                                         {"distance:rotation=4", "rotation changes"},
+                                         {"stripes:count=4,period=3", "exclude each other"},
+                                         {"stripes:period=3,duty=1,count=4", "exclude each"},
                                          {"lines:at=", "at must"},
                                          {"lines:at=1/x", "at must"},
                                          {"lines:width=0", "width"},
@@ -424,6 +436,8 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_RENDER, "m.obj -o a.png -x", "-x"},
         {&COMMAND_RENDER, "m.obj -o a.png --device gpu", "--device 'gpu'"},
         {&COMMAND_RENDER, "m.obj -o a.png --device 0 --server unix:/s", "unix:/s"},
+        {&COMMAND_RENDER, "m.obj -o a.png --legend on", "--legend is for"},
+        {&COMMAND_STREAM, "m.obj --frames 2 --legend off --show lines", "--legend is for"},
         {&COMMAND_RENDER, "m.obj -o a.png --memory-budget 1G --server unix:/s", "its operator"},
         {&COMMAND_INFO, "m.obj --memory-budget 4GB", "800M or 4G"},
         {&COMMAND_INFO, "m.obj --memory-budget 4194303", "4M or more"},
@@ -581,6 +595,7 @@ static void json_is_json(void **state)
     json_uint(&json, "n", UINT64_MAX);
     json_bool(&json, "yes", true);
     json_vec3(&json, "v", v);
+    json_double(&json, "all digits", 0.1 + 0.2);
     json_hex(&json, "id", (const uint8_t *)"\x00\xff", 2);
     json_lines(&json, "lines", "one\n\ntwo\n");
     json_array_begin(&json, "empty");
@@ -593,7 +608,8 @@ static void json_is_json(void **state)
                         "  \"name\": \"a\\\"b\\\\c\\u000ad\\u0001\\u007f\xc3\xbc\\ufffd\\ufffd\",\n"
                         "  \"n\": 18446744073709551615,\n"
                         "  \"yes\": true,\n"
-                        "  \"v\": [\n    0.10000000000000001,\n    null,\n    null\n  ],\n"
+                        "  \"v\": [\n    0.1,\n    null,\n    null\n  ],\n"
+                        "  \"all digits\": 0.30000000000000004,\n"
                         "  \"id\": \"00ff\",\n"
                         "  \"lines\": [\n    \"one\",\n    \"two\"\n  ],\n"
                         "  \"empty\": []\n"
