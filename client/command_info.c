@@ -4,6 +4,7 @@
 
 #include "client/commands.h"
 #include "client/job.h"
+#include "client/values.h"
 
 static void print_findings(struct json *json, const struct sheen_model_info *info)
 {
@@ -87,32 +88,64 @@ static void print_json(struct json *json, const struct sheen_model_info *info)
     json_object_end(json);
 }
 
+struct count {
+    uint32_t number;
+    const char *one, *many; /* what there is so much of, and what stands before the next */
+};
+
+/* The list ends with an entry without a noun. */
+static void print_counts(const char *title, const struct count *counts)
+{
+    printf("%-16s ", title);
+    for (; counts->one; counts++)
+        printf("%u %s", counts->number, value_noun(counts->number, counts->one, counts->many));
+    putchar('\n');
+}
+
 static void print_table(const struct sheen_model_info *info)
 {
     printf("%-16s %s\n%-16s ", "name", info->name, "sha256");
     for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
         printf("%02x", info->id[i]);
     printf("\n%-16s %" PRIu64 " bytes\n", "file", info->file_bytes);
-    printf("%-16s %u vertices, %u faces: %u triangles, %u quads, %u larger\n", "cage",
-           info->vertices, info->faces, info->triangles, info->quads, info->ngons);
+    print_counts("cage", (const struct count[]){{info->vertices, "vertex, ", "vertices, "},
+                                                {info->faces, "face: ", "faces: "},
+                                                {info->triangles, "triangle, ", "triangles, "},
+                                                {info->quads, "quad, ", "quads, "},
+                                                {info->ngons, "larger", "larger"},
+                                                {0}});
     printf("%-16s %.9g %.9g %.9g to %.9g %.9g %.9g\n", "box", info->box_min[0], info->box_min[1],
            info->box_min[2], info->box_max[0], info->box_max[1], info->box_max[2]);
-    printf("%-16s %u edges, %u extraordinary vertices\n", "boundary", info->boundary_edges,
-           info->boundary_extraordinary);
+    print_counts("boundary",
+                 (const struct count[]){{info->boundary_edges, "edge, ", "edges, "},
+                                        {info->boundary_extraordinary, "extraordinary vertex",
+                                         "extraordinary vertices"},
+                                        {0}});
     printf("%-16s", "extraordinary");
     for (uint32_t i = 0; i < info->n_valences; i++)
         printf("%s %u of valence %u", i ? "," : "", info->extraordinary[i].count,
                info->extraordinary[i].valence);
     printf("%s\n", info->n_valences ? "" : " none inside");
-    printf("%-16s %u sharp and %u semi-sharp edges, %u vertices, %u holes\n", "sharpness",
-           info->sharp_edges, info->semisharp_edges, info->sharp_vertices, info->holes);
+    print_counts(
+        "sharpness",
+        (const struct count[]){{info->sharp_edges, "sharp and ", "sharp and "},
+                               {info->semisharp_edges, "semi-sharp edge, ", "semi-sharp edges, "},
+                               {info->sharp_vertices, "vertex, ", "vertices, "},
+                               {info->holes, "hole", "holes"},
+                               {0}});
     if (info->nonmanifold_edges || info->nonmanifold_vertices)
-        printf("%-16s %u edges, %u vertices\n", "non-manifold", info->nonmanifold_edges,
-               info->nonmanifold_vertices);
-    printf("%-16s %u faces: %u regular, %u corner and %u strip patches, %u split, %u without "
-           "surface\n",
-           "ptex", info->ptex_faces, info->regular_patches, info->corner_patches,
-           info->strip_patches, info->split_nodes, info->hole_nodes);
+        print_counts("non-manifold",
+                     (const struct count[]){{info->nonmanifold_edges, "edge, ", "edges, "},
+                                            {info->nonmanifold_vertices, "vertex", "vertices"},
+                                            {0}});
+    print_counts("ptex",
+                 (const struct count[]){{info->ptex_faces, "face: ", "faces: "},
+                                        {info->regular_patches, "regular, ", "regular, "},
+                                        {info->corner_patches, "corner and ", "corner and "},
+                                        {info->strip_patches, "strip patch, ", "strip patches, "},
+                                        {info->split_nodes, "split, ", "split, "},
+                                        {info->hole_nodes, "without surface", "without surface"},
+                                        {0}});
     printf("%-16s %" PRIu64 " bytes on the GPU: %" PRIu64 " a regular patch, %" PRIu64
            " a corner patch at most\n",
            "tables", info->table_bytes, info->regular_bytes, info->corner_bytes);

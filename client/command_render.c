@@ -57,6 +57,18 @@ static void print_json(struct json *json, const struct options *options, const s
     json_object_end(json);
 }
 
+/* To whom little of the light is met. */
+static const char *light_advice(const struct sheen_request *request)
+{
+    bool is_placed = false;
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        is_placed = is_placed || request->lights[i].is_placed;
+    return is_placed ? "move it with --light-center, --light-u and --light-v, or leave these and "
+                       "--light out for a tunnel, which is met everywhere"
+                     : "--light tunnel, or no --light, is met everywhere; or place it with "
+                       "--light-center, --light-u and --light-v";
+}
+
 static void print_summary(struct job *job, const struct options *options,
                           const struct sheen_frame *frame, const struct sheen_model_info *info)
 {
@@ -72,15 +84,12 @@ static void print_summary(struct job *job, const struct options *options,
                 "sheen: warning: no pixel shows the surface: see --eye, --target, --fov and "
                 "--ortho; without them a camera frames the model\n");
     if (frame->light_share < 0.5)
-        progress_note(&job->progress,
-                      "the light is met on %.2g %% of what is seen: place it with --light-center, "
-                      "--light-u and --light-v, or leave --light out for one that is met "
-                      "everywhere",
-                      100 * frame->light_share);
+        progress_note(&job->progress, "the light is met on %.2g %% of what is seen: %s",
+                      100 * frame->light_share, light_advice(&options->request));
     fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", ", options->output, frame->width_px,
             frame->height_px);
     if (info->faces)
-        fprintf(stderr, "%" PRIu32 " faces, ", info->faces);
+        fprintf(stderr, "%" PRIu32 " %s, ", info->faces, value_noun(info->faces, "face", "faces"));
     fprintf(stderr, "%s, %.0f ms\n", frame->device, (double)frame->times.total_us / 1e3);
 }
 

@@ -284,7 +284,8 @@ static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t
                         const struct options *options)
 {
     const struct sheen_frame *frame = &stream->frame;
-    printf("%u frames, %ux%u, %s\n", n_frames, frame->width_px, frame->height_px, frame->device);
+    printf("%u %s, %ux%u, %s\n", n_frames, value_noun(n_frames, "frame", "frames"), frame->width_px,
+           frame->height_px, frame->device);
     printf("%-12s %10s %10s %10s   ms\n", "stage", "min", "median", "p95");
     for (int stage = 0; stage < N_STAGES; stage++) {
         for (uint32_t i = 0; i < n_frames; i++)
@@ -300,10 +301,10 @@ static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t
         printf("colours of %s end at %.6g either way, in all frames\n",
                text_show_kind(stream->request.show.kind), stream->request.show.range);
     if (stream->n_late > 0)
-        printf("%u more were late\n", stream->n_late);
+        printf("%u more %s late\n", stream->n_late, value_noun(stream->n_late, "was", "were"));
     if (options->output)
-        printf("%s: %u files, %" PRIu64 " bytes\n", options->output, n_frames,
-               stream->written_bytes);
+        printf("%s: %u %s, %" PRIu64 " bytes\n", options->output, n_frames,
+               value_noun(n_frames, "file", "files"), stream->written_bytes);
 }
 
 static void json_file(struct json *json, const struct options *options, uint32_t number)

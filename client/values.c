@@ -75,6 +75,11 @@ bool value_direction(const char *text, double value[static 3])
     return value_axis(text, value) || (value_vec3(text, value) && !range_is_zero(value));
 }
 
+const char *value_noun(uint64_t number, const char *one, const char *many)
+{
+    return number == 1 ? one : many;
+}
+
 bool value_size(const char *text, uint32_t *width, uint32_t *height)
 {
     char part[16];

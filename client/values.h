@@ -17,6 +17,8 @@ bool value_vec3(const char *text, double value[static 3]); /* X,Y,Z: coordinates
 /* The same, not zero, or x, y or z with a sign as wanted. */
 #define VALUE_DIRECTION_WORDS "x, y, z, -x, -y, -z, or X,Y,Z in numbers, not 0,0,0"
 bool value_direction(const char *text, double value[static 3]);
+/* The noun for so many. */
+const char *value_noun(uint64_t number, const char *one, const char *many);
 bool value_size(const char *text, uint32_t *width, uint32_t *height); /* 1280x720 */
 bool value_colour(const char *text, float value[static 4]);           /* #rrggbb or #rrggbbaa */
 bool value_planes(const char *text, uint32_t *planes); /* P,N,ptex,light,k,dlight,coverage */

@@ -418,8 +418,10 @@ static bool check_side(uint32_t side_px, uint32_t max_px, unsigned encoding, con
                        char *text)
 {
     struct range range = RANGES[RANGE_SIDE];
-    range.greatest = fmin(range.greatest, max_px);
     range.option = NULL;
+    if (range_holds(&range, side_px) && side_px > max_px)
+        return refuse(text, "%s is %u; it must be from 1 to %u pixels, the device's own limit",
+                      name, side_px, max_px);
     if (!check_named(side_px, &range, name, text))
         return false;
     return encoding != sheen_Encoding_ENCODING_JPEG ||

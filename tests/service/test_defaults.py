@@ -169,6 +169,25 @@ class Defaults(DaemonCase):
 
 
 class Said(DaemonCase):
+    def test_one_of_a_kind(self):
+        path = os.path.join(self.folder, "one.obj")
+        with open(path, "w", encoding="ascii") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        _, text = self.sheen(path)
+        self.assertIn(": 90x60, 1 face, ", text)
+        done = subprocess.run([SHEEN, "info", path, "--server", self.daemon.unix],
+                              capture_output=True, text=True, timeout=60, check=True)
+        self.assertIn(" 3 vertices, 1 face: 1 triangle, 0 quads, 0 larger\n", done.stdout)
+        self.assertIn(" 3 edges, 3 extraordinary vertices\n", done.stdout)
+        _, text = self.sheen(self.door)
+        self.assertIn(": 90x60, 4 faces, ", text)
+
+    def test_the_devices_own_limit(self):
+        """A side within the protocol's range, over what the device draws."""
+        _, text = self.sheen(self.door, "--size", "60x60000", code=2)
+        self.assertRegex(text, r"height is 60000; it must be from 1 to \d+ pixels, the device's own "
+                               r"limit")
+
     def setUp(self):
         super().setUp()
         folder = tempfile.TemporaryDirectory()
@@ -211,7 +230,12 @@ class Said(DaemonCase):
         said, text = self.sheen(self.door, "--up", "z", "--light", "rectangle")
         self.assertLess(said["light_share"], 0.5)
         self.assertEqual(text.count("the light is met on"), 1)
+        self.assertIn("--light tunnel, or no --light, is met everywhere", text)
         self.assertIn("--light-center", text)
+        said, text = self.sheen(self.door, "--up", "z", "--light-center", "0,0,9", "--light-u",
+                                "1,0,0", "--light-v", "0,1,0")
+        self.assertLess(said["light_share"], 0.5)
+        self.assertIn("or leave these and --light out", text)
         for options in (("--show", "mean"), ("--surface", "wireframe:2"),
                         ("--eye", "0,-9,1", "--target", "0,-18,1")):
             said, text = self.sheen(self.door, "--up", "z", *options)
