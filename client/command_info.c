@@ -26,7 +26,9 @@ static void print_findings(struct json *json, const struct sheen_model_info *inf
     for (uint32_t i = 0; i < info->n_findings; i++) {
         const struct sheen_finding *finding = &info->findings[i];
         json_object_begin(json, NULL);
-        json_string(json, "kind", KINDS[finding->kind]);
+        json_string(json, "kind",
+                    (size_t)finding->kind < sizeof(KINDS) / sizeof(*KINDS) ? KINDS[finding->kind]
+                                                                           : "other");
         json_uint(json, "count", finding->count);
         if (finding->line)
             json_uint(json, "line", finding->line);

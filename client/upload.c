@@ -96,6 +96,13 @@ broken:
     return session_fail(session, SHEEN_BAD_PEER, error);
 }
 
+/* A server may send any 32 bits; some compilers take an enum for signed. */
+static enum sheen_finding_kind known_kind(sheen_FindingKind kind)
+{
+    return (uint32_t)kind < (uint32_t)SHEEN_FOUND_OTHER ? (enum sheen_finding_kind)kind
+                                                        : SHEEN_FOUND_OTHER;
+}
+
 static void copy_findings(struct sheen_model_info *info, const sheen_ModelInfo *body)
 {
     _Static_assert(sizeof(info->findings) / sizeof(*info->findings) ==
@@ -107,8 +114,7 @@ static void copy_findings(struct sheen_model_info *info, const sheen_ModelInfo *
     for (size_t i = 0; i < body->findings_count; i++) {
         const sheen_Finding *from = &body->findings[i];
         info->findings[i] = (struct sheen_finding){
-            .kind = (int)from->kind < (int)SHEEN_FOUND_OTHER ? (enum sheen_finding_kind)from->kind
-                                                             : SHEEN_FOUND_OTHER,
+            .kind = known_kind(from->kind),
             .count = from->count,
             .line = from->has_line ? from->line : 0,
             .has_face = from->has_face,

@@ -298,6 +298,41 @@ static void last_words_are_heard(void **state)
     free(bytes);
 }
 
+/* ---- what is said of a model ---- */
+
+static const uint32_t KINDS[] = {0, SHEEN_FOUND_OTHER - 1, SHEEN_FOUND_OTHER, 0x7fffffff,
+                                 0x80000000, 0xffffffff};
+#define N_KINDS (sizeof(KINDS) / sizeof(*KINDS))
+
+static void serve_kinds(int fd)
+{
+    static sheen_ModelInfo info;
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    info.findings_count = N_KINDS;
+    for (size_t i = 0; i < N_KINDS; i++)
+        info.findings[i] = (sheen_Finding){.kind = (sheen_FindingKind)KINDS[i], .count = 1};
+    send_message(fd, MESSAGE_MODEL_INFO, seq, &info);
+}
+
+static void kinds_of_later_servers_are_other(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_model_info info;
+    uint8_t id[SHEEN_ID_BYTES] = {0};
+    assert_int_equal(open_session(&fake, serve_kinds, &session, &error), SHEEN_OK);
+    assert_int_equal(sheen_query_model(session, id, NULL, &info, &error), SHEEN_OK);
+    assert_int_equal(info.n_findings, N_KINDS);
+    for (size_t i = 0; i < N_KINDS; i++)
+        assert_int_equal(info.findings[i].kind,
+                         KINDS[i] < SHEEN_FOUND_OTHER ? KINDS[i] : SHEEN_FOUND_OTHER);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
 static void sha256_of_abc(void **state)
 {
     (void)state;
@@ -317,6 +352,7 @@ int main(void)
         cmocka_unit_test(an_upload_goes_on_where_it_broke),
         cmocka_unit_test(names_lose_folders_and_control_characters),
         cmocka_unit_test(last_words_are_heard),
+        cmocka_unit_test(kinds_of_later_servers_are_other),
         cmocka_unit_test(sha256_of_abc),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
