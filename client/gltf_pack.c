@@ -125,16 +125,33 @@ static enum sheen_status pack_buffers(struct pack *pack, const json_t *buffers)
                         : status_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
 }
 
+/* A member of a view as a whole number, 0 where it is absent. Anything else is refused: what is
+ * written back would make a number of it. */
+static enum sheen_status whole_number(const struct pack *pack, size_t index, const json_t *view,
+                                      const char *key, json_int_t *number)
+{
+    const json_t *value = json_object_get(view, key);
+    *number = json_integer_value(value);
+    return !value || json_is_integer(value)
+               ? SHEEN_OK
+               : status_set(pack->error, SHEEN_BAD_MODEL,
+                            "%s: buffer view %zu: %s is not a whole number", pack->path, index,
+                            key);
+}
+
 static enum sheen_status move_view(struct pack *pack, size_t index, json_t *view)
 {
     const json_t *buffer = json_object_get(view, "buffer");
-    json_int_t of = json_integer_value(buffer), end;
+    json_int_t of = json_integer_value(buffer), offset, bytes, end;
     if (!json_is_integer(buffer) || of < 0 || (size_t)of >= pack->n_buffers)
         return SHEEN_OK; /* the reader says so */
     const struct place *place = &pack->place[of];
-    json_int_t offset = json_integer_value(json_object_get(view, "byteOffset"));
-    json_int_t bytes = json_integer_value(json_object_get(view, "byteLength"));
     if (place->bytes > 0) {
+        enum sheen_status status = whole_number(pack, index, view, "byteOffset", &offset);
+        if (!status)
+            status = whole_number(pack, index, view, "byteLength", &bytes);
+        if (status)
+            return status;
         /* Behind it there are other buffers now. */
         if (offset < 0 || bytes < 0 || __builtin_add_overflow(offset, bytes, &end) ||
             end > place->bytes)

@@ -242,6 +242,17 @@ static void test_layout(void **state)
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         expect_refused(bad[i], SHEEN_BAD_MODEL, BEYOND);
+    static const char *const numbers[] = {"1.0", "1e0", "\"1\"", "null", "true", "[1]", "{}"};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        char json[200];
+        snprintf(json, sizeof json,
+                 VIEWS("{\"buffer\":0,\"byteOffset\":%s,\"byteLength\":1}"), numbers[i]);
+        expect_refused(json, SHEEN_BAD_MODEL,
+                       "part.gltf: buffer view 0: byteOffset is not a whole number");
+        snprintf(json, sizeof json, VIEWS("7,{\"buffer\":0,\"byteLength\":%s}"), numbers[i]);
+        expect_refused(json, SHEEN_BAD_MODEL,
+                       "part.gltf: buffer view 1: byteLength is not a whole number");
+    }
     static const char *const lengths[] = {"0", "-5", "1.5", "\"5\"", "null"};
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         char json[100];
