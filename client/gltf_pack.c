@@ -70,6 +70,9 @@ static enum sheen_status add_file(struct pack *pack, size_t index, const json_t 
                                   const char *uri)
 {
     json_int_t wanted = json_integer_value(json_object_get(buffer, "byteLength"));
+    if (strlen(uri) != json_string_length(json_object_get(buffer, "uri")))
+        return status_set(pack->error, SHEEN_BAD_MODEL, "%s: buffer %zu: its URI holds a zero byte",
+                          pack->path, index);
     if (wanted < 1)
         return status_set(pack->error, SHEEN_BAD_MODEL,
                           "%s: buffer %zu has no byteLength, a whole number from 1 up", pack->path,
@@ -220,29 +223,48 @@ static enum sheen_status pack_files(struct pack *pack, const json_t *buffers, ui
     return status;
 }
 
-/* Of JSON alone: other models are not parsed here. */
-static json_t *parse(const uint8_t *bytes, size_t n_bytes)
+static bool names_files(const json_t *root)
+{
+    const json_t *buffers = json_object_get(root, "buffers");
+    for (size_t i = 0; i < json_array_size(buffers); i++)
+        if (file_of(json_array_get(buffers, i)))
+            return true;
+    return false;
+}
+
+/* The file's JSON, or NULL: other models are not parsed here, and what is no JSON at all is for the
+ * reader at the server to refuse. It reads integers of any length, which cannot be held here: a
+ * file that names others and has one is refused. */
+static enum sheen_status parse(struct pack *pack, const uint8_t *bytes, size_t n_bytes)
 {
     size_t at = n_bytes >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0, start = at;
     while (at < n_bytes && memchr(" \t\r\n", bytes[at], 4))
         at++;
     if (at == n_bytes || bytes[at] != '{')
-        return NULL;
-    return json_loadb((const char *)bytes + start, n_bytes - start, 0, NULL);
+        return SHEEN_OK;
+    json_error_t problem;
+    const char *text = (const char *)bytes + start;
+    pack->root = json_loadb(text, n_bytes - start, JSON_ALLOW_NUL, &problem);
+    if (pack->root || json_error_code(&problem) != json_error_numeric_overflow)
+        return SHEEN_OK;
+    json_t *inexact =
+        json_loadb(text, n_bytes - start, JSON_ALLOW_NUL | JSON_DECODE_INT_AS_REAL, NULL);
+    bool needed = names_files(inexact);
+    json_decref(inexact);
+    return needed ? status_set(pack->error, SHEEN_BAD_MODEL,
+                               "%s:%d: %.100s; the files beside it cannot be packed with it",
+                               pack->path, problem.line, problem.text)
+                  : SHEEN_OK;
 }
 
 enum sheen_status gltf_pack(const char *path, uint8_t **bytes, size_t *n_bytes,
                             struct sheen_error *error)
 {
     struct pack pack = {.path = path, .error = error};
-    enum sheen_status status = SHEEN_OK;
-    pack.root = parse(*bytes, *n_bytes);
+    enum sheen_status status = parse(&pack, *bytes, *n_bytes);
     const json_t *buffers = json_object_get(pack.root, "buffers");
     pack.n_buffers = json_array_size(buffers);
-    bool has_files = false;
-    for (size_t i = 0; i < pack.n_buffers; i++)
-        has_files |= file_of(json_array_get(buffers, i)) != NULL;
-    if (has_files)
+    if (!status && names_files(pack.root))
         status = pack_files(&pack, buffers, bytes, n_bytes);
     json_decref(pack.root);
     return status;

@@ -19,7 +19,8 @@
  * such buffers, or is no JSON at all, stays as it is: the reader at the server says what is wrong
  * with it. Which files are read, and how links are followed, is said at relative_file_read().
  *
- * SHEEN_BAD_MODEL when a file cannot be read or may not be, or when a view lies beyond its buffer;
+ * SHEEN_BAD_MODEL when a file cannot be read or may not be, when a view lies beyond its buffer or
+ * not at a whole number, or when the JSON has an integer of more than 64 bits beside such buffers;
  * SHEEN_TOO_BIG when more than PROTOCOL_MAX_UPLOAD_BYTES were to be read or sent; SHEEN_NO_MEMORY.
  * On failure *bytes is as it was. */
 enum sheen_status gltf_pack(const char *path, uint8_t **bytes, size_t *n_bytes,

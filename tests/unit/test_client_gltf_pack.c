@@ -265,6 +265,37 @@ static void test_layout(void **state)
                    "part.gltf: buffer 0 has 9 bytes, but 'a.bin' only 8");
 }
 
+/* What others write into a file: text with a zero, and integers that no C type holds. */
+static void test_texts_and_numbers(void **state)
+{
+    (void)state;
+#define BESIDE(extras)                                                                             \
+    "{\"extras\":" extras ",\n\"buffers\":[{\"byteLength\":8,\"uri\":\"a.bin\"}]}"
+#define PACKED(extras) "{\"extras\":" extras ",\"buffers\":[{\"byteLength\":8}]}"
+    static const char *const good[][2] = {
+        {BESIDE("\"a\\u0000b\""), PACKED("\"a\\u0000b\"")},
+        {BESIDE("9223372036854775807"), PACKED("9223372036854775807")},
+        {BESIDE("-9223372036854775808"), PACKED("-9223372036854775808")},
+    };
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        struct bytes bytes, expected = make_glb(good[i][1], "abcdefgh", 8);
+        struct sheen_error error;
+        if (pack("part.gltf", good[i][0], &bytes, &error) != SHEEN_OK)
+            fail_msg("%s", error.text);
+        assert_int_equal(bytes.size, expected.size);
+        assert_memory_equal(bytes.data, expected.data, bytes.size);
+        free(bytes.data);
+        free(expected.data);
+    }
+    expect_refused(BESIDE("\n9223372036854775808"), SHEEN_BAD_MODEL,
+                   "part.gltf:2: too big integer near '9223372036854775808'; the files beside it "
+                   "cannot be packed");
+    expect_refused(BESIDE("-9223372036854775809"), SHEEN_BAD_MODEL,
+                   "part.gltf:1: too big negative integer");
+    expect_refused("{\"buffers\":[{\"byteLength\":5,\"uri\":\"a.bin\\u0000\"}]}", SHEEN_BAD_MODEL,
+                   "part.gltf: buffer 0: its URI holds a zero byte");
+}
+
 /* What names no file is nobody's business here, right or wrong. */
 static void test_unchanged(void **state)
 {
@@ -282,7 +313,8 @@ static void test_unchanged(void **state)
         "{\"buffers\":[{\"byteLength\":5,\"uri\":\"data:;base64,AAAAAAA=\"}]}",
         "{\"buffers\":[{\"byteLength\":5,\"uri\":\"DATA:x\"}],\"images\":[{\"uri\":\"../x\"}]}",
         "{\"buffers\":[{\"byteLength\":5,\"uri\":\"a.bin\"}]} x",
-        "{\"buffers\":[{\"byteLength\":5,\"uri\":\"a.bin\\u0000\"}]}",
+        "{\"buffers\":[{\"byteLength\":5}],\"extras\":9223372036854775808}",
+        "{\"buffers\":[{\"byteLength\":5,\"uri\":\"a.bin\"}],\"extras\":1e999}",
         "glTF",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
@@ -368,6 +400,7 @@ int main(void)
         cmocka_unit_test(test_outside), cmocka_unit_test(test_no_files),
         cmocka_unit_test(test_layout),  cmocka_unit_test(test_unchanged),
         cmocka_unit_test(test_too_big), cmocka_unit_test(test_same_cage),
+        cmocka_unit_test(test_texts_and_numbers),
     };
     return cmocka_run_group_tests_name("client/gltf_pack", tests, setup, teardown);
 }
