@@ -1,5 +1,6 @@
 #include "server/cage/read/weld.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,21 +8,31 @@
 
 #define EMPTY UINT32_MAX
 
+/* Equal for equal coordinates: -0 and 0 are one place, and so are all NaN, of which none equals
+ * itself. */
+static uint64_t coordinate_bits(double value)
+{
+    uint64_t bits;
+    if (isnan(value))
+        return UINT64_MAX;
+    value += 0.0;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
 static uint64_t position_hash(const double position[3], uint64_t seed)
 {
     uint64_t hash = seed;
-    for (int i = 0; i < 3; i++) {
-        double value = position[i] + 0.0; /* -0 and 0 are one place */
-        uint64_t bits;
-        memcpy(&bits, &value, sizeof bits);
-        hash = hash_mix(hash ^ bits, seed);
-    }
+    for (int i = 0; i < 3; i++)
+        hash = hash_mix(hash ^ coordinate_bits(position[i]), seed);
     return hash;
 }
 
 static bool same_place(const double a[3], const double b[3])
 {
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+    return coordinate_bits(a[0]) == coordinate_bits(b[0]) &&
+           coordinate_bits(a[1]) == coordinate_bits(b[1]) &&
+           coordinate_bits(a[2]) == coordinate_bits(b[2]);
 }
 
 /* Moves the vertices from `first` on that stay to the front and says in map[] where each of the old
