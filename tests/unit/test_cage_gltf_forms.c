@@ -437,6 +437,61 @@ static void test_too_many_instances(void **state)
     free(zeros);
 }
 
+/* Zeros that weld to one vertex and cost the file nothing are counted for all instances, and then
+ * not read. */
+static void test_instances_of_zeros(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *vertices, *message; /* NULL: good */
+    } cases[] = {
+        {"50001", "part.glb: node 0: with its instances the scene has 100002000 vertices before "
+                  "equal ones are joined; at most 100000000 are read"},
+        {"500", NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+#define ZEROS                                                                                      \
+    "\"componentType\":5126,\"type\":\"VEC3\",\"sparse\":{\"count\":3,\"indices\":{"               \
+    "\"bufferView\":1,\"componentType\":5123},\"values\":{\"bufferView\":0}}}"
+        char accessors[700];
+        int n = snprintf(accessors, sizeof accessors,
+                         "{\"count\":%s," ZEROS ",{\"bufferView\":1,\"componentType\":5123,"
+                         "\"type\":\"SCALAR\",\"count\":3},{\"count\":2000," ZEROS,
+                         cases[i].vertices);
+        assert_true(n > 0 && (size_t)n < sizeof accessors);
+        static uint16_t indices[30000] = {0, 1, 2}; /* the rest makes the file as long */
+        struct sample sample = {.nodes = "{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
+                                         "\"attributes\":{\"TRANSLATION\":2}}}}",
+                                .accessors = accessors,
+                                .positions = GRID + 3,
+                                .n_positions = 3,
+                                .indices = indices,
+                                .n_indices = sizeof indices / sizeof *indices};
+        struct cage cage;
+        if (cases[i].message) {
+            expect_bad(&sample, cases[i].message);
+        } else {
+            read_good(&cage, &sample);
+            assert_int_equal(cage.n_faces, 2000);
+            assert_int_equal(cage.n_vertices, 4 * 2000);
+            cage_finish(&cage);
+        }
+    }
+}
+
+/* Finite numbers in the file whose products are not. */
+static void test_positions_without_a_place(void **state)
+{
+    (void)state;
+    expect_bad(&(struct sample){.nodes = "{\"mesh\":0,\"matrix\":[1e300,0,0,0,-1e300,1,0,0,0,0,1,0,"
+                                         "0,0,0,1],\"children\":[1]},{\"mesh\":0}",
+                                .positions = (const float[]){1e30f, 1e30f, 0, 1, 0, 0, 0, 1, 0},
+                                .n_positions = 3,
+                                .indices = (const uint16_t[]){0, 1, 2},
+                                .n_indices = 3},
+               "part.glb: mesh 0 primitive 0: POSITION 0 is not finite where a node puts it");
+}
+
 /* Morph targets */
 
 static void expect_morphed(const char *nodes, const char *mesh, double z, const char *warnings)
@@ -488,6 +543,29 @@ static void test_morph(void **state)
     expect_bad(
         &(struct sample){.mesh = ",\"weights\":[1]", .primitive = "\"targets\":[{\"POSITION\":9}]"},
         "part.glb: mesh 0 primitive 0: POSITION of a morph target refers to accessor 9");
+}
+
+/* Two primitives share POSITION and take one morph target, with weights of their own. */
+static void test_morphs_by_weight(void **state)
+{
+    (void)state;
+    static const uint16_t triangle[] = {0, 1, 2};
+    static const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    struct cage cage;
+    read_good(&cage, &(struct sample){
+                         .positions = positions,
+                         .n_positions = 3,
+                         .indices = triangle,
+                         .n_indices = 3,
+                         .meshes = "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"targets\":["
+                                   "{\"POSITION\":0},{\"NORMAL\":0}]},{\"attributes\":{"
+                                   "\"POSITION\":0},\"targets\":[{\"NORMAL\":0},{"
+                                   "\"POSITION\":0}]}],\"weights\":[1,2]}"});
+    assert_int_equal(cage.n_faces, 2);
+    assert_int_equal(cage.n_vertices, 5); /* the origin is one */
+    expect_position(&cage, cage.face_vertex[1], 2, 0, 0);
+    expect_position(&cage, cage.face_vertex[4], 3, 0, 0);
+    cage_finish(&cage);
 }
 
 /* What is passed over */
@@ -688,6 +766,9 @@ int main(void)
         cmocka_unit_test(test_instancing_errors),
         cmocka_unit_test(test_too_many_instances),
         cmocka_unit_test(test_morph),
+        cmocka_unit_test(test_morphs_by_weight),
+        cmocka_unit_test(test_instances_of_zeros),
+        cmocka_unit_test(test_positions_without_a_place),
         cmocka_unit_test(test_passed_over),
         cmocka_unit_test(test_points_and_lines),
         cmocka_unit_test(test_hidden_nodes),

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "server/cage/read/ngon.h"
 
@@ -15,6 +17,11 @@ namespace
 struct Morph {
     int accessor;
     double weight;
+
+    bool operator<(const Morph &other) const
+    {
+        return std::tie(accessor, weight) < std::tie(other.accessor, other.weight);
+    }
 };
 
 constexpr auto COORDINATES = {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_COMPONENT_TYPE_BYTE,
@@ -71,6 +78,9 @@ void add_positions(Reader &reader, const Primitive &primitive, const Elements &p
                 reader.refuse("%s: POSITION %zu is not finite", place, v);
         }
         transform_point(&matrix, local, world);
+        for (double coordinate : world)
+            if (!std::isfinite(coordinate))
+                reader.refuse("%s: POSITION %zu is not finite where a node puts it", place, v);
         reader.need(cage_builder_vertex(reader.builder, world, reader.failure));
     }
 }
@@ -148,8 +158,8 @@ bool is_surface(Reader &reader, const Primitive &primitive)
 }
 
 /* The primitives of one mesh often share their POSITION. This holds what was added: by accessor,
- * and by those of the morph targets that were applied to it. */
-using Bases = std::map<std::vector<int>, uint32_t>;
+ * and by the morph targets that were applied to it. */
+using Bases = std::map<std::pair<int, std::vector<Morph>>, uint32_t>;
 
 void add_primitive(Reader &reader, Primitive &primitive, const std::vector<double> &weights,
                    const transform &matrix, Bases &bases)
@@ -157,15 +167,14 @@ void add_primitive(Reader &reader, Primitive &primitive, const std::vector<doubl
     int accessor = primitive.source->attributes.at("POSITION");
     Elements positions = find_positions(reader, primitive.where, "POSITION", accessor);
     std::vector<Morph> morphs = find_morphs(reader, primitive, weights);
-    std::vector<int> key = {accessor};
-    for (const Morph &morph : morphs)
-        key.push_back(morph.accessor);
     primitive.n_vertices = positions.count;
-    auto [entry, is_new] = bases.emplace(key, uint32_t(reader.builder->cage.n_vertices));
+    auto [entry, is_new] =
+        bases.emplace(std::pair(accessor, morphs), uint32_t(reader.builder->cage.n_vertices));
     primitive.base = entry->second;
-    if (is_new)
+    if (is_new) {
         add_positions(reader, primitive, positions, morphs, matrix);
-
+        reader.vertices_read += positions.count;
+    }
     std::vector<uint32_t> indices = read_triangles(reader, primitive);
     ngon_triangles triangles;
     triangles.index = indices.data();

@@ -40,9 +40,10 @@ struct Reader {
     const char *name;
     error *failure;
     size_t file_bytes;
-    bool binary;          /* GLB */
-    const char *packing;  /* see struct gltf_json */
-    size_t instances = 0; /* of meshes, so far */
+    bool binary;              /* GLB */
+    const char *packing;      /* see struct gltf_json */
+    size_t instances = 0;     /* of meshes, so far */
+    size_t vertices_read = 0; /* of all instances so far, before welding makes fewer of them */
     bool has_scheme = false, has_boundary = false, has_triangle_rule = false;
     bool warned_negative = false; /* sharpness */
     size_t ngon_breaks = 0;

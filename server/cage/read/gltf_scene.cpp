@@ -121,14 +121,29 @@ std::vector<transform> node_instances(Reader &reader, int index)
     return instances;
 }
 
+/* Zeros of a sparse accessor cost a file nothing and weld to one vertex, so that the limits of a
+ * cage do not bound what instances take to read. This does, after the first of a node's. `each` is
+ * what one instance reads and `left` how many are still to come. */
+void limit_vertices(Reader &reader, int index, size_t each, size_t left)
+{
+    size_t all = reader.vertices_read + each * left;
+    if (all > CAGE_MAX_VERTICES)
+        reader.refuse("node %d: with its instances the scene has %zu vertices before equal ones "
+                      "are joined; at most %u are read",
+                      index, all, CAGE_MAX_VERTICES);
+}
+
 void add_instances(Reader &reader, int index, const transform &matrix)
 {
     const tinygltf::Node &node = reader.model.nodes[size_t(index)];
-    for (const transform &instance : node_instances(reader, index)) {
+    const std::vector<transform> instances = node_instances(reader, index);
+    for (size_t i = 0; i < instances.size(); i++) {
         if (++reader.instances > MAX_INSTANCES)
             reader.refuse("its nodes show meshes more than %zu times", MAX_INSTANCES);
-        transform world = transform_multiply(&matrix, &instance);
+        transform world = transform_multiply(&matrix, &instances[i]);
+        size_t before = reader.vertices_read;
         add_mesh(reader, node.mesh, node.weights, world);
+        limit_vertices(reader, index, reader.vertices_read - before, instances.size() - 1 - i);
     }
 }
 
