@@ -203,30 +203,32 @@ void http_destroy(struct http *http)
     free(http);
 }
 
-/* A free one, or that which has lingered longest: it has had its answer. NULL: all are in use. */
+/* Whom a newcomer costs less than another: 0 for one that has had its answer and does not close,
+ * then who has not asked yet, then who is being answered. */
+static int value_of(const struct http_connection *connection)
+{
+    return connection->state == HTTP_LINGERING ? 0 : connection->state == HTTP_READING ? 1 : 2;
+}
+
+/* A free one, or the oldest of those of least value. Idle peers must not keep a probe out. */
 static struct http_connection *find_place(struct http *http)
 {
-    struct http_connection *longest = NULL;
+    struct http_connection *least = NULL;
     for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++) {
         struct http_connection *connection = &http->connections[i];
         if (connection->source.fd < 0)
             return connection;
-        if (connection->state == HTTP_LINGERING &&
-            (!longest || connection->end_us < longest->end_us))
-            longest = connection;
+        int below = least ? value_of(connection) - value_of(least) : -1;
+        if (below < 0 || (below == 0 && connection->end_us < least->end_us))
+            least = connection;
     }
-    if (longest)
-        drop(longest);
-    return longest;
+    drop(least);
+    return least;
 }
 
 void http_accept(struct http *http, int fd)
 {
     struct http_connection *connection = find_place(http);
-    if (!connection) {
-        close(fd);
-        return;
-    }
     connection->source = (struct loop_source){fd, connection_ready, connection};
     connection->end_us = loop_now_us() + HTTP_TIMEOUT_US;
     connection->received = connection->sent = connection->head_length = 0;

@@ -35,8 +35,8 @@ struct http *http_create(struct loop *loop, const struct http_handler *handler,
                          struct error *error);
 void http_destroy(struct http *http); /* closes all; NULL is safe */
 
-/* Takes a connection over. With HTTP_MAX_CONNECTIONS there already, one that has its answer and
- * does not close makes room; if none has, the new one is closed. */
+/* Takes a connection over. With HTTP_MAX_CONNECTIONS there already one makes room: the oldest that
+ * has its answer and does not close, else the oldest that has not asked yet, else the oldest. */
 void http_accept(struct http *http, int fd);
 /* Closes what has taken too long. */
 void http_tick(struct http *http, uint64_t now_us);

@@ -564,16 +564,19 @@ class Metrics(unittest.TestCase):
                 time.sleep(0.01)
             self.assertTrue(slow.recv(100).startswith(b"HTTP/1.1 200 OK\r\n"))
 
-    def test_few_at_once_and_not_for_long(self):
-        host, port = self.address[4:].rsplit(":", 1)
-        silent = [socket.create_connection((host, int(port))) for _ in range(8)]
-        time.sleep(0.2)
-        self.assertIsNone(fetch(self.address))
+    def test_idle_peers_keep_no_probe_out(self):
+        """The oldest makes room; the others have their time, and no more."""
+        silent = [self.connect() for _ in range(8)]
         start = time.monotonic()
-        for one in silent:
+        time.sleep(0.2)
+        self.assertEqual(get(self.address, "/healthz"), (200, "ok\n"))
+        silent[0].settimeout(3)
+        self.assertEqual(silent[0].recv(1), b"")
+        silent[1].sendall(b"GET /healthz HTTP/1.1\r\n\r\n")
+        self.assertTrue(self.read_to_end(silent[1]).endswith(b"ok\n"))
+        for one in silent[2:]:
             one.settimeout(15)
             self.assertEqual(one.recv(1), b"")
-            one.close()
         self.assertGreater(time.monotonic() - start, 4)
         self.assertEqual(get(self.address, "/healthz")[0], 200)
 

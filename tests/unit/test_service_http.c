@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <fcntl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -155,7 +156,9 @@ static void test_slots(void **state)
     create(&f);
     for (int i = 0; i <= HTTP_MAX_CONNECTIONS; i++)
         fd[i] = connect_to(&f);
-    assert_int_equal(recv(fd[HTTP_MAX_CONNECTIONS], &byte, 1, MSG_DONTWAIT), 0);
+    assert_int_equal(recv(fd[0], &byte, 1, MSG_DONTWAIT), 0); /* the oldest */
+    for (int i = 1; i <= HTTP_MAX_CONNECTIONS; i++)
+        assert_int_equal(recv(fd[i], &byte, 1, MSG_DONTWAIT), -1);
     for (int i = 0; i <= HTTP_MAX_CONNECTIONS; i++)
         close(fd[i]);
     start(&f);
@@ -172,12 +175,37 @@ static void test_slots(void **state)
     loop_destroy(f.loop);
 }
 
+/* What the loop cannot watch takes no place and is closed. */
+static void test_what_cannot_be_watched(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char byte;
+    int fd[HTTP_MAX_CONNECTIONS];
+    create(&f);
+    FILE *file = tmpfile(); /* epoll takes none */
+    assert_non_null(file);
+    int copy = dup(fileno(file));
+    fclose(file);
+    http_accept(f.http, copy);
+    assert_int_equal(fcntl(copy, F_GETFD), -1);
+    for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++)
+        fd[i] = connect_to(&f);
+    for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++) {
+        assert_int_equal(recv(fd[i], &byte, 1, MSG_DONTWAIT), -1);
+        close(fd[i]);
+    }
+    http_destroy(f.http);
+    loop_destroy(f.loop);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_an_answer_larger_than_the_buffer),
         cmocka_unit_test(test_an_answer_over_the_bound),
         cmocka_unit_test(test_slots),
+        cmocka_unit_test(test_what_cannot_be_watched),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
