@@ -245,8 +245,8 @@ static void test_layout(void **state)
     static const char *const numbers[] = {"1.0", "1e0", "\"1\"", "null", "true", "[1]", "{}"};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         char json[200];
-        snprintf(json, sizeof json,
-                 VIEWS("{\"buffer\":0,\"byteOffset\":%s,\"byteLength\":1}"), numbers[i]);
+        snprintf(json, sizeof json, VIEWS("{\"buffer\":0,\"byteOffset\":%s,\"byteLength\":1}"),
+                 numbers[i]);
         expect_refused(json, SHEEN_BAD_MODEL,
                        "part.gltf: buffer view 0: byteOffset is not a whole number");
         snprintf(json, sizeof json, VIEWS("7,{\"buffer\":0,\"byteLength\":%s}"), numbers[i]);
@@ -396,10 +396,14 @@ static void test_same_cage(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bytes),   cmocka_unit_test(test_names),
-        cmocka_unit_test(test_outside), cmocka_unit_test(test_no_files),
-        cmocka_unit_test(test_layout),  cmocka_unit_test(test_unchanged),
-        cmocka_unit_test(test_too_big), cmocka_unit_test(test_same_cage),
+        cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_outside),
+        cmocka_unit_test(test_no_files),
+        cmocka_unit_test(test_layout),
+        cmocka_unit_test(test_unchanged),
+        cmocka_unit_test(test_too_big),
+        cmocka_unit_test(test_same_cage),
         cmocka_unit_test(test_texts_and_numbers),
     };
     return cmocka_run_group_tests_name("client/gltf_pack", tests, setup, teardown);

@@ -300,8 +300,8 @@ static void last_words_are_heard(void **state)
 
 /* ---- what is said of a model ---- */
 
-static const uint32_t KINDS[] = {0, SHEEN_FOUND_OTHER - 1, SHEEN_FOUND_OTHER, 0x7fffffff,
-                                 0x80000000, 0xffffffff};
+static const uint32_t KINDS[] = {
+    0, SHEEN_FOUND_OTHER - 1, SHEEN_FOUND_OTHER, 0x7fffffff, 0x80000000, 0xffffffff};
 #define N_KINDS (sizeof(KINDS) / sizeof(*KINDS))
 
 static void serve_kinds(int fd)
