@@ -2,10 +2,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/openat2.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "client/status.h"
@@ -46,15 +48,33 @@ static enum sheen_status read_open(int fd, const char *path, enum sheen_status s
     return SHEEN_OK;
 }
 
-enum sheen_status file_read(const char *path, enum sheen_status status, uint8_t **bytes,
-                            size_t *n_bytes, struct sheen_error *error)
+#define READ_FLAGS (O_RDONLY | O_CLOEXEC | O_NONBLOCK) /* a FIFO must not hang */
+
+/* Takes the descriptor, which is -1, with errno, when the file cannot be opened. */
+static enum sheen_status read_and_close(int fd, const char *path, enum sheen_status status,
+                                        uint8_t **bytes, size_t *n_bytes, struct sheen_error *error)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a FIFO must not hang */
     if (fd < 0)
         return status_set(error, status, "%s: %s", path, strerror(errno));
     enum sheen_status result = read_open(fd, path, status, bytes, n_bytes, error);
     close(fd);
     return result;
+}
+
+enum sheen_status file_read(const char *path, enum sheen_status status, uint8_t **bytes,
+                            size_t *n_bytes, struct sheen_error *error)
+{
+    return read_and_close(open(path, READ_FLAGS), path, status, bytes, n_bytes, error);
+}
+
+enum sheen_status file_read_linkless(const char *path, enum sheen_status status, uint8_t **bytes,
+                                     size_t *n_bytes, struct sheen_error *error)
+{
+    struct open_how how = {.flags = READ_FLAGS, .resolve = RESOLVE_NO_SYMLINKS};
+    int fd = (int)syscall(SYS_openat2, AT_FDCWD, path, &how, sizeof(how));
+    if (fd < 0 && (errno == ENOSYS || errno == EPERM)) /* before Linux 5.6, or in a sandbox */
+        fd = open(path, READ_FLAGS | O_NOFOLLOW);
+    return read_and_close(fd, path, status, bytes, n_bytes, error);
 }
 
 enum sheen_status file_read_line(const char *path, char *line, size_t size,

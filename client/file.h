@@ -12,6 +12,12 @@
 enum sheen_status file_read(const char *path, enum sheen_status status, uint8_t **bytes,
                             size_t *n_bytes, struct sheen_error *error);
 
+/* The same, but no part of `path` may be a link: so a path from realpath() that was checked is the
+ * one that is opened, whoever puts links there in between. A kernel without openat2() holds to that
+ * for the last part alone. */
+enum sheen_status file_read_linkless(const char *path, enum sheen_status status, uint8_t **bytes,
+                                     size_t *n_bytes, struct sheen_error *error);
+
 /* Reads the first line, without its end, which must not be empty. SHEEN_BAD_ARGUMENT when there is
  * none or it does not fit. */
 enum sheen_status file_read_line(const char *path, char *line, size_t size,

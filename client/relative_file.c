@@ -111,7 +111,7 @@ static enum sheen_status read_below(const char *folder, const char *uri, const c
         status =
             status_set(error, SHEEN_TOO_BIG, "%s: %lld bytes", joined, (long long)about.st_size);
     else
-        status = file_read(real, SHEEN_BAD_MODEL, bytes, n_bytes, error);
+        status = file_read_linkless(real, SHEEN_BAD_MODEL, bytes, n_bytes, error);
     free(real);
     return status;
 }

@@ -147,6 +147,34 @@ static void files_that_cannot_be_read(void **state)
     assert_null(bytes);
 }
 
+static void links_are_refused_anywhere_in_a_path(void **state)
+{
+    (void)state;
+    struct sheen_error error;
+    uint8_t *bytes = NULL;
+    size_t n_bytes = 0;
+    assert_int_equal(mkdir("real", 0700), 0);
+    assert_int_equal(file_write("real/a", (const uint8_t *)"abc", 3, &error), SHEEN_OK);
+    assert_int_equal(symlink("a", "real/link"), 0);
+    assert_int_equal(symlink("real", "folder"), 0);
+    assert_int_equal(file_read_linkless("real/a", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+                     SHEEN_OK);
+    assert_int_equal(n_bytes, 3);
+    assert_memory_equal(bytes, "abc", 3);
+    free(bytes);
+    static const char *const links[] = {"real/link", "folder/a"};
+    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
+        assert_holds(links[i], "abc");
+        assert_int_equal(file_read_linkless(links[i], SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+                         SHEEN_BAD_MODEL);
+        assert_non_null(strstr(error.text, "Too many levels of symbolic links"));
+    }
+    unlink("folder");
+    unlink("real/link");
+    unlink("real/a");
+    rmdir("real");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -155,6 +183,7 @@ int main(void)
         cmocka_unit_test(a_full_disk_leaves_what_was_there),
         cmocka_unit_test(places_that_take_no_file),
         cmocka_unit_test(files_that_cannot_be_read),
+        cmocka_unit_test(links_are_refused_anywhere_in_a_path),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
