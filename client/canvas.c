@@ -1,5 +1,6 @@
 #include "client/canvas.h"
 
+#include <math.h>
 #include <png.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +8,7 @@
 #include "client/file.h"
 #include "client/glyphs.h"
 #include "client/status.h"
+#include "protocol/srgb.h"
 
 bool canvas_init(struct canvas *canvas, uint32_t width_px, uint32_t height_px)
 {
@@ -30,15 +32,25 @@ static uint8_t *pixel_at(struct canvas *canvas, uint32_t x, uint32_t y)
     return canvas->rgb + 3 * ((size_t)y * canvas->width_px + x);
 }
 
+/* One channel of a picture's pixel over the canvas, mixed as linear light. */
+static uint8_t over(uint8_t top, uint8_t alpha, uint8_t below)
+{
+    if (alpha == 255)
+        return top;
+    double share = alpha / 255.0;
+    double light =
+        share * srgb_to_linear(top / 255.0) + (1 - share) * srgb_to_linear(below / 255.0);
+    return (uint8_t)lround(255 * srgb_from_linear(light));
+}
+
 void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t (*rgba)[4],
                     uint32_t width_px, uint32_t height_px)
 {
     for (uint32_t j = 0; j < height_px; j++)
         for (uint32_t i = 0; i < width_px; i++, rgba++) {
             uint8_t *to = pixel_at(canvas, x + i, y + j);
-            unsigned alpha = (*rgba)[3];
             for (int k = 0; to && k < 3; k++)
-                to[k] = (uint8_t)((alpha * (*rgba)[k] + (255 - alpha) * to[k] + 127) / 255);
+                to[k] = over((*rgba)[k], (*rgba)[3], to[k]);
         }
 }
 

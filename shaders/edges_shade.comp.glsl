@@ -1,7 +1,5 @@
 // What each pixel listed at an edge shows: rays spread over it against the pieces of surface around,
 // and each piece shaded for its share of each quarter of the pixel.
-//
-// Until the foremost light the colour is the surface's alone; what is empty comes in with that.
 
 layout(local_size_x = 64) in;
 
@@ -31,7 +29,7 @@ const uint QUARTER = 0x33u;
 
 // Shades the part of a piece that these rays of one quarter see, in one go: at the middle of their
 // squares, or where the piece does not reach that, at the middle of the rays.
-vec4 shade_part(Piece piece, ivec2 p, uint rays, vec4 under)
+Shown shade_part(Piece piece, ivec2 p, uint rays, Shown behind)
 {
     vec2 squares = vec2(0.0);
     float n = 0.0;
@@ -49,8 +47,7 @@ vec4 shade_part(Piece piece, ivec2 p, uint rays, vec4 under)
     }
     z = z < NOWHERE ? z : piece.hit.depth;
     float size = sqrt(n) / float(SIDE);
-    return n * premultiplied(shade_ray(piece.hit, pixel_offset(p) + place, place - piece.at, size, z,
-                                       under));
+    return scaled(shade_ray(piece.hit, pixel_offset(p) + place, place - piece.at, size, z, behind), n);
 }
 
 Piece piece_at(Piece pieces[PIECES], int k)
@@ -142,7 +139,7 @@ void main()
         creases |= uint(rounded[k] > 0.0) << k;
     }
 
-    vec4 under = is_hindmost ? miss : imageLoad(colour, p), sum = vec4(0.0);
+    Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
     uvec4 left = uvec4(seen[0], seen[1], seen[2], seen[3]);
     while (left != uvec4(0u)) {  // a part each turn, of whatever piece has one left
         int k = left.x != 0u ? 0 : left.y != 0u ? 1 : left.z != 0u ? 2 : 3;
@@ -151,16 +148,14 @@ void main()
         uint quarter = QUARTER << ((first & 2) | (first & 8));
         left &= ~(quarter * uvec4(equal(ivec4(k), ivec4(0, 1, 2, 3))));
         float plain = 1.0 - (k == 0 ? rounded[0] : k == 1 ? rounded[1] : k == 2 ? rounded[2] : rounded[3]);
-        sum += plain * shade_part(piece_at(pieces, k), p, rays & quarter, under);
+        sum = added(sum, scaled(shade_part(piece_at(pieces, k), p, rays & quarter, behind), plain));
     }
     for (; creases != 0u; creases &= creases - 1u) {
         int k = findLSB(creases);
         float rays = rounded[k] * float(bitCount(seen[k]));
-        sum += rays * shade_rounding(piece_at(pieces, k), beyond[k], p, under);
+        sum = added(sum, scaled(shade_rounding(piece_at(pieces, k), beyond[k], p, behind), rays));
     }
-    if (is_foremost)
-        sum += open * premultiplied(empty);
-    float rays = is_foremost ? covered + open : covered;
-    imageStore(colour, p, straight(sum / max(rays, 1.0)));
-    imageStore(coverage, p, vec4(covered / (covered + open)));
+    float rays = covered + open;
+    put_shown(p, scaled(sum, 1.0 / rays), open / rays);
+    imageStore(coverage, p, vec4(covered / rays));
 }

@@ -21,13 +21,13 @@ layout(std140, binding = 1) uniform Light {
     // Else the axis, unit, w: the tunnel's radius; and where azimuth begins, and a quarter later.
     vec4 axis_n, axis_u, axis_v;
     vec4 size;                         // width, height of the light
-    vec4 foreground, background, miss, empty, base;
+    vec4 foreground, background, miss, empty, base;  // linear, premultiplied by alpha
     vec4 turn;                         // cosine and sine of the rotation; 1 / period; offset
     vec4 wave;                         // phases at the centre along both ways; duty; soft
     vec4 single[4];                    // places of single lines, from the centre
     float opacity, half_width;
     int n_single;
-    bool is_hindmost, is_foremost, is_one_sided, has_direction, is_linear;
+    bool is_hindmost, is_foremost, is_one_sided, has_direction;
     ivec4 want;                        // whether to write light_st, curvature, light_change
 };
 

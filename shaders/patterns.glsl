@@ -1,4 +1,5 @@
-// What the light shows at a place, averaged over the pixel's footprint there.
+// What the light shows at a place, averaged over the pixel's footprint there. Colours here are linear
+// light, premultiplied by their alpha, so that their mean over a pixel is what the pixel shows.
 //
 // Defined before this file: PATTERN, and SOFT for soft edges: a program for each kind, since some
 // devices walk through every branch.
@@ -104,11 +105,7 @@ vec4 image_colour(vec2 st, vec2 right, vec2 down)
         vec2 at = st + along * (i / n - 0.5);
         sum += textureLod(picture, vec2(at.x, 1.0 - at.y), lod);
     }
-    sum /= n;
-    // Linear light is shown through the sRGB curve.
-    vec3 shown = mix(12.92 * sum.rgb, 1.055 * pow(max(sum.rgb, 0.0031308), vec3(1.0 / 2.4)) - 0.055,
-                     step(0.0031308, sum.rgb));
-    return is_linear ? vec4(clamp(shown, 0.0, 1.0), clamp(sum.a, 0.0, 1.0)) : sum;
+    return clamp(sum / n, 0.0, 1.0);
 }
 
 // A coordinate turned on the light, and its change over the pixel.
@@ -172,12 +169,10 @@ vec4 pattern_colour(Met met)
 #endif
 }
 
-// The pattern over the shaded base, over what lies under it; q as for sample_at.
-vec4 lay_over(vec4 under, Sample at, Met met, vec2 q)
+// The pattern over the shaded base, over the lights behind; q as for sample_at.
+Shown lay_over(Shown behind, Sample at, Met met, vec2 q)
 {
     float lit = 0.3 + 0.7 * abs(dot(at.n, normalize(to_world(vec3(q * ray.x, 1.0)))));
-    vec4 shown = mix(vec4(base.rgb * lit, base.a), pattern_colour(met), opacity);
-    // Over other lights a colour's alpha lets them through; over none it is the picture's.
-    float over = is_hindmost ? met.cover : met.cover * shown.a;
-    return mix(under, is_hindmost ? shown : vec4(shown.rgb, 1.0), over);
+    vec4 own = met.cover * mix(vec4(base.rgb * lit, base.a), pattern_colour(met), opacity);
+    return Shown(own + (1.0 - own.a) * behind.light, (1.0 - met.cover) * behind.missed);
 }

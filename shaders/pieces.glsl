@@ -1,8 +1,6 @@
 // The pieces of surface that a pixel looked at more closely may show (edges.glsl): a paraboloid each,
 // clipped by its border's line, and shaded away from the pixel it was seen at.
 
-layout(binding = 3, rgba8) uniform image2D colour;
-
 LIST(0, Listed, listed);  // the pixels to shade
 
 // Along the ray through its own pixel's centre plus d px, z units beyond its depth, a piece is where
@@ -66,19 +64,9 @@ vec3 move_to(Hit hit, vec2 d, vec2 q, float z)
 }
 
 // d: from the hit's own pixel, px; size: of its square.
-vec4 shade_ray(Hit hit, vec2 q, vec2 d, float size, float z, vec4 under)
+Shown shade_ray(Hit hit, vec2 q, vec2 d, float size, float z, Shown behind)
 {
     vec3 move = move_to(hit, d, q, z);
     Sample at = sample_at(q, size, z, normal_at(hit, move), hit.h, hit.n);
-    return lay_over(under, at, meet(at), q);
-}
-
-vec4 premultiplied(vec4 c)
-{
-    return vec4(c.rgb * c.a, c.a);
-}
-
-vec4 straight(vec4 c)
-{
-    return vec4(c.a > 0.0 ? c.rgb / c.a : vec3(0.0), c.a);
+    return lay_over(behind, at, meet(at), q);
 }

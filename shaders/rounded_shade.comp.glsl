@@ -8,8 +8,8 @@ layout(std430, binding = 2) readonly buffer RoundedHits {
     RoundedHit hits[];
 };
 
-shared vec4 shown[64];  // premultiplied
-shared float met_share[64];
+shared Shown shown[64];
+shared float seen_share[64];
 
 void main()
 {
@@ -19,30 +19,28 @@ void main()
     uint rays = uint(side * side);
     bool is_ray = i < listed.n && ray < rays;
     ivec2 p = list_place(listed.at[min(i, listed.n - 1u)]);
-    vec4 under = is_hindmost ? miss : imageLoad(colour, p);
-    shown[local] = vec4(0.0);
-    met_share[local] = 0.0;
+    Shown behind = shown_behind(p);
+    shown[local] = Shown(vec4(0.0), 0.0);
+    seen_share[local] = 0.0;
     if (is_ray) {
         RoundedHit hit = hits[i * rays + ray];
         vec2 q = pixel_offset(p) + rounded_place(int(ray), side);
         vec3 n = hit.normal_depth.xyz;
         float z = hit.normal_depth.w;
         Sample at = sample_at(q, 1.0 / float(side), z, n, hit.shape.xyz, n);
-        vec4 there = dot(n, n) > 0.5 ? lay_over(under, at, meet(at), q) : miss;
-        shown[local] = z > 0.0 ? premultiplied(there) : vec4(0.0);
-        met_share[local] = float(z > 0.0);
+        Shown there = dot(n, n) > 0.5 ? lay_over(behind, at, meet(at), q) : behind;
+        seen_share[local] = float(z > 0.0) / float(rays);
+        shown[local] = scaled(there, seen_share[local]);
     }
     barrier();
     if (!is_ray || ray != 0u)
         return;
-    vec4 sum = vec4(0.0);
+    Shown sum = Shown(vec4(0.0), 0.0);
     float covered = 0.0;
     for (uint k = local; k < local + rays; k++) {
-        sum += shown[k];
-        covered += met_share[k];
+        sum = added(sum, shown[k]);
+        covered += seen_share[k];
     }
-    if (is_foremost)
-        sum += (float(rays) - covered) * premultiplied(empty);
-    imageStore(colour, p, straight(sum / (is_foremost ? float(rays) : max(covered, 1.0))));
-    imageStore(coverage, p, vec4(covered / float(rays)));
+    put_shown(p, sum, 1.0 - covered);
+    imageStore(coverage, p, vec4(covered));
 }

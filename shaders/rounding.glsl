@@ -21,7 +21,7 @@ vec3 rounding_normal(vec3 side, vec3 other, float t)
 }
 
 // Parts that lie along the crease, each averaged over all that its normal turns.
-vec4 shade_rounding(Piece piece, vec3 other, ivec2 p, vec4 under)
+Shown shade_rounding(Piece piece, vec3 other, ivec2 p, Shown behind)
 {
     vec2 g = normalize(piece.foot);
     float part = piece.rounding / float(ROUNDING_PARTS);
@@ -32,14 +32,14 @@ vec4 shade_rounding(Piece piece, vec3 other, ivec2 p, vec4 under)
     z = z < NOWHERE ? z : hit.depth;
     vec3 move = move_to(hit, place - piece.at, q, z);
     vec3 side = normal_at(hit, move);
-    vec4 sum = vec4(0.0);
+    Shown sum = Shown(vec4(0.0), 0.0);
     for (int i = 0; i < ROUNDING_PARTS; i++) {
         vec3 inner = rounding_normal(side, other, float(i) / float(ROUNDING_PARTS));
         vec3 outer = rounding_normal(side, other, float(i + 1) / float(ROUNDING_PARTS));
         Sample at = sample_over(q, mat2(g * part, vec2(-g.y, g.x)), z, normalize(inner + outer),
                                 hit.h, hit.n);
         at.dn[0] = inner - outer;
-        sum += premultiplied(lay_over(under, at, meet(at), q));
+        sum = added(sum, lay_over(behind, at, meet(at), q));
     }
-    return sum / float(ROUNDING_PARTS);
+    return scaled(sum, 1.0 / float(ROUNDING_PARTS));
 }

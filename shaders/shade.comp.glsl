@@ -6,8 +6,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(binding = 3, rgba8) uniform image2D colour;
-
 void main()
 {
     ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
@@ -21,6 +19,8 @@ void main()
     met.ds = met.dt = met.dtau = vec2(0.0);
     met.cover = float(met.inside);
 #endif
-    vec4 under = is_hindmost ? miss : imageLoad(colour, p);
-    imageStore(colour, p, mirrors(hit) ? lay_over(under, at, met, q) : hit.depth > 0.0 ? miss : empty);
+    Shown behind = shown_behind(p);
+    bool is_hit = hit.depth > 0.0;
+    Shown shown = mirrors(hit) ? lay_over(behind, at, met, q) : behind;
+    put_shown(p, scaled(shown, float(is_hit)), float(!is_hit));
 }

@@ -12,17 +12,16 @@ void main()
         return;
     ivec2 p = list_place(listed.at[index]);
     Piece piece = piece_of(hit_at(p), p, ivec2(0));
-    vec4 under = is_hindmost ? miss : imageLoad(colour, p), sum = vec4(0.0);
+    Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
     float n = 0.0;
     for (int i = 0; i < SIDE * SIDE; i++) {
         vec2 d = (vec2(i % SIDE, i / SIDE) + 0.5) / float(SIDE) - 0.5;
         float z = depth_at(piece, d);
         if (z < NOWHERE) {
-            sum += premultiplied(
-                shade_ray(piece.hit, pixel_offset(p) + d, d, 1.0 / float(SIDE), z, under));
+            sum = added(sum, shade_ray(piece.hit, pixel_offset(p) + d, d, 1.0 / float(SIDE), z, behind));
             n += 1.0;
         }
     }
     if (n > 0.0)
-        imageStore(colour, p, straight(sum / n));
+        put_shown(p, scaled(sum, 1.0 / n), 0.0);
 }

@@ -6,7 +6,7 @@
 
 const uint FAN = 0x80000000u;
 const float WIDTH = 1.0, MOST = 0.2;
-const vec3 LINE = vec3(0.10), FILL = vec3(0.86);
+const vec3 LINE = vec3(0.010), FILL = vec3(0.71);  // linear light
 
 in vec3 seen_at;
 in vec3 facing;
@@ -32,5 +32,5 @@ void main()
 {
     bool is_fan = (where.x & FAN) != 0u;
     float ink = 1.0 - (1.0 - line(grid.x, is_fan)) * (1.0 - line(grid.y, is_fan));
-    colour = vec4(mix(FILL, LINE, ink), 1.0);
+    colour = vec4(srgb_encoded(mix(FILL, LINE, ink)), 1.0);
 }

@@ -85,6 +85,8 @@ struct target {
     GLuint edges, turns;     /* buffers: shaders/edges_find.comp.glsl */
     GLuint rounded;          /* another; and what its pixels' rays meet: shaders/rounded.glsl */
     GLuint rounded_hits;
+    GLuint lights[2];   /* what lights behind others show: RGBA16F, shaders/shown.glsl; or 0 */
+    GLuint missed[2];   /* R16F */
     GLuint max_rounded; /* pixels of which rounded_hits has room for all rays; 0: there is none */
 };
 
@@ -300,6 +302,8 @@ bool target_can_hold(const struct renderer_info *info, const struct frame_reques
 uint64_t target_bytes(uint32_t width, uint32_t height);
 /* And to hold what stage_rounded() finds, which frames of polygons do not need. */
 bool target_reserve_rounded(struct target *target, struct error *error);
+/* The planes of a frame of two lights and more. */
+bool target_reserve_lights(struct target *target, struct error *error);
 /* Of how many pixels of a tile all rays are met; it depends on the tile alone. */
 GLuint target_max_rounded(const struct tile *tile);
 /* So many or fewer, and the tile may be cut in any way. */

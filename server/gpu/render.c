@@ -203,7 +203,8 @@ static bool reserve(struct renderer *r, const struct frame_work *work, struct er
     struct target *lists = &r->resting[PLANES_APART].target;
     if (place->width > r->target.width || place->height > r->target.height)
         r->kept.model_serial = 0;
-    if (!target_reserve(&r->target, place->width, place->height, error))
+    if (!target_reserve(&r->target, place->width, place->height, error) ||
+        (work->request->n_lights > 1 && !target_reserve_lights(&r->target, error)))
         return false;
     if (is_of_polygons(work))
         return true;

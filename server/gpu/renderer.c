@@ -149,7 +149,7 @@ const struct renderer_info *renderer_info(const struct renderer *r)
 size_t renderer_image_bytes(const struct image *image)
 {
     size_t texels = (size_t)image->width_px * image->height_px;
-    return (texels + texels / 3) * (image->is_float ? 8 : 4); /* RGBA16F or RGBA8 */
+    return (texels + texels / 3) * (image->is_float ? 8 : 4); /* RGBA16F or SRGB8_ALPHA8 */
 }
 
 bool image_upload(struct renderer *r, struct renderer_image *image, struct error *error)
@@ -160,8 +160,8 @@ bool image_upload(struct renderer *r, struct renderer_image *image, struct error
     GLsizei width = (GLsizei)pixels->width_px, height = (GLsizei)pixels->height_px;
     GLsizei levels = 32 - __builtin_clz((unsigned)(width > height ? width : height));
     glCreateTextures(GL_TEXTURE_2D, 1, &image->texture);
-    glTextureStorage2D(image->texture, levels, pixels->is_float ? GL_RGBA16F : GL_RGBA8, width,
-                       height);
+    glTextureStorage2D(image->texture, levels, pixels->is_float ? GL_RGBA16F : GL_SRGB8_ALPHA8,
+                       width, height);
     glTextureSubImage2D(image->texture, 0, 0, 0, width, height, GL_RGBA,
                         pixels->is_float ? GL_FLOAT : GL_UNSIGNED_BYTE, pixels->pixels);
     glGenerateTextureMipmap(image->texture);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "protocol/srgb.h"
 #include "server/limit/vec.h"
 
 static const double PI = 3.14159265358979323846;
@@ -16,7 +17,7 @@ struct light_block {
     float turn[4], wave[4];
     float single[MAX_LINES];
     float opacity, half_width;
-    int32_t n_single, is_hindmost, is_foremost, is_one_sided, has_direction, is_linear;
+    int32_t n_single, is_hindmost, is_foremost, is_one_sided, has_direction;
     int32_t want[4];
 };
 
@@ -42,6 +43,7 @@ static struct shade_key key_of(const struct frame_request *request, const struct
                               .pattern = (uint8_t)pattern->kind,
                               .soft = pattern->soft > 0,
                               .picture = image ? picture_kind(image->pixels) : 0,
+                              .has_several = request->n_lights > 1,
                               .which = (uint8_t)which};
 }
 
@@ -99,10 +101,13 @@ static void put(struct vec v, float out[4])
     out[2] = (float)v.z;
 }
 
-static void put4(const float in[4], float out[4])
+/* A colour as displayed, straight alpha, as the shaders mix it: linear light (IEC 61966-2-1),
+ * premultiplied. */
+static void put_colour(const float in[4], float out[4])
 {
-    for (int k = 0; k < 4; k++)
-        out[k] = in[k];
+    for (int k = 0; k < 3; k++)
+        out[k] = in[3] * (float)srgb_to_linear((double)in[k]);
+    out[3] = in[3];
 }
 
 static struct vec get(const double a[3])
@@ -208,9 +213,8 @@ static void fill_pattern(struct light_block *block, const struct pattern *patter
     block->n_single = (int32_t)pattern->n_at;
     block->half_width = (float)(0.5 * pattern->width * w);
     block->opacity = (float)pattern->opacity;
-    block->is_linear = pattern->image && pattern->image->pixels->is_linear;
-    put4(pattern->foreground, block->foreground);
-    put4(pattern->background, block->background);
+    put_colour(pattern->foreground, block->foreground);
+    put_colour(pattern->background, block->background);
 }
 
 static void fill_block(struct light_block *block, const struct frame_request *request, uint32_t i)
@@ -224,9 +228,9 @@ static void fill_block(struct light_block *block, const struct frame_request *re
     else
         fill_light(block, light);
     fill_pattern(block, &light->pattern);
-    put4(request->miss, block->miss);
-    put4(request->empty, block->empty);
-    put4(request->base, block->base);
+    put_colour(request->miss, block->miss);
+    put_colour(request->empty, block->empty);
+    put_colour(request->base, block->base);
     block->want[0] = (request->planes & PLANE_LIGHT) != 0;
     block->want[1] = (request->planes & PLANE_CURVATURE) != 0;
     block->want[2] = (request->planes & PLANE_LIGHT_CHANGE) != 0;
@@ -268,12 +272,21 @@ static void bind_picture(const struct renderer *r, const struct frame_request *r
                         rectangle || sphere ? GL_CLAMP_TO_EDGE : GL_REPEAT);
 }
 
+/* For light i of those that are drawn. */
+static void bind_lights(const struct target *target, uint32_t i)
+{
+    glBindTextureUnit(1, target->lights[~i & 1]);
+    glBindTextureUnit(2, target->missed[~i & 1]);
+    glBindImageTexture(6, target->lights[i & 1], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+    glBindImageTexture(7, target->missed[i & 1], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R16F);
+}
+
 static void bind_planes(const struct target *target, enum shaded which)
 {
     glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
-    glBindImageTexture(3, target->colour, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
+    glBindImageTexture(3, target->colour, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
     if (which == SHADED_PLANES) {
         glBindImageTexture(4, target->light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
         glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
@@ -291,6 +304,7 @@ static void run_over_nothing(const struct renderer *r, const struct frame_reques
 {
     bind_picture(r, request, light);
     bind_planes(&r->target, (enum shaded)program->key.which);
+    bind_lights(&r->target, 0);
     glUseProgram(program->name);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->no_groups);
     glDispatchComputeIndirect(0);
@@ -411,7 +425,8 @@ static void shade_light(struct renderer *r, const struct frame_request *request,
     glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
     bind_picture(r, request, light);
     bind_planes(&r->target, all);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    bind_lights(&r->target, i);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     dispatch_groups(program_of(r, request, light, all), r->target.groups);
     if (edges_wanted(request))
         shade_listed(r, request, light);

@@ -6,7 +6,7 @@
 #include "server/gpu/program.h"
 
 static_assert(MAX_SHADE_PROGRAMS >= MAX_FRAME_PROGRAMS, "a frame does not evict its own");
-static_assert(sizeof(struct shade_key) == 6, "no padding: keys are compared as bytes");
+static_assert(sizeof(struct shade_key) == 7, "no padding: keys are compared as bytes");
 
 void shade_programs_begin(struct shade_programs *programs)
 {

@@ -35,6 +35,7 @@ struct shade_key {
     uint8_t pattern, soft; /* enum pattern_kind; with soft edges */
     uint8_t picture;       /* of PATTERN_IMAGE: what drivers make it anew for, shade.c; else 0 */
     uint8_t which;         /* enum shaded */
+    uint8_t has_several;   /* lights: what lies behind comes from textures, others than none */
 };
 
 /* Families that need no light: one program stands for all kinds. */

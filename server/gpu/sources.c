@@ -50,7 +50,7 @@ struct program_source source_of_single(enum single_program program)
                                              NULL};
     static const char *const vertex[] = {"view.glsl", "polygon.vert.glsl", NULL};
     static const char *const polygons[] = {"view.glsl", "basis.glsl", "polygon.frag.glsl", NULL};
-    static const char *const wireframe[] = {"wireframe.frag.glsl", NULL};
+    static const char *const wireframe[] = {"srgb.glsl", "wireframe.frag.glsl", NULL};
 #define NO_TABLES "#define TEXTURES_FREE 0\n"
     static const struct program_source sources[SINGLE_PROGRAMS] = {
         [PROGRAM_GATHER] = {NO_TABLES, {gather, NULL}},
@@ -97,9 +97,8 @@ struct program_source source_of_tables(enum table_program program,
 
 struct program_source source_of_shading(struct shade_key key)
 {
-#define COMMON                                                                                     \
-    "view.glsl", "list.glsl", "basis.glsl", "hit.glsl", "coverage.glsl", "lines.glsl",             \
-        "patterns.glsl"
+#define LINES "view.glsl", "list.glsl", "basis.glsl", "hit.glsl", "coverage.glsl", "lines.glsl"
+#define COMMON LINES, "srgb.glsl", "shown.glsl", "patterns.glsl"
     static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
     static const char *const edges[] = {COMMON,        "border.glsl",   "edges.glsl",
                                         "pieces.glsl", "rounding.glsl", "edges_shade.comp.glsl",
@@ -109,9 +108,10 @@ struct program_source source_of_shading(struct shade_key key)
     static const char *const rounded[] = {COMMON,        "border.glsl",  "edges.glsl",
                                           "pieces.glsl", "rounded.glsl", "rounded_shade.comp.glsl",
                                           NULL};
-    static const char *const planes[] = {COMMON, "groups.glsl", "shade_planes.comp.glsl", NULL};
-    static const char *const share[] = {COMMON, "groups.glsl", "share.comp.glsl", NULL};
+    static const char *const planes[] = {LINES, "groups.glsl", "shade_planes.comp.glsl", NULL};
+    static const char *const share[] = {LINES, "groups.glsl", "share.comp.glsl", NULL};
 #undef COMMON
+#undef LINES
     static const char *const *const files[SHADED_KINDS] = {all,     all,    edges, turns,
                                                            rounded, planes, share};
     struct program_source source = {.files = {files[key.which], NULL}};

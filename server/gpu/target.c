@@ -22,6 +22,9 @@ static const struct {
     {offsetof(struct target, light_change), GL_RGBA32F, 16},
 };
 
+/* What lights behind others show, where there are such. */
+enum { LIGHTS_BYTES = 2 * (8 + 2) };
+
 /* And its lists of pixels. */
 enum { N_LISTS = 7 };
 
@@ -34,7 +37,7 @@ uint64_t target_bytes(uint32_t width, uint32_t height)
     uint64_t pixel = N_LISTS * LIST_BYTES;
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         pixel += images[i].bytes;
-    return (uint64_t)width * height * pixel + N_LISTS * LIST_HEAD_BYTES;
+    return (uint64_t)width * height * (pixel + LIGHTS_BYTES) + N_LISTS * LIST_HEAD_BYTES;
 }
 
 static GLuint *image_name(struct target *target, size_t i)
@@ -133,6 +136,20 @@ bool target_reserve_rounded(struct target *target, struct error *error)
     return gpu_check("the rays of a frame", error);
 }
 
+bool target_reserve_lights(struct target *target, struct error *error)
+{
+    if (target->lights[0])
+        return true;
+    GLsizei width = (GLsizei)target->width, height = (GLsizei)target->height;
+    glCreateTextures(GL_TEXTURE_2D, 2, target->lights);
+    glCreateTextures(GL_TEXTURE_2D, 2, target->missed);
+    for (int i = 0; i < 2; i++) {
+        glTextureStorage2D(target->lights[i], 1, GL_RGBA16F, width, height);
+        glTextureStorage2D(target->missed[i], 1, GL_R16F, width, height);
+    }
+    return gpu_check("the planes of a frame's lights", error);
+}
+
 static void swap_names(GLuint *a, GLuint *b)
 {
     GLuint name = *a;
@@ -166,5 +183,7 @@ void target_finish(struct target *target)
     glDeleteFramebuffers(1, &target->framebuffer);
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         glDeleteTextures(1, image_name(target, i));
+    glDeleteTextures(2, target->lights);
+    glDeleteTextures(2, target->missed);
     *target = (struct target){0};
 }

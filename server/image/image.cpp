@@ -4,6 +4,7 @@
 // A reader is chosen by the first bytes and is given the bytes through a proxy, never a path: a
 // name from outside opens no file here.
 extern "C" {
+#include "protocol/srgb.h"
 #include "server/image/image.h"
 }
 
@@ -170,6 +171,57 @@ void make_finite(float *pixels, size_t n)
         *p = std::isnan(*p) ? 0.0f : std::clamp(*p, -most, most);
 }
 
+// What filtering takes: linear light, premultiplied by alpha. OpenImageIO says of which files alpha
+// is not in the colours yet.
+void make_light(float *pixels, size_t n, bool is_encoded, bool is_straight)
+{
+    for (float *p = pixels; p < pixels + 4 * n; p += 4) {
+        p[3] = std::clamp(p[3], 0.0f, 1.0f);
+        for (int k = 0; k < 3; k++) {
+            if (is_encoded)
+                p[k] = static_cast<float>(srgb_to_linear(static_cast<double>(p[k])));
+            if (is_straight)
+                p[k] *= p[3];
+        }
+    }
+}
+
+bool is_opaque(const uint8_t *pixels, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (pixels[4 * i + 3] < 255)
+            return false;
+    return true;
+}
+
+std::vector<float> light_of_bytes()
+{
+    std::vector<float> table(256);
+    for (int i = 0; i < 256; i++)
+        table[static_cast<size_t>(i)] = static_cast<float>(srgb_to_linear(i / 255.0));
+    return table;
+}
+
+// A transparent image of 8 bits: eight bits of premultiplied colour would be too few.
+void *floats_of(const uint8_t *bytes, size_t n, bool is_straight)
+{
+    const std::vector<float> light = light_of_bytes();
+    float *pixels = static_cast<float *>(std::malloc(n * 4 * sizeof *pixels));
+    for (size_t i = 0; pixels && i < n; i++) {
+        float alpha = static_cast<float>(bytes[4 * i + 3]) / 255.0f;
+        for (size_t k = 0; k < 3; k++)
+            pixels[4 * i + k] = light[bytes[4 * i + k]] * (is_straight ? alpha : 1.0f);
+        pixels[4 * i + 3] = alpha;
+    }
+    return pixels;
+}
+
+bool fail_memory(const OIIO::ImageSpec &spec, const char *name, struct error *error)
+{
+    return error_set(error, ERROR_SERVER, "%s: no memory for %d x %d pixels", name, spec.width,
+                     spec.height);
+}
+
 bool read_pixels(struct image *image, OIIO::ImageInput &reader, const OIIO::ImageSpec &spec,
                  const char *name, struct error *error)
 {
@@ -178,23 +230,34 @@ bool read_pixels(struct image *image, OIIO::ImageInput &reader, const OIIO::Imag
     size_t n = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
     std::unique_ptr<void, void (*)(void *)> pixels(std::calloc(n, 4 * sample_bytes), std::free);
     if (!pixels)
-        return error_set(error, ERROR_SERVER, "%s: no memory for %d x %d pixels", name, spec.width,
-                         spec.height);
+        return fail_memory(spec, name, error);
     int channels = std::min(spec.nchannels, 4);
     OIIO::TypeDesc type(is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     if (!reader.read_image(0, 0, 0, channels, type, pixels.get(),
                            static_cast<OIIO::stride_t>(4 * sample_bytes)))
         return fail_reading(reader, name, "damaged", error);
     bool has_alpha = channels == 2 || (channels == 4 && (spec.alpha_channel == 3));
+    bool is_straight = spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
     if (is_float) {
-        spread(static_cast<float *>(pixels.get()), n, channels, has_alpha, 1.0f);
-        make_finite(static_cast<float *>(pixels.get()), 4 * n);
+        float *values = static_cast<float *>(pixels.get());
+        spread(values, n, channels, has_alpha, 1.0f);
+        make_finite(values, 4 * n);
+        make_light(values, n, !spec.format.is_floating_point(), is_straight);
     } else {
-        spread<uint8_t>(static_cast<uint8_t *>(pixels.get()), n, channels, has_alpha, 255);
+        uint8_t *values = static_cast<uint8_t *>(pixels.get());
+        spread<uint8_t>(values, n, channels, has_alpha, 255);
+        is_float = !is_opaque(values, n);
+        if (is_float)
+            pixels.reset(floats_of(values, n, is_straight));
+        if (!pixels)
+            return fail_memory(spec, name, error);
     }
     *image = {static_cast<uint32_t>(spec.width), static_cast<uint32_t>(spec.height), is_float,
-              spec.format.is_floating_point(), pixels.release()};
-    return true;
+              pixels.release()};
+    if (image_check(image, name, IMAGE_MAX_PX, error))
+        return true;
+    image_finish(image);
+    return false;
 }
 
 bool decode(struct image *image, const void *bytes, size_t size, const char *name, uint32_t max_px,
@@ -233,16 +296,13 @@ constexpr size_t sample_bytes_in(enum image_type type)
     return type == IMAGE_UINT8 ? 1 : 4;
 }
 
-// 8-bit colour as HALF in [0,1].
-const std::vector<half> &half_of_byte()
+// What OpenEXR's readers take colours for: linear light, premultiplied by alpha. `alpha` is the
+// pixel's own, for its colours.
+half light_of(uint8_t value, uint8_t alpha, bool is_alpha)
 {
-    static const std::vector<half> table = [] {
-        std::vector<half> t(256);
-        for (int i = 0; i < 256; i++)
-            t[static_cast<size_t>(i)] = half(static_cast<float>(i) / 255.0f);
-        return t;
-    }();
-    return table;
+    static const std::vector<float> light = light_of_bytes();
+    float share = static_cast<float>(alpha) / 255.0f;
+    return half(is_alpha ? share : light[value] * share);
 }
 
 using channel_list = std::vector<const struct image_channel *>;
@@ -289,7 +349,11 @@ void set_attributes(OIIO::ImageSpec &spec, enum image_format format,
 {
     // OpenImageIO stamps files with the time of day unless there is a DateTime already.
     spec.attribute("DateTime", "");
-    spec.attribute("oiio:UnassociatedAlpha", 1);
+    // Rec. 709 primaries, as OpenEXR has it where a file names none.
+    if (format == IMAGE_EXR)
+        spec.attribute("oiio:ColorSpace", "Linear");
+    else
+        spec.attribute("oiio:UnassociatedAlpha", 1);
     switch (format) {
     case IMAGE_EXR:
         spec.attribute("compression", "zip:4");
@@ -311,11 +375,34 @@ void set_attributes(OIIO::ImageSpec &spec, enum image_format format,
         spec.attribute("ImageDescription", description);
 }
 
-// Copies rows [first, last) of all channels, interleaved, 8-bit samples as HALF when mixed.
+void put_light(uint8_t *to, uint8_t value, uint8_t alpha, bool is_alpha)
+{
+    half light = light_of(value, alpha, is_alpha);
+    std::memcpy(to, &light, sizeof light);
+}
+
+uint8_t alpha_at(const struct image_channel *alpha, uint32_t x, uint32_t y)
+{
+    return alpha ? static_cast<const uint8_t *>(
+                       alpha->data)[y * alpha->row_stride_bytes + x * alpha->pixel_stride_bytes]
+                 : 255;
+}
+
+// The 8-bit channel A among them, or NULL: opaque.
+const struct image_channel *alpha_of(const channel_list &channels)
+{
+    for (const struct image_channel *channel : channels)
+        if (channel->type == IMAGE_UINT8 && !std::strcmp(channel->name, "A"))
+            return channel;
+    return nullptr;
+}
+
+// Copies rows [first, last) of all channels, interleaved, 8-bit colours as light in HALF when
+// mixed.
 void gather(std::vector<uint8_t> &strip, const channel_list &channels, uint32_t width,
             uint32_t first, uint32_t last, size_t pixel_bytes, bool mixed)
 {
-    const std::vector<half> &halves = half_of_byte();
+    const struct image_channel *alpha = alpha_of(channels);
     size_t offset = 0;
     for (const struct image_channel *channel : channels) {
         size_t bytes = sample_bytes_in(channel->type);
@@ -327,7 +414,7 @@ void gather(std::vector<uint8_t> &strip, const channel_list &channels, uint32_t 
                 if (bytes == 4)
                     std::memcpy(to, from, 4);
                 else if (mixed)
-                    std::memcpy(to, &halves[*from], sizeof(half));
+                    put_light(to, *from, alpha_at(alpha, x, y), channel == alpha);
                 else
                     *to = *from;
                 from += channel->pixel_stride_bytes;

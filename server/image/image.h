@@ -16,12 +16,12 @@
 /* Width and height of a file written. */
 #define IMAGE_MAX_PX (1u << 20)
 
-/* A decoded light image: RGBA, top row first, rows contiguous, values as stored in the file (no
- * colour conversion). Owned by the caller; free with image_finish(). */
+/* A decoded light image: RGBA, top row first, rows contiguous. Files of integers are read as
+ * sRGB-encoded, files of floats as linear light. Owned by the caller; free with image_finish(). */
 struct image {
     uint32_t width_px, height_px;
-    bool is_float;  /* pixels are float[4] (file held more than 8 bits), else uint8_t[4] */
-    bool is_linear; /* linear light, to be shown through the sRGB curve: the file held floats */
+    bool is_float; /* pixels are float[4], linear light, premultiplied by alpha: the file has more
+                      than 8 bits or is transparent; else uint8_t[4], sRGB-encoded and opaque */
     void *pixels;
 };
 

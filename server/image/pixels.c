@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "server/image/blend.h"
 #include "server/image/image.h"
 
 void image_finish(struct image *image)
@@ -53,19 +54,6 @@ bool text_check(const struct text *text)
     return true;
 }
 
-/* Puts a colour of some coverage over a pixel of straight alpha. */
-static void blend(uint8_t *pixel, const float colour[4], float coverage)
-{
-    float over = colour[3] * coverage, under = (float)pixel[3] / 255.0f * (1 - over);
-    if (over + under <= 0)
-        return;
-    for (int k = 0; k < 3; k++) {
-        float mixed = over * colour[k] * 255.0f + under * (float)pixel[k];
-        pixel[k] = (uint8_t)lroundf(mixed / (over + under));
-    }
-    pixel[3] = (uint8_t)lroundf((over + under) * 255.0f);
-}
-
 void text_draw(const struct text *text, uint8_t *rgba, uint32_t width_px, uint32_t height_px,
                int x_px, int y_px, enum text_align align, const float colour[4])
 {
@@ -78,8 +66,8 @@ void text_draw(const struct text *text, uint8_t *rgba, uint32_t width_px, uint32
     for (int64_t row = 0; row < text->height_px; row++)
         for (int64_t column = 0; column < w; column++) {
             int64_t x = left + column, y = top + row;
-            if (x >= 0 && x < width_px && y >= 0 && y < height_px)
-                blend(rgba + 4 * (size_t)(y * width_px + x), colour,
-                      text->coverage[row * w + column]);
+            float coverage = text->coverage[row * w + column];
+            if (coverage > 0 && x >= 0 && x < width_px && y >= 0 && y < height_px)
+                blend_pixel(rgba + 4 * (size_t)(y * width_px + x), colour, coverage);
         }
 }

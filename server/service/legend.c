@@ -1,6 +1,9 @@
 #include "server/service/legend.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "server/image/blend.h"
 
 /* Lengths in sizes of the font, that is 1/45 of the picture's height. */
 #define FONT_SHARE 45
@@ -27,13 +30,18 @@ static uint8_t *pixel_at(uint8_t *rgba, uint32_t width_px, int x, int y)
 
 static void darken(uint8_t *rgba, uint32_t width_px, const struct box *box)
 {
+    static const float black[4] = {0, 0, 0, 1};
+    uint8_t before[4] = {0}, after[4] = {0}; /* most pixels are as the one before */
+    blend_pixel(after, black, PANEL_SHARE);
     for (int y = box->y; y < box->y + box->height; y++)
         for (int x = box->x; x < box->x + box->width; x++) {
             uint8_t *pixel = pixel_at(rgba, width_px, x, y);
-            float under = (1 - PANEL_SHARE) * (float)pixel[3] / 255;
-            for (int k = 0; k < 3; k++)
-                pixel[k] = (uint8_t)lroundf(under * (float)pixel[k] / (PANEL_SHARE + under));
-            pixel[3] = (uint8_t)lroundf((PANEL_SHARE + under) * 255);
+            if (memcmp(pixel, before, sizeof before) != 0) {
+                memcpy(before, pixel, sizeof before);
+                memcpy(after, pixel, sizeof after);
+                blend_pixel(after, black, PANEL_SHARE);
+            }
+            memcpy(pixel, after, sizeof after);
         }
 }
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/image/blend.h"
 #include "server/service/legend.h"
 #include "server/service/log.h"
 
@@ -219,12 +220,6 @@ static bool is_empty(const struct painting *painting, size_t i)
     return painting->ptex ? painting->ptex[i].face == NO_FACE : isnan(painting->position[i][0]);
 }
 
-static void to_bytes(const float colour[4], uint8_t rgba[4])
-{
-    for (int k = 0; k < 4; k++)
-        rgba[k] = (uint8_t)(255 * fminf(1, fmaxf(0, colour[k])) + 0.5f);
-}
-
 /* The pixel whose surface a partly covered one shows: itself, or where its centre sees none the
  * first neighbour whose centre does. n_pixels when there is none. */
 static size_t surface_near(const struct painting *painting, size_t i)
@@ -240,13 +235,13 @@ static size_t surface_near(const struct painting *painting, size_t i)
     return painting->n_pixels;
 }
 
-/* Straight alpha; `share` is a's, the rest is b's. */
-static void blend(const float a[4], const float b[4], float share, float mixed[4])
+/* Most pixels are of one colour alone. */
+static void paint_share(const float shown[4], const float empty[4], float share, float painted[4])
 {
-    float of_a = share * a[3], of_b = (1 - share) * b[3];
-    mixed[3] = of_a + of_b;
-    for (int k = 0; k < 3; k++)
-        mixed[k] = mixed[3] > 0 ? (of_a * a[k] + of_b * b[k]) / mixed[3] : 0;
+    if (share < 1)
+        blend(shown, empty, share, painted);
+    else
+        memcpy(painted, shown, 4 * sizeof *painted);
 }
 
 /* Returns the value at the pixel's own centre; NaN: it shows none. */
@@ -260,9 +255,9 @@ static double paint_pixel(const struct painting *painting, size_t i, const float
     if (from == painting->n_pixels)
         memcpy(painted, empty, sizeof shown);
     else if (colour_at(painting, from, shown, &value))
-        blend(shown, empty, share, painted);
+        paint_share(shown, empty, share, painted);
     else
-        blend(miss, empty, share, painted);
+        paint_share(miss, empty, share, painted);
     return from == i && isfinite(value) ? value : NAN;
 }
 
@@ -294,7 +289,7 @@ static void paint_pixels(const struct painting *painting, uint8_t (*rgba)[4], co
     for (size_t i = 0; i < painting->n_pixels; i++) {
         float painted[4];
         note(found, paint_pixel(painting, i, miss, empty, painted), i);
-        to_bytes(painted, rgba[i]);
+        blend_to_bytes(painted, rgba[i]);
     }
 }
 

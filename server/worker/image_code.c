@@ -10,7 +10,6 @@ void image_write(struct sink *sink, const struct image *image)
     sink_u32(sink, image->width_px);
     sink_u32(sink, image->height_px);
     sink_u32(sink, image->is_float);
-    sink_u32(sink, image->is_linear);
     sink_bytes(sink, image->pixels, image_bytes(image));
 }
 
@@ -20,12 +19,11 @@ bool image_take(struct source *source, struct image *image, const char *name, ui
     struct image taken = {0};
     taken.width_px = source_u32(source);
     taken.height_px = source_u32(source);
-    const uint32_t is_float = source_u32(source), is_linear = source_u32(source);
+    const uint32_t is_float = source_u32(source);
     *image = (struct image){0};
     taken.is_float = is_float != 0;
-    taken.is_linear = is_linear != 0;
     /* Sides first: only then their product is a number of bytes. */
-    if (!source->ok || is_float > 1 || is_linear > 1 || taken.width_px > IMAGE_MAX_PX ||
+    if (!source->ok || is_float > 1 || taken.width_px > IMAGE_MAX_PX ||
         taken.height_px > IMAGE_MAX_PX || source->left != image_bytes(&taken))
         return error_set(error, ERROR_IMAGE, "%s: the process that read it handed back no image",
                          name);

@@ -124,7 +124,7 @@ void shade(const job &job, vec3 direction, vec3 p, vec3 n, pixel *pixel)
     if (!(distance > 0 && s >= 0 && s <= 1 && t >= 0 && t <= 1))
         return;
     double phase = s * job.stripe_count;
-    pixel->colour = phase - std::floor(phase) < job.stripe_duty ? 1.0f : 0.1f;
+    pixel->colour = phase - std::floor(phase) < job.stripe_duty ? 1.0f : 0.1f; /* light, in EXR */
     pixel->s = (float)s;
     pixel->t = (float)t;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/oracle/fault.h"
+#include "tests/oracle/srgb.h"
 
 namespace
 {
@@ -173,15 +174,25 @@ rgba mixed(const rgba &a, const rgba &b, double b_share)
     return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b), mix(a.a, b.a)};
 }
 
-/* Straight alpha. */
+/* Both premultiplied. */
 rgba over(const rgba &top, const rgba &below)
 {
-    double share = below.a * (1 - top.a), alpha = top.a + share;
-    if (!(alpha > 0))
+    double share = 1 - top.a;
+    return {top.r + share * below.r, top.g + share * below.g, top.b + share * below.b,
+            top.a + share * below.a};
+}
+
+/* From displayed and straight to light, and back. */
+rgba to_light(const rgba &c)
+{
+    return {c.a * light_of(c.r), c.a * light_of(c.g), c.a * light_of(c.b), c.a};
+}
+
+rgba to_displayed(const rgba &c)
+{
+    if (!(c.a > 0))
         return {0, 0, 0, 0};
-    rgba colour = mixed(top, below, share / alpha);
-    colour.a = alpha;
-    return colour;
+    return {displayed_of(c.r / c.a), displayed_of(c.g / c.a), displayed_of(c.b / c.a), c.a};
 }
 
 double bright_share(const line_pattern &p, const light_hit &hit)
@@ -222,7 +233,7 @@ rgba pattern_colour(const line_pattern &pattern, const light_hit &hit)
     double share = bright_share(pattern, hit);
     if (pattern.kind == line_pattern_kind::rainbow)
         return hue_colour(share);
-    return mixed(pattern.background, pattern.foreground, share);
+    return mixed(to_light(pattern.background), to_light(pattern.foreground), share);
 }
 
 double coordinate_difference(double a, double b, bool wraps)
@@ -293,7 +304,8 @@ rgba line_tracer::colour(vec3 x, vec3 n) const
     rgba colour = {0, 0, 0, 0};
     bool any = false;
     double shade = 0.3 + 0.7 * std::fabs(dot(n, view_from_camera(x)));
-    rgba base = {setup.base.r * shade, setup.base.g * shade, setup.base.b * shade, setup.base.a};
+    rgba base = to_light(setup.base);
+    base = {base.r * shade, base.g * shade, base.b * shade, base.a};
     size_t n_lights = setup.meets_lights() ? setup.lights.size() : 1;
     for (size_t i = 0; i < n_lights; i++) {
         const line_light &light = setup.lights[i];
@@ -304,5 +316,5 @@ rgba line_tracer::colour(vec3 x, vec3 n) const
         colour =
             over(colour, mixed(base, pattern_colour(light.pattern, hit), light.pattern.opacity));
     }
-    return any ? colour : setup.miss;
+    return any ? to_displayed(colour) : setup.miss;
 }

@@ -15,8 +15,8 @@ enum class line_light_kind { rectangle, plane, tunnel, sphere };
 enum class line_pattern_kind { stripes, lattice, circles, lines, rainbow, distance };
 enum class line_eye_kind { camera, point, direction };
 
-struct rgba {
-    double r = 0, g = 0, b = 0, a = 1; /* [0,1], as displayed */
+struct rgba { /* [0,1], as displayed and straight, or linear light and premultiplied by alpha */
+    double r = 0, g = 0, b = 0, a = 1;
 };
 
 struct line_pattern {
@@ -70,7 +70,7 @@ class line_tracer
     line_tracer(const line_setup &setup, const view &camera);
     /* For the surface point x with unit normal n, along the winding. */
     light_hit meet(vec3 x, vec3 n, const line_light &light) const;
-    /* The colour of one sample there, lights over each other. */
+    /* The colour of one sample there, lights over each other, as displayed. */
     rgba colour(vec3 x, vec3 n) const;
     /* Whether rounding decides which way a highlight's normal faces. */
     bool at_turn(vec3 x, vec3 n) const;
@@ -83,8 +83,8 @@ class line_tracer
     vec3 forward, camera_up;
 };
 
-/* The colour of a pattern at a place on its light: foreground or background, or between them where
- * an edge is soft. Without opacity. */
+/* What a pattern shows at a place on its light, as linear light: foreground or background, or
+ * between them where an edge is soft. Without opacity. */
 rgba pattern_colour(const line_pattern &pattern, const light_hit &hit);
 
 /* a - b for coordinates of a light, the short way round where they wrap. */

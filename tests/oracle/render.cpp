@@ -1,4 +1,5 @@
 #include "tests/oracle/render.h"
+#include "tests/oracle/srgb.h"
 
 #include <csignal>
 #include <cstring>
@@ -69,6 +70,8 @@ void read_colour(OIIO::ImageInput *input, const char *channel, std::vector<float
     values->resize((size_t)input->spec().image_pixels());
     if (!input->read_image(0, 0, index, index + 1, OIIO::TypeFloat, values->data()))
         throw std::runtime_error(std::string("channel ") + channel + ": " + input->geterror());
+    for (float &value : *values)
+        value = (float)displayed_of((double)value);
 }
 
 void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)

@@ -14,7 +14,7 @@ const uint32_t no_face = 0xffffffffu;
 /* What a frame's file says, rows top first. Planes that were not asked for are empty. */
 struct planes {
     int width_px = 0, height_px = 0;
-    std::vector<float> red, green, blue; /* of the colour; with the light plane only */
+    std::vector<float> red, green, blue; /* of the colour, displayed; with the light plane only */
     std::vector<float> px, py, pz, nx, ny, nz, u, v, s, t, k_min, k_max;
     std::vector<float> dsdx, dsdy, dtdx, dtdy; /* of the light coordinates, a pixel */
     std::vector<uint32_t> face;

@@ -6,6 +6,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include "tests/oracle/render.h"
+#include "tests/oracle/srgb.h"
 
 static picture read_picture(const std::string &path)
 {
@@ -45,10 +46,10 @@ std::vector<double> averaged(const picture &large, int scale)
             size_t from = ((size_t)y * (size_t)large.width_px + (size_t)x) * 3;
             size_t to = ((size_t)(y / scale) * (size_t)width + (size_t)(x / scale)) * 3;
             for (size_t k = 0; k < 3; k++)
-                mean[to + k] += large.rgb[from + k];
+                mean[to + k] += light_of(large.rgb[from + k] / 255.0);
         }
     for (double &value : mean)
-        value /= scale * scale;
+        value = 255 * displayed_of(value / (scale * scale));
     return mean;
 }
 

@@ -17,7 +17,8 @@ struct picture {
 picture render_picture(const std::string &sheen, const std::string &model, int width_px,
                        int height_px, const std::vector<std::string> &options);
 
-/* Each value's mean over scale x scale pixels of a picture. */
+/* Each value's mean over scale x scale pixels of a picture, taken in linear light and displayed, in
+ * 1/255. */
 std::vector<double> averaged(const picture &large, int scale);
 
 /* The largest difference of a channel, of every pixel, in 1/255. Throws when sizes differ. */

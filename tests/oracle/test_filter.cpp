@@ -12,6 +12,7 @@
 #include "tests/oracle/model.h"
 #include "tests/oracle/samples.h"
 #include "tests/oracle/scene.h"
+#include "tests/oracle/srgb.h"
 #include "tests/oracle/verdict.h"
 #include "tests/oracle/view.h"
 
@@ -121,7 +122,7 @@ struct view_judge {
     {
         const uint8_t black[3] = {0, 0, 0};
         std::vector<double> truth = this->truth(part, black, [&](size_t i, int) {
-            return 255 - 255.0 * samples.n_empty[i] / light_samples::per_pixel;
+            return 255 * displayed_of(1 - 1.0 * samples.n_empty[i] / light_samples::per_pixel);
         });
         std::vector<double> error = differences(filtered, truth), outline, outline_off;
         std::vector<double> error_off = differences(draw(device, outline_request(), false), truth);
@@ -143,9 +144,9 @@ struct view_judge {
     {
         std::vector<uint16_t> bright = samples.bright(count);
         std::vector<double> truth = this->truth(part, empty, [&](size_t i, int k) {
-            return (255.0 * bright[i] + miss[k] * samples.n_miss[i] +
-                    empty[k] * samples.n_empty[i]) /
-                   light_samples::per_pixel;
+            double light = bright[i] + light_of(miss[k] / 255.0) * samples.n_miss[i] +
+                           light_of(empty[k] / 255.0) * samples.n_empty[i];
+            return 255 * displayed_of(light / light_samples::per_pixel);
         });
         frame_request stripes = request();
         stripes.lights[0].pattern.count = count;

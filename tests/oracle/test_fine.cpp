@@ -10,6 +10,7 @@
 
 #include "tests/oracle/frame_loop.h"
 #include "tests/oracle/lines.h"
+#include "tests/oracle/srgb.h"
 
 namespace
 {
@@ -152,8 +153,9 @@ void judge(const std::string &sheen, const model &model, const view &chosen,
                                         &planes, &exit_code);
         if (!verdict->check(wrong.empty(), wrong))
             return;
-        figures f = measure(planes, fine_pattern.mean);
-        double mean_error = std::fabs(f.sum / (double)f.n - fine_pattern.mean);
+        double mean = displayed_of(fine_pattern.mean);
+        figures f = measure(planes, mean);
+        double mean_error = std::fabs(f.sum / (double)f.n - mean);
         double off = quantile(f.off, 0.999);
         std::printf("%-12s %-8s %-8s %-6s %6zu px %4zu runs | mean off %5.2f/255, p99.9 of a pixel "
                     "%6.2f/255 "

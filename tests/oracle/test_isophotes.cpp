@@ -10,6 +10,7 @@
 #include "tests/oracle/cage_file.h"
 #include "tests/oracle/frame_loop.h"
 #include "tests/oracle/lines.h"
+#include "tests/oracle/srgb.h"
 
 namespace
 {
@@ -56,7 +57,7 @@ double paraboloid_s(const projector &camera, double x, double y)
     return std::atan(std::hypot(p.x, p.y)) / M_PI;
 }
 
-/* The mean colour of the pixel at (x, y). */
+/* The colour of the pixel at (x, y): of the mean light over it. */
 double paraboloid_colour(const projector &camera, const line_pattern &pattern, int x, int y)
 {
     double sum = 0;
@@ -70,7 +71,7 @@ double paraboloid_colour(const projector &camera, const line_pattern &pattern, i
         hit.height = 360;
         sum += pattern_colour(pattern, hit).g;
     }
-    return sum / lattice_points;
+    return displayed_of(sum / lattice_points);
 }
 
 /* All pixels about it are on the surface. */
