@@ -18,7 +18,7 @@ struct light_block {
     float single[MAX_LINES];
     float opacity, half_width;
     int32_t n_single, is_hindmost, is_foremost, is_one_sided, has_direction;
-    int32_t want[4];
+    _Alignas(16) int32_t want[4];
 };
 
 /* What a software device makes a program anew for: an image whose texels are others, or which has a
@@ -37,7 +37,8 @@ static struct shade_key key_of(const struct frame_request *request, const struct
     const struct pattern *pattern = &light->pattern;
     const struct renderer_image *image = pattern->kind == PATTERN_IMAGE ? pattern->image : NULL;
     if (which == SHADED_SHARE) /* whatever the light shows */
-        return (struct shade_key){(uint8_t)family, (uint8_t)light->kind, 0, 0, 0, (uint8_t)which};
+        return (struct shade_key){
+            .family = (uint8_t)family, .light = (uint8_t)light->kind, .which = (uint8_t)which};
     return (struct shade_key){.family = (uint8_t)family,
                               .light = shade_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
                               .pattern = (uint8_t)pattern->kind,

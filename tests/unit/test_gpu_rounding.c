@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "protocol/srgb.h"
 #include "server/gpu/renderer.h"
 #include "tests/unit/cage_tables.h"
 
@@ -107,13 +108,13 @@ static void compare(const struct scene *scene, double quad_px, double *mean, dou
         for (size_t k = 0; k < SIDE * SIDE; k++) {
             size_t x = i % WIDTH * SIDE + k % SIDE, y = i / WIDTH * SIDE + k / SIDE;
             int value = sample[y * WIDTH * SIDE + x][0];
-            truth += value / (double)(SIDE * SIDE);
+            truth += srgb_to_linear(value / 255.0) / (SIDE * SIDE);
             least = value < least ? value : least;
             most = value > most ? value : most;
         }
         if (least == most)
             continue;
-        double off = fabs(colour[i][0] - truth);
+        double off = fabs(colour[i][0] - 255 * srgb_from_linear(truth));
         sum += off;
         n++;
         *largest = fmax(*largest, off);
@@ -153,12 +154,13 @@ static void test_many_ridges(void **state)
     scene_finish(&scene);
 }
 
+/* Mean light, 255 for white. */
 static double brightness(const struct frame *frame, size_t n)
 {
     const uint8_t(*colour)[4] = frame->plane[0];
     double sum = 0;
     for (size_t i = 0; i < n; i++)
-        sum += colour[i][0];
+        sum += 255 * srgb_to_linear(colour[i][0] / 255.0);
     return sum / (double)n;
 }
 

@@ -139,18 +139,18 @@ static void test_outline(void **state)
     const float black[4] = {0, 0, 0, 1};
     show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     assert_colour(0, 255, 128, 128, 255);
-    assert_colour(1, 0, 96, 96, 255);
-    assert_colour(2, 0, 64, 64, 255); /* from the left */
+    assert_colour(1, 0, 112, 112, 255); /* 3/4 of the light */
+    assert_colour(2, 0, 92, 92, 255);   /* from the left */
     assert_colour(3, 0, 0, 0, 255);
-    assert_colour(4, 64, 32, 32, 255); /* from above */
+    assert_colour(4, 137, 65, 65, 255); /* from above */
     assert_colour(5, 0, 0, 0, 255);
-    assert_colour(6, 0, 64, 64, 255); /* from the corner */
+    assert_colour(6, 0, 92, 92, 255); /* from the corner */
     assert_colour(7, 0, 0, 0, 255);   /* nobody knows */
     show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_colour(1, 0, 128, 128, 191); /* through to what has no colour */
     planes.normal[1][0] = NAN;
     show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
-    assert_colour(1, 0, 38, 77, 255); /* 3/4 of MISS */
+    assert_colour(1, 0, 44, 89, 255); /* 3/4 of MISS */
 }
 
 static void test_normals(void **state)
