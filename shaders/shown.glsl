@@ -35,9 +35,12 @@ Shown shown_behind(ivec2 p)
     return Shown(texelFetch(behind_light, p, 0), texelFetch(behind_missed, p, 0).x);
 }
 
+// The least alpha that eight bits hold: a colour of less has no digits and is 0.
+const float LEAST_ALPHA = 0.5 / 255.0;
+
 void put_colour(ivec2 p, vec4 light)
 {
-    vec3 straight = light.a > 0.0 ? light.rgb / light.a : vec3(0.0);
+    vec3 straight = light.a >= LEAST_ALPHA ? light.rgb / light.a : vec3(0.0);
     imageStore(colour, p, vec4(srgb_encoded(straight), light.a));
 }
 

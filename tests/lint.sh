@@ -42,8 +42,8 @@ no_include server/service 'server/cage/read/|server/worker/([a-z]*_tasks|sandbox
 no_include server/gpu 'server/(cage/read|worker)/'
 no_include server/limit 'server/(cage/read|worker)/'
 no_include server/limit 'server/(gpu|image|service)|protocol/|client/'
-no_include server/image 'server/(cage|limit|gpu|service|worker)|protocol/|client/'
-no_include server/gpu 'server/service|protocol/([^r]|r[^a])|client/'
+no_include server/image 'server/(cage|limit|gpu|service|worker)|protocol/([^s]|s[^r])|client/'
+no_include server/gpu 'server/service|protocol/([^rs]|r[^a]|s[^r])|client/'
 no_include server/service 'client/|server/gpu/([^r]|r[^e]|re[^n]|render[^e])'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/gpu/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \

@@ -248,7 +248,10 @@ void clear_shaded(const struct renderer *r, GLuint texture, GLenum format, const
 static void clear_planes(const struct renderer *r, const struct frame_request *request)
 {
     static const GLfloat none[4] = {NAN, NAN, NAN, NAN};
-    clear_shaded(r, r->target.colour, GL_RGBA, request->empty);
+    static const GLfloat clear[4] = {0};
+    /* As shaders/shown.glsl has it: a clear colour is 0. */
+    bool is_clear = request->empty[3] < 0.5f / 255;
+    clear_shaded(r, r->target.colour, GL_RGBA, is_clear ? clear : request->empty);
     if (request->planes & PLANE_LIGHT)
         clear_shaded(r, r->target.light, GL_RG, none);
     if (request->planes & PLANE_CURVATURE)

@@ -22,11 +22,14 @@ namespace
 /* Over all pixels of a frame, in 1/255. */
 const double max_mean = 1, max_p99 = 8;
 /* The small car is the exception: at 640 x 480 many of its parts are narrower than two pixels, and
- * what no pixel's centre sees cannot be known from the pixels around. */
-const double max_p99_small_car = 11;
+ * what no pixel's centre sees cannot be known from the pixels around. The sRGB curve stretches the
+ * errors of dark pixels: 12.6, 10.3 and 9.7 were measured. */
+const double max_p99_small_car = 13;
 /* Over the pixels that an outline runs through, as measured: of 16 rays one more or less is 16/255,
  * and corners of borders, of which only the nearest side is known, cost more. */
 const double max_outline_mean = 20, min_outline_mean_off = 40;
+/* A pixel that no ray leaves is white but for the rounding of the sRGB curve. */
+const double almost_white = 254.9;
 
 const uint8_t miss[3] = {0x29, 0x30, 0x3b}, empty[3] = {0x80, 0x80, 0x80};
 const std::vector<std::string> colour_options = {"--miss", "#29303b", "--empty", "#808080"};
@@ -127,7 +130,7 @@ struct view_judge {
         std::vector<double> error = differences(filtered, truth), outline, outline_off;
         std::vector<double> error_off = differences(draw(device, outline_request(), false), truth);
         for (size_t i = 0; i < error.size(); i++)
-            if (truth[3 * i] > 0 && truth[3 * i] < 255) {
+            if (truth[3 * i] > 0 && truth[3 * i] < almost_white) {
                 outline.push_back(error[i]);
                 outline_off.push_back(error_off[i]);
             }

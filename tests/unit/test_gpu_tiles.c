@@ -203,13 +203,13 @@ static void test_abandoned(void **state)
     for (int k = 0; k < 2; k++) {
         struct frame_request request = request_for(&tables, 300, 300);
         struct countdown countdown = {k == 0 ? 4 : 2};
-        struct frame frame = render(renderer, model, &request); /* whose programs are there then */
-        frame_finish(&frame);
         if (k == 1) { /* asked at the start, and before the second of eight lights */
             request.n_lights = MAX_LIGHTS;
             for (int i = 1; i < MAX_LIGHTS; i++)
                 request.lights[i] = request.lights[0];
         }
+        struct frame frame = render(renderer, model, &request); /* whose programs are there then */
+        frame_finish(&frame);
         struct frame_work work = {
             .request = &request, .tile_px = k == 0 ? 1 : 0, .watch = {is_over, &countdown}};
         struct error error = {0};
