@@ -17,7 +17,7 @@ namespace
 
 const int width_px = 320, height_px = 240;
 const double max_off_px = 0.02;
-const double colour_rounding = 0.5 / 255;
+const double colour_rounding = 2.3 * 0.5 / 255;     /* as light: the sRGB curve's steepest */
 const int lattice_points = 610, lattice_step = 377; /* of a Fibonacci lattice on the pixel */
 const double lattice_error = 0.004;                 /* of an edge's share of the pixel */
 
@@ -57,7 +57,7 @@ double paraboloid_s(const projector &camera, double x, double y)
     return std::atan(std::hypot(p.x, p.y)) / M_PI;
 }
 
-/* The colour of the pixel at (x, y): of the mean light over it. */
+/* The mean light over the pixel at (x, y). */
 double paraboloid_colour(const projector &camera, const line_pattern &pattern, int x, int y)
 {
     double sum = 0;
@@ -71,7 +71,7 @@ double paraboloid_colour(const projector &camera, const line_pattern &pattern, i
         hit.height = 360;
         sum += pattern_colour(pattern, hit).g;
     }
-    return displayed_of(sum / lattice_points);
+    return sum / lattice_points;
 }
 
 /* All pixels about it are on the surface. */
@@ -128,7 +128,7 @@ void judge_paraboloid(const std::string &sheen, bool orthographic, verdict *verd
             double down = paraboloid_s(camera, x + 0.5, y + 0.51);
             off_px.push_back(std::fabs(planes.s[i] - s) * 0.01 / std::hypot(right - s, down - s));
             double colour = paraboloid_colour(camera, pattern, x, y);
-            off_colour.push_back(std::fabs(planes.green[i] - colour));
+            off_colour.push_back(std::fabs(light_of((double)planes.green[i]) - colour));
         }
     double worst_px = quantile(off_px, 1), worst_colour = quantile(off_colour, 1);
     std::printf("paraboloid %-8s %6zu px | s off %.1e px | colour off %.2f/255, p99.9 %.2f/255\n",

@@ -1,0 +1,93 @@
+"""How colours mix: as linear light, premultiplied by alpha."""
+import os
+import re
+import shutil
+import subprocess
+import unittest
+
+from daemon import MODELS, SHEEN, DaemonCase
+from test_client import sheen
+from test_surface import read_png
+
+PLANE = os.path.join(MODELS, "plane.obj")
+# A plane that fills the picture, so that no pixel is at an edge, and a light above it.
+VIEW = ("--size", "40x30", "--eye", "0,-2,3", "--target", "0,0,0", "--fov", "10")
+HERE = ("--light-u", "1,0,0", "--light-v", "0,1,0")
+PLANE_LIGHT = ("--light", "plane", "--light-center", "0,0,4", *HERE)
+MIDDLE = 15, 20
+
+
+@unittest.skipUnless(os.path.exists(SHEEN), "no client in this build")
+class Colours(DaemonCase):
+    def draw(self, name, *arguments):
+        path = os.path.join(self.daemon.folder, name)
+        done = sheen("render", PLANE, "-o", path, "--server", self.daemon.unix, "-q", *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return path
+
+    def pixels(self, *arguments):
+        """Rows of pixels, three channels each, or four where any is not opaque."""
+        width, _, rows = read_png(self.draw("a.png", *arguments))
+        n = len(rows[0]) // width
+        return [[tuple(row[n * x:n * x + n]) for x in range(width)] for row in rows]
+
+    def middle(self, *arguments):
+        return self.pixels(*VIEW, *arguments)[MIDDLE[0]][MIDDLE[1]]
+
+    def assert_near(self, found, want, most=1):
+        self.assertEqual(len(found), len(want), found)
+        self.assertLessEqual(max(abs(a - b) for a, b in zip(found, want)), most, (found, want))
+
+    def test_fine_stripes_are_half_the_light(self):
+        """And stand out from the grey that is empty: half the light is displayed as 188."""
+        self.assert_near(self.middle(*PLANE_LIGHT, "--pattern", "stripes:count=5000"),
+                         (188, 188, 188))
+
+    def test_a_clear_colour_is_in_no_mean(self):
+        for clear in "#00000000", "#0000ff00":
+            with self.subTest(clear=clear):
+                self.assert_near(self.middle(
+                    *PLANE_LIGHT, "--pattern", f"stripes:count=5000,bg={clear}",
+                    "--light", "plane", "--light-center", "0,0,5", *HERE,
+                    "--pattern", "stripes:duty=1,fg=#ff0000"), (255, 188, 188))
+
+    def test_a_light_that_is_not_met_changes_nothing(self):
+        one = PLANE_LIGHT + ("--pattern", "stripes:duty=1,fg=#ff000066")
+        far = ("--light", "rectangle", "--light-center", "100,0,5", *HERE)
+        self.assertEqual(self.middle(*one), (255, 0, 0, 102))
+        self.assertEqual(self.middle(*one, *far), (255, 0, 0, 102))
+        self.assertEqual(self.middle(*far, *one), (255, 0, 0, 102))
+
+    def test_opacity_paints_no_clear_colour(self):
+        """Half of the base is what is seen, in the base's own colour."""
+        red, green, blue, alpha = self.middle(
+            *PLANE_LIGHT, "--pattern", "stripes:duty=1,fg=#ff000000,opacity=.5", "--base",
+            "#0000ff")
+        self.assertEqual((red, green, alpha), (0, 0, 128))
+        self.assertGreater(blue, 200)
+
+    def test_an_edge_shows_each_light_once(self):
+        """Two lights of alpha 0.4 over each other make 0.64, at an edge its share of the pixel."""
+        both = [word for z in (4, 5) for word in
+                ("--light", "plane", "--light-center", f"0,0,{z}", *HERE, "--pattern",
+                 "stripes:duty=1,fg=#ff000066")]
+        found = {pixel for row in self.pixels("--size", "64x48", "--empty", "#00000000", *both)
+                 for pixel in row}
+        inside = (255, 0, 0, 163)
+        self.assertIn(inside, found)
+        edges = {pixel for pixel in found if 0 < pixel[3] < 163}
+        self.assertGreater(len(edges), 3)
+        self.assertEqual({pixel[:3] for pixel in edges}, {(255, 0, 0)})
+        self.assertEqual(max(pixel[3] for pixel in found), 163)
+
+    @unittest.skipUnless(shutil.which("oiiotool"), "no oiiotool here")
+    def test_exr_is_linear(self):
+        away = ("--size", "8x6", "--eye", "0,-2,3", "--target", "0,-4,6", "--empty", "#808080")
+        self.assertEqual({p for row in self.pixels(*away) for p in row}, {(128, 128, 128)})
+        path = self.draw("a.exr", *away)
+        told = subprocess.run(["oiiotool", path, "--dumpdata"],
+                              capture_output=True, text=True, timeout=60, check=True).stdout
+        found = re.search(r"Pixel \(3, 2\): ([0-9.]+) ([0-9.]+) ([0-9.]+) ([0-9.]+)", told)
+        self.assertTrue(found, told)
+        for value, want in zip(found.groups(), (0.2158, 0.2158, 0.2158, 1)):
+            self.assertAlmostEqual(float(value), want, delta=1e-4)
