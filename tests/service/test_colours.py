@@ -85,7 +85,7 @@ class Colours(DaemonCase):
         away = ("--size", "8x6", "--eye", "0,-2,3", "--target", "0,-4,6", "--empty", "#808080")
         self.assertEqual({p for row in self.pixels(*away) for p in row}, {(128, 128, 128)})
         path = self.draw("a.exr", *away)
-        told = subprocess.run(["oiiotool", path, "--dumpdata"],
+        told = subprocess.run(["oiiotool", "--dumpdata", path],
                               capture_output=True, text=True, timeout=60, check=True).stdout
         found = re.search(r"Pixel \(3, 2\): ([0-9.]+) ([0-9.]+) ([0-9.]+) ([0-9.]+)", told)
         self.assertTrue(found, told)
