@@ -56,7 +56,6 @@ const struct text_row TEXT_PATTERNS[] = {
      KIND(SHEEN_RAINBOW) | KIND(SHEEN_DISTANCE))
 #define PERIODIC (ALL_KINDS & ~KIND(SHEEN_LINES))
 #define WAVES (PERIODIC & ~KIND(SHEEN_RAINBOW))
-#define TURNED (ALL_KINDS & ~KIND(SHEEN_CIRCLES) & ~KIND(SHEEN_DISTANCE))
 #define TWO_COLOURS (ALL_KINDS & ~KIND(SHEEN_RAINBOW))
 
 /* Numbers among a pattern's keys. */
@@ -69,7 +68,7 @@ static const struct number_key {
     {"count", offsetof(struct sheen_pattern, count), RANGE_PATTERN_COUNT, PERIODIC},
     {"period", offsetof(struct sheen_pattern, period), RANGE_PERIOD, PERIODIC},
     {"duty", offsetof(struct sheen_pattern, duty), RANGE_DUTY, WAVES},
-    {"rotation", offsetof(struct sheen_pattern, rotation_deg), RANGE_ROTATION, TURNED},
+    {"rotation", offsetof(struct sheen_pattern, rotation_deg), RANGE_ROTATION, ALL_KINDS},
     {"offset", offsetof(struct sheen_pattern, offset), RANGE_PATTERN_OFFSET, PERIODIC},
     {"soft", offsetof(struct sheen_pattern, soft), RANGE_SOFT, TWO_COLOURS},
     {"opacity", offsetof(struct sheen_pattern, opacity), RANGE_OPACITY, ALL_KINDS},
@@ -82,7 +81,7 @@ const struct text_row TEXT_PATTERN_KEYS[] = {
     {"period", "length of one period, instead of count; not of lines",
      "in the model's units; degrees at infinity; default: by count"},
     {"duty", "bright share of a period; not of lines and rainbow", "default 0.5"},
-    {"rotation", "of the pattern on the light; not of circles and distance", "default 0"},
+    {"rotation", "of the pattern on the light; circles and distance stay as they are", "default 0"},
     {"offset", "shift of the pattern, in periods; not of lines", "default 0"},
     {"soft", "share of a period (lines: of the width) that each edge takes; not of rainbow",
      "default 0"},

@@ -119,8 +119,6 @@ static void patterns(void **state)
                                          {"rainbow:duty=0.4", "duty changes nothing of rainbow"},
                                          {"rainbow:soft=0.4", "soft changes"},
                                          {"rainbow:fg=#ff0000", "fg changes"},
-                                         {"circles:rotation=4", "rotation changes"},
-                                         {"distance:rotation=4", "rotation changes"},
                                          {"stripes:count=4,period=3", "exclude each other"},
                                          {"stripes:period=3,duty=1,count=4", "exclude each"},
                                          {"lines:at=", "at must"},
