@@ -1,8 +1,8 @@
 #!/bin/bash
 # run.sh unit|fuzz|bench|service|oracle|all BUILD: runs the tests of one kind, or all, and ends with their sum,
 # "N passed, N failed". Each program's full output is kept in BUILD/tests/NAME.log. Programs that judge
-# nothing but answers run side by side, one for each processor; the service's tests run alone, since they
-# also judge who is served first.
+# nothing but answers run side by side, one for each processor; the service's tests whose file says
+# ALONE run one by one, since they also judge who is served first, or how soon.
 set -u
 kind=$1 build=$2
 processors=$(nproc)
@@ -44,6 +44,23 @@ beside() { # name, command...
     run "$@" &
 }
 
+# Runs a command whose `sheen` asks one daemon for all its pictures. Each `sheen` would start a daemon of
+# its own without, which takes longer than most pictures do; the service's tests look at that.
+served() { # command...
+    address=unix:$build/tests/$name.sock
+    rm -f "${address#unix:}"
+    "$build/sheend" --listen "$address" --log-level warn &
+    daemon=$!
+    for _ in $(seq 100); do
+        [ -S "${address#unix:}" ] && break
+        sleep 0.1
+    done
+    SHEEN_SERVER=$address "$@"
+    code=$?
+    kill "$daemon" && wait "$daemon" || echo "the daemon ended with $?"
+    return "$code"
+}
+
 # The Catmull-Clark cages there; and all, since any cage is one.
 shapes_of() { # pattern
     [ -d "$shapes" ] || return 0
@@ -78,7 +95,17 @@ bench() {
 }
 
 service() {
-    run service /usr/bin/python3 tests/service/run.py "$build"
+    modules=$(grep -L '^ALONE' tests/service/test_*.py)
+    for module in $modules; do
+        name=$(basename "$module" .py)
+        beside "service_${name#test_}" /usr/bin/python3 tests/service/run.py "$build" "$name"
+    done
+    wait
+    modules=$(grep -l '^ALONE' tests/service/test_*.py)
+    for module in $modules; do
+        name=$(basename "$module" .py)
+        run "service_${name#test_}" /usr/bin/python3 tests/service/run.py "$build" "$name"
+    done
     run same sh tests/oracle/test_same.sh "$build/sheen" "$build/sheend" tests/models/fender.gltf \
         tests/models/body.obj
 }
@@ -94,27 +121,27 @@ oracle() {
     # The surface of loop_val2_interior folds onto itself and has no normal along the fold.
     beside twin "$build/tests/test_twin" tests/models/*.obj \
         $(printf '%s\n' $all | grep -v loop_val2_interior)
-    beside exact "$build/tests/test_exact" "$build/sheen" tests/models/*.obj tests/models/*.gltf \
+    beside exact served "$build/tests/test_exact" "$build/sheen" tests/models/*.obj tests/models/*.gltf \
         $cages
     # catmark_nonman_edges shows one pixel of background where its sheets meet, in the default view.
-    beside coverage "$build/tests/test_coverage" "$build/sheen" tests/models/*.obj \
+    beside coverage served "$build/tests/test_coverage" "$build/sheen" tests/models/*.obj \
         $(printf '%s\n' $cages | grep -v catmark_nonman_edges)
     beside deep "$build/tests/test_deep"
     beside sectors "$build/tests/test_sectors"
     beside random_cages "$build/tests/test_random_cages"
     car=$shapes/catmark_car.obj
     [ -f "$car" ] || car=tests/models/creases.obj
-    beside far "$build/tests/test_far" "$build/sheen" tests/models/fender.obj "$car"
-    beside zoom "$build/tests/test_zoom" "$build/sheen" tests/models/body.obj tests/models/fender.obj \
+    beside far served "$build/tests/test_far" "$build/sheen" tests/models/fender.obj "$car"
+    beside zoom served "$build/tests/test_zoom" "$build/sheen" tests/models/body.obj tests/models/fender.obj \
         tests/models/creases.obj tests/models/pole.obj "$car"
-    beside filter "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
+    beside filter served "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
-    beside patterns "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
-    beside lines "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
+    beside patterns served "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
+    beside lines served "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/creases.obj tests/models/pole.obj "$car"
-    beside fine "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
-    beside isophotes "$build/tests/test_isophotes" "$build/sheen" tests/models/body.obj
-    beside mirror "$build/tests/test_mirror" "$build/sheen"
+    beside fine served "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
+    beside isophotes served "$build/tests/test_isophotes" "$build/sheen" tests/models/body.obj
+    beside mirror served "$build/tests/test_mirror" "$build/sheen"
     wait
 }
 

@@ -15,6 +15,8 @@ from daemon import CUBE, SHEEND, Daemon, grid, run
 from test_untrusted import workers
 from wire import Client
 
+ALONE = True  # tests/run.sh runs nothing beside these tests
+
 
 class Options(unittest.TestCase):
     def assert_fails(self, code, words, *arguments, env=None):

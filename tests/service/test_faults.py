@@ -16,7 +16,7 @@ from test_operations import get, metrics_address, read_metrics
 from test_untrusted import children, is_alive, workers
 
 FENDER = os.path.join(MODELS, "fender.obj")
-UPLOADS_BYTES = 8  # of STATS
+UPLOADS_BYTES, QUEUED = 8, 15  # of STATS
 
 
 class FaultyDaemon(Daemon):
@@ -299,8 +299,10 @@ class Stuck(unittest.TestCase):
                                        "64x48", "-o", os.path.join(folder, "a.png")],
                                       stderr=subprocess.PIPE, text=True)
             with wire.Client(server.unix) as other:
-                while other.stats()[UPLOADS_BYTES][0] < os.path.getsize(FENDER):
+                stats = other.stats()
+                while stats[UPLOADS_BYTES][0] < os.path.getsize(FENDER) or stats[QUEUED][0] < 1:
                     time.sleep(0.02)
+                    stats = other.stats()
             self.assertEqual(server.stop(), 0)
             after = Daemon(folder=folder, tcp=False)
             said = client.communicate(timeout=60)[1]

@@ -11,6 +11,8 @@ import wire
 from daemon import CUBE, DaemonCase, grid, resident_kb
 from wire import Client, field, message
 
+ALONE = True  # tests/run.sh runs nothing beside these tests
+
 
 class Hostile(DaemonCase):
     def each(self, greet=True):

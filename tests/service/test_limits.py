@@ -17,6 +17,8 @@ from daemon import CUBE, SANITIZED, Daemon, DaemonCase, grid, resident_kb, run
 from test_untrusted import children, image_pattern, workers
 from wire import BATCH, INTERACTIVE, Client, field, message
 
+ALONE = True  # tests/run.sh runs nothing beside these tests
+
 MIB = 1 << 20
 LONG_MESSAGE_BYTES = 16 + 262144 - 4096  # beyond the room that every client has for its messages
 

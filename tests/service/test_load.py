@@ -15,6 +15,8 @@ from daemon import CUBE, Daemon
 from load import LoadClient, make_clients, run_load
 from wire import INTERACTIVE, Client, message
 
+ALONE = True  # tests/run.sh runs nothing beside these tests
+
 
 class Many(unittest.TestCase):
     def test_every_request_is_answered_once(self):
