@@ -283,7 +283,7 @@ class Client(unittest.TestCase):
     def test_readme_shares_a_daemon(self):
         """Its block is pasted as it stands: the client must not come before the daemon."""
         with open(os.path.join(MODELS, "..", "..", "README.md"), encoding="utf-8") as file:
-            block = re.search(r"To share one:\n\n((?:    .*\n)+)", file.read()).group(1)
+            block = re.search(r"## Share a daemon\n\n((?:    .*\n)+)", file.read()).group(1)
         for theirs, ours in (("/tmp/", self.folder + "/"), (" build/", f" {BUILD}/"),
                              ("part.obj", FENDER), ("part.png", self.path("part.png"))):
             self.assertIn(theirs, block)
