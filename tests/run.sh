@@ -121,11 +121,9 @@ oracle() {
     # The surface of loop_val2_interior folds onto itself and has no normal along the fold.
     beside twin "$build/tests/test_twin" tests/models/*.obj \
         $(printf '%s\n' $all | grep -v loop_val2_interior)
-    beside exact served "$build/tests/test_exact" "$build/sheen" tests/models/*.obj tests/models/*.gltf \
-        $cages
-    # catmark_nonman_edges shows one pixel of background where its sheets meet, in the default view.
-    beside coverage served "$build/tests/test_coverage" "$build/sheen" tests/models/*.obj \
-        $(printf '%s\n' $cages | grep -v catmark_nonman_edges)
+    beside frames_models served "$build/tests/test_frames" "$build/sheen" tests/models/*.obj \
+        tests/models/*.gltf
+    [ -z "$cages" ] || beside frames_shapes served "$build/tests/test_frames" "$build/sheen" $cages
     beside deep "$build/tests/test_deep"
     beside sectors "$build/tests/test_sectors"
     beside random_cages "$build/tests/test_random_cages"

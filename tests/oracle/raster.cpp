@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tests/oracle/render.h"
 
@@ -157,5 +158,5 @@ raster rasterize(const osd_oracle &oracle, const view &view)
                                   {std::numeric_limits<double>::infinity(), no_face, 0, 0});
     for (uint32_t face = 0; face < oracle.n_ptex_faces(); face++)
         draw_square(&canvas, oracle, {face, 0, 0, 1, 0});
-    return canvas.picture;
+    return std::move(canvas.picture);
 }

@@ -77,20 +77,19 @@ finds test_twin "$work/cube.obj" hole "only one has a surface"
 
 clean test_refine "$work/cube.obj"
 
-clean test_exact "$work/cube.obj"
-finds test_exact "$work/cube.obj" normal,unit,position,residual,winding,range,nan \
+clean test_frames "$work/cube.obj"
+finds test_frames "$work/cube.obj" normal,unit,position,residual,winding,range,nan \
     "normal p99.9" "position p99.9" "residual p99.9" "residual max" "| |N| - 1 |" \
     "normals against the winding" "no surface at (face,u,v)" "hit, P and N disagree"
-finds test_exact "$work/cube.obj" silent "no camera in the JSON"
-finds test_exact "$work/cube.obj" types "channel N.X is of type"
-finds test_exact "$work/cube.obj" refuse "sheen render ended with 3"
-finds test_exact "$work/missing.obj" "" "MISSING: $work/missing.obj"
+finds test_frames "$work/cube.obj" silent "no camera in the JSON"
+finds test_frames "$work/cube.obj" types "channel N.X is of type"
+finds test_frames "$work/cube.obj" refuse "sheen render ended with 3"
+finds test_frames "$work/missing.obj" "" "MISSING: $work/missing.obj"
 fake=/nonexistent
-finds test_exact "$work/cube.obj" "" "sheen render ended with -1"
+finds test_frames "$work/cube.obj" "" "sheen render ended with -1"
 fake=$folder/fake_sheen
 
-clean test_coverage "$work/cube.obj"
-finds test_coverage "$work/cube.obj" hole,stray,face,layer \
+finds test_frames "$work/cube.obj" hole,stray,face,layer \
     "holes" "hit outside the surface" "a face that is not visible" "before or behind"
 
 clean test_mirror ""

@@ -17,7 +17,7 @@
 namespace
 {
 
-const double max_normal_p999_rad = 2e-6, max_position_p999 = 1e-6; /* as test_exact */
+const double max_normal_p999_rad = 2e-6, max_position_p999 = 1e-6; /* as exactness.cpp */
 const double max_seam_rad = 5e-6; /* both sides are single precision */
 const double max_seam = 2e-6;     /* of the ring's size */
 const size_t n_samples = 40000, min_samples = 1000;

@@ -1,14 +1,9 @@
-/* test_exact SHEEN MODEL...: every pixel of every view against libosd in double at the pixel's own
- * (face, u, v), and against the camera alone: the point must lie on its pixel's ray. */
+#include "tests/oracle/exactness.h"
+
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <memory>
 #include <string>
 #include <vector>
-
-#include "tests/oracle/frame_loop.h"
-#include "tests/oracle/tables.h"
 
 namespace
 {
@@ -97,8 +92,20 @@ figures measure(const model &model, const table_evaluator &tables, const view &v
     return figures;
 }
 
-void judge(const model &model, const table_evaluator &tables, const view &view,
-           const planes &planes, verdict *verdict)
+} // namespace
+
+void print_exactness_header()
+{
+    std::printf("%-28s %-8s %7s %5s | %31s | %15s | %15s | %7s | %7s\n", "", "", "", "near",
+                "angle of N to libosd's, rad", "|P-P'|/diagonal", "P off pixel, px", "||N|-1|",
+                "N, CPU");
+    std::printf("%-28s %-8s %7s %5s | %7s %7s %7s %7s | %7s %7s | %7s %7s | %7s | %7s\n", "model",
+                "view", "hit px", "EV px", "p50", "p99", "p99.9", "max", "p99.9", "max", "p99.9",
+                "max", "max", "p99.9");
+}
+
+void judge_exactness(const model &model, const table_evaluator &tables, const view &view,
+                     const planes &planes, verdict *verdict)
 {
     figures f = measure(model, tables, view, planes);
     double tables999 = quantile(f.tables_rad, 0.999);
@@ -127,31 +134,4 @@ void judge(const model &model, const table_evaluator &tables, const view &view,
     verdict->at_most(r999, max_residual_p999_px, what + "residual p99.9 (px)");
     verdict->at_most(r_max, max_residual_px, what + "residual max (px)");
     verdict->at_most(unit, max_length_error, what + "| |N| - 1 |");
-}
-
-} // namespace
-
-int main(int argc, char **argv)
-{
-    if (argc < 3) {
-        std::fprintf(stderr, "usage: test_exact SHEEN MODEL...\n");
-        return 2;
-    }
-    verdict verdict;
-    std::printf("%-28s %-8s %7s %5s | %31s | %15s | %15s | %7s | %7s\n", "", "", "", "near",
-                "angle of N to libosd's, rad", "|P-P'|/diagonal", "P off pixel, px", "||N|-1|",
-                "N, CPU");
-    std::printf("%-28s %-8s %7s %5s | %7s %7s %7s %7s | %7s %7s | %7s %7s | %7s | %7s\n", "model",
-                "view", "hit px", "EV px", "p50", "p99", "p99.9", "max", "p99.9", "max", "p99.9",
-                "max", "max", "p99.9");
-    std::map<std::string, std::unique_ptr<table_evaluator>> tables;
-    for_each_frame(argv[1], list_models(std::vector<std::string>(argv + 2, argv + argc)),
-                   model_views, &verdict,
-                   [&](const model &model, const view &view, const planes &planes) {
-                       auto &of_model = tables[model.path];
-                       if (!of_model)
-                           of_model.reset(new table_evaluator(*model.cage));
-                       judge(model, *of_model, view, planes, &verdict);
-                   });
-    return verdict.finish();
 }

@@ -1,13 +1,11 @@
-/* test_coverage SHEEN MODEL...: which pixels are hit, by which Ptex face and at which depth,
- * against a reference picture rasterised from cells of two pixels of libosd's surface. Whatever is
- * more than one pixel from the reference's silhouette or face borders must agree. */
+#include "tests/oracle/coverage.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "tests/oracle/frame_loop.h"
 #include "tests/oracle/raster.h"
 
 namespace
@@ -103,7 +101,17 @@ void compare_pixel(const model &model, const raster &reference, const planes &pl
         counts->blame(&counts->wrong_layer, x, y);
 }
 
-void judge(const model &model, const view &view, const planes &planes, verdict *verdict)
+} // namespace
+
+void print_coverage_header()
+{
+    std::printf("%-28s %-8s %7s %7s %6s | %6s %6s | %6s %6s %6s\n", "", "", "libosd", "sheen",
+                "masks", "", "", "faces", "wrong", "wrong");
+    std::printf("%-28s %-8s %7s %7s %6s | %6s %6s | %6s %6s %6s\n", "model", "view", "hit px",
+                "hit px", "differ", "holes", "strays", "differ", "face", "layer");
+}
+
+void judge_coverage(const model &model, const view &view, const planes &planes, verdict *verdict)
 {
     raster reference = rasterize(*model.oracle, view);
     projector camera(view);
@@ -126,32 +134,4 @@ void judge(const model &model, const view &view, const planes &planes, verdict *
     none(c.strays, "pixels hit outside the surface");
     none(c.wrong_face, "pixels of a face that is not visible there");
     none(c.wrong_layer, "pixels before or behind the visible surface");
-}
-
-std::vector<view> coverage_views(const model &model, int width_px, int height_px)
-{
-    std::vector<view> views = model_views(model, width_px, height_px);
-    views.push_back(zoomed_view(model, width_px, height_px));
-    return views;
-}
-
-} // namespace
-
-int main(int argc, char **argv)
-{
-    if (argc < 3) {
-        std::fprintf(stderr, "usage: test_coverage SHEEN MODEL...\n");
-        return 2;
-    }
-    verdict verdict;
-    std::printf("%-28s %-8s %7s %7s %6s | %6s %6s | %6s %6s %6s\n", "", "", "libosd", "sheen",
-                "masks", "", "", "faces", "wrong", "wrong");
-    std::printf("%-28s %-8s %7s %7s %6s | %6s %6s | %6s %6s %6s\n", "model", "view", "hit px",
-                "hit px", "differ", "holes", "strays", "differ", "face", "layer");
-    for_each_frame(argv[1], list_models(std::vector<std::string>(argv + 2, argv + argc)),
-                   coverage_views, &verdict,
-                   [&](const model &model, const view &view, const planes &planes) {
-                       judge(model, view, planes, &verdict);
-                   });
-    return verdict.finish();
 }

@@ -1,0 +1,18 @@
+/* Every pixel of a frame against libosd in double at the pixel's own (face, u, v), and against the
+ * camera alone: the point must lie on its pixel's ray. */
+#ifndef SHEEN_TESTS_ORACLE_EXACTNESS_H
+#define SHEEN_TESTS_ORACLE_EXACTNESS_H
+
+#include "tests/oracle/model.h"
+#include "tests/oracle/render.h"
+#include "tests/oracle/tables.h"
+#include "tests/oracle/verdict.h"
+#include "tests/oracle/view.h"
+
+/* The columns of the lines that judge_exactness() prints. */
+void print_exactness_header();
+/* Needs the planes P, N and ptex. `tables` are the model's. */
+void judge_exactness(const model &model, const table_evaluator &tables, const view &view,
+                     const planes &planes, verdict *verdict);
+
+#endif

@@ -1,0 +1,47 @@
+/* test_frames SHEEN MODEL...: frames of every model from several views, judged pixel by pixel:
+ * exactness.h says by what for P and N, coverage.h for what is seen where. */
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/oracle/coverage.h"
+#include "tests/oracle/exactness.h"
+#include "tests/oracle/frame_loop.h"
+
+namespace
+{
+
+const char *const close_up = "zoom"; /* so close that test_zoom has the bounds for P and N */
+
+std::vector<view> views_of(const model &model, int width_px, int height_px)
+{
+    std::vector<view> views = model_views(model, width_px, height_px);
+    views.push_back(zoomed_view(model, width_px, height_px));
+    return views;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc < 3) {
+        std::fprintf(stderr, "usage: test_frames SHEEN MODEL...\n");
+        return 2;
+    }
+    verdict verdict;
+    print_exactness_header();
+    print_coverage_header();
+    std::string path;
+    std::unique_ptr<table_evaluator> tables;
+    for_each_frame(argv[1], list_models(std::vector<std::string>(argv + 2, argv + argc)), views_of,
+                   &verdict, [&](const model &model, const view &view, const planes &planes) {
+                       if (path != model.path)
+                           tables.reset(new table_evaluator(*model.cage));
+                       path = model.path;
+                       if (view.name != close_up)
+                           judge_exactness(model, *tables, view, planes, &verdict);
+                       judge_coverage(model, view, planes, &verdict);
+                   });
+    return verdict.finish();
+}
