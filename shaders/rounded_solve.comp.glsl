@@ -27,10 +27,7 @@ void main()
     ivec2 towards = ivec2(sign(place));
     for (int k = 0; k < 4; k++) {
         ivec2 q = clamp(p + ivec2(k & 1, k >> 1) * towards, ivec2(0), tile.zw - 1);
-        uvec2 guess = texelFetch(seen, q, 0).xy;
-        if (guess.x == NONE)
-            continue;
-        Solution other = solve(q, guess, r);
+        Solution other = solve(guess_of(q), r);
         if (other.found && (!best.found || other.hit.surface.s.z < best.hit.surface.s.z))
             best = other;
         if (best.found && !is_doubtful(front, best.hit.surface.s.z))

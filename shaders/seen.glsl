@@ -3,6 +3,14 @@
 layout(binding = TEXTURES_FREE) uniform usampler2D seen;  // visibility.frag.glsl
 layout(binding = TEXTURES_FREE + 1) uniform sampler2D seen_depth;  // 0 where nothing is seen
 
+// Of seen.x: nothing is seen; beside a node, the pixel is one of gaps.comp.glsl.
+const uint UNSEEN = 0xffffffffu, IN_GAP = 0x80000000u;
+
+bool is_in_gap(uint seen_node)
+{
+    return seen_node != UNSEEN && (seen_node & IN_GAP) != 0u;
+}
+
 float depth_of(float ndc)
 {
     return is_perspective() ? depth.x / ndc : (ndc - depth.y) / depth.z;

@@ -1,18 +1,29 @@
-// Stage 2, evaluate, second and last pass: the pixels that evaluate.comp.glsl and doubt.comp.glsl listed.
+// Stage 2, evaluate, three passes over listed pixels: those of evaluate.comp.glsl, those of doubt.comp.glsl,
+// those of gaps.comp.glsl.
 //
 // First those whose guess may lead to another sub-patch: they ask their own. Then what is left, where
 // the ray decides coverage: guesses of the pixels around are tried where the pixel has none, where its
 // own fails, and where a neighbour lies in front; the nearest solution wins. So a silhouette is where
 // the surface ends, and a crack between grids of different fineness cannot show.
+//
+// At last those in gaps, which ask whatever piece of the surface may lie on their ray.
 
 layout(local_size_x = 64) in;
 
 LIST(0, Listed, listed);      // this pass's pixels
-LIST(3, Unsolved, unsolved);  // those for the last one
+LIST(3, Unsolved, unsolved);  // the first pass adds those for the second
 
-uniform bool around;  // the last pass
+// The i-th pixel in a gap has the guesses from guess_ends[i - 1] (the first one from 0) up to guess_ends[i].
+layout(std430, binding = 1) readonly buffer GuessEnds {
+    uint guess_ends[];
+};
+layout(std430, binding = 2) readonly buffer Guesses {
+    Guess guesses[];
+};
 
-// The pixel itself first: the second pass asks no other.
+uniform int n_asked;  // how many of ASKED; 0: the guesses above
+
+// The pixel itself first: the first of these passes asks no other.
 const ivec2 ASKED[5] =
     ivec2[5](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -23,20 +34,24 @@ void main()
         return;
     ivec2 p = list_place(listed.at[i]);
     Ray r = ray_of(p);
+    bool in_gap = n_asked == 0;
+    uint first = in_gap && i > 0u ? guess_ends[i - 1u] : 0u;
+    uint end = in_gap ? guess_ends[i] : uint(n_asked);
     Solution best;
     best.found = false;
-    for (int k = 0; k < (around ? 5 : 1); k++) {
-        ivec2 q = clamp(p + ASKED[k], ivec2(0), tile.zw - 1);
-        uvec2 guess = texelFetch(seen, q, 0).xy;
-        if (guess.x == NONE)
-            continue;
-        Solution other = solve(q, guess, r);
+    for (uint k = first; k < end; k++) {
+        Guess guess;
+        if (in_gap)
+            guess = guesses[k];
+        else
+            guess = guess_of(clamp(p + ASKED[k], ivec2(0), tile.zw - 1));
+        Solution other = solve(guess, r);
         if (other.found && (!best.found || other.hit.surface.s.z < best.hit.surface.s.z))
             best = other;
     }
     float z = best.found ? best.hit.surface.s.z : 0.0;
     bool is_settled = best.found && !is_doubtful(nearest_around(p), z) && !is_between(p, z);
-    if (!around && !is_settled)
+    if (n_asked == 1 && !is_settled)
         LIST_ADD(unsolved, p, 64u)
     else if (best.found)
         store_hit(p, best.hit.node, best.hit.xy, best.hit.steps, best.hit.surface);

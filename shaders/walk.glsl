@@ -14,6 +14,12 @@ struct Hit {
     Surface surface;
 };
 
+// A place on the surface near a ray, as visibility.frag.glsl packs it, and how deep that is.
+struct Guess {
+    uint node, where;
+    float depth;
+};
+
 struct Solution {
     bool found;
     Hit hit;
@@ -42,17 +48,26 @@ bool walk(inout Node node, inout vec2 xy)
     return node.kind != HOLE;
 }
 
-// From the guess that pixel q has to the place on the ray; not found when there is none near.
+Guess guess_of(ivec2 pixel)
+{
+    uvec2 guess = texelFetch(seen, pixel, 0).xy;
+    return Guess(guess.x == UNSEEN ? UNSEEN : guess.x & ~IN_GAP, guess.y,
+                 depth_of(texelFetch(seen_depth, pixel, 0).x));
+}
+
+// From a guess to the place on the ray; not found when there is none near, or no guess.
 //
 // A sub-patch is fetched and projected once and left only when Newton's method has settled in it or
 // runs out of it: then what the border says of places beyond is a guess for the next.
-Solution solve(ivec2 q, uvec2 guess, Ray r)
+Solution solve(Guess guess, Ray r)
 {
     Solution result;
     result.found = false;
-    Node node = node_load(guess.x);
-    vec2 xy = guess_xy(node, guess.y);
-    float px = pixel_units(depth_of(texelFetch(seen_depth, q, 0).x));
+    if (guess.node == UNSEEN)
+        return result;
+    Node node = node_load(guess.node);
+    vec2 xy = guess_xy(node, guess.where);
+    float px = pixel_units(guess.depth);
     for (int i = 0; i < PATCHES; i++) {
         Net points;
         float scale;

@@ -208,6 +208,16 @@ struct stage_clock {
     uint64_t since_us;                   /* when the clock was last read */
 };
 
+/* Of the pixels that see past two silhouettes (shaders/gaps.comp.glsl). */
+struct gaps {
+    GLuint find;          /* program */
+    GLuint ends, guesses; /* buffers: shaders/unsolved.comp.glsl */
+    bool too_many;        /* of the last tile drawn, so that they stay empty */
+};
+/* Of a tile: each takes the processor 0.03 to 2 ms, and few pictures have more than two or three.
+ */
+enum { MAX_GAPS = 512 };
+
 /* Most models take one or two: their tables fill a bank each. */
 enum { MAX_PROGRAM_SETS = 4 };
 
@@ -239,6 +249,7 @@ struct renderer {
     GLuint edges_find;
     GLuint view_buffer, light_buffer, piece_buffer;
     GLuint gather, doubt; /* programs */
+    struct gaps gaps;
     GLuint block_buffer;  /* pieces.block of the last tile gathered */
     GLuint piece_texture; /* of piece_buffer */
     GLuint vertex_array;
@@ -319,6 +330,11 @@ void stage_visibility(struct renderer *renderer, const struct renderer_model *mo
 bool stage_evaluate_init(struct renderer *renderer, struct error *error);
 void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
                     const struct table_programs *programs);
+/* After it: the pixels of which stage 1 has seen nothing but triangles beyond silhouettes. Waits
+ * for the device. Errors as pieces_choose(). */
+bool stage_gaps(struct renderer *renderer, const struct renderer_model *model,
+                const struct table_programs *programs, const struct view *view,
+                struct error *error);
 /* Lists the pixels that stage 3 looks at more closely; the coverage of all others. */
 bool stage_edges_init(struct renderer *renderer, struct error *error);
 void stage_edges(struct renderer *renderer);

@@ -136,7 +136,7 @@ void collect_tile(struct renderer *r, bool edges)
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (int k = 0; k < (edges ? COLLECTED_LISTS : 1); k++) {
         GLuint from = list_of(tile, k), n = list_length(from);
-        if (k == ROUNDED && all->n[k] + n > ROUNDED_IN_ANY_CUT) {
+        if (r->gaps.too_many || (k == ROUNDED && all->n[k] + n > ROUNDED_IN_ANY_CUT)) {
             all->frame = 0;
             return;
         }
@@ -184,6 +184,6 @@ void planes_keep(struct renderer *r, const struct renderer_model *model,
     if (is_kept(&r->kept, model, request))
         return;
     r->kept = view_of(model, request);
-    if (r->kept.edges && list_length(r->target.rounded) > ROUNDED_IN_ANY_CUT)
+    if (r->gaps.too_many || (r->kept.edges && list_length(r->target.rounded) > ROUNDED_IN_ANY_CUT))
         r->kept.any_cut = false;
 }

@@ -16,6 +16,8 @@ enum { MAX_DEPTH = 20 };
 /* Grid vertices of a tile: what a software device draws in a few seconds, and many times what a
  * million faces need. */
 static const uint64_t MAX_VERTICES = 24000000;
+/* A guess counts so many steps over two units. */
+enum { GUESS_STEPS = 8191 };
 
 const uint8_t piece_cells[PIECE_SIDES] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 
@@ -26,6 +28,7 @@ struct chooser {
     const struct view *view;
     struct view_sides sides; /* the tile's */
     const struct tile *tile;
+    bool guesses;       /* are asked for, not pieces */
     uint32_t blocks[2]; /* of the tile: across and down */
     size_t n_chosen;
     uint64_t n_vertices;
@@ -94,6 +97,31 @@ static bool grow(struct pieces *out)
     return piece && chosen;
 }
 
+/* The middle of a piece, for pieces_guess(). */
+static void add_guess(struct chooser *c, const struct piece *piece, const struct extent *extent)
+{
+    struct pieces *out = c->out;
+    if (out->n_guesses == out->guess_capacity) {
+        size_t capacity = out->guess_capacity ? 2 * out->guess_capacity : 1024;
+        struct guess *guess = realloc(out->guess, capacity * sizeof *guess);
+        c->no_memory = !guess;
+        if (!guess)
+            return;
+        out->guess = guess;
+        out->guess_capacity = capacity;
+    }
+    unsigned square = piece->where >> 6 & 3;
+    double size = ldexp(1, -(int)(piece->where >> 8));
+    double s = (square == 1 || square == 2) + (piece->x + 0.5) * size;
+    double t = (square >= 2) + (piece->y + 0.5) * size;
+    out->guess[out->n_guesses++] = (struct guess){
+        .node = piece->node,
+        .where = (piece->where & 63) | (uint32_t)lround(s / 2 * GUESS_STEPS) << 6 |
+                 (uint32_t)lround(t / 2 * GUESS_STEPS) << 19,
+        .depth = (float)fmax(extent->centre[2], c->view->near),
+    };
+}
+
 static void emit(struct chooser *c, unsigned grid, struct piece piece, const struct extent *extent)
 {
     struct pieces *out = c->out;
@@ -101,6 +129,10 @@ static void emit(struct chooser *c, unsigned grid, struct piece piece, const str
         (piece_cells[grid / PIECE_SIDES] + 1u) * (piece_cells[grid % PIECE_SIDES] + 1u);
     if (c->n_vertices > MAX_VERTICES || c->no_memory)
         return;
+    if (c->guesses) {
+        add_guess(c, &piece, extent);
+        return;
+    }
     cover(c, extent);
     if (c->n_chosen == out->piece_capacity && !grow(out)) {
         c->no_memory = true;
@@ -246,7 +278,8 @@ static void choose_square(struct chooser *c, struct piece piece, const struct ex
         return;
     double allowed = 8 * TOLERANCE_PX / in_px(c, extent, 1);
     unsigned grid = 0;
-    if (bound_bend(&extent->bound) <= allowed || find_grid(&extent->bound, allowed, &grid))
+    if (bound_bend(&extent->bound) <= allowed ||
+        (!c->guesses && find_grid(&extent->bound, allowed, &grid)))
         emit(c, grid, piece, extent);
     else if (piece.where >> 8 < MAX_DEPTH)
         choose_quarters(c, piece);
@@ -361,26 +394,41 @@ static void list_blocks(struct chooser *c)
                 c->out->block[c->out->n_blocks++] = x | y << 16;
 }
 
-bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
-                   const struct clusters *clusters, const struct view *view,
-                   const struct tile *tile, struct error *error)
+/* All that the tile may show. */
+static bool choose_all(struct chooser *c, const struct clusters *clusters, struct error *error)
 {
-    struct chooser c = {.out = pieces, .tables = tables, .view = view, .tile = tile};
-    if (!reserve_blocks(&c, error))
-        return false;
-    view_sides_init(&c.sides, view, tile);
+    view_sides_init(&c->sides, c->view, c->tile);
     for (size_t k = 0; k < clusters->n; k++)
-        choose_cluster(&c, clusters, k);
-    sort_by_grid(&c);
-    list_blocks(&c);
-    if (c.no_memory)
+        choose_cluster(c, clusters, k);
+    if (c->no_memory)
         return error_set(error, ERROR_SERVER, "out of memory for the pieces of a frame");
-    if (c.n_vertices > MAX_VERTICES)
+    if (c->n_vertices > MAX_VERTICES)
         return error_set(error, ERROR_REQUEST,
                          "camera: the view would take more than %llu grid vertices: move it away "
                          "from the model, or make the picture smaller",
                          (unsigned long long)MAX_VERTICES);
     return true;
+}
+
+bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
+                   const struct clusters *clusters, const struct view *view,
+                   const struct tile *tile, struct error *error)
+{
+    struct chooser c = {.out = pieces, .tables = tables, .view = view, .tile = tile};
+    if (!reserve_blocks(&c, error) || !choose_all(&c, clusters, error))
+        return false;
+    sort_by_grid(&c);
+    list_blocks(&c);
+    return true;
+}
+
+bool pieces_guess(struct pieces *pieces, const struct limit_tables *tables,
+                  const struct clusters *clusters, const struct view *view, const struct tile *tile,
+                  struct error *error)
+{
+    struct chooser c = {
+        .out = pieces, .tables = tables, .view = view, .tile = tile, .guesses = true};
+    return choose_all(&c, clusters, error);
 }
 
 void pieces_move_blocks(struct pieces *pieces, uint32_t x, uint32_t y)
@@ -417,5 +465,6 @@ void pieces_finish(struct pieces *pieces)
     free(pieces->chosen);
     free(pieces->block);
     free(pieces->is_covered);
+    free(pieces->guess);
     *pieces = (struct pieces){0};
 }

@@ -28,6 +28,13 @@ struct piece {
     uint32_t x, y;  /* which square of the 2^depth by 2^depth ones */
 };
 
+/* A place on the surface for Newton's method to begin at, as shaders/walk.glsl reads it. */
+struct guess {
+    uint32_t node;
+    uint32_t where; /* level | s << 6 | t << 19, 13 bits each: shaders/visibility.frag.glsl */
+    float depth;    /* along the view axis, units */
+};
+
 struct pieces {
     /* In the order of their grids: those of grid g from first[g] to first[g + 1]. */
     struct piece *piece;
@@ -40,6 +47,9 @@ struct pieces {
     size_t n_blocks;
     uint8_t *is_covered; /* scratch: one byte a block of the tile */
     size_t block_capacity;
+    /* What pieces_guess() has found since n_guesses was last made 0. */
+    struct guess *guess;
+    size_t n_guesses, guess_capacity;
 };
 
 /* Chooses the pieces that the tile may show; `clusters` are those of the tables. Lists keep their
@@ -49,6 +59,12 @@ struct pieces {
 bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
                    const struct clusters *clusters, const struct view *view,
                    const struct tile *tile, struct error *error);
+/* Cuts what a tile of a few pixels may show into pieces that one cell each would draw as well as
+ * pieces_choose() asks, and adds a guess in the middle of each: one that leads to whatever surface
+ * a ray of the tile meets. The pieces and blocks chosen before stay. Errors as pieces_choose(). */
+bool pieces_guess(struct pieces *pieces, const struct limit_tables *tables,
+                  const struct clusters *clusters, const struct view *view, const struct tile *tile,
+                  struct error *error);
 /* The blocks become those of a larger tile, at so many blocks of it. */
 void pieces_move_blocks(struct pieces *pieces, uint32_t x, uint32_t y);
 /* Drops the blocks that do not begin inside `part` of that. */

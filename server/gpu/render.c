@@ -72,6 +72,8 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
         return false;
     stage_clock_start(r);
     stage_evaluate(r, model, programs);
+    if (!stage_gaps(r, model, programs, view, error))
+        return false;
     if (!is_same_tile(drawn, shaded)) {
         pieces_cut_blocks(&r->pieces, &cut);
         stage_gather(r);

@@ -179,10 +179,11 @@ bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct f
  *
  * A frame of the exact surface is the same, bit by bit, as one tile and in tiles in_place of any
  * size, which take as much of the device's memory as one tile does. (Where more than 32,768 of its
- * pixels show the rounding of a crease these may have more rays in tiles, and planes serve frames
- * that are cut alike alone.) In tiles that are not in_place it is the same but for single
- * precision's rounding: so tiles must depend on the request alone where equal requests shall give
- * equal bytes. */
+ * pixels show the rounding of a crease these may have more rays in tiles; where more than 512 look
+ * through gaps narrower than themselves these may show what lies behind in tiles alone. Planes then
+ * serve frames that are cut alike alone.) In tiles that are not in_place it is the same but for
+ * single precision's rounding: so tiles must depend on the request alone where equal requests shall
+ * give equal bytes. */
 enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error);
 

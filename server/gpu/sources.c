@@ -38,6 +38,8 @@ struct program_source source_of_single(enum single_program program)
                                          "groups.glsl", "gather.comp.glsl", NULL};
     static const char *const doubt[] = {"view.glsl",   "list.glsl",       "seen.glsl",
                                         "groups.glsl", "doubt.comp.glsl", NULL};
+    static const char *const gaps[] = {"view.glsl", "list.glsl", "seen.glsl", "gaps.comp.glsl",
+                                       NULL};
     static const char *const edges_find[] = {"view.glsl",
                                              "list.glsl",
                                              "basis.glsl",
@@ -55,6 +57,7 @@ struct program_source source_of_single(enum single_program program)
     static const struct program_source sources[SINGLE_PROGRAMS] = {
         [PROGRAM_GATHER] = {NO_TABLES, {gather, NULL}},
         [PROGRAM_DOUBT] = {NO_TABLES, {doubt, NULL}},
+        [PROGRAM_GAPS] = {NO_TABLES, {gaps, NULL}},
         [PROGRAM_EDGES_FIND] = {"", {edges_find, NULL}},
         [PROGRAM_POLYGONS] = {"", {vertex, polygons}},
         [PROGRAM_WIREFRAME] = {"", {vertex, wireframe}},

@@ -32,6 +32,7 @@ bool shader_text_init(struct shader_text *text, const struct program_source *sou
 enum single_program {
     PROGRAM_GATHER,
     PROGRAM_DOUBT,
+    PROGRAM_GAPS,
     PROGRAM_EDGES_FIND,
     PROGRAM_POLYGONS,
     PROGRAM_WIREFRAME,
