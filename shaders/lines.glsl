@@ -16,7 +16,10 @@
 
 layout(std140, binding = 1) uniform Light {
     vec4 line_eye;  // relative to the camera's, world axes; w = 0: a unit direction of view
-    vec4 centre;    // relative to the eye, world axes
+    // The camera's eye as the light sees it, from its centre: no sum of large numbers that cancel is left
+    // to single precision. Rectangle and plane: its coordinates q, and its height over the plane.
+    // Tunnel: along axis_u, axis_v, axis_n; and radius^2 less the squared distance from the axis.
+    vec4 origin;
     // Rectangle and plane: u x v, unit, and the dual basis: q = size * (dual . (x - centre)).
     // Else the axis, unit, w: the tunnel's radius; and where azimuth begins, and a quarter later.
     vec4 axis_n, axis_u, axis_v;
@@ -32,6 +35,11 @@ layout(std140, binding = 1) uniform Light {
 };
 
 const float PI = 3.14159265358979;
+
+// What single precision cannot tell from 0: of a sum of products, as a share of their sizes; and the sine
+// between a unit vector that was computed from N and a plane or an axis. README.md, "Where rounding
+// decides", says what is shown there.
+const float ROUNDING = 1.0 / 2097152.0, LEAST_SINE = 1e-6;
 
 struct Sample {
     vec3 x, n, h;  // place relative to the eye, unit normal, shape operator
@@ -58,6 +66,12 @@ vec3 normal_change(vec3 along, vec3 n, vec3 h)
     return -(e1 * (h.x * a.x + h.y * a.y) + e2 * (h.y * a.x + h.z * a.y));
 }
 
+// How far from the line eye single precision places x.
+float eye_noise(vec3 x)
+{
+    return ROUNDING * (length(x) + length(line_eye.xyz));
+}
+
 // Steps (1) to (4) of limit-surface 5.1, at depth z on the ray of q (view.glsl), over the parallelogram
 // of the columns of `sides`, px. The shape operator is that at a normal nearby.
 Sample sample_over(vec2 q, mat2 sides, float z, vec3 n, vec3 h, vec3 h_normal)
@@ -69,12 +83,14 @@ Sample sample_over(vec2 q, mat2 sides, float z, vec3 n, vec3 h, vec3 h_normal)
     vec3 d = to_world(vec3(q * ray.x, 1.0));
     vec3 from_eye = at.x - line_eye.xyz;
     float distance = line_eye.w > 0.0 ? length(from_eye) : 1.0;
-    at.v = line_eye.w > 0.0 ? from_eye / distance : line_eye.xyz;
+    bool is_at_eye = line_eye.w > 0.0 && distance <= eye_noise(at.x);
+    at.v = is_at_eye ? -n : line_eye.w > 0.0 ? from_eye / distance : line_eye.xyz;
     for (int i = 0; i < 2; i++) {
         vec3 raw = (axis[0].xyz * sides[i].x + axis[1].xyz * sides[i].y) * pixel_units(z);
         at.dx[i] = raw - d * (dot(raw, n) / dot(d, n));
         at.dn[i] = normal_change(at.dx[i], h_normal, h);
-        at.dv[i] = line_eye.w / distance * (at.dx[i] - at.v * dot(at.v, at.dx[i]));
+        at.dv[i] = is_at_eye ? -at.dn[i]
+                             : line_eye.w / distance * (at.dx[i] - at.v * dot(at.v, at.dx[i]));
     }
     return at;
 }
@@ -89,7 +105,9 @@ Sample sample_at(vec2 q, float size_px, float z, vec3 n, vec3 h, vec3 h_normal)
 void ray_from(Sample at, out vec3 r, out vec3 dr[2])
 {
 #if FAMILY == HIGHLIGHT
-    float side = dot(at.n, at.v) < 0.0 ? 1.0 : -1.0;
+    float distance = length(at.x - line_eye.xyz);
+    float noise = line_eye.w > 0.0 ? eye_noise(at.x) / distance : 0.0;
+    float side = dot(at.n, at.v) < max(noise, LEAST_SINE) ? 1.0 : -1.0;
     r = side * at.n;
     for (int i = 0; i < 2; i++)
         dr[i] = side * at.dn[i];
@@ -102,6 +120,21 @@ void ray_from(Sample at, out vec3 r, out vec3 dr[2])
 #endif
 }
 
+// atan(y, x), to the last digits: a device's own may be off by far more than single precision's rounding.
+// Not both 0. The polynomial is through Chebyshev's nodes for what atan(t) / t differs from 1 by, over t^2,
+// up to an eighth of a turn's half.
+float angle_of(float y, float x)
+{
+    float low = min(abs(x), abs(y)), high = max(abs(x), abs(y));
+    bool is_steep = low > 0.41421356 * high;
+    float t = is_steep ? (low - high) / (low + high) : low / high, z = t * t;
+    float p = -0.33333332 + z * (0.19999540 + z * (-0.14263954 + z * (0.10743719 - z * 0.06451886)));
+    float angle = (is_steep ? 0.25 * PI : 0.0) + (t + t * (z * p));
+    angle = abs(y) > abs(x) ? 0.5 * PI - angle : angle;
+    angle = x < 0.0 ? PI - angle : angle;
+    return y < 0.0 ? -angle : angle;
+}
+
 struct Angles {
     float azimuth, elevation;  // about axis_n, radians
     vec2 d_azimuth, d_elevation;
@@ -111,9 +144,10 @@ Angles angles_of(vec3 r, vec3 dr[2])
 {
     Angles a;
     float x = dot(r, axis_u.xyz), y = dot(r, axis_v.xyz), z = dot(r, axis_n.xyz);
-    float flat2 = max(x * x + y * y, 1e-24), level = sqrt(flat2);
-    a.azimuth = atan(y, x);
-    a.elevation = atan(z, level);
+    bool at_pole = x * x + y * y < LEAST_SINE * LEAST_SINE;
+    a.azimuth = at_pole ? 0.0 : angle_of(y, x);
+    a.elevation = angle_of(z, length(vec2(x, y)));
+    float flat2 = max(x * x + y * y, LEAST_SINE * LEAST_SINE), level = sqrt(flat2);
     for (int i = 0; i < 2; i++) {
         float dx = dot(dr[i], axis_u.xyz), dy = dot(dr[i], axis_v.xyz), dz = dot(dr[i], axis_n.xyz);
         a.d_azimuth[i] = (x * dy - y * dx) / flat2;
@@ -134,14 +168,22 @@ float rectangle_cover(Met met)
     return box_share(-0.5 - st, 0.5 - st, gs, gt);
 }
 
-// Step (6): where x + tau r meets the light's plane, and its change.
+const Met NOT_MET = Met(vec2(0.0), vec2(0.0), vec2(0.0), 0.0, vec2(0.0), 0.0, false);
+
+// Step (6): where x + tau r meets the light's plane, and its change. No ray meets it that runs along it,
+// nor one that starts in it.
 Met meet_plane(Sample at, vec3 r, vec3 dr[2])
 {
     Met met;
     vec3 m = axis_n.xyz;
-    float approach = dot(m, r), ahead = dot(m, centre.xyz - at.x), tau = ahead / approach;
-    vec3 y = at.x + tau * r - centre.xyz;
-    met.q = size.xy * vec2(dot(axis_u.xyz, y), dot(axis_v.xyz, y));
+    float approach = dot(m, r), ahead = -origin.z - dot(m, at.x);
+    if (abs(ahead) <= ROUNDING * (abs(origin.z) + length(at.x)))
+        ahead = 0.0;
+    float towards = approach * sign(ahead) - LEAST_SINE;
+    approach = approach < 0.0 ? min(approach, -LEAST_SINE) : max(approach, LEAST_SINE);
+    float tau = ahead / approach;
+    vec3 y = at.x + tau * r;
+    met.q = origin.xy + size.xy * vec2(dot(axis_u.xyz, y), dot(axis_v.xyz, y));
     vec2 d_approach;
     for (int i = 0; i < 2; i++) {
         d_approach[i] = dot(m, dr[i]);
@@ -152,13 +194,16 @@ Met meet_plane(Sample at, vec3 r, vec3 dr[2])
     }
     bool faces = !is_one_sided || ahead < 0.0;
 #if FAMILY == HIGHLIGHT
-    met.cover = faces && abs(approach) > 0.0 ? 1.0 : 0.0;
-#elif LIGHT == PLANE
-    met.cover = faces ? half_plane(approach * sign(ahead), d_approach) : 0.0;
+    met.inside = faces && abs(approach) > LEAST_SINE;
+    met.cover = met.inside ? 1.0 : 0.0;
 #else
-    met.cover = faces && tau > 0.0 ? 1.0 : 0.0;
+    met.inside = faces && towards > 0.0;
+#if LIGHT == PLANE
+    met.cover = faces && ahead != 0.0 ? half_plane(towards, d_approach) : 0.0;
+#else
+    met.cover = met.inside ? 1.0 : 0.0;
 #endif
-    met.inside = faces && (FAMILY == HIGHLIGHT || tau > 0.0);
+#endif
 #if LIGHT == RECTANGLE
     met.inside = met.inside && max(abs(met.q.x / size.x), abs(met.q.y / size.y)) <= 0.5;
     met.cover *= rectangle_cover(met);
@@ -168,35 +213,49 @@ Met meet_plane(Sample at, vec3 r, vec3 dr[2])
     return met;
 }
 
-// A ray that runs along the tunnel meets nothing: the sine, squared, that single precision tells from 0.
-const float LEAST_ACROSS = 1e-12;
+// In the plane across the axis.
+vec2 across_axis(vec3 v)
+{
+    return vec2(dot(axis_u.xyz, v), dot(axis_v.xyz, v));
+}
 
-// The far side of the cylinder: its inside, for what stands in the tunnel.
+// The far side of the cylinder: its inside, for what stands in the tunnel. In the plane across the axis
+// the ray is a line that passes the axis at the distance `pass` and is inside the circle for `half_chord`
+// on either side of the point nearest to the axis. No ray meets it that runs along the axis.
 Met meet_tunnel(Sample at, vec3 r, vec3 dr[2])
 {
     Met met;
-    vec3 a = axis_n.xyz, from = at.x - centre.xyz;
     float radius = axis_n.w;
-    vec3 x = from - a * dot(a, from), across = r - a * dot(a, r);
-    float rr = dot(across, across), xr = dot(x, across);
-    if (rr < LEAST_ACROSS)
-        return Met(vec2(0.0), vec2(0.0), vec2(0.0), 0.0, vec2(0.0), 0.0, false);
-    float inside = xr * xr - rr * (dot(x, x) - radius * radius);
-    met.tau = (sqrt(max(inside, 0.0)) - xr) / rr;
-    vec3 y = x + met.tau * across;
-    vec3 along = from + met.tau * r;
-    float yr = dot(y, across);
+    vec2 x = across_axis(at.x), from = origin.xy + x, across = across_axis(r);
+    float sine = length(across), away = length(from);
+    if (sine < LEAST_SINE)
+        return NOT_MET;
+    vec2 along = across / sine;
+    float pass = along.x * from.y - along.y * from.x, gone = dot(from, along);
+    // radius^2 - away^2. From the eye's where the eye is no further off than x can be inside: so a wide
+    // tunnel is met where x is told from its wall; and half_chord^2 from that where no larger squares cancel.
+    bool is_eye_near = abs(origin.w) < 3.0 * radius * radius;
+    float power = is_eye_near ? origin.w - dot(x, origin.xy + from) : (radius - away) * (radius + away);
+    bool is_near = away < (is_eye_near ? 2.0 : 1.0) * radius;
+    float chord2 = is_near ? gone * gone + power : (radius - abs(pass)) * (radius + abs(pass));
+    float half_chord = sqrt(max(chord2, 0.0));
+    // Of the two ends the far one, which is half_chord - gone from x.
+    met.tau = (gone > 0.0 ? power / (half_chord + gone) : half_chord - gone) / sine;
+    if (!(chord2 > 0.0 && met.tau > 0.0))
+        return NOT_MET;
+    vec2 y = half_chord * along + pass * vec2(-along.y, along.x);
     for (int i = 0; i < 2; i++) {
         vec3 change = at.dx[i] + met.tau * dr[i];
-        met.dtau[i] = -dot(y, change) / yr;
+        met.dtau[i] = -dot(y, across_axis(change)) / (half_chord * sine);
         vec3 dy = change + r * met.dtau[i];
-        met.ds[i] = (dot(y, axis_u.xyz) * dot(dy, axis_v.xyz) -
-                     dot(y, axis_v.xyz) * dot(dy, axis_u.xyz)) / radius;
-        met.dt[i] = dot(dy, a);
+        vec2 d = across_axis(dy);
+        met.ds[i] = (y.x * d.y - y.y * d.x) / radius;
+        met.dt[i] = dot(axis_n.xyz, dy);
     }
-    met.q = vec2(radius * atan(dot(y, axis_v.xyz), dot(y, axis_u.xyz)), dot(along, a));
-    met.inside = inside > 0.0 && met.tau > 0.0;
-    met.cover = met.inside ? 1.0 : 0.0;
+    met.q = vec2(radius * angle_of(y.y, y.x),
+                 origin.z + (dot(axis_n.xyz, at.x) + met.tau * dot(axis_n.xyz, r)));
+    met.inside = true;
+    met.cover = 1.0;
     return met;
 }
 
@@ -212,11 +271,11 @@ Met meet(Sample at)
 #if FAMILY == ISOPHOTE
     vec3 d = has_direction ? axis_n.xyz : -at.v;
     vec3 e = cross(at.n, d);
-    float sine = max(length(e), 1e-12), cosine = dot(at.n, d);
+    float sine = length(e), cosine = dot(at.n, d);
     vec2 ds;
     for (int i = 0; i < 2; i++)
-        ds[i] = -(dot(at.dn[i], d) - (has_direction ? 0.0 : dot(at.n, at.dv[i]))) / sine;
-    return meet_infinity(vec2(atan(sine, cosine) - 0.5 * PI, 0.0), ds, vec2(0.0));
+        ds[i] = -(dot(at.dn[i], d) - (has_direction ? 0.0 : dot(at.n, at.dv[i]))) / max(sine, LEAST_SINE);
+    return meet_infinity(vec2(angle_of(sine, cosine) - 0.5 * PI, 0.0), ds, vec2(0.0));
 #else
     vec3 r, dr[2];
     ray_from(at, r, dr);

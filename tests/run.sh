@@ -137,6 +137,8 @@ oracle() {
     beside patterns served "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
     beside lines served "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/creases.obj tests/models/pole.obj "$car"
+    beside numbers "$build/tests/test_numbers" tests/models/plane.obj tests/models/body.obj \
+        tests/models/fender.obj
     beside fine served "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
     beside isophotes served "$build/tests/test_isophotes" "$build/sheen" tests/models/body.obj
     beside mirror served "$build/tests/test_mirror" "$build/sheen"

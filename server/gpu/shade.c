@@ -1,6 +1,7 @@
 /* Stage 3: the lights in the mirror. */
 #include "server/gpu/gpu.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "protocol/srgb.h"
@@ -10,7 +11,7 @@ static const double PI = 3.14159265358979323846;
 
 /* std140 block `Light` of shaders/lines.glsl. */
 struct light_block {
-    float line_eye[4], centre[4];
+    float line_eye[4], origin[4];
     float axis_n[4], axis_u[4], axis_v[4];
     float size[4];
     float foreground[4], background[4], miss[4], empty[4], base[4];
@@ -95,11 +96,17 @@ bool stage_shade_init(struct renderer *r, struct error *error)
     return gpu_check("the shading stage", error);
 }
 
+/* What is larger than single precision holds is as good as its largest number. */
+static float single(double value)
+{
+    return (float)fmax(-(double)FLT_MAX, fmin(value, (double)FLT_MAX));
+}
+
 static void put(struct vec v, float out[4])
 {
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
+    out[0] = single(v.x);
+    out[1] = single(v.y);
+    out[2] = single(v.z);
 }
 
 /* A colour as displayed, straight alpha, as the shaders mix it: linear light (IEC 61966-2-1),
@@ -137,45 +144,77 @@ static void fill_eye(struct light_block *block, const struct frame_request *requ
     }
 }
 
-static void fill_plane(struct light_block *block, struct vec u, struct vec v)
+/* `eye` here and below: the camera's, from the light's centre. */
+static void fill_plane(struct light_block *block, struct vec u, struct vec v, struct vec eye)
 {
-    struct vec m = vec_cross(u, v);
+    struct vec m = vec_cross(u, v), n = vec_unit(m);
     double area2 = vec_dot(m, m);
-    put(vec_unit(m), block->axis_n);
     /* The dual basis in the plane: dual_u . u = 1, dual_u . v = 0. */
-    put(vec_scale(vec_cross(v, m), 1 / area2), block->axis_u);
-    put(vec_scale(vec_cross(m, u), 1 / area2), block->axis_v);
+    struct vec dual_u = vec_scale(vec_cross(v, m), 1 / area2);
+    struct vec dual_v = vec_scale(vec_cross(m, u), 1 / area2);
+    put(n, block->axis_n);
+    put(dual_u, block->axis_u);
+    put(dual_v, block->axis_v);
     block->size[0] = (float)vec_length(u);
     block->size[1] = (float)vec_length(v);
+    /* By the sizes as they are rounded, since the shaders divide by those. */
+    double s = (double)block->size[0] * vec_dot(dual_u, eye);
+    double t = (double)block->size[1] * vec_dot(dual_v, eye);
+    put((struct vec){s, t, vec_dot(n, eye)}, block->origin);
 }
 
-/* Azimuth about the axis begins along `start`, whose part along the axis is taken away. */
-static void fill_axis(struct light_block *block, struct vec axis, struct vec start)
+/* An axis and where azimuth about it begins: along `start`, whose part along the axis is taken
+ * away. */
+struct axis {
+    struct vec n, u, v;
+};
+
+static struct axis axis_of(struct vec axis, struct vec start)
 {
     struct vec n = vec_unit(axis), u = vec_unit(vec_mad(start, -vec_dot(start, n), n));
-    put(n, block->axis_n);
-    put(u, block->axis_u);
-    put(vec_cross(n, u), block->axis_v);
+    return (struct axis){n, u, vec_cross(n, u)};
 }
 
-static void fill_light(struct light_block *block, const struct light *light)
+static void fill_axis(struct light_block *block, const struct axis *axis)
 {
-    struct vec u = get(light->u), v = get(light->v);
+    put(axis->n, block->axis_n);
+    put(axis->u, block->axis_u);
+    put(axis->v, block->axis_v);
+}
+
+static void fill_tunnel(struct light_block *block, struct vec u, struct vec v, struct vec eye)
+{
+    struct axis axis = axis_of(v, u);
+    double radius = vec_dot(u, axis.u), x = vec_dot(eye, axis.u), y = vec_dot(eye, axis.v);
+    double away = hypot(x, y);
+    fill_axis(block, &axis);
+    block->axis_n[3] = (float)radius;
+    block->size[0] = (float)(2 * PI * radius);
+    block->size[1] = (float)vec_length(v);
+    double along = (double)block->size[1] * (vec_dot(eye, axis.n) / vec_length(v));
+    put((struct vec){x, y, along}, block->origin);
+    block->origin[3] = single((radius - away) * (radius + away));
+}
+
+static void fill_light(struct light_block *block, const struct light *light, struct vec camera_eye)
+{
+    struct vec u = get(light->u), v = get(light->v), eye = vec_sub(camera_eye, get(light->centre));
     block->is_one_sided = light->one_sided;
-    if (light->kind == LIGHT_RECTANGLE || light->kind == LIGHT_PLANE) {
-        fill_plane(block, u, v);
-        return;
-    }
-    fill_axis(block, v, u);
-    if (light->kind == LIGHT_TUNNEL) {
-        struct vec n = vec_unit(v);
-        double radius = vec_length(vec_mad(u, -vec_dot(u, n), n));
-        block->axis_n[3] = (float)radius;
-        block->size[0] = (float)(2 * PI * radius);
-        block->size[1] = (float)vec_length(v);
-    } else {
+    switch (light->kind) {
+    case LIGHT_RECTANGLE:
+    case LIGHT_PLANE:
+        fill_plane(block, u, v, eye);
+        break;
+    case LIGHT_TUNNEL:
+        fill_tunnel(block, u, v, eye);
+        break;
+    case LIGHT_SPHERE: {
+        struct axis axis = axis_of(v, u);
+        fill_axis(block, &axis);
         block->size[0] = 360;
         block->size[1] = 180;
+        break;
+    }
     }
 }
 
@@ -184,8 +223,9 @@ static void fill_family(struct light_block *block, const struct frame_request *r
 {
     const struct lines *lines = &request->lines;
     struct vec x = {1, 0, 0}, y = {0, 1, 0};
-    struct vec axis = vec_unit(get(lines->has_direction ? lines->direction : request->camera.up));
-    fill_axis(block, axis, fabs(axis.x) < 0.999 ? x : y);
+    struct vec along = vec_unit(get(lines->has_direction ? lines->direction : request->camera.up));
+    struct axis axis = axis_of(along, fabs(along.x) < 0.999 ? x : y);
+    fill_axis(block, &axis);
     block->has_direction = lines->has_direction;
     bool wide = lines->family == LINES_ENVIRONMENT;
     block->size[0] = wide ? 360 : 180;
@@ -223,11 +263,10 @@ static void fill_block(struct light_block *block, const struct frame_request *re
     const struct light *light = &request->lights[i];
     *block = (struct light_block){.is_hindmost = i + 1 == request->n_lights, .is_foremost = i == 0};
     fill_eye(block, request);
-    put(vec_sub(get(light->centre), get(request->camera.eye)), block->centre);
     if (shade_is_at_infinity(request->lines.family))
         fill_family(block, request);
     else
-        fill_light(block, light);
+        fill_light(block, light, get(request->camera.eye));
     fill_pattern(block, &light->pattern);
     put_colour(request->miss, block->miss);
     put_colour(request->empty, block->empty);

@@ -9,7 +9,9 @@
 inline bool has_fault(const char *name)
 {
     const char *faults = std::getenv("FAKE_FAULTS");
-    std::string list = std::string(",") + (faults ? faults : "") + ",";
+    if (!faults)
+        return false;
+    std::string list = std::string(",") + faults + ",";
     return list.find(std::string(",") + name + ",") != std::string::npos;
 }
 

@@ -16,11 +16,16 @@ vec3 without_part_along(vec3 v, vec3 unit)
     return v - dot(v, unit) * unit;
 }
 
+/* What shaders/README.md, "Where rounding decides", takes for 0: a sine, and a share of lengths. */
+const double least_sine = 1e-6, least_share = std::ldexp(1, -21);
+
 /* The angle of r from u about v, over a full turn: (-1/2, 1/2]. */
 double turn_about(vec3 r, vec3 u, vec3 v)
 {
     vec3 axis = normalized(v);
     vec3 e1 = normalized(without_part_along(u, axis));
+    if (length(cross(r, axis)) < least_sine * length(r))
+        return 0;
     if (has_fault("turn"))
         r = r + 1e-4 * e1;
     return std::atan2(dot(r, cross(axis, e1)), dot(r, e1)) / (2 * M_PI);
@@ -36,29 +41,30 @@ double elevation(vec3 r, vec3 v)
 /* Where azimuths about an axis begin. */
 vec3 azimuth_zero(vec3 axis)
 {
-    vec3 x = {1, 0, 0};
-    return length(cross(axis, x)) > 1e-6 * length(axis) ? x : vec3{0, 1, 0};
+    return std::fabs(axis.x) < 0.999 * length(axis) ? vec3{1, 0, 0} : vec3{0, 1, 0};
 }
 
 /* The ray from x along r, or the line both ways, against the light's plane. */
-light_hit meet_plane(vec3 x, vec3 r, bool both_ways, const line_light &light)
+light_hit meet_plane(vec3 x, vec3 r, bool both_ways, vec3 eye, const line_light &light)
 {
     light_hit hit;
     hit.width = length(light.u);
     hit.height = length(light.v);
-    vec3 normal = cross(light.u, light.v);
-    double tau = dot(normal, light.centre - x) / dot(normal, r);
+    vec3 normal = normalized(cross(light.u, light.v));
+    double ahead = dot(normal, light.centre - x), approach = dot(normal, r);
+    double noise = least_share * (std::fabs(dot(normal, light.centre - eye)) + length(x - eye));
+    ahead = std::fabs(ahead) <= noise ? 0 : ahead;
+    double tau = ahead / approach;
     vec3 offset = x + tau * r - light.centre;
     /* u and v need not be perpendicular: coordinates by the reciprocal vectors. */
     vec3 by_u = cross(light.v, normal), by_v = cross(normal, light.u);
     hit.s = 0.5 + dot(offset, by_u) / dot(light.u, by_u);
     hit.t = 0.5 + dot(offset, by_v) / dot(light.v, by_v);
     hit.tau = std::fabs(tau);
-    vec3 towards = tau < 0 ? -1 * r : r;
     bool bounded = light.kind == line_light_kind::rectangle;
     hit.inside = bounded ? std::min(std::min(hit.s, 1 - hit.s), std::min(hit.t, 1 - hit.t)) : 1;
-    hit.met = std::isfinite(tau) && (both_ways || tau > 0) && hit.inside >= 0 &&
-              !(light.one_sided && dot(towards, normal) >= 0);
+    hit.met = std::fabs(approach) > least_sine && (both_ways || tau > 0) && hit.inside >= 0 &&
+              !(light.one_sided && ahead >= 0);
     return hit;
 }
 
@@ -69,14 +75,15 @@ light_hit meet_tunnel(vec3 x, vec3 r, const line_light &light)
     vec3 axis = normalized(light.v), from = x - light.centre;
     vec3 p = without_part_along(from, axis), q = without_part_along(r, axis);
     double radius = length(without_part_along(light.u, axis));
-    double a = dot(q, q), b = dot(p, q), c = dot(p, p) - radius * radius, root = b * b - a * c;
+    double sine = length(q), along = dot(p, q) / sine, pass = length(cross(p, q)) / sine;
+    double root = (radius - pass) * (radius + pass);
     hit.width = 2 * M_PI * radius;
     hit.height = length(light.v);
     hit.s_wraps = true;
-    hit.inside = root / (a * radius * radius);
-    if (!(root >= 0 && a > 0))
+    hit.inside = root / (radius * radius);
+    if (!(root >= 0 && sine >= least_sine))
         return hit;
-    hit.tau = ((has_fault("side") ? -1 : 1) * std::sqrt(root) - b) / a;
+    hit.tau = ((has_fault("side") ? -1 : 1) * std::sqrt(root) - along) / sine;
     hit.met = hit.tau > 0;
     vec3 y = from + hit.tau * r;
     hit.s = 0.5 + turn_about(y, light.u, light.v);
@@ -253,13 +260,21 @@ vec3 line_tracer::view_from_camera(vec3 x) const
     return camera.orthographic ? forward : normalized(x - camera.eye);
 }
 
-vec3 line_tracer::view_from_line_eye(vec3 x) const
+double line_tracer::eye_noise(vec3 x) const
+{
+    if (setup.eye_kind != line_eye_kind::point)
+        return camera.orthographic || setup.eye_kind != line_eye_kind::camera ? 0 : least_share;
+    double reach = length(x - camera.eye) + length(setup.eye - camera.eye);
+    return least_share * reach / length(x - setup.eye);
+}
+
+vec3 line_tracer::sight(vec3 x, vec3 n) const
 {
     if (has_fault("eye"))
         return view_from_camera(x);
     switch (setup.eye_kind) {
     case line_eye_kind::point:
-        return normalized(x - setup.eye);
+        return eye_noise(x) < 1 ? normalized(x - setup.eye) : -1 * n;
     case line_eye_kind::direction:
         return normalized(setup.eye);
     case line_eye_kind::camera:
@@ -268,9 +283,9 @@ vec3 line_tracer::view_from_line_eye(vec3 x) const
     return view_from_camera(x);
 }
 
-light_hit line_tracer::meet(vec3 x, vec3 n, const line_light &light) const
+light_hit line_tracer::meet_along(vec3 v, vec3 x, vec3 n, const line_light &light) const
 {
-    vec3 v = view_from_line_eye(x), r = v - (2 * dot(v, n)) * n;
+    vec3 r = v - (2 * dot(v, n)) * n;
     if (has_fault("mirror"))
         r = r + 1e-4 * n;
     switch (setup.family) {
@@ -280,8 +295,8 @@ light_hit line_tracer::meet(vec3 x, vec3 n, const line_light &light) const
         return zebra(r, setup.has_axis ? setup.axis : camera_up);
     case line_family::environment:
         return environment(r, setup.has_axis ? setup.axis : camera_up);
-    case line_family::highlight:
-        r = dot(v, n) > 0 ? -1 * n : n; /* of the two ways, the one that faces the eye */
+    case line_family::highlight: /* of the two ways, the one that faces the eye */
+        r = dot(v, n) >= std::fmax(least_sine, eye_noise(x)) ? -1 * n : n;
         break;
     case line_family::reflection:
         break;
@@ -290,13 +305,12 @@ light_hit line_tracer::meet(vec3 x, vec3 n, const line_light &light) const
         return meet_tunnel(x, r, light);
     if (light.kind == line_light_kind::sphere)
         return meet_sphere(r, light);
-    return meet_plane(x, r, setup.family == line_family::highlight, light);
+    return meet_plane(x, r, setup.family == line_family::highlight, camera.eye, light);
 }
 
 bool line_tracer::at_turn(vec3 x, vec3 n) const
 {
-    return setup.family == line_family::highlight &&
-           std::fabs(dot(view_from_line_eye(x), n)) < 1e-4;
+    return setup.family == line_family::highlight && std::fabs(dot(sight(x, n), n)) < 1e-4;
 }
 
 rgba line_tracer::colour(vec3 x, vec3 n) const

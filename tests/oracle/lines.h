@@ -69,7 +69,14 @@ class line_tracer
   public:
     line_tracer(const line_setup &setup, const view &camera);
     /* For the surface point x with unit normal n, along the winding. */
-    light_hit meet(vec3 x, vec3 n, const line_light &light) const;
+    light_hit meet(vec3 x, vec3 n, const line_light &light) const
+    {
+        return meet_along(sight(x, n), x, n, light);
+    }
+    /* The unit direction from the line eye to x. */
+    vec3 sight(vec3 x, vec3 n) const;
+    /* As if the line eye were where it sees x along v. */
+    light_hit meet_along(vec3 v, vec3 x, vec3 n, const line_light &light) const;
     /* The colour of one sample there, lights over each other, as displayed. */
     rgba colour(vec3 x, vec3 n) const;
     /* Whether rounding decides which way a highlight's normal faces. */
@@ -78,7 +85,8 @@ class line_tracer
 
   private:
     vec3 view_from_camera(vec3 x) const;
-    vec3 view_from_line_eye(vec3 x) const;
+    /* What single precision may turn the view by, rad; 1 and more at the line eye itself. */
+    double eye_noise(vec3 x) const;
     view camera;
     vec3 forward, camera_up;
 };

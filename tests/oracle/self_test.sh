@@ -41,6 +41,7 @@ verdict() { # name, whether it holds
 run() {
     case $1 in
     test_limit | test_twin | test_refine) FAKE_FAULTS=$3 "$folder/$1" "$2" >"$work/log" 2>&1 ;;
+    test_numbers) FAKE_FAULTS=$3 "$folder/$1" tests/models/plane.obj "$2" >"$work/log" 2>&1 ;;
     *) FAKE_FAULTS=$3 "$folder/$1" "$fake" ${2:+"$2"} >"$work/log" 2>&1 ;;
     esac
     code=$?
@@ -105,6 +106,12 @@ finds test_lines "$work/cube.obj" mirror,turn,side,isophote,duty,eye \
     "narrow tunnel distance: " "rectangle stripes: change of (s,t)" \
     "isophote axis: (s,t) of P and N" "eye at a point: (s,t) of P and N" \
     "rectangle stripes: " "pixels of the wrong colour"
+
+finds test_numbers "$work/cube.obj" mirror,turn,side,isophote \
+    "sphere's pole: (s,t) by what rounding explains" "pixels on the wrong side of a border" \
+    "reflection sphere: (s,t) by what rounding explains" \
+    "isophote plane: (s,t) by what rounding explains" \
+    "environment sphere: (s,t) by what rounding explains"
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
