@@ -299,7 +299,12 @@ static void clear_planes(const struct renderer *r, const struct frame_request *r
         clear_shaded(r, r->target.light_change, GL_RGBA, none);
 }
 
-/* Images end at the light's border, or go round with it. */
+/* Images end at the light's border, or go on round it, or repeat. */
+static GLint wrapping(bool goes_on)
+{
+    return goes_on ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+}
+
 static void bind_picture(const struct renderer *r, const struct frame_request *request,
                          const struct light *light)
 {
@@ -307,12 +312,13 @@ static void bind_picture(const struct renderer *r, const struct frame_request *r
     glBindTextureUnit(0, image ? image->texture : r->blank_texture);
     if (!image)
         return;
-    bool sphere = shade_is_at_infinity(request->lines.family) || light->kind == LIGHT_SPHERE;
-    bool rectangle = !sphere && light->kind == LIGHT_RECTANGLE;
-    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S,
-                        rectangle ? GL_CLAMP_TO_EDGE : GL_REPEAT);
-    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T,
-                        rectangle || sphere ? GL_CLAMP_TO_EDGE : GL_REPEAT);
+    enum line_family family = request->lines.family;
+    bool no_light = shade_is_at_infinity(family);
+    bool along_s = no_light ? family == LINES_ENVIRONMENT : light->kind != LIGHT_RECTANGLE;
+    bool along_t = no_light ? family == LINES_ZEBRA
+                            : light->kind == LIGHT_PLANE || light->kind == LIGHT_TUNNEL;
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S, wrapping(along_s));
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T, wrapping(along_t));
 }
 
 /* For light i of those that are drawn. */

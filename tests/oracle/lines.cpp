@@ -320,9 +320,7 @@ rgba line_tracer::colour(vec3 x, vec3 n) const
     double shade = 0.3 + 0.7 * std::fabs(dot(n, view_from_camera(x)));
     rgba base = to_light(setup.base);
     base = {base.r * shade, base.g * shade, base.b * shade, base.a};
-    size_t n_lights = setup.meets_lights() ? setup.lights.size() : 1;
-    for (size_t i = 0; i < n_lights; i++) {
-        const line_light &light = setup.lights[i];
+    for (const line_light &light : setup.lights) {
         light_hit hit = meet(x, n, light);
         if (!hit.met)
             continue;

@@ -93,6 +93,18 @@ class chooser
         return asked;
     }
 
+    /* Six model sizes over the model and a sixteenth of one in radius: there squares of lengths,
+     * taken from each other, lose all that tells lines apart. */
+    asked choose_thin_tunnel()
+    {
+        asked asked = choose(line_family::highlight, line_light_kind::tunnel);
+        line_light &light = asked.setup.lights[0];
+        light.centre = middle + 6 * size * vec3{0, 0, asked.camera.eye.z > middle.z ? 1.0 : -1.0};
+        light.u = size / 16 * vec3{1, 0, 0};
+        light.v = size / 5 * vec3{0, 1, 0};
+        return asked;
+    }
+
   private:
     std::mt19937 random;
     vec3 middle;
@@ -355,6 +367,12 @@ void judge_model(const std::string &path, unsigned seed, verdict *verdict)
         verdict->check(sum.met >= min_met, what + ": too few pixels meet the light");
         judge(sum, what, verdict);
     }
+    figures thin;
+    for (int i = 0; i < n_setups / 20; i++)
+        add(judge_setup(scene, &drawing, chooser.choose_thin_tunnel()), &thin);
+    print(file_name(path), "far, thin tunnel", thin);
+    verdict->check(thin.met >= min_met / 10, "far, thin tunnel: too few pixels meet the light");
+    judge(thin, "far, thin tunnel", verdict);
 }
 
 /* --- where rounding decides at every pixel */

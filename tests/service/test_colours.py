@@ -80,6 +80,29 @@ class Colours(DaemonCase):
         self.assertEqual({pixel[:3] for pixel in edges}, {(255, 0, 0)})
         self.assertEqual(max(pixel[3] for pixel in found), 163)
 
+    def test_images_at_borders(self):
+        """They go round with what goes round, repeat on planes, and else end with their border's
+        colour. An orthographic view of the plane, mirrored by it towards azimuth 180 degrees."""
+        view = ("--size", "9x9", "--eye", "3,0,3", "--target", "0,0,0", "--ortho", "0.2")
+        at = ("--light-center", "-4.75,0,4")  # from 0.75 further along x the ray comes
+        red, blue, both = (255, 0, 0), (0, 0, 255), (188, 0, 188)
+        for size, options, want in (
+                ("1 2", ("--lines", "zebra:0,0,1"), both),
+                ("2 1", ("--lines", "environment:0,0,1"), both),
+                ("2 1", ("--light", "sphere", *at, "--light-u", "1,0,0", "--light-v", "0,0,1"), both),
+                ("2 1", ("--lines", "isophote:0,0,1"), red),
+                ("2 1", ("--lines", "isophote:0,0,-1"), blue),
+                ("1 2", ("--lines", "environment:-1,0,1"), red),
+                ("2 1", ("--light", "plane", *at, *HERE), red),
+                ("2 1", ("--light", "rectangle", *at, "--light-u", "1.6,0,0", "--light-v",
+                         "0,1,0"), blue)):
+            with self.subTest(size=size, options=options):
+                path = os.path.join(self.daemon.folder, f"{size[0]}.ppm")
+                with open(path, "wb") as file:
+                    file.write(f"P6 {size} 255\n".encode() + bytes(red + blue))
+                found = self.pixels(*view, *options, "--pattern", f"image:{path}")[4][4]
+                self.assert_near(found, want)
+
     @unittest.skipUnless(shutil.which("oiiotool"), "no oiiotool here")
     def test_exr_is_linear(self):
         away = ("--size", "8x6", "--eye", "0,-2,3", "--target", "0,-4,6", "--empty", "#808080")
