@@ -349,16 +349,18 @@ void set_attributes(OIIO::ImageSpec &spec, enum image_format format,
 {
     // OpenImageIO stamps files with the time of day unless there is a DateTime already.
     spec.attribute("DateTime", "");
-    // Rec. 709 primaries, as OpenEXR has it where a file names none.
-    if (format == IMAGE_EXR)
-        spec.attribute("oiio:ColorSpace", "Linear");
-    else
-        spec.attribute("oiio:UnassociatedAlpha", 1);
     switch (format) {
-    case IMAGE_EXR:
+    case IMAGE_EXR: {
+        // Rec. 709 and its white, D65: x and y of red, green, blue and white.
+        static const float chromaticities[8] = {0.64f, 0.33f, 0.3f,    0.6f,
+                                                0.15f, 0.06f, 0.3127f, 0.329f};
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
+        spec.attribute("oiio:ColorSpace", "Linear");
         spec.attribute("compression", "zip:4");
         break;
+    }
     case IMAGE_TIFF:
+        spec.attribute("oiio:UnassociatedAlpha", 1);
         spec.attribute("compression", "zip");
         spec.attribute("tiff:zipquality", 4);
         spec.attribute("tiff:predictor", 2); // horizontal differences

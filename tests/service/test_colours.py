@@ -103,14 +103,27 @@ class Colours(DaemonCase):
                 found = self.pixels(*view, *options, "--pattern", f"image:{path}")[4][4]
                 self.assert_near(found, want)
 
+    def told(self, *arguments):
+        return subprocess.run(["oiiotool", *arguments], capture_output=True, text=True, timeout=60,
+                              check=True).stdout
+
     @unittest.skipUnless(shutil.which("oiiotool"), "no oiiotool here")
-    def test_exr_is_linear(self):
-        away = ("--size", "8x6", "--eye", "0,-2,3", "--target", "0,-4,6", "--empty", "#808080")
-        self.assertEqual({p for row in self.pixels(*away) for p in row}, {(128, 128, 128)})
-        path = self.draw("a.exr", *away)
-        told = subprocess.run(["oiiotool", "--dumpdata", path],
-                              capture_output=True, text=True, timeout=60, check=True).stdout
-        found = re.search(r"Pixel \(3, 2\): ([0-9.]+) ([0-9.]+) ([0-9.]+) ([0-9.]+)", told)
-        self.assertTrue(found, told)
-        for value, want in zip(found.groups(), (0.2158, 0.2158, 0.2158, 1)):
-            self.assertAlmostEqual(float(value), want, delta=1e-4)
+    def test_files_say_how_colours_are_meant(self):
+        """EXR is linear and premultiplied, and says so; PNG is sRGB with straight alpha."""
+        away = ("--size", "8x6", "--eye", "0,-2,3", "--target", "0,-4,6", "--empty")
+        for colour, straight, light in (
+                ("#808080", (128, 128, 128), (0.2158, 0.2158, 0.2158, 1)),
+                ("#80ff0080", (128, 255, 0, 128), (0.2158 * 128 / 255, 128 / 255, 0, 128 / 255))):
+            with self.subTest(colour=colour):
+                self.assertEqual({p for row in self.pixels(*away, colour) for p in row}, {straight})
+                path = self.draw("a.exr", *away, colour)
+                told = self.told("--dumpdata", path)
+                found = re.search(r"Pixel \(3, 2\): ([0-9.]+) ([0-9.]+) ([0-9.]+) ([0-9.]+)", told)
+                self.assertTrue(found, told)
+                for value, want in zip(found.groups(), light):
+                    self.assertAlmostEqual(float(value), want, delta=2e-4)
+        told = self.told("--info", "-v", path)
+        self.assertRegex(told, r'oiio:ColorSpace: "([Ll]inear|lin_rec709(_scene)?)"')
+        self.assertRegex(told, r"chromaticities: 0\.64, 0\.33, 0\.3, 0\.6, 0\.15, 0\.06, 0\.3127, 0\.329")
+        told = self.told("--info", "-v", os.path.join(self.daemon.folder, "a.png"))
+        self.assertRegex(told, r'oiio:ColorSpace: "(sRGB|srgb_rec709_scene)"')
