@@ -19,19 +19,19 @@ panel() { # title, options of sheen render
         -o "$work/$n.png"
 }
 
-panel "reflection, stripes"
-panel "highlight" --lines highlight
+panel "reflection, rectangle" --light rectangle
+panel "highlight, plane" --lines highlight --light plane
 panel "isophote, from the eye" --lines isophote --pattern stripes:count=36
 panel "zebra" --lines zebra --pattern stripes:count=30
 panel "tunnel, duty=0.3" --light tunnel --pattern stripes:count=24,duty=0.3
 panel "sphere, soft=0.6" --light sphere --pattern stripes:count=48,soft=0.6
-panel "lattice" --pattern lattice:count=40,duty=0.15
-panel "circles" --pattern circles:count=20
-panel "single lines, soft=0.3" --pattern lines:at=0.4/0.45/0.5/0.55/0.6,width=0.012,soft=0.3
+panel "lattice" --pattern lattice:count=30,duty=0.15
+panel "circles" --light rectangle --pattern circles:count=20
+panel "single lines, soft=0.3" --pattern lines:at=0.2/0.3/0.4/0.5/0.6/0.7/0.8,width=0.012,soft=0.3
 panel "rainbow" --pattern rainbow:count=10
-panel "distance" --pattern distance:count=40
+panel "distance" --light rectangle --pattern distance:count=40
 panel "two lights, opacity" --light rectangle \
-    --pattern lines:at=0.45/0.5/0.55,width=0.01,fg=#d02020,bg=#00000000 \
+    --pattern lines:at=0.35/0.5/0.65,width=0.02,fg=#d02020,bg=#00000000 \
     --light tunnel --pattern stripes:count=24,opacity=0.5
 
 oiiotool "$work"/1*.png --mosaic:pad=4 4x3 --ch R,G,B -d uint8 --attrib "quality" 90 -o "$out"
