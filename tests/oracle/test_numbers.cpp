@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tests/oracle/cage_file.h"
 #include "tests/oracle/lines.h"
+#include "tests/oracle/random_setups.h"
 #include "tests/oracle/scene.h"
 #include "tests/oracle/verdict.h"
 
@@ -27,13 +27,6 @@ const double max_undecided = 0.01;
 const size_t min_met = 300; /* of each family and light */
 const double ulp = std::ldexp(1, -24);
 
-/* One setup: what is asked for, and what shall come. */
-struct asked {
-    view camera;
-    line_setup setup;
-    bool filtered = false;
-};
-
 void put(vec3 v, double to[3])
 {
     to[0] = v.x;
@@ -41,7 +34,7 @@ void put(vec3 v, double to[3])
     to[2] = v.z;
 }
 
-frame_request request_of(const scene &scene, const asked &asked)
+frame_request request_of(const scene &scene, const seen_setup &asked, bool filtered)
 {
     frame_request request = scene.request(width_px, height_px);
     const view &view = asked.camera;
@@ -64,154 +57,10 @@ frame_request request_of(const scene &scene, const asked &asked)
     put(from.centre, to.centre);
     put(from.u, to.u);
     put(from.v, to.v);
-    request.unfiltered = !asked.filtered;
+    request.unfiltered = !filtered;
     request.planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_LIGHT;
     return request;
 }
-
-/* Draws numbers, directions and setups about a model. */
-class chooser
-{
-  public:
-    chooser(const scene &scene, unsigned seed) : random(seed)
-    {
-        const double *low = scene.tables.box_min, *high = scene.tables.box_max;
-        middle = 0.5 * vec3{low[0] + high[0], low[1] + high[1], low[2] + high[2]};
-        size = length({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-    }
-
-    asked choose(line_family family, line_light_kind kind)
-    {
-        asked asked;
-        asked.camera = choose_camera();
-        line_setup &setup = asked.setup;
-        setup.family = family;
-        setup.has_axis = !setup.meets_lights() && chance(0.7);
-        setup.axis = direction();
-        choose_eye(&setup);
-        setup.lights = {choose_light(kind)};
-        return asked;
-    }
-
-    /* Six model sizes over the model and a sixteenth of one in radius: there squares of lengths,
-     * taken from each other, lose all that tells lines apart. */
-    asked choose_thin_tunnel()
-    {
-        asked asked = choose(line_family::highlight, line_light_kind::tunnel);
-        line_light &light = asked.setup.lights[0];
-        light.centre = middle + 6 * size * vec3{0, 0, asked.camera.eye.z > middle.z ? 1.0 : -1.0};
-        light.u = size / 16 * vec3{1, 0, 0};
-        light.v = size / 5 * vec3{0, 1, 0};
-        return asked;
-    }
-
-  private:
-    std::mt19937 random;
-    vec3 middle;
-    double size;
-
-    double uniform(double low, double high)
-    {
-        return low + (high - low) * (random() / 4294967296.0);
-    }
-    bool chance(double share)
-    {
-        return uniform(0, 1) < share;
-    }
-    /* 10^low to 10^high model sizes. */
-    double sizes(double low, double high)
-    {
-        return size * std::pow(10, uniform(low, high));
-    }
-    vec3 direction()
-    {
-        for (;;) {
-            vec3 v = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
-            if (length(v) > 0.1 && length(v) < 1)
-                return normalized(v);
-        }
-    }
-    /* By at least 6 degrees. */
-    vec3 direction_off(vec3 axis)
-    {
-        vec3 v = direction();
-        while (length(cross(v, axis)) < 0.1)
-            v = direction();
-        return v;
-    }
-
-    view choose_camera()
-    {
-        view view;
-        vec3 back = direction();
-        double distance = chance(0.3) ? sizes(0, 4) : sizes(0, 0.5);
-        view.target = middle + (0.1 * size) * direction();
-        view.eye = view.target + distance * back;
-        view.up = direction_off(back);
-        view.width_px = width_px;
-        view.height_px = height_px;
-        view.orthographic = chance(0.3);
-        view.ortho_height = 0.6 * size;
-        view.fov_deg = 2 * std::atan(0.3 * size / distance) * 180 / M_PI;
-        return view;
-    }
-
-    void choose_eye(line_setup *setup)
-    {
-        double kind = uniform(0, 1);
-        setup->eye_kind = kind < 0.4   ? line_eye_kind::camera
-                          : kind < 0.8 ? line_eye_kind::point
-                                       : line_eye_kind::direction;
-        setup->eye = setup->eye_kind == line_eye_kind::point ? middle + sizes(-0.5, 4) * direction()
-                                                             : uniform(0.1, 10) * direction();
-    }
-
-    line_light choose_light(line_light_kind kind)
-    {
-        line_light light;
-        light.kind = kind;
-        vec3 to_light = direction();
-        double distance = sizes(-0.5, 4);
-        light.centre = middle + distance * to_light;
-        if (kind == line_light_kind::tunnel)
-            choose_tunnel(&light, distance, to_light);
-        else
-            choose_flat(&light, distance, to_light);
-        return light;
-    }
-
-    /* Also a sphere's vectors. As wide as the model sees some of it. */
-    void choose_flat(line_light *light, double distance, vec3 to_light)
-    {
-        vec3 u = chance(0.7) ? cross(to_light, direction_off(to_light)) : direction();
-        vec3 v = direction_off(u);
-        light->u = (distance * std::pow(10, uniform(-0.5, 1))) * normalized(u);
-        light->v = (distance * std::pow(10, uniform(-0.5, 1))) * v;
-        light->one_sided = light->kind != line_light_kind::sphere && chance(0.3);
-        if (light->kind == line_light_kind::plane && chance(0.4)) /* far off in its plane */
-            light->centre = light->centre + sizes(0, 4) * normalized(v);
-        if (light->kind == line_light_kind::plane && chance(0.3)) /* fine */
-            light->u = (0.01 * size / length(light->u)) * light->u;
-    }
-
-    void choose_tunnel(line_light *light, double distance, vec3 to_light)
-    {
-        light->v = sizes(-1, 1) * direction_off(to_light);
-        vec3 across = normalized(cross(light->v, direction_off(light->v)));
-        double kind = uniform(0, 1), radius;
-        if (kind < 0.3) /* thin */
-            radius = distance * std::pow(10, uniform(-2.5, -0.5));
-        else if (kind < 0.6) /* around the model */
-            radius = distance * uniform(1.5, 3) + 2 * size;
-        else /* wide, its wall near the model */
-            radius = length(cross(light->centre - middle, normalized(light->v))) +
-                     uniform(-0.2, 2) * size;
-        radius = std::fmax(radius, 1e-3 * distance);
-        light->u = radius * across + uniform(-2, 2) * light->v;
-        if (chance(0.4)) /* far along the axis */
-            light->centre = light->centre + sizes(0, 4) * normalized(light->v);
-    }
-};
 
 struct figures {
     size_t setups = 0, seen = 0, met = 0, undecided = 0, wrong = 0;
@@ -286,7 +135,7 @@ void judge_pixel(const line_tracer &tracer, vec3 eye, const float p_at[3], const
     f->ratio = std::fmax(f->ratio, std::fmax(s_off / by.s, t_off / by.t));
 }
 
-void describe(const asked &asked)
+void describe(const seen_setup &asked)
 {
     for (const std::string &option : view_options(asked.camera))
         std::printf(" %s", option.c_str());
@@ -295,9 +144,9 @@ void describe(const asked &asked)
     std::printf("\n");
 }
 
-figures judge_setup(const scene &scene, drawing *drawing, const asked &asked)
+figures judge_setup(const scene &scene, drawing *drawing, const seen_setup &asked, bool filtered)
 {
-    frame frame = drawing->render(request_of(scene, asked));
+    frame frame = drawing->render(request_of(scene, asked, filtered));
     line_tracer tracer(asked.setup, asked.camera);
     auto *p = static_cast<const float(*)[3]>(frame.plane[1]);
     auto *n = static_cast<const float(*)[3]>(frame.plane[2]);
@@ -355,12 +204,15 @@ void judge_model(const std::string &path, unsigned seed, verdict *verdict)
 {
     scene scene(read_cage_file(path));
     drawing drawing(scene, "auto");
-    chooser chooser(scene, seed);
+    const double *low = scene.tables.box_min, *high = scene.tables.box_max;
+    vec3 diagonal = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+    vec3 middle = 0.5 * vec3{low[0] + high[0], low[1] + high[1], low[2] + high[2]};
+    random_setups setups(middle, length(diagonal), width_px, height_px, seed);
     for (int k = 0; k < 20; k++) {
         figures sum;
         for (int i = 0; i < n_setups / 20; i++)
             add(judge_setup(scene, &drawing,
-                            chooser.choose((line_family)(k / 4), (line_light_kind)(k % 4))),
+                            setups.choose((line_family)(k / 4), (line_light_kind)(k % 4)), false),
                 &sum);
         std::string what = std::string(family_names[k / 4]) + " " + light_names[k % 4];
         print(file_name(path), what, sum);
@@ -369,7 +221,7 @@ void judge_model(const std::string &path, unsigned seed, verdict *verdict)
     }
     figures thin;
     for (int i = 0; i < n_setups / 20; i++)
-        add(judge_setup(scene, &drawing, chooser.choose_thin_tunnel()), &thin);
+        add(judge_setup(scene, &drawing, setups.choose_thin_tunnel(), false), &thin);
     print(file_name(path), "far, thin tunnel", thin);
     verdict->check(thin.met >= min_met / 10, "far, thin tunnel: too few pixels meet the light");
     judge(thin, "far, thin tunnel", verdict);
@@ -484,8 +336,7 @@ void judge_flat(const std::string &path, verdict *verdict)
 {
     scene scene(turned_cage(path));
     drawing drawing(scene, "auto");
-    asked asked;
-    asked.filtered = true;
+    seen_setup asked;
     asked.camera.eye = placed(0.4, -2.1, 3.3);
     asked.camera.target = placed(0.1, 0.05, 0);
     asked.camera.up = across;
@@ -493,7 +344,7 @@ void judge_flat(const std::string &path, verdict *verdict)
     for (const flat_case &one : flat_cases()) {
         asked.setup = one.setup;
         figures sum;
-        add(judge_setup(scene, &drawing, asked), &sum);
+        add(judge_setup(scene, &drawing, asked, true), &sum);
         std::string what = one.what;
         print(file_name(path), what, sum);
         verdict->check(sum.seen > 1000 && sum.met == (one.all ? sum.seen : 0),
