@@ -1,14 +1,21 @@
 #!/bin/sh
-# contact_sheet.sh MODEL OUT.jpg: every line family, light and pattern on one model, in one picture.
+# pictures.sh MODEL FOLDER: the pictures of README.md. three_looks.jpg shows what its first commands do,
+# contact_sheet.jpg every line family, light and pattern.
 # Needs oiiotool (Debian: openimageio-tools) and the programs of `make`.
 set -eu
-[ $# = 2 ] || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
+[ $# = 2 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 command -v oiiotool >/dev/null || { echo "$0: oiiotool is missing: apt-get install openimageio-tools" >&2; exit 2; }
 sheen=$(dirname "$0")/../build/sheen
-model=$1 out=$2
+model=$1 folder=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 n=100
+
+mosaic() { # columns x rows, file; takes the panels so far
+    oiiotool "$work"/1*.png --mosaic:pad=4 "$1" --ch R,G,B -d uint8 --attrib "quality" 90 \
+        -o "$folder/$2"
+    rm "$work"/1*.png
+}
 
 panel() { # title, options of sheen render
     title=$1
@@ -18,6 +25,11 @@ panel() { # title, options of sheen render
     oiiotool "$work/panel.png" --text:x=10:y=250:size=16:font=DejaVuSans:color=1,1,1,1 "$title" \
         -o "$work/$n.png"
 }
+
+panel "--lines zebra" --lines zebra
+panel "no option: a tunnel of lights"
+panel "--show mean" --show mean --legend off
+mosaic 3x1 three_looks.jpg
 
 panel "reflection, rectangle" --light rectangle
 panel "highlight, plane" --lines highlight --light plane
@@ -33,5 +45,4 @@ panel "distance" --light rectangle --pattern distance:count=40
 panel "two lights, opacity" --light rectangle \
     --pattern lines:at=0.35/0.5/0.65,width=0.02,fg=#d02020,bg=#00000000 \
     --light tunnel --pattern stripes:count=24,opacity=0.5
-
-oiiotool "$work"/1*.png --mosaic:pad=4 4x3 --ch R,G,B -d uint8 --attrib "quality" 90 -o "$out"
+mosaic 4x3 contact_sheet.jpg
