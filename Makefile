@@ -3,6 +3,7 @@
 #   make demo       install what is missing, build, render the demo model to a PNG
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
+#   make test       T=NAME: one row of what `make check` prints; tests/README.md says which there are
 #   make fuzz       SECONDS=60: fuzz each target of tests/fuzz so long (needs clang-14: sh deploy/deps.sh fuzz)
 #   make fuzz-coverage   lines of protocol/, the readers and the workers' messages that the corpora reach
 #   make soak       the service under load, SECONDS of each part (60), and 102 processes killed; prints
@@ -225,7 +226,7 @@ $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 	$(Q)$(CXX) $(LDFLAGS) -static-libstdc++ -static-libgcc -o $@ $^ -lepoxy -lm
 sheen-bench: $(BUILD)/sheen-bench
 
-.PHONY: tests unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench sheen-bench lint format demo deps install clean
+.PHONY: tests test unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench sheen-bench lint format demo deps install clean
 tests: all $(BUILD)/sheend-faults $(BUILD)/tests/no_library.so $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH) $(BUILD)/sheen-bench
 unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 	bash tests/run.sh unit $(BUILD)
@@ -233,6 +234,10 @@ service: all $(BUILD)/sheend-faults $(BUILD)/tests/no_library.so
 	bash tests/run.sh service $(BUILD)
 oracle: all $(ORACLE_TESTS)
 	bash tests/run.sh oracle $(BUILD)
+# A unit program and a corpus are built alone, what else tests need by the kind that the name tells.
+test: all $(if $(wildcard tests/unit/$(T).c)$(filter fuzz_%,$(T)),$(BUILD)/tests/$(T),\
+          $(if $(filter service_%,$(T)),$(BUILD)/sheend-faults $(BUILD)/tests/no_library.so,$(ORACLE_TESTS)))
+	bash tests/run.sh all $(BUILD) $(or $(T),$(error T=NAME: see tests/README.md))
 check:
 	$(MAKE) deps
 	$(MAKE) -j$(JOBS) lint tests

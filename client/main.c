@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "client/commands.h"
+#include "protocol/frame.h"
 
 #define EXIT_WRONG_USAGE 2
 
@@ -49,7 +50,7 @@ int main(int argc, char **argv)
         return 0;
     }
     if (strcmp(name, "--version") == 0) {
-        puts("sheen " SHEEN_VERSION);
+        printf("sheen %s, protocol %d.%d\n", SHEEN_VERSION, PROTOCOL_MAJOR, PROTOCOL_MINOR);
         return 0;
     }
     for (size_t i = 0; i < N_COMMANDS; i++) {

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "protocol/frame.h"
 #include "server/options_table.h"
 #include "server/service/plain_file.h"
 #include "server/service/listen.h"
@@ -204,7 +205,11 @@ static enum options_result walk(int argc, char **argv, struct settings *settings
         if (row->type == OPTION_ACTION && row->set)
             return row->set(NULL, optarg, error) ? OPTIONS_DONE : OPTIONS_WRONG;
         if (row->type == OPTION_ACTION) {
-            strcmp(row->name, "help") == 0 ? print_help() : (void)puts("sheend " SHEEN_VERSION);
+            if (strcmp(row->name, "help") == 0)
+                print_help();
+            else
+                printf("sheend %s, protocol %d.%d\n", SHEEN_VERSION, PROTOCOL_MAJOR,
+                       PROTOCOL_MINOR);
             return OPTIONS_DONE;
         }
         if (is_config(row) == first && !take(row, settings, &seen[index], error))

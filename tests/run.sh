@@ -1,10 +1,10 @@
 #!/bin/bash
-# run.sh unit|fuzz|bench|service|oracle|all BUILD: runs the tests of one kind, or all, and ends with their sum,
-# "N passed, N failed". Each program's full output is kept in BUILD/tests/NAME.log. Programs that judge
+# run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]: runs the tests of one kind, or all, or of these the
+# one of that name, and ends with their sum, "N passed, N failed". Each program's full output is kept in BUILD/tests/NAME.log. Programs that judge
 # nothing but answers run side by side, one for each processor; the service's tests whose file says
 # ALONE run one by one, since they also judge who is served first, or how soon.
 set -u
-kind=$1 build=$2
+kind=$1 build=$2 only=${3:-}
 processors=$(nproc)
 shapes=../shared/shapes
 # In builds with sanitizers: what libraries lose by themselves is not ours to report.
@@ -23,6 +23,7 @@ count() {
 run() { # name, command...
     name=$1
     shift
+    [ -z "$only" ] || [ "$only" = "$name" ] || return
     log=$build/tests/$name.log
     start=$(date +%s)
     "$@" >"$log" 2>&1
@@ -155,9 +156,10 @@ all)
     ;;
 unit | fuzz | bench | service | oracle) "$kind" ;;
 *)
-    echo "usage: run.sh unit|fuzz|bench|service|oracle|all BUILD" >&2
+    echo "usage: run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]" >&2
     exit 2
     ;;
 esac
-cat "$build"/tests/*.count | awk '{ passed += $1; failed += $2 }
+[ -z "$only" ] || [ -f "$build/tests/$only.count" ] || echo "no test is named $only: tests/README.md" >&2
+cat "$build"/tests/*.count 2>/dev/null | awk '{ passed += $1; failed += $2 }
     END { print passed + 0 " passed, " failed + 0 " failed"; exit !(passed > 0 && failed == 0) }'

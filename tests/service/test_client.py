@@ -280,6 +280,10 @@ class Client(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(len(json.loads(done.stdout)["frames"]), 5)
 
+    def test_version(self):
+        """What a bug report needs: the program's and the wire's."""
+        self.assertRegex(sheen("--version").stdout, r"^sheen \d+\.\d+\.\d+, protocol 1\.\d+\n$")
+
     def test_readme_shares_a_daemon(self):
         """Its block is pasted as it stands: the client must not come before the daemon."""
         with open(os.path.join(MODELS, "..", "..", "README.md"), encoding="utf-8") as file:

@@ -32,7 +32,7 @@ class Options(unittest.TestCase):
                      "--session-fd", "--threads", "--drain-timeout", "--version"):
             self.assertIn(name, text)
         self.assertIn("examples", text)
-        self.assertRegex(run("--version").stdout, r"^sheend \d+\.\d+\.\d+\n$")
+        self.assertRegex(run("--version").stdout, r"^sheend \d+\.\d+\.\d+, protocol 1\.\d+\n$")
 
     def test_wrong_usage(self):
         for words, *arguments in (("--nothing", "--nothing"), ("stray", "stray"),
