@@ -62,7 +62,8 @@ static int run_lights(const struct options *options)
     printf(
         "Each --light after the first begins another light, over which the earlier ones lie; the\n"
         "options --light-center, --light-u, --light-v and --pattern speak of the latest.\n"
-        "Isophote, zebra and environment need no light and show the first one's pattern.\n");
+        "Isophote, zebra and environment need no light; of those named the patterns alone "
+        "count.\n");
     return 0;
 }
 
