@@ -18,8 +18,8 @@ namespace
 
 const int width_px = 320, height_px = 240;
 /* Of a light's width or height; by the radian where normals move lines further than that. */
-const double max_formula_error = 4e-6;
-const double max_surface_p999 = 4e-6;
+const double max_formula_error = 6e-7;
+const double max_surface_p999 = 1e-6;
 const double max_change_p999 = 1e-3; /* relative */
 const double max_locked_p999 = 1e-6;
 /* Differences say nothing where a pixel sees this share of a light or more, at silhouettes and
