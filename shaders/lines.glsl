@@ -121,8 +121,8 @@ void ray_from(Sample at, out vec3 r, out vec3 dr[2])
 }
 
 // atan(y, x), to the last digits: a device's own may be off by far more than single precision's rounding.
-// Not both 0. The polynomial is through Chebyshev's nodes for what atan(t) / t differs from 1 by, over t^2,
-// up to an eighth of a turn's half.
+// Not both 0. The polynomial is (atan(t) / t - 1) / t^2 in z = t^2, interpolated at Chebyshev's nodes for
+// |t| <= tan(pi / 8); larger t are brought there by pi / 4 and pi / 2.
 float angle_of(float y, float x)
 {
     float low = min(abs(x), abs(y)), high = max(abs(x), abs(y));
