@@ -1,11 +1,12 @@
 #!/bin/bash
 # run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]: runs the tests of one kind, or all, or of these the
-# one of that name, and ends with their sum, "N passed, N failed". Each program's full output is kept in BUILD/tests/NAME.log. Programs that judge
-# nothing but answers run side by side, one for each processor; the service's tests whose file says
-# ALONE run one by one, since they also judge who is served first, or how soon.
+# one of that name, and ends with their sum, "N passed, N failed". Each program's full output is kept in
+# BUILD/tests/NAME.log. Programs that judge nothing but answers run side by side, one more than there are
+# processors, since some of them mostly wait. The service's tests whose file says ALONE run one by one after
+# them, since they also judge who is served first, or how soon.
 set -u
 kind=$1 build=$2 only=${3:-}
-processors=$(nproc)
+at_once=$(($(nproc) + 1))
 shapes=../shared/shapes
 # In builds with sanitizers: what libraries lose by themselves is not ours to report.
 export LSAN_OPTIONS="suppressions=tests/lsan.supp:print_suppressions=0"
@@ -37,9 +38,9 @@ run() { # name, command...
     [ "$bad" = 0 ] || { tail -n 40 "$log"; }
 }
 
-# The same beside others, as soon as fewer than one for each processor are at work. `wait` ends them all.
+# The same beside others, as soon as fewer than $at_once are at work.
 beside() { # name, command...
-    while [ "$(jobs -rp | wc -l)" -ge "$processors" ]; do
+    while [ "$(jobs -rp | wc -l)" -ge "$at_once" ]; do
         wait -n
     done
     run "$@" &
@@ -79,7 +80,6 @@ unit() {
         *) beside "$name" "$build/tests/$name" ;;
         esac
     done
-    wait
 }
 
 # Every input that fuzzing has left, over the code of this build.
@@ -88,43 +88,44 @@ fuzz() {
         name=fuzz_$(basename "$corpus")
         beside "$name" "$build/tests/$name" "$corpus"
     done
-    wait
 }
 
 bench() {
-    run sheen_bench /usr/bin/python3 tests/bench/test_sheen_bench.py "$build"
+    beside sheen_bench /usr/bin/python3 tests/bench/test_sheen_bench.py "$build"
+}
+
+# The service's tests of the files that $1, an option of grep, finds by ALONE; $2 runs each.
+service_by() { # option, how
+    for module in $(grep "$1" '^ALONE' tests/service/test_*.py); do
+        name=$(basename "$module" .py)
+        "$2" "service_${name#test_}" /usr/bin/python3 tests/service/run.py "$build" "$name"
+    done
 }
 
 service() {
-    modules=$(grep -L '^ALONE' tests/service/test_*.py)
-    for module in $modules; do
-        name=$(basename "$module" .py)
-        beside "service_${name#test_}" /usr/bin/python3 tests/service/run.py "$build" "$name"
-    done
-    wait
-    modules=$(grep -l '^ALONE' tests/service/test_*.py)
-    for module in $modules; do
-        name=$(basename "$module" .py)
-        run "service_${name#test_}" /usr/bin/python3 tests/service/run.py "$build" "$name"
-    done
-    run same sh tests/oracle/test_same.sh "$build/sheen" "$build/sheend" tests/models/fender.gltf \
+    service_by -L beside
+    beside same sh tests/oracle/test_same.sh "$build/sheen" "$build/sheend" tests/models/fender.gltf \
         tests/models/body.obj
+}
+
+service_alone() {
+    service_by -l run
 }
 
 oracle() {
     [ -d "$shapes" ] || echo "note: $shapes is not here: the oracles judge tests/models only"
     cages=$(shapes_of 'catmark_*.obj') all=$(shapes_of '*.obj')
+    # shellcheck disable=SC2046,SC2086 # lists of files without spaces
+    [ -z "$cages" ] || beside frames_shapes served "$build/tests/test_frames" "$build/sheen" $cages
+    beside frames_models served "$build/tests/test_frames" "$build/sheen" tests/models/*.obj \
+        tests/models/*.gltf
     beside oracle_self sh tests/oracle/self_test.sh "$build/tests"
     beside oracle_osd "$build/tests/test_oracle"
-    # shellcheck disable=SC2046,SC2086 # lists of files without spaces
     beside limit "$build/tests/test_limit" tests/models/*.obj $all
     beside refine "$build/tests/test_refine" tests/models/*.obj tests/models/*.gltf $all
     # The surface of loop_val2_interior folds onto itself and has no normal along the fold.
     beside twin "$build/tests/test_twin" tests/models/*.obj \
         $(printf '%s\n' $all | grep -v loop_val2_interior)
-    beside frames_models served "$build/tests/test_frames" "$build/sheen" tests/models/*.obj \
-        tests/models/*.gltf
-    [ -z "$cages" ] || beside frames_shapes served "$build/tests/test_frames" "$build/sheen" $cages
     beside deep "$build/tests/test_deep"
     beside sectors "$build/tests/test_sectors"
     beside random_cages "$build/tests/test_random_cages"
@@ -143,18 +144,28 @@ oracle() {
     beside fine served "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
     beside isophotes served "$build/tests/test_isophotes" "$build/sheen" tests/models/body.obj
     beside mirror served "$build/tests/test_mirror" "$build/sheen"
-    wait
 }
 
+# The longest first.
 case $kind in
 all)
+    oracle
+    service
     unit
     fuzz
     bench
-    service
-    oracle
+    wait
+    service_alone
     ;;
-unit | fuzz | bench | service | oracle) "$kind" ;;
+service)
+    service
+    wait
+    service_alone
+    ;;
+unit | fuzz | bench | oracle)
+    "$kind"
+    wait
+    ;;
 *)
     echo "usage: run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]" >&2
     exit 2
