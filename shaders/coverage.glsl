@@ -13,6 +13,17 @@ float half_plane(float z, vec2 g)
     return z > 0.0 ? 1.0 - inside : inside;
 }
 
+// Mean over the pixel of what is positive of such a function.
+float ramp(float z, vec2 g)
+{
+    g = abs(g);
+    float a = max(max(g.x, g.y), 1e-20), b = min(g.x, g.y);
+    float reach = 0.5 * (a + b), t = -abs(z), in_reach = max(t + reach, 0.0), over = t + 0.5 * a;
+    float below = t < 0.5 * (b - a) ? in_reach * in_reach * in_reach / (6.0 * a * b)
+                                    : (over * over + b * b / 12.0) / (2.0 * a);
+    return max(z, 0.0) + (t > -reach ? below : 0.0);
+}
+
 // Twice integrated square wave of period 1 and duty d, its mean removed.
 float twice_integrated(float phase, float d)
 {

@@ -27,24 +27,40 @@ void sort_boxes(vec2 g, float soft, out vec2 wide, out float narrow)
     wide.y = g.x + g.y + soft - narrow - wide.x;
 }
 
-// The wave of duty d, its edges as wide as `soft`.
+// Edges softer than this share of what they lie in are as good as hard, and have no digits left.
+const float LEAST_SOFT = 1e-3;
+
+// The wave of duty d, its edges as wide as `soft`. Where the pixel takes less than a period it is
+// the sum of the waves in reach, each between four ramps, taken on the side where they vanish: what
+// is dark is dark to all digits, as the sRGB curve needs.
 float soft_stripe(float phase, vec2 g, float d, float soft)
 {
+    float reach = 0.5 * (abs(g.x) + abs(g.y)), sum = 0.0;
+    if (reach < 0.5) {
+        soft = max(soft, LEAST_SOFT * max(reach, 0.1));
+        float x = phase - 0.5 * d, outer = 0.5 * (d + soft), inner = 0.5 * (d - soft);
+        float last = floor(x + outer + reach);
+        for (float k = ceil(x - outer - reach); k <= last; k += 1.0) {
+            float y = -abs(x - k);
+            sum += ramp(y + outer, g) - ramp(y + inner, g) - ramp(y - inner, g) + ramp(y - outer, g);
+        }
+        return sum / soft;
+    }
     vec2 wide;
     float narrow;
     sort_boxes(g, soft, wide, narrow);
-    vec3 at = phase + narrow * GAUSS;
-    return dot(WEIGHT, vec3(stripe(at.x, wide, d), stripe(at.y, wide, d), stripe(at.z, wide, d)));
+    for (int i = 0; i < 3; i++)
+        sum += WEIGHT[i] * stripe(phase + narrow * GAUSS[i], wide, d);
+    return sum;
 }
 
 // half_plane with an edge as wide as `soft`, in units of z.
 float soft_half_plane(float z, vec2 g, float soft)
 {
-    vec2 wide;
-    float narrow;
-    sort_boxes(g, soft, wide, narrow);
-    vec3 at = z + narrow * GAUSS;
-    return dot(WEIGHT, vec3(half_plane(at.x, wide), half_plane(at.y, wide), half_plane(at.z, wide)));
+    float reach = 0.5 * (abs(g.x) + abs(g.y));
+    soft = max(soft, LEAST_SOFT * reach);
+    z = clamp(z, -reach - soft, reach + soft);
+    return (ramp(z + 0.5 * soft, g) - ramp(z - 0.5 * soft, g)) / soft;
 }
 
 float wave_at(float phase, vec2 g)
@@ -90,23 +106,34 @@ float lattice_dark(vec2 phase, vec2 da, vec2 db)
 }
 #endif
 
-// The image over the pixel's parallelogram: samples along its longer side, each as wide as the
-// shorter. Not textureGrad: software devices take one footprint for neighbouring pixels together.
+#if PATTERN == IMAGE
+// The image over the pixel's parallelogram, by samples on a grid of its two sides, a texel of the
+// chosen level apart, so that every texel counts alike. The level is as fine as it may be for about
+// so many samples: what a texel of it blurs beyond the footprint is small beside the shorter side.
+// (Not textureGrad: software devices take one footprint for neighbouring pixels together.)
 vec4 image_colour(vec2 st, vec2 right, vec2 down)
 {
-    const float most = 16.0;
+    const float few = 5.0, many = 40.0, most = 64.0;
     vec2 texels = vec2(textureSize(picture, 0));
-    float a = length(right * texels), b = length(down * texels);
-    vec2 along = a > b ? right : down;
-    float n = clamp(ceil(max(a, b) / max(min(a, b), 1.0)), 1.0, most);
-    float lod = log2(max(max(a, b) / n, 1.0));
+    vec2 a = right * texels, b = down * texels;
+    bool swap = dot(a, a) < dot(b, b);
+    vec2 along = swap ? down : right, across = swap ? right : down;
+    vec2 u = along * texels, v = across * texels;
+    float length_u = max(length(u), 1e-6), height = abs(u.x * v.y - u.y * v.x) / length_u;
+    float step = max(height / few, sqrt(length_u * max(height, length_u / many) / many));
+    float lod = max(round(log2(max(step, 1.0))), 0.0), texel = exp2(lod);
+    // Rows that are shifted against each other add to what lies along them.
+    float shift = abs(dot(u, v)) / (length_u * length_u);
+    vec2 n = clamp(ceil(vec2(length_u / texel, max(height / texel, few * shift)) + 1.0), 2.0, most);
     vec4 sum = vec4(0.0);
-    for (float i = 0.5; i < n; i += 1.0) {
-        vec2 at = st + along * (i / n - 0.5);
-        sum += textureLod(picture, vec2(at.x, 1.0 - at.y), lod);
-    }
-    return clamp(sum / n, 0.0, 1.0);
+    for (float j = 0.5; j < n.y; j += 1.0)
+        for (float i = 0.5; i < n.x; i += 1.0) {
+            vec2 at = st + along * (i / n.x - 0.5) + across * (j / n.y - 0.5);
+            sum += textureLod(picture, vec2(at.x, 1.0 - at.y), lod);
+        }
+    return clamp(sum / (n.x * n.y), 0.0, 1.0);
 }
+#endif
 
 // A coordinate turned on the light, and its change over the pixel.
 void turned(Met met, vec2 along, out float a, out vec2 da)
@@ -153,8 +180,9 @@ vec4 pattern_colour(Met met)
 #else
 #if PATTERN == CIRCLES
     float rho = length(met.q);
-    vec2 radial = met.q / max(rho, 1e-20) * turn.z;
-    float bright = wave_at(rho * turn.z + turn.w, radial.x * met.ds + radial.y * met.dt);
+    vec2 radial = met.q / max(rho, 1e-20) * turn.z, g = radial.x * met.ds + radial.y * met.dt;
+    g *= min(1.0, rho * turn.z / max(0.5 * (abs(g.x) + abs(g.y)), 1e-20));  // no ring is beyond the centre
+    float bright = wave_at(rho * turn.z + turn.w, g);
 #elif PATTERN == LINES
     float bright = lines_at(a, da);
 #elif PATTERN == LATTICE
@@ -169,10 +197,115 @@ vec4 pattern_colour(Met met)
 #endif
 }
 
+// Where a footprint cannot be taken whole it is cut into parts: at the border of a light, at the seam
+// of one that goes round, where a pattern whose periods do not close meets itself, and where rings
+// bend. What the first two leave of a part is its weight.
+#define NO_WRAP -1
+#if FAMILY == ZEBRA
+#define WRAP 1
+#elif FAMILY == ENVIRONMENT || (FAMILY != ISOPHOTE && (LIGHT == TUNNEL || LIGHT == SPHERE))
+#define WRAP 0
+#else
+#define WRAP NO_WRAP
+#endif
+#if LIGHT == RECTANGLE && (FAMILY == REFLECTION || FAMILY == HIGHLIGHT)
+#define HAS_BORDER
+#endif
+#if !defined(UNFILTERED) && (defined(HAS_BORDER) || WRAP != NO_WRAP || PATTERN == CIRCLES)
+#define IN_PARTS
+#endif
+
+// How far the footprint reaches to the sides, in q.
+vec2 reach_of(Met met)
+{
+    return 0.5 * vec2(abs(met.ds.x) + abs(met.ds.y), abs(met.dt.x) + abs(met.dt.y));
+}
+
+#ifdef IN_PARTS
+bool is_at_seam(Met met)
+{
+#if WRAP != NO_WRAP
+    return abs(met.q[WRAP]) + reach_of(met)[WRAP] > 0.5 * size[WRAP];
+#else
+    return false;
+#endif
+}
+
+// Into how many parts, each way.
+float parts_across(Met met, bool at_seam)
+{
+    bool at_border = false;
+#ifdef HAS_BORDER
+    at_border = abs(met.cover - 0.5) < 0.499;
+#endif
+    float n = at_border || at_seam ? 4.0 : 1.0;
+#if PATTERN == CIRCLES
+    // How far a ring bends away from a straight line over half of the footprint, in periods. Where
+    // so many rings lie within it that the mean is all that is left, only their middle tells more.
+    const float straight = 0.01, most = 8.0, many = 12.0;
+    vec2 right = 0.5 * vec2(met.ds.x, met.dt.x), down = 0.5 * vec2(met.ds.y, met.dt.y);
+    float reach = max(length(right + down), length(right - down));
+    float rho = length(met.q), bend = 0.5 * reach * reach * turn.z / max(rho, 1e-3 * reach);
+    if (bend > straight && (2.0 * reach * turn.z < many || rho < 2.0 * reach))
+        n = max(n, min(ceil(sqrt(bend / straight)), most));
+#endif
+    return n;
+}
+
+// About how much of a part lies on the light; more than nothing, so that some part counts.
+float part_share(Met part)
+{
+    vec2 inside = (0.5 * size.xy - abs(part.q)) / max(2.0 * reach_of(part), 1e-20);
+    vec2 share = clamp(inside + 0.5, 1e-3, 1.0);
+#if defined(HAS_BORDER)
+    return share.x * share.y;
+#elif WRAP != NO_WRAP
+    return share[WRAP];
+#else
+    return 1.0;
+#endif
+}
+#endif
+
+// The pattern's mean over what of the footprint lies on the light.
+vec4 mean_colour(Met met)
+{
+#ifdef IN_PARTS
+    bool at_seam = is_at_seam(met);
+    float step = 1.0 / parts_across(met, at_seam), weight = 0.0;
+    Met part = met;
+    part.ds *= step;
+    part.dt *= step;
+    part.dtau *= step;
+    vec2 q = met.q, first = vec2(0.5 * (step - 1.0)), at = first;
+    vec4 sum = vec4(0.0);
+    // At a seam once more from the other end of the light.
+    for (int ends = at_seam ? 2 : 1; ends > 0;) {
+        part.q = q + at.x * vec2(met.ds.x, met.dt.x) + at.y * vec2(met.ds.y, met.dt.y);
+        part.tau = met.tau + dot(met.dtau, at);
+        float share = part_share(part);
+        sum += share * pattern_colour(part);
+        weight += share;
+        at.x += step;
+        at = at.x < 0.5 ? at : vec2(first.x, at.y + step);
+        if (at.y >= 0.5) {
+            at = first;
+            ends--;
+#if WRAP != NO_WRAP
+            q[WRAP] -= q[WRAP] < 0.0 ? -size[WRAP] : size[WRAP];
+#endif
+        }
+    }
+    return sum / weight;
+#else
+    return pattern_colour(met);
+#endif
+}
+
 // The pattern over the shaded base, over the lights behind; q as for sample_at.
 Shown lay_over(Shown behind, Sample at, Met met, vec2 q)
 {
     float lit = 0.3 + 0.7 * abs(dot(at.n, normalize(to_world(vec3(q * ray.x, 1.0)))));
-    vec4 own = met.cover * mix(vec4(base.rgb * lit, base.a), pattern_colour(met), opacity);
+    vec4 own = met.cover * mix(vec4(base.rgb * lit, base.a), mean_colour(met), opacity);
     return Shown(own + (1.0 - own.a) * behind.light, (1.0 - met.cover) * behind.missed);
 }

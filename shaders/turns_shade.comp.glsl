@@ -1,9 +1,54 @@
 // What a listed pixel without an edge shows, over which the normal turns so far that one footprint
-// cannot tell: its own paraboloid in SIDE x SIDE squares, each shaded by itself.
+// cannot tell: nine squares of it, each shaded by itself.
+//
+// How the shape operator changes within the pixel counts there as much as how it turns the normal, and
+// the pixel's own paraboloid does not know it. The pixels around do: their normals and shape operators
+// are the surface's own. Between them and the pixel's the normal is a cubic function of the place.
 
 layout(local_size_x = 64) in;
 
-const int SIDE = 3;
+const float STEP = 1.0 / 3.0;  // px: the side of a square
+
+// Along one axis of the picture: what the normal's change a pixel, `slope`, leaves of it, and how the
+// change across, `cross_slope`, goes along with it.
+struct Turning {
+    vec3 slope, square, cube;
+    vec3 cross_slope, cross_change, cross_square;
+};
+
+vec3[2] turn_a_pixel(Hit hit, ivec2 p)
+{
+    return sample_at(pixel_offset(p), 1.0, hit.depth, hit.n, hit.h, hit.n).dn;
+}
+
+// axis: 0 to the right, 1 down. A side that shows another surface says nothing.
+Turning turning_along(Hit hit, vec3 turn[2], ivec2 p, int axis)
+{
+    Turning t = Turning(turn[axis], vec3(0.0), vec3(0.0), turn[1 - axis], vec3(0.0), vec3(0.0));
+    ivec2 step = ivec2(1 - axis, axis);
+    vec3 odd = vec3(0.0), cross_even = vec3(0.0);
+    float n = 0.0;
+    for (int side = -1; side < 2; side += 2) {
+        ivec2 q = p + side * step;
+        Hit beside = hit_at(q);
+        if (!mirrors(beside) || !same_surface(hit, beside))
+            continue;
+        vec3 off = beside.n - hit.n - float(side) * t.slope;
+        vec3 cross_off = turn_a_pixel(beside, q)[1 - axis] - t.cross_slope;
+        t.square += off;
+        odd += float(side) * off;
+        t.cross_change += float(side) * cross_off;
+        cross_even += cross_off;
+        n += 1.0;
+    }
+    t.square /= max(n, 1.0);
+    t.cross_change /= max(n, 1.0);
+    if (n > 1.0) {
+        t.cube = 0.5 * odd;
+        t.cross_square = 0.5 * cross_even;
+    }
+    return t;
+}
 
 void main()
 {
@@ -11,16 +56,31 @@ void main()
     if (index >= listed.n)
         return;
     ivec2 p = list_place(listed.at[index]);
-    Piece piece = piece_of(hit_at(p), p, ivec2(0));
+    Hit hit = hit_at(p);
+    vec3 turn[2] = turn_a_pixel(hit, p);
+    Turning along = turning_along(hit, turn, p, 0), down = turning_along(hit, turn, p, 1);
+    vec3 twist = 0.5 * (along.cross_change + down.cross_change);
+    Piece piece = piece_of(hit, p, ivec2(0));
     Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
     float n = 0.0;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        vec2 d = (vec2(i % SIDE, i / SIDE) + 0.5) / float(SIDE) - 0.5;
-        float z = depth_at(piece, d);
-        if (z < NOWHERE) {
-            sum = added(sum, shade_ray(piece.hit, pixel_offset(p) + d, d, 1.0 / float(SIDE), z, behind));
-            n += 1.0;
-        }
+    for (vec2 d = vec2(0.5 * (STEP - 1.0)); d.y < 0.5;
+         d = d.x + STEP < 0.5 ? vec2(d.x + STEP, d.y) : vec2(0.5 * (STEP - 1.0), d.y + STEP)) {
+        float z = depth_at(piece, d), x = d.x, y = d.y;
+        if (z == NOWHERE)
+            continue;
+        vec3 normal = hit.n + x * (along.slope + x * (along.square + x * along.cube)) +
+                      y * (down.slope + y * (down.square + y * down.cube)) +
+                      x * y * (twist + x * along.cross_square + y * down.cross_square);
+        vec2 q = pixel_offset(p) + d;
+        Sample at = sample_at(q, STEP, z, normalize(normal), hit.h, hit.n);
+        at.dn[0] = along.slope + x * (2.0 * along.square + 3.0 * x * along.cube) +
+                   y * (twist + 2.0 * x * along.cross_square + y * down.cross_square);
+        at.dn[1] = down.slope + y * (2.0 * down.square + 3.0 * y * down.cube) +
+                   x * (twist + x * along.cross_square + 2.0 * y * down.cross_square);
+        at.dn[0] *= STEP;
+        at.dn[1] *= STEP;
+        sum = added(sum, lay_over(behind, at, meet(at), q));
+        n += 1.0;
     }
     if (n > 0.0)
         put_shown(p, scaled(sum, 1.0 / n), 0.0);
