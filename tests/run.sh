@@ -137,6 +137,11 @@ oracle() {
     beside filter served "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
     beside patterns served "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
+    # shellcheck disable=SC2046 # lists of files without spaces
+    beside areas served "$build/tests/test_areas" "$build/sheen" tests/models/body.obj \
+        tests/models/fender.obj tests/models/plane.obj tests/models/sheet.obj \
+        tests/models/ngons.obj $(shapes_of 'catmark_toroidal_tet.obj') \
+        $(shapes_of 'catmark_torus.obj')
     beside lines served "$build/tests/test_lines" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/creases.obj tests/models/pole.obj "$car"
     beside numbers "$build/tests/test_numbers" tests/models/plane.obj tests/models/body.obj \

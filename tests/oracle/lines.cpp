@@ -11,6 +11,11 @@ namespace
 
 const double degrees = 180 / M_PI;
 
+/* Asked once: there are many samples. */
+const bool duty_is_broken = has_fault("duty"), eye_is_broken = has_fault("eye"),
+           isophote_is_broken = has_fault("isophote"), mirror_is_broken = has_fault("mirror"),
+           side_is_broken = has_fault("side"), turn_is_broken = has_fault("turn");
+
 vec3 without_part_along(vec3 v, vec3 unit)
 {
     return v - dot(v, unit) * unit;
@@ -26,7 +31,7 @@ double turn_about(vec3 r, vec3 u, vec3 v)
     vec3 e1 = normalized(without_part_along(u, axis));
     if (length(cross(r, axis)) < least_sine * length(r))
         return 0;
-    if (has_fault("turn"))
+    if (turn_is_broken)
         r = r + 1e-4 * e1;
     return std::atan2(dot(r, cross(axis, e1)), dot(r, e1)) / (2 * M_PI);
 }
@@ -62,6 +67,7 @@ light_hit meet_plane(vec3 x, vec3 r, bool both_ways, vec3 eye, const line_light 
     hit.t = 0.5 + dot(offset, by_v) / dot(light.v, by_v);
     hit.tau = std::fabs(tau);
     bool bounded = light.kind == line_light_kind::rectangle;
+    hit.s_ends = hit.t_ends = bounded;
     hit.inside = bounded ? std::min(std::min(hit.s, 1 - hit.s), std::min(hit.t, 1 - hit.t)) : 1;
     hit.met = std::fabs(approach) > least_sine && (both_ways || tau > 0) && hit.inside >= 0 &&
               !(light.one_sided && ahead >= 0);
@@ -83,7 +89,7 @@ light_hit meet_tunnel(vec3 x, vec3 r, const line_light &light)
     hit.inside = root / (radius * radius);
     if (!(root >= 0 && sine >= least_sine))
         return hit;
-    hit.tau = ((has_fault("side") ? -1 : 1) * std::sqrt(root) - along) / sine;
+    hit.tau = ((side_is_broken ? -1 : 1) * std::sqrt(root) - along) / sine;
     hit.met = hit.tau > 0;
     vec3 y = from + hit.tau * r;
     hit.s = 0.5 + turn_about(y, light.u, light.v);
@@ -98,6 +104,7 @@ light_hit meet_sphere(vec3 r, const line_light &light)
     hit.width = 360;
     hit.height = 180;
     hit.s_wraps = true;
+    hit.t_ends = true;
     hit.s = 0.5 + turn_about(r, light.u, light.v);
     hit.t = 0.5 + elevation(r, light.v);
     hit.inside = 1;
@@ -108,10 +115,11 @@ light_hit isophote(vec3 n, vec3 d)
 {
     light_hit hit;
     hit.met = true;
-    hit.s = angle(n, d) / (has_fault("isophote") ? M_PI * (1 + 1e-4) : M_PI);
+    hit.s = angle(n, d) / (isophote_is_broken ? M_PI * (1 + 1e-4) : M_PI);
     hit.t = 0.5;
     hit.width = 180;
     hit.height = 360;
+    hit.s_ends = hit.t_ends = true;
     hit.inside = 1;
     return hit;
 }
@@ -124,6 +132,7 @@ light_hit zebra(vec3 r, vec3 axis)
     hit.t = 0.5 + turn_about(r, azimuth_zero(axis), axis);
     hit.width = 180;
     hit.height = 360;
+    hit.s_ends = true;
     hit.t_wraps = true;
     hit.inside = 1;
     return hit;
@@ -138,6 +147,7 @@ light_hit environment(vec3 r, vec3 axis)
     hit.width = 360;
     hit.height = 180;
     hit.s_wraps = true;
+    hit.t_ends = true;
     hit.inside = 1;
     return hit;
 }
@@ -153,7 +163,7 @@ double bright_until(double phase, double duty)
 double wave(double phase, const line_pattern &pattern)
 {
     if (pattern.soft == 0)
-        return phase - std::floor(phase) < pattern.duty + (has_fault("duty") ? 0.01 : 0) ? 1 : 0;
+        return phase - std::floor(phase) < pattern.duty + (duty_is_broken ? 0.01 : 0) ? 1 : 0;
     double low = phase - pattern.soft / 2, high = phase + pattern.soft / 2;
     return (bright_until(high, pattern.duty) - bright_until(low, pattern.duty)) / pattern.soft;
 }
@@ -175,12 +185,6 @@ rgba hue_colour(double hue)
     return {ramp(0), ramp(2.0 / 3), ramp(1.0 / 3), 1};
 }
 
-rgba mixed(const rgba &a, const rgba &b, double b_share)
-{
-    auto mix = [&](double x, double y) { return x + b_share * (y - x); };
-    return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b), mix(a.a, b.a)};
-}
-
 /* Both premultiplied. */
 rgba over(const rgba &top, const rgba &below)
 {
@@ -189,7 +193,83 @@ rgba over(const rgba &top, const rgba &below)
             top.a + share * below.a};
 }
 
-/* From displayed and straight to light, and back. */
+/* Where a pattern has its periods: across its lines, and along them. */
+struct pattern_place {
+    double across, along;
+};
+
+/* In the light's units from its middle, turned by the pattern's rotation. */
+pattern_place turned_place(const line_pattern &p, const light_hit &hit)
+{
+    double q = p.rotation_deg / degrees;
+    double x = (hit.s - 0.5) * hit.width, y = (hit.t - 0.5) * hit.height;
+    return {std::cos(q) * x + std::sin(q) * y, std::cos(q) * y - std::sin(q) * x};
+}
+
+double period_of(const line_pattern &p, const light_hit &hit)
+{
+    if (p.period > 0)
+        return p.period;
+    return p.kind == line_pattern_kind::circles ? std::min(hit.width, hit.height) / (2 * p.count)
+                                                : hit.width / p.count;
+}
+
+double bright_share(const line_pattern &p, const light_hit &hit)
+{
+    pattern_place place = turned_place(p, hit);
+    double period = period_of(p, hit);
+    double across = place.across / period + hit.width / (2 * period) + p.offset;
+    double along = place.along / period + hit.height / (2 * period) + p.offset;
+    switch (p.kind) {
+    case line_pattern_kind::stripes:
+        return wave(across, p);
+    case line_pattern_kind::lattice:
+        return 1 - (1 - wave(across, p)) * (1 - wave(along, p));
+    case line_pattern_kind::circles:
+        return wave(std::hypot(place.across, place.along) / period + p.offset, p);
+    case line_pattern_kind::lines: {
+        double sum = 0;
+        for (double at : p.at)
+            sum += single_line(std::fabs(place.across / hit.width + 0.5 - at), p);
+        return std::min(sum, 1.0);
+    }
+    case line_pattern_kind::distance:
+        return wave(hit.tau / period + p.offset, p);
+    case line_pattern_kind::rainbow:
+    case line_pattern_kind::image:
+        break;
+    }
+    return across; /* rainbow: its hue */
+}
+
+/* Which of n texels lies at i, which may be beyond them. */
+int texel_index(int i, int n, bool ends)
+{
+    return ends ? std::clamp(i, 0, n - 1) : ((i % n) + n) % n;
+}
+
+rgba image_colour(const line_pattern &p, const light_hit &hit)
+{
+    const line_image &image = *p.image;
+    double column = hit.s * image.width_px - 0.5, row = (1 - hit.t) * image.height_px - 0.5;
+    double left = std::floor(column), top = std::floor(row);
+    auto texel = [&](int i, int j) -> const rgba & {
+        int across = texel_index((int)left + i, image.width_px, hit.s_ends);
+        int down = texel_index((int)top + j, image.height_px, hit.t_ends);
+        return image.texels[(size_t)(down * image.width_px + across)];
+    };
+    return mixed(mixed(texel(0, 0), texel(1, 0), column - left),
+                 mixed(texel(0, 1), texel(1, 1), column - left), row - top);
+}
+
+} // namespace
+
+rgba mixed(const rgba &a, const rgba &b, double b_share)
+{
+    auto mix = [&](double x, double y) { return x + b_share * (y - x); };
+    return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b), mix(a.a, b.a)};
+}
+
 rgba to_light(const rgba &c)
 {
     return {c.a * light_of(c.r), c.a * light_of(c.g), c.a * light_of(c.b), c.a};
@@ -202,45 +282,38 @@ rgba to_displayed(const rgba &c)
     return {displayed_of(c.r / c.a), displayed_of(c.g / c.a), displayed_of(c.b / c.a), c.a};
 }
 
-double bright_share(const line_pattern &p, const light_hit &hit)
-{
-    double q = p.rotation_deg / degrees;
-    double x = (hit.s - 0.5) * hit.width, y = (hit.t - 0.5) * hit.height;
-    double a = std::cos(q) * x + std::sin(q) * y, b = std::cos(q) * y - std::sin(q) * x;
-    double period = p.period > 0 ? p.period : hit.width / p.count;
-    double along_a = a / period + hit.width / (2 * period) + p.offset;
-    double along_b = b / period + hit.height / (2 * period) + p.offset;
-    switch (p.kind) {
-    case line_pattern_kind::stripes:
-        return wave(along_a, p);
-    case line_pattern_kind::lattice:
-        return 1 - (1 - wave(along_a, p)) * (1 - wave(along_b, p));
-    case line_pattern_kind::circles:
-        if (!(p.period > 0))
-            period = std::min(hit.width, hit.height) / (2 * p.count);
-        return wave(std::hypot(x, y) / period + p.offset, p);
-    case line_pattern_kind::lines: {
-        double sum = 0;
-        for (double at : p.at)
-            sum += single_line(std::fabs(a / hit.width + 0.5 - at), p);
-        return std::min(sum, 1.0);
-    }
-    case line_pattern_kind::distance:
-        return wave(hit.tau / period + p.offset, p);
-    case line_pattern_kind::rainbow:
-        break;
-    }
-    return along_a; /* rainbow: its hue */
-}
-
-} // namespace
-
 rgba pattern_colour(const line_pattern &pattern, const light_hit &hit)
 {
+    if (pattern.kind == line_pattern_kind::image)
+        return image_colour(pattern, hit);
     double share = bright_share(pattern, hit);
     if (pattern.kind == line_pattern_kind::rainbow)
         return hue_colour(share);
     return mixed(to_light(pattern.background), to_light(pattern.foreground), share);
+}
+
+double pattern_distance(const line_pattern &p, const light_hit &a, const light_hit &b)
+{
+    light_hit near = b; /* the same place, not round the light */
+    near.s = a.s - coordinate_difference(a.s, b.s, b.s_wraps);
+    near.t = a.t - coordinate_difference(a.t, b.t, b.t_wraps);
+    pattern_place from = turned_place(p, a), to = turned_place(p, near);
+    double period = period_of(p, a), across = std::fabs(to.across - from.across);
+    switch (p.kind) {
+    case line_pattern_kind::lattice:
+    case line_pattern_kind::circles:
+        return std::hypot(across, to.along - from.along) / period;
+    case line_pattern_kind::lines:
+        return across / (p.width * a.width);
+    case line_pattern_kind::distance:
+        return std::fabs(b.tau - a.tau) / period;
+    case line_pattern_kind::image:
+        return std::hypot((near.s - a.s) * p.image->width_px, (near.t - a.t) * p.image->height_px);
+    case line_pattern_kind::stripes:
+    case line_pattern_kind::rainbow:
+        break;
+    }
+    return across / period;
 }
 
 double coordinate_difference(double a, double b, bool wraps)
@@ -253,6 +326,8 @@ line_tracer::line_tracer(const line_setup &line_setup, const view &view)
 {
     forward = normalized(view.target - view.eye);
     camera_up = normalized(view.up);
+    base_light = to_light(setup.base);
+    miss_light = to_light(setup.miss);
 }
 
 vec3 line_tracer::view_from_camera(vec3 x) const
@@ -270,7 +345,7 @@ double line_tracer::eye_noise(vec3 x) const
 
 vec3 line_tracer::sight(vec3 x, vec3 n) const
 {
-    if (has_fault("eye"))
+    if (eye_is_broken)
         return view_from_camera(x);
     switch (setup.eye_kind) {
     case line_eye_kind::point:
@@ -286,7 +361,7 @@ vec3 line_tracer::sight(vec3 x, vec3 n) const
 light_hit line_tracer::meet_along(vec3 v, vec3 x, vec3 n, const line_light &light) const
 {
     vec3 r = v - (2 * dot(v, n)) * n;
-    if (has_fault("mirror"))
+    if (mirror_is_broken)
         r = r + 1e-4 * n;
     switch (setup.family) {
     case line_family::isophote:
@@ -313,20 +388,26 @@ bool line_tracer::at_turn(vec3 x, vec3 n) const
     return setup.family == line_family::highlight && std::fabs(dot(sight(x, n), n)) < 1e-4;
 }
 
-rgba line_tracer::colour(vec3 x, vec3 n) const
+rgba line_tracer::light(vec3 x, vec3 n, unsigned *met) const
 {
-    rgba colour = {0, 0, 0, 0};
-    bool any = false;
+    rgba light = {0, 0, 0, 0};
+    *met = 0;
     double shade = 0.3 + 0.7 * std::fabs(dot(n, view_from_camera(x)));
-    rgba base = to_light(setup.base);
-    base = {base.r * shade, base.g * shade, base.b * shade, base.a};
-    for (const line_light &light : setup.lights) {
-        light_hit hit = meet(x, n, light);
+    rgba base = {base_light.r * shade, base_light.g * shade, base_light.b * shade, base_light.a};
+    for (size_t i = 0; i < setup.lights.size(); i++) {
+        const line_light &each = setup.lights[i];
+        light_hit hit = meet(x, n, each);
         if (!hit.met)
             continue;
-        any = true;
-        colour =
-            over(colour, mixed(base, pattern_colour(light.pattern, hit), light.pattern.opacity));
+        *met |= 1u << i;
+        light = over(light, mixed(base, pattern_colour(each.pattern, hit), each.pattern.opacity));
     }
-    return any ? to_displayed(colour) : setup.miss;
+    return *met ? light : miss_light;
+}
+
+rgba line_tracer::colour(vec3 x, vec3 n) const
+{
+    unsigned met;
+    rgba light = this->light(x, n, &met);
+    return met ? to_displayed(light) : setup.miss;
 }

@@ -38,12 +38,14 @@ const char *light_name(line_light_kind kind)
 
 std::string pattern_option(const line_pattern &p)
 {
-    static const char *const names[] = {"stripes", "lattice", "circles",
-                                        "lines",   "rainbow", "distance"};
+    static const char *const names[] = {"stripes", "lattice",  "circles", "lines",
+                                        "rainbow", "distance", "image"};
     std::string text = names[(int)p.kind];
     auto part = [&](const char *key, const std::string &value) {
         text += (text.find(':') == std::string::npos ? ":" : ",") + std::string(key) + "=" + value;
     };
+    if (p.kind == line_pattern_kind::image)
+        return text + ":" + p.image->path;
     part("rotation", number(p.rotation_deg));
     part("opacity", number(p.opacity));
     if (p.kind == line_pattern_kind::lines) {

@@ -64,14 +64,25 @@ bool names_plane(const std::string &aov, const std::string &plane)
     return ("," + aov + ",").find("," + plane + ",") != std::string::npos;
 }
 
-void read_colour(OIIO::ImageInput *input, const char *channel, std::vector<float> *values)
+void read_channel(OIIO::ImageInput *input, const char *channel, std::vector<float> *values)
 {
     int index = channel_index(input->spec(), channel);
     values->resize((size_t)input->spec().image_pixels());
     if (!input->read_image(0, 0, index, index + 1, OIIO::TypeFloat, values->data()))
         throw std::runtime_error(std::string("channel ") + channel + ": " + input->geterror());
-    for (float &value : *values)
-        value = (float)displayed_of((double)value);
+}
+
+void read_colour(OIIO::ImageInput *input, planes *planes)
+{
+    read_channel(input, "R", &planes->red);
+    read_channel(input, "G", &planes->green);
+    read_channel(input, "B", &planes->blue);
+    read_channel(input, "A", &planes->alpha);
+    for (std::vector<float> *colour : {&planes->red, &planes->green, &planes->blue})
+        for (size_t i = 0; i < colour->size(); i++) {
+            float alpha = planes->alpha[i];
+            (*colour)[i] = alpha > 0 ? (float)displayed_of((double)((*colour)[i] / alpha)) : 0;
+        }
 }
 
 void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
@@ -90,6 +101,7 @@ void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
         {"ptex", "ptex.v", &planes->v},
         {"k", "k.min", &planes->k_min},
         {"k", "k.max", &planes->k_max},
+        {"coverage", "coverage", &planes->coverage},
         {"light", "light.s", &planes->s},
         {"light", "light.t", &planes->t},
         {"dlight", "light.dsdx", &planes->dsdx},
@@ -103,11 +115,8 @@ void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
             picture.extract(w.channel, OIIO::TypeFloat, w.values);
     if (names_plane(aov, "ptex"))
         picture.extract("ptex.face", OIIO::TypeUInt32, &planes->face);
-    if (names_plane(aov, "light")) {
-        read_colour(input, "R", &planes->red);
-        read_colour(input, "G", &planes->green);
-        read_colour(input, "B", &planes->blue);
-    }
+    if (names_plane(aov, "light") || names_plane(aov, "coverage"))
+        read_colour(input, planes);
 }
 
 /* The child's exit code, or -1 after killing it when time is up. */

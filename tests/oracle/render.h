@@ -14,7 +14,9 @@ const uint32_t no_face = 0xffffffffu;
 /* What a frame's file says, rows top first. Planes that were not asked for are empty. */
 struct planes {
     int width_px = 0, height_px = 0;
-    std::vector<float> red, green, blue; /* of the colour, displayed; with the light plane only */
+    /* Of the colour, displayed, straight alpha; with the light or the coverage plane only. */
+    std::vector<float> red, green, blue, alpha;
+    std::vector<float> coverage;
     std::vector<float> px, py, pz, nx, ny, nz, u, v, s, t, k_min, k_max;
     std::vector<float> dsdx, dsdy, dtdx, dtdy; /* of the light coordinates, a pixel */
     std::vector<uint32_t> face;

@@ -1,0 +1,208 @@
+/* test_areas SHEEN MODEL...: random setups of cameras, lights, patterns and colours. What each
+ * pixel shows is the mean over its area, by 20 x 20 samples of it. Inside the surface and its
+ * lights it is judged for each pattern; where the surface or a light ends within a pixel it is
+ * measured apart. */
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/oracle/area_samples.h"
+#include "tests/oracle/area_setups.h"
+#include "tests/oracle/model.h"
+#include "tests/oracle/render.h"
+#include "tests/oracle/samples.h"
+#include "tests/oracle/surface_grid.h"
+#include "tests/oracle/verdict.h"
+
+namespace
+{
+
+const int n_setups = 60, width_px = 48, height_px = 36;
+const uint32_t seed = 20260;
+
+/* Of the colours' bytes, in 1/255. */
+const double max_mean = 1, max_p99 = 8;
+/* Of patterns that change faster than this from one sample to the next, in periods, samples tell no
+ * more than the mean: they scatter by a fortieth of what is between bright and dark. */
+const double max_step = 0.25, max_fine_mean = 4;
+const size_t least_pixels = 2000; /* of each pattern, for a percentile that tells */
+
+const char *const pattern_names[] = {"stripes", "lattice",  "circles", "lines",
+                                     "rainbow", "distance", "image"};
+const size_t n_patterns = sizeof pattern_names / sizeof pattern_names[0];
+
+struct worst_pixel {
+    double error = 0;
+    std::string where;
+};
+
+/* Errors of one kind of pixels. */
+struct errors {
+    std::vector<double> all;
+    worst_pixel worst;
+
+    void add(double error, const std::string &where)
+    {
+        all.push_back(error);
+        if (!(error <= worst.error))
+            worst = {error, where};
+    }
+};
+
+struct found_errors {
+    errors inside[n_patterns], fine, at_border, at_edge, coverage;
+};
+
+/* The largest difference of alpha and of the displayed colours laid over black, in 1/255: of a
+ * colour that is nearly clear nobody sees more. Both straight. */
+double difference(const rgba &a, const rgba &b)
+{
+    double worst = std::fabs(a.a - b.a);
+    for (double part : {a.a * a.r - b.a * b.r, a.a * a.g - b.a * b.g, a.a * a.b - b.a * b.b})
+        worst = std::fmax(worst, std::fabs(part));
+    return 255 * worst;
+}
+
+/* The first of the bits of a set. */
+size_t first_of(unsigned set)
+{
+    return (size_t)__builtin_ctz(set);
+}
+
+void compare(const area_setup &setup, const planes &planes, const std::vector<area_sample> &samples,
+             const std::string &name, found_errors *found)
+{
+    for (size_t i = 0; i < samples.size(); i++) {
+        const area_sample &sample = samples[i];
+        std::string where =
+            name + " (" + std::to_string(i % width_px) + "," + std::to_string(i / width_px) + ")";
+        double error = difference({planes.red[i], planes.green[i], planes.blue[i], planes.alpha[i]},
+                                  to_displayed(sample.light));
+        if (sample.at_edge) {
+            if (sample.coverage > 0)
+                found->at_edge.add(error, where);
+            if (sample.coverage > 0 && sample.coverage < 1)
+                found->coverage.add(std::fabs((double)planes.coverage[i] - sample.coverage), where);
+        } else if (sample.partly) {
+            found->at_border.add(error, where);
+        } else if (sample.step > max_step) {
+            found->fine.add(error, where);
+        } else if (sample.met) {
+            auto pattern = (size_t)setup.lines.lights[first_of(sample.met)].pattern.kind;
+            found->inside[pattern].add(error, where);
+        }
+    }
+}
+
+void report(const char *name, errors *errors)
+{
+    double p99 = quantile(errors->all, 0.99), p999 = quantile(errors->all, 0.999);
+    std::printf("%-14s %7zu | %7.3f %7.2f %7.2f %7.2f  %s\n", name, errors->all.size(),
+                mean_of(errors->all), p99, p999, errors->worst.error, errors->worst.where.c_str());
+}
+
+void judge(found_errors *found, verdict *verdict)
+{
+    std::printf("%-14s %7s | %7s %7s %7s %7s\n", "error in 1/255", "pixels", "mean", "p99", "p99.9",
+                "most");
+    for (size_t k = 0; k < n_patterns; k++) {
+        errors &errors = found->inside[k];
+        report(pattern_names[k], &errors);
+        std::string what = std::string(pattern_names[k]) + ", inside: ";
+        verdict->check(errors.all.size() >= least_pixels, what + "too few pixels to judge");
+        verdict->at_most(mean_of(errors.all), max_mean, what + "mean error in 1/255");
+        verdict->at_most(quantile(errors.all, 0.99), max_p99,
+                         what + "99th percentile of the error in 1/255");
+    }
+    report("finer", &found->fine);
+    verdict->at_most(mean_of(found->fine.all), max_fine_mean,
+                     "patterns finer than samples tell: mean error in 1/255");
+    report("light borders", &found->at_border);
+    report("silhouettes", &found->at_edge);
+    std::printf("%-14s %7s | shares\n", "", "");
+    report("coverage", &found->coverage);
+}
+
+std::string printed(const std::vector<std::string> &words)
+{
+    std::string text;
+    for (const std::string &word : words)
+        text += (word.find_first_of("#:/") == std::string::npos ? word : "'" + word + "'") + " ";
+    return text;
+}
+
+/* ONLY_SETUP=N in the environment: that one alone, with the command that draws it. */
+int only_setup()
+{
+    const char *number = std::getenv("ONLY_SETUP");
+    return number ? std::atoi(number) : -1;
+}
+
+/* What all setups share. */
+struct bench {
+    std::string sheen;
+    temporary_folder folder;
+    std::shared_ptr<const line_image> image;
+    verdict *judged;
+    found_errors found;
+
+    bench(const std::string &program, verdict *verdict) : sheen(program), judged(verdict)
+    {
+        chance chance(seed);
+        image = make_image(&chance, folder.file("image.png"), false);
+    }
+
+    void compare_setup(grid_model *model, int number)
+    {
+        chance chance(seed + 1 + (uint32_t)number);
+        area_setup setup = make_area_setup(&chance, number, model->box_min, model->box_max, image,
+                                           width_px, height_px);
+        std::string file = folder.file("frame.exr"), name = "setup " + std::to_string(number);
+        std::vector<std::string> command = {sheen, "render", model->path, "-q",
+                                            "-o",  file,     "--aov",     "coverage"};
+        std::vector<std::string> options = setup.options();
+        command.insert(command.end(), options.begin(), options.end());
+        if (only_setup() >= 0)
+            std::printf("%s %s\n", model->path.c_str(), printed(options).c_str());
+        program_result result = run_program(command, folder);
+        if (judged->check(result.exit_code == 0, name + ": " + result.errors))
+            compare(setup, read_planes(file, "coverage"),
+                    sample_areas(model->sample(setup.camera, area_samples_side), setup), name,
+                    &found);
+    }
+};
+
+void run(const std::string &sheen, const std::vector<std::string> &paths, verdict *verdict)
+{
+    bench bench(sheen, verdict);
+    int n_models = (int)paths.size();
+    for (int k = 0; k < n_models; k++) { /* one after the other: each has a renderer */
+        grid_model model(paths[(size_t)k]);
+        for (int i = 0; i < n_setups; i++) /* no pattern is bound to a model */
+            if ((i + i / (int)n_patterns) % n_models == k &&
+                (only_setup() < 0 || only_setup() == i))
+                bench.compare_setup(&model, i);
+    }
+    judge(&bench.found, verdict);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc < 3) {
+        std::fprintf(stderr, "usage: test_areas SHEEN MODEL...\n");
+        return 2;
+    }
+    verdict verdict;
+    try {
+        run(argv[1], list_models(std::vector<std::string>(argv + 2, argv + argc)), &verdict);
+    } catch (const std::exception &failure) {
+        verdict.check(false, failure.what());
+    }
+    return verdict.finish();
+}
