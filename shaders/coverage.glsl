@@ -86,3 +86,50 @@ float box_share(vec2 low, vec2 high, vec2 gp, vec2 gq)
     }
     return clamp(sum / (gp.x * gq.y - gp.y * gq.x), 0.0, 1.0);
 }
+
+// A linear function over the pixel: at its centre, and its change.
+struct Border {
+    float at_centre;
+    vec2 change;
+};
+
+// Share of the pixel where four linear functions are positive: the square's polygon, cut by each in turn.
+float share_within(Border border[4])
+{
+    bool is_outside = false, is_crossed = false;
+    for (int k = 0; k < 4; k++) {
+        float reach = 0.5 * (abs(border[k].change.x) + abs(border[k].change.y));
+        is_outside = is_outside || border[k].at_centre <= -reach;
+        is_crossed = is_crossed || abs(border[k].at_centre) < reach;
+    }
+    vec2 polygon[8];
+    polygon[0] = vec2(-0.5);
+    polygon[1] = vec2(0.5, -0.5);
+    polygon[2] = vec2(0.5);
+    polygon[3] = vec2(-0.5, 0.5);
+    int n = 4;
+    // Few pixels have work here, and some devices walk through every branch but not through a loop that is over.
+    for (int k = is_crossed && !is_outside ? 0 : 4; k < 4; k++) {
+        vec2 cut[8], last = polygon[max(n - 1, 0)];
+        float last_at = border[k].at_centre + dot(border[k].change, last);
+        int left = 0;
+        for (int i = 0; i < n; i++) {
+            vec2 next = polygon[i];
+            float next_at = border[k].at_centre + dot(border[k].change, next);
+            if ((last_at > 0.0) != (next_at > 0.0))
+                cut[left++] = mix(last, next, last_at / (last_at - next_at));
+            if (next_at > 0.0)
+                cut[left++] = next;
+            last = next;
+            last_at = next_at;
+        }
+        polygon = cut;
+        n = left;
+    }
+    float twice = 0.0;
+    for (int i = 1; i < n - 1; i++) {
+        vec2 a = polygon[i] - polygon[0], b = polygon[i + 1] - polygon[0];
+        twice += a.x * b.y - a.y * b.x;
+    }
+    return is_outside || n < 3 ? 0.0 : clamp(0.5 * twice, 0.0, 1.0);
+}

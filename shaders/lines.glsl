@@ -156,17 +156,34 @@ Angles angles_of(vec3 r, vec3 dr[2])
     return a;
 }
 
-// How much of the pixel falls on the rectangle. Where the footprint spans all of it, it is no longer
-// linear (the ray runs along the light's plane): the pixel's centre decides, as it does for no
-// footprint at all.
-float rectangle_cover(Met met)
+#if LIGHT == RECTANGLE
+// How much of the pixel falls on the rectangle, on the side of the plane where the ray's approach times
+// `side` is positive. Where the ray runs along the light's plane the place it meets is a quotient, far from linear
+// in the pixel; but over and under it are, so each of the rectangle's four borders is a straight line through the
+// pixel, however thin the light. (Above all four the ray goes ahead too.)
+float rectangle_share(Sample at, vec3 r, vec3 dr[2], float ahead, float side)
 {
-    vec2 st = met.q / size.xy, gs = met.ds / size.x, gt = met.dt / size.y;
-    vec2 reach = vec2(abs(gs.x) + abs(gs.y), abs(gt.x) + abs(gt.y));
-    if (max(reach.x, reach.y) > 1.0 || min(reach.x, reach.y) <= 0.0)
-        return max(abs(st.x), abs(st.y)) <= 0.5 ? 1.0 : 0.0;
-    return box_share(-0.5 - st, 0.5 - st, gs, gt);
+    vec3 m = axis_n.xyz;
+    float approach = side * dot(m, r);
+    vec2 over, d_approach, d_over[2];
+    for (int k = 0; k < 2; k++) {
+        vec3 e = k == 0 ? axis_u.xyz : axis_v.xyz;
+        float from = origin[k] / size[k] + dot(e, at.x), along = side * dot(e, r);
+        over[k] = from * approach + along * ahead;
+        for (int i = 0; i < 2; i++) {
+            d_approach[i] = side * dot(m, dr[i]);
+            d_over[k][i] = dot(e, at.dx[i]) * approach + from * d_approach[i] +
+                           side * dot(e, dr[i]) * ahead - along * dot(m, at.dx[i]);
+        }
+    }
+    Border border[4];
+    for (int k = 0; k < 4; k++) {
+        float sign = (k & 1) == 0 ? 1.0 : -1.0;
+        border[k] = Border(0.5 * approach + sign * over[k >> 1], 0.5 * d_approach + sign * d_over[k >> 1]);
+    }
+    return share_within(border);
 }
+#endif
 
 const Met NOT_MET = Met(vec2(0.0), vec2(0.0), vec2(0.0), 0.0, vec2(0.0), 0.0, false);
 
@@ -195,18 +212,20 @@ Met meet_plane(Sample at, vec3 r, vec3 dr[2])
     bool faces = !is_one_sided || ahead < 0.0;
 #if FAMILY == HIGHLIGHT
     met.inside = faces && abs(approach) > LEAST_SINE;
-    met.cover = met.inside ? 1.0 : 0.0;
 #else
     met.inside = faces && towards > 0.0;
-#if LIGHT == PLANE
-    met.cover = faces && ahead != 0.0 ? half_plane(towards, d_approach) : 0.0;
-#else
-    met.cover = met.inside ? 1.0 : 0.0;
 #endif
+#if LIGHT == RECTANGLE && FAMILY == HIGHLIGHT
+    met.cover = faces ? rectangle_share(at, r, dr, ahead, 1.0) + rectangle_share(at, r, dr, ahead, -1.0) : 0.0;
+#elif LIGHT == RECTANGLE
+    met.cover = faces && ahead != 0.0 ? rectangle_share(at, r, dr, ahead, sign(ahead)) : 0.0;
+#elif FAMILY == HIGHLIGHT
+    met.cover = met.inside ? 1.0 : 0.0;
+#else
+    met.cover = faces && ahead != 0.0 ? half_plane(towards, d_approach) : 0.0;
 #endif
 #if LIGHT == RECTANGLE
     met.inside = met.inside && max(abs(met.q.x / size.x), abs(met.q.y / size.y)) <= 0.5;
-    met.cover *= rectangle_cover(met);
 #endif
     met.dtau *= sign(tau);
     met.tau = abs(tau);
