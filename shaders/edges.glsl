@@ -1,18 +1,20 @@
 // Geometric antialiasing: the pixels that silhouettes, creases and open borders run through.
 //
 // Around each pixel's hit the surface is known to second order: a paraboloid from position, normal
-// and shape operator. Where its own piece ends is known too: `border`. So what a pixel at an edge shows
-// can be told from the hits of the 3 x 3 pixels around, without asking the surface again:
+// and shape operator. Where its own piece ends is known too: `border`, and `silhouette`.
 //   edges_find   lists the pixels whose neighbours their own paraboloid does not explain, and apart
 //                from them those over which the normal turns so far that one footprint cannot tell;
-//   edges_shade  for each of the first, meets rays all over the pixel with the pieces of surface
-//                around it, and shades the share of each;
-//   turns_shade  for each of the others, shades nine parts of the pixel.
-// Pixels that show the rounding of a crease, half a pixel to some pixels wide, do ask the surface again:
-// rounded.glsl.
+//   silhouette   finds where the pieces that pixels at edges show end;
+//   edges_doubt  sorts out the pixels at edges where the pieces around contradict each other;
+//   edges_shade  for each of the others at edges, shades the share of each of the pieces around;
+//   turns_shade  for each pixel that turns, shades nine parts of it.
+// Pixels that show the rounding of a crease, half a pixel to some pixels wide, and the doubtful ones ask
+// the surface again: rounded.glsl.
 // At the rim of a tile the pixels beyond are not known: an edge there is seen from one side only.
 
 layout(binding = 4, r32ui) readonly uniform uimage2D border;
+
+const uint EDGES_PER_GROUP = 32u;  // pixels
 
 // Whether the paraboloid at `a` runs through x: how far off, px.
 float off_paraboloid(Hit a, vec3 x)

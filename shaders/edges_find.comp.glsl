@@ -1,7 +1,8 @@
 // Lists the pixels at edges, those that turn, and those that show the rounding of a crease, and writes
-// the coverage of all others. At an edge is a
-// pixel whose border runs through it, or whose neighbour to a side is not where its paraboloid says. (An edge that runs
-// through a pixel has the centre of one of these four on its other side.)
+// the coverage of all others. At an edge is a pixel whose border runs through it, whose neighbour to a side is not
+// where its paraboloid says, or one beside or across a corner from which shows surface where it shows none, or none
+// where it does. Those of them that show surface are listed apart, and around what is shaded too, since the pixels
+// there ask where these end (silhouette.comp.glsl).
 
 layout(local_size_x = 64) in;
 
@@ -10,8 +11,14 @@ layout(binding = 5, r32f) writeonly uniform image2D coverage;
 LIST(0, Edges, edges);
 LIST(2, Turns, turns);
 LIST(3, Rounded, rounded);
+LIST(4, Rims, rims);
+
+uniform ivec4 shaded;  // x, y, width, height: the part of what is drawn that the lists are for
+
+layout(binding = 6, r32ui) writeonly uniform uimage2D silhouette;
 
 const ivec2 AROUND[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+const ivec2 DIAGONAL[4] = ivec2[4](ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
 
 bool border_crosses(ivec2 p)
 {
@@ -51,11 +58,20 @@ void main()
         bool is_off = off_paraboloid(own, on_ray(pixel_offset(q), z)) > SAME_PX;
         at_edge = at_edge || is_hit != z > 0.0 || (is_hit && is_off);
     }
+    for (int i = 0; i < 4; i++) {
+        ivec2 q = clamp(p + DIAGONAL[i], ivec2(0), tile.zw - 1);
+        at_edge = at_edge || is_hit != imageLoad(hit_depth, q).x > 0.0;
+    }
+    imageStore(silhouette, p, uvec4(pack_border(NO_BORDER, 0.0)));
+    if (is_hit && at_edge)
+        LIST_ADD(rims, p, 64u)
+    if (any(lessThan(p, shaded.xy)) || any(greaterThanEqual(p, shaded.xy + shaded.zw)))
+        return;
     imageStore(coverage, p, vec4(is_hit));
     if (is_rounded || (at_edge && beside_rounded))
         LIST_ADD(rounded, p, ROUNDED_PER_GROUP)
     else if (at_edge)
-        LIST_ADD(edges, p, 64u)
+        LIST_ADD(edges, p, EDGES_PER_GROUP)
     else if (is_hit && turn_over_pixel(p, own) > MOST_TURN)
         LIST_ADD(turns, p, 64u)
 }

@@ -1,161 +1,174 @@
-// What each pixel listed at an edge shows: rays spread over it against the pieces of surface around,
-// and each piece shaded for its share of each quarter of the pixel.
-
-layout(local_size_x = 64) in;
+// What each pixel listed at an edge shows. Its quarters are told one by one: how much of a quarter each of the pieces
+// of surface around covers, and each piece is shaded for its share of the quarter. 
+layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
 
 const int PIECES = 4;
-const int SIDE = 4;  // SIDE x SIDE rays
+const int QUARTERS = 4, PARTS = QUARTERS * PIECES;
+const int SIDE = 2;  // SIDE x SIDE squares a quarter
+const int SQUARES = SIDE * SIDE;
+const float SIZE = 0.5 / float(SIDE);
 
 // The pixel itself first, then by distance.
 const ivec2 AROUND[9] = ivec2[9](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1),
                                  ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
 
-// SIDE x SIDE squares make up the pixel. A ray through each says what is seen there, one in each of the
-// pixel's SIDE^2 rows and columns.
-vec2 square_of(int i)
+vec2 square_of(vec2 middle, int i)
 {
-    return (vec2(i % SIDE, i / SIDE) + 0.5) / float(SIDE) - 0.5;
+    return middle + (vec2(i % SIDE, i / SIDE) - 0.5 * float(SIDE - 1)) * SIZE;
 }
 
-vec2 ray_in(vec2 square)
+// Shades the part of a piece that these many squares show, in one go, at their middle.
+Shown shade_part(Piece piece, ivec2 p, vec2 place, float n, Shown behind)
 {
-    return square + square.yx / float(SIDE);
-}
-
-// The rays of the first quarter of the pixel, as bits.
-const uint QUARTER = 0x33u;
-
-// Shades the part of a piece that these rays of one quarter see, in one go: at the middle of their
-// squares, or where the piece does not reach that, at the middle of the rays.
-Shown shade_part(Piece piece, ivec2 p, uint rays, Shown behind)
-{
-    vec2 squares = vec2(0.0);
-    float n = 0.0;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        float seen = float(rays >> i & 1u);
-        squares += seen * square_of(i);
-        n += seen;
-    }
-    squares /= n;
-    vec2 place = squares;
-    float z = depth_at(piece, place);
-    if (z == NOWHERE) {
-        place = ray_in(squares);
-        z = depth_at(piece, place);
-    }
-    z = z < NOWHERE ? z : piece.hit.depth;
-    float size = sqrt(n) / float(SIDE);
+    float z = depth_at(piece, place), size = sqrt(n) * SIZE;
     return scaled(shade_ray(piece.hit, pixel_offset(p) + place, place - piece.at, size, z, behind), n);
 }
 
-Piece piece_at(Piece pieces[PIECES], int k)
-{
-    Piece piece = pieces[0];
-    for (int i = 1; i < PIECES; i++)
-        if (k == i)
-            piece = pieces[i];
-    return piece;
-}
+// Less of a square is not shaded.
+const float LEAST_SEEN = 1e-4;
 
 // As far off the paraboloid of one side, the other side of a crease may be a pixel from it.
 const float MEETS_PX = 6.0;
 
-void main()
-{
-    uint index = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
-    if (index >= listed.n)
-        return;
-    ivec2 p = list_place(listed.at[index]);
+struct Around {
+    Piece piece[PIECES];
+    vec3 beyond[PIECES];  // of pieces with a rounding: which way the other side of the crease faces
+    int n;
+    bool beside_empty;
+};
 
-    // The distinct pieces of surface around.
-    Piece pieces[PIECES];
-    int n = 0;
-    bool beside_empty = false;
+// There is no rounding where the other side is not around.
+void find_beyond(inout Around around)
+{
+    for (int k = 0; k < PIECES; k++) {
+        float nearest = MEETS_PX;
+        for (int j = 0; j < PIECES; j++) {
+            float off = off_paraboloid(around.piece[k].hit, around.piece[j].hit.x);
+            if (max(j, k) < around.n && j != k && off < nearest) {
+                nearest = off;
+                around.beyond[k] = around.piece[j].hit.n;
+            }
+        }
+        around.piece[k].rounding = nearest < MEETS_PX ? around.piece[k].rounding : 0.0;
+    }
+}
+
+// The distinct pieces of surface around.
+Around pieces_around(ivec2 p)
+{
+    Around around;
+    around.n = 0;
+    around.beside_empty = false;
     float own_depth = imageLoad(hit_depth, p).x;
-    bool is_hit = own_depth > 0.0;
+    float ends = own_depth > 0.0 ? own_depth - 0.25 * pixel_units(own_depth) : NOWHERE;
     for (int i = 0; i < 9; i++) {
-        ivec2 q = p + AROUND[i];
-        Hit hit = hit_at(q);
-        beside_empty = beside_empty || hit.depth == 0.0;
+        Hit hit = hit_at(p + AROUND[i]);
+        around.beside_empty = around.beside_empty || hit.depth == 0.0;
         bool is_new = mirrors(hit);
         for (int k = 0; k < PIECES; k++)
-            is_new = is_new && (k >= n || !same_surface(pieces[k].hit, hit));
-        if (!is_new || n == PIECES)
+            is_new = is_new && (k >= around.n || !same_surface(around.piece[k].hit, hit));
+        if (!is_new || around.n == PIECES)
             continue;
         Piece piece = piece_of(hit, p, AROUND[i]);
         // On a border the paraboloid holds for less than a pixel.
         if (piece.foot == vec2(0.0))
             continue;
-        // A piece that would hide what the pixel's centre shows ends before it, who knows how.
-        if (i > 0) {
-            float z = depth_at(piece, -0.3 * normalize(piece.at));
-            if (z < (is_hit ? own_depth - 0.25 * pixel_units(own_depth) : NOWHERE))
-                continue;
-        }
-        pieces[n++] = piece;
+        // A piece that would hide what the pixel's centre shows ends before it.
+        if (i > 0 && depth_at(piece, vec2(0.0)) < ends && !end_at(piece, vec2(0.0)))
+            continue;
+        around.piece[around.n++] = piece;
     }
-    if (n == 0)
-        return;
+    find_beyond(around);
+    return around;
+}
 
-    // Which rays see which piece.
-    uint seen[PIECES] = uint[PIECES](0u, 0u, 0u, 0u);
-    float covered = 0.0;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        vec2 place = ray_in(square_of(i));
-        float nearest = NOWHERE;
-        int which = PIECES;
-        for (int k = 0; k < PIECES; k++) {
-            float z = k < n ? depth_at(pieces[k], place) : NOWHERE;
-            which = z < nearest ? k : which;
-            nearest = min(z, nearest);
+Piece piece_at(Around around, int k, out vec3 beyond)
+{
+    Piece piece = around.piece[0];
+    beyond = around.beyond[0];
+    for (int i = 1; i < PIECES; i++)
+        if (k == i) {
+            piece = around.piece[i];
+            beyond = around.beyond[i];
         }
-        for (int k = 0; k < PIECES; k++)
-            seen[k] |= uint(which == k) << i;
-        covered += float(which < PIECES);
+    return piece;
+}
+
+// How much of each piece the quarter's squares show, and the sum of these squares' middles. Of a square a piece
+// gets no more than those in front of it leave: pieces that meet at a crease share a square between them.
+void share_quarter(Around around, int quarter, inout vec3 seen[PARTS])
+{
+    vec2 middle = (vec2(quarter & 1, quarter >> 1) - 0.5) * 0.5;
+    vec4 part[PIECES], z[PIECES];
+    for (int k = 0; k < PIECES; k++) {
+        for (int i = 0; i < SQUARES; i++) {
+            z[k][i] = depth_at(around.piece[k], square_of(middle, i));
+            bool there = k < around.n && z[k][i] > 0.0;
+            part[k][i] = there ? piece_share(around.piece[k], square_of(middle, i), SIZE) : 0.0;
+        }
     }
-    // Rays between pieces: nothing lies behind, unless something beside is empty.
-    float open = beside_empty ? float(SIDE * SIDE) - covered : 0.0;
-    if (covered == 0.0 && open == 0.0)
+    for (int k = 0; k < PIECES; k++) {
+        vec4 left = vec4(1.0);
+        for (int j = 0; j < PIECES; j++)
+            if (j != k)
+                left -= mix(vec4(0.0), part[j], j < k ? lessThanEqual(z[j], z[k]) : lessThan(z[j], z[k]));
+        vec4 own = min(part[k], max(left, 0.0));
+        vec3 sum = vec3(0.0, 0.0, dot(own, vec4(1.0)));
+        for (int i = 0; i < SQUARES; i++)
+            sum.xy += own[i] * square_of(middle, i);
+        seen[PIECES * quarter + k] = sum;
+    }
+}
+
+void main()
+{
+    uint index = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * EDGES_PER_GROUP + gl_LocalInvocationIndex;
+    if (index >= listed.n)
         return;
+    ivec2 p = list_place(listed.at[index]);
+    Around around = pieces_around(p);
+    vec3 seen[PARTS];
+    for (int quarter = 0; quarter < QUARTERS; quarter++)
+        share_quarter(around, quarter, seen);
+    uint left = 0u;
+    vec4 squares = vec4(0.0);  // of each piece
+    for (int i = 0; i < PARTS; i++) {
+        left |= uint(seen[i].z > LEAST_SEEN) << i;
+        squares[i % PIECES] += seen[i].z > LEAST_SEEN ? seen[i].z : 0.0;
+    }
 
     // What of it is the rounding of a crease.
-    float rounded[PIECES];
-    vec3 beyond[PIECES];
+    vec4 rounded = vec4(0.0);
     uint creases = 0u;
     for (int k = 0; k < PIECES; k++) {
-        float nearest = MEETS_PX, seen_by = float(bitCount(seen[k]));
-        for (int j = 0; j < PIECES; j++) {
-            float off = off_paraboloid(pieces[k].hit, pieces[j].hit.x);
-            if (max(j, k) < n && j != k && off < nearest) {
-                nearest = off;
-                beyond[k] = pieces[j].hit.n;
-            }
-        }
-        bool is_crease = k < n && nearest < MEETS_PX && pieces[k].rounding > 0.0 && seen_by > 0.0;
-        float share = float(SIDE * SIDE) * rounding_share(pieces[k]);
-        rounded[k] = is_crease ? min(share, seen_by) / seen_by : 0.0;
+        float share = float(QUARTERS * SQUARES) * rounding_share(around.piece[k]);
+        bool is_crease = k < around.n && around.piece[k].rounding > 0.0 && squares[k] > 0.0;
+        rounded[k] = is_crease ? min(share, squares[k]) / squares[k] : 0.0;
         creases |= uint(rounded[k] > 0.0) << k;
     }
 
     Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
-    uvec4 left = uvec4(seen[0], seen[1], seen[2], seen[3]);
-    while (left != uvec4(0u)) {  // a part each turn, of whatever piece has one left
-        int k = left.x != 0u ? 0 : left.y != 0u ? 1 : left.z != 0u ? 2 : 3;
-        uint rays = k == 0 ? left.x : k == 1 ? left.y : k == 2 ? left.z : left.w;
-        int first = findLSB(rays);
-        uint quarter = QUARTER << ((first & 2) | (first & 8));
-        left &= ~(quarter * uvec4(equal(ivec4(k), ivec4(0, 1, 2, 3))));
-        float plain = 1.0 - (k == 0 ? rounded[0] : k == 1 ? rounded[1] : k == 2 ? rounded[2] : rounded[3]);
-        sum = added(sum, scaled(shade_part(piece_at(pieces, k), p, rays & quarter, behind), plain));
+    vec3 beyond;
+    for (; left != 0u; left &= left - 1u) {  // a part each turn, of whatever piece has one left
+        int i = findLSB(left), k = i % PIECES;
+        vec3 own = seen[i];
+        Shown part = shade_part(piece_at(around, k, beyond), p, own.xy / own.z, own.z, behind);
+        sum = added(sum, scaled(part, 1.0 - rounded[k]));
     }
     for (; creases != 0u; creases &= creases - 1u) {
         int k = findLSB(creases);
-        float rays = rounded[k] * float(bitCount(seen[k]));
-        sum = added(sum, scaled(shade_rounding(piece_at(pieces, k), beyond[k], p, behind), rays));
+        Piece piece = piece_at(around, k, beyond);
+        sum = added(sum, scaled(shade_rounding(piece, beyond, p, behind), rounded[k] * squares[k]));
     }
-    float rays = covered + open;
-    put_shown(p, scaled(sum, 1.0 / rays), open / rays);
-    imageStore(coverage, p, vec4(covered / rays));
+
+    // What is between pieces: nothing lies behind, unless something beside is empty.
+    float covered = dot(squares, vec4(1.0));
+    float open = around.beside_empty ? max(float(QUARTERS * SQUARES) - covered, 0.0) : 0.0;
+    float all = covered + open;
+    if (all < LEAST_SEEN)
+        return;
+    put_shown(p, scaled(sum, 1.0 / all), open / all);
+    imageStore(coverage, p, vec4(covered / all));
 }

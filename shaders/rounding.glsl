@@ -29,7 +29,6 @@ Shown shade_rounding(Piece piece, vec3 other, ivec2 p, Shown behind)
     vec2 q = pixel_offset(p) + place;
     Hit hit = piece.hit;
     float z = depth_at(piece, place);
-    z = z < NOWHERE ? z : hit.depth;
     vec3 move = move_to(hit, place - piece.at, q, z);
     vec3 side = normal_at(hit, move);
     Shown sum = Shown(vec4(0.0), 0.0);

@@ -66,7 +66,7 @@ void main()
     for (vec2 d = vec2(0.5 * (STEP - 1.0)); d.y < 0.5;
          d = d.x + STEP < 0.5 ? vec2(d.x + STEP, d.y) : vec2(0.5 * (STEP - 1.0), d.y + STEP)) {
         float z = depth_at(piece, d), x = d.x, y = d.y;
-        if (z == NOWHERE)
+        if (!covers(piece, d))
             continue;
         vec3 normal = hit.n + x * (along.slope + x * (along.square + x * along.cube)) +
                       y * (down.slope + y * (down.square + y * down.cube)) +

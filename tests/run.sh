@@ -136,6 +136,10 @@ oracle() {
         tests/models/creases.obj tests/models/pole.obj "$car"
     beside filter served "$build/tests/test_filter" "$build/sheen" tests/models/fender.obj \
         tests/models/body.obj tests/models/ngons.obj tests/models/creases.obj "$car"
+    # shellcheck disable=SC2046 # a list of files without spaces
+    beside shares "$build/tests/test_shares" tests/models/plane.obj tests/models/body.obj \
+        tests/models/fender.obj tests/models/creases.obj "$car" \
+        $(shapes_of 'catmark_torus.obj') $(shapes_of 'catmark_bishop.obj')
     beside patterns served "$build/tests/test_patterns" "$build/sheen" tests/models/plane.obj
     # shellcheck disable=SC2046 # lists of files without spaces
     beside areas served "$build/tests/test_areas" "$build/sheen" tests/models/body.obj \

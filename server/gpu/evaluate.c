@@ -139,6 +139,15 @@ bool stage_gaps(struct renderer *r, const struct renderer_model *model,
     return true;
 }
 
+void stage_silhouette(struct renderer *r, const struct renderer_model *model,
+                      const struct table_programs *programs)
+{
+    bind_tables(r, model);
+    glBindImageTexture(5, r->target.silhouette, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+    glUseProgram(programs->silhouette);
+    solve_listed(r->target.strays);
+}
+
 void stage_rounded(struct renderer *r, const struct renderer_model *model,
                    const struct table_programs *programs)
 {

@@ -36,7 +36,7 @@ struct bank_set {
 struct table_programs {
     int point_banks, node_banks, adjacency_banks;
     bool ptex;
-    GLuint visibility, evaluate, unsolved, rounded;
+    GLuint visibility, evaluate, unsolved, rounded, silhouette;
     uint64_t used; /* by the clock of struct renderer */
 };
 
@@ -76,6 +76,7 @@ struct target {
     GLuint normal, shape;    /* RGBA32F, RG32F */
     GLuint ptex;             /* RGBA32UI */
     GLuint border;           /* R32UI: two halves, shaders/planes.glsl */
+    GLuint silhouette;       /* R32UI: shaders/silhouette.comp.glsl */
     GLuint colour;           /* RGBA8 */
     GLuint light, curvature; /* RG32F */
     GLuint light_change;     /* RGBA32F */
@@ -246,7 +247,7 @@ struct renderer {
     int n_programs;
     uint64_t programs_clock;
     struct shade_programs shading;
-    GLuint edges_find;
+    GLuint edges_find, edges_doubt;
     GLuint view_buffer, light_buffer, piece_buffer;
     GLuint gather, doubt; /* programs */
     struct gaps gaps;
@@ -335,9 +336,17 @@ void stage_evaluate(struct renderer *renderer, const struct renderer_model *mode
 bool stage_gaps(struct renderer *renderer, const struct renderer_model *model,
                 const struct table_programs *programs, const struct view *view,
                 struct error *error);
-/* Lists the pixels that stage 3 looks at more closely; the coverage of all others. */
+/* Lists the pixels of a part of the target that stage 3 looks at more closely; the coverage of all
+ * others there. Lists around it too those that silhouettes are wanted of, in the list `strays` that
+ * stage 2 is done with, as it is with `unsolved`, which holds those at edges. */
 bool stage_edges_init(struct renderer *renderer, struct error *error);
-void stage_edges(struct renderer *renderer);
+void stage_edges(struct renderer *renderer, const struct tile *shaded);
+/* After it: where the pieces that these show end at silhouettes. */
+void stage_silhouette(struct renderer *renderer, const struct renderer_model *model,
+                      const struct table_programs *programs);
+/* After it: the pixels at edges become the list `edges`, but where that does not agree with what
+ * the pixels around show: they go to `rounded`. */
+void stage_edges_doubt(struct renderer *renderer);
 /* After it: the rays of the pixels that show the rounding of a crease, against the surface. */
 void stage_rounded(struct renderer *renderer, const struct renderer_model *model,
                    const struct table_programs *programs);

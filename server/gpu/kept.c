@@ -88,7 +88,7 @@ static const struct {
     GLuint per_group;
 } LISTS[COLLECTED_LISTS] = {
     {offsetof(struct target, groups), 8},
-    {offsetof(struct target, edges), 64},
+    {offsetof(struct target, edges), 32},
     {offsetof(struct target, turns), 64},
     {offsetof(struct target, rounded), 4},
 };

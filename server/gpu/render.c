@@ -74,13 +74,15 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
     stage_evaluate(r, model, programs);
     if (!stage_gaps(r, model, programs, view, error))
         return false;
+    if (edges_wanted(request)) {
+        stage_edges(r, &cut);
+        stage_silhouette(r, model, programs);
+        stage_edges_doubt(r);
+        stage_rounded(r, model, programs);
+    }
     if (!is_same_tile(drawn, shaded)) {
         pieces_cut_blocks(&r->pieces, &cut);
         stage_gather(r);
-    }
-    if (edges_wanted(request)) {
-        stage_edges(r);
-        stage_rounded(r, model, programs);
     }
     return stage_clock_end(r, &frame->times.evaluate_us);
 }

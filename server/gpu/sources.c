@@ -50,6 +50,10 @@ struct program_source source_of_single(enum single_program program)
                                              "groups.glsl",
                                              "edges_find.comp.glsl",
                                              NULL};
+    static const char *const edges_doubt[] = {
+        "view.glsl",   "list.glsl",  "basis.glsl",   "hit.glsl",    "coverage.glsl",
+        "border.glsl", "edges.glsl", "rounded.glsl", "pieces.glsl", "edges_doubt.comp.glsl",
+        NULL};
     static const char *const vertex[] = {"view.glsl", "polygon.vert.glsl", NULL};
     static const char *const polygons[] = {"view.glsl", "basis.glsl", "polygon.frag.glsl", NULL};
     static const char *const wireframe[] = {"srgb.glsl", "wireframe.frag.glsl", NULL};
@@ -59,6 +63,7 @@ struct program_source source_of_single(enum single_program program)
         [PROGRAM_DOUBT] = {NO_TABLES, {doubt, NULL}},
         [PROGRAM_GAPS] = {NO_TABLES, {gaps, NULL}},
         [PROGRAM_EDGES_FIND] = {"", {edges_find, NULL}},
+        [PROGRAM_EDGES_DOUBT] = {"", {edges_doubt, NULL}},
         [PROGRAM_POLYGONS] = {"", {vertex, polygons}},
         [PROGRAM_WIREFRAME] = {"", {vertex, wireframe}},
     };
@@ -79,12 +84,12 @@ struct program_source source_of_tables(enum table_program program,
     static const char *const unsolved[] = {STAGE_2, "walk.glsl", "unsolved.comp.glsl", NULL};
     static const char *const rounded[] = {STAGE_2, "walk.glsl", "rounded.glsl",
                                           "rounded_solve.comp.glsl", NULL};
+    static const char *const silhouette[] = {STAGE_2, "walk.glsl", "silhouette.comp.glsl", NULL};
 #undef STAGE_2
     static const char *const *const files[TABLE_PROGRAMS][2] = {
-        [PROGRAM_VISIBILITY] = {vertex, fragment},
-        [PROGRAM_EVALUATE] = {evaluate, NULL},
-        [PROGRAM_UNSOLVED] = {unsolved, NULL},
-        [PROGRAM_ROUNDED] = {rounded, NULL},
+        [PROGRAM_VISIBILITY] = {vertex, fragment}, [PROGRAM_EVALUATE] = {evaluate, NULL},
+        [PROGRAM_UNSOLVED] = {unsolved, NULL},     [PROGRAM_ROUNDED] = {rounded, NULL},
+        [PROGRAM_SILHOUETTE] = {silhouette, NULL},
     };
     struct program_source source = {.files = {files[program][0], files[program][1]}};
     snprintf(source.defines, sizeof source.defines,
@@ -103,11 +108,12 @@ struct program_source source_of_shading(struct shade_key key)
 #define LINES "view.glsl", "list.glsl", "basis.glsl", "hit.glsl", "coverage.glsl", "lines.glsl"
 #define COMMON LINES, "srgb.glsl", "shown.glsl", "patterns.glsl"
     static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
-    static const char *const edges[] = {COMMON,        "border.glsl",   "edges.glsl",
-                                        "pieces.glsl", "rounding.glsl", "edges_shade.comp.glsl",
+    static const char *const edges[] = {
+        COMMON,          "border.glsl",           "edges.glsl", "pieces.glsl", "piece_shade.glsl",
+        "rounding.glsl", "edges_shade.comp.glsl", NULL};
+    static const char *const turns[] = {COMMON,        "border.glsl",      "edges.glsl",
+                                        "pieces.glsl", "piece_shade.glsl", "turns_shade.comp.glsl",
                                         NULL};
-    static const char *const turns[] = {COMMON,        "border.glsl",           "edges.glsl",
-                                        "pieces.glsl", "turns_shade.comp.glsl", NULL};
     static const char *const rounded[] = {COMMON,        "border.glsl",  "edges.glsl",
                                           "pieces.glsl", "rounded.glsl", "rounded_shade.comp.glsl",
                                           NULL};

@@ -34,6 +34,7 @@ enum single_program {
     PROGRAM_DOUBT,
     PROGRAM_GAPS,
     PROGRAM_EDGES_FIND,
+    PROGRAM_EDGES_DOUBT,
     PROGRAM_POLYGONS,
     PROGRAM_WIREFRAME,
     SINGLE_PROGRAMS
@@ -47,6 +48,7 @@ enum table_program {
     PROGRAM_EVALUATE,
     PROGRAM_UNSOLVED,
     PROGRAM_ROUNDED,
+    PROGRAM_SILHOUETTE,
     TABLE_PROGRAMS
 };
 struct table_layout {

@@ -9,6 +9,7 @@ static void delete_all(const struct table_programs *programs)
     glDeleteProgram(programs->evaluate);
     glDeleteProgram(programs->unsolved);
     glDeleteProgram(programs->rounded);
+    glDeleteProgram(programs->silhouette);
 }
 
 /* A free place, made free if need be. */
@@ -55,7 +56,8 @@ const struct table_programs *programs_for(struct renderer *r, const struct rende
     made.evaluate = made.visibility ? create(PROGRAM_EVALUATE, &layout, error) : 0;
     made.unsolved = made.evaluate ? create(PROGRAM_UNSOLVED, &layout, error) : 0;
     made.rounded = made.unsolved ? create(PROGRAM_ROUNDED, &layout, error) : 0;
-    if (!made.rounded) {
+    made.silhouette = made.rounded ? create(PROGRAM_SILHOUETTE, &layout, error) : 0;
+    if (!made.silhouette) {
         delete_all(&made);
         return NULL;
     }

@@ -38,6 +38,22 @@ class Colours(DaemonCase):
         self.assertEqual(len(found), len(want), found)
         self.assertLessEqual(max(abs(a - b) for a, b in zip(found, want)), most, (found, want))
 
+    def test_a_light_thinner_than_a_pixel_is_a_share_of_it(self):
+        """Rays that run along the light's plane meet it far from linearly; of 20 x 20 samples of
+        the pixel 0.42 are on the light, which is displayed as 173."""
+        rows = self.pixels(*VIEW, "--light", "rectangle", "--light-center", "0,2.7,4", "--light-u",
+                           "0.05,0.005,0", "--light-v=-.1,1,0", "--pattern", "stripes:duty=1",
+                           "--miss", "#000000")
+        self.assert_near(rows[6][19], (173,) * 3, 2)
+
+    def test_a_corner_has_its_share(self):
+        """White before black: the outermost pixel at a plain square's corner, whose centre sees
+        nothing; 0.415 of it shows surface, which is displayed as 172."""
+        rows = self.pixels("--size", "320x240", "--light", "plane", "--light-center", "0,0,90",
+                           *HERE, "--pattern", "stripes:duty=1", "--miss", "#ffffff", "--empty",
+                           "#000000")
+        self.assert_near(rows[65][304], (172,) * 3, 8)
+
     def test_fine_stripes_are_half_the_light(self):
         """And stand out from the grey that is empty: half the light is displayed as 188."""
         self.assert_near(self.middle(*PLANE_LIGHT, "--pattern", "stripes:count=5000"),

@@ -1,0 +1,57 @@
+// Parts the pixels at edges: doubtful are those where the pieces around do not agree with what the pixels' centres show:
+// a piece reaches a centre that does not show it, or ends before one that does, by more than OFF; and those around
+// which there are three pieces, or two and nothing: each knows its own end alone, and what the ends leave between
+// them is anybody's guess. They are listed as rounded, so that rays meet the surface itself.
+
+layout(local_size_x = 32) in;  // EDGES_PER_GROUP
+
+LIST(2, Edges, edges);
+LIST(3, Rounded, rounded);
+
+const float OFF = 0.1;  // px
+
+const ivec2 AROUND[8] = ivec2[8](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1), ivec2(-1, -1),
+                                 ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
+
+bool disagrees(Piece piece, vec2 place, Hit there)
+{
+    float inside = inside_px(piece, place);
+    if (there.depth > 0.0 && same_surface(piece.hit, there))
+        return inside < -OFF;
+    float z = depth_at(piece, place);
+    return inside > OFF && z > 0.0 && (there.depth == 0.0 || there.depth > z + pixel_units(z));
+}
+
+void main()
+{
+    uint i = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 32u + gl_LocalInvocationIndex;
+    if (i >= listed.n)
+        return;
+    ivec2 p = list_place(listed.at[i]);
+    Hit own = hit_at(p);
+    Piece piece;
+    Hit first = own, second;
+    second.depth = 0.0;
+    if (mirrors(own))
+        piece = piece_of(own, p, ivec2(0));
+    bool is_doubtful = false, beside_empty = own.depth == 0.0;
+    for (int k = 0; k < 8 && !is_doubtful; k++) {
+        Hit hit = hit_at(p + AROUND[k]);
+        beside_empty = beside_empty || hit.depth == 0.0;
+        if (mirrors(own) && hit.depth >= 0.0)
+            is_doubtful = disagrees(piece, vec2(AROUND[k]), hit);
+        if (!mirrors(hit))
+            continue;
+        is_doubtful = is_doubtful || disagrees(piece_of(hit, p, AROUND[k]), vec2(0.0), own);
+        if (!(first.depth > 0.0))
+            first = hit;
+        else if (!same_surface(first, hit)) {
+            is_doubtful = is_doubtful || (second.depth > 0.0 && !same_surface(second, hit));
+            second = hit;
+        }
+    }
+    if (is_doubtful || (beside_empty && second.depth > 0.0))
+        LIST_ADD(rounded, p, ROUNDED_PER_GROUP)
+    else
+        LIST_ADD(edges, p, EDGES_PER_GROUP)
+}
