@@ -99,7 +99,7 @@ class Colours(DaemonCase):
     def test_images_at_borders(self):
         """They go round with what goes round, repeat on planes, and else end with their border's
         colour. An orthographic view of the plane, mirrored by it towards azimuth 180 degrees."""
-        view = ("--size", "9x9", "--eye", "3,0,3", "--target", "0,0,0", "--ortho", "0.2")
+        view = ("--size", "9x9", "--eye", "3,0,3", "--target", "0,0,0", "--ortho", "0.002")
         at = ("--light-center", "-4.75,0,4")  # from 0.75 further along x the ray comes
         red, blue, both = (255, 0, 0), (0, 0, 255), (188, 0, 188)
         for size, options, want in (

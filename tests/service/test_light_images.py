@@ -47,7 +47,7 @@ class LightImages(DaemonCase):
             drawn = {name: self.draw(client, data, name) for name, data in files.items()}
             self.assertEqual(drawn["a.tif"], drawn["a.png"])
             # Neither may be taken for no image at all, which a black one would look like.
-            self.assertEqual(len({*frames.values(), *drawn.values()}), 5)
+            self.assertEqual(len({frames["a.ppm"], *drawn.values()}), 4)
 
     def test_names_tell_nothing(self):
         with Client(self.daemon.unix) as client:
