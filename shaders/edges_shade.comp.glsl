@@ -1,5 +1,5 @@
 // What each pixel listed at an edge shows. Its quarters are told one by one: how much of a quarter each of the pieces
-// of surface around covers, and each piece is shaded for its share of the quarter. 
+// of surface around covers, and each piece is shaded for its share of the quarter.
 layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
