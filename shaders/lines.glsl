@@ -156,6 +156,10 @@ Angles angles_of(vec3 r, vec3 dr[2])
     return a;
 }
 
+// A ray that turns further over the pixel, as close to a silhouette, does not turn in proportion to the place in
+// the pixel: then its centre tells whether the light is met. Rad.
+const float MOST_TURN_OF_RAY = 0.5;
+
 #if LIGHT == RECTANGLE
 // How much of the pixel falls on the rectangle, on the side of the plane where the ray's approach times
 // `side` is positive. Where the ray runs along the light's plane the place it meets is a quotient, far from linear
@@ -226,6 +230,8 @@ Met meet_plane(Sample at, vec3 r, vec3 dr[2])
 #endif
 #if LIGHT == RECTANGLE
     met.inside = met.inside && max(abs(met.q.x / size.x), abs(met.q.y / size.y)) <= 0.5;
+    if (max(dot(dr[0], dr[0]), dot(dr[1], dr[1])) > MOST_TURN_OF_RAY * MOST_TURN_OF_RAY)
+        met.cover = met.inside ? 1.0 : 0.0;
 #endif
     met.dtau *= sign(tau);
     met.tau = abs(tau);

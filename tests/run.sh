@@ -119,7 +119,7 @@ oracle() {
     [ -z "$cages" ] || beside frames_shapes served "$build/tests/test_frames" "$build/sheen" $cages
     beside frames_models served "$build/tests/test_frames" "$build/sheen" tests/models/*.obj \
         tests/models/*.gltf
-    beside oracle_self sh tests/oracle/self_test.sh "$build/tests"
+    beside oracle_self served sh tests/oracle/self_test.sh "$build/tests"
     beside oracle_osd "$build/tests/test_oracle"
     beside limit "$build/tests/test_limit" tests/models/*.obj $all
     beside refine "$build/tests/test_refine" tests/models/*.obj tests/models/*.gltf $all

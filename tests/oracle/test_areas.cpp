@@ -26,6 +26,11 @@ const uint32_t seed = 20260;
 
 /* Of the colours' bytes, in 1/255. */
 const double max_mean = 1, max_p99 = 8;
+const double max_border_mean = 3, max_border_p99 = 32;
+/* Where the surface ends within a pixel, as measured: 4.4 and 43, and 0.19 of the coverage. Parts
+ * narrower than two pixels and rays that miss the surface beside a silhouette make up most of it.
+ */
+const double max_edge_mean = 5.5, max_edge_p99 = 50, max_coverage_p99 = 0.25;
 /* Of patterns that change faster than this from one sample to the next, in periods, samples tell no
  * more than the mean: they scatter by a fortieth of what is between bright and dark. */
 const double max_step = 0.25, max_fine_mean = 4;
@@ -122,9 +127,19 @@ void judge(found_errors *found, verdict *verdict)
     verdict->at_most(mean_of(found->fine.all), max_fine_mean,
                      "patterns finer than samples tell: mean error in 1/255");
     report("light borders", &found->at_border);
+    verdict->at_most(mean_of(found->at_border.all), max_border_mean,
+                     "light borders: mean error in 1/255");
+    verdict->at_most(quantile(found->at_border.all, 0.99), max_border_p99,
+                     "light borders: 99th percentile of the error in 1/255");
     report("silhouettes", &found->at_edge);
+    verdict->at_most(mean_of(found->at_edge.all), max_edge_mean,
+                     "silhouettes: mean error in 1/255");
+    verdict->at_most(quantile(found->at_edge.all, 0.99), max_edge_p99,
+                     "silhouettes: 99th percentile of the error in 1/255");
     std::printf("%-14s %7s | shares\n", "", "");
     report("coverage", &found->coverage);
+    verdict->at_most(quantile(found->coverage.all, 0.99), max_coverage_p99,
+                     "coverage: 99th percentile of the error");
 }
 
 std::string printed(const std::vector<std::string> &words)

@@ -174,7 +174,7 @@ static void test_no_ghost_of_the_light(void **state)
             if (lit || ptex[k][0] == UINT32_MAX)
                 continue;
             if (colour[k][0] || colour[k][1] || colour[k][2])
-                fail_msg("pixel %d,%d far from the light is not black", x, y);
+                fail_msg("pixel %d,%d far from the light is %d, not black", x, y, colour[k][0]);
             judged++;
         }
     }
