@@ -12,6 +12,7 @@ layout(binding = 5, r32ui) writeonly uniform uimage2D silhouette;
 LIST(0, Listed, listed);
 
 const float FARTHEST_PX = 3.0;
+const float MOST_BEYOND_PX = 0.25;  // a hit may lie so far outside its own silhouette, by rounding and by the guess
 const int SILHOUETTE_STEPS = 6, SILHOUETTE_PATCHES = 3;
 // The step of a sub-patch below which Newton's method has come to its end, and how far beyond a sub-patch's
 // border its polynomials tell enough.
@@ -74,16 +75,16 @@ vec2 outwards(Derivatives at)
     return dot(bend, across) > 0.0 ? -across : across;
 }
 
-// NO_BORDER where there is none near.
+// NO_BORDER where there is none near. A pixel in a gap (gaps.comp.glsl) shows another piece than stage 1 saw there,
+// so nothing leads to the silhouette of what it shows.
 vec2 silhouette_foot(ivec2 p)
 {
-    uvec2 guess = texelFetch(seen, p, 0).xy;
-    if (guess.x == NONE)
+    Guess guess = guess_of(p);
+    if (guess.node == UNSEEN || is_in_gap(texelFetch(seen, p, 0).x))
         return NO_BORDER;
-    float px = pixel_units(depth_of(texelFetch(seen_depth, p, 0).x));
-    Node node = node_load(guess.x);
-    vec2 xy = guess_xy(node, guess.y);
-    float facing = 0.0;
+    float px = pixel_units(guess.depth);
+    Node node = node_load(guess.node);
+    vec2 xy = guess_xy(node, guess.where);
     for (int i = 0; i < SILHOUETTE_PATCHES; i++) {
         Net points;
         float scale;
@@ -103,10 +104,11 @@ vec2 silhouette_foot(ivec2 p)
         bool inside = all(greaterThanEqual(st, vec2(-BEYOND))) && all(lessThanEqual(st, vec2(1.0 + BEYOND)));
         if (inside || i == SILHOUETTE_PATCHES - 1) {
             at = derivatives_at(net, st);
-            vec2 out_ = outwards(at);
-            float off = dot(at.f, out_) * scale / px;
-            bool ok = inside && max(abs(move.x), abs(move.y)) < LAST_STEP && length(at.f) * scale / px < FARTHEST_PX && off > -0.25;
-            return ok ? out_ * max(off, 2.0 / BORDER_STEPS) : NO_BORDER;
+            vec2 outward = outwards(at);
+            float off_px = dot(at.f, outward) * scale / px;
+            bool has_settled = inside && max(abs(move.x), abs(move.y)) < LAST_STEP;
+            bool is_near = length(at.f) * scale / px < FARTHEST_PX && off_px > -MOST_BEYOND_PX;
+            return has_settled && is_near ? outward * max(off_px, 2.0 / BORDER_STEPS) : NO_BORDER;
         }
         xy = ldexp(own.origin + st, -own.scale);
         if (own.limit || !walk(node, xy))

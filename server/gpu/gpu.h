@@ -209,14 +209,15 @@ struct stage_clock {
     uint64_t since_us;                   /* when the clock was last read */
 };
 
-/* Of the pixels that see past two silhouettes (shaders/gaps.comp.glsl). */
+/* What finds and solves the pixels whose ray passes between two silhouettes
+ * (shaders/gaps.comp.glsl). */
 struct gaps {
     GLuint find;          /* program */
     GLuint ends, guesses; /* buffers: shaders/unsolved.comp.glsl */
-    bool too_many;        /* of the last tile drawn, so that they stay empty */
+    bool too_many; /* the last tile drawn has more than MAX_GAPS, so all of them stay empty */
 };
-/* Of a tile: each takes the processor 0.03 to 2 ms, and few pictures have more than two or three.
- */
+/* Pixels in gaps that one tile may ask for: each takes the processor 0.03 to 2 ms, and few pictures
+ * have more than two or three. */
 enum { MAX_GAPS = 512 };
 
 /* Most models take one or two: their tables fill a bank each. */

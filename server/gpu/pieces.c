@@ -16,7 +16,7 @@ enum { MAX_DEPTH = 20 };
 /* Grid vertices of a tile: what a software device draws in a few seconds, and many times what a
  * million faces need. */
 static const uint64_t MAX_VERTICES = 24000000;
-/* A guess counts so many steps over two units. */
+/* The coordinates s and t of a guess, each from 0 to 2, are stored in so many steps. */
 enum { GUESS_STEPS = 8191 };
 
 const uint8_t piece_cells[PIECE_SIDES] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
@@ -29,6 +29,7 @@ struct chooser {
     struct view_sides sides; /* the tile's */
     const struct tile *tile;
     bool guesses;       /* are asked for, not pieces */
+    size_t first_guess; /* of these */
     uint32_t blocks[2]; /* of the tile: across and down */
     size_t n_chosen;
     uint64_t n_vertices;
@@ -101,6 +102,8 @@ static bool grow(struct pieces *out)
 static void add_guess(struct chooser *c, const struct piece *piece, const struct extent *extent)
 {
     struct pieces *out = c->out;
+    if (c->no_memory || out->n_guesses - c->first_guess > MAX_GUESSES)
+        return;
     if (out->n_guesses == out->guess_capacity) {
         size_t capacity = out->guess_capacity ? 2 * out->guess_capacity : 1024;
         struct guess *guess = realloc(out->guess, capacity * sizeof *guess);
@@ -125,14 +128,14 @@ static void add_guess(struct chooser *c, const struct piece *piece, const struct
 static void emit(struct chooser *c, unsigned grid, struct piece piece, const struct extent *extent)
 {
     struct pieces *out = c->out;
-    c->n_vertices +=
-        (piece_cells[grid / PIECE_SIDES] + 1u) * (piece_cells[grid % PIECE_SIDES] + 1u);
-    if (c->n_vertices > MAX_VERTICES || c->no_memory)
-        return;
     if (c->guesses) {
         add_guess(c, &piece, extent);
         return;
     }
+    c->n_vertices +=
+        (piece_cells[grid / PIECE_SIDES] + 1u) * (piece_cells[grid % PIECE_SIDES] + 1u);
+    if (c->n_vertices > MAX_VERTICES || c->no_memory)
+        return;
     cover(c, extent);
     if (c->n_chosen == out->piece_capacity && !grow(out)) {
         c->no_memory = true;
@@ -426,9 +429,17 @@ bool pieces_guess(struct pieces *pieces, const struct limit_tables *tables,
                   const struct clusters *clusters, const struct view *view, const struct tile *tile,
                   struct error *error)
 {
-    struct chooser c = {
-        .out = pieces, .tables = tables, .view = view, .tile = tile, .guesses = true};
-    return choose_all(&c, clusters, error);
+    struct chooser c = {.out = pieces,
+                        .tables = tables,
+                        .view = view,
+                        .tile = tile,
+                        .guesses = true,
+                        .first_guess = pieces->n_guesses};
+    if (!choose_all(&c, clusters, error))
+        return false;
+    if (pieces->n_guesses - c.first_guess > MAX_GUESSES)
+        pieces->n_guesses = c.first_guess;
+    return true;
 }
 
 void pieces_move_blocks(struct pieces *pieces, uint32_t x, uint32_t y)

@@ -35,6 +35,9 @@ struct guess {
     float depth;    /* along the view axis, units */
 };
 
+/* Of one call of pieces_guess(). A car has about 60 behind a pixel. */
+enum { MAX_GUESSES = 4096 };
+
 struct pieces {
     /* In the order of their grids: those of grid g from first[g] to first[g + 1]. */
     struct piece *piece;
@@ -61,7 +64,9 @@ bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
                    const struct tile *tile, struct error *error);
 /* Cuts what a tile of a few pixels may show into pieces that one cell each would draw as well as
  * pieces_choose() asks, and adds a guess in the middle of each: one that leads to whatever surface
- * a ray of the tile meets. The pieces and blocks chosen before stay. Errors as pieces_choose(). */
+ * a ray of the tile meets. The pieces and blocks chosen before stay. Adds none where there would be
+ * more than MAX_GUESSES: one invocation of a shader tries them one by one, and a file of many
+ * sheets behind each other could keep the device for seconds. Fails for want of memory alone. */
 bool pieces_guess(struct pieces *pieces, const struct limit_tables *tables,
                   const struct clusters *clusters, const struct view *view, const struct tile *tile,
                   struct error *error);

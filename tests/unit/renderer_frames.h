@@ -17,6 +17,20 @@ static inline struct renderer *open_renderer(size_t max_texels)
     return renderer;
 }
 
+/* A model's tables, and a renderer that draws them. */
+struct scene {
+    struct limit_tables tables;
+    struct renderer *renderer;
+    struct renderer_model *model;
+};
+
+static inline void scene_finish(struct scene *scene)
+{
+    renderer_model_destroy(scene->renderer, scene->model);
+    renderer_destroy(scene->renderer);
+    limit_tables_finish(&scene->tables);
+}
+
 static inline struct frame_request request_for(const struct limit_tables *tables, uint32_t width,
                                                uint32_t height)
 {

@@ -17,12 +17,6 @@
 enum { SIDE_PX = 160, QUADS = 24, WALL = 14 };
 static const double STEP_RAD = 0.1, RADIUS = 6;
 
-struct scene {
-    struct limit_tables tables;
-    struct renderer *renderer;
-    struct renderer_model *model;
-};
-
 /* The limit curve of points on a circle runs so much nearer to its middle: to 1e-6. */
 static double shrink(void)
 {
@@ -60,13 +54,6 @@ static void scene_init(struct scene *scene, double gap)
     build(text, used, &scene->tables);
     scene->renderer = open_renderer(0);
     scene->model = upload(scene->renderer, &scene->tables);
-}
-
-static void scene_finish(struct scene *scene)
-{
-    renderer_model_destroy(scene->renderer, scene->model);
-    renderer_destroy(scene->renderer);
-    limit_tables_finish(&scene->tables);
 }
 
 /* From above, turned by `turn_rad`; the gap's middle in the picture's. */

@@ -264,12 +264,46 @@ static void test_clusters_leave_out_nothing(void **state)
     }
 }
 
+/* Sheets behind each other, which a file may have by the thousands: a ray has a guess for each, or
+ * for none where there are too many to try. */
+static void test_guesses_are_limited(void **state)
+{
+    (void)state;
+    static const size_t n_sheets[2] = {MAX_GUESSES / 64, 2 * MAX_GUESSES};
+    for (size_t i = 0; i < 2; i++) {
+        size_t size = n_sheets[i] * 160, used = 0;
+        char *text = malloc(size);
+        assert_non_null(text);
+        for (size_t k = 0; k < n_sheets[i]; k++) {
+            double z = 1e-4 * (double)k;
+            used += (size_t)snprintf(text + used, size - used,
+                                     "v -1 -1 %g\nv 1 -1 %g\nv 1 1 %g\nv -1 1 %g\nf -4 -3 -2 -1\n",
+                                     z, z, z, z);
+        }
+        struct scene scene = {0};
+        struct error error = {0};
+        const struct tile middle = {WIDTH / 2, HEIGHT / 2, 1, 1};
+        build(text, used, &scene.tables);
+        scene_ready(&scene);
+        look(&scene, true, 1);
+        assert_true(pieces_guess(&scene.pieces, &scene.tables, &scene.clusters, &scene.view,
+                                 &middle, &error));
+        if (i == 0)
+            assert_in_range(scene.pieces.n_guesses, n_sheets[i], MAX_GUESSES);
+        else
+            assert_int_equal(scene.pieces.n_guesses, 0);
+        scene_finish(&scene);
+        free(text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_no_triangle_strays),
         cmocka_unit_test(test_one_way),
         cmocka_unit_test(test_clusters_leave_out_nothing),
+        cmocka_unit_test(test_guesses_are_limited),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,24 +2,11 @@
  * that the default light is met everywhere. */
 #include "tests/unit/renderer_frames.h"
 
-struct scene {
-    struct limit_tables tables;
-    struct renderer *renderer;
-    struct renderer_model *model;
-};
-
 static void scene_init(struct scene *scene, const char *path)
 {
     build_file(path, &scene->tables);
     scene->renderer = open_renderer(0);
     scene->model = upload(scene->renderer, &scene->tables);
-}
-
-static void scene_finish(struct scene *scene)
-{
-    renderer_model_destroy(scene->renderer, scene->model);
-    renderer_destroy(scene->renderer);
-    limit_tables_finish(&scene->tables);
 }
 
 static struct frame render_tiled(const struct scene *scene, const struct frame_request *request,
