@@ -1,7 +1,8 @@
-// Parts the pixels at edges: doubtful are those where the pieces around do not agree with what the pixels' centres show:
-// a piece reaches a centre that does not show it, or ends before one that does, by more than OFF; and those around
-// which there are three pieces, or two and nothing: each knows its own end alone, and what the ends leave between
-// them is anybody's guess. They are listed as rounded, so that rays meet the surface itself.
+// Sorts the pixels at edges into two lists. A pixel is doubtful where a piece of surface around it contradicts what a
+// pixel's centre shows: the piece reaches a centre that does not show it, or ends before a centre that does, by more
+// than OFF. A pixel is also doubtful where three pieces are around it, or two pieces and a pixel that shows nothing:
+// each piece tells its own end only, and between the ends there may be anything. Doubtful pixels join the list of
+// rounded ones, so that rays meet the surface itself there; all others are shaded from the pieces.
 
 layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 

@@ -1,5 +1,5 @@
-// Pixels that show the rounding of a semi-sharp crease, from half a pixel to some pixels wide: there the
-// surface turns too much and too unevenly for one footprint or one paraboloid to tell. Rays spread over
+// Pixels that show the rounding of a semi-sharp crease, from half a pixel to some pixels wide, and those that
+// edges_doubt.comp.glsl calls doubtful: one footprint or one paraboloid does not tell what they show. Rays spread over
 // the pixel meet the limit surface itself (rounded_solve), and each is shaded with the footprint of its
 // own part of the pixel (rounded_shade).
 //

@@ -45,6 +45,14 @@ void main()
     bool beside_empty = false;
     for (int k = 0; k < 9; k++)
         beside_empty = beside_empty || hit_at(p + ivec2(k % 3, k / 3) - 1).depth == 0.0;
+    // A sliver that the pixel's centre sees may lie between the rays: then the centre stands for one of them.
+    Hit own = hit_at(p);
+    if (covered == 0.0 && mirrors(own)) {
+        float size = 1.0 / float(side);
+        Sample at = sample_at(pixel_offset(p), size, own.depth, own.n, own.h, own.n);
+        covered = size * size;
+        sum = scaled(lay_over(behind, at, meet(at), pixel_offset(p)), covered);
+    }
     float all = beside_empty ? 1.0 : covered;
     if (all == 0.0)
         return;

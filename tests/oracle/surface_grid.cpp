@@ -1,6 +1,7 @@
 #include "tests/oracle/surface_grid.h"
 
 #include "tests/oracle/cage_file.h"
+#include "tests/oracle/look_from.h"
 #include "tests/oracle/scene.h"
 
 struct grid_model::parts {
@@ -21,23 +22,11 @@ grid_model::grid_model(const std::string &file) : path(file), own(std::make_uniq
 
 grid_model::~grid_model() = default;
 
-static void put(vec3 v, double out[3])
-{
-    out[0] = v.x;
-    out[1] = v.y;
-    out[2] = v.z;
-}
-
 surface_grid grid_model::sample(const view &view, int side)
 {
     frame_request request =
         own->shown.request((uint32_t)(view.width_px * side), (uint32_t)(view.height_px * side));
-    request.camera.kind = view.orthographic ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE;
-    put(view.eye, request.camera.eye);
-    put(view.target, request.camera.target);
-    put(view.up, request.camera.up);
-    request.camera.fov_deg = view.fov_deg;
-    request.camera.ortho_height = view.ortho_height;
+    look_from(view, &request);
     request.unfiltered = true;
     request.planes = PLANE_POSITION | PLANE_NORMAL;
     frame frame = own->device.render(request);

@@ -12,6 +12,7 @@
 
 #include "tests/oracle/cage_file.h"
 #include "tests/oracle/lines.h"
+#include "tests/oracle/look_from.h"
 #include "tests/oracle/random_setups.h"
 #include "tests/oracle/scene.h"
 #include "tests/oracle/verdict.h"
@@ -27,24 +28,11 @@ const double max_undecided = 0.01;
 const size_t min_met = 300; /* of each family and light */
 const double ulp = std::ldexp(1, -24);
 
-void put(vec3 v, double to[3])
-{
-    to[0] = v.x;
-    to[1] = v.y;
-    to[2] = v.z;
-}
-
 frame_request request_of(const scene &scene, const seen_setup &asked, bool filtered)
 {
     frame_request request = scene.request(width_px, height_px);
-    const view &view = asked.camera;
     const line_setup &setup = asked.setup;
-    request.camera.kind = view.orthographic ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE;
-    put(view.eye, request.camera.eye);
-    put(view.target, request.camera.target);
-    put(view.up, request.camera.up);
-    request.camera.fov_deg = view.fov_deg;
-    request.camera.ortho_height = view.ortho_height;
+    look_from(asked.camera, &request);
     request.lines.family = (renderer_line_family)setup.family;
     request.lines.has_direction = setup.has_axis;
     put(setup.axis, request.lines.direction);
