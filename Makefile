@@ -64,33 +64,35 @@ obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
 PROTOCOL_SRC := $(wildcard protocol/*.c)
 CAGE_SRC := $(wildcard server/cage/*.c)
 CAGE_READ_SRC := $(wildcard server/cage/read/*.c server/cage/read/*.cpp)
-LIMIT_SRC := $(wildcard server/limit/*.c)
-GPU_SRC := $(wildcard server/gpu/*.c)
+SURFACE_SRC := $(wildcard server/surface/*.c server/surface/subdivision/*.c)
+SCENE_SRC := $(wildcard server/scene/*.c)
+RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c)
 IMAGE_SRC := $(wildcard server/image/*.c)
 IMAGE_LIBRARY_SRC := $(wildcard server/image/*.cpp)
 # What sheend shares with its workers, and what is theirs alone: each has a main and tasks.
-WORKER_SHARED_SRC := server/worker/stream.c server/worker/job.c server/worker/cage_code.c \
-                     server/worker/image_code.c
-ZYGOTE_SRC := server/worker/zygote.c server/worker/sandbox.c server/worker/threads.c
-SERVICE_SRC := $(wildcard server/service/*.c)
+WORKER_SHARED_SRC := server/sandbox/stream.c server/sandbox/job.c server/sandbox/cage_code.c \
+                     server/sandbox/image_code.c
+ZYGOTE_SRC := server/sandbox/zygote.c server/sandbox/sandbox.c server/sandbox/threads.c
+# The rooms of the daemon alone.
+SERVICE_SRC := $(foreach room,net session frame assets output threads ops,$(wildcard server/$(room)/*.c))
 CLIENT_SRC := $(wildcard client/*.c)
 SHADERS := $(sort $(wildcard shaders/*.glsl))
 
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
-CORE_OBJ := $(call obj,$(CAGE_SRC) $(LIMIT_SRC) server/error.c)
-RENDER_OBJ := $(call obj,$(GPU_SRC) protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
-SERVER_OBJ := $(call obj,server/main.c server/fault.c server/spares.c $(wildcard server/options*.c) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
+CORE_OBJ := $(call obj,$(CAGE_SRC) $(SURFACE_SRC) server/base/error.c)
+RENDER_OBJ := $(call obj,$(SCENE_SRC) $(RENDER_SRC) protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
+SERVER_OBJ := $(call obj,$(filter-out server/base/error.c,$(wildcard server/base/*.c)) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
 KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
 SERVER_OBJ += $(KEEP_MODULES)
 # What parses files from strangers: linked into the workers alone.
-CAGE_TASKS_OBJ := $(call obj,$(CAGE_READ_SRC) server/worker/cage_tasks.c)
-IMAGE_TASKS_OBJ := $(call obj,$(IMAGE_LIBRARY_SRC) server/worker/image_tasks.c)
-WORKER_OBJ := $(call obj,server/error.c server/worker/stream.c server/worker/job.c $(ZYGOTE_SRC))
-CAGE_WORKER_OBJ := $(call obj,server/worker/cage_main.c $(CAGE_SRC) server/worker/cage_code.c) \
+CAGE_TASKS_OBJ := $(call obj,$(CAGE_READ_SRC) server/sandbox/cage_tasks.c)
+IMAGE_TASKS_OBJ := $(call obj,$(IMAGE_LIBRARY_SRC) server/sandbox/image_tasks.c)
+WORKER_OBJ := $(call obj,server/base/error.c server/sandbox/stream.c server/sandbox/job.c $(ZYGOTE_SRC))
+CAGE_WORKER_OBJ := $(call obj,server/sandbox/cage_main.c $(CAGE_SRC) server/sandbox/cage_code.c) \
                    $(CAGE_TASKS_OBJ) $(WORKER_OBJ)
-IMAGE_WORKER_OBJ := $(call obj,server/worker/image_main.c $(IMAGE_SRC) server/worker/image_code.c) \
+IMAGE_WORKER_OBJ := $(call obj,server/sandbox/image_main.c $(IMAGE_SRC) server/sandbox/image_code.c) \
                     $(IMAGE_TASKS_OBJ) $(WORKER_OBJ)
 CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
 
@@ -139,13 +141,13 @@ $(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
 
 # sheend that fails where $SHEEN_FAULTS asks it to, and counts what its own code (no library's) takes from
 # the heap: what is installed cannot.
-$(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/allocations.c) $(filter-out %/server/fault.c.o,$(SERVER_OBJ))
+$(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/allocations.c) $(filter-out %/server/base/fault.c.o,$(SERVER_OBJ))
 	$(call say,LD $@)
 	$(Q)$(CC) $(LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup,--wrap=limit_build_faces -o $@ $^ $(SERVER_LIBS)
 
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything but the two mains.
-LIB_OBJ := $(filter-out %/server/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
+LIB_OBJ := $(filter-out %/server/ops/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
            $(CAGE_TASKS_OBJ) $(IMAGE_TASKS_OBJ) $(call obj,$(ZYGOTE_SRC)) $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
 TEST_LIB := $(BUILD)/libtests.a
 $(TEST_LIB): $(LIB_OBJ)
@@ -186,7 +188,7 @@ FUZZ_WRAPPED := malloc calloc realloc strdup strndup $(TINYGLTF)19LoadASCIIFromS
 FUZZ_LINK := -Wl,--as-needed $(patsubst %,-Wl$(comma)--wrap=%,$(FUZZ_WRAPPED)) \
              $(if $(FUZZ),-fsanitize=fuzzer)
 FUZZ_ARCHIVE := $(BUILD)/libfuzz.a
-$(FUZZ_ARCHIVE): $(filter-out %/server/main.c.o,$(SERVER_OBJ)) $(CAGE_TASKS_OBJ) \
+$(FUZZ_ARCHIVE): $(filter-out %/server/ops/main.c.o,$(SERVER_OBJ)) $(CAGE_TASKS_OBJ) \
                  $(call obj,$(filter-out client/main.c,$(CLIENT_SRC)))
 	$(Q)rm -f $@ && ar rcsP $@ $^
 $(FUZZ_TARGETS): $(BUILD)/tests/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.c.o $(FUZZ_SHARED) $(FUZZ_ARCHIVE)
@@ -219,7 +221,7 @@ SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame
                    $(BENCH_MAIN) \
                    $(call obj,tests/bench/no_peers.cpp tests/bench/no_gltf.c) \
                    $(call obj,$(patsubst %,tests/oracle/%.cpp,scene cage_file folder)) \
-                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/fault.c server/spares.c) $(RENDER_OBJ) $(CORE_OBJ) \
+                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/base/fault.c server/base/block_cache.c) $(RENDER_OBJ) $(CORE_OBJ) \
                    $(KEEP_MODULES)
 $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 	$(call say,LD $@)

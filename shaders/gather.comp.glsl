@@ -1,7 +1,7 @@
 // After stage 1: lists the groups of 4 x 2 pixels of which one is seen, or has a pixel beside it that is;
 // and apart from them those among these that are not calm (seen.glsl).
 // An invocation for each group of the blocks of 8 x 8 pixels that the pieces may cover, x | y << 16 in
-// blocks (server/gpu/pieces.h).
+// blocks (server/render/patch_grids.h).
 
 layout(local_size_x = 64) in;
 

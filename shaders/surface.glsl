@@ -59,7 +59,7 @@ struct SubPatch {
     vec2 st;       // the place, in [0,1]
     uint scale_at; // the texel of its points' scale
     uint scale_of; // and which of the four there
-    uint rows;     // its points: 4 rows of 3 texels (server/limit/texels.h)
+    uint rows;     // its points: 4 rows of 3 texels (server/surface/texels.h)
     uint column;   // not NONE: these points come first in the rows, whose last drop out
     bool limit;    // beyond the last level of a CORNER: the extraordinary vertex itself
 };
@@ -176,7 +176,7 @@ Surface patch_at(Node node, mat3 frame, Net p, float scale, vec2 st)
 }
 
 // The extraordinary vertex itself, where all levels end: the origin and axes of its frame. A cone's tip
-// has no tangents, nor has a crease sector of many faces one normal (server/limit/ring.h).
+// has no tangents, nor has a crease sector of many faces one normal (server/surface/subdivision/ring.h).
 Surface limit_of(Node node, mat3 frame, float scale)
 {
     return Surface(node.origin, frame[0], frame[1], frame[0], frame[1], vec3(0.0),

@@ -1,4 +1,4 @@
-// The limit tables (server/limit/tables.h) as buffer textures. A table larger than one buffer
+// The limit tables (server/surface/tables.h) as buffer textures. A table larger than one buffer
 // texture is spread over several banks of BANK_TEXELS texels.
 //
 // Defined before this file: POINT_BANKS, NODE_BANKS, ADJACENCY_BANKS, BANK_TEXELS, and
@@ -6,7 +6,7 @@
 
 const uint NONE = 0xffffffffu;
 const uint REGULAR = 0u, CORNER = 1u, SPLIT = 2u, HOLE = 3u, STRIP = 4u;
-const uint PATCH_TEXELS = 13u, LEVEL_TEXELS = 18u;  // server/limit/texels.h
+const uint PATCH_TEXELS = 13u, LEVEL_TEXELS = 18u;  // server/surface/texels.h
 const uint NO_NORMAL = 0x80u;
 const uint BORDER_SHARP = 15u;
 

@@ -1,5 +1,5 @@
 // Stage 1, visibility: grids over the pieces of the surface that the CPU chose
-// (server/gpu/pieces.h), each of as many cells along u and v as `grid` says. One instance draws several
+// (server/render/patch_grids.h), each of as many cells along u and v as `grid` says. One instance draws several
 // pieces, since some devices take longer to start an instance than to draw a small grid.
 
 layout(binding = TEXTURES_FREE) uniform usamplerBuffer pieces;  // node, level | k << 6 | depth << 8, x, y

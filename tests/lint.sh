@@ -47,16 +47,16 @@ no_include server/gpu 'server/service|protocol/([^rs]|r[^a]|s[^r])|client/'
 no_include server/service 'client/|server/gpu/([^r]|r[^e]|re[^n]|render[^e])'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/gpu/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
-    'socket calls' 'server client protocol' server/service/ server/worker/zygote.c client/connection.c client/private_daemon.c
+    'socket calls' 'server client protocol' server/service/ server/sandbox/zygote.c client/connection.c client/private_daemon.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
 only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/limit server/gpu server/image server/worker protocol'
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
     'server client protocol'
 only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp
-only_in '#include <turbojpeg|\btj[A-Z][A-Za-z0-9]*\(' 'libjpeg-turbo code' 'server client protocol' server/service/jpeg.c
+only_in '#include <turbojpeg|\btj[A-Z][A-Za-z0-9]*\(' 'libjpeg-turbo code' 'server client protocol' server/output/jpeg.c
 only_in '#include <jansson' 'jansson code' 'server client protocol' client/gltf_pack.c
 only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32)(_combine)?\(' 'zlib code' \
-    'server client protocol' server/service/png.c
+    'server client protocol' server/output/png.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf
 
 cppcheck --quiet --std=c11 --language=c --inline-suppr --error-exitcode=1 -I. \

@@ -3,7 +3,7 @@
  * format has it so (read/weld.h).
  *
  * A cage is plain memory that its owner frees with cage_finish(). Nothing here evaluates anything;
- * the limit surface is built by server/limit. Thread: a cage is read-only once read and may then
+ * the limit surface is built by server/surface. Thread: a cage is read-only once read and may then
  * be shared. All indices are zero-based and have been checked by cage_check(). */
 #ifndef SHEEN_CAGE_CAGE_H
 #define SHEEN_CAGE_CAGE_H
@@ -12,7 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/error.h"
+#include "server/base/error.h"
 
 /* Sharpness of this much and more is infinite (OpenSubdiv sdc/crease.h). */
 #define CAGE_SHARPNESS_INFINITE 10.0f

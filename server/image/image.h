@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/error.h"
+#include "server/base/error.h"
 
 /* Of decoded pixels: a small file can hold many. */
 #define IMAGE_MAX_BYTES (1024ull * 1024 * 1024)

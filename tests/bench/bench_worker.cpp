@@ -8,7 +8,7 @@
 #include <vector>
 
 extern "C" {
-#include "server/service/workers.h"
+#include "server/threads/workers.h"
 }
 
 namespace

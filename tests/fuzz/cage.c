@@ -7,8 +7,8 @@
 
 #include "server/cage/read/read.h"
 #include "server/cage/survey.h"
-#include "server/limit/tables.h"
-#include "server/worker/cage_code.h"
+#include "server/surface/tables.h"
+#include "server/sandbox/cage_code.h"
 #include "tests/fuzz/fuzz.h"
 
 #define MOST_FACES 40 /* more costs time and finds nothing more */

@@ -1,6 +1,6 @@
 // C++ allocations go through malloc() as the linker has wrapped it, in libraries as well; but not
 // while tinygltf parses, which throws through functions that may not throw: a parser that ends its
-// process is what the worker processes are for (server/worker).
+// process is what the worker processes are for (server/sandbox).
 #include <cstdlib>
 #include <new>
 #include <string>

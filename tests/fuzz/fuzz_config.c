@@ -4,7 +4,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "server/options.h"
+#include "server/ops/options.h"
 #include "tests/fuzz/fuzz.h"
 
 /* Names of hosts are resolved while options are checked: no input may ask the network. */

@@ -1,7 +1,7 @@
 /* A request to the port of metrics and health. */
 #include <string.h>
 
-#include "server/service/http.h"
+#include "server/net/http.h"
 #include "tests/fuzz/fuzz.h"
 
 void fuzz_one(const uint8_t *bytes, size_t size)

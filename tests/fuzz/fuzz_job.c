@@ -2,9 +2,9 @@
  * answer of each kind, which a worker that was taken over has written. */
 #include <stdlib.h>
 
-#include "server/worker/cage_code.h"
-#include "server/worker/image_code.h"
-#include "server/worker/job.h"
+#include "server/sandbox/cage_code.h"
+#include "server/sandbox/image_code.h"
+#include "server/sandbox/job.h"
 #include "tests/fuzz/fuzz.h"
 
 #define MAX_PX 4096

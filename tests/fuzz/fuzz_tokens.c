@@ -4,7 +4,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "server/service/tokens.h"
+#include "server/net/tokens.h"
 #include "tests/fuzz/fuzz.h"
 
 void fuzz_one(const uint8_t *bytes, size_t size)

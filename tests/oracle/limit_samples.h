@@ -1,4 +1,4 @@
-/* The tables of server/limit beside libosd in double, at random places of a cage. */
+/* The tables of server/surface beside libosd in double, at random places of a cage. */
 #ifndef SHEEN_TESTS_ORACLE_LIMIT_SAMPLES_H
 #define SHEEN_TESTS_ORACLE_LIMIT_SAMPLES_H
 

@@ -1,7 +1,7 @@
 /* The limit surface near one vertex of a cage by repeated refinement of its neighbourhood, in long
  * double: the textbook's rules (Catmull and Clark 1978; DeRose, Kass and Truong 1998) on a mesh of
  * three rings, as deep as is asked for, and a bicubic B-spline where that is regular. Knows no
- * closed form of anything at the vertex, and shares nothing with server/limit. */
+ * closed form of anything at the vertex, and shares nothing with server/surface. */
 #ifndef SHEEN_TESTS_ORACLE_LOCAL_SURFACE_H
 #define SHEEN_TESTS_ORACLE_LOCAL_SURFACE_H
 

@@ -8,7 +8,7 @@
 #include "tests/oracle/vec.h"
 
 extern "C" {
-#include "server/limit/plan.h"
+#include "server/surface/subdivision/plan.h"
 }
 
 /* By level, from 0 (the cage, where all around a face is quads) to the last. */

@@ -1,4 +1,4 @@
-/* server/gpu/renderer.h for C++, where renderer_info is a struct and a function, as it may be. Its
+/* server/render/renderer.h for C++, where renderer_info is a struct and a function, as it may be. Its
  * line_family and line_eye_kind are called renderer_... here: lines.h has its own. */
 #ifndef SHEEN_TESTS_ORACLE_RENDERER_H
 #define SHEEN_TESTS_ORACLE_RENDERER_H
@@ -8,7 +8,7 @@
 #define line_family renderer_line_family
 #define line_eye_kind renderer_line_eye_kind
 extern "C" {
-#include "server/gpu/renderer.h"
+#include "server/render/renderer.h"
 }
 #undef line_family
 #undef line_eye_kind

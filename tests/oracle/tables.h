@@ -1,4 +1,4 @@
-/* The tables of server/limit built from a cage and evaluated by server/limit/evaluate.h, in double
+/* The tables of server/surface built from a cage and evaluated by server/surface/evaluate.h, in double
  * from the single precision points: what the shaders do, without their arithmetic. */
 #ifndef SHEEN_TESTS_ORACLE_TABLES_H
 #define SHEEN_TESTS_ORACLE_TABLES_H
@@ -6,7 +6,7 @@
 #include "tests/oracle/vec.h"
 
 extern "C" {
-#include "server/limit/evaluate.h"
+#include "server/surface/evaluate.h"
 }
 
 /* Derivatives are by the coordinates that the place was given in; those of evaluate_ring() by the

@@ -12,7 +12,7 @@
 #include "tests/oracle/verdict.h"
 
 extern "C" {
-#include "server/limit/sheets.h"
+#include "server/surface/subdivision/sheets.h"
 }
 
 namespace

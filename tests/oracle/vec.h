@@ -1,4 +1,4 @@
-/* Three doubles and what the oracles do with them. Independent of server/limit on purpose. */
+/* Three doubles and what the oracles do with them. Independent of server/surface on purpose. */
 #ifndef SHEEN_TESTS_ORACLE_VEC_H
 #define SHEEN_TESTS_ORACLE_VEC_H
 

@@ -2,7 +2,7 @@
  * at its FIRST-th place and at each FIRST-th after it, TIMES times in all. The faults that happen
  * are told on standard error. "tables.stuck" is the one place outside of sheend's own code: a
  * thread that does not come back from building a model's tables. */
-#include "server/fault.h"
+#include "server/base/fault.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "server/limit/tables.h"
+#include "server/surface/tables.h"
 
 enum { MAX_FAULTS = 8 };
 

@@ -13,8 +13,8 @@
 #include <cmocka.h>
 
 #include "server/cage/read/read.h"
-#include "server/limit/tables.h"
-#include "server/limit/vec.h"
+#include "server/surface/tables.h"
+#include "server/surface/vec.h"
 
 static inline void build(const char *bytes, size_t size, struct limit_tables *tables)
 {

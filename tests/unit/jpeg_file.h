@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "server/service/jpeg.h"
+#include "server/output/jpeg.h"
 
 static uint8_t *jpeg_file_of(struct jpeg_encoder *encoder, const struct jpeg_options *options,
                              const uint8_t *rgba, uint32_t width_px, uint32_t height_px,

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "server/service/png.h"
+#include "server/output/png.h"
 
 static uint8_t *png_file(struct png_encoder *encoder, const uint8_t *rgba, uint32_t width_px,
                          uint32_t height_px, const struct image_attribute *attributes,

@@ -2,7 +2,7 @@
 #ifndef SHEEN_TESTS_POLYGON_SCENE_H
 #define SHEEN_TESTS_POLYGON_SCENE_H
 
-#include "server/gpu/renderer.h"
+#include "server/render/renderer.h"
 #include "tests/unit/cage_tables.h"
 
 struct scene {

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "server/gpu/renderer.h"
+#include "server/render/renderer.h"
 #include "tests/unit/cage_tables.h"
 
 static inline struct renderer *open_renderer(size_t max_texels)

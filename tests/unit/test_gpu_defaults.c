@@ -1,9 +1,9 @@
 /* The camera that frames a model. */
 #include <string.h>
 
-#include "server/gpu/view.h"
-#include "server/limit/evaluate.h"
-#include "server/limit/support.h"
+#include "server/render/view.h"
+#include "server/surface/evaluate.h"
+#include "server/surface/support.h"
 #include "tests/unit/cage_tables.h"
 
 #define MARGIN 0.92 /* of the half picture, which the box fills */

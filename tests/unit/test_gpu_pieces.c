@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "server/gpu/pieces.h"
-#include "server/gpu/renderer.h"
-#include "server/limit/evaluate.h"
+#include "server/render/patch_grids.h"
+#include "server/render/renderer.h"
+#include "server/surface/evaluate.h"
 #include "tests/unit/cage_tables.h"
 
 enum { WIDTH = 960, HEIGHT = 540 };

@@ -12,8 +12,8 @@
 #include <cmocka.h>
 
 #include "protocol/srgb.h"
-#include "server/gpu/mesh.h"
-#include "server/limit/evaluate.h"
+#include "server/render/gl/mesh.h"
+#include "server/surface/evaluate.h"
 #include "tests/unit/polygon_scene.h"
 
 static struct frame render(struct scene *scene, const struct frame_request *request)

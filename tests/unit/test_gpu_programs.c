@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "server/gpu/gpu.h"
+#include "server/render/gl/gpu.h"
 #include "tests/unit/cage_tables.h"
 
 struct scene {

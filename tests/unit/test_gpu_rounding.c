@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "protocol/srgb.h"
-#include "server/gpu/renderer.h"
+#include "server/render/renderer.h"
 #include "tests/unit/cage_tables.h"
 
 enum { WIDTH = 96, HEIGHT = 64, SIDE = 8 }; /* SIDE x SIDE samples a pixel */

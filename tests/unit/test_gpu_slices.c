@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "server/gpu/mesh.h"
+#include "server/render/gl/mesh.h"
 
 enum { ONE_STROKE = 1 << 28 };
 

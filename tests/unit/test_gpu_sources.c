@@ -12,9 +12,9 @@
 
 #include <cmocka.h>
 
-#include "server/gpu/gpu.h"
-#include "server/gpu/shaders.h"
-#include "server/gpu/sources.h"
+#include "server/render/gl/gpu.h"
+#include "server/render/gl/shaders.h"
+#include "server/render/gl/sources.h"
 
 enum {
     MAX_SHADERS = 4096,

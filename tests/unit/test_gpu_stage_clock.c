@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "server/gpu/renderer.h"
+#include "server/render/renderer.h"
 #include "tests/unit/cage_tables.h"
 
 static const char CUBE[] = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n"

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "server/limit/evaluate.h"
+#include "server/surface/evaluate.h"
 #include "tests/unit/cage_tables.h"
 
 #define CUBE                                                                                       \

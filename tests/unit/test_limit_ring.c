@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "server/cage/cage.h"
-#include "server/limit/ring.h"
+#include "server/surface/subdivision/ring.h"
 
 static double noise(void)
 {

@@ -12,11 +12,11 @@
 #include <cmocka.h>
 
 #include "server/cage/read/read.h"
-#include "server/limit/crease.h"
-#include "server/limit/evaluate.h"
-#include "server/limit/extract.h"
-#include "server/limit/known_modes.h"
-#include "server/limit/plan.h"
+#include "server/surface/subdivision/crease.h"
+#include "server/surface/evaluate.h"
+#include "server/surface/subdivision/extract.h"
+#include "server/surface/subdivision/known_modes.h"
+#include "server/surface/subdivision/plan.h"
 
 enum { N = 150 }; /* faces: more than a table's window */
 

@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "server/limit/evaluate.h"
-#include "server/limit/sheets.h"
+#include "server/surface/evaluate.h"
+#include "server/surface/subdivision/sheets.h"
 #include "tests/unit/cage_tables.h"
 
 enum { PAGES = 3, SPINE_Z = 3, MAX_CREASES = 4 };

@@ -12,8 +12,8 @@
 #include "protocol/limits.h"
 #include "protocol/message.h"
 #include "protocol/ranges.h"
-#include "server/gpu/gpu.h"
-#include "server/service/wire.h"
+#include "server/render/gl/gpu.h"
+#include "server/frame/scene_convert.h"
 #include "tests/unit/good_render.h"
 
 #define RENDER "m.obj -o a.png "

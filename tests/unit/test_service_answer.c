@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "server/service/answer.h"
+#include "server/session/reply.h"
 #include "tests/unit/build_folder.h"
 #include "tests/unit/jpeg_file.h"
 #include "tests/unit/png_file.h"

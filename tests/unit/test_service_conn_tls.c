@@ -14,7 +14,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "server/service/conn_tls.h"
+#include "server/net/conn_tls.h"
 #include "tests/unit/certificates.h"
 
 #define ANSWER_BYTES 200000u

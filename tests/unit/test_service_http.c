@@ -16,7 +16,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "server/service/http.h"
+#include "server/net/http.h"
 
 #define LINES 25000 /* of 10 bytes: just under HTTP_MAX_ANSWER_BYTES */
 

@@ -1,5 +1,5 @@
 /* Maps of user namespaces, as the kernel writes them and as it does not. */
-#include "server/service/id_map.h"
+#include "server/net/user_namespace.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "protocol/limits.h"
-#include "server/service/encode.h"
-#include "server/service/limits.h"
+#include "server/output/encode.h"
+#include "server/ops/limits.h"
 
 static const struct limits_row *row_of(const char *name)
 {

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "server/service/log.h"
+#include "server/base/log.h"
 
 static char said[1 << 20];
 

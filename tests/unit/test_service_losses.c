@@ -1,5 +1,5 @@
 /* How many losses in ten minutes are too many. */
-#include "server/service/losses.h"
+#include "server/ops/gpu_loss_log.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -9,8 +9,8 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "server/service/legend.h"
-#include "server/service/show.h"
+#include "server/output/legend.h"
+#include "server/output/false_colour.h"
 #include "tests/unit/build_folder.h"
 
 enum { MAX_PIXELS = 320 * 240 };

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "server/service/stats.h"
+#include "server/ops/stats.h"
 
 #define N 5000
 

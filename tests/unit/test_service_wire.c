@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "server/service/label.h"
-#include "server/service/wire.h"
+#include "server/output/metadata.h"
+#include "server/frame/scene_convert.h"
 
 static const struct limit_tables TABLES = {.box_max = {4, 2, 1}};
 static const struct wire_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};

@@ -18,8 +18,8 @@
 #include <sys/wait.h>
 #include <time.h>
 
-#include "server/service/workers.h"
-#include "server/worker/threads.h"
+#include "server/threads/workers.h"
+#include "server/sandbox/threads.h"
 #include "tests/unit/build_folder.h"
 
 #ifdef __SANITIZE_ADDRESS__

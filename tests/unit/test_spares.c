@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "server/spares.h"
+#include "server/base/block_cache.h"
 
 static void test_a_block_comes_back_for_its_size(void **state)
 {

@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "server/worker/zygote.h"
+#include "server/sandbox/zygote.h"
 
 /* --- attempts that must not come back */
 

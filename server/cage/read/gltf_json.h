@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "server/error.h"
+#include "server/base/error.h"
 
 #ifdef __cplusplus
 extern "C" {

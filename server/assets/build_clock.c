@@ -1,0 +1,39 @@
+#include "server/assets/build_clock.h"
+
+#include <time.h>
+
+#define LOOK_US 5000u /* asking for a thread's time is a system call */
+
+static uint64_t thread_cpu_us(void)
+{
+    struct timespec used;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+    return (uint64_t)used.tv_sec * 1000000u + (uint64_t)used.tv_nsec / 1000u;
+}
+
+void build_clock_start(struct build_clock *clock, const struct build_order *order,
+                       atomic_ullong *spent_us)
+{
+    *clock = (struct build_clock){order, spent_us, loop_now_us(), thread_cpu_us()};
+}
+
+bool build_clock_goes_on(void *owner, struct error *error)
+{
+    struct build_clock *clock = owner;
+    const struct build_order *order = clock->order;
+    uint64_t now_us = loop_now_us();
+    if (now_us - clock->looked_us < LOOK_US)
+        return true;
+    uint64_t cpu_us = thread_cpu_us(), more_us = cpu_us - clock->cpu_us;
+    uint64_t spent_us = atomic_fetch_add(clock->spent_us, more_us) + more_us;
+    clock->looked_us = now_us;
+    clock->cpu_us = cpu_us;
+    pool_beat();
+    if (atomic_load(order->cancelled))
+        return error_set(error, ERROR_SERVER, "the daemon is shutting down");
+    return spent_us <= order->tables_cpu_us ||
+           error_set(error, ERROR_MODEL,
+                     "its tables take more than %llu s of processor time (--tables-cpu): it is not "
+                     "taken; vertices of fewer faces cost less",
+                     (unsigned long long)(order->tables_cpu_us / 1000000));
+}

@@ -1,0 +1,28 @@
+/* What one thread's part of building a model's tables has cost so far: a limit_watch (tables.h)
+ * that ends the build when the daemon does, or when all its parts together have taken too much of
+ * the processors. A cage of a few megabytes can be made to cost hours.
+ *
+ * A thread that builds beats (pool.h): long work is none that is stuck.
+ * Thread: the one that has started the clock. */
+#ifndef SHEEN_ASSETS_BUILD_CLOCK_H
+#define SHEEN_ASSETS_BUILD_CLOCK_H
+
+#include "server/surface/tables.h"
+#include "server/assets/build.h"
+
+struct build_clock {
+    const struct build_order *order;
+    atomic_ullong *spent_us; /* by all parts of the build; the caller's */
+    uint64_t looked_us;      /* when the clock was looked at last */
+    uint64_t cpu_us;         /* the thread's own by then */
+};
+
+/* Both must outlive the clock. */
+void build_clock_start(struct build_clock *clock, const struct build_order *order,
+                       atomic_ullong *spent_us);
+
+/* Of a limit_watch, whose owner is the clock. ERROR_MODEL: it has taken order->tables_cpu_us;
+ * ERROR_SERVER: the daemon is shutting down. */
+bool build_clock_goes_on(void *owner, struct error *error);
+
+#endif

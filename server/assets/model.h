@@ -1,0 +1,39 @@
+/* A model: a cage's limit tables in memory and on the GPU, and what `sheen info` says about it.
+ *
+ * Built once: the cage is read by a worker process and measured in one work, the tables are filled
+ * in many works over the whole pool, and the GL thread uploads them. Thread: the loop's. */
+#ifndef SHEEN_ASSETS_MODEL_H
+#define SHEEN_ASSETS_MODEL_H
+
+#include "server/cage/survey.h"
+#include "server/render/renderer.h"
+#include "server/assets/build.h"
+#include "server/frame/scene_convert.h"
+
+struct model {
+    struct limit_tables tables; /* stay as long as `gpu` */
+    struct renderer_model *gpu; /* for the GL thread only */
+    struct cage_survey survey;
+    size_t n_vertices, n_faces; /* of the cage */
+    enum cage_up up;            /* as its file says */
+    char *warnings;             /* lines, or NULL */
+    size_t n_findings;          /* of the cage */
+    struct cage_finding finding[N_CAGE_FINDINGS];
+    size_t device_bytes; /* of its tables on the device */
+    uint64_t build_us;   /* reading, building and uploading */
+    struct work destroy_work;
+};
+
+static inline struct wire_subject model_subject(const struct model *model)
+{
+    return (struct wire_subject){&model->tables, model->up};
+}
+
+/* Starts a build; finished() gets a `struct model *`. False, without finished(), when memory is
+ * short. */
+bool model_build_start(const struct build_order *order, struct error *error);
+
+/* Frees the model once the GL thread has let go of it, after all work submitted before. */
+void model_destroy(struct model *model, struct render_thread *render_thread);
+
+#endif

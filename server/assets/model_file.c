@@ -1,0 +1,130 @@
+#include "server/assets/model_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/openat2.h>
+#include <openssl/sha.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "server/base/log.h"
+
+struct load {
+    struct work work;
+    struct model_file_order order;
+    char name[STORE_NAME_BYTES]; /* without folders */
+    uint8_t holder[HOLDER_ID_BYTES];
+    int fd;
+    uint8_t *bytes;
+    size_t size;
+    uint8_t sha256[MODEL_ID_BYTES];
+    bool read;
+};
+
+int model_folder_open(const char *path, struct error *error)
+{
+    int fd = open(path, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0)
+        error_set(error, ERROR_REQUEST, "cannot open the folder of --models, %s: %s", path,
+                  strerror(errno));
+    return fd;
+}
+
+/* The kernel resolves the name and keeps it below the folder, whatever changes meanwhile. */
+static int open_below(int folder_fd, const char *name)
+{
+    const struct open_how how = {
+        .flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, /* a pipe must not hold the loop */
+        .resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS | RESOLVE_NO_MAGICLINKS | RESOLVE_NO_XDEV,
+    };
+    return (int)syscall(SYS_openat2, folder_fd, name, &how, sizeof how);
+}
+
+/* NULL, or what is wrong with the file. */
+static const char *open_file(struct load *load, const char *name)
+{
+    struct stat file;
+    load->fd = open_below(load->order.folder_fd, name);
+    if (load->fd < 0 || fstat(load->fd, &file) < 0)
+        return strerror(errno);
+    if (!S_ISREG(file.st_mode))
+        return "not a plain file";
+    if (file.st_size < 1)
+        return "it is empty";
+    if ((uint64_t)file.st_size > load->order.max_bytes)
+        return "it is larger than the daemon takes";
+    load->size = (size_t)file.st_size;
+    return NULL;
+}
+
+/* --- on the pool */
+
+static void load_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct load *load = work->owner;
+    size_t used = 0;
+    load->bytes = malloc(load->size);
+    for (ssize_t n = 1; load->bytes && n > 0 && used<load->size; used += n> 0 ? (size_t)n : 0)
+        n = read(load->fd, load->bytes + used, load->size - used);
+    load->read = load->bytes && used == load->size;
+    if (load->read)
+        SHA256(load->bytes, load->size, load->sha256);
+}
+
+/* --- back on the loop */
+
+static void load_destroy(struct load *load)
+{
+    if (load->fd >= 0)
+        close(load->fd);
+    free(load->bytes);
+    free(load);
+}
+
+static void load_done(struct work *work)
+{
+    struct load *load = work->owner;
+    const struct model_file_order *order = &load->order;
+    struct error error = {0};
+    bool ok = load->read;
+    if (!ok) {
+        store_release(order->store, load->size);
+        error_set(&error, ERROR_SERVER, "%s: it could not be read to its end: try again",
+                  load->name);
+    } else {
+        ok = store_add(order->store, STORE_SHARED, load->holder, ASSET_MODEL, load->sha256,
+                       load->name, load->bytes, load->size, &error);
+        load->bytes = NULL; /* the store's */
+    }
+    order->loaded(order->owner, ok ? load->sha256 : NULL, &error);
+    load_destroy(load);
+}
+
+bool model_file_load(const struct model_file_order *order, struct error *error)
+{
+    struct load *load = calloc(1, sizeof *load);
+    if (!load)
+        return error_set(error, ERROR_SERVER, "no memory to read a file");
+    load->order = *order;
+    memcpy(load->holder, order->holder, sizeof load->holder);
+    const char *slash = strrchr(order->name, '/');
+    snprintf(load->name, sizeof load->name, "%s", slash ? slash + 1 : order->name);
+    const char *wrong = open_file(load, order->name);
+    if (wrong) {
+        log_event(LOG_INFO, "model file refused", log_text("file", order->name),
+                  log_text("text", wrong));
+        error_set(error, ERROR_MODEL, "no model file '%.200s' at this daemon", order->name);
+    } else if (store_reserve(order->store, load->holder, load->size, load->name, ERROR_MODEL,
+                             error)) {
+        load->work = (struct work){load_run, load_done, load, NULL};
+        pool_submit(order->pool, &load->work, POOL_LATER);
+        return true;
+    }
+    load_destroy(load);
+    return false;
+}

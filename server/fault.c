@@ -1,7 +1,0 @@
-#include "server/fault.h"
-
-bool fault_at(const char *name)
-{
-    (void)name;
-    return false;
-}

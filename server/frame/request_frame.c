@@ -1,0 +1,473 @@
+/* How a frame is drawn, painted, encoded and answered. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/frame/request_internal.h"
+#include "server/frame/scene_convert.h"
+
+/* Stills and batches are drawn in tiles of so many pixels, so that others wait for one at most. The
+ * size depends on the device and the request alone: equal requests give equal bytes. A tile of a
+ * software device takes about 11 ms: fender.obj and a car of 1,575 faces at 1600x1000, `sheen
+ * stream
+ * --class still` on llvmpipe, with 2 cores that others used too. There, cut so, they took 1.5
+ * and 1.1 times as long as whole; in tiles of half a megapixel 1.4 and 1.1 times. On hardware the
+ * aim is 8 ms or less; that has not been measured. */
+#define SOFTWARE_TILE_PX (256u * 256)
+#define HARDWARE_TILE_PX (512u * 512)
+#define LIGHTS_OF_A_TILE 2 /* with more of them tiles are smaller, since each light is a pass */
+/* Up to so many tiles interactive frames are drawn whole, and the planes of all classes are kept
+ * and serve all: a still after a drag is shaded alone, in one step, which takes others no longer
+ * than the drag's frames have. Beyond, others would wait too long, and the planes be too large. */
+#define WHOLE_TILES 32
+
+static uint64_t device_tile_px(const struct session_host *host)
+{
+    return render_thread_info(host->render_thread)->software ? SOFTWARE_TILE_PX : HARDWARE_TILE_PX;
+}
+
+static bool is_kept_whole(const struct session_host *host, const sheen_Render *render)
+{
+    return (uint64_t)render->width_px * render->height_px <= WHOLE_TILES * device_tile_px(host);
+}
+
+static uint64_t tile_px(const struct session_host *host, const sheen_Render *render)
+{
+    uint64_t px = device_tile_px(host);
+    if (wire_request_class(render->request_class) == CLASS_INTERACTIVE &&
+        is_kept_whole(host, render))
+        return 0;
+    return render->lights_count > LIGHTS_OF_A_TILE ? px * LIGHTS_OF_A_TILE / render->lights_count
+                                                   : px;
+}
+
+uint64_t request_canvas_bytes(const struct session_host *host, const sheen_Render *render)
+{
+    return render->surface == sheen_SurfaceKind_SURFACE_EXACT
+               ? 0
+               : renderer_canvas_bytes(render->width_px, render->height_px, tile_px(host, render));
+}
+
+/* --- into the queue */
+
+static bool is_abandoned(void *owner)
+{
+    const struct request *request = owner;
+    return atomic_load(&request->abandoned);
+}
+
+static uint64_t next_tile_px(const struct request *request)
+{
+    const struct frame_request *asked = &request->frame_request;
+    uint64_t px = (uint64_t)asked->width_px * asked->height_px, tile = request->frame_work.tile_px;
+    return tile > 0 && tile < px ? tile : px;
+}
+
+/* Frames cost alike by the pixel if these are the same. */
+static uint64_t cost_key(const struct request *request)
+{
+    const struct frame_request *asked = &request->frame_request;
+    uint64_t key = 0;
+    for (int i = 0; i < MODEL_ID_BYTES; i += 8) {
+        uint64_t part;
+        memcpy(&part, request->render.model_sha256 + i, sizeof part);
+        key = costs_key(key, part);
+    }
+    key = costs_key(key, asked->planes | (uint64_t)asked->n_lights << 32);
+    key = costs_key(key, (uint64_t)asked->surface.kind << 8 | asked->surface.level);
+    return costs_key(key, next_tile_px(request) >> 16); /* small tiles cost more by the pixel */
+}
+
+/* --- polygons, which are made on the pool: the GL thread would be away for seconds */
+
+static bool has_begun(const struct request *request)
+{
+    return request->frame.width_px > 0;
+}
+
+static void polygons_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct request *request = work->owner;
+    const struct frame_watch watch = {is_abandoned, request};
+    request->polygons =
+        renderer_polygons_create(&request->model.asset->model->tables,
+                                 request->frame_request.surface.level, &watch, &request->failure);
+}
+
+static void polygons_done(struct work *work)
+{
+    struct request *request = work->owner;
+    request->is_busy = false;
+    request->frame_work.polygons = request->polygons;
+    if (!request->session)
+        request_end(request);
+    else if (!request->polygons)
+        request_fail(request, &request->failure);
+    else if (has_begun(request))
+        scheduler_resume(&request->entry);
+    else
+        scheduler_ready(&request->entry);
+}
+
+/* Makes them where the device has never had them, or has none any more. */
+static void start_polygons(struct request *request)
+{
+    struct asset *asset = request->model.asset;
+    uint32_t level = request->frame_request.surface.level;
+    size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
+    if (!store_charge_polygons(asset, level, &request->failure) ||
+        !store_reserve(request->host->store, request->asker, bytes, asset->name, ERROR_REQUEST,
+                       &request->failure)) {
+        request_fail(request, &request->failure);
+        return;
+    }
+    request->polygon_bytes = bytes;
+    request->is_busy = true;
+    request->work = (struct work){polygons_run, polygons_done, request, NULL};
+    pool_submit(request->host->pool, &request->work, POOL_LATER);
+}
+
+static bool needs_polygons(const struct request *request)
+{
+    const struct surface *surface = &request->frame_request.surface;
+    const struct asset *asset = request->model.asset;
+    bool has = asset->drawn_on == request->host->gpu_generation &&
+               asset->drawn_levels & 1u << surface->level;
+    return surface->kind != SURFACE_EXACT && !has;
+}
+
+static void drop_polygons(struct request *request)
+{
+    renderer_polygons_destroy(request->polygons);
+    store_release(request->host->store, request->polygon_bytes);
+    request->polygons = NULL;
+    request->polygon_bytes = 0;
+}
+
+static bool shows_lines(const sheen_Render *render)
+{
+    return render->show.kind == sheen_ShowKind_SHOW_LINES &&
+           render->surface != sheen_SurfaceKind_SURFACE_WIREFRAME;
+}
+
+void request_queue_frame(struct request *request)
+{
+    struct frame_request *asked = &request->frame_request;
+    const sheen_Render *render = &request->render;
+    const struct wire_subject subject = model_subject(request->model.asset->model);
+    wire_to_frame_request(render, &subject, asked);
+    asked->count_light = shows_lines(render);
+    request->up_source = wire_model_up(render, &subject, request->up);
+    for (int i = 0; i < MAX_LIGHTS; i++)
+        if (request->images[i].asset)
+            asked->lights[i].pattern.image = request->images[i].asset->image->gpu;
+    codec_layout_init(&request->layout, render->width_px, render->height_px, render->planes);
+    request->frame_work = (struct frame_work){.request = asked,
+                                              .tile_px = tile_px(request->host, render),
+                                              .in_place = is_kept_whole(request->host, render),
+                                              .watch = {is_abandoned, request}};
+    request->cost_key = cost_key(request);
+    request->entry.estimate_us =
+        costs_estimate(&request->host->costs, request->cost_key, next_tile_px(request));
+    if (!needs_polygons(request))
+        scheduler_ready(&request->entry);
+    else
+        start_polygons(request);
+}
+
+void request_drop_frame(struct request *request)
+{
+    drop_polygons(request);
+    frame_finish(&request->frame);
+    encoded_destroy(request->held);
+    request->held = NULL;
+    memory_charge_release(request->charge);
+    request->charge = NULL;
+}
+
+/* --- answering */
+
+static void fill_frame(const struct request *request, const struct encoded *encoded,
+                       sheen_Frame *frame)
+{
+    const struct frame_request *asked = &request->frame_request;
+    const struct renderer_info *info = render_thread_info(request->host->render_thread);
+    *frame = (sheen_Frame){
+        .width_px = asked->width_px,
+        .height_px = asked->height_px,
+        .planes = request->render.planes,
+        .encoding = request->render.encoding,
+        .data_bytes = encoded->size,
+        .times = request->times,
+        .camera = wire_from_camera(&asked->camera),
+        .lights_count = (pb_size_t)asked->n_lights,
+        .lines = wire_from_lines(&asked->lines),
+        .software = info->software,
+        .has_show_range = request->render.show.has_range,
+        .show_range = request->render.show.range,
+        .has_blank = request->is_blank,
+        .blank = request->is_blank,
+        .has_light_share = request->has_light_share,
+        .light_share = request->light_share,
+        .has_up = true,
+        .up = wire_from_vec3(request->up),
+        .has_up_source = true,
+        .up_source = request->up_source,
+        .has_miss = true,
+        .miss = wire_from_colour(asked->miss),
+        .has_empty = true,
+        .empty = wire_from_colour(asked->empty),
+        .has_base = true,
+        .base = wire_from_colour(asked->base),
+        .has_show_least = request->extremes.has_values,
+        .show_least = request->extremes.least,
+        .has_show_greatest = request->extremes.has_values,
+        .show_greatest = request->extremes.greatest,
+    };
+    for (uint32_t i = 0; i < asked->n_lights; i++)
+        frame->lights[i] =
+            wire_from_light(&asked->lights[i],
+                            i < request->render.lights_count ? &request->render.lights[i] : NULL);
+    snprintf(frame->device, sizeof frame->device, "%s", info->device);
+    snprintf(frame->driver, sizeof frame->driver, "%s", info->driver);
+    snprintf(frame->server, sizeof frame->server, "%s", SHEEN_VERSION);
+}
+
+static void answer_frame(struct request *request, struct encoded *encoded)
+{
+    uint64_t now = loop_now_us();
+    request->times.tables_us = request->model.asset->unreported_us;
+    request->times.total_us = now - request->start_us;
+    request->model.asset->unreported_us = 0;
+    stats_frame(&request->host->stats, request->entry.request_class, &request->times, now);
+    sheen_Frame frame;
+    fill_frame(request, encoded, &frame);
+    session_answer_frame(request->session, request->answer, request->entry.request_class, &frame,
+                         encoded);
+    request_end(request);
+}
+
+/* Its memory goes with the encoded frame from here on. */
+static void hand_over_charge(struct request *request, struct encoded *encoded)
+{
+    memory_charge_shrink(request->charge, encoded->size);
+    encoded->released = memory_charge_release;
+    encoded->memory_of = request->charge;
+    request->charge = NULL;
+}
+
+/* An interactive frame is still on its way to the socket: this one waits, if it is the newest. */
+static void hold(struct request *request, struct encoded *encoded)
+{
+    request->held = encoded;
+    const struct schedule_entry *newer = scheduler_hold(&request->entry);
+    if (newer)
+        request_answer_superseded(request, ((const struct request *)newer->owner)->seq);
+}
+
+void request_send_held(struct session *session)
+{
+    for (struct schedule_entry *entry = session->queue.head; entry; entry = entry->next) {
+        struct request *request = entry->owner;
+        if (entry->state != SCHEDULE_HELD)
+            continue;
+        struct encoded *encoded = request->held;
+        request->held = NULL;
+        answer_frame(request, encoded);
+        return;
+    }
+}
+
+static void encode_finished(void *owner, struct encoded *encoded, const struct error *error)
+{
+    struct request *request = owner;
+    request->is_busy = false;
+    request->times.encode_us = loop_now_us() - request->encode_start_us;
+    if (error) {
+        request_fail(request, error);
+        return;
+    }
+    hand_over_charge(request, encoded);
+    bool interactive = request->entry.request_class == CLASS_INTERACTIVE;
+    if (!request->session) {
+        encoded_destroy(encoded);
+        request_end(request);
+    } else if (interactive && session_is_sending_interactive(request->session)) {
+        hold(request, encoded);
+    } else {
+        answer_frame(request, encoded);
+    }
+}
+
+/* --- drawing and painting */
+
+static enum pool_urgency urgency(const struct request *request)
+{
+    return request->entry.request_class == CLASS_INTERACTIVE ? POOL_URGENT : POOL_SOON;
+}
+
+static void start_encoding(struct request *request)
+{
+    label_init(&request->label, &request->frame_request, &request->render,
+               render_thread_info(request->host->render_thread));
+    const struct encode_format format = encode_format_of(&request->render);
+    encode_start(request->host->pool, &request->host->workers, &request->frame, &request->layout,
+                 &format, urgency(request), request->label.attributes, LABEL_ATTRIBUTES,
+                 encode_finished, request);
+}
+
+static void paint_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct request *request = work->owner;
+    struct frame *frame = &request->frame;
+    const struct limit_tables *tables = &request->model.asset->model->tables;
+    if (atomic_load(&request->abandoned))
+        return;
+    double size = 0;
+    for (int i = 0; i < 3; i++)
+        size = hypot(size, tables->box_max[i] - tables->box_min[i]);
+    show_paint(frame, &request->host->workers, &request->render.show, size,
+               request->frame_request.miss, request->frame_request.empty, &request->extremes);
+    for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
+        if (!(request->layout.planes & 1u << plane)) {
+            spares_give(frame->spares, frame->plane[plane]);
+            frame->plane[plane] = NULL;
+        }
+}
+
+static void paint_done(struct work *work)
+{
+    struct request *request = work->owner;
+    if (request->session) {
+        start_encoding(request);
+        return;
+    }
+    request->is_busy = false;
+    request_end(request);
+}
+
+static void frame_drawn(struct request *request)
+{
+    const struct frame_times *times = &request->frame.times;
+    request->times.visibility_us = times->visibility_us;
+    request->times.evaluate_us = times->evaluate_us;
+    request->times.shade_us = times->shade_us;
+    request->times.readback_us = times->readback_us;
+    request->is_blank = !request->frame.shows_surface;
+    request->has_light_share = request->frame.seen_px > 0;
+    if (request->has_light_share)
+        request->light_share = (double)request->frame.met_px / (double)request->frame.seen_px;
+    request->encode_start_us = loop_now_us();
+    request->is_busy = true;
+    if (request->render.show.kind == sheen_ShowKind_SHOW_LINES) {
+        start_encoding(request);
+        return;
+    }
+    request->work = (struct work){paint_run, paint_done, request, NULL};
+    pool_submit(request->host->pool, &request->work, urgency(request));
+}
+
+static void step_run(struct work *work, void *worker)
+{
+    struct request *request = work->owner;
+    uint64_t start_us = loop_now_us();
+    request->step = FRAME_FAILED;
+    if (has_begun(request) ||
+        renderer_begin(worker, &request->frame_work, &request->frame, &request->failure))
+        request->step = renderer_step(worker, request->model.asset->model->gpu,
+                                      &request->frame_work, &request->frame, &request->failure);
+    request->step_us = loop_now_us() - start_us;
+}
+
+/* The device has the polygons that the frame shows. */
+static void note_polygons(const struct request *request)
+{
+    const struct surface *surface = &request->frame_request.surface;
+    struct asset *asset = request->model.asset;
+    if (surface->kind == SURFACE_EXACT)
+        return;
+    if (asset->drawn_on != request->host->gpu_generation)
+        asset->drawn_levels = 0;
+    asset->drawn_on = request->host->gpu_generation;
+    asset->drawn_levels |= 1u << surface->level;
+}
+
+static void step_done(struct work *work)
+{
+    struct request *request = work->owner;
+    struct session_host *host = request->host;
+    request->is_busy = false;
+    scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
+                      request->step == FRAME_MORE || request->step == FRAME_PROGRAM);
+    if (request->step == FRAME_MORE || request->step == FRAME_DONE) {
+        note_polygons(request);
+        costs_learn(&host->costs, request->cost_key, next_tile_px(request), request->step_us);
+        request->entry.estimate_us =
+            costs_estimate(&host->costs, request->cost_key, next_tile_px(request));
+    }
+    if (!request->session)
+        request_end(request);
+    else if (request->step == FRAME_FAILED)
+        request_fail(request, &request->failure);
+    else if (request->step == FRAME_POLYGONS)
+        start_polygons(request);
+    else if (request->step == FRAME_DONE)
+        frame_drawn(request);
+}
+
+/* --- starting */
+
+/* Takes the memory of a frame that is about to begin. False when it has to wait or has failed. */
+static bool take_memory(struct request *request)
+{
+    struct session_host *host = request->host;
+    if (request->charge)
+        return true;
+    switch (memory_charge_frame(&host->memory, request->session->peer, request->asker,
+                                request->entry.request_class, request->frame_bytes,
+                                &request->charge, &request->failure)) {
+    case MEMORY_CHARGED:
+        return true;
+    case MEMORY_LATER:
+        scheduler_put_back(&host->scheduler, &request->entry);
+        request->is_parked = true;
+        request->next_parked = host->parked;
+        host->parked = request;
+        break;
+    case MEMORY_FAILED:
+        scheduler_put_back(&host->scheduler, &request->entry);
+        request_fail(request, &request->failure);
+        break;
+    }
+    return false;
+}
+
+static void wake_parked(struct session_host *host)
+{
+    while (host->parked) {
+        struct request *request = host->parked;
+        host->parked = request->next_parked;
+        request->is_parked = false;
+        request->failure = (struct error){0};
+        scheduler_ready(&request->entry);
+    }
+}
+
+void request_start_next(struct session_host *host)
+{
+    wake_parked(host);
+    for (struct schedule_entry *entry; (entry = scheduler_next(&host->scheduler));) {
+        struct request *request = entry->owner;
+        if (request_is_late(request, loop_now_us())) {
+            scheduler_put_back(&host->scheduler, entry);
+            request_answer_late(request);
+        } else if (take_memory(request)) {
+            request->is_busy = true;
+            request->work = (struct work){step_run, step_done, request, NULL};
+            render_thread_submit(host->render_thread, &request->work);
+        }
+    }
+}

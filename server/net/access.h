@@ -1,0 +1,75 @@
+/* Who may come in, and who he is.
+ *
+ * A Unix socket: whoever its file lets in, or with allow-lists whoever they name, if the daemon can
+ * tell him from others (id_map.h). Loopback TCP: anybody on this machine, all of them one owner.
+ * TLS: whoever shows a certificate of --client-ca or a token of --tokens. Thread: the loop's. */
+#ifndef SHEEN_NET_ACCESS_H
+#define SHEEN_NET_ACCESS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "protocol/address.h"
+#include "server/base/error.h"
+#include "server/net/conn.h"
+#include "server/net/tokens.h"
+
+#define ACCESS_PATH_BYTES 512
+#define ACCESS_MAX_IDS 64
+#define IDENTITY_NAME_BYTES 272
+#define OWNER_BYTES 32 /* SHA-256 of an identity's name */
+
+struct access_ids {
+    size_t n;
+    uint64_t id[ACCESS_MAX_IDS];
+};
+
+struct access_options {
+    struct access_ids uids, gids; /* both empty: the socket file's permissions decide */
+    char tls_cert[ACCESS_PATH_BYTES], tls_key[ACCESS_PATH_BYTES]; /* "": no TLS */
+    char client_ca[ACCESS_PATH_BYTES], tokens[ACCESS_PATH_BYTES];
+    char tls_crl[ACCESS_PATH_BYTES]; /* "": no certificate is looked for in a list */
+};
+
+/* A client that has been admitted. */
+struct identity {
+    char name[IDENTITY_NAME_BYTES]; /* "uid:1000", "cert:CN=anna", "token:farm", "tcp", "private" */
+    uint8_t owner[OWNER_BYTES];     /* what its uploads belong to */
+    int64_t expires_s;              /* Unix seconds; 0: never */
+    bool by_token;
+    uint8_t token_hash[TOKEN_HASH_BYTES];
+};
+
+struct access;
+
+/* Reads certificates, tokens, and which users the kernel can show. ERROR_REQUEST names the option
+ * or the file. */
+struct access *access_create(const struct access_options *options, struct error *error);
+void access_destroy(struct access *access); /* NULL is safe */
+
+/* Can TLS clients be served and told apart? ERROR_REQUEST says what to set. */
+bool access_can_tls(const struct access *access, struct error *error);
+/* Is there an allow-list, so that the file of a Unix socket lets everybody try? */
+bool access_has_list(const struct access *access);
+
+/* A fresh connection of a Unix or loopback TCP listener. ERROR_REQUEST says why it is not admitted.
+ */
+bool access_admit_local(const struct access *access, int fd, enum address_kind kind,
+                        struct identity *identity, struct error *error);
+/* A private daemon's one client. */
+void access_admit_private(struct identity *identity);
+/* Puts TLS under a fresh conn. */
+bool access_start_tls(const struct access *access, struct conn *conn, struct error *error);
+/* Its HELLO has come; `token` is the one in it, or NULL. */
+bool access_admit_tls(const struct access *access, const struct conn *conn, const char *token,
+                      struct identity *identity, struct error *error);
+
+/* Is somebody who came in still welcome? Not after the expiry, nor when his token has gone from the
+ * file or is another one now. Takes over a new expiry. */
+bool access_still_admits(const struct access *access, struct identity *identity,
+                         struct error *error);
+/* Does the certificate that he showed, if any, hold by these rules too? It takes a signature to
+ * check: for new rules, not for every tick. */
+bool access_still_trusts(const struct access *access, const struct conn *conn, struct error *error);
+
+#endif

@@ -1,0 +1,393 @@
+#include "server/net/conn.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include "server/base/fault.h"
+
+#define MAX_PIECES 64 /* blocks per sendmsg() */
+
+struct conn_block {
+    struct conn_block *next;
+    const uint8_t *bytes;
+    size_t size, sent;
+    void (*release)(void *);
+    void *owner;
+    uint8_t copy[]; /* of conn_send() */
+};
+
+/* --- the plain socket */
+
+static ssize_t plain_read(struct conn *conn, void *bytes, size_t size)
+{
+    return read(conn->source.fd, bytes, size);
+}
+
+static ssize_t plain_write(struct conn *conn, struct iovec *pieces, size_t n)
+{
+    const struct msghdr message = {.msg_iov = pieces, .msg_iovlen = n};
+    return sendmsg(conn->source.fd, &message, MSG_NOSIGNAL);
+}
+
+static bool plain_pending(const struct conn *conn)
+{
+    (void)conn;
+    return false;
+}
+
+static void plain_nothing(struct conn *conn)
+{
+    (void)conn;
+}
+
+static const struct conn_transport PLAIN = {plain_read, plain_write, plain_pending, plain_nothing,
+                                            plain_nothing};
+
+/* --- output and the end */
+
+static void update_events(struct conn *conn)
+{
+    bool reads = !conn->peer_ended && (conn->state != CONN_OPEN || !conn->held);
+    bool writes = conn->out_head || conn->read_wants_write;
+    loop_change(conn->loop, &conn->source, (reads ? EPOLLIN : 0u) | (writes ? EPOLLOUT : 0u));
+}
+
+static void drop_block(struct conn *conn)
+{
+    struct conn_block *block = conn->out_head;
+    conn->out_head = block->next;
+    if (!conn->out_head)
+        conn->out_tail = NULL;
+    conn->unsent_bytes -= block->size - block->sent;
+    if (block->release)
+        block->release(block->owner);
+    spares_give(conn->spares, block);
+}
+
+void conn_close(struct conn *conn)
+{
+    if (conn->state == CONN_CLOSED)
+        return;
+    conn->state = CONN_CLOSED;
+    int fd = conn->source.fd;
+    loop_unwatch(conn->loop, &conn->source);
+    conn->transport->finish(conn);
+    close(fd);
+    while (conn->out_head)
+        drop_block(conn);
+    conn->in_used = 0;
+}
+
+void conn_finish(struct conn *conn)
+{
+    conn_close(conn);
+    free(conn->in);
+    conn->in = NULL;
+}
+
+/* The peer must see what was sent before the end: closing a socket with unread input would reset
+ * the connection and lose it. */
+static void linger(struct conn *conn)
+{
+    conn->state = CONN_LINGERING;
+    conn->last_in_us = loop_now_us();
+    conn->transport->end(conn);
+    shutdown(conn->source.fd, SHUT_WR);
+    if (conn->peer_ended)
+        conn_close(conn);
+}
+
+void conn_close_after_flush(struct conn *conn)
+{
+    if (conn->state != CONN_OPEN)
+        return;
+    conn->state = CONN_FLUSHING;
+    conn->in_used = 0;
+    conn_flush(conn);
+    if (conn->state == CONN_FLUSHING)
+        update_events(conn);
+}
+
+static struct conn_block *append(struct conn *conn, size_t size, size_t copied)
+{
+    struct conn_block *block =
+        conn->state == CONN_OPEN ? spares_take(conn->spares, sizeof *block + copied) : NULL;
+    if (!block) {
+        if (conn->state == CONN_OPEN)
+            conn_close(conn);
+        return NULL;
+    }
+    *block = (struct conn_block){.bytes = block->copy, .size = size};
+    if (conn->out_tail)
+        conn->out_tail->next = block;
+    else
+        conn->out_head = block;
+    conn->out_tail = block;
+    if (conn->unsent_bytes == 0) /* the clock starts with the first byte to send */
+        conn->last_out_us = loop_now_us();
+    conn->unsent_bytes += size;
+    return block;
+}
+
+void conn_send(struct conn *conn, const void *bytes, size_t size)
+{
+    struct conn_block *block = append(conn, size, size);
+    if (block)
+        memcpy(block->copy, bytes, size);
+}
+
+void conn_send_block(struct conn *conn, const void *bytes, size_t size, void (*release)(void *),
+                     void *owner)
+{
+    struct conn_block *block = append(conn, size, 0);
+    if (block) {
+        block->bytes = bytes;
+        block->release = release;
+        block->owner = owner;
+    } else if (release) {
+        release(owner);
+    }
+}
+
+/* A socket that takes nothing now, or breaks. */
+static bool fails_to_write(void)
+{
+    errno = fault_at("send.full") ? EAGAIN : fault_at("send.broken") ? EPIPE : 0;
+    return errno != 0;
+}
+
+static ssize_t write_some(struct conn *conn)
+{
+    struct iovec pieces[MAX_PIECES];
+    size_t n = 0;
+    for (struct conn_block *b = conn->out_head; b && n < MAX_PIECES; b = b->next) {
+        struct iovec *piece = &pieces[n++];
+        memcpy(&piece->iov_base, &(const void *){b->bytes + b->sent}, sizeof(void *));
+        piece->iov_len = b->size - b->sent;
+    }
+    if (fails_to_write())
+        return -1;
+    if (pieces[0].iov_len > 1 && fault_at("send.short"))
+        pieces[0].iov_len = n = 1; /* a byte of the first */
+    return conn->transport->write(conn, pieces, n);
+}
+
+static void count_sent(struct conn *conn, size_t n)
+{
+    *conn->sent_bytes += n;
+    conn->last_out_us = loop_now_us();
+    while (conn->out_head && n >= conn->out_head->size - conn->out_head->sent) {
+        n -= conn->out_head->size - conn->out_head->sent;
+        drop_block(conn);
+    }
+    if (n > 0) {
+        conn->out_head->sent += n;
+        conn->unsent_bytes -= n;
+    }
+}
+
+void conn_flush(struct conn *conn)
+{
+    if (conn->state == CONN_CLOSED)
+        return;
+    while (conn->out_head) {
+        ssize_t n = write_some(conn);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK) {
+            conn_close(conn);
+            return;
+        }
+        if (n < 0)
+            break;
+        count_sent(conn, (size_t)n);
+    }
+    if (!conn->out_head && conn->state == CONN_FLUSHING)
+        linger(conn);
+    if (conn->state != CONN_CLOSED)
+        update_events(conn);
+}
+
+void conn_hold(struct conn *conn, bool held)
+{
+    if (conn->held == held || conn->state == CONN_CLOSED)
+        return;
+    conn->held = held;
+    conn->message_since_us = loop_now_us();
+    update_events(conn);
+}
+
+static void refuse_input(struct conn *conn, const struct message_header *header,
+                         enum header_error error)
+{
+    conn->in_used = 0;
+    conn_hold(conn, true);
+    conn->handler->malformed(conn->owner, header, error);
+}
+
+static bool resize(struct conn *conn, size_t capacity)
+{
+    uint8_t *in = realloc(conn->in, capacity);
+    if (!in)
+        return false;
+    conn->in = in;
+    conn->in_capacity = capacity;
+    return true;
+}
+
+static bool read_more(struct conn *conn);
+
+/* A message of this size has begun. */
+static void expect(struct conn *conn, const struct message_header *header, size_t size)
+{
+    if (size <= conn->in_capacity)
+        return;
+    if (conn->handler->make_room(conn->owner, header, size)) {
+        if (!resize(conn, size))
+            conn_close(conn);
+    } else if (conn->state == CONN_OPEN && !conn->held) {
+        conn->skipped = size - conn->in_used;
+        conn->in_used = 0;
+    }
+}
+
+/* Throws away what has come of a message without room. */
+static void skip(struct conn *conn)
+{
+    size_t n = conn->in_used < conn->skipped ? conn->in_used : conn->skipped;
+    if (n == 0)
+        return;
+    conn->skipped -= n;
+    conn->in_used -= n;
+    memmove(conn->in, conn->in + n, conn->in_used);
+    if (conn->skipped == 0)
+        conn->message_since_us = loop_now_us(); /* the next one's */
+}
+
+/* The whole messages that are there. */
+static void deliver(struct conn *conn)
+{
+    size_t used = 0, wanted = 0;
+    struct message_header header = {0};
+    skip(conn);
+    while (conn->state == CONN_OPEN && !conn->held &&
+           conn->in_used - used >= MESSAGE_HEADER_BYTES) {
+        enum header_error error = message_header_decode(&header, conn->in + used);
+        if (error != HEADER_OK) {
+            refuse_input(conn, &header, error);
+            return;
+        }
+        size_t size = MESSAGE_HEADER_BYTES + (size_t)header.length;
+        if (size > CONN_MOST_IN_BYTES) { /* a type that only servers send */
+            refuse_input(conn, &header, HEADER_TOO_LONG);
+            return;
+        }
+        if (conn->in_used - used < size) {
+            wanted = size;
+            break;
+        }
+        conn->handler->message(conn->owner, &header, conn->in + used + MESSAGE_HEADER_BYTES);
+        used += size;
+    }
+    if (conn->state != CONN_OPEN)
+        return;
+    conn->in_used -= used;
+    if (used > 0) {
+        memmove(conn->in, conn->in + used, conn->in_used);
+        conn->message_since_us = loop_now_us();
+    }
+    if (wanted > 0)
+        expect(conn, &header, wanted);
+}
+
+void conn_trim(struct conn *conn)
+{
+    if (conn->state == CONN_OPEN && conn->in_used == 0 && conn->in_capacity > CONN_IN_BYTES)
+        resize(conn, CONN_IN_BYTES); /* without memory for less it keeps more */
+}
+
+void conn_deliver(struct conn *conn)
+{
+    do
+        deliver(conn);
+    while (conn->state == CONN_OPEN && !conn->held && conn->transport->pending(conn) &&
+           read_more(conn));
+}
+
+/* Reads once. True when input has come that may hold messages. */
+static bool read_more(struct conn *conn)
+{
+    bool open = conn->state == CONN_OPEN, wanted_write = conn->read_wants_write;
+    size_t room = open ? conn->in_capacity - conn->in_used : conn->in_capacity;
+    if (room == 0)
+        return false; /* whole messages that wait for conn_deliver() */
+    ssize_t n = conn->transport->read(conn, conn->in + (open ? conn->in_used : 0), room);
+    if (conn->read_wants_write != wanted_write)
+        update_events(conn);
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR))
+        return false;
+    if (n < 0 || (n == 0 && conn->state == CONN_LINGERING)) {
+        conn_close(conn);
+        return false;
+    }
+    if (n == 0) {
+        conn->peer_ended = true;
+        update_events(conn);
+        return false;
+    }
+    if (open) {
+        conn->last_in_us = loop_now_us();
+        if (conn->in_used == 0 && conn->skipped == 0)
+            conn->message_since_us = conn->last_in_us;
+        conn->in_used += (size_t)n;
+    }
+    return open;
+}
+
+static void conn_ready(struct loop_source *source, uint32_t events)
+{
+    struct conn *conn = source->owner;
+    if ((events & EPOLLIN || (events & EPOLLOUT && conn->read_wants_write)) && read_more(conn))
+        conn_deliver(conn);
+    if (conn->state != CONN_CLOSED && (events & EPOLLOUT))
+        conn_flush(conn);
+    /* Both directions are gone; what could be read has been, unless it was held. */
+    if (conn->state != CONN_CLOSED && (events & (EPOLLHUP | EPOLLERR)) &&
+        (!(events & EPOLLIN) || conn->peer_ended))
+        conn_close(conn);
+}
+
+bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_handler *handler,
+               void *owner, uint64_t *sent_bytes, struct error *error)
+{
+    *conn = (struct conn){
+        .loop = loop,
+        .source = {fd, conn_ready, conn},
+        .handler = handler,
+        .owner = owner,
+        .transport = &PLAIN,
+        .sent_bytes = sent_bytes,
+        .last_in_us = loop_now_us(),
+        .last_out_us = loop_now_us(),
+        .in = malloc(CONN_IN_BYTES),
+        .in_capacity = CONN_IN_BYTES,
+    };
+    int flags = fcntl(fd, F_GETFL);
+    if (!conn->in)
+        error_set(error, ERROR_SERVER, "no memory for another connection");
+    else if (flags < 0 || fcntl(fd, F_SETFL, flags | O_NONBLOCK) < 0)
+        error_set(error, ERROR_SERVER, "fcntl: %s", strerror(errno));
+    else if (loop_watch(loop, &conn->source, EPOLLIN, error))
+        return true;
+    close(fd);
+    conn->source.fd = -1;
+    conn->state = CONN_CLOSED;
+    free(conn->in);
+    conn->in = NULL;
+    return false;
+}

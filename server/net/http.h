@@ -1,0 +1,44 @@
+/* A web server of the least kind, for health and metrics on loopback or a Unix socket: HTTP/1.1,
+ * GET only, one request a connection, no body in, no keep-alive. Everything is bounded: a request
+ * of HTTP_MAX_REQUEST_BYTES, HTTP_MAX_CONNECTIONS at once, HTTP_TIMEOUT_US from accept to the end,
+ * HTTP_LINGER_US of it for the peer to read the answer and close. What goes over a bound is closed.
+ * Thread: the loop's. */
+#ifndef SHEEN_NET_HTTP_H
+#define SHEEN_NET_HTTP_H
+
+#include <stddef.h>
+
+#include "server/base/error.h"
+#include "server/net/loop.h"
+#include "server/base/text_buffer.h"
+
+#define HTTP_MAX_REQUEST_BYTES 4096
+#define HTTP_MAX_CONNECTIONS 8
+#define HTTP_MAX_ANSWER_BYTES (256u * 1024)
+#define HTTP_TIMEOUT_US 5000000u
+#define HTTP_LINGER_US 2000000u
+
+struct http;
+
+/* Writes the answer to GET `path` and returns its status: 200, 404 or 503. */
+struct http_handler {
+    int (*get)(void *owner, const char *path, struct report *body);
+    void *owner;
+};
+
+/* Reads what has come of a request: `length` bytes and a 0 behind them. Returns 0 when its end is
+ * still to come, 200 when it GETs *path, which begins with '/' and lies in `request` (which is cut
+ * up for it), without a query; else what to answer: 400, 405 or 431. Pure. */
+int http_parse(char *request, size_t length, const char **path);
+
+struct http *http_create(struct loop *loop, const struct http_handler *handler,
+                         struct error *error);
+void http_destroy(struct http *http); /* closes all; NULL is safe */
+
+/* Takes a connection over. With HTTP_MAX_CONNECTIONS there already one makes room: the oldest that
+ * has its answer and does not close, else the oldest that has not asked yet, else the oldest. */
+void http_accept(struct http *http, int fd);
+/* Closes what has taken too long. */
+void http_tick(struct http *http, uint64_t now_us);
+
+#endif

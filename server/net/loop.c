@@ -1,0 +1,115 @@
+#include "server/net/loop.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define BATCH 64
+
+struct loop {
+    int epoll_fd;
+    struct loop_hooks hooks;
+    struct epoll_event events[BATCH];
+    int n_events; /* of the batch being delivered */
+    bool ticking, stopped;
+    uint64_t next_tick_us;
+};
+
+uint64_t loop_now_us(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
+}
+
+struct loop *loop_create(const struct loop_hooks *hooks, struct error *error)
+{
+    struct loop *loop = calloc(1, sizeof *loop);
+    if (!loop) {
+        error_set(error, ERROR_SERVER, "no memory for the event loop");
+        return NULL;
+    }
+    loop->hooks = *hooks;
+    loop->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
+    if (loop->epoll_fd < 0) {
+        error_set(error, ERROR_SERVER, "epoll_create1: %s", strerror(errno));
+        free(loop);
+        return NULL;
+    }
+    return loop;
+}
+
+void loop_destroy(struct loop *loop)
+{
+    if (!loop)
+        return;
+    close(loop->epoll_fd);
+    free(loop);
+}
+
+bool loop_watch(struct loop *loop, struct loop_source *source, uint32_t events, struct error *error)
+{
+    struct epoll_event event = {.events = events, .data.ptr = source};
+    if (epoll_ctl(loop->epoll_fd, EPOLL_CTL_ADD, source->fd, &event) == 0)
+        return true;
+    source->fd = -1;
+    return error_set(error, ERROR_SERVER, "epoll_ctl: %s", strerror(errno));
+}
+
+void loop_change(struct loop *loop, struct loop_source *source, uint32_t events)
+{
+    struct epoll_event event = {.events = events, .data.ptr = source};
+    if (source->fd >= 0)
+        epoll_ctl(loop->epoll_fd, EPOLL_CTL_MOD, source->fd, &event);
+}
+
+void loop_unwatch(struct loop *loop, struct loop_source *source)
+{
+    if (source->fd < 0)
+        return;
+    epoll_ctl(loop->epoll_fd, EPOLL_CTL_DEL, source->fd, NULL);
+    source->fd = -1;
+    for (int i = 0; i < loop->n_events; i++)
+        if (loop->events[i].data.ptr == source)
+            loop->events[i].data.ptr = NULL;
+}
+
+void loop_set_ticking(struct loop *loop, bool on)
+{
+    if (on && !loop->ticking)
+        loop->next_tick_us = loop_now_us() + LOOP_TICK_US;
+    loop->ticking = on;
+}
+
+static int wait_ms(const struct loop *loop)
+{
+    if (!loop->ticking)
+        return -1;
+    uint64_t now = loop_now_us();
+    return loop->next_tick_us <= now ? 0 : (int)((loop->next_tick_us - now + 999) / 1000);
+}
+
+void loop_run(struct loop *loop)
+{
+    while (!loop->stopped) {
+        loop->n_events = epoll_wait(loop->epoll_fd, loop->events, BATCH, wait_ms(loop));
+        for (int i = 0; i < loop->n_events; i++) {
+            struct loop_source *source = loop->events[i].data.ptr;
+            if (source)
+                source->ready(source, loop->events[i].events);
+        }
+        loop->n_events = 0;
+        if (loop->ticking && loop_now_us() >= loop->next_tick_us) {
+            loop->next_tick_us = loop_now_us() + LOOP_TICK_US;
+            loop->hooks.tick(loop->hooks.owner);
+        }
+        loop->hooks.after(loop->hooks.owner);
+    }
+}
+
+void loop_stop(struct loop *loop)
+{
+    loop->stopped = true;
+}

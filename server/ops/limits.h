@@ -1,0 +1,79 @@
+/* Every number that a client or an administrator can run into, in one table: the options of the
+ * command line, --help, the configuration file and the daemon all read it. What the protocol fixes
+ * for both sides is in protocol/limits.h.
+ *
+ * Plain data. Thread: any; a reload changes times, on the loop's thread, and nothing else. */
+#ifndef SHEEN_OPS_LIMITS_H
+#define SHEEN_OPS_LIMITS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/base/error.h"
+
+struct limits {
+    /* Memory, in bytes. */
+    uint64_t memory_budget; /* files, tables, polygons, texels, frames: all together,
+                               in main memory and on the device */
+    uint64_t peer_memory;   /* uploads, long messages under way and frames of one user or address */
+    uint64_t spare_memory;  /* of frames that have gone, kept for the next (server/base/block_cache.h) */
+    uint64_t max_upload;    /* one file */
+    uint64_t max_frame;     /* one frame's planes */
+    uint64_t max_image_side; /* px of a light image, either way */
+
+    /* Connections. */
+    uint64_t max_connections, max_peer_connections;
+    uint64_t credits; /* unanswered requests of one connection */
+
+    /* What may wait to be sent: over `hard` when another answer comes, or over `soft` for so many
+     * seconds, ends the connection. */
+    uint64_t interactive_hard, interactive_soft, interactive_s;
+    uint64_t output_hard, output_soft, output_s; /* stills and batches */
+
+    /* Times, in seconds. */
+    uint64_t handshake_s; /* from accepting to HELLO */
+    uint64_t message_s;   /* from a message's first byte to its last */
+    uint64_t stall_s;     /* without a byte sent or of an upload received */
+    uint64_t idle_s;      /* without a request; 0: for ever */
+    uint64_t drain_s;     /* to finish and send what is asked when the daemon ends */
+
+    /* What a process that reads or writes one file may take (workers.h). */
+    uint64_t worker_memory, worker_output, worker_cpu_s, worker_s;
+    uint64_t tables_cpu_s; /* for one model's tables, by all threads together */
+
+    uint64_t gpu_losses; /* in ten minutes (losses.h) end the daemon; 0: none do */
+};
+
+enum limits_unit { UNIT_COUNT, UNIT_BYTES, UNIT_PX, UNIT_SECONDS };
+
+struct limits_row {
+    const char *name; /* of the option and in the configuration file */
+    enum limits_unit unit;
+    const char *help; /* what it limits; '\n' begins a new line */
+    uint64_t low, high, fallback;
+    size_t offset; /* in struct limits */
+};
+
+extern const struct limits_row LIMITS[];
+extern const size_t N_LIMITS;
+
+/* All at their defaults. */
+void limits_init(struct limits *limits);
+
+/* A value as people write it. ERROR_REQUEST names the row, the value and the range. */
+bool limits_set(struct limits *limits, const struct limits_row *row, const char *value,
+                struct error *error);
+uint64_t limits_get(const struct limits *limits, const struct limits_row *row);
+
+/* What --help calls a value of this unit: "BYTES". */
+const char *limits_argument(const struct limits_row *row);
+/* A number of bytes with the largest suffix that keeps it whole ("4G"); other units as they are. */
+enum { LIMITS_TEXT_BYTES = 24 };
+void limits_format(const struct limits_row *row, uint64_t value, char text[LIMITS_TEXT_BYTES]);
+/* The values that the row takes, so written: "64K to 1G", or "1M or more" without a limit but the
+ * type's. */
+enum { LIMITS_RANGE_BYTES = 2 * LIMITS_TEXT_BYTES + 8 };
+void limits_range(const struct limits_row *row, char text[LIMITS_RANGE_BYTES]);
+
+#endif

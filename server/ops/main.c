@@ -1,0 +1,59 @@
+/* sheend: start-up and shutdown. */
+#include <stdio.h>
+
+#include "server/ops/options.h"
+
+enum exit_code { EXIT_DONE = 0, EXIT_USAGE = 2, EXIT_SERVICE = 4, EXIT_DEVICE = 5 };
+
+/* What a reload needs: the command line, and what is in force. */
+struct program {
+    int argc;
+    char **argv;
+    struct settings settings;
+};
+
+static bool reload(void *owner, struct service_options *options, struct error *error)
+{
+    struct program *program = owner;
+    struct settings fresh;
+    char kept[OPTIONS_CHANGED_BYTES];
+    if (options_read(program->argc, program->argv, &fresh, error) != OPTIONS_SERVE)
+        return false;
+    options_reload(&program->settings, &fresh, kept);
+    if (*kept)
+        log_event(LOG_WARN, "options that wait for the next start", log_text("options", kept));
+    *options = program->settings.service;
+    return true;
+}
+
+static int fail(const struct error *error)
+{
+    fprintf(stderr, "sheend: %s\n", error->text);
+    return error->kind == ERROR_REQUEST  ? EXIT_USAGE
+           : error->kind == ERROR_DEVICE ? EXIT_DEVICE
+                                         : EXIT_SERVICE;
+}
+
+int main(int argc, char **argv)
+{
+    struct error error = {0};
+    struct program program = {.argc = argc, .argv = argv};
+    const struct service_reloader reloader = {reload, &program};
+    switch (options_read(argc, argv, &program.settings, &error)) {
+    case OPTIONS_SERVE:
+        break;
+    case OPTIONS_CHECK:
+        puts("the configuration is good");
+        return EXIT_DONE;
+    case OPTIONS_DONE:
+        return EXIT_DONE;
+    case OPTIONS_WRONG:
+        return fail(&error);
+    }
+    struct service *service = service_create(&program.settings.service, &reloader, &error);
+    if (!service)
+        return fail(&error);
+    enum service_end end = service_run(service);
+    service_destroy(service);
+    return end;
+}

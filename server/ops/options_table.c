@@ -1,0 +1,310 @@
+/* The table of options, and how their values are read. */
+#include "server/ops/options_table.h"
+
+#include <sched.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "protocol/number.h"
+#include "server/threads/pool.h"
+#include "server/net/tokens.h"
+
+/* --- values with a form of their own */
+
+static bool add_listen(void *value, const char *text, struct error *error)
+{
+    struct service_listen *listen = value;
+    char why[ADDRESS_TEXT_BYTES];
+    if (listen->n == SERVICE_MAX_LISTENERS)
+        return error_set(error, ERROR_REQUEST, "at most %d addresses to listen on",
+                         SERVICE_MAX_LISTENERS);
+    if (!address_parse(&listen->address[listen->n], text, why))
+        return error_set(error, ERROR_REQUEST, "%s", why);
+    listen->n++;
+    return true;
+}
+
+static bool set_metrics(void *value, const char *text, struct error *error)
+{
+    memset(value, 0, sizeof(struct service_listen)); /* there is one: the last that is named */
+    return add_listen(value, text, error);
+}
+
+static bool set_choice(void *value, const char *text, const char *name, const char *const *choices,
+                       struct error *error)
+{
+    char list[96] = "";
+    for (int i = 0; choices[i]; i++) {
+        if (strcmp(text, choices[i]) == 0) {
+            memcpy(value, &i, sizeof i);
+            return true;
+        }
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", choices[i]);
+    }
+    return error_set(error, ERROR_REQUEST, "%s is '%s'; it must be one of %s", name, text, list);
+}
+
+static bool set_log_level(void *value, const char *text, struct error *error)
+{
+    _Static_assert(sizeof(enum log_level) == sizeof(int), "a choice is an int");
+    static const char *const LEVELS[] = {[LOG_ERROR] = "error",
+                                         [LOG_WARN] = "warn",
+                                         [LOG_INFO] = "info",
+                                         [LOG_DEBUG] = "debug",
+                                         NULL};
+    return set_choice(value, text, "log-level", LEVELS, error);
+}
+
+static bool set_log_format(void *value, const char *text, struct error *error)
+{
+    _Static_assert(sizeof(enum log_format) == sizeof(int), "a choice is an int");
+    static const char *const FORMATS[] = {[LOG_LOGFMT] = "logfmt", [LOG_JSON] = "json", NULL};
+    return set_choice(value, text, "log-format", FORMATS, error);
+}
+
+static bool add_id(void *value, const char *text, struct error *error)
+{
+    struct access_ids *ids = value;
+    uint64_t id;
+    if (!number_parse(text, 0, UINT32_MAX - 1, false, &id))
+        return error_set(error, ERROR_REQUEST, "'%s' is no number of a user or group", text);
+    if (ids->n == ACCESS_MAX_IDS)
+        return error_set(error, ERROR_REQUEST, "at most %d users and %d groups may be listed",
+                         ACCESS_MAX_IDS, ACCESS_MAX_IDS);
+    ids->id[ids->n++] = id;
+    return true;
+}
+
+static bool hash_token(void *value, const char *text, struct error *error)
+{
+    (void)value;
+    return tokens_print_line(text, error);
+}
+
+static bool set_device(void *value, const char *text, struct error *error)
+{
+    uint64_t number;
+    if (strcmp(text, "auto") != 0 && strcmp(text, "software") != 0 &&
+        !number_parse(text, 0, 1023, false, &number))
+        return error_set(error, ERROR_REQUEST,
+                         "device is '%s'; it must be auto, software or a device's number", text);
+    snprintf(value, SERVICE_DEVICE_BYTES, "%s", text);
+    return true;
+}
+
+/* The default: a thread for each processor that this process may use. */
+static bool set_threads(void *value, const char *text, struct error *error)
+{
+    uint64_t n;
+    cpu_set_t set;
+    if (strcmp(text, "auto") == 0)
+        n = sched_getaffinity(0, sizeof set, &set) == 0 ? (uint64_t)CPU_COUNT(&set) : 1;
+    else if (!number_parse(text, 1, POOL_MAX_THREADS, false, &n))
+        return error_set(error, ERROR_REQUEST,
+                         "threads is '%s'; it must be auto or a whole number from 1 to %u", text,
+                         POOL_MAX_THREADS);
+    n = n < 1 ? 1 : n > POOL_MAX_THREADS ? POOL_MAX_THREADS : n;
+    memcpy(value, &n, sizeof n);
+    return true;
+}
+
+static bool set_session_fd(void *value, const char *text, struct error *error)
+{
+    uint64_t number = 0;
+    struct stat file;
+    int fd = -1;
+    if (strcmp(text, "none") != 0) {
+        if (!number_parse(text, 0, 1000000, false, &number))
+            return error_set(error, ERROR_REQUEST,
+                             "session-fd is '%s'; it must be a whole number from 0 to 1000000",
+                             text);
+        fd = (int)number;
+        if (fstat(fd, &file) < 0 || !S_ISSOCK(file.st_mode))
+            return error_set(error, ERROR_REQUEST, "session-fd %s is no open socket", text);
+    }
+    memcpy(value, &fd, sizeof fd);
+    return true;
+}
+
+/* --- the table */
+
+#define VALUE(member) offsetof(struct settings, member), sizeof(((struct settings *)0)->member)
+
+static const struct option_row OWN_ROWS[] = {
+    {"listen", "ADDRESS", OPTION_LIST, OPTION_IN_FILE, VALUE(service.listen), 0, 0, NULL, NULL,
+     "unix:PATH, tcp:HOST:PORT (loopback only) or tls:HOST:PORT; several times\n"
+     "(default: unix:$XDG_RUNTIME_DIR/sheen.sock, else unix:/tmp/sheen-UID/sheen.sock)",
+     add_listen},
+    {"device", "auto|software|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0, NULL,
+     "auto", "a GPU if there is one, the software device, or the N-th device", set_device},
+    {"threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_threads), 0, 0, NULL, "auto",
+     "for building tables and encoding, 1 to 256; auto: one per processor", set_threads},
+    {"allow-uid", "UID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.uids),
+     0, 0, NULL, NULL,
+     "a user who may connect to the Unix sockets; several times, up to 64. With\n"
+     "--allow-uid or --allow-gid nobody else may, not the daemon's own user\n"
+     "(default: whoever the socket's file lets in, which is its owner)",
+     add_id},
+    {"allow-gid", "GID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.gids),
+     0, 0, NULL, NULL, "a group whose members may connect to the Unix sockets; several times",
+     add_id},
+    {"tls-cert", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.access.tls_cert), 0, 0, NULL, NULL,
+     "PEM, the certificate of tls: addresses, and of its authorities", NULL},
+    {"tls-key", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tls_key),
+     0, 0, NULL, NULL, "PEM, its key", NULL},
+    {"client-ca", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.access.client_ca), 0, 0, NULL, NULL,
+     "PEM, the authority of client certificates that may come in over TLS", NULL},
+    {"tls-crl", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tls_crl),
+     0, 0, NULL, NULL,
+     "PEM, the authority's list of revoked client certificates; one that has expired\n"
+     "lets no certificate in (default: none, every certificate holds until it expires)",
+     NULL},
+    {"tokens", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tokens),
+     0, 0, NULL, NULL,
+     "lines 'NAME HASH YYYY-MM-DD': tokens that may come in over TLS, each until\n"
+     "the end of its day; with --client-ca too, one of both is enough",
+     NULL},
+    {"share-models", NULL, OPTION_FLAG, OPTION_IN_FILE, VALUE(service.share_models), 0, 0, NULL,
+     NULL,
+     "whoever knows a model's SHA-256 may use it, whoever has uploaded it (default:\n"
+     "only its owner: a user, a certificate's subject, a token's name; or whoever,\n"
+     "where the owner has said --share)",
+     NULL},
+    {"models", "DIR", OPTION_TEXT, OPTION_IN_FILE, VALUE(service.models), 0, 0, NULL, NULL,
+     "clients may name model files below this folder, as server:NAME; no symbolic\n"
+     "links, no other mounts (default: none)",
+     NULL},
+    {"stuck-after", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.stuck_s), 1, 86400, "seconds", "60",
+     "a thread that is at one piece of work for longer is taken for stuck: /healthz\n"
+     "says so, and the service manager's watchdog is not fed any more",
+     NULL},
+    {"metrics", "ADDRESS", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.metrics), 0, 0, NULL, NULL,
+     "serve GET /metrics, /healthz and /readyz there: unix:PATH or\n"
+     "tcp:HOST:PORT, loopback only without --metrics-open (default: nowhere)",
+     set_metrics},
+    {"metrics-open", NULL, OPTION_FLAG, OPTION_IN_FILE, VALUE(service.metrics_open), 0, 0, NULL,
+     NULL,
+     "--metrics may be beyond the loopback, for probes and scrapers: whoever reaches\n"
+     "it reads counts, times, the device and the version, and no name of a model, a\n"
+     "file or a client; without TLS",
+     NULL},
+    {"log-level", "LEVEL", OPTION_OTHER, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.log_level),
+     0, 0, NULL, "info",
+     "error, warn, info (sessions, refused requests) or debug (every request),\n"
+     "on standard error",
+     set_log_level},
+    {"log-format", "FORMAT", OPTION_OTHER, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.log_format), 0, 0, NULL, "logfmt", "logfmt or json", set_log_format},
+    {"config", "FILE", OPTION_TEXT, 0, VALUE(config), 0, 0, NULL, NULL,
+     "lines 'name = value' with the names above, once each but for those that may be\n"
+     "given several times; options given here go first",
+     NULL},
+    {"check-config", NULL, OPTION_FLAG, 0, VALUE(check_config), 0, 0, NULL, NULL,
+     "check the options and the file, then exit", NULL},
+    {"session-fd", "N", OPTION_OTHER, 0, VALUE(service.session_fd), 0, 0, NULL, "none",
+     "serve this connected socket alone and end with it", set_session_fd},
+    {"hash-token", "NAME:DAY", OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL,
+     "print the line for --tokens of the token on standard input, good until the\n"
+     "end of YYYY-MM-DD, and exit: openssl rand -base64 32 makes a token",
+     hash_token},
+    {"version", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print the version and exit", NULL},
+    {"help", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print this and exit", NULL},
+};
+#define N_OWN_ROWS (sizeof OWN_ROWS / sizeof *OWN_ROWS)
+
+/* A reload takes over times; the rest has been counted on since the start. */
+static void fill_limit(struct option_row *row, const struct limits_row *limit,
+                       char initial[static LIMITS_TEXT_BYTES])
+{
+    limits_format(limit, limit->fallback, initial);
+    *row = (struct option_row){
+        .name = limit->name,
+        .argument = limits_argument(limit),
+        .type = OPTION_LIMIT,
+        .flags = OPTION_IN_FILE | (limit->unit == UNIT_SECONDS ? OPTION_RELOADS : 0u),
+        .offset = offsetof(struct settings, service.limits) + limit->offset,
+        .size = sizeof(uint64_t),
+        .min = limit->low,
+        .max = limit->high,
+        .initial = initial,
+        .help = limit->help,
+    };
+}
+
+static struct option_row rows[OPTION_MAX_ROWS]; /* own, then limits; filled once */
+
+const struct limits_row *option_limit(const struct option_row *row)
+{
+    return row->type == OPTION_LIMIT ? &LIMITS[row - rows - N_OWN_ROWS] : NULL;
+}
+
+const struct option_row *option_rows(size_t *n)
+{
+    static char initial[OPTION_MAX_ROWS][LIMITS_TEXT_BYTES];
+    *n = N_OWN_ROWS + N_LIMITS;
+    if (rows[0].name)
+        return rows;
+    for (size_t i = 0; i < N_LIMITS; i++)
+        fill_limit(&rows[N_OWN_ROWS + i], &LIMITS[i], initial[i]);
+    memcpy(rows, OWN_ROWS, sizeof OWN_ROWS);
+    return rows;
+}
+
+static bool set_number(const struct option_row *row, void *value, const char *text,
+                       struct error *error)
+{
+    uint64_t n;
+    if (!number_parse(text, row->min, row->max, false, &n))
+        return error_set(
+            error, ERROR_REQUEST, "%s is '%s'; it must be a whole number of %s from %llu to %llu",
+            row->name, text, row->unit, (unsigned long long)row->min, (unsigned long long)row->max);
+    memcpy(value, &n, sizeof n);
+    return true;
+}
+
+static bool set_text(const struct option_row *row, char *value, const char *text,
+                     struct error *error)
+{
+    if (*text == 0 || strlen(text) >= row->size)
+        return error_set(error, ERROR_REQUEST, "%s must be a text of 1 to %zu bytes", row->name,
+                         row->size - 1);
+    strncpy(value, text, row->size); /* the rest is zeros: values are compared byte by byte */
+    return true;
+}
+
+static bool set_flag(const struct option_row *row, bool *value, const char *text,
+                     struct error *error)
+{
+    bool yes = strcmp(text, "yes") == 0;
+    if (!yes && strcmp(text, "no") != 0)
+        return error_set(error, ERROR_REQUEST, "%s is '%s'; it must be yes or no", row->name, text);
+    *value = yes;
+    return true;
+}
+
+bool option_set(const struct option_row *row, struct settings *settings, const char *text,
+                struct error *error)
+{
+    void *value = (char *)settings + row->offset;
+    switch (row->type) {
+    case OPTION_NUMBER:
+        return set_number(row, value, text, error);
+    case OPTION_LIMIT:
+        return limits_set(&settings->service.limits, option_limit(row), text, error);
+    case OPTION_TEXT:
+        return set_text(row, value, text, error);
+    case OPTION_FLAG:
+        return set_flag(row, value, text, error);
+    case OPTION_LIST:
+    case OPTION_OTHER:
+        return row->set(value, text, error);
+    case OPTION_ACTION:
+        break;
+    }
+    return error_set(error, ERROR_REQUEST, "%s takes no value", row->name);
+}

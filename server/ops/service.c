@@ -1,0 +1,574 @@
+#include "server/ops/service.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "server/output/jpeg.h"
+#include "server/net/listen.h"
+#include "server/ops/gpu_loss_log.h"
+#include "server/assets/model_file.h"
+#include "server/ops/monitor.h"
+#include "server/ops/notify.h"
+#include "server/threads/pool.h"
+#include "server/frame/request.h"
+#include "server/session/session.h"
+
+#define SERVICE_TRIM_US 5000000u /* spares that lay unused for so long are given back */
+#define SERVICE_LAST_WORK_US                                                                       \
+    3000000u                         /* for other threads, when every client has gone in a drain   \
+                                      */
+#define SERVICE_OWN_DESCRIPTORS 128u /* listeners, devices, libraries: more than are used */
+
+struct service {
+    struct service_options options; /* those in force */
+    struct service_reloader reloader;
+    struct session_host host;
+    struct monitor *monitor; /* NULL with a single session */
+    struct completions *completions;
+    struct listener *listeners[SERVICE_MAX_LISTENERS];
+    size_t n_listeners;
+    struct loop_source signals;
+    int signal_fd;
+    struct session *sessions;
+    struct losses losses; /* of the GPU */
+    uint64_t trimmed_us;  /* when the spares were last */
+    enum service_end end;
+    bool overdue; /* drain-timeout has passed, and the log has it */
+    bool single;  /* ends with its session */
+};
+
+/* --- sessions */
+
+/* One message and the end, for a client that cannot have a session. It has no buffers: what the
+ * socket does not take at once is lost. Only the end when text is NULL. */
+static void turn_away(int fd, const char *text)
+{
+    sheen_Error error = {.code = sheen_ErrorCode_ERROR_OVERLOADED};
+    uint8_t buffer[MESSAGE_BUFFER_BYTES];
+    size_t length;
+    snprintf(error.text, sizeof error.text, "%s", text ? text : "");
+    if (text && message_encode(MESSAGE_ERROR, 0, &error, buffer, sizeof buffer, &length) &&
+        send(fd, buffer, length, MSG_NOSIGNAL | MSG_DONTWAIT) > 0)
+        shutdown(fd, SHUT_WR);
+    close(fd);
+}
+
+/* The peer of a connection that there is room for, with another reference; else NULL. */
+static struct peer *find_peer(struct session_host *host, int fd, struct error *error)
+{
+    struct peer *peer = NULL;
+    if (host->n_sessions >= host->limits.max_connections)
+        error_set(error, ERROR_SERVER,
+                  "the daemon has as many clients as it takes: try again later");
+    else if (!(peer = peer_get(&host->memory.peers, fd)))
+        error_set(error, ERROR_SERVER, "no memory for another client: try again later");
+    else if (peer->n_connections >= host->limits.max_peer_connections)
+        error_set(error, ERROR_SERVER,
+                  "this user or address has as many connections as it may: close one");
+    else
+        return peer;
+    host->stats.errors++;
+    peer_put(&host->memory.peers, peer);
+    return NULL;
+}
+
+static void accepted(void *owner, const struct listener *listener, int fd)
+{
+    struct service *service = owner;
+    struct session_host *host = &service->host;
+    struct session *session = NULL;
+    struct error error = {0};
+    const enum address_kind kind = listener_kind(listener);
+    struct session_client client = {.kind = kind == ADDRESS_UNIX  ? CLIENT_UNIX
+                                            : kind == ADDRESS_TCP ? CLIENT_TCP
+                                                                  : CLIENT_TLS};
+    peer_describe(fd, client.peer);
+    bool stranger = kind == ADDRESS_TLS ||
+                    !access_admit_local(host->access, fd, kind, &client.identity, &error);
+    if (stranger && (kind != ADDRESS_TLS || host->n_strangers >= SERVICE_MAX_STRANGERS)) {
+        if (kind == ADDRESS_TLS)
+            error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
+        close(fd); /* a stranger is told nothing */
+    } else {
+        struct peer *peer = find_peer(host, fd, &error);
+        if (peer)
+            session = session_create(host, fd, &client, peer, &error);
+        else
+            turn_away(fd, stranger ? NULL : error.text);
+    }
+    if (!session) {
+        service->host.stats.refused++;
+        log_event(LOG_WARN, "client turned away", log_text("peer", client.peer),
+                  log_text("listener", listener_text(listener)), log_text("text", error.text));
+        return;
+    }
+    session->next = service->sessions;
+    service->sessions = session;
+}
+
+static void settle_sessions(struct service *service)
+{
+    for (struct session **link = &service->sessions; *link;) {
+        struct session *session = *link;
+        if (session_settle(session)) {
+            link = &session->next;
+            continue;
+        }
+        *link = session->next;
+        session_destroy(session);
+    }
+}
+
+static bool any_paused(const struct service *service)
+{
+    for (size_t i = 0; i < service->n_listeners; i++)
+        if (listener_is_paused(service->listeners[i]))
+            return true;
+    return false;
+}
+
+static void drain(struct service *service);
+
+/* The frames that it took with it have been answered. */
+static void count_losses(struct service *service)
+{
+    struct session_host *host = &service->host;
+    while (service->losses.n < render_thread_losses(host->render_thread)) {
+        bool often = losses_add(&service->losses, loop_now_us(), host->limits.gpu_losses);
+        host->gpu_generation++;
+        log_event(LOG_ERROR, "the GPU was lost", log_number("generation", host->gpu_generation));
+        if (!often || host->draining)
+            continue;
+        service->end = SERVICE_GPU_LOST;
+        log_event(LOG_ERROR, "the GPU was lost too often: ending with exit code 75",
+                  log_number("gpu_losses", host->limits.gpu_losses));
+        drain(service);
+    }
+}
+
+/* With threads at work, so that nothing can be taken down in order. */
+static void leave_now(struct service *service)
+{
+    workers_stop(&service->host.workers);
+    monitor_destroy(service->monitor); /* removes its socket; the others have gone */
+    if (!service->single)
+        log_event(LOG_WARN, "ended while a thread was at work", log_number("code", service->end));
+    _exit(service->end);
+}
+
+static void after_batch(void *owner)
+{
+    struct service *service = owner;
+    count_losses(service);
+    settle_sessions(service);
+    request_start_next(&service->host);
+    loop_set_ticking(service->host.loop, service->sessions || any_paused(service) ||
+                                             service->host.draining ||
+                                             spares_bytes(service->host.spares) > 0);
+    if (service->sessions || !(service->single || service->host.draining))
+        return;
+    /* Nobody is left to answer; other threads may still be at work. */
+    store_cancel_builds(service->host.store);
+    workers_stop(&service->host.workers);
+    if (!store_is_building(service->host.store) && scheduler_is_idle(&service->host.scheduler) &&
+        service->host.n_file_loads == 0)
+        loop_stop(service->host.loop);
+    else if (service->single || session_host_overdue_us(&service->host, loop_now_us()) >
+                                    SESSION_LAST_WORDS_US + SERVICE_LAST_WORK_US)
+        leave_now(service); /* a tile or a table may take long yet: nobody wants them */
+}
+
+static void tick(void *owner)
+{
+    struct service *service = owner;
+    uint64_t now = loop_now_us();
+    if (!service->overdue && session_host_overdue_us(&service->host, now) > 0) {
+        service->overdue = true;
+        log_event(LOG_WARN, "drain-timeout is over: what is not done is refused",
+                  log_number("sessions", service->host.n_sessions));
+    }
+    for (struct session *session = service->sessions; session; session = session->next)
+        session_tick(session, now);
+    if (now - service->trimmed_us > SERVICE_TRIM_US) {
+        service->trimmed_us = now;
+        spares_trim(service->host.spares);
+    }
+    for (size_t i = 0; i < service->n_listeners; i++)
+        if (listener_is_paused(service->listeners[i]))
+            listener_resume(service->listeners[i]);
+}
+
+/* --- the end */
+
+static void close_listeners(struct service *service)
+{
+    while (service->n_listeners > 0)
+        listener_close(service->listeners[--service->n_listeners]);
+}
+
+static void drain(struct service *service)
+{
+    if (service->host.draining)
+        leave_now(service); /* asked twice */
+    service->host.draining = true;
+    service->host.drain_start_us = loop_now_us();
+    close_listeners(service);
+    if (!service->single) /* the manager of a private daemon's client is not its own */
+        notify_send("STOPPING=1\nSTATUS=finishing what is in flight");
+    log_event(LOG_INFO, "shutting down", log_number("sessions", service->host.n_sessions));
+}
+
+/* What may change while the daemon serves. Takes `access` over. */
+static void apply(struct service *service, const struct service_options *options,
+                  struct access *access)
+{
+    access_destroy(service->host.access);
+    service->host.access = access;
+    service->options = *options;
+    for (size_t i = 0; i < service->n_listeners; i++)
+        listener_open_to_all(service->listeners[i], access_has_list(access));
+    for (struct session *session = service->sessions; session; session = session->next)
+        session_check_access(session, true);
+    service->host.limits = options->limits;
+    workers_set_times(&service->host.workers, &options->limits);
+    /* The client of a private daemon shows its last line when it dies. */
+    log_set(service->single ? LOG_ERROR : options->log_level, options->log_format);
+    if (service->monitor)
+        monitor_set_stuck(service->monitor, options->stuck_s * 1000000);
+}
+
+static bool has_tls_listener(const struct service *service)
+{
+    for (size_t i = 0; i < service->n_listeners; i++)
+        if (listener_kind(service->listeners[i]) == ADDRESS_TLS)
+            return true;
+    return false;
+}
+
+/* The new rules, if those who listen can work by them. */
+static struct access *access_for(const struct service *service,
+                                 const struct service_options *options, struct error *error)
+{
+    struct access *access = access_create(&options->access, error);
+    if (access && has_tls_listener(service) && !access_can_tls(access, error)) {
+        access_destroy(access);
+        return NULL;
+    }
+    return access;
+}
+
+static void reload(struct service *service)
+{
+    struct error error = {0};
+    struct service_options options;
+    struct access *access = NULL;
+    notify_send("RELOADING=1");
+    if (service->reloader.read(service->reloader.owner, &options, &error))
+        access = access_for(service, &options, &error);
+    if (access) {
+        apply(service, &options, access);
+        log_event(LOG_INFO, "configuration reloaded", log_text("version", SHEEN_VERSION));
+    } else {
+        log_event(LOG_ERROR, "the new configuration is bad: the old one stays",
+                  log_text("text", error.text));
+    }
+    notify_send("READY=1");
+}
+
+static void signal_ready(struct loop_source *source, uint32_t events)
+{
+    (void)events;
+    struct service *service = source->owner;
+    struct signalfd_siginfo signal;
+    if (read(service->signal_fd, &signal, sizeof signal) != (ssize_t)sizeof signal)
+        return;
+    if (signal.ssi_signo != SIGHUP)
+        drain(service);
+    else if (service->reloader.read && !service->host.draining)
+        reload(service);
+}
+
+static bool watch_signals(struct service *service, struct error *error)
+{
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGTERM);
+    sigaddset(&set, SIGINT);
+    if (!service->single)
+        sigaddset(&set, SIGHUP); /* a private daemon hangs up with its terminal */
+    signal(SIGPIPE, SIG_IGN);    /* whoever read the log may have gone */
+    /* Before any thread starts: threads inherit the mask. */
+    pthread_sigmask(SIG_BLOCK, &set, NULL);
+    service->signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+    if (service->signal_fd < 0)
+        return error_set(error, ERROR_SERVER, "signalfd: %s", strerror(errno));
+    service->signals = (struct loop_source){service->signal_fd, signal_ready, service};
+    return loop_watch(service->host.loop, &service->signals, EPOLLIN, error);
+}
+
+/* --- start and stop */
+
+/* Keeps a listener that has been opened; NULL has been explained by who returns it. */
+static bool keep_listener(struct service *service, struct listener *listener, struct error *error)
+{
+    if (!listener)
+        return false;
+    service->listeners[service->n_listeners++] = listener;
+    listener_open_to_all(listener, access_has_list(service->host.access));
+    return listener_kind(listener) != ADDRESS_TLS || access_can_tls(service->host.access, error);
+}
+
+static enum listener_reach metrics_reach(const struct service_options *options)
+{
+    return options->metrics_open ? LISTENER_ANYWHERE : LISTENER_LOOPBACK;
+}
+
+/* The service manager's sockets; one that it calls "metrics" is for those, one called "tls" for
+ * TLS. */
+static bool adopt_listeners(struct service *service, struct error *error)
+{
+    struct notify_fds fds;
+    const struct listener_handler handler = {accepted, service};
+    if (!notify_listen_fds(&fds, error))
+        return false;
+    bool ok = true;
+    for (size_t i = 0; i < fds.n; i++) {
+        if (!ok)
+            close(fds.fd[i]);
+        else if (strcmp(fds.name[i], "metrics") == 0)
+            ok =
+                monitor_adopt(service->monitor, fds.fd[i], metrics_reach(&service->options), error);
+        else if (service->n_listeners < SERVICE_MAX_LISTENERS)
+            ok = keep_listener(service,
+                               listener_adopt(service->host.loop, fds.fd[i],
+                                              strcmp(fds.name[i], "tls") == 0, LISTENER_LOOPBACK,
+                                              &handler, error),
+                               error);
+        else
+            ok = error_set(error, ERROR_SERVER, "more than %d sockets from the service manager",
+                           SERVICE_MAX_LISTENERS);
+    }
+    return ok;
+}
+
+static bool open_listeners(struct service *service, struct error *error)
+{
+    const struct listener_handler handler = {accepted, service};
+    struct service_listen listen = service->options.listen;
+    if (!adopt_listeners(service, error))
+        return false;
+    if (listen.n == 0 && service->n_listeners == 0) {
+        listen.n = 1;
+        if (!listener_default(&listen.address[0], error))
+            return false;
+    }
+    for (size_t i = 0; i < listen.n; i++) {
+        if (service->n_listeners == SERVICE_MAX_LISTENERS)
+            return error_set(error, ERROR_SERVER, "at most %d addresses to listen on",
+                             SERVICE_MAX_LISTENERS);
+        if (!keep_listener(service,
+                           listener_open(service->host.loop, &listen.address[i], LISTENER_LOOPBACK,
+                                         &handler, error),
+                           error))
+            return false;
+    }
+    const struct service_listen *metrics = &service->options.metrics;
+    return metrics->n == 0 || monitor_listen(service->monitor, &metrics->address[0],
+                                             metrics_reach(&service->options), error);
+}
+
+static bool open_session(struct service *service, int fd, struct error *error)
+{
+    struct session_client client = {.kind = CLIENT_PRIVATE, .peer = "private"};
+    access_admit_private(&client.identity);
+    struct peer *peer = peer_get(&service->host.memory.peers, fd);
+    struct session *session =
+        peer ? session_create(&service->host, fd, &client, peer, error) : NULL;
+    service->sessions = session;
+    return session || (peer ? false : error_set(error, ERROR_SERVER, "no memory for a client"));
+}
+
+/* A descriptor for every client, as far as the system lets us. */
+static void allow_descriptors(uint64_t n)
+{
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) < 0 || files.rlim_cur >= n)
+        return;
+    files.rlim_cur = files.rlim_max < n ? files.rlim_max : n;
+    setrlimit(RLIMIT_NOFILE, &files); /* with fewer, accepting rests when they are used up */
+}
+
+static bool start(struct service *service, struct error *error)
+{
+    struct session_host *host = &service->host;
+    const struct service_options *options = &service->options;
+    const struct loop_hooks hooks = {after_batch, tick, service};
+    jpeg_keep_defaults();
+    host->is_private = service->single;
+    if (!(host->spares = spares_create((size_t)options->limits.spare_memory)))
+        return error_set(error, ERROR_SERVER, "no memory for the daemon");
+    const struct renderer_options renderer = {.device = options->device, .spares = host->spares};
+    /* The reader of cages starts while the device opens. */
+    if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
+        !workers_init(&host->workers, NULL, &options->limits, error) ||
+        !(service->completions = completions_create(host->loop, error)) ||
+        !(host->render_thread = render_thread_create(&renderer, service->completions, error)) ||
+        !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1, &encode_worker,
+                                   service->completions, error)) ||
+        !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_worker){0},
+                                      service->completions, error)) ||
+        !(host->store = store_create(host->pool, host->readers, host->render_thread, &host->workers,
+                                     &host->limits, host->is_private, error)))
+        return false;
+    const struct limits *limits = &options->limits;
+    host->share_models = options->share_models;
+    if (*options->models && (host->models_fd = model_folder_open(options->models, error)) < 0)
+        return false;
+    host->gpu_generation = 1;
+    host->max_upload_bytes =
+        limits->memory_budget < limits->max_upload ? limits->memory_budget : limits->max_upload;
+    host->memory =
+        (struct memory){.store = host->store, .limits = &host->limits, .spares = host->spares};
+    allow_descriptors(limits->max_connections + SERVICE_OWN_DESCRIPTORS);
+    stats_init(&host->stats);
+    if (service->single)
+        return open_session(service, options->session_fd, error);
+    workers_expect_images(&host->workers);
+    service->monitor = monitor_create(host, options->stuck_s * 1000000, error);
+    return service->monitor && open_listeners(service, error);
+}
+
+/* Joined by ", ". */
+static void list_addresses(const struct service *service, char *text, size_t capacity)
+{
+    size_t used = 0;
+    text[0] = 0;
+    for (size_t i = 0; i < service->n_listeners && used < capacity; i++)
+        used += (size_t)snprintf(text + used, capacity - used, "%s%s", i ? ", " : "",
+                                 listener_text(service->listeners[i]));
+}
+
+static void tell_ready(const struct service *service)
+{
+    char addresses[SERVICE_MAX_LISTENERS * LISTENER_TEXT_BYTES];
+    const char *device = render_thread_info(service->host.render_thread)->device;
+    list_addresses(service, addresses, sizeof addresses);
+    log_event(LOG_INFO, "listening", log_text("version", SHEEN_VERSION), log_text("device", device),
+              log_text("addresses", addresses),
+              log_text("metrics", monitor_address(service->monitor)));
+    notify_send("READY=1\nSTATUS=serving");
+}
+
+/* They are no secret that is worth TLS, nor for everybody to read who has not been let. */
+static bool check_metrics(const struct service_options *options, struct error *error)
+{
+    const struct address *address = &options->metrics.address[0];
+    if (options->metrics.n == 0)
+        return true;
+    if (address->kind == ADDRESS_TLS)
+        return error_set(error, ERROR_REQUEST,
+                         "metrics are served without TLS, and not at tls:%s:%u: give a Unix "
+                         "socket, unix:PATH, or an address on loopback, as tcp:127.0.0.1:%u",
+                         address->host, (unsigned)address->port, (unsigned)address->port);
+    if (listener_check(address, metrics_reach(options), error))
+        return true;
+    return error->kind == ERROR_REQUEST && /* else the name is not known */
+           error_set(error, ERROR_REQUEST,
+                     "metrics go to this machine alone, and not to tcp:%s:%u: give a Unix socket, "
+                     "unix:PATH, or an address on loopback, as tcp:127.0.0.1:%u; or say with "
+                     "--metrics-open that whoever reaches that address may read them",
+                     address->host, (unsigned)address->port, (unsigned)address->port);
+}
+
+bool service_options_check(const struct service_options *options, struct error *error)
+{
+    if (options->session_fd >= 0 && options->listen.n > 0)
+        return error_set(error, ERROR_REQUEST, "--session-fd and --listen exclude each other");
+    bool tls = false;
+    for (size_t i = 0; i < options->listen.n; i++) {
+        if (!listener_check(&options->listen.address[i], LISTENER_LOOPBACK, error))
+            return false;
+        tls |= options->listen.address[i].kind == ADDRESS_TLS;
+    }
+    if (!check_metrics(options, error))
+        return false;
+    int models_fd = *options->models ? model_folder_open(options->models, error) : -1;
+    if (models_fd >= 0)
+        close(models_fd);
+    else if (*options->models)
+        return false;
+    struct access *access = access_create(&options->access, error);
+    bool ok = access && (!tls || access_can_tls(access, error));
+    access_destroy(access);
+    return ok;
+}
+
+struct service *service_create(const struct service_options *options,
+                               const struct service_reloader *reloader, struct error *error)
+{
+    struct service *service = calloc(1, sizeof *service);
+    if (!service) {
+        error_set(error, ERROR_SERVER, "no memory for the daemon");
+        return NULL;
+    }
+    service->signal_fd = service->host.models_fd = -1;
+    service->reloader = *reloader;
+    service->single = options->session_fd >= 0;
+    struct access *access = access_create(&options->access, error);
+    if (access)
+        apply(service, options, access);
+    if (!access || !start(service, error)) {
+        service_destroy(service);
+        return NULL;
+    }
+    if (service->single)
+        service->host.limits.idle_s = 0;
+    else
+        tell_ready(service);
+    return service;
+}
+
+enum service_end service_run(struct service *service)
+{
+    loop_run(service->host.loop);
+    return service->end;
+}
+
+/* The store frees its models through the GL thread, so that ends last; what both threads finish is
+ * delivered in between. */
+void service_destroy(struct service *service)
+{
+    if (!service)
+        return;
+    struct session_host *host = &service->host;
+    close_listeners(service);
+    monitor_destroy(service->monitor);
+    while (service->sessions) {
+        struct session *session = service->sessions;
+        service->sessions = session->next;
+        session_destroy(session);
+    }
+    store_destroy(host->store);
+    render_thread_destroy(host->render_thread);
+    pool_destroy(host->pool);
+    pool_destroy(host->readers);
+    workers_finish(&host->workers);
+    if (service->completions)
+        completions_deliver(service->completions);
+    completions_destroy(service->completions);
+    if (service->signal_fd >= 0)
+        close(service->signal_fd);
+    loop_destroy(host->loop);
+    access_destroy(host->access);
+    spares_destroy(host->spares);
+    if (host->models_fd >= 0)
+        close(host->models_fd);
+    free(service);
+}

@@ -1,0 +1,511 @@
+#include "server/output/encode.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+
+#include "server/base/fault.h"
+#include "server/output/png.h"
+
+#define ZSTD_LEVEL 1
+#define MAX_CHANNELS 22 /* of all planes together */
+_Static_assert(MAX_CHANNELS <= PICTURE_MAX_CHANNELS, "a picture holds all channels");
+
+struct encode_job;
+
+struct strip_work {
+    struct work work;
+    struct encode_job *job;
+    size_t index;
+    size_t start, size; /* of what was written, from where to where it is the frame's */
+    bool has_alpha;     /* PNG: encoded so */
+    uint32_t checksum;  /* PNG: of the strip */
+    struct error error; /* why it failed */
+};
+
+struct encode_job {
+    struct encoded *encoded;
+    struct codec_layout layout;
+    struct encode_format format;
+    enum pool_urgency urgency;
+    const struct image_attribute *attributes;
+    size_t n_attributes;
+    void (*finished)(void *owner, struct encoded *encoded, const struct error *error);
+    void *owner;
+    struct pool *pool;
+    struct workers *workers;
+
+    struct error error; /* why it failed */
+    struct work file_work;
+    size_t file_size;
+    struct jpeg_layout jpeg;
+    struct strip_layout png;
+    atomic_bool has_alpha; /* PNG: a strip has been found not to be opaque */
+    struct strip_work *strips;
+    size_t n_strips, n_strips_left;
+    bool (*join)(struct encode_job *job); /* the strips; false: no memory */
+};
+
+/* A thread's own. */
+struct encoders {
+    struct codec_encoder *zstd;
+    struct jpeg_encoder *jpeg;
+    struct png_encoder *png;
+};
+
+static void stop_worker(void *worker)
+{
+    struct encoders *encoders = worker;
+    codec_encoder_destroy(encoders->zstd);
+    jpeg_encoder_destroy(encoders->jpeg);
+    png_encoder_destroy(encoders->png);
+    free(encoders);
+}
+
+static bool start_worker(void *owner, void **worker, struct error *error)
+{
+    (void)owner;
+    struct encoders *encoders = calloc(1, sizeof *encoders);
+    if (encoders && (encoders->zstd = codec_encoder_create(ZSTD_LEVEL)) &&
+        (encoders->jpeg = jpeg_encoder_create()) && (encoders->png = png_encoder_create())) {
+        *worker = encoders;
+        return true;
+    }
+    if (encoders)
+        stop_worker(encoders);
+    return error_set(error, ERROR_SERVER, "no memory for the encoders of a thread");
+}
+
+const struct pool_worker encode_worker = {start_worker, stop_worker, NULL};
+
+void encoded_destroy(struct encoded *encoded)
+{
+    if (!encoded)
+        return;
+    if (encoded->unsent)
+        --*encoded->unsent;
+    if (encoded->released)
+        encoded->released(encoded->memory_of);
+    frame_finish(&encoded->frame);
+    struct spares *spares = encoded->spares;
+    for (size_t i = 0; i < encoded->n_blocks; i++)
+        spares_give(spares, encoded->blocks[i]);
+    spares_give(spares, encoded->blocks);
+    spares_give(spares, encoded->pieces);
+    spares_give(spares, encoded);
+}
+
+static void end_job(struct encode_job *job, const struct error *error)
+{
+    struct encoded *encoded = job->encoded;
+    struct spares *spares = encoded->spares;
+    if (error) {
+        encoded_destroy(encoded);
+        encoded = NULL;
+    }
+    job->finished(job->owner, encoded, error);
+    spares_give(spares, job->strips);
+    spares_give(spares, job);
+}
+
+static void set_no_memory(const struct encode_job *job, struct error *error)
+{
+    error_set(error, ERROR_SERVER, "no memory to encode %u x %u pixels: try again later",
+              job->layout.width_px, job->layout.height_px);
+}
+
+static void end_job_no_memory(struct encode_job *job)
+{
+    set_no_memory(job, &job->error);
+    end_job(job, &job->error);
+}
+
+static void add_piece(struct encoded *encoded, const uint8_t *bytes, size_t size)
+{
+    encoded->pieces[encoded->n_pieces++] = (struct encoded_piece){bytes, size};
+    encoded->size += size;
+}
+
+/* Room for n blocks and as many pieces. */
+static bool allocate(struct encoded *encoded, size_t n)
+{
+    encoded->blocks = spares_take(encoded->spares, n * sizeof *encoded->blocks);
+    encoded->pieces = spares_take(encoded->spares, n * sizeof *encoded->pieces);
+    encoded->n_blocks = encoded->blocks ? n : 0;
+    for (size_t i = 0; i < encoded->n_blocks; i++)
+        encoded->blocks[i] = NULL;
+    return encoded->blocks && encoded->pieces;
+}
+
+/* --- RAW: the planes are the bytes */
+
+static void start_raw(struct encode_job *job)
+{
+    struct encoded *encoded = job->encoded;
+    if (!allocate(encoded, CODEC_PLANES)) {
+        end_job_no_memory(job);
+        return;
+    }
+    for (unsigned plane = 0; plane < CODEC_PLANES; plane++)
+        if (job->layout.planes & (1u << plane))
+            add_piece(encoded, encoded->frame.plane[plane], codec_plane_bytes(&job->layout, plane));
+    end_job(job, NULL);
+}
+
+/* --- strips: block 1 + i is strip i, block 0 what stands before them */
+
+/* NULL: the strip has failed. */
+static uint8_t *take_strip(struct strip_work *strip, size_t bound)
+{
+    struct encoded *encoded = strip->job->encoded;
+    uint8_t **block = &encoded->blocks[1 + strip->index];
+    if (!*block) /* it has none from a first try */
+        *block = fault_at("encode") ? NULL : spares_take(encoded->spares, bound);
+    if (!*block)
+        set_no_memory(strip->job, &strip->error);
+    return *block;
+}
+
+static void add_strips(struct encode_job *job)
+{
+    for (size_t i = 0; i < job->n_strips; i++) {
+        const struct strip_work *strip = &job->strips[i];
+        add_piece(job->encoded, job->encoded->blocks[1 + i] + strip->start,
+                  strip->size - strip->start);
+    }
+}
+
+/* Submits the strips that are not as the whole picture turned out to be. False: all are. */
+static bool repeat_strips(struct encode_job *job)
+{
+    for (size_t i = 0; i < job->n_strips; i++) {
+        struct strip_work *strip = &job->strips[i];
+        if (strip->has_alpha == atomic_load(&job->has_alpha))
+            continue;
+        job->n_strips_left++;
+        pool_submit(job->pool, &strip->work, job->urgency);
+    }
+    return job->n_strips_left > 0;
+}
+
+static void strip_done(struct work *work)
+{
+    const struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    if (strip->error.kind != ERROR_NONE)
+        job->error = strip->error;
+    if (--job->n_strips_left > 0 || (job->error.kind == ERROR_NONE && repeat_strips(job)))
+        return;
+    frame_finish(&job->encoded->frame);
+    if (job->error.kind != ERROR_NONE)
+        end_job(job, &job->error);
+    else if (job->join(job))
+        end_job(job, NULL);
+    else
+        end_job_no_memory(job);
+}
+
+static void start_strips(struct encode_job *job, size_t n,
+                         void (*run)(struct work *work, void *worker),
+                         bool (*join)(struct encode_job *job))
+{
+    job->strips = spares_take(job->encoded->spares, n * sizeof *job->strips);
+    if (!job->strips || !allocate(job->encoded, n + 1)) {
+        end_job_no_memory(job);
+        return;
+    }
+    job->n_strips = job->n_strips_left = n;
+    job->join = join;
+    for (size_t i = 0; i < n; i++) {
+        struct strip_work *strip = &job->strips[i];
+        *strip = (struct strip_work){.job = job, .index = i};
+        strip->work = (struct work){run, strip_done, strip, NULL};
+        pool_submit(job->pool, &strip->work, job->urgency);
+    }
+}
+
+/* --- ZSTD: a table and the strips */
+
+static void zstd_run(struct work *work, void *worker)
+{
+    struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    struct encoders *encoders = worker;
+    struct codec_strip place = codec_strip_at(&job->layout, strip->index);
+    size_t bound = codec_strip_bound(&place);
+    uint8_t *bytes = take_strip(strip, bound);
+    if (!bytes)
+        return;
+    strip->size = codec_strip_encode(encoders->zstd, &place, job->encoded->frame.plane[place.plane],
+                                     bytes, bound);
+    if (strip->size == 0)
+        set_no_memory(job, &strip->error);
+}
+
+static bool zstd_join(struct encode_job *job)
+{
+    struct spares *spares = job->encoded->spares;
+    uint32_t *lengths = spares_take(spares, job->n_strips * sizeof *lengths);
+    uint8_t *table = spares_take(spares, job->layout.table_bytes);
+    job->encoded->blocks[0] = table;
+    bool ok = lengths && table;
+    for (size_t i = 0; ok && i < job->n_strips; i++)
+        lengths[i] = (uint32_t)job->strips[i].size;
+    if (ok) {
+        codec_table_encode(&job->layout, lengths, table);
+        add_piece(job->encoded, table, job->layout.table_bytes);
+        add_strips(job);
+    }
+    spares_give(spares, lengths);
+    return ok;
+}
+
+/* --- JPEG: a head and the strips */
+
+static void jpeg_run(struct work *work, void *worker)
+{
+    struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    struct encoders *encoders = worker;
+    uint8_t *bytes = take_strip(strip, job->jpeg.strips.bound);
+    if (bytes)
+        jpeg_strip_encode(encoders->jpeg, &job->jpeg, strip->index, job->encoded->frame.plane[0],
+                          bytes, &strip->start, &strip->size, &strip->error);
+}
+
+static bool jpeg_join(struct encode_job *job)
+{
+    struct encoded *encoded = job->encoded;
+    const size_t start = job->strips[0].start;
+    const size_t bound = jpeg_head_bound(start, job->attributes, job->n_attributes);
+    uint8_t *head = spares_take(encoded->spares, bound);
+    encoded->blocks[0] = head;
+    if (!head)
+        return false;
+    add_piece(encoded, head,
+              jpeg_head_write(&job->jpeg, encoded->blocks[1], start, job->attributes,
+                              job->n_attributes, head));
+    add_strips(job);
+    return true;
+}
+
+static void start_jpeg(struct encode_job *job)
+{
+    jpeg_layout_init(&job->jpeg, job->layout.width_px, job->layout.height_px, &job->format.jpeg);
+    start_strips(job, job->jpeg.strips.n, jpeg_run, jpeg_join);
+}
+
+/* --- PNG: a head and the strips, of which the last holds the tail */
+
+static void png_run(struct work *work, void *worker)
+{
+    struct strip_work *strip = work->owner;
+    struct encode_job *job = strip->job;
+    struct encoders *encoders = worker;
+    const uint8_t *rgba = job->encoded->frame.plane[0];
+    struct png_strip written = {0};
+    uint8_t *bytes = take_strip(strip, job->png.bound);
+    uint8_t *row = bytes ? spares_take(job->encoded->spares, png_row_bytes(&job->png)) : NULL;
+    /* Most pictures are opaque: none is searched for alpha before its strips are encoded. */
+    if (!atomic_load(&job->has_alpha) && !png_strip_is_opaque(&job->png, strip->index, rgba))
+        atomic_store(&job->has_alpha, true);
+    strip->has_alpha = atomic_load(&job->has_alpha);
+    if (!row)
+        set_no_memory(job, &strip->error);
+    else
+        png_strip_encode(encoders->png, &job->png, strip->index, rgba, strip->has_alpha, row, bytes,
+                         &written, &strip->error);
+    spares_give(job->encoded->spares, row);
+    strip->size = written.size;
+    strip->checksum = written.checksum;
+}
+
+static bool png_join(struct encode_job *job)
+{
+    struct encoded *encoded = job->encoded;
+    struct strip_work *last = &job->strips[job->n_strips - 1];
+    const bool has_alpha = atomic_load(&job->has_alpha);
+    uint8_t *head =
+        spares_take(encoded->spares, png_head_bound(job->attributes, job->n_attributes));
+    encoded->blocks[0] = head;
+    if (!head)
+        return false;
+    uint32_t checksum = 1;
+    for (size_t i = 0; i < job->n_strips; i++)
+        checksum = png_checksum(checksum, &job->png, i, has_alpha, job->strips[i].checksum);
+    last->size += png_tail_write(checksum, encoded->blocks[job->n_strips] + last->size);
+    add_piece(encoded, head,
+              png_head_write(&job->png, has_alpha, job->attributes, job->n_attributes, head));
+    add_strips(job);
+    return true;
+}
+
+static void start_png(struct encode_job *job)
+{
+    png_layout_init(&job->png, job->layout.width_px, job->layout.height_px);
+    start_strips(job, job->png.n, png_run, png_join);
+}
+
+/* --- files, by a worker process */
+
+/* The channels of every plane, in the order of the planes' bits. */
+static const struct {
+    const char *name;
+    unsigned plane;
+    enum image_type type;
+    size_t offset_bytes;
+} CHANNELS[MAX_CHANNELS] = {
+    {"R", 0, IMAGE_UINT8, 0},           {"G", 0, IMAGE_UINT8, 1},
+    {"B", 0, IMAGE_UINT8, 2},           {"A", 0, IMAGE_UINT8, 3},
+    {"P.X", 1, IMAGE_FLOAT, 0},         {"P.Y", 1, IMAGE_FLOAT, 4},
+    {"P.Z", 1, IMAGE_FLOAT, 8},         {"N.X", 2, IMAGE_FLOAT, 0},
+    {"N.Y", 2, IMAGE_FLOAT, 4},         {"N.Z", 2, IMAGE_FLOAT, 8},
+    {"ptex.face", 3, IMAGE_UINT32, 0},  {"ptex.u", 3, IMAGE_FLOAT, 4},
+    {"ptex.v", 3, IMAGE_FLOAT, 8},      {"light.s", 4, IMAGE_FLOAT, 0},
+    {"light.t", 4, IMAGE_FLOAT, 4},     {"k.min", 5, IMAGE_FLOAT, 0},
+    {"k.max", 5, IMAGE_FLOAT, 4},       {"light.dsdx", 6, IMAGE_FLOAT, 0},
+    {"light.dsdy", 6, IMAGE_FLOAT, 4},  {"light.dtdx", 6, IMAGE_FLOAT, 8},
+    {"light.dtdy", 6, IMAGE_FLOAT, 12}, {"coverage", 7, IMAGE_FLOAT, 0},
+};
+
+static enum image_format file_format(sheen_Encoding encoding)
+{
+    return encoding == sheen_Encoding_ENCODING_EXR ? IMAGE_EXR : IMAGE_TIFF;
+}
+
+static void add_channels(const struct encode_job *job, struct picture *picture)
+{
+    for (size_t i = 0; i < MAX_CHANNELS; i++) {
+        unsigned plane = CHANNELS[i].plane;
+        size_t stride = codec_pixel_bytes(plane);
+        if (job->layout.planes & (1u << plane))
+            picture->channels[picture->n_channels++] = (struct image_channel){
+                CHANNELS[i].name, CHANNELS[i].type,
+                (const uint8_t *)job->encoded->frame.plane[plane] + CHANNELS[i].offset_bytes,
+                stride, stride * job->layout.width_px};
+    }
+}
+
+static void file_run(struct work *work, void *worker)
+{
+    (void)worker;
+    struct encode_job *job = work->owner;
+    struct picture picture = {.format = file_format(job->format.encoding),
+                              .width_px = job->layout.width_px,
+                              .height_px = job->layout.height_px,
+                              .n_attributes = job->n_attributes};
+    for (size_t i = 0; i < job->n_attributes; i++)
+        picture.attributes[i] = job->attributes[i];
+    add_channels(job, &picture);
+    struct picture_block planes[CODEC_PLANES];
+    size_t n_planes = 0;
+    for (unsigned plane = 0; plane < CODEC_PLANES; plane++)
+        if (job->layout.planes & (1u << plane))
+            planes[n_planes++] = (struct picture_block){job->encoded->frame.plane[plane],
+                                                        codec_plane_bytes(&job->layout, plane)};
+    workers_write_image(job->workers, &picture, planes, n_planes, job->encoded->spares,
+                        &job->encoded->blocks[0], &job->file_size, &job->error);
+}
+
+static void file_done(struct work *work)
+{
+    struct encode_job *job = work->owner;
+    frame_finish(&job->encoded->frame);
+    if (!job->encoded->blocks[0]) {
+        end_job(job, &job->error);
+        return;
+    }
+    add_piece(job->encoded, job->encoded->blocks[0], job->file_size);
+    end_job(job, NULL);
+}
+
+static void start_file(struct encode_job *job)
+{
+    if (!allocate(job->encoded, 1)) {
+        end_job_no_memory(job);
+        return;
+    }
+    job->file_work = (struct work){file_run, file_done, job, NULL};
+    pool_submit(job->pool, &job->file_work, job->urgency);
+}
+
+_Static_assert((int)JPEG_420 == (int)sheen_JpegSubsampling_JPEG_420, "same order");
+
+struct encode_format encode_format_of(const sheen_Render *render)
+{
+    struct encode_format format = {.encoding = render->encoding, .jpeg = JPEG_DEFAULTS};
+    if (render->has_jpeg_quality)
+        format.jpeg.quality = render->jpeg_quality;
+    if (render->has_jpeg_subsampling)
+        format.jpeg.subsampling = (enum jpeg_subsampling)render->jpeg_subsampling;
+    return format;
+}
+
+uint64_t encode_bytes(const struct codec_layout *layout, const struct encode_format *format)
+{
+    struct jpeg_layout jpeg;
+    struct strip_layout png;
+    switch (format->encoding) {
+    case sheen_Encoding_ENCODING_RAW:
+        return 0;
+    case sheen_Encoding_ENCODING_JPEG:
+        jpeg_layout_init(&jpeg, layout->width_px, layout->height_px, &format->jpeg);
+        return (uint64_t)jpeg.strips.n * jpeg.strips.bound;
+    case sheen_Encoding_ENCODING_PNG:
+        png_layout_init(&png, layout->width_px, layout->height_px);
+        return (uint64_t)png.n * png.bound;
+    default:
+        return layout->raw_bytes;
+    }
+}
+
+void encode_start(struct pool *pool, struct workers *workers, struct frame *frame,
+                  const struct codec_layout *layout, const struct encode_format *format,
+                  enum pool_urgency urgency, const struct image_attribute *attributes,
+                  size_t n_attributes,
+                  void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
+                  void *owner)
+{
+    struct spares *spares = frame->spares;
+    struct encode_job *job = spares_take(spares, sizeof *job);
+    struct encoded *encoded = spares_take(spares, sizeof *encoded);
+    if (!job || !encoded) {
+        spares_give(spares, job);
+        spares_give(spares, encoded);
+        frame_finish(frame);
+        struct error error = {0};
+        error_set(&error, ERROR_SERVER, "no memory to encode a frame: try again later");
+        finished(owner, NULL, &error);
+        return;
+    }
+    *encoded = (struct encoded){.frame = *frame, .spares = spares};
+    *frame = (struct frame){0};
+    *job = (struct encode_job){
+        .encoded = encoded,
+        .layout = *layout,
+        .format = *format,
+        .urgency = urgency,
+        .attributes = attributes,
+        .n_attributes = n_attributes,
+        .finished = finished,
+        .owner = owner,
+        .pool = pool,
+        .workers = workers,
+    };
+    switch (format->encoding) {
+    case sheen_Encoding_ENCODING_RAW:
+        start_raw(job);
+        break;
+    case sheen_Encoding_ENCODING_ZSTD:
+        start_strips(job, layout->n_strips, zstd_run, zstd_join);
+        break;
+    case sheen_Encoding_ENCODING_PNG:
+        start_png(job);
+        break;
+    case sheen_Encoding_ENCODING_JPEG:
+        start_jpeg(job);
+        break;
+    default:
+        start_file(job);
+        break;
+    }
+}

@@ -1,0 +1,68 @@
+#include "server/render/clusters.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "server/surface/vec.h"
+
+/* More than rounding takes from distances. */
+static const double SLACK = 1 + 1e-6;
+
+static bool has_surface(const struct limit_node *node)
+{
+    return node->kind == LIMIT_REGULAR || node->kind == LIMIT_CORNER || node->kind == LIMIT_STRIP;
+}
+
+/* A node's first bound holds all of it. */
+static double radius_of(const struct limit_tables *tables, size_t node)
+{
+    return tables->bounds[tables->bound_first[node]].radius;
+}
+
+/* About the middle of the box of the nodes' origins. */
+static struct cluster enclose(const struct limit_tables *tables, size_t first, size_t end)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    struct cluster cluster = {.radius = -1};
+    for (size_t i = first; i < end; i++) {
+        const struct limit_node *node = &tables->nodes[i];
+        for (int k = 0; k < 3 && has_surface(node); k++) {
+            double x = node->origin[k]; /* finite: no fmin(), which costs a call */
+            low[k] = x < low[k] ? x : low[k];
+            high[k] = x > high[k] ? x : high[k];
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        cluster.centre[k] = 0.5 * low[k] + 0.5 * high[k];
+    for (size_t i = first; i < end; i++) {
+        const struct limit_node *node = &tables->nodes[i];
+        if (!has_surface(node))
+            continue;
+        struct vec away = {node->origin[0] - cluster.centre[0], node->origin[1] - cluster.centre[1],
+                           node->origin[2] - cluster.centre[2]};
+        double reach = SLACK * (vec_length(away) + radius_of(tables, i));
+        cluster.radius = reach > cluster.radius ? reach : cluster.radius;
+    }
+    return cluster;
+}
+
+bool clusters_init(struct clusters *clusters, const struct limit_tables *tables,
+                   struct error *error)
+{
+    clusters->n = (tables->n_nodes + CLUSTER_NODES - 1) / CLUSTER_NODES;
+    clusters->cluster = malloc(clusters->n * sizeof *clusters->cluster);
+    if (!clusters->cluster)
+        return error_set(error, ERROR_SERVER, "out of memory for the clusters of a model");
+    for (size_t k = 0; k < clusters->n; k++) {
+        size_t first = k * CLUSTER_NODES, end = first + CLUSTER_NODES;
+        clusters->cluster[k] =
+            enclose(tables, first, end < tables->n_nodes ? end : tables->n_nodes);
+    }
+    return true;
+}
+
+void clusters_finish(struct clusters *clusters)
+{
+    free(clusters->cluster);
+    *clusters = (struct clusters){0};
+}

@@ -1,0 +1,14 @@
+#include "server/render/gl/gpu.h"
+
+bool gpu_check(const char *doing, struct error *error)
+{
+    GLenum code = glGetError();
+    if (code == GL_NO_ERROR)
+        return true;
+    /* A lost context may say so for ever. */
+    for (GLenum next = code; next != GL_NO_ERROR && next != GL_CONTEXT_LOST;)
+        next = glGetError();
+    if (code == GL_OUT_OF_MEMORY)
+        return error_set(error, ERROR_DEVICE, "the device is out of memory for %s", doing);
+    return error_set(error, ERROR_DEVICE, "OpenGL error 0x%04x in %s", code, doing);
+}

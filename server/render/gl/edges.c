@@ -1,0 +1,61 @@
+/* Which pixels edges of the surface run through (shaders/edges.glsl). */
+#include "server/render/gl/gpu.h"
+
+#include "server/render/gl/program.h"
+
+bool stage_edges_init(struct renderer *r, struct error *error)
+{
+    r->edges_find = program_create_single(PROGRAM_EDGES_FIND, error);
+    r->edges_doubt = r->edges_find ? program_create_single(PROGRAM_EDGES_DOUBT, error) : 0;
+    return r->edges_doubt;
+}
+
+bool edges_wanted(const struct frame_request *request)
+{
+    return !request->unfiltered && request->surface.kind == SURFACE_EXACT;
+}
+
+void stage_edges(struct renderer *r, const struct tile *shaded)
+{
+    static const GLuint no_work[4] = {0, 1, 1, 0};
+    static const GLfloat nothing[4] = {0, 0, 0, 0};
+    const struct target *target = &r->target;
+    clear_shaded(r, target->coverage, GL_RED, nothing);
+    glNamedBufferSubData(target->unsolved, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->edges, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->turns, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->rounded, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->strays, 0, sizeof no_work, no_work);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->unsolved);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->turns);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->rounded);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, target->strays);
+    glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
+    glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
+    glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
+    glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+    glBindImageTexture(6, target->silhouette, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    glProgramUniform4i(r->edges_find, glGetUniformLocation(r->edges_find, "shaded"),
+                       (GLint)shaded->x, (GLint)shaded->y, (GLint)shaded->width,
+                       (GLint)shaded->height);
+    dispatch_groups(r->edges_find, target->groups);
+}
+
+void stage_edges_doubt(struct renderer *r)
+{
+    const struct target *target = &r->target;
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
+    glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
+    glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
+    glBindTextureUnit(3, target->silhouette);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->unsolved);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->edges);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->rounded);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, target->unsolved);
+    glUseProgram(r->edges_doubt);
+    glDispatchComputeIndirect(0);
+}

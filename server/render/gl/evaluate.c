@@ -1,0 +1,161 @@
+/* Stage 2: the pixel's ray against the limit surface, in passes over fewer and fewer pixels. */
+#include "server/render/gl/gpu.h"
+
+#include "server/render/gl/program.h"
+
+bool stage_evaluate_init(struct renderer *r, struct error *error)
+{
+    r->doubt = program_create_single(PROGRAM_DOUBT, error);
+    r->gaps.find = r->doubt ? program_create_single(PROGRAM_GAPS, error) : 0;
+    glCreateBuffers(1, &r->gaps.ends);
+    glCreateBuffers(1, &r->gaps.guesses);
+    return r->gaps.find;
+}
+
+static void bind_seen(const struct target *target, GLuint unit)
+{
+    glBindTextureUnit(unit, target->seen);
+    glBindTextureUnit(unit + 1, target->seen_depth);
+}
+
+/* The tables, and what stage 1 left. */
+static void bind_tables(const struct renderer *r, const struct renderer_model *model)
+{
+    int unit = banks_bind(&model->points, 0);
+    unit = banks_bind(&model->nodes, unit);
+    unit = banks_bind(&model->adjacency, unit);
+    bind_seen(&r->target, (GLuint)unit);
+}
+
+static void bind_planes(const struct renderer *r, const struct renderer_model *model)
+{
+    bind_tables(r, model);
+    glBindImageTexture(0, r->target.hit_depth, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+    glBindImageTexture(1, r->target.normal, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    glBindImageTexture(2, r->target.shape, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+    glBindImageTexture(3, r->target.ptex, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32UI);
+    glBindImageTexture(4, r->target.border, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+}
+
+/* The pixels of a list, once it is complete, with the program in use. */
+static void solve_listed(GLuint list)
+{
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+    glDispatchComputeIndirect(0);
+}
+
+/* Adds to the unsolved ones what only the depths beside it give away. */
+static void doubt(const struct renderer *r)
+{
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    bind_seen(&r->target, 0);
+    glBindImageTexture(0, r->target.hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
+    dispatch_groups(r->doubt, r->target.restless);
+}
+
+void stage_evaluate(struct renderer *r, const struct renderer_model *model,
+                    const struct table_programs *programs)
+{
+    static const GLuint no_work[4] = {0, 1, 1, 0};
+    const struct target *target = &r->target;
+    GLint n_asked = glGetUniformLocation(programs->unsolved, "n_asked");
+    glNamedBufferSubData(target->strays, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->unsolved, 0, sizeof no_work, no_work);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->strays);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->unsolved);
+    bind_planes(r, model);
+    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    dispatch_groups(programs->evaluate, target->groups);
+    glUseProgram(programs->unsolved);
+    glUniform1i(n_asked, 1);
+    solve_listed(target->strays);
+    doubt(r);
+    bind_planes(r, model);
+    glUseProgram(programs->unsolved);
+    glUniform1i(n_asked, 5);
+    solve_listed(target->unsolved);
+}
+
+/* --- gaps */
+
+/* Lists the pixels in gaps, in place of those that strayed. Returns how many there are; waits for
+ * the device. */
+static GLuint find_gaps(const struct renderer *r)
+{
+    static const GLuint no_work[4] = {0, 1, 1, 0};
+    const struct target *target = &r->target;
+    GLuint head[4] = {0};
+    glNamedBufferSubData(target->strays, 0, sizeof no_work, no_work);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    bind_seen(target, 0);
+    glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
+    glBindImageTexture(1, target->seen, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG32UI);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->strays);
+    glUseProgram(r->gaps.find);
+    solve_listed(target->unsolved);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    glGetNamedBufferSubData(target->strays, 0, sizeof head, head);
+    return head[3];
+}
+
+/* Guesses for each of the listed pixels, x | y << 16; *end: where they end among all of them. */
+static bool guess_gaps(struct renderer *r, const struct renderer_model *model,
+                       const struct view *view, const uint32_t *at, size_t n, uint32_t *end,
+                       struct error *error)
+{
+    const struct tile *place = &r->drawing.place;
+    r->pieces.n_guesses = 0;
+    for (size_t i = 0; i < n; i++) {
+        const struct tile pixel = {place->x + (at[i] & 0xffff), place->y + (at[i] >> 16), 1, 1};
+        if (!watch_check(&r->watch, error) ||
+            !pieces_guess(&r->pieces, model->tables, &model->clusters, view, &pixel, error))
+            return false;
+        end[i] = (uint32_t)r->pieces.n_guesses;
+    }
+    return true;
+}
+
+bool stage_gaps(struct renderer *r, const struct renderer_model *model,
+                const struct table_programs *programs, const struct view *view, struct error *error)
+{
+    uint32_t at[MAX_GAPS] = {0}, end[MAX_GAPS];
+    GLuint n = find_gaps(r);
+    r->gaps.too_many = n > MAX_GAPS;
+    if (n == 0 || n > MAX_GAPS)
+        return true;
+    glGetNamedBufferSubData(r->target.strays, LIST_HEAD_BYTES, (GLsizeiptr)(n * sizeof *at), at);
+    if (!guess_gaps(r, model, view, at, n, end, error))
+        return false;
+    glNamedBufferData(r->gaps.ends, (GLsizeiptr)(n * sizeof *end), end, GL_STREAM_DRAW);
+    glNamedBufferData(r->gaps.guesses, (GLsizeiptr)(r->pieces.n_guesses * sizeof(struct guess)),
+                      r->pieces.guess, GL_STREAM_DRAW);
+    bind_planes(r, model);
+    glUseProgram(programs->unsolved);
+    glUniform1i(glGetUniformLocation(programs->unsolved, "n_asked"), 0);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->gaps.ends);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->gaps.guesses);
+    solve_listed(r->target.strays);
+    return true;
+}
+
+void stage_silhouette(struct renderer *r, const struct renderer_model *model,
+                      const struct table_programs *programs)
+{
+    bind_tables(r, model);
+    glBindImageTexture(5, r->target.silhouette, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+    glUseProgram(programs->silhouette);
+    solve_listed(r->target.strays);
+}
+
+void stage_rounded(struct renderer *r, const struct renderer_model *model,
+                   const struct table_programs *programs)
+{
+    bind_tables(r, model);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
+    glUseProgram(programs->rounded);
+    glUniform1ui(glGetUniformLocation(programs->rounded, "max_rounded"),
+                 target_max_rounded(&r->drawing.drawn));
+    solve_listed(r->target.rounded);
+}

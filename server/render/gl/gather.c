@@ -1,0 +1,50 @@
+/* Which pixels the passes after stage 1 run over (shaders/groups.glsl). */
+#include "server/render/gl/gpu.h"
+
+#include "server/render/gl/program.h"
+
+bool stage_gather_init(struct renderer *r, struct error *error)
+{
+    r->gather = program_create_single(PROGRAM_GATHER, error);
+    glCreateBuffers(1, &r->block_buffer);
+    return r->gather;
+}
+
+void stage_gather(struct renderer *r)
+{
+    enum { BLOCKS_PER_GROUP = 8 };
+    static const GLuint no_work[4] = {0, 1, 1, 0};
+    size_t n = r->pieces.n_blocks, groups = (n + BLOCKS_PER_GROUP - 1) / BLOCKS_PER_GROUP;
+    glNamedBufferSubData(r->target.groups, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(r->target.restless, 0, sizeof no_work, no_work);
+    if (!n)
+        return;
+    glNamedBufferData(r->block_buffer, (GLsizeiptr)(n * sizeof *r->pieces.block), r->pieces.block,
+                      GL_STREAM_DRAW);
+    glUseProgram(r->gather);
+    glUniform1ui(glGetUniformLocation(r->gather, "n_blocks"), (GLuint)n);
+    glBindTextureUnit(1, r->target.seen_depth);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->target.groups);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->block_buffer);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.restless);
+    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    glDispatchCompute((GLuint)(groups < GROUP_ROW ? groups : GROUP_ROW),
+                      (GLuint)((groups + GROUP_ROW - 1) / GROUP_ROW), 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
+
+bool gather_found_any(const struct renderer *r)
+{
+    GLuint workgroups = 0;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(r->target.groups, 0, sizeof workgroups, &workgroups);
+    return workgroups > 0;
+}
+
+void dispatch_groups(GLuint program, GLuint groups)
+{
+    glUseProgram(program);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, groups);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups);
+    glDispatchComputeIndirect(0);
+}

@@ -1,0 +1,189 @@
+/* Which planes a frame is drawn into, and when a later frame of the same view may reuse them
+ * instead of drawing. */
+#include "server/render/gl/gpu.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* Frames of fewer pixels, thumbnails and probes, have planes of their own. */
+enum { SMALL_PX = 4096 };
+
+static bool same_camera(const struct camera *a, const struct camera *b)
+{
+    return a->kind == b->kind && !memcmp(a->eye, b->eye, sizeof a->eye) &&
+           !memcmp(a->target, b->target, sizeof a->target) && !memcmp(a->up, b->up, sizeof a->up) &&
+           a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
+}
+
+bool is_kept(const struct kept *kept, const struct renderer_model *model,
+             const struct frame_request *request)
+{
+    return kept->model_serial == model->serial && kept->width_px == request->width_px &&
+           kept->height_px == request->height_px && same_camera(&kept->camera, &request->camera) &&
+           kept->surface.kind == request->surface.kind &&
+           kept->surface.level == request->surface.level &&
+           (kept->ptex || !(request->planes & PLANE_PTEX)) &&
+           (kept->edges || !edges_wanted(request));
+}
+
+void planes_swap(struct renderer *r, struct planes *others)
+{
+    const struct planes used = {r->target, r->kept};
+    r->target = others->target;
+    r->kept = others->kept;
+    *others = used;
+}
+
+static void use(struct renderer *r, enum planes_of which)
+{
+    if (r->in_use == which)
+        return;
+    planes_swap(r, &r->resting[r->in_use]);
+    planes_swap(r, &r->resting[which]);
+    r->in_use = which;
+}
+
+/* The planes that hold the frame's view, bit by bit as drawing it anew would; PLANES_KINDS: none.
+ */
+static enum planes_of find_kept(const struct renderer *r, const struct renderer_model *model,
+                                const struct frame_work *work, bool is_single)
+{
+    for (int i = PLANES_WHOLE; i <= PLANES_TILED; i++) {
+        const struct kept *kept = r->in_use == (enum planes_of)i ? &r->kept : &r->resting[i].kept;
+        bool same_cut = is_single == (i != PLANES_TILED);
+        bool serves = same_cut || (kept->any_cut && (is_single || work->in_place));
+        if (serves && is_kept(kept, model, work->request))
+            return (enum planes_of)i;
+    }
+    return PLANES_KINDS;
+}
+
+void planes_choose(struct renderer *r, const struct renderer_model *model, struct frame_work *work)
+{
+    const struct frame_request *request = work->request;
+    bool is_exact = request->surface.kind == SURFACE_EXACT;
+    bool is_single =
+        work->tile_width == request->width_px && work->tile_height == request->height_px;
+    bool in_place = is_exact && work->in_place, is_first = work->x == 0 && work->y == 0;
+    if (is_first && (is_single || in_place)) {
+        enum planes_of kept = find_kept(r, model, work, is_single);
+        if (kept < PLANES_KINDS) {
+            work->tile_width = request->width_px;
+            work->tile_height = request->height_px;
+            use(r, kept);
+            return;
+        }
+    }
+    bool is_small = (uint64_t)request->width_px * request->height_px < SMALL_PX;
+    use(r, is_single  ? is_small ? PLANES_SMALL : PLANES_WHOLE
+           : in_place ? PLANES_TILED
+                      : PLANES_APART);
+}
+
+/* --- tiles into one */
+
+/* The lists that are collected, and how many of their entries a workgroup takes (list.glsl). */
+static const struct {
+    size_t member;
+    GLuint per_group;
+} LISTS[COLLECTED_LISTS] = {
+    {offsetof(struct target, groups), 8},
+    {offsetof(struct target, edges), 32},
+    {offsetof(struct target, turns), 64},
+    {offsetof(struct target, rounded), 4},
+};
+enum { ROUNDED = 3 };
+
+void collect_begin(struct renderer *r, const struct frame_work *work)
+{
+    r->kept.model_serial = 0;
+    if (work->x == 0 && work->y == 0)
+        r->collecting = (struct collecting){.frame = work->serial};
+    else if (r->collecting.frame != work->serial)
+        r->collecting.frame = 0;
+}
+
+static GLuint list_of(const struct target *target, int k)
+{
+    GLuint name;
+    memcpy(&name, (const char *)target + LISTS[k].member, sizeof name);
+    return name;
+}
+
+/* How many pixels or groups a list has. Waits for the device. */
+static GLuint list_length(GLuint list)
+{
+    GLuint head[4];
+    glGetNamedBufferSubData(list, 0, sizeof head, head);
+    return head[3];
+}
+
+/* As list.glsl would have it. */
+static void write_head(GLuint list, GLuint n, GLuint per_group)
+{
+    GLuint groups = (n + per_group - 1) / per_group;
+    const GLuint head[4] = {groups < GROUP_ROW ? groups : GROUP_ROW,
+                            groups ? (groups - 1) / GROUP_ROW + 1 : 1, 1, n};
+    glNamedBufferSubData(list, 0, sizeof head, head);
+}
+
+void collect_tile(struct renderer *r, bool edges)
+{
+    const struct target *tile = &r->resting[PLANES_APART].target;
+    struct collecting *all = &r->collecting;
+    if (!all->frame)
+        return;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    for (int k = 0; k < (edges ? COLLECTED_LISTS : 1); k++) {
+        GLuint from = list_of(tile, k), n = list_length(from);
+        if (r->gaps.too_many || (k == ROUNDED && all->n[k] + n > ROUNDED_IN_ANY_CUT)) {
+            all->frame = 0;
+            return;
+        }
+        if (n)
+            glCopyNamedBufferSubData(from, list_of(&r->target, k), LIST_HEAD_BYTES,
+                                     LIST_HEAD_BYTES + (GLintptr)all->n[k] * LIST_BYTES,
+                                     (GLsizeiptr)n * LIST_BYTES);
+        if (n && k == ROUNDED)
+            glCopyNamedBufferSubData(tile->rounded_hits, r->target.rounded_hits, 0,
+                                     (GLintptr)all->n[k] * ROUNDED_BYTES,
+                                     (GLsizeiptr)n * ROUNDED_BYTES);
+        all->n[k] += n;
+    }
+}
+
+static struct kept view_of(const struct renderer_model *model, const struct frame_request *request)
+{
+    bool is_exact = request->surface.kind == SURFACE_EXACT;
+    return (struct kept){
+        .model_serial = model->serial,
+        .width_px = request->width_px,
+        .height_px = request->height_px,
+        .camera = request->camera,
+        .surface = request->surface,
+        .ptex = request->planes & PLANE_PTEX || !is_exact, /* polygons always write it */
+        .edges = edges_wanted(request),
+        .any_cut = is_exact,
+    };
+}
+
+void collect_end(struct renderer *r, const struct renderer_model *model,
+                 const struct frame_request *request)
+{
+    if (!r->collecting.frame)
+        return;
+    r->kept = view_of(model, request);
+    for (int k = 0; k < (r->kept.edges ? COLLECTED_LISTS : 1); k++)
+        write_head(list_of(&r->target, k), r->collecting.n[k], LISTS[k].per_group);
+    r->collecting.frame = 0;
+}
+
+void planes_keep(struct renderer *r, const struct renderer_model *model,
+                 const struct frame_request *request)
+{
+    if (is_kept(&r->kept, model, request))
+        return;
+    r->kept = view_of(model, request);
+    if (r->gaps.too_many || (r->kept.edges && list_length(r->target.rounded) > ROUNDED_IN_ANY_CUT))
+        r->kept.any_cut = false;
+}

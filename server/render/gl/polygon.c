@@ -1,0 +1,141 @@
+/* The conventional picture: polygons into the planes that stages 1 and 2 fill for the exact
+ * surface, and their edges over the shaded picture. */
+#include "server/render/gl/gpu.h"
+
+#include <math.h>
+
+#include "server/render/gl/program.h"
+
+static bool compile(struct polygons *p, struct error *error)
+{
+    if (!p->fill)
+        p->fill = program_create_single(PROGRAM_POLYGONS, error);
+    if (p->fill && !p->edges)
+        p->edges = program_create_single(PROGRAM_WIREFRAME, error);
+    return p->fill && p->edges;
+}
+
+/* The framebuffer with these colour planes of the target, and its depths. */
+static void attach(struct renderer *r, const GLuint *planes, GLsizei n)
+{
+    static const GLenum all[4] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
+                                  GL_COLOR_ATTACHMENT3};
+    GLuint framebuffer = r->polygons.framebuffer;
+    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT); /* the other stages store into these planes */
+    for (GLsizei k = 0; k < 4; k++)
+        glNamedFramebufferTexture(framebuffer, all[k], k < n ? planes[k] : 0, 0);
+    glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, r->target.seen_depth, 0);
+    glNamedFramebufferDrawBuffers(framebuffer, n, all);
+}
+
+/* No triangle of the part reaches the tile, or a pixel beside it. */
+static bool is_outside(const struct slice *slice, const struct mesh_part *part,
+                       const struct view_sides *sides)
+{
+    const struct polygon_mesh *mesh = slice->mesh;
+    const struct view *view = slice->view;
+    double world[3], camera[3], radius = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = (double)part->box_min[k], high = (double)part->box_max[k];
+        world[k] = mesh->centre[k] + 0.5 * (low + high);
+        radius = hypot(radius, 0.5 * (high - low));
+    }
+    view_transform(view, world, camera);
+    double px = view->units_per_px * (view->perspective ? fabs(camera[2]) + radius : 1);
+    /* What single precision makes of places relative to the mesh's centre and to the eye. */
+    double rounding = 1e-6 * radius;
+    for (int k = 0; k < 3; k++)
+        rounding += 1e-6 * (fabs(camera[k]) + fabs(mesh->centre[k] - view->eye[k]));
+    return view_sides_exclude(sides, camera, radius + px + rounding);
+}
+
+/* Indices of one chunk. */
+static void draw_run(struct slice *slice, uint32_t number, size_t first, size_t n)
+{
+    if (n == 0)
+        return;
+    const struct polygon_chunk *chunk = &slice->mesh->chunk[number];
+    glBindVertexArray(chunk->array);
+    glDrawElementsBaseVertex(GL_TRIANGLES, (GLsizei)n, GL_UNSIGNED_INT,
+                             (const void *)((first - chunk->of.first_index) * sizeof(uint32_t)),
+                             -(GLint)chunk->of.first_vertex);
+    slice->not_begun += n;
+    if (slice->not_begun < slice->at_once)
+        return;
+    glFlush();
+    slice->not_begun = 0;
+}
+
+/* The parts that the tile may show, those that follow each other in a chunk at once. */
+static void draw(struct slice *slice, GLuint program)
+{
+    const struct polygon_mesh *mesh = slice->mesh;
+    struct view_sides sides;
+    float centre[3];
+    uint32_t chunk = 0;
+    size_t first = 0, n = 0;
+    view_sides_init(&sides, slice->view, slice->tile);
+    for (int k = 0; k < 3; k++)
+        centre[k] = (float)(mesh->centre[k] - slice->view->eye[k]);
+    glUseProgram(program);
+    glUniform3fv(glGetUniformLocation(program, "centre"), 1, centre);
+    for (; slice->part < mesh->n_parts; slice->part++) {
+        const struct mesh_part *next = &mesh->part[slice->part];
+        if (is_outside(slice, next, &sides))
+            continue;
+        if (slice->left == 0)
+            break;
+        slice->left -= next->n < slice->left ? next->n : slice->left;
+        if (first + n != next->first || chunk != next->chunk || n >= slice->at_once) {
+            draw_run(slice, chunk, first, n);
+            chunk = next->chunk;
+            first = next->first;
+            n = 0;
+        }
+        n += next->n;
+    }
+    draw_run(slice, chunk, first, n);
+}
+
+static void attach_planes(struct renderer *r)
+{
+    const GLuint planes[4] = {r->target.hit_depth, r->target.normal, r->target.shape,
+                              r->target.ptex};
+    attach(r, planes, 4);
+}
+
+bool stage_polygons_begin(struct renderer *r, const struct tile *tile, struct error *error)
+{
+    static const GLuint no_face[4] = {UINT32_MAX, 0, 0, 0};
+    static const GLfloat nothing[4] = {0, 0, 0, 0};
+    struct polygons *p = &r->polygons;
+    if (!compile(p, error))
+        return false;
+    if (!p->framebuffer)
+        glCreateFramebuffers(1, &p->framebuffer);
+    attach_planes(r);
+    raster_begin(p->framebuffer, tile, tile);
+    for (GLint k = 0; k < 3; k++)
+        glClearBufferfv(GL_COLOR, k, nothing);
+    glClearBufferuiv(GL_COLOR, 3, no_face);
+    glClearBufferfv(GL_DEPTH, 0, nothing);
+    return gpu_check("clearing for polygons", error);
+}
+
+bool stage_polygons(struct renderer *r, struct slice *slice, struct error *error)
+{
+    attach_planes(r);
+    raster_begin(r->polygons.framebuffer, slice->tile, slice->tile);
+    draw(slice, r->polygons.fill);
+    return gpu_check("drawing polygons", error);
+}
+
+bool stage_wireframe(struct renderer *r, struct slice *slice, struct error *error)
+{
+    struct polygons *p = &r->polygons;
+    attach(r, &r->target.colour, 1);
+    raster_begin(p->framebuffer, slice->tile, slice->tile);
+    glDepthFunc(GL_EQUAL);
+    draw(slice, p->edges);
+    return gpu_check("drawing edges", error);
+}

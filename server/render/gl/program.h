@@ -1,0 +1,13 @@
+/* GL programs out of their sources. GL thread only. */
+#ifndef SHEEN_RENDER_GL_PROGRAM_H
+#define SHEEN_RENDER_GL_PROGRAM_H
+
+#include <epoxy/gl.h>
+
+#include "server/render/gl/sources.h"
+
+/* Compiles and links. 0 on failure, with the compiler's first line in the error. */
+GLuint program_create(const struct program_source *source, struct error *error);
+GLuint program_create_single(enum single_program program, struct error *error);
+
+#endif

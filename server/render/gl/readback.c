@@ -1,0 +1,177 @@
+/* From the target's images to the planes of a frame in main memory. */
+#include "server/render/gl/gpu.h"
+
+#include <math.h>
+
+/* The rows of a tile inside a plane of the whole frame. */
+struct rows {
+    char *first;
+    size_t stride, pixel;
+};
+
+static struct rows tile_rows(const struct frame *frame, int plane, const struct tile *tile)
+{
+    size_t pixel = renderer_plane_bytes((enum renderer_plane)(1 << plane));
+    size_t stride = pixel * frame->width_px;
+    char *first = (char *)frame->plane[plane] + tile->y * stride + tile->x * pixel;
+    return (struct rows){first, stride, pixel};
+}
+
+/* A part of a texture, px of the tile that was drawn. */
+static void read_part(GLuint texture, GLenum format, GLenum type, const struct tile *part,
+                      size_t bytes, void *texels)
+{
+    glGetTextureSubImage(texture, 0, (GLint)part->x, (GLint)part->y, 0, (GLsizei)part->width,
+                         (GLsizei)part->height, 1, format, type, (GLsizei)bytes, texels);
+}
+
+/* Planes that the target holds as they are read. */
+static void read_direct(GLuint texture, GLenum format, GLenum type, const struct rows *rows,
+                        uint32_t frame_width, const struct tile *part)
+{
+    glPixelStorei(GL_PACK_ROW_LENGTH, (GLint)frame_width);
+    read_part(texture, format, type, part,
+              (part->height - 1) * rows->stride + part->width * rows->pixel, rows->first);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+}
+
+static void read_four(GLuint texture, GLenum format, GLenum type, const struct tile *part,
+                      void *texels)
+{
+    read_part(texture, format, type, part, (size_t)part->width * part->height * 16, texels);
+}
+
+/* Where the ray of a pixel's centre is at a depth: world coordinates, in double. */
+static void pack_position(const float *depth, const struct view *view, const struct rows *rows,
+                          const struct tile *tile)
+{
+    for (uint32_t y = 0; y < tile->height; y++) {
+        float(*out)[3] = (float(*)[3])(void *)(rows->first + y * rows->stride);
+        for (uint32_t x = 0; x < tile->width; x++, depth++) {
+            double z = (double)*depth;
+            double px = view->units_per_px * (view->perspective ? z : 1);
+            double right = (tile->x + x + 0.5 - view->centre_px[0]) * px;
+            double down = (tile->y + y + 0.5 - view->centre_px[1]) * px;
+            for (int k = 0; k < 3; k++)
+                out[x][k] = z > 0 ? (float)(view->eye[k] + right * view->axis[0][k] +
+                                            down * view->axis[1][k] + z * view->axis[2][k])
+                                  : NAN;
+        }
+    }
+}
+
+/* Zero stands for a place without a normal (a cone's tip). */
+static bool has_normal(const float n[4])
+{
+    return n[0] != 0 || n[1] != 0 || n[2] != 0;
+}
+
+static void pack_normal(const float (*texels)[4], const float *depth, const struct rows *rows,
+                        const struct tile *tile)
+{
+    for (uint32_t y = 0; y < tile->height; y++) {
+        float(*out)[3] = (float(*)[3])(void *)(rows->first + y * rows->stride);
+        for (uint32_t x = 0; x < tile->width; x++, texels++, depth++)
+            for (int k = 0; k < 3; k++)
+                out[x][k] = *depth > 0 && has_normal(*texels) ? (*texels)[k] : NAN;
+    }
+}
+
+static void pack_ptex(const uint32_t (*texels)[4], const struct rows *rows, const struct tile *tile)
+{
+    for (uint32_t y = 0; y < tile->height; y++) {
+        uint32_t(*out)[3] = (uint32_t(*)[3])(void *)(rows->first + y * rows->stride);
+        for (uint32_t x = 0; x < tile->width; x++, texels++)
+            for (int k = 0; k < 3; k++)
+                out[x][k] = (*texels)[k];
+    }
+}
+
+static bool read_packed(struct renderer *r, const struct frame_request *request,
+                        const struct view *view, const struct tile *part, const struct tile *tile,
+                        struct frame *frame, struct error *error)
+{
+    enum { NEED_DEPTH = PLANE_POSITION | PLANE_NORMAL };
+    if (!(request->planes & (NEED_DEPTH | PLANE_PTEX)))
+        return true;
+    size_t pixels = (size_t)tile->width * tile->height, bytes = pixels * 20;
+    struct spares *spares = r->options.spares;
+    float *depth = spares_take(spares, pixels * 4);
+    void *other = spares_take(spares, pixels * 16);
+    bool ok = depth && other;
+    if (ok && request->planes & NEED_DEPTH)
+        read_part(r->target.hit_depth, GL_RED, GL_FLOAT, part, pixels * 4, depth);
+    if (ok && request->planes & PLANE_POSITION) {
+        struct rows rows = tile_rows(frame, 1, tile);
+        pack_position(depth, view, &rows, tile);
+    }
+    if (ok && request->planes & PLANE_NORMAL) {
+        struct rows rows = tile_rows(frame, 2, tile);
+        read_four(r->target.normal, GL_RGBA, GL_FLOAT, part, other);
+        pack_normal(other, depth, &rows, tile);
+    }
+    if (ok && request->planes & PLANE_PTEX) {
+        struct rows rows = tile_rows(frame, 3, tile);
+        read_four(r->target.ptex, GL_RGBA_INTEGER, GL_UNSIGNED_INT, part, other);
+        pack_ptex(other, &rows, tile);
+    }
+    spares_give(spares, depth);
+    spares_give(spares, other);
+    return ok || error_set(error, ERROR_SERVER,
+                           "out of memory: reading a tile back needs %zu bytes", bytes);
+}
+
+bool readback(struct renderer *r, const struct frame_request *request, const struct view *view,
+              const struct tile *drawn, const struct tile *tile, struct frame *frame,
+              struct error *error)
+{
+    const struct tile part = {tile->x - drawn->x, tile->y - drawn->y, tile->width, tile->height};
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    const struct {
+        int plane;
+        GLuint texture;
+        GLenum format, type;
+    } direct[] = {
+        {0, r->target.colour, GL_RGBA, GL_UNSIGNED_BYTE},
+        {4, r->target.light, GL_RG, GL_FLOAT},
+        {5, r->target.curvature, GL_RG, GL_FLOAT},
+        {6, r->target.light_change, GL_RGBA, GL_FLOAT},
+        {7, r->target.coverage, GL_RED, GL_FLOAT},
+    };
+    for (size_t i = 0; i < sizeof direct / sizeof direct[0]; i++) {
+        if (!(request->planes & 1u << direct[i].plane))
+            continue;
+        struct rows rows = tile_rows(frame, direct[i].plane, tile);
+        read_direct(direct[i].texture, direct[i].format, direct[i].type, &rows, frame->width_px,
+                    &part);
+    }
+    return read_packed(r, request, view, &part, tile, frame, error) &&
+           gpu_check("reading a frame back", error);
+}
+
+size_t renderer_plane_bytes(enum renderer_plane plane)
+{
+    switch (plane) {
+    case PLANE_COLOUR:
+    case PLANE_COVERAGE:
+        return 4;
+    case PLANE_POSITION:
+    case PLANE_NORMAL:
+    case PLANE_PTEX:
+        return 12;
+    case PLANE_LIGHT:
+    case PLANE_CURVATURE:
+        return 8;
+    case PLANE_LIGHT_CHANGE:
+        return 16;
+    }
+    return 0;
+}
+
+void frame_finish(struct frame *frame)
+{
+    canvas_give_back(frame);
+    for (int p = 0; p < PLANE_COUNT; p++)
+        spares_give(frame->spares, frame->plane[p]);
+    *frame = (struct frame){0};
+}

@@ -1,0 +1,499 @@
+/* Stage 3: the lights in the mirror. */
+#include "server/render/gl/gpu.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "protocol/srgb.h"
+#include "server/surface/vec.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* std140 block `Light` of shaders/lines.glsl. */
+struct light_block {
+    float line_eye[4], origin[4];
+    float axis_n[4], axis_u[4], axis_v[4];
+    float size[4];
+    float foreground[4], background[4], miss[4], empty[4], base[4];
+    float turn[4], wave[4];
+    float single[MAX_LINES];
+    float opacity, half_width;
+    int32_t n_single, is_hindmost, is_foremost, is_one_sided, has_direction;
+    _Alignas(16) int32_t want[4];
+};
+
+/* What a software device makes a program anew for: an image whose texels are others, or which has a
+ * side that is a power of two. */
+static uint8_t picture_kind(const struct image *pixels)
+{
+    uint32_t width = pixels->width_px, height = pixels->height_px;
+    return (uint8_t)(pixels->is_float | !(width & (width - 1)) << 1 |
+                     !(height & (height - 1)) << 2 | (width == 1 && height == 1) << 3);
+}
+
+static struct shade_key key_of(const struct frame_request *request, const struct light *light,
+                               enum shaded which)
+{
+    enum line_family family = request->lines.family;
+    const struct pattern *pattern = &light->pattern;
+    const struct renderer_image *image = pattern->kind == PATTERN_IMAGE ? pattern->image : NULL;
+    if (which == SHADED_SHARE) /* whatever the light shows */
+        return (struct shade_key){
+            .family = (uint8_t)family, .light = (uint8_t)light->kind, .which = (uint8_t)which};
+    return (struct shade_key){.family = (uint8_t)family,
+                              .light = shade_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
+                              .pattern = (uint8_t)pattern->kind,
+                              .soft = pattern->soft > 0,
+                              .picture = image ? picture_kind(image->pixels) : 0,
+                              .has_several = request->n_lights > 1,
+                              .which = (uint8_t)which};
+}
+
+/* Are there lights that a ray may miss? What is at infinity is met wherever there is a normal. */
+static bool share_wanted(const struct frame_request *request)
+{
+    bool may_miss = request->count_light && !shade_is_at_infinity(request->lines.family);
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        may_miss = may_miss && request->lights[i].kind != LIGHT_SPHERE;
+    return may_miss;
+}
+
+/* What each of the frame's lights takes, in the order of use. */
+static int kinds_of(const struct frame_request *request, enum shaded kinds[SHADED_KINDS])
+{
+    static const enum shaded closer[] = {SHADED_EDGES, SHADED_TURNS, SHADED_ROUNDED};
+    int n = 0;
+    kinds[n++] = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
+    for (size_t i = 0; edges_wanted(request) && i < sizeof closer / sizeof closer[0]; i++)
+        kinds[n++] = closer[i];
+    if (share_wanted(request))
+        kinds[n++] = SHADED_SHARE;
+    return n;
+}
+
+static bool planes_wanted(const struct frame_request *request)
+{
+    return request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE);
+}
+
+bool stage_shade_init(struct renderer *r, struct error *error)
+{
+    static const uint8_t white[4] = {255, 255, 255, 255};
+    static const GLuint nothing[3] = {0, 1, 1};
+    static const struct frame_request usual = {
+        .n_lights = 1, .lights = {{.kind = LIGHT_TUNNEL}}, .count_light = true};
+    enum shaded kinds[SHADED_KINDS];
+    for (int k = kinds_of(&usual, kinds); k-- > 0;)
+        if (!shade_programs_compile(&r->shading, key_of(&usual, &usual.lights[0], kinds[k]), error))
+            return false;
+    glCreateBuffers(1, &r->light_buffer);
+    glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
+    glCreateBuffers(1, &r->no_groups);
+    glNamedBufferStorage(r->no_groups, sizeof nothing, nothing, 0);
+    glCreateTextures(GL_TEXTURE_2D, 1, &r->blank_texture);
+    glTextureStorage2D(r->blank_texture, 1, GL_RGBA8, 1, 1);
+    glTextureSubImage2D(r->blank_texture, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    return gpu_check("the shading stage", error);
+}
+
+/* What is larger than single precision holds is as good as its largest number. */
+static float single(double value)
+{
+    return (float)fmax(-(double)FLT_MAX, fmin(value, (double)FLT_MAX));
+}
+
+static void put(struct vec v, float out[4])
+{
+    out[0] = single(v.x);
+    out[1] = single(v.y);
+    out[2] = single(v.z);
+}
+
+/* A colour as displayed, straight alpha, as the shaders mix it: linear light (IEC 61966-2-1),
+ * premultiplied. */
+static void put_colour(const float in[4], float out[4])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = in[3] * (float)srgb_to_linear((double)in[k]);
+    out[3] = in[3];
+}
+
+static struct vec get(const double a[3])
+{
+    return (struct vec){a[0], a[1], a[2]};
+}
+
+static void fill_eye(struct light_block *block, const struct frame_request *request)
+{
+    const struct camera *camera = &request->camera;
+    struct vec eye = get(request->lines.eye), view = vec_sub(get(camera->target), get(camera->eye));
+    switch (request->lines.eye_kind) {
+    case LINE_EYE_CAMERA:
+        if (camera->kind == CAMERA_PERSPECTIVE)
+            block->line_eye[3] = 1; /* and no distance from the camera's */
+        else
+            put(vec_unit(view), block->line_eye);
+        break;
+    case LINE_EYE_POINT:
+        put(vec_sub(eye, get(camera->eye)), block->line_eye);
+        block->line_eye[3] = 1;
+        break;
+    case LINE_EYE_DIRECTION:
+        put(vec_unit(eye), block->line_eye);
+        break;
+    }
+}
+
+/* `eye` here and below: the camera's, from the light's centre. */
+static void fill_plane(struct light_block *block, struct vec u, struct vec v, struct vec eye)
+{
+    struct vec m = vec_cross(u, v), n = vec_unit(m);
+    double area2 = vec_dot(m, m);
+    /* The dual basis in the plane: dual_u . u = 1, dual_u . v = 0. */
+    struct vec dual_u = vec_scale(vec_cross(v, m), 1 / area2);
+    struct vec dual_v = vec_scale(vec_cross(m, u), 1 / area2);
+    put(n, block->axis_n);
+    put(dual_u, block->axis_u);
+    put(dual_v, block->axis_v);
+    block->size[0] = (float)vec_length(u);
+    block->size[1] = (float)vec_length(v);
+    /* By the sizes as they are rounded, since the shaders divide by those. */
+    double s = (double)block->size[0] * vec_dot(dual_u, eye);
+    double t = (double)block->size[1] * vec_dot(dual_v, eye);
+    put((struct vec){s, t, vec_dot(n, eye)}, block->origin);
+}
+
+/* An axis and where azimuth about it begins: along `start`, whose part along the axis is taken
+ * away. */
+struct axis {
+    struct vec n, u, v;
+};
+
+static struct axis axis_of(struct vec axis, struct vec start)
+{
+    struct vec n = vec_unit(axis), u = vec_unit(vec_mad(start, -vec_dot(start, n), n));
+    return (struct axis){n, u, vec_cross(n, u)};
+}
+
+static void fill_axis(struct light_block *block, const struct axis *axis)
+{
+    put(axis->n, block->axis_n);
+    put(axis->u, block->axis_u);
+    put(axis->v, block->axis_v);
+}
+
+static void fill_tunnel(struct light_block *block, struct vec u, struct vec v, struct vec eye)
+{
+    struct axis axis = axis_of(v, u);
+    double radius = vec_dot(u, axis.u), x = vec_dot(eye, axis.u), y = vec_dot(eye, axis.v);
+    double away = hypot(x, y);
+    fill_axis(block, &axis);
+    block->axis_n[3] = (float)radius;
+    block->size[0] = (float)(2 * PI * radius);
+    block->size[1] = (float)vec_length(v);
+    double along = (double)block->size[1] * (vec_dot(eye, axis.n) / vec_length(v));
+    put((struct vec){x, y, along}, block->origin);
+    block->origin[3] = single((radius - away) * (radius + away));
+}
+
+static void fill_light(struct light_block *block, const struct light *light, struct vec camera_eye)
+{
+    struct vec u = get(light->u), v = get(light->v), eye = vec_sub(camera_eye, get(light->centre));
+    block->is_one_sided = light->one_sided;
+    switch (light->kind) {
+    case LIGHT_RECTANGLE:
+    case LIGHT_PLANE:
+        fill_plane(block, u, v, eye);
+        break;
+    case LIGHT_TUNNEL:
+        fill_tunnel(block, u, v, eye);
+        break;
+    case LIGHT_SPHERE: {
+        struct axis axis = axis_of(v, u);
+        fill_axis(block, &axis);
+        block->size[0] = 360;
+        block->size[1] = 180;
+        break;
+    }
+    }
+}
+
+/* The axis of families that need no light: the one given, or the camera's up. */
+static void fill_family(struct light_block *block, const struct frame_request *request)
+{
+    const struct lines *lines = &request->lines;
+    struct vec x = {1, 0, 0}, y = {0, 1, 0};
+    struct vec along = vec_unit(get(lines->has_direction ? lines->direction : request->camera.up));
+    struct axis axis = axis_of(along, fabs(along.x) < 0.999 ? x : y);
+    fill_axis(block, &axis);
+    block->has_direction = lines->has_direction;
+    bool wide = lines->family == LINES_ENVIRONMENT;
+    block->size[0] = wide ? 360 : 180;
+    block->size[1] = wide ? 180 : 360;
+}
+
+/* Phases count from the light's centre, and only their fractions matter. */
+static void fill_pattern(struct light_block *block, const struct pattern *pattern)
+{
+    double w = (double)block->size[0], h = (double)block->size[1];
+    double period = pattern->period > 0                ? pattern->period
+                    : pattern->kind == PATTERN_CIRCLES ? 0.5 * fmin(w, h) / pattern->count
+                                                       : w / pattern->count;
+    double a = 0.5 * w / period + pattern->offset, b = 0.5 * h / period + pattern->offset;
+    double angle = fmod(pattern->rotation_deg, 360) * PI / 180;
+    block->turn[0] = (float)cos(angle);
+    block->turn[1] = (float)sin(angle);
+    block->turn[2] = (float)(1 / period);
+    block->turn[3] = (float)(pattern->offset - floor(pattern->offset));
+    block->wave[0] = (float)(a - floor(a));
+    block->wave[1] = (float)(b - floor(b));
+    block->wave[2] = (float)pattern->duty;
+    block->wave[3] = (float)pattern->soft;
+    for (uint32_t i = 0; i < pattern->n_at; i++)
+        block->single[i] = (float)((pattern->at[i] - 0.5) * w);
+    block->n_single = (int32_t)pattern->n_at;
+    block->half_width = (float)(0.5 * pattern->width * w);
+    block->opacity = (float)pattern->opacity;
+    put_colour(pattern->foreground, block->foreground);
+    put_colour(pattern->background, block->background);
+}
+
+static void fill_block(struct light_block *block, const struct frame_request *request, uint32_t i)
+{
+    const struct light *light = &request->lights[i];
+    *block = (struct light_block){.is_hindmost = i + 1 == request->n_lights, .is_foremost = i == 0};
+    fill_eye(block, request);
+    if (shade_is_at_infinity(request->lines.family))
+        fill_family(block, request);
+    else
+        fill_light(block, light, get(request->camera.eye));
+    fill_pattern(block, &light->pattern);
+    put_colour(request->miss, block->miss);
+    put_colour(request->empty, block->empty);
+    put_colour(request->base, block->base);
+    block->want[0] = (request->planes & PLANE_LIGHT) != 0;
+    block->want[1] = (request->planes & PLANE_CURVATURE) != 0;
+    block->want[2] = (request->planes & PLANE_LIGHT_CHANGE) != 0;
+}
+
+void clear_shaded(const struct renderer *r, GLuint texture, GLenum format, const GLfloat *texel)
+{
+    const struct tile part = tile_within(&r->drawing.shaded, &r->drawing.place);
+    glClearTexSubImage(texture, 0, (GLint)part.x, (GLint)part.y, 0, (GLsizei)part.width,
+                       (GLsizei)part.height, 1, format, GL_FLOAT, texel);
+}
+
+/* What lies outside the groups shows no surface. */
+static void clear_planes(const struct renderer *r, const struct frame_request *request)
+{
+    static const GLfloat none[4] = {NAN, NAN, NAN, NAN};
+    static const GLfloat clear[4] = {0};
+    /* As shaders/shown.glsl has it: a clear colour is 0. */
+    bool is_clear = request->empty[3] < 0.5f / 255;
+    clear_shaded(r, r->target.colour, GL_RGBA, is_clear ? clear : request->empty);
+    if (request->planes & PLANE_LIGHT)
+        clear_shaded(r, r->target.light, GL_RG, none);
+    if (request->planes & PLANE_CURVATURE)
+        clear_shaded(r, r->target.curvature, GL_RG, none);
+    if (request->planes & PLANE_LIGHT_CHANGE)
+        clear_shaded(r, r->target.light_change, GL_RGBA, none);
+}
+
+/* Images end at the light's border, or go on round it, or repeat. */
+static GLint wrapping(bool goes_on)
+{
+    return goes_on ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+}
+
+static void bind_picture(const struct renderer *r, const struct frame_request *request,
+                         const struct light *light)
+{
+    const struct renderer_image *image = light->pattern.image;
+    glBindTextureUnit(0, image ? image->texture : r->blank_texture);
+    if (!image)
+        return;
+    enum line_family family = request->lines.family;
+    bool no_light = shade_is_at_infinity(family);
+    bool along_s = no_light ? family == LINES_ENVIRONMENT : light->kind != LIGHT_RECTANGLE;
+    bool along_t = no_light ? family == LINES_ZEBRA
+                            : light->kind == LIGHT_PLANE || light->kind == LIGHT_TUNNEL;
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S, wrapping(along_s));
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T, wrapping(along_t));
+}
+
+/* For light i of those that are drawn. */
+static void bind_lights(const struct target *target, uint32_t i)
+{
+    glBindTextureUnit(1, target->lights[~i & 1]);
+    glBindTextureUnit(2, target->missed[~i & 1]);
+    glBindImageTexture(6, target->lights[i & 1], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+    glBindImageTexture(7, target->missed[i & 1], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R16F);
+}
+
+static void bind_planes(const struct target *target, enum shaded which)
+{
+    glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
+    glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+    glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
+    glBindImageTexture(3, target->colour, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+    if (which == SHADED_PLANES) {
+        glBindImageTexture(4, target->light, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+        glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+        glBindImageTexture(6, target->light_change, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    } else {
+        glBindTextureUnit(3, target->silhouette);
+        glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
+        glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+    }
+}
+
+/* Runs a program over nothing, with all that it will find when it runs over pixels: a software
+ * device makes its code then, which takes most of a compilation. */
+static void run_over_nothing(const struct renderer *r, const struct frame_request *request,
+                             const struct light *light, struct shade_program *program)
+{
+    bind_picture(r, request, light);
+    bind_planes(&r->target, (enum shaded)program->key.which);
+    bind_lights(&r->target, 0);
+    glUseProgram(program->name);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->no_groups);
+    glDispatchComputeIndirect(0);
+    program->is_made = true;
+}
+
+bool stage_shade_prepare(struct renderer *r, const struct frame_request *request, bool *is_ready,
+                         struct error *error)
+{
+    const struct light *missing_light = NULL;
+    struct shade_key missing = {0};
+    enum shaded kinds[SHADED_KINDS];
+    int n_kinds = kinds_of(request, kinds);
+    shade_programs_begin(&r->shading);
+    /* The last one is the planes', of the foremost light. All are looked for, so that they stay. */
+    for (uint32_t i = 0; i < request->n_lights * (uint32_t)n_kinds + planes_wanted(request); i++) {
+        uint32_t of = i / (uint32_t)n_kinds;
+        bool is_planes = of == request->n_lights;
+        const struct light *light = &request->lights[is_planes ? 0 : of];
+        struct shade_key key =
+            key_of(request, light, is_planes ? SHADED_PLANES : kinds[i % (uint32_t)n_kinds]);
+        const struct shade_program *program = shade_programs_find(&r->shading, key);
+        if (program && program->is_made)
+            continue;
+        missing_light = light;
+        missing = key;
+    }
+    *is_ready = !missing_light;
+    if (*is_ready)
+        return true;
+    struct shade_program *program = shade_programs_find(&r->shading, missing);
+    if (!program)
+        program = shade_programs_compile(&r->shading, missing, error);
+    if (program)
+        run_over_nothing(r, request, missing_light, program);
+    return program;
+}
+
+/* After all covered pixels, those that stage_edges listed: their colours anew. */
+static void dispatch_listed(GLuint program, GLuint list)
+{
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+    glUseProgram(program);
+    glDispatchComputeIndirect(0);
+}
+
+/* One that stage_shade_prepare() has made. */
+static GLuint program_of(struct renderer *r, const struct frame_request *request,
+                         const struct light *light, enum shaded which)
+{
+    return shade_programs_find(&r->shading, key_of(request, light, which))->name;
+}
+
+/* Of the foremost light, whose block is in place. */
+static void shade_planes(struct renderer *r, const struct frame_request *request)
+{
+    bind_planes(&r->target, SHADED_PLANES);
+    dispatch_groups(program_of(r, request, &request->lights[0], SHADED_PLANES), r->target.groups);
+}
+
+/* The pixels that are listed, by how they are shaded. */
+static void shade_listed(struct renderer *r, const struct frame_request *request,
+                         const struct light *light)
+{
+    GLuint rounded = program_of(r, request, light, SHADED_ROUNDED);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_COMMAND_BARRIER_BIT);
+    dispatch_listed(program_of(r, request, light, SHADED_EDGES), r->target.edges);
+    dispatch_listed(program_of(r, request, light, SHADED_TURNS), r->target.turns);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
+    glProgramUniform1ui(rounded, glGetUniformLocation(rounded, "max_rounded"),
+                        target_max_rounded(&r->drawing.drawn));
+    dispatch_listed(rounded, r->target.rounded);
+}
+
+/* Beginning with as many, every pixel of a tile is one too many to look at. */
+#define SHARE_ALL_PX (1u << 18)
+enum { SHARE_STRIDE = 8 };
+
+/* Counts in a list that stage 2 is done with. */
+static void share_light(struct renderer *r, const struct frame_request *request, uint32_t i)
+{
+    static const GLuint nothing[2] = {0, 0};
+    const struct tile *inside = &r->inside;
+    GLuint program = program_of(r, request, &request->lights[i], SHADED_SHARE);
+    bool all = (uint64_t)inside->width * inside->height < SHARE_ALL_PX;
+    if (i + 1 == request->n_lights)
+        glNamedBufferSubData(r->target.unsolved, 0, sizeof nothing, nothing);
+    glProgramUniform1ui(program, glGetUniformLocation(program, "stride"), all ? 1 : SHARE_STRIDE);
+    glProgramUniform4i(program, glGetUniformLocation(program, "inside"), (GLint)inside->x,
+                       (GLint)inside->y, (GLint)inside->width, (GLint)inside->height);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.unsolved);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    dispatch_groups(program, r->target.groups);
+}
+
+void shade_read_share(const struct renderer *r, const struct frame_request *request, bool any_seen,
+                      struct frame *frame)
+{
+    GLuint counts[2] = {any_seen, any_seen};
+    if (!request->count_light)
+        return;
+    if (share_wanted(request)) {
+        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        glGetNamedBufferSubData(r->target.unsolved, 0, sizeof counts, counts);
+    }
+    frame->seen_px += counts[0];
+    frame->met_px += counts[1];
+}
+
+static void shade_light(struct renderer *r, const struct frame_request *request, uint32_t i)
+{
+    const struct light *light = &request->lights[i];
+    enum shaded all = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
+    struct light_block block;
+    fill_block(&block, request, i);
+    glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
+    bind_picture(r, request, light);
+    bind_planes(&r->target, all);
+    bind_lights(&r->target, i);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    dispatch_groups(program_of(r, request, light, all), r->target.groups);
+    if (edges_wanted(request))
+        shade_listed(r, request, light);
+    if (share_wanted(request))
+        share_light(r, request, i);
+}
+
+bool stage_shade(struct renderer *r, const struct frame_request *request, struct error *error)
+{
+    glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
+    clear_planes(r, request);
+    for (uint32_t i = request->n_lights; i-- > 0;) {
+        if (!watch_check(&r->watch, error))
+            return false;
+        shade_light(r, request, i);
+    }
+    if (planes_wanted(request))
+        shade_planes(r, request);
+    return true;
+}

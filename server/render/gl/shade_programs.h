@@ -1,0 +1,73 @@
+/* The programs of stage 3 that are kept: those used last. Private to server/render/gl; GL thread only. */
+#ifndef SHEEN_RENDER_GL_SHADE_PROGRAMS_H
+#define SHEEN_RENDER_GL_SHADE_PROGRAMS_H
+
+#include <epoxy/gl.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "server/base/error.h"
+#include "server/scene/scene.h"
+
+/* What a program of stage 3 makes: the colours of all pixels, of all by one sample each, of those
+ * listed; the planes that go with them; or the share of what is seen that the light is met on. */
+enum shaded {
+    SHADED_ALL,
+    SHADED_UNFILTERED,
+    SHADED_EDGES,
+    SHADED_TURNS,
+    SHADED_ROUNDED,
+    SHADED_PLANES,
+    SHADED_SHARE,
+    SHADED_KINDS
+};
+
+enum {
+    /* The most that one frame takes: five for each light, and one for its planes. */
+    MAX_FRAME_PROGRAMS = 5 * MAX_LIGHTS + 1,
+    /* On Mesa's software device a program takes 3.5 MB of main memory: 170 MB for all. */
+    MAX_SHADE_PROGRAMS = 48
+};
+
+/* What tells one program from another. */
+struct shade_key {
+    uint8_t family, light; /* enum line_family; enum light_kind, 0 where it plays no part */
+    uint8_t pattern, soft; /* enum pattern_kind; with soft edges */
+    uint8_t picture;       /* of PATTERN_IMAGE: what drivers make it anew for, shade.c; else 0 */
+    uint8_t which;         /* enum shaded */
+    uint8_t has_several;   /* lights: what lies behind comes from textures, others than none */
+};
+
+/* Families that need no light: one program stands for all kinds. */
+static inline bool shade_is_at_infinity(enum line_family family)
+{
+    return family == LINES_ISOPHOTE || family == LINES_ZEBRA || family == LINES_ENVIRONMENT;
+}
+
+struct shade_program {
+    struct shade_key key;
+    GLuint name;
+    bool is_made;  /* it has run: drivers make code of a program not before then */
+    uint64_t used; /* by the clock */
+};
+
+/* All zero: none. Deleted with its context. */
+struct shade_programs {
+    struct shade_program kept[MAX_SHADE_PROGRAMS];
+    int n;
+    uint64_t clock;
+};
+
+/* Another frame begins, or another tile: what is asked for from here on stays until the next
+ * beginning, MAX_FRAME_PROGRAMS at most. */
+void shade_programs_begin(struct shade_programs *programs);
+
+/* NULL where it is not kept. */
+struct shade_program *shade_programs_find(struct shade_programs *programs, struct shade_key key);
+
+/* Compiles one that is not kept, in place of the one not asked for for longest where there is no
+ * room. NULL with ERROR_DEVICE when the driver cannot. */
+struct shade_program *shade_programs_compile(struct shade_programs *programs, struct shade_key key,
+                                             struct error *error);
+
+#endif

@@ -1,0 +1,65 @@
+/* The source text of every GPU program: #define lines, then files of shaders/ in order. No GL call
+ * is made here, so the texts can be made and checked on a machine without a device. Private to
+ * server/render/gl; pure functions on constant data, any thread. */
+#ifndef SHEEN_RENDER_GL_SOURCES_H
+#define SHEEN_RENDER_GL_SOURCES_H
+
+#include "server/base/error.h"
+#include "server/render/gl/shade_programs.h"
+
+enum { PROGRAM_DEFINES_BYTES = 256, PROGRAM_MAX_FILES = 20 };
+
+/* A compute shader; or a vertex and a fragment shader. */
+struct program_source {
+    char defines[PROGRAM_DEFINES_BYTES];
+    const char *const *files[2]; /* of each shader, names that end with NULL; constant data.
+                                    files[1] NULL: a compute shader */
+};
+
+/* One shader's text as glShaderSource() takes it: part[0, n). */
+struct shader_text {
+    const char *part[2 + 2 * PROGRAM_MAX_FILES];
+    int n;
+    char line[PROGRAM_MAX_FILES][24]; /* the parts `#line 1 N`, which stand before the N-th file */
+};
+
+/* Fills the text of shader k (0 or 1) of a source. The parts point into `text` and `source`, which
+ * must both stay in place while the text is used. ERROR_DEVICE when a file is not built in. */
+bool shader_text_init(struct shader_text *text, const struct program_source *source, int k,
+                      struct error *error);
+
+/* The programs of which there is one for all models and frames. */
+enum single_program {
+    PROGRAM_GATHER,
+    PROGRAM_DOUBT,
+    PROGRAM_GAPS,
+    PROGRAM_EDGES_FIND,
+    PROGRAM_EDGES_DOUBT,
+    PROGRAM_POLYGONS,
+    PROGRAM_WIREFRAME,
+    SINGLE_PROGRAMS
+};
+struct program_source source_of_single(enum single_program program);
+
+/* The programs that read limit tables: one of each for each way of spreading the tables over buffer
+ * textures. */
+enum table_program {
+    PROGRAM_VISIBILITY,
+    PROGRAM_EVALUATE,
+    PROGRAM_UNSOLVED,
+    PROGRAM_ROUNDED,
+    PROGRAM_SILHOUETTE,
+    TABLE_PROGRAMS
+};
+struct table_layout {
+    int point_banks, node_banks, adjacency_banks;
+    size_t max_texels; /* of a buffer texture */
+    bool ptex;         /* PLANE_PTEX is written */
+};
+struct program_source source_of_tables(enum table_program program,
+                                       const struct table_layout *layout);
+
+/* The programs of stage 3: one for each key. */
+struct program_source source_of_shading(struct shade_key key);
+
+#endif

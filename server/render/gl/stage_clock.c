@@ -1,0 +1,75 @@
+/* What the stages of a tile took: by timer queries on the device, so that it never stands still
+ * between them, or by the clock, waiting for each. */
+#include "server/render/gl/gpu.h"
+
+#include <time.h>
+
+static uint64_t now_us(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
+}
+
+bool stage_clock_by_device(const struct renderer *r)
+{
+    GLint bits = 0;
+    glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
+    /* Those of llvmpipe leave the vertex stage out. */
+    return bits >= 32 && (!r->egl.software || r->options.device_times);
+}
+
+void stage_clock_init(struct renderer *r)
+{
+    if (r->info.timed_by_device)
+        glCreateQueries(GL_TIMESTAMP, 2 * MAX_CLOCKED_STAGES, &r->clock.mark[0][0]);
+}
+
+void stage_clock_begin(struct renderer *r)
+{
+    r->clock.n = 0;
+    r->clock.since_us = now_us();
+}
+
+void stage_clock_start(struct renderer *r)
+{
+    if (r->info.timed_by_device)
+        glQueryCounter(r->clock.mark[r->clock.n][0], GL_TIMESTAMP);
+}
+
+bool stage_clock_end(struct renderer *r, uint64_t *stage)
+{
+    if (!r->info.timed_by_device)
+        return stage_clock_wait(r, stage);
+    glQueryCounter(r->clock.mark[r->clock.n][1], GL_TIMESTAMP);
+    r->clock.stage[r->clock.n++] = stage;
+    return true;
+}
+
+bool stage_clock_wait(struct renderer *r, uint64_t *stage)
+{
+    bool ok = renderer_wait(r);
+    uint64_t now = now_us();
+    *stage += now - r->clock.since_us;
+    r->clock.since_us = now;
+    return ok;
+}
+
+bool stage_clock_read(struct renderer *r)
+{
+    uint64_t waited = 0;
+    if (!r->info.timed_by_device)
+        return true;
+    if (!stage_clock_wait(r, &waited))
+        return false;
+    for (int i = 0; i < r->clock.n; i++) {
+        GLuint64 ns[2] = {0, 0};
+        for (int k = 0; k < 2; k++)
+            glGetQueryObjectui64v(r->clock.mark[i][k], GL_QUERY_RESULT, &ns[k]);
+        /* To the next microsecond: a stage that ran took time. */
+        if (ns[1] > ns[0])
+            *r->clock.stage[i] += (ns[1] - ns[0] + 999) / 1000;
+    }
+    r->clock.n = 0;
+    return true;
+}

@@ -1,0 +1,155 @@
+/* Stage 1: grids over the chosen pieces into the visibility buffer. */
+#include "server/render/gl/gpu.h"
+
+#include <stdlib.h>
+
+/* So many cells are drawn by other threads, where the device is software, while this one goes on.
+ */
+static const size_t FLUSH_CELLS = 16384;
+
+/* A grid's cells along u and v. */
+static uint32_t cells_along(int grid, int side)
+{
+    return piece_cells[side ? grid % PIECE_SIDES : grid / PIECE_SIDES];
+}
+
+/* Pieces drawn by one instance: about as many cells in each. */
+static uint32_t pieces_per_instance(int grid)
+{
+    uint32_t cells = cells_along(grid, 0) * cells_along(grid, 1);
+    return cells < 256 ? 256 / cells : 1;
+}
+
+static uint32_t indices_per_instance(int grid)
+{
+    return 6 * cells_along(grid, 0) * cells_along(grid, 1) * pieces_per_instance(grid);
+}
+
+/* Two triangles for each cell of a piece's vertices, which start at `first`. */
+static uint32_t *fill_indices(uint32_t *index, int grid, uint32_t first)
+{
+    uint32_t across = cells_along(grid, 0), down = cells_along(grid, 1);
+    for (uint32_t y = 0; y < down; y++) {
+        for (uint32_t x = 0; x < across; x++) {
+            uint32_t a = first + y * (across + 1) + x, b = a + across + 1;
+            const uint32_t corners[6] = {a, a + 1, b, b, a + 1, b + 1};
+            for (int k = 0; k < 6; k++)
+                *index++ = corners[k];
+        }
+    }
+    return index;
+}
+
+bool stage_visibility_init(struct renderer *r, struct error *error)
+{
+    size_t n = 0;
+    for (int g = 0; g < PIECE_GRIDS; g++) {
+        r->grid_first[g] = n;
+        n += indices_per_instance(g);
+    }
+    uint32_t *index = malloc(n * sizeof *index), *at = index;
+    if (!index)
+        return error_set(error, ERROR_SERVER, "out of memory");
+    for (int g = 0; g < PIECE_GRIDS; g++)
+        for (uint32_t k = 0; k < pieces_per_instance(g); k++)
+            at = fill_indices(at, g, k * (cells_along(g, 0) + 1) * (cells_along(g, 1) + 1));
+    glCreateBuffers(1, &r->grid_buffer);
+    glNamedBufferStorage(r->grid_buffer, (GLsizeiptr)(n * sizeof *index), index, 0);
+    free(index);
+    glCreateVertexArrays(1, &r->vertex_array);
+    glVertexArrayElementBuffer(r->vertex_array, r->grid_buffer);
+    glCreateBuffers(1, &r->piece_buffer);
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &r->piece_texture);
+    return gpu_check("the grids", error);
+}
+
+/* Pieces [first, first + n) of those on the device, all of one grid. */
+static void draw_pieces(const struct renderer *r, GLuint program, int grid, size_t first, size_t n)
+{
+    uint32_t per_instance = pieces_per_instance(grid);
+    glUniform2i(glGetUniformLocation(program, "grid"), (GLint)cells_along(grid, 0),
+                (GLint)cells_along(grid, 1));
+    glUniform1i(glGetUniformLocation(program, "first_piece"), (GLint)first);
+    glUniform1i(glGetUniformLocation(program, "n_pieces"), (GLint)n);
+    glUniform1i(glGetUniformLocation(program, "pieces_per_instance"), (GLint)per_instance);
+    glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)indices_per_instance(grid), GL_UNSIGNED_INT,
+                            (const void *)(r->grid_first[grid] * sizeof(uint32_t)),
+                            (GLsizei)((n + per_instance - 1) / per_instance));
+}
+
+static size_t cut(size_t i, size_t low, size_t high)
+{
+    return i < low ? low : i < high ? i : high;
+}
+
+/* Pieces [begin, end), at most as many as a buffer texture holds. */
+static void draw_range(struct renderer *r, GLuint program, size_t begin, size_t end)
+{
+    const struct pieces *pieces = &r->pieces;
+    size_t cells = 0, piece_bytes = sizeof *pieces->piece; /* a power of two */
+    glNamedBufferData(r->piece_buffer, (GLsizeiptr)(no_power_of_two(end - begin) * piece_bytes),
+                      NULL, GL_STREAM_DRAW);
+    glNamedBufferSubData(r->piece_buffer, 0, (GLsizeiptr)((end - begin) * piece_bytes),
+                         pieces->piece + begin);
+    glTextureBuffer(r->piece_texture, GL_RGBA32UI, r->piece_buffer);
+    for (int g = 0; g < PIECE_GRIDS; g++) {
+        size_t first = cut(pieces->first[g], begin, end);
+        size_t n = cut(pieces->first[g + 1], begin, end) - first;
+        if (!n)
+            continue;
+        draw_pieces(r, program, g, first - begin, n);
+        cells += n * cells_along(g, 0) * cells_along(g, 1);
+        if (cells > FLUSH_CELLS) {
+            glFlush();
+            cells = 0;
+        }
+    }
+}
+
+void raster_begin(GLuint framebuffer, const struct tile *place, const struct tile *drawn)
+{
+    const struct tile part = tile_within(drawn, place);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, (GLsizei)place->width, (GLsizei)place->height);
+    glScissor((GLint)part.x, (GLint)part.y, (GLsizei)part.width, (GLsizei)part.height);
+    glEnable(GL_SCISSOR_TEST);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GREATER);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+}
+
+/* What stage 1 draws on; and what stage 2 leaves alone where nothing is seen, since a framebuffer
+ * is cleared by all of a software device's threads. */
+static void clear(const struct renderer *r, bool want_ptex)
+{
+    static const GLenum planes[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                                     GL_COLOR_ATTACHMENT2};
+    static const GLuint none[4] = {UINT32_MAX, 0, 0, 0};
+    static const GLfloat nothing[4] = {0, 0, 0, 0}; /* a depth of 0 is farthest: reversed */
+    GLuint framebuffer = r->target.framebuffer;
+    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
+    glNamedFramebufferDrawBuffers(framebuffer, want_ptex ? 3 : 2, planes);
+    glClearBufferuiv(GL_COLOR, 0, none);
+    glClearBufferfv(GL_COLOR, 1, nothing);
+    if (want_ptex)
+        glClearBufferuiv(GL_COLOR, 2, none);
+    glClearBufferfv(GL_DEPTH, 0, nothing);
+    glNamedFramebufferDrawBuffers(framebuffer, 1, planes);
+}
+
+void stage_visibility(struct renderer *r, const struct renderer_model *model,
+                      const struct table_programs *programs)
+{
+    raster_begin(r->target.framebuffer, &r->drawing.place, &r->drawing.drawn);
+    clear(r, programs->ptex);
+    GLuint program = programs->visibility;
+    glUseProgram(program);
+    banks_bind(&model->nodes, banks_bind(&model->points, 0));
+    glBindTextureUnit((GLuint)(model->points.n + model->nodes.n + model->adjacency.n),
+                      r->piece_texture);
+    glBindVertexArray(r->vertex_array);
+    size_t n = r->pieces.first[PIECE_GRIDS], most = r->info.max_texels;
+    for (size_t begin = 0; begin < n; begin += most)
+        draw_range(r, program, begin, n - begin < most ? n : begin + most);
+}

@@ -1,0 +1,481 @@
+#include "server/render/patch_grids.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/surface/bound.h"
+#include "server/surface/evaluate.h"
+#include "server/surface/vec.h"
+
+/* How far a triangle may be from the surface, px. Stage 2 mends the rest. */
+static const double TOLERANCE_PX = 0.5;
+/* Pieces are cut in four at most this often: 2^20 squares across a face. */
+enum { MAX_DEPTH = 20 };
+/* Grid vertices of a tile: what a software device draws in a few seconds, and many times what a
+ * million faces need. */
+static const uint64_t MAX_VERTICES = 24000000;
+/* The coordinates s and t of a guess, each from 0 to 2, are stored in so many steps. */
+enum { GUESS_STEPS = 8191 };
+
+const uint8_t piece_cells[PIECE_SIDES] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+
+/* What choosing needs at every turn. */
+struct chooser {
+    struct pieces *out;
+    const struct limit_tables *tables;
+    const struct view *view;
+    struct view_sides sides; /* the tile's */
+    const struct tile *tile;
+    bool guesses;       /* are asked for, not pieces */
+    size_t first_guess; /* of these */
+    uint32_t blocks[2]; /* of the tile: across and down */
+    size_t n_chosen;
+    uint64_t n_vertices;
+    bool no_memory;
+};
+
+/* The part of the surface under consideration: a sphere in camera space and how much it bends. */
+struct extent {
+    double centre[3];
+    struct limit_bound bound;
+};
+
+static bool is_outside(const struct chooser *c, const struct extent *e)
+{
+    return view_sides_exclude(&c->sides, e->centre, e->bound.radius);
+}
+
+/* How many px a length can span at the extent's nearest depth. */
+static double in_px(const struct chooser *c, const struct extent *e, double length)
+{
+    double z = fmax(e->centre[2] - e->bound.radius, c->view->near);
+    return length / (c->view->perspective ? z * c->view->units_per_px : c->view->units_per_px);
+}
+
+/* A coordinate of the picture as a block of the tile, cut to it. */
+static uint32_t block_at(const struct chooser *c, int k, double px)
+{
+    double origin = k ? c->tile->y : c->tile->x;
+    double block = floor((px - origin) / COVER_BLOCK_PX);
+    return (uint32_t)fmin(fmax(block, 0), c->blocks[k] - 1);
+}
+
+/* Marks the blocks under a sphere's outline. */
+static void cover(struct chooser *c, const struct extent *e)
+{
+    double nearest = e->centre[2] - e->bound.radius, farthest = e->centre[2] + e->bound.radius;
+    bool whole = c->view->perspective && nearest <= 0;
+    uint32_t first[2], last[2];
+    for (int k = 0; k < 2; k++) {
+        double low = e->centre[k] - e->bound.radius, high = e->centre[k] + e->bound.radius;
+        if (c->view->perspective) {
+            low = fmin(low / nearest, low / farthest);
+            high = fmax(high / nearest, high / farthest);
+        }
+        /* A pixel more on either side: stage 2 looks at neighbours. */
+        low = low / c->view->units_per_px + c->view->centre_px[k] - 2;
+        high = high / c->view->units_per_px + c->view->centre_px[k] + 2;
+        first[k] = whole ? 0 : block_at(c, k, low);
+        last[k] = whole ? c->blocks[k] - 1 : block_at(c, k, high);
+    }
+    for (uint32_t y = first[1]; y <= last[1]; y++)
+        memset(c->out->is_covered + (size_t)y * c->blocks[0] + first[0], 1, last[0] - first[0] + 1);
+}
+
+static bool grow(struct pieces *out)
+{
+    size_t capacity = out->piece_capacity ? 2 * out->piece_capacity : 4096;
+    struct piece *piece = realloc(out->piece, capacity * sizeof *piece);
+    if (piece)
+        out->piece = piece;
+    struct piece *chosen = realloc(out->chosen, capacity * sizeof *chosen);
+    if (chosen)
+        out->chosen = chosen;
+    if (piece && chosen)
+        out->piece_capacity = capacity;
+    return piece && chosen;
+}
+
+/* The middle of a piece, for pieces_guess(). */
+static void add_guess(struct chooser *c, const struct piece *piece, const struct extent *extent)
+{
+    struct pieces *out = c->out;
+    if (c->no_memory || out->n_guesses - c->first_guess > MAX_GUESSES)
+        return;
+    if (out->n_guesses == out->guess_capacity) {
+        size_t capacity = out->guess_capacity ? 2 * out->guess_capacity : 1024;
+        struct guess *guess = realloc(out->guess, capacity * sizeof *guess);
+        c->no_memory = !guess;
+        if (!guess)
+            return;
+        out->guess = guess;
+        out->guess_capacity = capacity;
+    }
+    unsigned square = piece->where >> 6 & 3;
+    double size = ldexp(1, -(int)(piece->where >> 8));
+    double s = (square == 1 || square == 2) + (piece->x + 0.5) * size;
+    double t = (square >= 2) + (piece->y + 0.5) * size;
+    out->guess[out->n_guesses++] = (struct guess){
+        .node = piece->node,
+        .where = (piece->where & 63) | (uint32_t)lround(s / 2 * GUESS_STEPS) << 6 |
+                 (uint32_t)lround(t / 2 * GUESS_STEPS) << 19,
+        .depth = (float)fmax(extent->centre[2], c->view->near),
+    };
+}
+
+static void emit(struct chooser *c, unsigned grid, struct piece piece, const struct extent *extent)
+{
+    struct pieces *out = c->out;
+    if (c->guesses) {
+        add_guess(c, &piece, extent);
+        return;
+    }
+    c->n_vertices +=
+        (piece_cells[grid / PIECE_SIDES] + 1u) * (piece_cells[grid % PIECE_SIDES] + 1u);
+    if (c->n_vertices > MAX_VERTICES || c->no_memory)
+        return;
+    cover(c, extent);
+    if (c->n_chosen == out->piece_capacity && !grow(out)) {
+        c->no_memory = true;
+        return;
+    }
+    piece.where |= grid << 16;
+    out->chosen[c->n_chosen++] = piece;
+    out->first[grid + 1]++;
+}
+
+/* A counting sort of what has been chosen. */
+static void sort_by_grid(struct chooser *c)
+{
+    struct pieces *out = c->out;
+    size_t next[PIECE_GRIDS];
+    for (int g = 0; g < PIECE_GRIDS; g++) {
+        next[g] = out->first[g];
+        out->first[g + 1] += out->first[g];
+    }
+    for (size_t i = 0; i < c->n_chosen; i++)
+        out->piece[next[out->chosen[i].where >> 16]++] = out->chosen[i];
+}
+
+/* The B-spline points of [a, b] of a segment on [0, 1]: blossoms at the finer knots. */
+static void restrict_segment(const struct vec *p, int stride, double a, double b, struct vec out[4])
+{
+    double h = b - a;
+    const double knots[4][3] = {
+        {a - 2 * h, a - h, a}, {a - h, a, b}, {a, b, b + h}, {b, b + h, b + 2 * h}};
+    for (int i = 0; i < 4; i++) {
+        double r = knots[i][0], s = knots[i][1], t = knots[i][2];
+        struct vec q[3], e[2];
+        for (int k = 0; k < 3; k++) {
+            double w = (r + 2 - k) / 3;
+            q[k] = vec_mad(vec_scale(p[k * stride], 1 - w), w, p[(k + 1) * stride]);
+        }
+        for (int k = 0; k < 2; k++) {
+            double w = (s + 1 - k) / 2;
+            e[k] = vec_mad(vec_scale(q[k], 1 - w), w, q[k + 1]);
+        }
+        out[i] = vec_mad(vec_scale(e[0], 1 - t), t, e[1]);
+    }
+}
+
+/* The 16 points of the patch that a piece is part of, in the node's frame, world units. */
+static void patch_points(const struct limit_tables *tables, const struct piece *piece,
+                         struct vec grid[16])
+{
+    const struct limit_node *node = &tables->nodes[piece->node];
+    int level = piece->where & 63;
+    unsigned square = piece->where >> 6 & 3;
+    struct limit_patch patch;
+    /* A place in its middle; the rest of a STRIP comes after all levels. */
+    bool rest = node->kind == LIMIT_STRIP && !square;
+    double x = square == 1 || square == 2 ? 1.5 : 0.5, y = square >= 2 ? 1.5 : 0.5;
+    limit_patch_of_level(&patch, tables, node, rest ? level + 1 : level, ldexp(x, -level),
+                         ldexp(y, -level));
+    limit_patch_points(&patch, grid);
+}
+
+static struct extent square_extent(const struct chooser *c, const struct piece *piece,
+                                   const struct vec patch[16])
+{
+    double size = ldexp(1, -(int)(piece->where >> 8));
+    double x = piece->x * size, y = piece->y * size;
+    struct vec rows[16], grid[16], middle = {0, 0, 0};
+    for (int j = 0; j < 4; j++)
+        restrict_segment(patch + 4 * j, 1, x, x + size, rows + 4 * j);
+    for (int i = 0; i < 4; i++) {
+        struct vec column[4];
+        restrict_segment(rows + i, 4, y, y + size, column);
+        for (int j = 0; j < 4; j++)
+            grid[4 * j + i] = column[j];
+    }
+    for (int k = 0; k < 16; k++)
+        middle = vec_mad(middle, 1.0 / 16, grid[k]);
+    for (int k = 0; k < 16; k++)
+        grid[k] = vec_sub(grid[k], middle);
+    const struct limit_node *node = &c->tables->nodes[piece->node];
+    struct limit_bound bound = bound_of_grid(grid, 4, false, true);
+    if (!c->view->perspective) {
+        /* What runs along the view does not show. */
+        struct vec forward = {c->view->axis[2][0], c->view->axis[2][1], c->view->axis[2][2]};
+        for (int k = 0; k < 16; k++) {
+            struct vec p = limit_frame_to_world(c->tables, node, grid[k]);
+            grid[k] = vec_mad(p, -vec_dot(p, forward), forward);
+        }
+        struct limit_bound plain = bound_of_grid(grid, 4, false, false);
+        if (bound_bend(&plain) < bound_bend(&bound))
+            bound = plain;
+    }
+    struct vec at = limit_frame_to_world(c->tables, node, middle);
+    const double world[3] = {node->origin[0] + at.x, node->origin[1] + at.y,
+                             node->origin[2] + at.z};
+    struct extent extent = {.bound = bound};
+    view_transform(c->view, world, extent.centre);
+    return extent;
+}
+
+static void choose_square(struct chooser *c, struct piece piece, const struct extent *extent);
+
+/* Too large for the finest grid: four quarters, each with its own bounds. */
+static void choose_quarters(struct chooser *c, struct piece piece)
+{
+    struct vec patch[16];
+    patch_points(c->tables, &piece, patch);
+    for (uint32_t i = 0; i < 4; i++) {
+        struct piece quarter = {piece.node, piece.where + (1u << 8), 2 * piece.x + (i & 1),
+                                2 * piece.y + (i >> 1)};
+        struct extent extent = square_extent(c, &quarter, patch);
+        choose_square(c, quarter, &extent);
+    }
+}
+
+/* The grid of fewest cells whose triangles stray no more than an eighth of `allowed`. False when
+ * the finest do. */
+static bool find_grid(const struct limit_bound *bound, double allowed, unsigned *grid)
+{
+    double u = bound->u / allowed, mixed = bound->mixed / allowed, v = bound->v / allowed;
+    double border_u = bound->border_u / allowed, border_v = bound->border_v / allowed;
+    unsigned fewest = UINT_MAX;
+    for (unsigned i = 0; i < PIECE_SIDES && piece_cells[i] < fewest; i++) {
+        double m = piece_cells[i], left = 1 - u / (m * m);
+        if (left <= 0 || border_u > m * m)
+            continue;
+        /* v / n^2 + 2 mixed / (m n) = left */
+        double n =
+            fmax((mixed / m + sqrt(mixed / m * (mixed / m) + left * v)) / left, sqrt(border_v));
+        unsigned k = 0;
+        while (k < PIECE_SIDES && piece_cells[k] < n)
+            k++;
+        if (k == PIECE_SIDES || piece_cells[i] * piece_cells[k] >= fewest)
+            continue;
+        fewest = piece_cells[i] * piece_cells[k];
+        *grid = i * PIECE_SIDES + k;
+    }
+    return fewest < UINT_MAX;
+}
+
+static void choose_square(struct chooser *c, struct piece piece, const struct extent *extent)
+{
+    if (is_outside(c, extent) || c->n_vertices > MAX_VERTICES)
+        return;
+    double allowed = 8 * TOLERANCE_PX / in_px(c, extent, 1);
+    unsigned grid = 0;
+    if (bound_bend(&extent->bound) <= allowed ||
+        (!c->guesses && find_grid(&extent->bound, allowed, &grid)))
+        emit(c, grid, piece, extent);
+    else if (piece.where >> 8 < MAX_DEPTH)
+        choose_quarters(c, piece);
+    else
+        emit(c, PIECE_GRIDS - 1, piece, extent);
+}
+
+static void choose_regular(struct chooser *c, uint32_t node)
+{
+    struct extent extent = {.bound = c->tables->bounds[c->tables->bound_first[node]]};
+    view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
+    choose_square(c, (struct piece){node, 0, 0, 0}, &extent);
+}
+
+/* One quad for the whole where that is flat enough, else a piece for each patch across the crease.
+ */
+static void choose_strip(struct chooser *c, uint32_t node)
+{
+    const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
+    uint32_t levels = c->tables->nodes[node].levels;
+    struct extent extent = {.bound = *bounds};
+    view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
+    if (is_outside(c, &extent))
+        return;
+    if (in_px(c, &extent, bound_bend(&extent.bound)) <= 8 * TOLERANCE_PX) {
+        emit(c, 0, (struct piece){node, 0, 0, 0}, &extent);
+        return;
+    }
+    for (uint32_t n = 1; n <= levels + 1; n++) {
+        extent.bound = bounds[n];
+        uint32_t where = n <= levels ? n | 3u << 6 : levels;
+        choose_square(c, (struct piece){node, where, 0, 0}, &extent);
+    }
+}
+
+/* Rings from the outside in, until one quad stands for all that is left: it is as small as the
+ * tolerance, or bends so little. (The ring's net spans two units each way, so its bend counts four
+ * times; the rings inside it add their own, a geometric series.) */
+static void choose_corner(struct chooser *c, uint32_t node)
+{
+    const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
+    struct extent extent;
+    view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
+    uint32_t level = 0, levels = c->tables->nodes[node].levels & ~LIMIT_NO_NORMAL;
+    for (; level < levels; level++) {
+        extent.bound = bounds[level];
+        if (is_outside(c, &extent))
+            return;
+        if (in_px(c, &extent, extent.bound.radius) < TOLERANCE_PX ||
+            in_px(c, &extent, bound_bend(&extent.bound)) < TOLERANCE_PX)
+            break;
+        for (uint32_t square = 1; square <= 3; square++)
+            choose_square(c, (struct piece){node, (level + 1) | square << 6, 0, 0}, &extent);
+    }
+    emit(c, 0, (struct piece){node, level, 0, 0}, &extent);
+}
+
+static void choose_node(struct chooser *c, uint32_t node)
+{
+    switch (c->tables->nodes[node].kind) {
+    case LIMIT_REGULAR:
+        choose_regular(c, node);
+        break;
+    case LIMIT_CORNER:
+        choose_corner(c, node);
+        break;
+    case LIMIT_STRIP:
+        choose_strip(c, node);
+        break;
+    }
+}
+
+static void choose_cluster(struct chooser *c, const struct clusters *clusters, size_t k)
+{
+    const struct cluster *cluster = &clusters->cluster[k];
+    double centre[3];
+    view_transform(c->view, cluster->centre, centre);
+    if (cluster->radius < 0 || view_sides_exclude(&c->sides, centre, cluster->radius))
+        return;
+    size_t end = (k + 1) * CLUSTER_NODES, n = c->tables->n_nodes;
+    for (size_t node = k * CLUSTER_NODES; node < (end < n ? end : n); node++)
+        choose_node(c, (uint32_t)node);
+}
+
+static bool reserve_blocks(struct chooser *c, struct error *error)
+{
+    struct pieces *out = c->out;
+    c->blocks[0] = (c->tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    c->blocks[1] = (c->tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
+    memset(out->first, 0, sizeof out->first);
+    size_t n = (size_t)c->blocks[0] * c->blocks[1];
+    if (n > out->block_capacity) {
+        free(out->block);
+        free(out->is_covered);
+        out->block = malloc(n * sizeof *out->block);
+        out->is_covered = malloc(n);
+        out->block_capacity = out->block && out->is_covered ? n : 0;
+        if (!out->block_capacity)
+            return error_set(error, ERROR_SERVER, "out of memory for the blocks of a frame");
+    }
+    memset(out->is_covered, 0, n);
+    return true;
+}
+
+static void list_blocks(struct chooser *c)
+{
+    const uint8_t *covered = c->out->is_covered;
+    c->out->n_blocks = 0;
+    for (uint32_t y = 0; y < c->blocks[1]; y++)
+        for (uint32_t x = 0; x < c->blocks[0]; x++)
+            if (*covered++)
+                c->out->block[c->out->n_blocks++] = x | y << 16;
+}
+
+/* All that the tile may show. */
+static bool choose_all(struct chooser *c, const struct clusters *clusters, struct error *error)
+{
+    view_sides_init(&c->sides, c->view, c->tile);
+    for (size_t k = 0; k < clusters->n; k++)
+        choose_cluster(c, clusters, k);
+    if (c->no_memory)
+        return error_set(error, ERROR_SERVER, "out of memory for the pieces of a frame");
+    if (c->n_vertices > MAX_VERTICES)
+        return error_set(error, ERROR_REQUEST,
+                         "camera: the view would take more than %llu grid vertices: move it away "
+                         "from the model, or make the picture smaller",
+                         (unsigned long long)MAX_VERTICES);
+    return true;
+}
+
+bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
+                   const struct clusters *clusters, const struct view *view,
+                   const struct tile *tile, struct error *error)
+{
+    struct chooser c = {.out = pieces, .tables = tables, .view = view, .tile = tile};
+    if (!reserve_blocks(&c, error) || !choose_all(&c, clusters, error))
+        return false;
+    sort_by_grid(&c);
+    list_blocks(&c);
+    return true;
+}
+
+bool pieces_guess(struct pieces *pieces, const struct limit_tables *tables,
+                  const struct clusters *clusters, const struct view *view, const struct tile *tile,
+                  struct error *error)
+{
+    struct chooser c = {.out = pieces,
+                        .tables = tables,
+                        .view = view,
+                        .tile = tile,
+                        .guesses = true,
+                        .first_guess = pieces->n_guesses};
+    if (!choose_all(&c, clusters, error))
+        return false;
+    if (pieces->n_guesses - c.first_guess > MAX_GUESSES)
+        pieces->n_guesses = c.first_guess;
+    return true;
+}
+
+void pieces_move_blocks(struct pieces *pieces, uint32_t x, uint32_t y)
+{
+    for (size_t i = 0; i < pieces->n_blocks; i++)
+        pieces->block[i] += x | y << 16;
+}
+
+void pieces_cut_blocks(struct pieces *pieces, const struct tile *part)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < pieces->n_blocks; i++) {
+        uint32_t block = pieces->block[i];
+        uint32_t x = (block & 0xffff) * COVER_BLOCK_PX, y = (block >> 16) * COVER_BLOCK_PX;
+        if (x >= part->x && x < part->x + part->width && y >= part->y && y < part->y + part->height)
+            pieces->block[n++] = block;
+    }
+    pieces->n_blocks = n;
+}
+
+bool pieces_cover_all(struct pieces *pieces, const struct tile *tile, struct error *error)
+{
+    struct chooser c = {.out = pieces, .tile = tile};
+    if (!reserve_blocks(&c, error))
+        return false;
+    memset(pieces->is_covered, 1, (size_t)c.blocks[0] * c.blocks[1]);
+    list_blocks(&c);
+    return true;
+}
+
+void pieces_finish(struct pieces *pieces)
+{
+    free(pieces->piece);
+    free(pieces->chosen);
+    free(pieces->block);
+    free(pieces->is_covered);
+    free(pieces->guess);
+    *pieces = (struct pieces){0};
+}

@@ -1,0 +1,55 @@
+/* The camera in double precision, and as the shaders see it. Pure. */
+#ifndef SHEEN_RENDER_VIEW_H
+#define SHEEN_RENDER_VIEW_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "server/render/renderer.h"
+
+/* A rectangle of the picture, px. */
+struct tile {
+    uint32_t x, y, width, height;
+};
+
+/* Camera space: x right, y down, z forward from the eye (shaders/view.glsl). */
+struct view {
+    double eye[3];
+    double axis[3][3]; /* right, down, forward: orthonormal, world */
+    bool perspective;
+    double units_per_px; /* orthographic: everywhere; perspective: at depth 1 */
+    double centre_px[2]; /* where the axis meets the picture */
+    double near, far;    /* depths that the picture holds */
+    uint32_t width_px, height_px;
+};
+
+/* std140 block `View` of shaders/view.glsl. */
+struct view_block {
+    double eye[4];
+    float axis[3][4];
+    float ray[4];
+    float clip[4];
+    float depth[4];
+    int32_t tile[4];
+};
+
+/* The request has been checked. The box bounds what is drawn and sets near and far. */
+void view_init(struct view *view, const struct camera *camera, uint32_t width_px,
+               uint32_t height_px, const double box_min[3], const double box_max[3]);
+void view_block_fill(struct view_block *block, const struct view *view, const struct tile *tile);
+
+/* World to camera space. */
+void view_transform(const struct view *view, const double world[3], double camera[3]);
+
+/* What a tile may show: the camera space between four planes, from the nearest depth on. */
+struct view_sides {
+    double side[4][3]; /* unit inward normals */
+    double offset[4];  /* signed distance = side . p + offset */
+    double near;
+};
+
+void view_sides_init(struct view_sides *sides, const struct view *view, const struct tile *tile);
+/* Does a sphere in camera space lie outside? */
+bool view_sides_exclude(const struct view_sides *sides, const double centre[3], double radius);
+
+#endif

@@ -1,0 +1,49 @@
+#include "server/sandbox/threads.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define ATTEMPTS 50000
+#define NAP_NS 200000
+
+/* A thread that has ended meanwhile is idle as well. */
+static bool is_idle(const char *thread)
+{
+    char path[64], line[512];
+    snprintf(path, sizeof path, "/proc/self/task/%.20s/stat", thread);
+    FILE *file = fopen(path, "re");
+    if (!file)
+        return true;
+    const char *end = fgets(line, sizeof line, file) ? strrchr(line, ')') : NULL;
+    fclose(file);
+    return !end || end[1] != ' ' || end[2] == 'S';
+}
+
+static bool all_idle(void)
+{
+    DIR *threads = opendir("/proc/self/task");
+    bool idle = threads != NULL;
+    for (const struct dirent *entry; idle && (entry = readdir(threads));)
+        idle = entry->d_name[0] == '.' || strtol(entry->d_name, NULL, 10) == gettid() ||
+               is_idle(entry->d_name);
+    if (threads)
+        closedir(threads);
+    return idle;
+}
+
+bool threads_wait_idle(void)
+{
+    const struct timespec nap = {.tv_nsec = NAP_NS};
+    for (int i = 0; i < ATTEMPTS; i++) {
+        if (all_idle())
+            return true;
+        nanosleep(&nap, NULL);
+    }
+    errno = ETIMEDOUT;
+    return false;
+}

@@ -1,0 +1,245 @@
+#include "server/sandbox/zygote.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "server/sandbox/sandbox.h"
+#include "server/sandbox/threads.h"
+
+#define ANSWER_FD 3
+
+struct child {
+    pid_t pid;
+    int end_fd;
+    uint64_t deadline_ms;
+    bool timed_out;
+};
+
+struct zygote {
+    const char *name;
+    const struct zygote_task *tasks;
+    int signal_fd;
+    pid_t pid;
+    uint64_t held_bytes;
+    size_t n_children;
+    struct child children[ZYGOTE_MAX_CHILDREN];
+};
+
+static uint64_t now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000 + (uint64_t)now.tv_nsec / 1000000;
+}
+
+/* --- the child */
+
+/* Ends the process when it cannot begin: nobody has read anything yet. */
+static void fail_child(const struct zygote *zygote, const char *what, int code)
+{
+    fprintf(stderr, "%s: %s: %s\n", zygote->name, what, strerror(errno));
+    _exit(code);
+}
+
+/* Of all descriptors only the answer, as ANSWER_FD, and standard error stay. */
+static bool keep_answer(int answer_fd)
+{
+    return (answer_fd == ANSWER_FD || dup2(answer_fd, ANSWER_FD) == ANSWER_FD) &&
+           close_range(0, 1, 0) == 0 && close_range(ANSWER_FD + 1, ~0u, 0) == 0;
+}
+
+static void enter_sandbox(const struct zygote *zygote, const struct job *job)
+{
+    if (!sandbox_limit(&job->limits, zygote->held_bytes) || !sandbox_enter(ANSWER_FD))
+        fail_child(zygote, "the kernel refuses the sandbox of a job", ZYGOTE_EXIT_NO_SANDBOX);
+}
+
+static void run_child(const struct zygote *zygote, const struct job *job,
+                      const int fds[static N_JOB_FDS])
+{
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, NULL);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != zygote->pid)
+        _exit(ZYGOTE_EXIT_NO_INPUT); /* the parent had died before */
+    void *bytes = mmap(NULL, job->input_bytes, PROT_READ, MAP_SHARED, fds[JOB_INPUT], 0);
+    if (bytes == MAP_FAILED || !keep_answer(fds[JOB_ANSWER]))
+        fail_child(zygote, "cannot take a job over", ZYGOTE_EXIT_NO_INPUT);
+    const struct zygote_task *task = &zygote->tasks[job->kind];
+    if (!task->opens_files)
+        enter_sandbox(zygote, job);
+    struct source input = {bytes, job->input_bytes, true};
+    struct sink answer;
+    sink_init(&answer, ANSWER_FD);
+    task->run(&input, &answer);
+    _exit(sink_flush(&answer) ? 0 : ZYGOTE_EXIT_NO_ANSWER);
+}
+
+/* --- the parent: ends of children */
+
+/* Tells the daemon, who waits for it, and closes the pipe. */
+static void report(int end_fd, enum job_how how, uint32_t value)
+{
+    uint8_t message[JOB_END_BYTES];
+    job_end_encode(&(struct job_end){how, value}, message);
+    while (write(end_fd, message, sizeof message) < 0 && errno == EINTR)
+        ;
+    close(end_fd);
+}
+
+static void reap(struct zygote *zygote)
+{
+    int status;
+    for (pid_t pid; (pid = waitpid(-1, &status, WNOHANG)) > 0;) {
+        struct child *child = zygote->children;
+        while (child->pid != pid)
+            child++;
+        if (child->timed_out)
+            report(child->end_fd, JOB_TIMED_OUT, 0);
+        else if (WIFSIGNALED(status))
+            report(child->end_fd, JOB_KILLED, (uint32_t)WTERMSIG(status));
+        else
+            report(child->end_fd, JOB_EXITED, (uint32_t)WEXITSTATUS(status));
+        *child = zygote->children[--zygote->n_children];
+    }
+}
+
+/* Kills what is overdue. Returns how long poll() may sleep, -1 for ever. */
+static int kill_overdue(struct zygote *zygote)
+{
+    uint64_t now = now_ms(), next = UINT64_MAX;
+    for (size_t i = 0; i < zygote->n_children; i++) {
+        struct child *child = &zygote->children[i];
+        if (child->timed_out)
+            continue;
+        if (child->deadline_ms <= now) {
+            child->timed_out = true;
+            kill(child->pid, SIGKILL);
+        } else if (child->deadline_ms < next) {
+            next = child->deadline_ms;
+        }
+    }
+    return next == UINT64_MAX ? -1 : (int)(next - now);
+}
+
+/* --- the parent: jobs */
+
+static void start_child(struct zygote *zygote, const struct job *job,
+                        const int fds[static N_JOB_FDS])
+{
+    pid_t pid = zygote->tasks[job->kind].run ? fork() : -1;
+    if (pid == 0)
+        run_child(zygote, job, fds);
+    if (pid < 0) {
+        report(fds[JOB_END], JOB_NOT_RUN, zygote->tasks[job->kind].run ? (uint32_t)errno : ENOSYS);
+    } else {
+        const uint64_t deadline_ms = now_ms() + (uint64_t)job->limits.wall_s * 1000;
+        zygote->children[zygote->n_children++] =
+            (struct child){pid, fds[JOB_END], deadline_ms, false};
+    }
+    close(fds[JOB_INPUT]);
+    close(fds[JOB_ANSWER]);
+}
+
+/* Returns the message's size: 0 at the end of the socket, -1 on failure. All that came along is in
+ * fds, its number in *n_fds. */
+static ssize_t receive(int socket_fd, uint8_t message[static JOB_MESSAGE_BYTES],
+                       int fds[static N_JOB_FDS], size_t *n_fds)
+{
+    union {
+        struct cmsghdr align;
+        char bytes[CMSG_SPACE(N_JOB_FDS * sizeof(int))];
+    } control;
+    struct iovec vector = {message, JOB_MESSAGE_BYTES};
+    struct msghdr header = {.msg_iov = &vector,
+                            .msg_iovlen = 1,
+                            .msg_control = &control,
+                            .msg_controllen = sizeof control};
+    *n_fds = 0;
+    ssize_t size;
+    do
+        size = recvmsg(socket_fd, &header, MSG_CMSG_CLOEXEC);
+    while (size < 0 && errno == EINTR);
+    const struct cmsghdr *part = size > 0 ? CMSG_FIRSTHDR(&header) : NULL;
+    if (part && part->cmsg_level == SOL_SOCKET && part->cmsg_type == SCM_RIGHTS) {
+        *n_fds = (part->cmsg_len - CMSG_LEN(0)) / sizeof(int);
+        memcpy(fds, CMSG_DATA(part), *n_fds * sizeof(int));
+    }
+    return size;
+}
+
+/* False at the end of the socket, with errno 0, or when the daemon cannot be understood. */
+static bool take_job(struct zygote *zygote)
+{
+    uint8_t message[JOB_MESSAGE_BYTES];
+    int fds[N_JOB_FDS];
+    size_t n_fds;
+    struct job job;
+    ssize_t size = receive(ZYGOTE_FD, message, fds, &n_fds);
+    if (size == 0)
+        errno = 0;
+    if (size <= 0)
+        return false;
+    if (n_fds == N_JOB_FDS && job_decode(&job, message, (size_t)size)) {
+        start_child(zygote, &job, fds);
+        return true;
+    }
+    while (n_fds > 0)
+        close(fds[--n_fds]);
+    errno = EBADMSG;
+    return false;
+}
+
+static bool serve(struct zygote *zygote)
+{
+    for (;;) {
+        struct pollfd polls[] = {{zygote->signal_fd, POLLIN, 0}, {ZYGOTE_FD, POLLIN, 0}};
+        const nfds_t n = zygote->n_children < ZYGOTE_MAX_CHILDREN ? 2 : 1;
+        if (poll(polls, n, kill_overdue(zygote)) < 0 && errno != EINTR)
+            return false;
+        struct signalfd_siginfo signal;
+        if (polls[0].revents && read(zygote->signal_fd, &signal, sizeof signal) > 0)
+            reap(zygote);
+        if (polls[1].revents && !take_job(zygote))
+            return errno == 0;
+    }
+}
+
+int zygote_main(int argc, char **argv, const struct zygote_task tasks[static N_JOB_KINDS])
+{
+    static struct zygote zygote;
+    struct stat file;
+    const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
+    const char *name = slash ? slash + 1 : argc > 0 ? argv[0] : "worker";
+    if (argc > 1 || fstat(ZYGOTE_FD, &file) < 0 || !S_ISSOCK(file.st_mode)) {
+        fprintf(stderr, "%s is a part of sheend, which starts it; it does nothing by itself\n",
+                name);
+        return 2;
+    }
+    sigset_t set;
+    zygote = (struct zygote){.name = name, .tasks = tasks, .pid = getpid()};
+    sigemptyset(&set);
+    sigaddset(&set, SIGCHLD);
+    sigprocmask(SIG_BLOCK, &set, NULL);
+    signal(SIGPIPE, SIG_IGN); /* nobody may wait for an end any more */
+    zygote.signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+    bool ok = zygote.signal_fd >= 0 && threads_wait_idle() &&
+              sandbox_held_bytes(&zygote.held_bytes) && serve(&zygote);
+    if (!ok)
+        fprintf(stderr, "%s: cannot go on: %s\n", name, strerror(errno));
+    fflush(stderr);
+    _exit(ok ? 0 : 1); /* libraries that were only loaded have nothing to take down */
+}

@@ -1,0 +1,131 @@
+/* One client: its handshake, its upload, its requests, its limits.
+ *
+ * The protocol's rules for the order of messages are held here and nowhere else. A client that
+ * breaks the protocol is told so and disconnected; every other failure is an ERROR answer to one
+ * request. Thread: the loop's. */
+#ifndef SHEEN_SESSION_SESSION_H
+#define SHEEN_SESSION_SESSION_H
+
+#include "protocol/message.h"
+#include "server/net/access.h"
+#include "server/session/reply.h"
+#include "server/net/conn.h"
+#include "server/session/costs.h"
+#include "server/assets/memory.h"
+#include "server/frame/scheduler.h"
+#include "server/ops/stats.h"
+#include "server/assets/upload.h"
+#include "server/threads/workers.h"
+
+/* While more than this is unsent, nothing is read from the client and no still or batch is begun
+ * for it: with those that have begun it bounds what a client that stops reading can cost. */
+#define SESSION_MAX_UNSENT_BYTES (4u * 1024 * 1024)
+/* The end of a connection: from shutdown() until the peer has closed too. */
+#define SESSION_LINGER_US 2000000u
+/* When drain-timeout has passed, all is answered, and so much later every connection is closed. */
+#define SESSION_LAST_WORDS_US 1000000u
+/* Without input for so long, a connection keeps no memory for long messages. */
+#define SESSION_TRIM_US 1000000u
+
+/* What all sessions share; outlives them. */
+struct session_host {
+    struct loop *loop;
+    struct pool *pool, *readers;
+    struct render_thread *render_thread;
+    struct spares *spares; /* the memory of frames and of their requests and answers */
+    struct workers workers;
+    struct store *store;
+    struct access *access; /* another one after a reload */
+    bool share_models;     /* whatever is uploaded is everybody's */
+    int models_fd;         /* the folder of --models; -1: none */
+    unsigned n_file_loads; /* files being read from there */
+    struct limits limits;
+    struct memory memory;
+    struct scheduler scheduler;
+    struct costs costs;
+    struct request *parked; /* they wait for memory that other frames have */
+    struct stats stats;
+    uint32_t n_sessions;
+    uint32_t n_strangers;     /* of them, not yet admitted */
+    uint32_t gpu_generation;  /* 1, and one more for each time that the GPU was lost */
+    uint64_t last_session_id; /* sessions are numbered in the log */
+    uint64_t max_upload_bytes;
+    bool is_private; /* a command's own daemon: the budget of memory is its client's choice */
+    bool draining;   /* no new request is taken, and answers must be read soon */
+    uint64_t drain_start_us;
+};
+
+/* How long the drain has gone on beyond drain-timeout, in microseconds; 0: it has not. */
+uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us);
+
+struct request;
+
+/* A client as it comes in. */
+struct session_client {
+    enum { CLIENT_PRIVATE, CLIENT_UNIX, CLIENT_TCP, CLIENT_TLS } kind;
+    char peer[PEER_TEXT_BYTES]; /* for the log */
+    struct identity identity;   /* CLIENT_TLS: not before HELLO */
+};
+
+struct session {
+    struct session_host *host;
+    struct peer *peer;
+    struct conn conn;
+    struct schedule_queue queue;
+    struct answer_list answers;
+    uint64_t id; /* in the log */
+    uint64_t start_us;
+    uint64_t n_answers;
+    enum stats_end end; /* why it ends, once the daemon has decided that it does */
+    struct session_client client;
+    bool admitted;  /* the client is who it says; till then it is told nothing */
+    bool greeted;   /* HELLO has been answered */
+    uint32_t minor; /* version spoken with the client */
+    uint32_t credits;
+    enum request_class output_class; /* of the latest frame: whose output limits hold */
+    uint64_t over_soft_since_us;     /* 0: no more is unsent than the soft limit allows */
+    bool refused;                    /* the last answer is on its way: nothing is read any more */
+    struct upload *upload;           /* NULL: none under way */
+    uint32_t upload_seq;             /* of the upload, or of the last one that failed; else 0 */
+    size_t input_bytes;              /* charged for conn.in where it is larger than most are */
+    struct request *requests;
+    struct session *next; /* the service's list */
+};
+
+/* Whose the session's uploads are. */
+const uint8_t *session_owner(const struct session *session);
+
+/* Takes the socket over (closes it on failure), and the reference to its peer. */
+struct session *session_create(struct session_host *host, int fd,
+                               const struct session_client *client, struct peer *peer,
+                               struct error *error);
+/* Closes at once; requests in flight end unseen. */
+void session_destroy(struct session *session);
+
+/* After every batch of events: delivers what was held back, closes what is over. False when the
+ * session is closed and may be destroyed. */
+bool session_settle(struct session *session);
+/* Deadlines and progress. */
+void session_tick(struct session *session, uint64_t now_us);
+/* Closes when the client may not be here any more, by rules of access that may have changed. */
+void session_check_access(struct session *session, bool changed);
+
+/* --- for requests: `answer` is the one they owe */
+
+void session_answer(struct session *session, struct answer *answer, uint8_t type, const void *body);
+void session_answer_error(struct session *session, struct answer *answer, sheen_ErrorCode code,
+                          const char *text);
+/* FRAME and its DATA. Takes `encoded` over. */
+void session_answer_frame(struct session *session, struct answer *answer,
+                          enum request_class request_class, const sheen_Frame *frame,
+                          struct encoded *encoded);
+/* An interactive frame of the session is on its way to the socket: the next has to wait. */
+static inline bool session_is_sending_interactive(const struct session *session)
+{
+    return session->answers.unsent > 0;
+}
+/* Before its answer, unless another is due first or the client does not read. */
+void session_report_progress(struct session *session, const struct answer *answer, uint32_t seq,
+                             const sheen_Progress *progress);
+
+#endif

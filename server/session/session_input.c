@@ -1,0 +1,68 @@
+/* The room for messages that are longer than most: none before it is their turn, and none that
+ * --peer-memory and --memory-budget do not know of. */
+#include "server/session/session_internal.h"
+#include "server/frame/scene_convert.h"
+
+const char *session_find_disorder(const struct session *session,
+                                  const struct message_header *header)
+{
+    if (header->seq == 0)
+        return "its number is 0, which is no request's";
+    if (!session->greeted)
+        return header->type == MESSAGE_HELLO ? NULL : "the first message must be HELLO";
+    if (header->type == MESSAGE_HELLO)
+        return "a second HELLO";
+    if (header->type == MESSAGE_CANCEL)
+        return session->minor > 0 ? NULL : "a message of minor version 1";
+    if (header->type == MESSAGE_UPLOAD_CHUNK && header->seq != session->upload_seq)
+        return "no upload of its number is under way";
+    if (session->upload && header->type != MESSAGE_UPLOAD_CHUNK)
+        return "an upload is under way and not complete";
+    return NULL;
+}
+
+void session_refuse_disorder(struct session *session, const struct message_header *header,
+                             const char *disorder)
+{
+    session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s: %s",
+                   message_type_name(header->type), disorder);
+}
+
+bool session_make_room(void *owner, const struct message_header *header, size_t bytes)
+{
+    struct session *session = owner;
+    struct error error = {0};
+    const char *disorder = session_find_disorder(session, header);
+    if (disorder) {
+        session_refuse_disorder(session, header, disorder);
+        return false;
+    }
+    bool is_chunk = header->type == MESSAGE_UPLOAD_CHUNK;
+    if (is_chunk && !session->upload)
+        return false; /* it has failed */
+    size_t more = bytes - CONN_IN_BYTES - session->input_bytes;
+    if (memory_charge_input(&session->host->memory, session->peer, session->client.identity.owner,
+                            more, "a message", ERROR_REQUEST, &error)) {
+        session->input_bytes += more;
+        return true;
+    }
+    if (is_chunk) {
+        upload_destroy(session->upload);
+        session->upload = NULL;
+    }
+    session_reply_error(session, header->seq, wire_error_code(error.kind), error.text);
+    return false;
+}
+
+void session_trim_input(struct session *session)
+{
+    conn_trim(&session->conn);
+    if (session->conn.in_capacity <= CONN_IN_BYTES)
+        session_release_input(session);
+}
+
+void session_release_input(struct session *session)
+{
+    memory_release_input(&session->host->memory, session->peer, session->input_bytes, false);
+    session->input_bytes = 0;
+}

@@ -1,0 +1,125 @@
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "server/base/log.h"
+#include "server/session/session_internal.h"
+
+void session_log_disconnect(struct session *session, const char *reason)
+{
+    session->host->stats.disconnected++;
+    log_event(LOG_WARN, "client disconnected", log_number("session", session->id),
+              log_text("peer", session->peer->name), log_text("text", reason));
+}
+
+/* The client cannot be told, or not in time: why is for the log. */
+static void __attribute__((format(printf, 2, 3)))
+disconnect(struct session *session, const char *format, ...)
+{
+    char reason[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    session_log_disconnect(session, reason);
+    session->end = session->host->draining ? END_DRAIN : END_UNREAD;
+    conn_close(&session->conn);
+}
+
+static uint64_t hard_limit(const struct session *session)
+{
+    const struct limits *limits = &session->host->limits;
+    return session->output_class == CLASS_INTERACTIVE ? limits->interactive_hard
+                                                      : limits->output_hard;
+}
+
+bool session_may_send(struct session *session)
+{
+    if (conn_unsent_bytes(&session->conn) <= hard_limit(session))
+        return true;
+    disconnect(session,
+               "%zu bytes of earlier answers are unsent, over the %s-hard limit of %llu: it does "
+               "not read, or not fast enough",
+               conn_unsent_bytes(&session->conn),
+               session->output_class == CLASS_INTERACTIVE ? "interactive" : "output",
+               (unsigned long long)hard_limit(session));
+    return false;
+}
+
+uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us)
+{
+    uint64_t end_us = host->drain_start_us + host->limits.drain_s * 1000000;
+    return host->draining && now_us > end_us ? now_us - end_us : 0;
+}
+
+/* What the client has not read for too long, or too much of it; NULL: nothing. */
+static const char *output_limit(struct session *session, uint64_t now)
+{
+    const struct limits *limits = &session->host->limits;
+    bool interactive = session->output_class == CLASS_INTERACTIVE;
+    uint64_t unsent = conn_unsent_bytes(&session->conn);
+    if (unsent <= (interactive ? limits->interactive_soft : limits->output_soft)) {
+        session->over_soft_since_us = 0;
+    } else if (session->over_soft_since_us == 0) {
+        session->over_soft_since_us = now;
+    } else if (now - session->over_soft_since_us >
+               (interactive ? limits->interactive_s : limits->output_s) * 1000000) {
+        return interactive ? "over interactive-soft for interactive-seconds"
+                           : "over output-soft for output-seconds";
+    }
+    if (unsent > 0 && now - session->conn.last_out_us > limits->stall_s * 1000000)
+        return "no byte read for stall-timeout";
+    return unsent > 0 && session_host_overdue_us(session->host, now) > SESSION_LAST_WORDS_US
+               ? "not read within drain-timeout"
+               : NULL;
+}
+
+/* The client has been silent for too long, and is told for how long it may be. */
+static void refuse_late(struct session *session, enum stats_end end, const char *format,
+                        uint64_t limit_s)
+{
+    char text[128];
+    snprintf(text, sizeof text, format, (unsigned long long)limit_s);
+    session->end = end;
+    session_refuse(session, 0,
+                   end == END_IDLE ? sheen_ErrorCode_ERROR_SHUTTING_DOWN
+                                   : sheen_ErrorCode_ERROR_PROTOCOL,
+                   "%s", text);
+}
+
+/* What a client has not sent for too long, who can still be told. */
+static void check_input(struct session *session, uint64_t now)
+{
+    struct conn *conn = &session->conn;
+    const struct limits *limits = &session->host->limits;
+    uint64_t since_in = now - conn->last_in_us, since_out = now - conn->last_out_us;
+    bool is_idle = conn_unsent_bytes(conn) == 0 && session->answers.n == 0;
+    uint64_t idle_us = limits->idle_s * 1000000;
+    if (session->refused)
+        return;
+    if (!session->greeted && now - session->start_us > limits->handshake_s * 1000000)
+        refuse_late(session, END_HELLO, "no HELLO within %llu s", limits->handshake_s);
+    else if (!conn->held && (conn->in_used > 0 || conn->skipped > 0) &&
+             now - conn->message_since_us > limits->message_s * 1000000)
+        refuse_late(session, END_STALLED, "a message has not come to its end within %llu s",
+                    limits->message_s);
+    else if (!conn->held && session->upload && since_in > limits->stall_s * 1000000)
+        refuse_late(session, END_STALLED, "an upload stopped in the middle for %llu s",
+                    limits->stall_s);
+    else if (idle_us > 0 && is_idle && since_in > idle_us && since_out > idle_us)
+        refuse_late(session, END_IDLE, "no request for %llu s: connect again when there is one",
+                    limits->idle_s);
+}
+
+void session_check_limits(struct session *session, uint64_t now)
+{
+    struct conn *conn = &session->conn;
+    const char *limit = output_limit(session, now);
+    if (limit)
+        disconnect(session, "%zu bytes unsent: %s", conn_unsent_bytes(conn), limit);
+    else if (session_host_overdue_us(session->host, now) > SESSION_LAST_WORDS_US)
+        conn_close(conn); /* it has been told, and leaves its end open */
+    else if (conn->state == CONN_LINGERING && now - conn->last_in_us > SESSION_LINGER_US)
+        conn_close(conn);
+    else if (conn->state == CONN_OPEN)
+        check_input(session, now);
+}

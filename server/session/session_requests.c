@@ -1,0 +1,162 @@
+#include <stdio.h>
+
+#include "server/frame/request.h"
+#include "server/session/session_internal.h"
+#include "server/frame/scene_convert.h"
+
+static void reply_upload_state(struct session *session, uint32_t seq, bool complete,
+                               uint64_t received_bytes)
+{
+    const sheen_UploadState state = {.complete = complete, .received_bytes = received_bytes};
+    session_reply(session, seq, MESSAGE_UPLOAD_STATE, &state);
+}
+
+void session_upload_begin(struct session *session, uint32_t seq, const sheen_UploadBegin *begin)
+{
+    struct session_host *host = session->host;
+    char text[MESSAGE_TEXT_BYTES];
+    struct error error = {0};
+    session->upload_seq = seq;
+    if (begin->size_bytes > host->max_upload_bytes) {
+        snprintf(text, sizeof text, "a file of %llu bytes; this daemon takes at most %llu",
+                 (unsigned long long)begin->size_bytes, (unsigned long long)host->max_upload_bytes);
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
+        return;
+    }
+    if (!message_check_upload_begin(begin, text)) {
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
+    struct asset *known = store_find(host->store, session_owner(session), kind, begin->sha256);
+    if (known && store_is_known_as(known, begin->name)) {
+        if (begin->share)
+            store_share(known);
+        session->upload_seq = 0; /* no chunk may follow */
+        reply_upload_state(session, seq, true, begin->size_bytes);
+        return;
+    }
+    if (kind == ASSET_IMAGE)
+        workers_expect_images(&host->workers);
+    session->upload = upload_create(&host->memory, session->peer, session_owner(session),
+                                    session->client.identity.owner, begin, &error);
+    if (session->upload)
+        reply_upload_state(session, seq, false, 0);
+    else
+        session_reply_error(session, seq, wire_error_code(error.kind), error.text);
+}
+
+void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
+{
+    if (length == 0) {
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL,
+                       "UPLOAD_CHUNK: it comes without a byte");
+        return;
+    }
+    if (!session->upload)
+        return; /* sent before the client read that the upload has failed */
+    struct error error = {0};
+    enum upload_state state = upload_add(session->upload, body, length, &error);
+    session->host->stats.upload_bytes += length;
+    if (state == UPLOAD_MORE)
+        return;
+    uint64_t received = upload_received_bytes(session->upload);
+    upload_destroy(session->upload);
+    session->upload = NULL;
+    if (state == UPLOAD_STORED) {
+        session->upload_seq = 0;
+        reply_upload_state(session, seq, true, received);
+    } else if (state == UPLOAD_TOO_MUCH) {
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
+    } else {
+        session_reply_error(session, seq, wire_error_code(error.kind), error.text);
+    }
+}
+
+/* What a frame takes at most: its planes, what they are encoded to, and what polygons are drawn on.
+ */
+static uint64_t frame_bytes(const struct session *session, const sheen_Render *render)
+{
+    struct codec_layout all, sent;
+    codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
+    codec_layout_init(&sent, render->width_px, render->height_px, render->planes);
+    const struct encode_format format = encode_format_of(render);
+    return all.raw_bytes + encode_bytes(&sent, &format) +
+           request_canvas_bytes(session->host, render);
+}
+
+/* Answers and returns false when the frame could never be made here. In a private daemon the charge
+ * says what is wrong with the budget: by then it is known what the model takes beside the frame. */
+static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render *render)
+{
+    const struct limits *limits = &session->host->limits;
+    struct codec_layout all;
+    codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
+    uint64_t bytes = frame_bytes(session, render);
+    const char *all_of_it = render->surface == sheen_SurfaceKind_SURFACE_EXACT
+                                ? "planes and their encoding"
+                                : "planes, their encoding and what polygons are drawn on";
+    const struct {
+        const char *what, *name;
+        uint64_t needed, limit;
+    } checks[] = {
+        {"planes", "max-frame", all.raw_bytes, limits->max_frame},
+        {all_of_it, "memory-budget", bytes, limits->memory_budget},
+        {all_of_it, "peer-memory", bytes, limits->peer_memory},
+    };
+    size_t n_checks = session->host->is_private ? 1 : sizeof checks / sizeof *checks;
+    for (size_t i = 0; i < n_checks; i++) {
+        char text[MESSAGE_TEXT_BYTES];
+        if (checks[i].needed <= checks[i].limit)
+            continue;
+        snprintf(text, sizeof text,
+                 "%ux%u px: %s take %llu bytes, over this daemon's --%s of %llu: ask for a smaller "
+                 "frame or fewer planes",
+                 render->width_px, render->height_px, checks[i].what,
+                 (unsigned long long)checks[i].needed, checks[i].name,
+                 (unsigned long long)checks[i].limit);
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
+        return false;
+    }
+    return true;
+}
+
+/* What a client of this minor version cannot have meant. */
+static void drop_newer_fields(const struct session *session, sheen_Render *render)
+{
+    if (session->minor < 2)
+        render->has_jpeg_quality = render->has_jpeg_subsampling = false;
+    if (session->minor > 0)
+        return;
+    render->has_view = render->has_deadline_ms = false;
+    render->request_class = sheen_RequestClass_CLASS_STILL;
+}
+
+void session_render(struct session *session, uint32_t seq, sheen_Render *render)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    const struct renderer_info *info = render_thread_info(session->host->render_thread);
+    drop_newer_fields(session, render);
+    if (!message_check_render(render, info->max_width_px, info->max_height_px, text)) {
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    if (!frame_fits(session, seq, render))
+        return;
+    struct answer *answer =
+        session_expect_answer(session, seq, wire_request_class(render->request_class));
+    if (answer)
+        request_render(session, answer, seq, render, frame_bytes(session, render));
+}
+
+void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    if (!message_check_model_query(query, text)) {
+        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    struct answer *answer = session_expect_answer(session, seq, CLASS_STILL);
+    if (answer)
+        request_query(session, answer, seq, query);
+}

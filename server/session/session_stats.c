@@ -1,0 +1,66 @@
+#include <stdio.h>
+
+#include "server/session/session_internal.h"
+
+/* The last minute: rates, and percentiles of each stage and of each class. */
+static void add_recent(sheen_Stats *body, const struct stats *stats)
+{
+    struct stats_recent recent;
+    stats_recent(stats, loop_now_us(), &recent);
+    body->has_window_us = body->has_window_requests = body->has_window_frames = true;
+    body->window_us = recent.window_us;
+    body->window_requests = recent.requests;
+    body->window_frames = recent.frames;
+    body->has_p50 = body->has_p95 = body->has_p99 = true;
+    body->p50 = recent.p50;
+    body->p95 = recent.p95;
+    body->p99 = recent.p99;
+    body->has_window_sent_bytes = true;
+    body->window_sent_bytes = recent.sent_bytes;
+    body->has_interactive = body->has_still = body->has_batch = true;
+    body->interactive = recent.latency[CLASS_INTERACTIVE];
+    body->still = recent.latency[CLASS_STILL];
+    body->batch = recent.latency[CLASS_BATCH];
+}
+
+void session_reply_stats(struct session *session, uint32_t seq)
+{
+    const struct session_host *host = session->host;
+    const struct renderer_info *info = render_thread_info(host->render_thread);
+    struct store_counts counts = store_count(host->store);
+    sheen_Stats stats = {
+        .uptime_us = loop_now_us() - host->stats.start_us,
+        .sessions = host->n_sessions,
+        .frames = host->stats.frames,
+        .errors = host->stats.errors,
+        .models = counts.models,
+        .model_bytes = counts.model_bytes,
+        .images = counts.images,
+        .uploads_bytes = host->stats.upload_bytes,
+        .sent_bytes = host->stats.sent_bytes,
+        .software = info->software,
+        .mean = stats_mean(&host->stats),
+        .queued = host->scheduler.waiting,
+        .has_superseded = true,
+        .superseded = host->stats.superseded,
+        .has_cancelled = true,
+        .cancelled = host->stats.cancelled,
+        .has_late = true,
+        .late = host->stats.late,
+        .has_disconnected = true,
+        .disconnected = host->stats.disconnected,
+        .has_interactive_us = true,
+        .interactive_us = host->scheduler.classes[CLASS_INTERACTIVE].spent_us,
+        .has_still_us = true,
+        .still_us = host->scheduler.classes[CLASS_STILL].spent_us,
+        .has_batch_us = true,
+        .batch_us = host->scheduler.classes[CLASS_BATCH].spent_us,
+        .has_memory_bytes = true,
+        .memory_bytes = store_used_bytes(host->store),
+    };
+    add_recent(&stats, &host->stats);
+    snprintf(stats.device, sizeof stats.device, "%s", info->device);
+    snprintf(stats.driver, sizeof stats.driver, "%s", info->driver);
+    snprintf(stats.server, sizeof stats.server, "%s", SHEEN_VERSION);
+    session_reply(session, seq, MESSAGE_STATS, &stats);
+}

@@ -1,0 +1,9 @@
+/* Which Ptex face lies across each edge of a Ptex face. */
+#ifndef SHEEN_SURFACE_SUBDIVISION_ADJACENCY_H
+#define SHEEN_SURFACE_SUBDIVISION_ADJACENCY_H
+
+#include "server/surface/subdivision/plan.h"
+
+struct limit_adjacency adjacency_of(const struct limit_plan *plan, uint32_t ptex);
+
+#endif

@@ -1,0 +1,264 @@
+#include "server/surface/subdivision/face.h"
+
+#include "server/surface/subdivision/adjacency.h"
+#include "server/surface/bound.h"
+#include "server/surface/subdivision/corner.h"
+#include "server/surface/subdivision/crease.h"
+#include "server/surface/subdivision/modes.h"
+#include "server/surface/subdivision/strip.h"
+#include "server/surface/texels.h"
+
+/* A bicubic patch of 16 control points, or room for one. */
+static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4][4])
+{
+    if (b->tables) {
+        struct limit_node *out = &b->tables->nodes[node];
+        struct vec centre = {0, 0, 0};
+        for (int k = 0; k < 16; k++)
+            centre = vec_mad(centre, 1.0 / 16, grid[k / 4][k % 4]);
+        for (int k = 0; k < 16; k++)
+            grid[k / 4][k % 4] = vec_sub(grid[k / 4][k % 4], centre);
+        out->kind = LIMIT_REGULAR;
+        out->origin[0] = centre.x;
+        out->origin[1] = centre.y;
+        out->origin[2] = centre.z;
+        out->first = b->next.texel;
+        texels_write_patch(&grid[0][0], b->tables->texels + b->next.texel);
+        b->tables->bounds[b->next.bound] = bound_of_grid(&grid[0][0], 4, false, true);
+    }
+    b->next.texel += LIMIT_PATCH_TEXELS;
+    b->next.bound += 1;
+    b->n_regular++;
+}
+
+static void build_regular(struct face_builder *b, uint32_t node, const struct quad *quad)
+{
+    struct vec grid[4][4];
+    if (b->tables)
+        quad_grid(quad, grid);
+    build_patch(b, node, grid);
+}
+
+static void build_corner(struct face_builder *b, uint32_t node, const struct quad *quad,
+                         unsigned corner)
+{
+    const struct ring *ring = &quad->corner[corner];
+    unsigned levels = corner_levels(ring);
+    if (ring_is_dart(ring) && ring->n_faces > MODES_MAX_VALENCE) {
+        b->dart_valence = ring->n_faces;
+    } else if (!b->tables) {
+        if (ring_is_dart(ring))
+            known_modes_add(b->modes, ring, &b->arena);
+    } else {
+        struct limit_node *out = &b->tables->nodes[node];
+        struct quad turned = quad_rotated(quad, corner);
+        out->kind = LIMIT_CORNER;
+        out->rotation = (uint8_t)corner;
+        out->first = b->next.texel;
+        bool has_normal = corner_table(&turned, levels, b->plan->modes, &b->arena,
+                                       b->tables->texels + b->next.texel,
+                                       b->tables->bounds + b->next.bound, out->origin);
+        out->levels = (uint8_t)(has_normal ? levels : levels | LIMIT_NO_NORMAL);
+    }
+    b->next.texel += LIMIT_CORNER_TEXELS(levels);
+    b->next.bound += levels;
+    b->n_corner++;
+}
+
+static void build_strip(struct face_builder *b, uint32_t node, const struct quad *quad,
+                        unsigned edge, unsigned levels)
+{
+    if (b->tables) {
+        struct limit_node *out = &b->tables->nodes[node];
+        struct quad turned = quad_rotated(quad, edge);
+        out->kind = LIMIT_STRIP;
+        out->rotation = (uint8_t)edge;
+        out->levels = (uint8_t)levels;
+        out->first = b->next.texel;
+        strip_table(&turned, levels, b->tables->texels + b->next.texel,
+                    b->tables->bounds + b->next.bound, out->origin);
+    }
+    b->next.texel += (levels + 1) * LIMIT_PATCH_TEXELS;
+    b->next.bound += levels + 2;
+    b->n_strip++;
+}
+
+static void build_node(struct face_builder *b, uint32_t node, const struct quad *quad);
+
+/* Four children, whose quads are given in the parent's orientation. */
+static void build_split(struct face_builder *b, uint32_t node, const struct quad child[4])
+{
+    uint32_t first = b->next.node;
+    b->next.node += 4;
+    b->n_split++;
+    if (b->tables) {
+        struct limit_node *parent = &b->tables->nodes[node], *nodes = b->tables->nodes;
+        parent->kind = LIMIT_SPLIT;
+        parent->first = first;
+        for (uint32_t i = 0; i < 4; i++) {
+            uint32_t x = 2 * (parent->cell & 0xffff) + (i == 1 || i == 2);
+            uint32_t y = 2 * (parent->cell >> 16) + (i >= 2);
+            nodes[first + i].face = parent->face;
+            nodes[first + i].depth = (uint8_t)(parent->depth + 1);
+            nodes[first + i].cell = x | y << 16;
+            nodes[first + i].borders = parent->borders;
+        }
+    }
+    for (uint32_t i = 0; i < 4; i++)
+        build_node(b, first + i, &child[i]);
+}
+
+static void extend_box(struct face_builder *b, struct vec p)
+{
+    const double at[3] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; k++) {
+        b->box_min[k] = fmin(b->box_min[k], at[k]);
+        b->box_max[k] = fmax(b->box_max[k], at[k]);
+    }
+}
+
+/* While measuring: the limit positions of a leaf's corners, and its middle as the regular patch has
+ * it, which bulges most on coarse cages. */
+static void measure_extent(struct face_builder *b, const struct quad *quad)
+{
+    if (b->tables)
+        return;
+    struct vec grid[4][4], middle = {0, 0, 0};
+    for (unsigned i = 0; i < 4; i++)
+        if (!ring_is_dart(&quad->corner[i]))
+            extend_box(b, shared_limit(&quad->corner[i]));
+    if (quad_extraordinary(quad))
+        return;
+    static const double weight[4] = {1.0 / 48, 23.0 / 48, 23.0 / 48, 1.0 / 48};
+    quad_grid(quad, grid);
+    for (int k = 0; k < 16; k++)
+        middle = vec_mad(middle, weight[k / 4] * weight[k % 4], grid[k / 4][k % 4]);
+    extend_box(b, middle);
+}
+
+/* A quad becomes a table when all its rules have come to rest and at most one corner is
+ * extraordinary, or when it lies along a plain crease; else its four quarters do. Sharpness below
+ * 10 is gone after 10 steps and one more parts the corners, so the depth is bounded. */
+static void build_node(struct face_builder *b, uint32_t node, const struct quad *quad)
+{
+    size_t mark = b->arena.used;
+    unsigned extraordinary = quad_extraordinary(quad), edge = 0;
+    bool semisharp = quad_is_semisharp(quad);
+    unsigned levels = semisharp ? strip_levels(quad, &edge) : 0;
+    if (b->tables)
+        b->tables->bound_first[node] = b->next.bound;
+    bool is_strip = levels > 0 && levels <= STRIP_MAX_LEVELS;
+    bool is_split = !is_strip && (semisharp || extraordinary & (extraordinary - 1));
+    if (!is_split && !semisharp)
+        measure_extent(b, quad);
+    if (is_strip) {
+        build_strip(b, node, quad, edge, levels);
+    } else if (is_split) {
+        struct quad child[4];
+        quad_refine(quad, &b->arena, child);
+        build_split(b, node, child);
+    } else if (extraordinary) {
+        build_corner(b, node, quad, (unsigned)__builtin_ctz(extraordinary));
+    } else {
+        build_regular(b, node, quad);
+    }
+    b->arena.used = mark;
+}
+
+/* Most faces of most cages: no ring is needed. */
+static void build_plain(struct face_builder *b, uint32_t ptex, uint32_t c)
+{
+    struct vec grid[4][4];
+    if (b->tables) {
+        extract_plain_grid(&b->plan->topology, c, grid);
+    } else {
+        /* Only for the extent that a camera frames: the cage's corners are near enough. */
+        const struct cage *cage = b->plan->cage;
+        for (unsigned i = 0; i < 4; i++) {
+            const double *p = cage->position[cage->face_vertex[c + i]];
+            extend_box(b, (struct vec){p[0], p[1], p[2]});
+        }
+    }
+    build_patch(b, ptex, grid);
+}
+
+static bool touches_ngon(const struct topology *t, uint32_t c)
+{
+    for (unsigned i = 0; i < 4; i++, c = corner_next(t, c))
+        if (t->vertex_flags[corner_vertex(t, c)] & VERTEX_BY_NGON)
+            return true;
+    return false;
+}
+
+/* Across half-edge c, of a cage face: LIMIT_BORDER_... */
+static unsigned border_of(const struct limit_plan *plan, uint32_t c)
+{
+    const struct topology *t = &plan->topology;
+    float sharpness = edge_sharpness(t, c);
+    if (sharpness >= CAGE_SHARPNESS_INFINITE || (plan->hole && plan->hole[t->face[t->twin[c]]]))
+        return LIMIT_BORDER_SHARP;
+    return (unsigned)ceilf(fmaxf(sharpness, 0));
+}
+
+/* The borders of the Ptex face at cage corner c: an n-gon's has halves of two edges, where creases
+ * are one level less sharp. */
+static uint16_t borders_of(const struct limit_plan *plan, uint32_t c)
+{
+    const struct topology *t = &plan->topology;
+    unsigned bits = 0;
+    if (face_size(t, t->face[c]) != 4) {
+        unsigned first = border_of(plan, c), last = border_of(plan, corner_prev(t, c));
+        first -= first > 0 && first < LIMIT_BORDER_SHARP;
+        last -= last > 0 && last < LIMIT_BORDER_SHARP;
+        return (uint16_t)(first | last << 12);
+    }
+    for (unsigned e = 0; e < 4; e++, c = corner_next(t, c))
+        bits |= border_of(plan, c) << 4 * e;
+    return (uint16_t)bits;
+}
+
+static void start_root(struct face_builder *b, uint32_t ptex)
+{
+    const struct topology *t = &b->plan->topology;
+    uint32_t c = b->plan->corner[ptex], size = face_size(t, t->face[c]);
+    struct limit_node *root = &b->tables->nodes[ptex];
+    root->face = ptex;
+    root->kind = LIMIT_HOLE;
+    root->ngon_size = size == 4 ? 0 : size;
+    root->ngon_corner = (uint16_t)(size == 4 ? 0 : c - t->cage->face_start[t->face[c]]);
+    root->borders = borders_of(b->plan, c);
+    b->tables->bound_first[ptex] = b->next.bound;
+    b->tables->adjacency[ptex] = adjacency_of(b->plan, ptex);
+}
+
+void face_build(struct face_builder *b, uint32_t ptex)
+{
+    const struct limit_plan *plan = b->plan;
+    const struct topology *t = &plan->topology;
+    uint32_t c = plan->corner[ptex], face = t->face[c];
+    b->arena.used = 0;
+    if (b->tables)
+        start_root(b, ptex);
+    if (plan->hole && plan->hole[face]) {
+        b->n_hole++;
+        return;
+    }
+    if (face_size(t, face) == 4 && quad_is_plain(t, c)) {
+        build_plain(b, ptex, c);
+        return;
+    }
+    struct quad quad, child[4];
+    if (face_size(t, face) != 4) {
+        quad = extract_refined_quad(t, &plan->refined, c, &b->rings, &b->arena);
+        build_node(b, ptex, &quad);
+    } else if (plan->refined.face && touches_ngon(t, c)) {
+        for (unsigned i = 0; i < 4; i++, c = corner_next(t, c)) {
+            quad = extract_refined_quad(t, &plan->refined, c, &b->rings, &b->arena);
+            child[i] = quad_rotated(&quad, (4 - i) & 3);
+        }
+        build_split(b, ptex, child);
+    } else {
+        quad = extract_quad(t, c, &b->rings, &b->arena);
+        build_node(b, ptex, &quad);
+    }
+}

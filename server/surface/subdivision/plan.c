@@ -1,0 +1,179 @@
+#include "server/surface/subdivision/plan.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "server/surface/subdivision/modes.h"
+#include "server/surface/subdivision/face.h"
+#include "server/surface/subdivision/known_modes.h"
+
+/* Boundary mode NONE: faces at a boundary are support only, unless all boundary edges at their
+ * vertices are sharp by themselves (OpenSubdiv sdc/options.h). */
+static bool lacks_boundary(const struct topology *t, uint32_t face)
+{
+    for (uint32_t c = t->cage->face_start[face]; c < t->cage->face_start[face + 1]; c++)
+        if (t->vertex_flags[corner_vertex(t, c)] & VERTEX_UNBOUND)
+            return true;
+    return false;
+}
+
+static bool mark_holes(struct limit_plan *plan)
+{
+    const struct cage *cage = plan->cage;
+    if (!cage->n_holes && cage->boundary != CAGE_BOUNDARY_NONE)
+        return true;
+    plan->hole = calloc(cage->n_faces, 1);
+    if (!plan->hole)
+        return false;
+    for (size_t i = 0; i < cage->n_holes; i++)
+        plan->hole[cage->hole[i]] = 1;
+    for (uint32_t f = 0; f < cage->n_faces && cage->boundary == CAGE_BOUNDARY_NONE; f++)
+        plan->hole[f] |= lacks_boundary(&plan->topology, f);
+    return true;
+}
+
+/* Measures every face in turn: where its share begins is what came before. */
+static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, struct error *error)
+{
+    struct face_builder measure = {.plan = plan,
+                                   .modes = &plan->modes,
+                                   .box_min = {INFINITY, INFINITY, INFINITY},
+                                   .box_max = {-INFINITY, -INFINITY, -INFINITY}};
+    if (!arena_init(&measure.arena, plan->arena_bytes))
+        return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
+    shared_rings_init(&measure.rings, plan->cage->face_start[plan->cage->n_faces]);
+    uint64_t node = plan->n_ptex, texel = 0, bound = 0;
+    bool ok = true;
+    for (uint32_t p = 0; p < plan->n_ptex && ok && (ok = limit_goes_on(watch, error)); p++) {
+        plan->offsets[p] = (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
+        measure.next = (struct plan_offsets){0, 0, 0};
+        face_build(&measure, p);
+        node += measure.next.node;
+        texel += measure.next.texel;
+        bound += measure.next.bound;
+        if (measure.dart_valence)
+            ok = error_set(error, ERROR_MODEL,
+                           "a crease ends at a vertex of %u faces, more than the %d that sheen "
+                           "evaluates",
+                           measure.dart_valence, MODES_MAX_VALENCE);
+        else if (node > INT32_MAX || texel > UINT32_MAX)
+            ok = error_set(error, ERROR_MODEL,
+                           "the cage needs more than %u table texels: split it in parts",
+                           UINT32_MAX);
+    }
+    plan->offsets[plan->n_ptex] =
+        (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
+    plan->n_regular = measure.n_regular;
+    plan->n_corner = measure.n_corner;
+    plan->n_strip = measure.n_strip;
+    plan->n_split = measure.n_split;
+    plan->n_hole = measure.n_hole;
+    for (int k = 0; k < 3; k++) {
+        /* A cage without any surface still has a place. */
+        plan->box_min[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_min[k] : 0;
+        plan->box_max[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_max[k] : 0;
+    }
+    shared_rings_finish(&measure.rings);
+    arena_finish(&measure.arena);
+    return ok;
+}
+
+static bool number_ptex_faces(struct limit_plan *plan)
+{
+    const struct cage *cage = plan->cage;
+    size_t n = 0;
+    for (uint32_t f = 0; f < cage->n_faces; f++)
+        n += face_size(&plan->topology, f) == 4 ? 1 : face_size(&plan->topology, f);
+    plan->n_ptex = n;
+    plan->first_ptex = malloc(cage->n_faces * sizeof *plan->first_ptex);
+    plan->corner = malloc(n * sizeof *plan->corner);
+    plan->offsets = malloc((n + 1) * sizeof *plan->offsets);
+    if (!plan->first_ptex || !plan->corner || !plan->offsets)
+        return false;
+    uint32_t ptex = 0;
+    for (uint32_t f = 0; f < cage->n_faces; f++) {
+        plan->first_ptex[f] = ptex;
+        uint32_t start = cage->face_start[f], size = face_size(&plan->topology, f);
+        for (uint32_t k = 0; k < (size == 4 ? 1 : size); k++)
+            plan->corner[ptex++] = start + k;
+    }
+    return true;
+}
+
+/* What sheen does not evaluate yet is refused by name, never drawn wrong. */
+static bool check_supported(const struct cage *cage, struct error *error)
+{
+    const char *what = cage->scheme == CAGE_SCHEME_LOOP       ? "the Loop scheme"
+                       : cage->scheme == CAGE_SCHEME_BILINEAR ? "the bilinear scheme"
+                                                              : NULL;
+    return !what || error_set(error, ERROR_MODEL,
+                              "the cage uses %s, which sheen does not evaluate yet", what);
+}
+
+static bool check_valence(struct limit_plan *plan, struct error *error)
+{
+    size_t largest = extract_largest_ring(&plan->topology);
+    if (largest > LIMIT_MAX_VALENCE)
+        return error_set(error, ERROR_MODEL,
+                         "a vertex or face of the cage has %zu neighbours, more than the %d that "
+                         "sheen evaluates",
+                         largest, LIMIT_MAX_VALENCE);
+    /* A face's rings, two more of each extraction, and at each of at most 12 depths the refined
+     * rings, the settled ones and the two nets' of a table: only one of a depth is large. */
+    plan->arena_bytes = 48 * ring_bytes(largest, true) + 12 * 32 * ring_bytes(4, true);
+    return true;
+}
+
+static bool refine_if_needed(struct limit_plan *plan, const struct limit_watch *watch,
+                             struct error *error)
+{
+    if (plan->topology.quads_only)
+        return true;
+    struct arena arena;
+    if (!arena_init(&arena, plan->arena_bytes))
+        return error_set(error, ERROR_SERVER, "out of memory for the refined cage");
+    bool ok = refined_points_init(&plan->refined, &plan->topology, &arena, watch, error);
+    arena_finish(&arena);
+    return ok;
+}
+
+struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit_watch *watch,
+                                     struct error *error)
+{
+    if (!check_supported(cage, error))
+        return NULL;
+    struct limit_plan *plan = calloc(1, sizeof *plan);
+    if (!plan) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    plan->cage = cage;
+    if (!topology_init(&plan->topology, cage, error) || !check_valence(plan, error))
+        goto fail;
+    if (!number_ptex_faces(plan) || !mark_holes(plan)) {
+        error_set(error, ERROR_SERVER, "out of memory for the Ptex faces of %zu faces",
+                  cage->n_faces);
+        goto fail;
+    }
+    if (!refine_if_needed(plan, watch, error) || !lay_out(plan, watch, error))
+        goto fail;
+    return plan;
+
+fail:
+    limit_plan_destroy(plan);
+    return NULL;
+}
+
+void limit_plan_destroy(struct limit_plan *plan)
+{
+    if (!plan)
+        return;
+    topology_finish(&plan->topology);
+    refined_points_finish(&plan->refined);
+    known_modes_finish(&plan->modes);
+    free(plan->first_ptex);
+    free(plan->corner);
+    free(plan->hole);
+    free(plan->offsets);
+    free(plan);
+}

@@ -1,0 +1,120 @@
+#include "server/surface/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "server/surface/bound.h"
+#include "server/surface/evaluate.h"
+
+/* Points of a patch are so dense that it bends away from them by less than this share of the box's
+ * diagonal; a patch smaller than that is one point. */
+#define TOLERANCE 1e-3
+#define MAX_STEPS 16 /* along each side of a node */
+
+struct cells {
+    double middle[3], half[3]; /* of the box; half is never 0 */
+    double reach2[SUPPORT_MAX_POINTS];
+    float point[SUPPORT_MAX_POINTS][3]; /* where reach2 is not 0 */
+};
+
+static uint32_t step_of(double x)
+{
+    double step = 0.5 * (x + 1) * SUPPORT_SIDE;
+    return step < 1 ? 0 : step >= SUPPORT_SIDE ? SUPPORT_SIDE - 1 : (uint32_t)step;
+}
+
+/* Of each cell the point that lies farthest from the middle stays, in units of the box's sides, so
+ * that a flat model has as many to each side as a round one. */
+static void add_point(struct cells *cells, struct vec at)
+{
+    const double world[3] = {at.x, at.y, at.z};
+    double p[3], reach2 = 0;
+    int side = 0;
+    for (int k = 0; k < 3; k++) {
+        p[k] = (world[k] - cells->middle[k]) / cells->half[k];
+        reach2 += p[k] * p[k];
+        side = fabs(p[k]) > fabs(p[side]) ? k : side;
+    }
+    double largest = fabs(p[side]);
+    if (!(largest > 0) || !isfinite(reach2))
+        return;
+    uint32_t face = 2 * (uint32_t)side + (p[side] < 0);
+    uint32_t x = step_of(p[(side + 1) % 3] / largest), y = step_of(p[(side + 2) % 3] / largest);
+    uint32_t cell = (face * SUPPORT_SIDE + y) * SUPPORT_SIDE + x;
+    if (reach2 <= cells->reach2[cell])
+        return;
+    cells->reach2[cell] = reach2;
+    for (int k = 0; k < 3; k++)
+        cells->point[cell][k] = (float)(world[k] - cells->middle[k]);
+}
+
+/* Cells along each side of a node, of which the largest bound is the first: a corner's outer ring,
+ * whose parameters run twice as fast. */
+static int steps_of(const struct limit_tables *tables, uint32_t node, double tolerance)
+{
+    const struct limit_bound *bound = &tables->bounds[tables->bound_first[node]];
+    if (bound->radius < tolerance)
+        return 0;
+    double faster = tables->nodes[node].kind == LIMIT_CORNER ? 4 : 1;
+    double steps = ceil(sqrt((double)bound_bend(bound) * faster / 8 / tolerance));
+    return steps < 2 ? 2 : steps > MAX_STEPS ? MAX_STEPS : (int)steps;
+}
+
+static void add_node(struct cells *cells, const struct limit_tables *tables, uint32_t node,
+                     double tolerance)
+{
+    enum limit_kind kind = (enum limit_kind)tables->nodes[node].kind;
+    if (kind == LIMIT_SPLIT || kind == LIMIT_HOLE)
+        return;
+    const double *origin = tables->nodes[node].origin;
+    int steps = steps_of(tables, node, tolerance);
+    if (steps == 0)
+        add_point(cells, (struct vec){origin[0], origin[1], origin[2]});
+    for (int i = 0; steps > 0 && i <= steps; i++)
+        for (int j = 0; j <= steps; j++) {
+            struct limit_place place = {
+                .node = node, .a = (double)i / steps, .b = (double)j / steps};
+            struct limit_point point;
+            if (limit_evaluate_at(tables, &place, &point))
+                add_point(cells, point.s);
+        }
+}
+
+size_t limit_support_room(const struct limit_tables *tables)
+{
+    const size_t of_node = (MAX_STEPS + 1) * (MAX_STEPS + 1);
+    size_t pieces = tables->n_regular + tables->n_corner + tables->n_strip;
+    return pieces < SUPPORT_MAX_POINTS / of_node ? pieces * of_node : SUPPORT_MAX_POINTS;
+}
+
+bool limit_find_support(struct limit_tables *tables, const struct limit_watch *watch,
+                        struct error *error)
+{
+    struct cells *cells = calloc(1, sizeof *cells);
+    size_t room = limit_support_room(tables);
+    double diagonal = 0;
+    bool ok = cells && (!room || (tables->support = malloc(room * sizeof *tables->support)));
+    if (!ok) {
+        free(cells);
+        return error_set(error, ERROR_SERVER, "out of memory for the outline of a model");
+    }
+    for (int k = 0; k < 3; k++)
+        diagonal = hypot(diagonal, tables->box_max[k] - tables->box_min[k]);
+    for (int k = 0; k < 3; k++) {
+        double half = 0.5 * (tables->box_max[k] - tables->box_min[k]);
+        cells->middle[k] = 0.5 * (tables->box_max[k] + tables->box_min[k]);
+        cells->half[k] = fmax(half, fmax(0.05 * diagonal, 1e-300));
+    }
+    for (size_t i = 0; ok && i < tables->n_nodes; i++) {
+        ok = i % 256 || limit_goes_on(watch, error);
+        add_node(cells, tables, (uint32_t)i, fmax(TOLERANCE * diagonal, 1e-300));
+    }
+    for (int i = 0; ok && i < SUPPORT_MAX_POINTS; i++)
+        if (cells->reach2[i] > 0) {
+            for (int k = 0; k < 3; k++)
+                tables->support[tables->n_support][k] = cells->point[i][k];
+            tables->n_support++;
+        }
+    free(cells);
+    return ok;
+}

@@ -1,0 +1,165 @@
+#include "server/threads/pool.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct pool_thread {
+    struct pool *pool;
+    pthread_t thread;
+    atomic_ullong busy_since_us; /* when its present work began or beat; 0: it has none */
+};
+
+static _Thread_local struct pool_thread *this_thread; /* NULL outside of a pool */
+
+struct pool {
+    char name[13];
+    struct pool_worker worker;
+    struct completions *completions;
+    pthread_mutex_t lock;
+    pthread_cond_t changed; /* works, a start, the end */
+    struct work_list lists[POOL_URGENCIES];
+    bool ending;
+    unsigned n_urgent_threads; /* the first to start */
+    unsigned n_threads, n_started, n_failed;
+    struct error start_error; /* the first thread's that failed */
+    struct pool_thread threads[];
+};
+
+static struct work *next_work(struct pool *pool, int least_urgent)
+{
+    struct work *work = NULL;
+    pthread_mutex_lock(&pool->lock);
+    for (;;) {
+        for (int urgency = POOL_URGENT; urgency <= least_urgent && !work; urgency++)
+            work = work_list_pop(&pool->lists[urgency]);
+        if (work || pool->ending)
+            break;
+        pthread_cond_wait(&pool->changed, &pool->lock);
+    }
+    pthread_mutex_unlock(&pool->lock);
+    return work;
+}
+
+/* Starts the calling thread's worker; *least_urgent says which works it takes. */
+static bool start_worker(struct pool *pool, void **worker, int *least_urgent)
+{
+    struct error error = {0};
+    bool ok = !pool->worker.start || pool->worker.start(pool->worker.owner, worker, &error);
+    pthread_mutex_lock(&pool->lock);
+    *least_urgent = pool->n_started++ < pool->n_urgent_threads ? POOL_URGENT : POOL_LATER;
+    if (!ok && pool->n_failed++ == 0)
+        pool->start_error = error;
+    pthread_cond_broadcast(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
+    return ok;
+}
+
+static void *thread_main(void *argument)
+{
+    struct pool_thread *self = argument;
+    struct pool *pool = self->pool;
+    this_thread = self;
+    pthread_setname_np(pthread_self(), pool->name);
+    void *worker = NULL;
+    int least_urgent;
+    if (!start_worker(pool, &worker, &least_urgent))
+        return NULL;
+    for (struct work *work; (work = next_work(pool, least_urgent));) {
+        atomic_store(&self->busy_since_us, loop_now_us());
+        work->run(work, worker);
+        atomic_store(&self->busy_since_us, 0);
+        completions_post(pool->completions, work);
+    }
+    if (pool->worker.stop)
+        pool->worker.stop(worker);
+    return NULL;
+}
+
+static bool start_threads(struct pool *pool, unsigned n_threads, struct error *error)
+{
+    int code = 0;
+    while (pool->n_threads < n_threads && code == 0) {
+        struct pool_thread *next = &pool->threads[pool->n_threads];
+        next->pool = pool;
+        atomic_init(&next->busy_since_us, 0);
+        code = pthread_create(&next->thread, NULL, thread_main, next);
+        pool->n_threads += code == 0;
+    }
+    pthread_mutex_lock(&pool->lock);
+    while (pool->n_started < pool->n_threads)
+        pthread_cond_wait(&pool->changed, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
+    if (code)
+        return error_set(error, ERROR_SERVER, "cannot start a thread: %s", strerror(code));
+    if (pool->n_failed)
+        return error_set(error, pool->start_error.kind, "%s", pool->start_error.text);
+    return true;
+}
+
+struct pool *pool_create(const char *name, unsigned n_threads, unsigned n_urgent_threads,
+                         const struct pool_worker *worker, struct completions *completions,
+                         struct error *error)
+{
+    n_threads += n_urgent_threads;
+    struct pool *pool = calloc(1, sizeof *pool + n_threads * sizeof pool->threads[0]);
+    if (!pool) {
+        error_set(error, ERROR_SERVER, "no memory for %u threads", n_threads);
+        return NULL;
+    }
+    snprintf(pool->name, sizeof pool->name, "%s", name);
+    pool->worker = *worker;
+    pool->n_urgent_threads = n_urgent_threads;
+    pool->completions = completions;
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->changed, NULL);
+    if (!start_threads(pool, n_threads, error)) {
+        pool_destroy(pool);
+        return NULL;
+    }
+    return pool;
+}
+
+void pool_destroy(struct pool *pool)
+{
+    if (!pool)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->ending = true;
+    pthread_cond_broadcast(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
+    for (unsigned i = 0; i < pool->n_threads; i++)
+        pthread_join(pool->threads[i].thread, NULL);
+    pthread_cond_destroy(&pool->changed);
+    pthread_mutex_destroy(&pool->lock);
+    free(pool);
+}
+
+uint64_t pool_busy_us(const struct pool *pool, uint64_t now_us)
+{
+    uint64_t longest = 0;
+    for (unsigned i = 0; i < pool->n_threads; i++) {
+        uint64_t since = atomic_load(&pool->threads[i].busy_since_us);
+        uint64_t busy = since && since < now_us ? now_us - since : 0;
+        longest = busy > longest ? busy : longest;
+    }
+    return longest;
+}
+
+void pool_beat(void)
+{
+    if (this_thread)
+        atomic_store(&this_thread->busy_since_us, loop_now_us());
+}
+
+void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency)
+{
+    pthread_mutex_lock(&pool->lock);
+    work_list_push(&pool->lists[urgency], work);
+    /* One that is woken may not take this work. */
+    pool->n_urgent_threads ? pthread_cond_broadcast(&pool->changed)
+                           : pthread_cond_signal(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
+}

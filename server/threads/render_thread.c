@@ -1,0 +1,92 @@
+#include "server/threads/render_thread.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "server/threads/pool.h"
+
+struct render_thread {
+    struct renderer_options options;
+    /* For the loop's thread: the renderer writes its own names anew when it opens the device again.
+     */
+    struct renderer_info info;
+    char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES];
+    struct pool *pool; /* of one thread */
+    atomic_uint losses;
+};
+
+static void device_lost(void *owner)
+{
+    struct render_thread *thread = owner;
+    atomic_fetch_add(&thread->losses, 1);
+}
+
+static bool open_device(void *owner, void **worker, struct error *error)
+{
+    struct render_thread *thread = owner;
+    struct renderer *renderer = renderer_create(&thread->options, error);
+    if (!renderer)
+        return false;
+    thread->info = *renderer_info(renderer);
+    snprintf(thread->device, sizeof thread->device, "%s", thread->info.device);
+    snprintf(thread->driver, sizeof thread->driver, "%s", thread->info.driver);
+    thread->info.device = thread->device;
+    thread->info.driver = thread->driver;
+    *worker = renderer;
+    return true;
+}
+
+static void close_device(void *worker)
+{
+    renderer_destroy(worker);
+}
+
+struct render_thread *render_thread_create(const struct renderer_options *options,
+                                           struct completions *completions, struct error *error)
+{
+    struct render_thread *thread = calloc(1, sizeof *thread);
+    if (!thread) {
+        error_set(error, ERROR_SERVER, "no memory for the render thread");
+        return NULL;
+    }
+    thread->options = *options;
+    thread->options.lost = device_lost;
+    thread->options.owner = thread;
+    atomic_init(&thread->losses, 0);
+    const struct pool_worker worker = {open_device, close_device, thread};
+    thread->pool = pool_create("sheend-gl", 1, 0, &worker, completions, error);
+    if (!thread->pool) {
+        free(thread);
+        return NULL;
+    }
+    return thread;
+}
+
+void render_thread_destroy(struct render_thread *thread)
+{
+    if (!thread)
+        return;
+    pool_destroy(thread->pool);
+    free(thread);
+}
+
+void render_thread_submit(struct render_thread *thread, struct work *work)
+{
+    pool_submit(thread->pool, work, POOL_URGENT);
+}
+
+const struct renderer_info *render_thread_info(const struct render_thread *thread)
+{
+    return &thread->info;
+}
+
+uint32_t render_thread_losses(const struct render_thread *thread)
+{
+    return atomic_load(&thread->losses);
+}
+
+uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us)
+{
+    return pool_busy_us(thread->pool, now_us);
+}

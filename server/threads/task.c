@@ -1,0 +1,102 @@
+#include "server/threads/task.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+struct completions {
+    struct loop *loop;
+    struct loop_source source; /* the eventfd */
+    int event_fd;
+    pthread_mutex_t lock;
+    struct work_list list;
+};
+
+void work_list_push(struct work_list *list, struct work *work)
+{
+    work->next = NULL;
+    if (list->tail)
+        list->tail->next = work;
+    else
+        list->head = work;
+    list->tail = work;
+}
+
+struct work *work_list_pop(struct work_list *list)
+{
+    struct work *work = list->head;
+    if (!work)
+        return NULL;
+    list->head = work->next;
+    if (!list->head)
+        list->tail = NULL;
+    return work;
+}
+
+static void wake_ready(struct loop_source *source, uint32_t events)
+{
+    (void)events;
+    struct completions *completions = source->owner;
+    uint64_t count;
+    /* Reset first: a post from now on rings again. */
+    if (read(completions->event_fd, &count, sizeof count) < 0 && errno != EAGAIN)
+        abort(); /* an eventfd cannot fail in any other way */
+    completions_deliver(completions);
+}
+
+struct completions *completions_create(struct loop *loop, struct error *error)
+{
+    struct completions *completions = calloc(1, sizeof *completions);
+    if (!completions) {
+        error_set(error, ERROR_SERVER, "no memory for the completion queue");
+        return NULL;
+    }
+    completions->loop = loop;
+    completions->event_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (completions->event_fd < 0) {
+        error_set(error, ERROR_SERVER, "eventfd: %s", strerror(errno));
+        free(completions);
+        return NULL;
+    }
+    pthread_mutex_init(&completions->lock, NULL);
+    completions->source = (struct loop_source){completions->event_fd, wake_ready, completions};
+    if (!loop_watch(loop, &completions->source, EPOLLIN, error)) {
+        completions_destroy(completions);
+        return NULL;
+    }
+    return completions;
+}
+
+void completions_destroy(struct completions *completions)
+{
+    if (!completions)
+        return;
+    loop_unwatch(completions->loop, &completions->source);
+    close(completions->event_fd);
+    pthread_mutex_destroy(&completions->lock);
+    free(completions);
+}
+
+void completions_post(struct completions *completions, struct work *work)
+{
+    pthread_mutex_lock(&completions->lock);
+    bool was_empty = !completions->list.head;
+    work_list_push(&completions->list, work);
+    pthread_mutex_unlock(&completions->lock);
+    const uint64_t one = 1;
+    if (was_empty && write(completions->event_fd, &one, sizeof one) < 0 && errno != EAGAIN)
+        abort(); /* EAGAIN: the counter is full, so the bell rings already */
+}
+
+void completions_deliver(struct completions *completions)
+{
+    pthread_mutex_lock(&completions->lock);
+    struct work_list list = completions->list;
+    completions->list = (struct work_list){NULL, NULL};
+    pthread_mutex_unlock(&completions->lock);
+    for (struct work *work; (work = work_list_pop(&list));)
+        work->done(work);
+}

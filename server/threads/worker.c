@@ -1,0 +1,395 @@
+#include "server/threads/worker.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "server/base/log.h"
+#include "server/threads/pool.h"
+#include "server/sandbox/zygote.h"
+
+#define ATTEMPTS 2
+#define GRACE_S 10  /* for the program to tell of a job's end after its time */
+#define BEAT_MS 500 /* less than any thread is given before it is taken for stuck */
+
+extern char **environ;
+
+struct worker {
+    char path[WORKER_PATH_BYTES];
+    pthread_mutex_t lock;
+    int socket_fd; /* -1: not running */
+    pid_t pid;
+    unsigned starts; /* counts them: which of them a job was given to */
+    bool stopped;
+    size_t n_spares;
+    int spare_fds[WORKER_MAX_SPARES]; /* inputs of ended jobs */
+};
+
+static const char *program_name(const struct worker *worker)
+{
+    const char *slash = strrchr(worker->path, '/');
+    return slash ? slash + 1 : worker->path;
+}
+
+/* --- the program; with worker->lock held, or before anybody else knows it */
+
+static int describe_child(posix_spawn_file_actions_t *files, posix_spawnattr_t *attributes,
+                          int socket_fd)
+{
+    sigset_t none, all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    int failed = posix_spawn_file_actions_addopen(files, 0, "/dev/null", O_RDWR, 0);
+    failed = failed ? failed : posix_spawn_file_actions_addopen(files, 1, "/dev/null", O_RDWR, 0);
+    failed = failed ? failed : posix_spawn_file_actions_adddup2(files, socket_fd, ZYGOTE_FD);
+    failed = failed ? failed : posix_spawn_file_actions_addclosefrom_np(files, ZYGOTE_FD + 1);
+    failed = failed ? failed : posix_spawnattr_setsigmask(attributes, &none);
+    failed = failed ? failed : posix_spawnattr_setsigdefault(attributes, &all);
+    return failed ? failed
+                  : posix_spawnattr_setflags(attributes,
+                                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+}
+
+/* 0 or an errno value. socket_fd lies above ZYGOTE_FD. */
+static int spawn(struct worker *worker, int socket_fd)
+{
+    char *argv[] = {worker->path, NULL};
+    posix_spawn_file_actions_t files;
+    posix_spawnattr_t attributes;
+    int failed = posix_spawn_file_actions_init(&files);
+    if (failed)
+        return failed;
+    failed = posix_spawnattr_init(&attributes);
+    if (!failed) {
+        failed = describe_child(&files, &attributes, socket_fd);
+        if (!failed)
+            failed = posix_spawn(&worker->pid, worker->path, &files, &attributes, argv, environ);
+        posix_spawnattr_destroy(&attributes);
+    }
+    posix_spawn_file_actions_destroy(&files);
+    return failed;
+}
+
+static bool start(struct worker *worker, struct error *error)
+{
+    int pair[2], high_fd = -1, failed = 0;
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) < 0)
+        failed = errno;
+    if (!failed) {
+        high_fd = fcntl(pair[1], F_DUPFD_CLOEXEC, ZYGOTE_FD + 1);
+        failed = high_fd < 0 ? errno : spawn(worker, high_fd);
+        if (high_fd >= 0)
+            close(high_fd);
+        close(pair[1]);
+        if (failed)
+            close(pair[0]);
+    }
+    if (failed)
+        return error_set(error, ERROR_SERVER, "cannot start %s: %s", worker->path,
+                         strerror(failed));
+    worker->socket_fd = pair[0];
+    worker->starts++;
+    return true;
+}
+
+static void end(struct worker *worker)
+{
+    if (worker->socket_fd < 0)
+        return;
+    close(worker->socket_fd);
+    worker->socket_fd = -1;
+    kill(worker->pid, SIGKILL); /* its children go with it */
+    while (waitpid(worker->pid, NULL, 0) < 0 && errno == EINTR)
+        ;
+}
+
+struct worker *worker_create(const char *path, struct error *error)
+{
+    struct worker *worker = calloc(1, sizeof *worker);
+    if (!worker) {
+        error_set(error, ERROR_SERVER, "no memory for a worker");
+        return NULL;
+    }
+    snprintf(worker->path, sizeof worker->path, "%s", path);
+    pthread_mutex_init(&worker->lock, NULL);
+    worker->socket_fd = -1;
+    return worker;
+}
+
+bool worker_wake(struct worker *worker, struct error *error)
+{
+    pthread_mutex_lock(&worker->lock);
+    bool ok = worker->stopped || worker->socket_fd >= 0 || start(worker, error);
+    pthread_mutex_unlock(&worker->lock);
+    return ok;
+}
+
+void worker_stop(struct worker *worker)
+{
+    pthread_mutex_lock(&worker->lock);
+    worker->stopped = true;
+    end(worker);
+    pthread_mutex_unlock(&worker->lock);
+}
+
+void worker_destroy(struct worker *worker)
+{
+    if (!worker)
+        return;
+    end(worker);
+    while (worker->n_spares > 0)
+        close(worker->spare_fds[--worker->n_spares]);
+    pthread_mutex_destroy(&worker->lock);
+    free(worker);
+}
+
+/* --- files in memory */
+
+static int take_spare(struct worker *worker)
+{
+    int fd = -1;
+    pthread_mutex_lock(&worker->lock);
+    if (worker->n_spares > 0)
+        fd = worker->spare_fds[--worker->n_spares];
+    pthread_mutex_unlock(&worker->lock);
+    return fd >= 0 && lseek(fd, 0, SEEK_SET) == 0 ? fd : -1;
+}
+
+/* The process that read it is dead. */
+static void keep_spare(struct worker *worker, int fd)
+{
+    bool fits = lseek(fd, 0, SEEK_CUR) <= (off_t)WORKER_MAX_SPARE_BYTES;
+    pthread_mutex_lock(&worker->lock);
+    fits = fits && worker->n_spares < WORKER_MAX_SPARES;
+    if (fits)
+        worker->spare_fds[worker->n_spares++] = fd;
+    pthread_mutex_unlock(&worker->lock);
+    if (!fits)
+        close(fd);
+}
+
+bool worker_call_init_lent(struct worker_call *call, struct worker *lender, struct error *error)
+{
+    *call = (struct worker_call){.lender = lender, .mapping = MAP_FAILED};
+    call->input_fd = lender ? take_spare(lender) : -1;
+    if (call->input_fd < 0)
+        call->input_fd = memfd_create("sheend-input", MFD_CLOEXEC);
+    call->answer_fd = -1;
+    sink_init(&call->input, call->input_fd);
+    return call->input_fd >= 0 ||
+           error_set(error, ERROR_SERVER, "cannot make a file in memory: %s", strerror(errno));
+}
+
+bool worker_call_init(struct worker_call *call, struct error *error)
+{
+    return worker_call_init_lent(call, NULL, error);
+}
+
+void worker_call_finish(struct worker_call *call)
+{
+    if (call->input_fd >= 0 && call->lender && call->ended)
+        keep_spare(call->lender, call->input_fd);
+    else if (call->input_fd >= 0)
+        close(call->input_fd);
+    if (call->answer_fd >= 0)
+        close(call->answer_fd);
+    if (call->mapping != MAP_FAILED)
+        munmap(call->mapping, call->mapping_bytes);
+}
+
+/* The process of the job is dead. Whoever else might still hold the file cannot change it from here
+ * on; sealing fails while it is mapped for writing. */
+static bool open_answer(struct worker_call *call)
+{
+    const int seals = F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
+    struct stat file;
+    if (fcntl(call->answer_fd, F_ADD_SEALS, seals) < 0 || fstat(call->answer_fd, &file) < 0 ||
+        file.st_size <= 0)
+        return false;
+    call->mapping_bytes = (size_t)file.st_size;
+    call->mapping = mmap(NULL, call->mapping_bytes, PROT_READ, MAP_SHARED, call->answer_fd, 0);
+    call->answer = (struct source){call->mapping, call->mapping_bytes, true};
+    return call->mapping != MAP_FAILED;
+}
+
+/* --- one job */
+
+/* Gives the job to the running program, started if need be. False when it can take none. `starts`
+ * tells which one has it. */
+static bool submit(struct worker *worker, const struct job *job, const int fds[static N_JOB_FDS],
+                   unsigned *starts, struct error *error)
+{
+    uint8_t message[JOB_MESSAGE_BYTES];
+    union {
+        struct cmsghdr align;
+        char bytes[CMSG_SPACE(N_JOB_FDS * sizeof(int))];
+    } control = {.bytes = {0}};
+    struct iovec vector = {message, sizeof message};
+    const struct msghdr header = {.msg_iov = &vector,
+                                  .msg_iovlen = 1,
+                                  .msg_control = &control,
+                                  .msg_controllen = sizeof control};
+    struct cmsghdr *part = CMSG_FIRSTHDR(&header);
+    part->cmsg_level = SOL_SOCKET;
+    part->cmsg_type = SCM_RIGHTS;
+    part->cmsg_len = CMSG_LEN(N_JOB_FDS * sizeof(int));
+    memcpy(CMSG_DATA(part), fds, N_JOB_FDS * sizeof(int));
+    job_encode(job, message);
+
+    pthread_mutex_lock(&worker->lock);
+    bool ok = worker->stopped ? error_set(error, ERROR_SERVER, "the daemon is shutting down")
+                              : worker->socket_fd >= 0 || start(worker, error);
+    if (ok && sendmsg(worker->socket_fd, &header, MSG_NOSIGNAL) != (ssize_t)sizeof message)
+        ok = error_set(error, ERROR_SERVER, "%s takes no job: %s", program_name(worker),
+                       strerror(errno));
+    *starts = worker->starts;
+    pthread_mutex_unlock(&worker->lock);
+    return ok;
+}
+
+/* The program that had a job has died, or hangs: makes room for the next, once. */
+static void bury(struct worker *worker, unsigned starts)
+{
+    pthread_mutex_lock(&worker->lock);
+    if (worker->starts == starts && worker->socket_fd >= 0) {
+        end(worker);
+        log_event(LOG_WARN, "a reader had died; it is started again when it is needed",
+                  log_text("program", program_name(worker)));
+    }
+    pthread_mutex_unlock(&worker->lock);
+}
+
+/* Waits for the end of a job. False when the program has died or does not tell in time. */
+static bool await(int end_fd, const struct job *job, struct job_end *job_end)
+{
+    struct pollfd end = {end_fd, POLLIN, 0};
+    uint8_t message[JOB_END_BYTES];
+    const uint64_t deadline_us = loop_now_us() + ((uint64_t)job->limits.wall_s + GRACE_S) * 1000000;
+    int n;
+    do {
+        pool_beat();
+        n = poll(&end, 1, BEAT_MS);
+    } while ((n == 0 && loop_now_us() < deadline_us) || (n < 0 && errno == EINTR));
+    ssize_t size = n > 0 ? read(end_fd, message, sizeof message) : -1;
+    return size > 0 && job_end_decode(job_end, message, (size_t)size);
+}
+
+/* A file for the answer of one attempt: what is left of the one before might still write to its
+ * own. */
+static bool renew_answer(struct worker_call *call, struct error *error)
+{
+    if (call->answer_fd >= 0)
+        close(call->answer_fd);
+    call->answer_fd = memfd_create("sheend-answer", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    return call->answer_fd >= 0 ||
+           error_set(error, ERROR_SERVER, "cannot make a file in memory: %s", strerror(errno));
+}
+
+/* Submits the job and waits for it, once. */
+static bool attempt(struct worker *worker, const struct worker_call *call, const struct job *job,
+                    struct job_end *job_end, struct error *error)
+{
+    int ends[2];
+    unsigned starts;
+    if (pipe2(ends, O_CLOEXEC) < 0)
+        return error_set(error, ERROR_SERVER, "cannot make a pipe: %s", strerror(errno));
+    const int fds[N_JOB_FDS] = {call->input_fd, call->answer_fd, ends[1]};
+    bool ok = submit(worker, job, fds, &starts, error);
+    close(ends[1]); /* the program's alone: its death closes the pipe */
+    if (ok && !await(ends[0], job, job_end))
+        ok = error_set(error, ERROR_SERVER, "%s has died: try again", program_name(worker));
+    close(ends[0]);
+    if (!ok)
+        bury(worker, starts);
+    return ok;
+}
+
+/* What has become of a job that gave no answer, in words. */
+static bool explain(const struct job_end *end, const struct job_limits *limits, const char *name,
+                    enum error_kind damage, struct error *error)
+{
+    if (end->how == JOB_TIMED_OUT)
+        return error_set(error, ERROR_SERVER, "%s: not done in %u s: try again later", name,
+                         limits->wall_s);
+    if (end->how == JOB_NOT_RUN)
+        return error_set(error, ERROR_SERVER, "%s: no process for it: %s: try again later", name,
+                         strerror((int)end->value));
+    if (end->how == JOB_EXITED && end->value == ZYGOTE_EXIT_NO_SANDBOX)
+        return error_set(error, ERROR_SERVER,
+                         "%s: it is not touched, since the kernel refuses the sandbox (seccomp): "
+                         "see the daemon's log",
+                         name);
+    if (end->how == JOB_EXITED)
+        return error_set(error, damage, "%s: its process gave no answer (exit code %u)", name,
+                         end->value);
+    switch (end->value) {
+    case SIGSYS:
+        return error_set(error, damage,
+                         "%s: its process tried what its sandbox forbids and was ended: the file "
+                         "is damaged or hostile",
+                         name);
+    case SIGXCPU:
+        return error_set(error, damage, "%s: more than %u s of processor time: it is not taken",
+                         name, limits->cpu_s);
+    case SIGXFSZ:
+        return error_set(error, damage, "%s: more than %llu MB come out of it: it is not taken",
+                         name, (unsigned long long)limits->answer_bytes >> 20);
+    case SIGKILL:
+    case SIGTERM:
+        return error_set(error, ERROR_SERVER, "%s: its process was killed: try again later", name);
+    default:
+        return error_set(error, damage,
+                         "%s: its process crashed (signal %u): the file is damaged or hostile",
+                         name, end->value);
+    }
+}
+
+/* The status of an answer. A worker's lack of memory is its limit. */
+static bool read_status(struct worker_call *call, const struct job_limits *limits, const char *name,
+                        enum error_kind damage, struct error *error)
+{
+    struct error found = {0};
+    switch (answer_read_status(&call->answer, &found)) {
+    case ANSWER_OK:
+        return true;
+    case ANSWER_FAILED:
+        if (found.kind == ERROR_SERVER)
+            return error_set(error, damage, "%s (of the %llu MB that it may take)", found.text,
+                             (unsigned long long)limits->memory_bytes >> 20);
+        return error_set(error, found.kind, "%s", found.text);
+    default:
+        return error_set(error, damage, "%s: its process gave a broken answer", name);
+    }
+}
+
+bool worker_run(struct worker *worker, struct worker_call *call, enum job_kind kind,
+                const struct job_limits *limits, const char *name, enum error_kind damage,
+                struct error *error)
+{
+    const off_t input_bytes = sink_flush(&call->input) ? lseek(call->input_fd, 0, SEEK_CUR) : -1;
+    if (input_bytes <= 0)
+        return error_set(error, ERROR_SERVER, "%s: no memory to hand it on: try again later", name);
+    const struct job job = {kind, *limits, (uint64_t)input_bytes};
+    struct job_end job_end = {0};
+    int attempts = 0;
+    while (!call->ended && attempts++ < ATTEMPTS)
+        call->ended = renew_answer(call, error) && attempt(worker, call, &job, &job_end, error);
+    if (!call->ended)
+        return false;
+    if (job_end.how != JOB_EXITED || job_end.value != 0)
+        return explain(&job_end, limits, name, damage, error);
+    if (!open_answer(call))
+        return error_set(error, damage, "%s: its process gave no answer", name);
+    return read_status(call, limits, name, damage, error);
+}

@@ -1,0 +1,215 @@
+#include "server/threads/workers.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "server/sandbox/cage_code.h"
+
+/* --- the programs */
+
+/* The folder of the running program, with its last '/'. */
+static bool own_folder(char path[static WORKER_PATH_BYTES])
+{
+    ssize_t n = readlink("/proc/self/exe", path, WORKER_PATH_BYTES - 1);
+    if (n <= 0)
+        return false;
+    path[n] = 0;
+    char *slash = strrchr(path, '/');
+    if (slash)
+        slash[1] = 0;
+    return slash != NULL;
+}
+
+static bool find_program(const char *folder, const char *name, char path[static WORKER_PATH_BYTES],
+                         struct error *error)
+{
+    char own[WORKER_PATH_BYTES];
+    int n = -1;
+    if (folder) {
+        n = snprintf(path, WORKER_PATH_BYTES, "%s/%s", folder, name);
+    } else if (own_folder(own)) {
+        n = snprintf(path, WORKER_PATH_BYTES, "%s%s", own, name);
+        if (n < WORKER_PATH_BYTES && access(path, X_OK) < 0)
+            n = snprintf(path, WORKER_PATH_BYTES, "%s../libexec/sheen/%s", own, name);
+    }
+    if (n < 0 || n >= WORKER_PATH_BYTES || access(path, X_OK) < 0)
+        return error_set(error, ERROR_SERVER,
+                         "cannot find %s, which belongs beside sheend or into ../libexec/sheen: "
+                         "install sheen as a whole",
+                         name);
+    return true;
+}
+
+static struct worker *create(const char *folder, const char *name, struct error *error)
+{
+    char path[WORKER_PATH_BYTES];
+    return find_program(folder, name, path, error) ? worker_create(path, error) : NULL;
+}
+
+void workers_set_times(struct workers *workers, const struct limits *limits)
+{
+    __atomic_store_n(&workers->cpu_s, (unsigned)limits->worker_cpu_s, __ATOMIC_RELAXED);
+    __atomic_store_n(&workers->wall_s, (unsigned)limits->worker_s, __ATOMIC_RELAXED);
+}
+
+bool workers_init(struct workers *workers, const char *folder, const struct limits *limits,
+                  struct error *error)
+{
+    workers->images = NULL;
+    workers->budget_bytes = limits->memory_budget > WORKERS_LEAST_MEMORY_BYTES
+                                ? limits->memory_budget
+                                : WORKERS_LEAST_MEMORY_BYTES;
+    workers->memory_bytes = limits->worker_memory;
+    workers->output_bytes = limits->worker_output;
+    workers_set_times(workers, limits);
+    return (workers->cages = create(folder, "sheend-cage", error)) &&
+           (workers->images = create(folder, "sheend-image", error)) &&
+           worker_wake(workers->cages, error);
+}
+
+void workers_expect_images(struct workers *workers)
+{
+    struct error ignored = {0}; /* the job itself will tell */
+    worker_wake(workers->images, &ignored);
+}
+
+void workers_finish(struct workers *workers)
+{
+    worker_destroy(workers->cages);
+    worker_destroy(workers->images);
+    workers->cages = workers->images = NULL;
+}
+
+void workers_stop(struct workers *workers)
+{
+    worker_stop(workers->cages);
+    worker_stop(workers->images);
+}
+
+/* --- the jobs */
+
+static uint64_t least(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static struct job_limits limits_of(struct workers *workers, uint64_t memory_bytes)
+{
+    return (struct job_limits){
+        .memory_bytes = least(memory_bytes, workers->memory_bytes),
+        .answer_bytes = least(memory_bytes, workers->output_bytes),
+        .cpu_s = __atomic_load_n(&workers->cpu_s, __ATOMIC_RELAXED),
+        .wall_s = __atomic_load_n(&workers->wall_s, __ATOMIC_RELAXED),
+    };
+}
+
+/* For what comes from a client. */
+static struct job_limits limits_within_budget(struct workers *workers, uint64_t memory_bytes)
+{
+    return limits_of(workers, least(memory_bytes, workers->budget_bytes));
+}
+
+bool workers_read_cage(struct workers *workers, struct cage *cage, const void *bytes, size_t size,
+                       const char *name, struct error *error)
+{
+    const struct job_limits limits = limits_within_budget(
+        workers, WORKERS_LEAST_MEMORY_BYTES + (uint64_t)size * WORKERS_CAGE_MEMORY_PER_BYTE);
+    struct worker_call call;
+    *cage = (struct cage){0};
+    bool ok = worker_call_init(&call, error);
+    if (ok)
+        job_write_file(&call.input, name, bytes, size);
+    ok = ok &&
+         worker_run(workers->cages, &call, JOB_READ_CAGE, &limits, name, ERROR_MODEL, error) &&
+         cage_take(&call.answer, cage, name, error);
+    worker_call_finish(&call);
+    return ok;
+}
+
+bool workers_read_image(struct workers *workers, struct image *image, const void *bytes,
+                        size_t size, const char *name, uint32_t max_px, struct error *error)
+{
+    const struct job_limits limits = limits_within_budget(workers, WORKERS_IMAGE_MEMORY_BYTES);
+    struct worker_call call;
+    *image = (struct image){0};
+    bool ok = worker_call_init(&call, error);
+    if (ok) {
+        sink_u32(&call.input, max_px);
+        job_write_file(&call.input, name, bytes, size);
+    }
+    ok = ok &&
+         worker_run(workers->images, &call, JOB_READ_IMAGE, &limits, name, ERROR_IMAGE, error) &&
+         image_take(&call.answer, image, name, max_px, error);
+    worker_call_finish(&call);
+    return ok;
+}
+
+/* All that is left of an answer. */
+static bool take_file(struct source *answer, struct spares *spares, uint8_t **bytes, size_t *size,
+                      struct error *error)
+{
+    *size = answer->left;
+    *bytes = spares_take(spares, *size);
+    if (!*bytes)
+        return error_set(error, ERROR_SERVER, "no memory for a file of %zu bytes: try again later",
+                         *size);
+    memcpy(*bytes, source_bytes(answer, *size), *size);
+    return true;
+}
+
+bool workers_write_image(struct workers *workers, const struct picture *picture,
+                         const struct picture_block *blocks, size_t n_blocks, struct spares *spares,
+                         uint8_t **bytes, size_t *size, struct error *error)
+{
+    uint64_t memory_bytes = WORKERS_LEAST_MEMORY_BYTES;
+    for (size_t i = 0; i < n_blocks; i++)
+        memory_bytes += 4 * (uint64_t)blocks[i].size; /* the file, as it grows, and a copy */
+    const struct job_limits limits = limits_of(workers, memory_bytes);
+    struct worker_call call;
+    *bytes = NULL;
+    *size = 0;
+    bool ok = worker_call_init_lent(&call, workers->images, error);
+    if (ok)
+        picture_write(&call.input, picture, blocks, n_blocks);
+    ok = ok &&
+         worker_run(workers->images, &call, JOB_WRITE_IMAGE, &limits, "the picture", ERROR_IMAGE,
+                    error) &&
+         take_file(&call.answer, spares, bytes, size, error);
+    worker_call_finish(&call);
+    return ok;
+}
+
+/* The mask that is left of an answer. */
+static bool take_text(struct source *answer, struct spares *spares, struct text *text,
+                      struct error *error)
+{
+    float *coverage = spares_take(spares, answer->left);
+    if (!coverage)
+        return error_set(error, ERROR_SERVER, "no memory for a line of text: try again later");
+    if (text_take(answer, coverage, text))
+        return true;
+    spares_give(spares, coverage);
+    return error_set(error, ERROR_SERVER, "a line of text came back broken");
+}
+
+bool workers_draw_text(struct workers *workers, struct spares *spares, struct text *text,
+                       const char *line, int size_px, struct error *error)
+{
+    const struct job_limits limits = limits_within_budget(workers, WORKERS_LEAST_MEMORY_BYTES);
+    struct worker_call call;
+    *text = (struct text){0};
+    bool ok = worker_call_init(&call, error);
+    if (ok) {
+        sink_u32(&call.input, (uint32_t)size_px);
+        sink_text(&call.input, line);
+    }
+    ok = ok &&
+         worker_run(workers->images, &call, JOB_DRAW_TEXT, &limits, "a line of text", ERROR_SERVER,
+                    error) &&
+         take_text(&call.answer, spares, text, error);
+    worker_call_finish(&call);
+    return ok;
+}

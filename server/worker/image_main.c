@@ -1,9 +1,0 @@
-/* sheend-image: reads and writes images for sheend, each in a sandboxed process of its own. */
-#include "server/image/image.h"
-#include "server/worker/image_tasks.h"
-
-int main(int argc, char **argv)
-{
-    image_use_one_thread(); /* children have the threads of nobody */
-    return zygote_main(argc, argv, image_tasks);
-}
