@@ -166,7 +166,7 @@ $(BUILD)/tests/no_library.so: tests/service/no_library.c
 	@mkdir -p $(@D)
 	$(call say,LD $@)
 	$(Q)$(CC) -std=c11 -D_GNU_SOURCE $(CWARN) -O2 -fPIC -shared -o $@ $<
-$(BUILD)/tests/test_service_worker: | $(BUILD)/tests/bad_worker
+$(BUILD)/tests/test_threads_worker: | $(BUILD)/tests/bad_worker
 $(BUILD)/tests/bad_worker: $(call obj,tests/worker/bad_worker.c) $(WORKER_OBJ)
 	@mkdir -p $(@D)
 	$(call say,LD $@)

@@ -22,34 +22,61 @@ only_in() { # pattern, what it is, folders to search, then files or folders wher
 $found"
 }
 
-no_include() { # folder, pattern of what it must not include
-    found=$(grep -rnE "#include \"($2)" "$1")
-    [ -z "$found" ] || fail "$1 must not know $2:
-$found"
-}
-
 files=$(git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' 2>/dev/null ||
     find server client protocol tests -name '*.[ch]' -o -name '*.cpp' -o -name '*.hpp')
 # shellcheck disable=SC2086
 clang-format --dry-run -Werror $files 2>&1 | grep -m 20 'error:' && fail "run make format"
 
-no_include protocol 'server/|client/|shaders/'
-no_include client 'server/'
-no_include server/cage 'server/(limit|gpu|image|service|worker)|protocol/([^m]|m[^o])|client/'
-no_include server/worker 'server/(limit|gpu|service)|protocol/|client/'
-# What parses files from strangers is for the worker programs alone.
-no_include server/service 'server/cage/read/|server/worker/([a-z]*_tasks|sandbox)\.h'
-no_include server/gpu 'server/(cage/read|worker)/'
-no_include server/limit 'server/(cage/read|worker)/'
-no_include server/limit 'server/(gpu|image|service)|protocol/|client/'
-no_include server/image 'server/(cage|limit|gpu|service|worker)|protocol/([^s]|s[^r])|client/'
-no_include server/gpu 'server/service|protocol/([^rs]|r[^a]|s[^r])|client/'
-no_include server/service 'client/|server/gpu/([^r]|r[^e]|re[^n]|render[^e])'
-only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/gpu/
+# Who may know whom: what a folder's files may include, from the lowest room to the highest, and why. A room
+# that stands in nobody's list is known by nobody.
+room() { # folder, folders it may include, why
+    folder=$1 allowed=$2 why=$3
+    found=$(grep -nE '#include "[^"]*/' "$folder"/*.[ch] "$folder"/*.[ch]pp 2>/dev/null |
+        grep -vE "#include \"(${allowed:-nothing}|$folder)/[^/\"]*\"")
+    [ -z "$found" ] || fail "$folder may include only ${allowed:-itself}: $why
+$found"
+}
+common='server/base'
+room protocol '' 'both sides speak by it'
+room client 'protocol' 'a client needs nothing of the daemon'
+room server/base 'protocol|server/net' 'everybody knows it'
+room server/cage "$common" 'a cage is data: no format, no surface'
+room server/cage/read "$common|server/cage|protocol" 'readers run in the worker program'
+room server/surface "$common|server/cage|server/surface/subdivision" 'no GL, no socket, no thread'
+room server/surface/subdivision "$common|server/cage|server/surface" 'builders of one kind of surface'
+room server/image "$common|protocol" 'pictures are data'
+room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
+room server/scene "$common|protocol|server/surface|server/render|server/render/gl" 'a request is data'
+room server/render "$common|server/image|server/scene|server/surface" 'what every device needs, so no GL'
+room server/render/gl "$common|protocol|server/scene|server/surface|server/render" 'a device draws, it serves nobody'
+room server/net "$common|protocol|server/frame" 'connections do not know what is said over them'
+room server/threads "$common|server/cage|server/image|server/net|server/ops|server/render|server/sandbox" \
+    'threads run what others give them'
+room server/output "$common|protocol|server/image|server/frame|server/render|server/threads" \
+    'an encoder knows pictures, no client'
+room server/assets "$common|protocol|server/cage|server/frame|server/ops|server/render|server/surface|server/threads" \
+    'models and images are everybody'"'"'s'
+room server/frame "$common|protocol|server/assets|server/output|server/render|server/session" \
+    'a frame tells its session by events'
+room server/session "$common|protocol|server/assets|server/frame|server/net|server/ops|server/output|server/threads" \
+    'a session is one client'"'"'s messages'
+room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/session|server/threads" \
+    'the daemon as a whole'
+
+no_include() { # folder, pattern of what it must not include, why
+    found=$(grep -rnE "#include \"($2)" "$1")
+    [ -z "$found" ] || fail "$1 must not include $2: $3
+$found"
+}
+no_include server/cage/read 'protocol/([^m]|m[^o])' 'of the protocol a reader knows model_format.h alone'
+no_include server/image 'protocol/([^s]|s[^r])' 'of the protocol pictures know srgb.h alone'
+no_include server/render 'protocol/([^s]|s[^r])' 'of the protocol a device knows srgb.h alone'
+no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
+only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/render/gl/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
-    'socket calls' 'server client protocol' server/service/ server/sandbox/zygote.c client/connection.c client/private_daemon.c
+    'socket calls' 'server client protocol' server/net/ server/ops/ server/threads/worker.c server/sandbox/zygote.c client/connection.c client/private_daemon.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
-only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/limit server/gpu server/image server/worker protocol'
+only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol'
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
     'server client protocol'
 only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp

@@ -4,7 +4,7 @@
 
 struct image_build {
     struct build_order order;
-    struct work work; /* decoding, later uploading */
+    struct task task; /* decoding, later uploading */
     uint32_t max_px;
     struct light_image *image;
     bool ok;
@@ -25,30 +25,30 @@ static void end_build(struct image_build *build, bool ok)
     free(build);
 }
 
-static void upload_run(struct work *work, void *worker)
+static void upload_run(struct task *task, void *worker)
 {
-    struct image_build *build = work->owner;
+    struct image_build *build = task->owner;
     build->image->gpu = renderer_image_create(worker, &build->image->pixels, &build->error);
 }
 
-static void upload_done(struct work *work)
+static void upload_done(struct task *task)
 {
-    struct image_build *build = work->owner;
+    struct image_build *build = task->owner;
     end_build(build, build->image->gpu != NULL);
 }
 
-static void decode_run(struct work *work, void *worker)
+static void decode_run(struct task *task, void *worker)
 {
     (void)worker;
-    struct image_build *build = work->owner;
+    struct image_build *build = task->owner;
     const struct build_order *order = &build->order;
     build->ok = workers_read_image(order->workers, &build->image->pixels, order->file,
                                    order->file_bytes, order->name, build->max_px, &build->error);
 }
 
-static void decode_done(struct work *work)
+static void decode_done(struct task *task)
 {
-    struct image_build *build = work->owner;
+    struct image_build *build = task->owner;
     const struct build_order *order = &build->order;
     if (build->ok) {
         const struct image *pixels = &build->image->pixels;
@@ -60,8 +60,8 @@ static void decode_done(struct work *work)
         return;
     }
     order->progress->stage = "upload";
-    build->work = (struct work){upload_run, upload_done, build, NULL};
-    render_thread_submit(order->render_thread, &build->work);
+    build->task = (struct task){upload_run, upload_done, build, NULL};
+    render_thread_submit(order->render_thread, &build->task);
 }
 
 bool light_image_build_start(const struct build_order *order, struct error *error)
@@ -81,24 +81,24 @@ bool light_image_build_start(const struct build_order *order, struct error *erro
     if (build->max_px > order->max_image_px)
         build->max_px = order->max_image_px;
     order->progress->stage = "reading";
-    build->work = (struct work){decode_run, decode_done, build, NULL};
-    pool_submit(order->readers, &build->work, POOL_LATER);
+    build->task = (struct task){decode_run, decode_done, build, NULL};
+    pool_submit(order->readers, &build->task, POOL_LATER);
     return true;
 }
 
-static void destroy_run(struct work *work, void *worker)
+static void destroy_run(struct task *task, void *worker)
 {
-    struct light_image *image = work->owner;
+    struct light_image *image = task->owner;
     renderer_image_destroy(worker, image->gpu);
 }
 
-static void destroy_done(struct work *work)
+static void destroy_done(struct task *task)
 {
-    image_free(work->owner);
+    image_free(task->owner);
 }
 
 void light_image_destroy(struct light_image *image, struct render_thread *render_thread)
 {
-    image->destroy_work = (struct work){destroy_run, destroy_done, image, NULL};
-    render_thread_submit(render_thread, &image->destroy_work);
+    image->destroy_task = (struct task){destroy_run, destroy_done, image, NULL};
+    render_thread_submit(render_thread, &image->destroy_task);
 }

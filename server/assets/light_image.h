@@ -9,7 +9,7 @@ struct light_image {
     struct renderer_image *gpu; /* for the GL thread only */
     size_t reserved_bytes;      /* what order->reserve() was asked for: its texels, in
                                    memory and on the GPU */
-    struct work destroy_work;
+    struct task destroy_task;
 };
 
 /* Starts a build; finished() gets a `struct light_image *`. False, without finished(), when memory

@@ -51,13 +51,13 @@ enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
                                        struct memory_charge **charge, struct error *error)
 {
     bool is_patient = request_class != CLASS_INTERACTIVE;
-    struct memory_charge *made = spares_take(memory->spares, sizeof *made);
+    struct memory_charge *made = block_cache_take(memory->block_cache, sizeof *made);
     if (!made) {
         error_set(error, ERROR_SERVER, "no memory for a frame: try again later");
         return MEMORY_FAILED;
     }
     if (!take(memory, peer, asker, is_patient, bytes, error)) {
-        spares_give(memory->spares, made);
+        block_cache_give(memory->block_cache, made);
         return memory->frame_bytes > 0 ? MEMORY_LATER : MEMORY_FAILED;
     }
     *made = (struct memory_charge){memory, peer_reference(peer), bytes, is_patient};
@@ -90,7 +90,7 @@ void memory_charge_release(void *owner)
         return;
     memory_charge_shrink(charge, 0);
     peer_put(&charge->memory->peers, charge->peer);
-    spares_give(charge->memory->spares, charge);
+    block_cache_give(charge->memory->block_cache, charge);
 }
 
 bool memory_charge_input(struct memory *memory, struct peer *peer,

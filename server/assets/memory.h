@@ -13,7 +13,7 @@
 struct memory {
     struct store *store;
     const struct limits *limits;
-    struct spares *spares; /* where charges lie, or NULL */
+    struct block_cache *block_cache; /* where charges lie, or NULL */
     struct peers peers;
     uint64_t frame_bytes;   /* of all frames */
     uint64_t patient_bytes; /* of stills and batches: at most half of the budget, or one frame; of

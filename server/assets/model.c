@@ -15,7 +15,7 @@
 struct model_build;
 
 struct range {
-    struct work work;
+    struct task task;
     struct model_build *build;
     size_t first, last; /* Ptex faces */
     bool ok;
@@ -24,7 +24,7 @@ struct range {
 
 struct model_build {
     struct build_order order;
-    struct work work; /* reading, later uploading */
+    struct task task; /* reading, later uploading */
     struct cage cage;
     struct limit_plan *plan;
     struct model *model;
@@ -77,15 +77,15 @@ static void end_build(struct model_build *build, bool ok)
 
 /* --- the GL thread's part */
 
-static void upload_run(struct work *work, void *worker)
+static void upload_run(struct task *task, void *worker)
 {
-    struct model_build *build = work->owner;
+    struct model_build *build = task->owner;
     build->model->gpu = renderer_model_create(worker, &build->model->tables, &build->error);
 }
 
-static void upload_done(struct work *work)
+static void upload_done(struct task *task)
 {
-    struct model_build *build = work->owner;
+    struct model_build *build = task->owner;
     end_build(build, build->model->gpu || fail_named(build, &build->error));
 }
 
@@ -94,8 +94,8 @@ static void start_upload(struct model_build *build)
     drop_cage(build);
     build->order.progress->stage = "upload";
     build->order.progress->total = 0;
-    build->work = (struct work){upload_run, upload_done, build, NULL};
-    render_thread_submit(build->order.render_thread, &build->work);
+    build->task = (struct task){upload_run, upload_done, build, NULL};
+    render_thread_submit(build->order.render_thread, &build->task);
 }
 
 /* --- the pool's part */
@@ -106,10 +106,10 @@ static bool check_not_cancelled(const struct build_order *order, struct error *e
            error_set(error, ERROR_SERVER, "the daemon is shutting down");
 }
 
-static void range_run(struct work *work, void *worker)
+static void range_run(struct task *task, void *worker)
 {
     (void)worker;
-    struct range *range = work->owner;
+    struct range *range = task->owner;
     struct model_build *build = range->build;
     struct build_clock clock;
     const struct limit_watch watch = {build_clock_goes_on, &clock};
@@ -120,10 +120,10 @@ static void range_run(struct work *work, void *worker)
     atomic_fetch_add(&build->order.progress->done, range->last - range->first);
 }
 
-static void support_run(struct work *work, void *worker)
+static void support_run(struct task *task, void *worker)
 {
     (void)worker;
-    struct model_build *build = work->owner;
+    struct model_build *build = task->owner;
     struct build_clock clock;
     const struct limit_watch watch = {build_clock_goes_on, &clock};
     build_clock_start(&clock, &build->order, &build->cpu_us);
@@ -131,18 +131,18 @@ static void support_run(struct work *work, void *worker)
                 limit_find_support(&build->model->tables, &watch, &build->error);
 }
 
-static void support_done(struct work *work)
+static void support_done(struct task *task)
 {
-    struct model_build *build = work->owner;
+    struct model_build *build = task->owner;
     if (build->ok)
         start_upload(build);
     else
         end_build(build, fail_named(build, &build->error));
 }
 
-static void range_done(struct work *work)
+static void range_done(struct task *task)
 {
-    struct model_build *build = ((struct range *)work->owner)->build;
+    struct model_build *build = ((struct range *)task->owner)->build;
     if (--build->n_ranges_left > 0)
         return;
     for (size_t i = 0; i < build->n_ranges; i++) {
@@ -151,8 +151,8 @@ static void range_done(struct work *work)
         end_build(build, fail_named(build, &build->ranges[i].error));
         return;
     }
-    build->work = (struct work){support_run, support_done, build, NULL};
-    pool_submit(build->order.pool, &build->work, POOL_LATER);
+    build->task = (struct task){support_run, support_done, build, NULL};
+    pool_submit(build->order.pool, &build->task, POOL_LATER);
 }
 
 static bool start_ranges(struct model_build *build)
@@ -172,8 +172,8 @@ static bool start_ranges(struct model_build *build)
         range->first = (size_t)((unsigned __int128)n_faces * i / n);
         range->last = (size_t)((unsigned __int128)n_faces * (i + 1) / n);
         range->build = build;
-        range->work = (struct work){range_run, range_done, range, NULL};
-        pool_submit(build->order.pool, &range->work, POOL_LATER);
+        range->task = (struct task){range_run, range_done, range, NULL};
+        pool_submit(build->order.pool, &range->task, POOL_LATER);
     }
     return true;
 }
@@ -203,16 +203,16 @@ static bool read_cage(struct model_build *build)
     return fail_named(build, &error);
 }
 
-static void read_run(struct work *work, void *worker)
+static void read_run(struct task *task, void *worker)
 {
     (void)worker;
-    struct model_build *build = work->owner;
+    struct model_build *build = task->owner;
     build->ok = read_cage(build);
 }
 
-static void read_done(struct work *work)
+static void read_done(struct task *task)
 {
-    struct model_build *build = work->owner;
+    struct model_build *build = task->owner;
     const struct build_order *order = &build->order;
     if (build->ok) {
         const struct limit_tables *tables = &build->model->tables;
@@ -239,24 +239,24 @@ bool model_build_start(const struct build_order *order, struct error *error)
     build->model = model;
     build->start_us = loop_now_us();
     order->progress->stage = "reading";
-    build->work = (struct work){read_run, read_done, build, NULL};
-    pool_submit(order->readers, &build->work, POOL_LATER);
+    build->task = (struct task){read_run, read_done, build, NULL};
+    pool_submit(order->readers, &build->task, POOL_LATER);
     return true;
 }
 
-static void destroy_run(struct work *work, void *worker)
+static void destroy_run(struct task *task, void *worker)
 {
-    struct model *model = work->owner;
+    struct model *model = task->owner;
     renderer_model_destroy(worker, model->gpu);
 }
 
-static void destroy_done(struct work *work)
+static void destroy_done(struct task *task)
 {
-    model_free(work->owner);
+    model_free(task->owner);
 }
 
 void model_destroy(struct model *model, struct render_thread *render_thread)
 {
-    model->destroy_work = (struct work){destroy_run, destroy_done, model, NULL};
-    render_thread_submit(render_thread, &model->destroy_work);
+    model->destroy_task = (struct task){destroy_run, destroy_done, model, NULL};
+    render_thread_submit(render_thread, &model->destroy_task);
 }

@@ -21,7 +21,7 @@ struct model {
     struct cage_finding finding[N_CAGE_FINDINGS];
     size_t device_bytes; /* of its tables on the device */
     uint64_t build_us;   /* reading, building and uploading */
-    struct work destroy_work;
+    struct task destroy_task;
 };
 
 static inline struct wire_subject model_subject(const struct model *model)

@@ -14,7 +14,7 @@
 #include "server/base/log.h"
 
 struct load {
-    struct work work;
+    struct task task;
     struct model_file_order order;
     char name[STORE_NAME_BYTES]; /* without folders */
     uint8_t holder[HOLDER_ID_BYTES];
@@ -63,10 +63,10 @@ static const char *open_file(struct load *load, const char *name)
 
 /* --- on the pool */
 
-static void load_run(struct work *work, void *worker)
+static void load_run(struct task *task, void *worker)
 {
     (void)worker;
-    struct load *load = work->owner;
+    struct load *load = task->owner;
     size_t used = 0;
     load->bytes = malloc(load->size);
     for (ssize_t n = 1; load->bytes && n > 0 && used<load->size; used += n> 0 ? (size_t)n : 0)
@@ -86,9 +86,9 @@ static void load_destroy(struct load *load)
     free(load);
 }
 
-static void load_done(struct work *work)
+static void load_done(struct task *task)
 {
-    struct load *load = work->owner;
+    struct load *load = task->owner;
     const struct model_file_order *order = &load->order;
     struct error error = {0};
     bool ok = load->read;
@@ -121,8 +121,8 @@ bool model_file_load(const struct model_file_order *order, struct error *error)
         error_set(error, ERROR_MODEL, "no model file '%.200s' at this daemon", order->name);
     } else if (store_reserve(order->store, load->holder, load->size, load->name, ERROR_MODEL,
                              error)) {
-        load->work = (struct work){load_run, load_done, load, NULL};
-        pool_submit(order->pool, &load->work, POOL_LATER);
+        load->task = (struct task){load_run, load_done, load, NULL};
+        pool_submit(order->pool, &load->task, POOL_LATER);
         return true;
     }
     load_destroy(load);

@@ -21,20 +21,20 @@ struct spare_list {
     size_t n, least_n; /* now, and since the last trim */
 };
 
-struct spares {
+struct block_cache {
     pthread_mutex_t lock;
     size_t bytes, most_bytes;
     struct spare_list lists[N_SIZES];
 };
 
-struct spares *spares_create(size_t most_bytes)
+struct block_cache *block_cache_create(size_t most_bytes)
 {
-    struct spares *spares = calloc(1, sizeof *spares);
-    if (!spares)
+    struct block_cache *block_cache = calloc(1, sizeof *block_cache);
+    if (!block_cache)
         return NULL;
-    pthread_mutex_init(&spares->lock, NULL);
-    spares->most_bytes = most_bytes;
-    return spares;
+    pthread_mutex_init(&block_cache->lock, NULL);
+    block_cache->most_bytes = most_bytes;
+    return block_cache;
 }
 
 /* A size is a number of parts of a power of two. */
@@ -47,13 +47,13 @@ static size_t round_up(size_t size)
     return (size + part - 1) & ~(part - 1);
 }
 
-static struct spare_list *list_of(struct spares *spares, size_t capacity)
+static struct spare_list *list_of(struct block_cache *block_cache, size_t capacity)
 {
     unsigned power = 63u - (unsigned)__builtin_clzll(capacity);
-    return &spares->lists[PARTS * power + (capacity >> (power - PART_BITS) & (PARTS - 1))];
+    return &block_cache->lists[PARTS * power + (capacity >> (power - PART_BITS) & (PARTS - 1))];
 }
 
-static struct spare *pop(struct spares *spares, struct spare_list *list)
+static struct spare *pop(struct block_cache *block_cache, struct spare_list *list)
 {
     struct spare *spare = list->first;
     if (!spare)
@@ -62,20 +62,20 @@ static struct spare *pop(struct spares *spares, struct spare_list *list)
     list->n--;
     if (list->n < list->least_n)
         list->least_n = list->n;
-    spares->bytes -= spare->capacity;
+    block_cache->bytes -= spare->capacity;
     return spare;
 }
 
-void *spares_take(struct spares *spares, size_t size)
+void *block_cache_take(struct block_cache *block_cache, size_t size)
 {
     if (size > SIZE_MAX / 2)
         return NULL;
     size_t capacity = round_up(size);
     struct spare *spare = NULL;
-    if (spares) {
-        pthread_mutex_lock(&spares->lock);
-        spare = pop(spares, list_of(spares, capacity));
-        pthread_mutex_unlock(&spares->lock);
+    if (block_cache) {
+        pthread_mutex_lock(&block_cache->lock);
+        spare = pop(block_cache, list_of(block_cache, capacity));
+        pthread_mutex_unlock(&block_cache->lock);
     }
     if (!spare && (spare = malloc(sizeof *spare + capacity)))
         spare->capacity = capacity;
@@ -83,42 +83,42 @@ void *spares_take(struct spares *spares, size_t size)
 }
 
 /* False where that would be too much. */
-static bool keep(struct spares *spares, struct spare *spare)
+static bool keep(struct block_cache *block_cache, struct spare *spare)
 {
-    pthread_mutex_lock(&spares->lock);
-    bool fits = spare->capacity <= spares->most_bytes - spares->bytes;
+    pthread_mutex_lock(&block_cache->lock);
+    bool fits = spare->capacity <= block_cache->most_bytes - block_cache->bytes;
     if (fits) {
-        struct spare_list *list = list_of(spares, spare->capacity);
+        struct spare_list *list = list_of(block_cache, spare->capacity);
         spare->next = list->first;
         list->first = spare;
         list->n++;
-        spares->bytes += spare->capacity;
+        block_cache->bytes += spare->capacity;
     }
-    pthread_mutex_unlock(&spares->lock);
+    pthread_mutex_unlock(&block_cache->lock);
     return fits;
 }
 
-void spares_give(struct spares *spares, void *block)
+void block_cache_give(struct block_cache *block_cache, void *block)
 {
     struct spare *spare = block ? (struct spare *)block - 1 : NULL;
-    if (!spares || !spare || !keep(spares, spare))
+    if (!block_cache || !spare || !keep(block_cache, spare))
         free(spare);
 }
 
-void spares_trim(struct spares *spares)
+void block_cache_trim(struct block_cache *block_cache)
 {
     struct spare *unused = NULL;
-    pthread_mutex_lock(&spares->lock);
+    pthread_mutex_lock(&block_cache->lock);
     for (size_t i = 0; i < N_SIZES; i++) {
-        struct spare_list *list = &spares->lists[i];
+        struct spare_list *list = &block_cache->lists[i];
         for (size_t n = list->least_n; n > 0; n--) {
-            struct spare *spare = pop(spares, list);
+            struct spare *spare = pop(block_cache, list);
             spare->next = unused;
             unused = spare;
         }
         list->least_n = list->n;
     }
-    pthread_mutex_unlock(&spares->lock);
+    pthread_mutex_unlock(&block_cache->lock);
     while (unused) {
         struct spare *next = unused->next;
         free(unused);
@@ -126,20 +126,20 @@ void spares_trim(struct spares *spares)
     }
 }
 
-size_t spares_bytes(struct spares *spares)
+size_t block_cache_bytes(struct block_cache *block_cache)
 {
-    pthread_mutex_lock(&spares->lock);
-    size_t bytes = spares->bytes;
-    pthread_mutex_unlock(&spares->lock);
+    pthread_mutex_lock(&block_cache->lock);
+    size_t bytes = block_cache->bytes;
+    pthread_mutex_unlock(&block_cache->lock);
     return bytes;
 }
 
-void spares_destroy(struct spares *spares)
+void block_cache_destroy(struct block_cache *block_cache)
 {
-    if (!spares)
+    if (!block_cache)
         return;
-    spares_trim(spares); /* twice: what was in use since the last time is unused now */
-    spares_trim(spares);
-    pthread_mutex_destroy(&spares->lock);
-    free(spares);
+    block_cache_trim(block_cache); /* twice: what was in use since the last time is unused now */
+    block_cache_trim(block_cache);
+    pthread_mutex_destroy(&block_cache->lock);
+    free(block_cache);
 }

@@ -6,47 +6,46 @@
 
 #define FIRST_CAPACITY 4096
 
-void report_init(struct report *report, size_t max_bytes)
+void text_buffer_init(struct text_buffer *text, size_t max_bytes)
 {
-    *report = (struct report){.max = max_bytes};
+    *text = (struct text_buffer){.max = max_bytes};
 }
 
-void report_finish(struct report *report)
+void text_buffer_finish(struct text_buffer *text)
 {
-    free(report->bytes);
-    *report = (struct report){.max = report->max};
+    free(text->bytes);
+    *text = (struct text_buffer){.max = text->max};
 }
 
 /* Room for n more bytes and the 0. */
-static bool make_room(struct report *report, size_t n)
+static bool make_room(struct text_buffer *text, size_t n)
 {
-    size_t needed = report->length + n + 1;
-    if (n > report->max - report->length)
+    size_t needed = text->length + n + 1;
+    if (n > text->max - text->length)
         return false;
-    if (needed <= report->capacity)
+    if (needed <= text->capacity)
         return true;
-    size_t capacity = report->capacity ? report->capacity : FIRST_CAPACITY;
+    size_t capacity = text->capacity ? text->capacity : FIRST_CAPACITY;
     while (capacity < needed)
         capacity *= 2;
-    char *bytes = realloc(report->bytes, capacity);
+    char *bytes = realloc(text->bytes, capacity);
     if (!bytes)
         return false;
-    report->bytes = bytes;
-    report->capacity = capacity;
+    text->bytes = bytes;
+    text->capacity = capacity;
     return true;
 }
 
-void report_add(struct report *report, const char *format, ...)
+void text_buffer_add(struct text_buffer *text, const char *format, ...)
 {
     va_list arguments, again;
     va_start(arguments, format);
     va_copy(again, arguments);
     int n = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
-    if (n < 0 || report->failed || !make_room(report, (size_t)n))
-        report->failed = true;
+    if (n < 0 || text->failed || !make_room(text, (size_t)n))
+        text->failed = true;
     else
-        report->length +=
-            (size_t)vsnprintf(report->bytes + report->length, (size_t)n + 1, format, again);
+        text->length += (size_t)vsnprintf(text->bytes + text->length, (size_t)n + 1, format, again);
     va_end(again);
 }

@@ -10,7 +10,7 @@
 
 static struct request *request_create(struct session *session, struct answer *answer, uint32_t seq)
 {
-    struct request *request = spares_take(session->host->spares, sizeof *request);
+    struct request *request = block_cache_take(session->host->block_cache, sizeof *request);
     if (!request) {
         session_answer_error(session, answer, sheen_ErrorCode_ERROR_OVERLOADED,
                              "no memory for another request: try again later");
@@ -63,7 +63,7 @@ void request_end(struct request *request)
     for (int i = 0; i < MAX_LIGHTS; i++)
         if (request->images[i].asset)
             store_unuse(request->images[i].asset);
-    spares_give(request->host->spares, request);
+    block_cache_give(request->host->block_cache, request);
 }
 
 void request_fail(struct request *request, const struct error *error)

@@ -86,19 +86,19 @@ static bool has_begun(const struct request *request)
     return request->frame.width_px > 0;
 }
 
-static void polygons_run(struct work *work, void *worker)
+static void polygons_run(struct task *task, void *worker)
 {
     (void)worker;
-    struct request *request = work->owner;
+    struct request *request = task->owner;
     const struct frame_watch watch = {is_abandoned, request};
     request->polygons =
         renderer_polygons_create(&request->model.asset->model->tables,
                                  request->frame_request.surface.level, &watch, &request->failure);
 }
 
-static void polygons_done(struct work *work)
+static void polygons_done(struct task *task)
 {
-    struct request *request = work->owner;
+    struct request *request = task->owner;
     request->is_busy = false;
     request->frame_work.polygons = request->polygons;
     if (!request->session)
@@ -125,8 +125,8 @@ static void start_polygons(struct request *request)
     }
     request->polygon_bytes = bytes;
     request->is_busy = true;
-    request->work = (struct work){polygons_run, polygons_done, request, NULL};
-    pool_submit(request->host->pool, &request->work, POOL_LATER);
+    request->task = (struct task){polygons_run, polygons_done, request, NULL};
+    pool_submit(request->host->pool, &request->task, POOL_LATER);
 }
 
 static bool needs_polygons(const struct request *request)
@@ -318,10 +318,10 @@ static void start_encoding(struct request *request)
                  encode_finished, request);
 }
 
-static void paint_run(struct work *work, void *worker)
+static void paint_run(struct task *task, void *worker)
 {
     (void)worker;
-    struct request *request = work->owner;
+    struct request *request = task->owner;
     struct frame *frame = &request->frame;
     const struct limit_tables *tables = &request->model.asset->model->tables;
     if (atomic_load(&request->abandoned))
@@ -333,14 +333,14 @@ static void paint_run(struct work *work, void *worker)
                request->frame_request.miss, request->frame_request.empty, &request->extremes);
     for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
         if (!(request->layout.planes & 1u << plane)) {
-            spares_give(frame->spares, frame->plane[plane]);
+            block_cache_give(frame->block_cache, frame->plane[plane]);
             frame->plane[plane] = NULL;
         }
 }
 
-static void paint_done(struct work *work)
+static void paint_done(struct task *task)
 {
-    struct request *request = work->owner;
+    struct request *request = task->owner;
     if (request->session) {
         start_encoding(request);
         return;
@@ -366,13 +366,13 @@ static void frame_drawn(struct request *request)
         start_encoding(request);
         return;
     }
-    request->work = (struct work){paint_run, paint_done, request, NULL};
-    pool_submit(request->host->pool, &request->work, urgency(request));
+    request->task = (struct task){paint_run, paint_done, request, NULL};
+    pool_submit(request->host->pool, &request->task, urgency(request));
 }
 
-static void step_run(struct work *work, void *worker)
+static void step_run(struct task *task, void *worker)
 {
-    struct request *request = work->owner;
+    struct request *request = task->owner;
     uint64_t start_us = loop_now_us();
     request->step = FRAME_FAILED;
     if (has_begun(request) ||
@@ -395,9 +395,9 @@ static void note_polygons(const struct request *request)
     asset->drawn_levels |= 1u << surface->level;
 }
 
-static void step_done(struct work *work)
+static void step_done(struct task *task)
 {
-    struct request *request = work->owner;
+    struct request *request = task->owner;
     struct session_host *host = request->host;
     request->is_busy = false;
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
@@ -466,8 +466,8 @@ void request_start_next(struct session_host *host)
             request_answer_late(request);
         } else if (take_memory(request)) {
             request->is_busy = true;
-            request->work = (struct work){step_run, step_done, request, NULL};
-            render_thread_submit(host->render_thread, &request->work);
+            request->task = (struct task){step_run, step_done, request, NULL};
+            render_thread_submit(host->render_thread, &request->task);
         }
     }
 }

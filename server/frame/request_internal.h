@@ -41,7 +41,7 @@ struct request {
     uint64_t frame_bytes;
     struct memory_charge *charge; /* NULL: nothing yet, or the encoded frame's now */
 
-    struct work work;      /* on the GL thread, then on the pool to paint false colour */
+    struct task task;      /* on the GL thread, then on the pool to paint false colour */
     atomic_bool abandoned; /* read by the GL thread and the pool's */
     struct frame_work frame_work;
     enum frame_step step;

@@ -19,7 +19,7 @@ struct access {
     struct access_options options;
     struct tls_context *tls; /* NULL: none */
     struct tokens *tokens;   /* NULL: none */
-    struct id_map users, groups;
+    struct user_namespace users, groups;
 };
 
 /* --- reading */
@@ -71,8 +71,8 @@ struct access *access_create(const struct access_options *options, struct error 
         return NULL;
     }
     access->options = *options;
-    access->users = id_map_read(ID_MAP_USERS);
-    access->groups = id_map_read(ID_MAP_GROUPS);
+    access->users = user_namespace_read(ID_MAP_USERS);
+    access->groups = user_namespace_read(ID_MAP_GROUPS);
     bool ok = read_tls(access, error);
     if (ok && *options->tokens)
         ok = (access->tokens = tokens_read(options->tokens, error)) != NULL;
@@ -129,7 +129,7 @@ static bool is_listed(const struct access_ids *ids, uint64_t id)
 /* A group that may be any of several is none on the list. */
 static bool is_listed_group(const struct access *access, gid_t group)
 {
-    return !id_map_hides(&access->groups, group) && is_listed(&access->options.gids, group);
+    return !user_namespace_hides(&access->groups, group) && is_listed(&access->options.gids, group);
 }
 
 /* Any of the groups that the peer was in when it connected. */
@@ -159,7 +159,7 @@ bool access_admit_local(const struct access *access, int fd, enum address_kind k
     }
     if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) < 0)
         return error_set(error, ERROR_REQUEST, "SO_PEERCRED: %s", strerror(errno));
-    if (id_map_hides(&access->users, peer.uid))
+    if (user_namespace_hides(&access->users, peer.uid))
         return error_set(error, ERROR_REQUEST,
                          "its user is %lu, as are all users that the daemon's user namespace does "
                          "not map: run sheend where they are mapped (a systemd unit without "

@@ -1,8 +1,9 @@
 /* Who may come in, and who he is.
  *
  * A Unix socket: whoever its file lets in, or with allow-lists whoever they name, if the daemon can
- * tell him from others (id_map.h). Loopback TCP: anybody on this machine, all of them one owner.
- * TLS: whoever shows a certificate of --client-ca or a token of --tokens. Thread: the loop's. */
+ * tell him from others (user_namespace.h). Loopback TCP: anybody on this machine, all of them one
+ * owner. TLS: whoever shows a certificate of --client-ca or a token of --tokens. Thread: the
+ * loop's. */
 #ifndef SHEEN_NET_ACCESS_H
 #define SHEEN_NET_ACCESS_H
 

@@ -66,7 +66,7 @@ static void drop_block(struct conn *conn)
     conn->unsent_bytes -= block->size - block->sent;
     if (block->release)
         block->release(block->owner);
-    spares_give(conn->spares, block);
+    block_cache_give(conn->block_cache, block);
 }
 
 void conn_close(struct conn *conn)
@@ -115,8 +115,9 @@ void conn_close_after_flush(struct conn *conn)
 
 static struct conn_block *append(struct conn *conn, size_t size, size_t copied)
 {
-    struct conn_block *block =
-        conn->state == CONN_OPEN ? spares_take(conn->spares, sizeof *block + copied) : NULL;
+    struct conn_block *block = conn->state == CONN_OPEN
+                                   ? block_cache_take(conn->block_cache, sizeof *block + copied)
+                                   : NULL;
     if (!block) {
         if (conn->state == CONN_OPEN)
             conn_close(conn);

@@ -75,7 +75,7 @@ struct conn {
     bool peer_ended; /* the peer will send no more */
 
     struct conn_block *out_head, *out_tail;
-    struct spares *spares; /* where their memory comes from; NULL until the owner says */
+    struct block_cache *block_cache; /* where their memory comes from; NULL until the owner says */
     size_t unsent_bytes;
     uint64_t *sent_bytes; /* everybody's; counted up here */
 

@@ -18,7 +18,7 @@ struct http_connection {
     char request[HTTP_MAX_REQUEST_BYTES + 1];
     char head[HEAD_BYTES];
     size_t head_length, sent; /* sent: of head and body together */
-    struct report body;
+    struct text_buffer body;
 };
 
 struct http {
@@ -34,7 +34,7 @@ static void drop(struct http_connection *connection)
         return;
     loop_unwatch(connection->http->loop, &connection->source);
     close(fd);
-    report_finish(&connection->body);
+    text_buffer_finish(&connection->body);
 }
 
 static const char *reason_of(int status)
@@ -105,12 +105,12 @@ static void send_some(struct http_connection *connection)
 
 static void answer(struct http_connection *connection, int status)
 {
-    struct report *body = &connection->body;
+    struct text_buffer *body = &connection->body;
     if (status == 200 && body->failed)
         status = 500; /* half an answer would be a wrong one */
     if (status != 200 && status != 503) {
-        report_finish(body);
-        report_add(body, "%s\n", reason_of(status));
+        text_buffer_finish(body);
+        text_buffer_add(body, "%s\n", reason_of(status));
     }
     int n =
         snprintf(connection->head, sizeof connection->head,
@@ -233,7 +233,7 @@ void http_accept(struct http *http, int fd)
     connection->end_us = loop_now_us() + HTTP_TIMEOUT_US;
     connection->received = connection->sent = connection->head_length = 0;
     connection->state = HTTP_READING;
-    report_init(&connection->body, HTTP_MAX_ANSWER_BYTES);
+    text_buffer_init(&connection->body, HTTP_MAX_ANSWER_BYTES);
     if (!loop_watch(http->loop, &connection->source, EPOLLIN, NULL))
         close(fd);
 }

@@ -22,7 +22,7 @@ struct http;
 
 /* Writes the answer to GET `path` and returns its status: 200, 404 or 503. */
 struct http_handler {
-    int (*get)(void *owner, const char *path, struct report *body);
+    int (*get)(void *owner, const char *path, struct text_buffer *body);
     void *owner;
 };
 

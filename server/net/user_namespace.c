@@ -34,7 +34,7 @@ static uint32_t read_overflow(const char *path)
     return ok ? (uint32_t)id : DEFAULT_OVERFLOW;
 }
 
-struct id_map id_map_read(const char *map_path, const char *overflow_path)
+struct user_namespace user_namespace_read(const char *map_path, const char *overflow_path)
 {
-    return (struct id_map){maps_all(map_path), read_overflow(overflow_path)};
+    return (struct user_namespace){maps_all(map_path), read_overflow(overflow_path)};
 }

@@ -1,7 +1,7 @@
 /* Which user or group ids the daemon can tell apart, by the user namespace that it runs in: the
  * kernel shows every id that the namespace does not map as one and the same, the overflow id.
  *
- * Plain data. Thread: any; id_map_read() reads two small files of /proc. */
+ * Plain data. Thread: any; user_namespace_read() reads two small files of /proc. */
 #ifndef SHEEN_NET_USER_NAMESPACE_H
 #define SHEEN_NET_USER_NAMESPACE_H
 
@@ -11,17 +11,17 @@
 #define ID_MAP_USERS "/proc/self/uid_map", "/proc/sys/kernel/overflowuid"
 #define ID_MAP_GROUPS "/proc/self/gid_map", "/proc/sys/kernel/overflowgid"
 
-struct id_map {
+struct user_namespace {
     bool is_whole;     /* every id is mapped */
     uint32_t overflow; /* what the others look like */
 };
 
 /* Both files are the kernel's. A map that cannot be read, or is not of its form, is not whole; an
  * overflow id that cannot be read (ProcSubset=pid hides it) is the kernel's default, 65534. */
-struct id_map id_map_read(const char *map_path, const char *overflow_path);
+struct user_namespace user_namespace_read(const char *map_path, const char *overflow_path);
 
 /* May this be any of several ids? */
-static inline bool id_map_hides(const struct id_map *map, uint32_t id)
+static inline bool user_namespace_hides(const struct user_namespace *map, uint32_t id)
 {
     return !map->is_whole && id == map->overflow;
 }

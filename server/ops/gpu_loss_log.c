@@ -1,10 +1,10 @@
 #include "server/ops/gpu_loss_log.h"
 
-bool losses_add(struct losses *losses, uint64_t now_us, uint64_t most)
+bool gpu_loss_log_add(struct gpu_loss_log *log, uint64_t now_us, uint64_t most)
 {
-    losses->at_us[losses->n++ % LOSSES_MAX] = now_us;
-    if (most == 0 || most > LOSSES_MAX || losses->n < most)
+    log->at_us[log->n++ % GPU_LOSSES_MAX] = now_us;
+    if (most == 0 || most > GPU_LOSSES_MAX || log->n < most)
         return false;
-    uint64_t first_us = losses->at_us[(losses->n - most) % LOSSES_MAX];
-    return now_us - first_us <= LOSSES_WINDOW_US;
+    uint64_t first_us = log->at_us[(log->n - most) % GPU_LOSSES_MAX];
+    return now_us - first_us <= GPU_LOSSES_WINDOW_US;
 }

@@ -87,7 +87,7 @@ const struct limits_row LIMITS[] = {
     {"gpu-losses", UNIT_COUNT,
      "so often may the GPU be lost in ten minutes; then the daemon ends with exit code\n75, to be "
      "started anew; 0: as often as it likes",
-     0, LOSSES_MAX, 3, AT(gpu_losses)},
+     0, GPU_LOSSES_MAX, 3, AT(gpu_losses)},
 };
 const size_t N_LIMITS = sizeof LIMITS / sizeof *LIMITS;
 

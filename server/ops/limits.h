@@ -17,9 +17,10 @@ struct limits {
     uint64_t memory_budget; /* files, tables, polygons, texels, frames: all together,
                                in main memory and on the device */
     uint64_t peer_memory;   /* uploads, long messages under way and frames of one user or address */
-    uint64_t spare_memory;  /* of frames that have gone, kept for the next (server/base/block_cache.h) */
-    uint64_t max_upload;    /* one file */
-    uint64_t max_frame;     /* one frame's planes */
+    uint64_t
+        spare_memory; /* of frames that have gone, kept for the next (server/base/block_cache.h) */
+    uint64_t max_upload;     /* one file */
+    uint64_t max_frame;      /* one frame's planes */
     uint64_t max_image_side; /* px of a light image, either way */
 
     /* Connections. */
@@ -42,7 +43,7 @@ struct limits {
     uint64_t worker_memory, worker_output, worker_cpu_s, worker_s;
     uint64_t tables_cpu_s; /* for one model's tables, by all threads together */
 
-    uint64_t gpu_losses; /* in ten minutes (losses.h) end the daemon; 0: none do */
+    uint64_t gpu_losses; /* in ten minutes (gpu_loss_log.h) end the daemon; 0: none do */
 };
 
 enum limits_unit { UNIT_COUNT, UNIT_BYTES, UNIT_PX, UNIT_SECONDS };

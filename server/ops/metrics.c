@@ -14,78 +14,78 @@
 #define FIRST_EXPONENT 6u
 #define LAST_EXPONENT 26u
 
-static void head(struct report *report, const char *name, const char *type, const char *help)
+static void head(struct text_buffer *text, const char *name, const char *type, const char *help)
 {
-    report_add(report, "# HELP sheen_%s %s\n# TYPE sheen_%s %s\n", name, help, name, type);
+    text_buffer_add(text, "# HELP sheen_%s %s\n# TYPE sheen_%s %s\n", name, help, name, type);
 }
 
-static void put(struct report *report, const char *name, const char *type, uint64_t value,
+static void put(struct text_buffer *text, const char *name, const char *type, uint64_t value,
                 const char *help)
 {
-    head(report, name, type, help);
-    report_add(report, "sheen_%s %" PRIu64 "\n", name, value);
+    head(text, name, type, help);
+    text_buffer_add(text, "sheen_%s %" PRIu64 "\n", name, value);
 }
 
-static void seconds(struct report *report, uint64_t us)
+static void seconds(struct text_buffer *text, uint64_t us)
 {
-    report_add(report, "%" PRIu64 ".%06" PRIu64, us / 1000000, us % 1000000);
+    text_buffer_add(text, "%" PRIu64 ".%06" PRIu64, us / 1000000, us % 1000000);
 }
 
 /* A label's value: '"', '\' and newlines are escaped. */
-static void label(struct report *report, const char *name, const char *value)
+static void label(struct text_buffer *text, const char *name, const char *value)
 {
-    report_add(report, "%s=\"", name);
+    text_buffer_add(text, "%s=\"", name);
     for (const char *c = value; *c; c++)
-        report_add(report, "%s%c", *c == '"' || *c == '\\' || *c == '\n' ? "\\" : "",
-                   *c == '\n' ? 'n' : *c);
-    report_add(report, "\"");
+        text_buffer_add(text, "%s%c", *c == '"' || *c == '\\' || *c == '\n' ? "\\" : "",
+                        *c == '\n' ? 'n' : *c);
+    text_buffer_add(text, "\"");
 }
 
-static void write_build(const struct session_host *host, struct report *report)
+static void write_build(const struct session_host *host, struct text_buffer *text)
 {
     const struct renderer_info *info = render_thread_info(host->render_thread);
-    head(report, "build_info", "gauge", "Always 1; its labels say what runs.");
-    report_add(report, "sheen_build_info{");
-    label(report, "version", SHEEN_VERSION);
-    report_add(report, ",");
-    label(report, "device", info->device);
-    report_add(report, ",");
-    label(report, "driver", info->driver);
-    report_add(report, ",software=\"%s\"} 1\n", info->software ? "true" : "false");
-    put(report, "gpu_generation", "gauge", host->gpu_generation,
+    head(text, "build_info", "gauge", "Always 1; its labels say what runs.");
+    text_buffer_add(text, "sheen_build_info{");
+    label(text, "version", SHEEN_VERSION);
+    text_buffer_add(text, ",");
+    label(text, "device", info->device);
+    text_buffer_add(text, ",");
+    label(text, "driver", info->driver);
+    text_buffer_add(text, ",software=\"%s\"} 1\n", info->software ? "true" : "false");
+    put(text, "gpu_generation", "gauge", host->gpu_generation,
         "1, and one more for each time that the GPU was lost.");
 }
 
-static void write_sessions(const struct session_host *host, struct report *report)
+static void write_sessions(const struct session_host *host, struct text_buffer *text)
 {
     const struct stats *stats = &host->stats;
-    put(report, "sessions", "gauge", host->n_sessions, "Clients connected.");
-    put(report, "sessions_opened_total", "counter", stats->sessions, "Sessions ever opened.");
-    put(report, "sessions_refused_total", "counter", stats->refused,
+    put(text, "sessions", "gauge", host->n_sessions, "Clients connected.");
+    put(text, "sessions_opened_total", "counter", stats->sessions, "Sessions ever opened.");
+    put(text, "sessions_refused_total", "counter", stats->refused,
         "Connections turned away before they were sessions.");
-    head(report, "sessions_ended_total", "counter", "Sessions that have ended, by why.");
+    head(text, "sessions_ended_total", "counter", "Sessions that have ended, by why.");
     for (unsigned i = 0; i < END_COUNT; i++)
-        report_add(report, "sheen_sessions_ended_total{reason=\"%s\"} %" PRIu64 "\n",
-                   stats_end_name(i), stats->ended[i]);
+        text_buffer_add(text, "sheen_sessions_ended_total{reason=\"%s\"} %" PRIu64 "\n",
+                        stats_end_name(i), stats->ended[i]);
 }
 
-static void write_classes(const struct scheduler *scheduler, struct report *report)
+static void write_classes(const struct scheduler *scheduler, struct text_buffer *text)
 {
     static const char *const NAMES[N_CLASSES] = {
         [CLASS_INTERACTIVE] = "interactive", [CLASS_STILL] = "still", [CLASS_BATCH] = "batch"};
-    head(report, "frames_in_flight", "gauge", "Frames being rendered or encoded.");
+    head(text, "frames_in_flight", "gauge", "Frames being rendered or encoded.");
     for (unsigned i = 0; i < N_CLASSES; i++)
-        report_add(report, "sheen_frames_in_flight{class=\"%s\"} %u\n", NAMES[i],
-                   scheduler->classes[i].begun);
-    head(report, "gpu_seconds_total", "counter", "Time of the renderer, by class of request.");
+        text_buffer_add(text, "sheen_frames_in_flight{class=\"%s\"} %u\n", NAMES[i],
+                        scheduler->classes[i].begun);
+    head(text, "gpu_seconds_total", "counter", "Time of the renderer, by class of request.");
     for (unsigned i = 0; i < N_CLASSES; i++) {
-        report_add(report, "sheen_gpu_seconds_total{class=\"%s\"} ", NAMES[i]);
-        seconds(report, scheduler->classes[i].spent_us);
-        report_add(report, "\n");
+        text_buffer_add(text, "sheen_gpu_seconds_total{class=\"%s\"} ", NAMES[i]);
+        seconds(text, scheduler->classes[i].spent_us);
+        text_buffer_add(text, "\n");
     }
 }
 
-static void write_requests(const struct session_host *host, struct report *report)
+static void write_requests(const struct session_host *host, struct text_buffer *text)
 {
     static const struct {
         uint8_t type;
@@ -98,58 +98,57 @@ static void write_requests(const struct session_host *host, struct report *repor
                    {MESSAGE_STATS, "stats"},
                    {MESSAGE_ERROR, "error"}};
     const struct stats *stats = &host->stats;
-    head(report, "answers_total", "counter", "Answers, by what they are.");
+    head(text, "answers_total", "counter", "Answers, by what they are.");
     for (size_t i = 0; i < sizeof ANSWERS / sizeof *ANSWERS; i++)
-        report_add(report, "sheen_answers_total{answer=\"%s\"} %" PRIu64 "\n", ANSWERS[i].name,
-                   stats->answers[ANSWERS[i].type]);
-    head(report, "errors_total", "counter", "Error answers, by their code.");
+        text_buffer_add(text, "sheen_answers_total{answer=\"%s\"} %" PRIu64 "\n", ANSWERS[i].name,
+                        stats->answers[ANSWERS[i].type]);
+    head(text, "errors_total", "counter", "Error answers, by their code.");
     for (unsigned i = sheen_ErrorCode_ERROR_PROTOCOL; i < _sheen_ErrorCode_ARRAYSIZE; i++)
-        report_add(report, "sheen_errors_total{code=\"%s\"} %" PRIu64 "\n", stats_error_name(i),
-                   stats->error_codes[i]);
-    put(report, "queue_depth", "gauge", host->scheduler.waiting,
-        "Frames that wait for their turn.");
-    write_classes(&host->scheduler, report);
-    put(report, "upload_bytes_total", "counter", stats->upload_bytes, "Bytes of files received.");
-    put(report, "sent_bytes_total", "counter", stats->sent_bytes, "Bytes sent to clients.");
+        text_buffer_add(text, "sheen_errors_total{code=\"%s\"} %" PRIu64 "\n", stats_error_name(i),
+                        stats->error_codes[i]);
+    put(text, "queue_depth", "gauge", host->scheduler.waiting, "Frames that wait for their turn.");
+    write_classes(&host->scheduler, text);
+    put(text, "upload_bytes_total", "counter", stats->upload_bytes, "Bytes of files received.");
+    put(text, "sent_bytes_total", "counter", stats->sent_bytes, "Bytes sent to clients.");
 }
 
-static void write_stage(const struct histogram *stage, const char *name, struct report *report)
+static void write_stage(const struct histogram *stage, const char *name, struct text_buffer *text)
 {
     for (unsigned e = FIRST_EXPONENT; e <= LAST_EXPONENT; e++) {
-        report_add(report, "sheen_frame_stage_seconds_bucket{stage=\"%s\",le=\"", name);
-        seconds(report, 1ull << e);
-        report_add(report, "\"} %" PRIu64 "\n", histogram_below(stage, e));
+        text_buffer_add(text, "sheen_frame_stage_seconds_bucket{stage=\"%s\",le=\"", name);
+        seconds(text, 1ull << e);
+        text_buffer_add(text, "\"} %" PRIu64 "\n", histogram_below(stage, e));
     }
-    report_add(report,
-               "sheen_frame_stage_seconds_bucket{stage=\"%s\",le=\"+Inf\"} %" PRIu64
-               "\nsheen_frame_stage_seconds_count{stage=\"%s\"} %" PRIu64
-               "\nsheen_frame_stage_seconds_sum{stage=\"%s\"} ",
-               name, stage->n, name, stage->n, name);
-    seconds(report, stage->sum_us);
-    report_add(report, "\n");
+    text_buffer_add(text,
+                    "sheen_frame_stage_seconds_bucket{stage=\"%s\",le=\"+Inf\"} %" PRIu64
+                    "\nsheen_frame_stage_seconds_count{stage=\"%s\"} %" PRIu64
+                    "\nsheen_frame_stage_seconds_sum{stage=\"%s\"} ",
+                    name, stage->n, name, stage->n, name);
+    seconds(text, stage->sum_us);
+    text_buffer_add(text, "\n");
 }
 
-static void write_stages(const struct session_host *host, struct report *report)
+static void write_stages(const struct session_host *host, struct text_buffer *text)
 {
-    head(report, "frame_stage_seconds", "histogram",
+    head(text, "frame_stage_seconds", "histogram",
          "Time of each stage of a frame; a stage that a frame did without is not counted.");
     for (unsigned i = 0; i < STAGE_COUNT; i++)
-        write_stage(&host->stats.stage[i], stats_stage_name(i), report);
+        write_stage(&host->stats.stage[i], stats_stage_name(i), text);
 }
 
-static void write_store(const struct session_host *host, struct report *report)
+static void write_store(const struct session_host *host, struct text_buffer *text)
 {
     struct store_counts counts = store_count(host->store);
-    put(report, "models", "gauge", counts.models, "Models ready to be rendered.");
-    put(report, "images", "gauge", counts.images, "Light images ready to be used.");
-    put(report, "model_cache_bytes", "gauge", counts.used_bytes,
+    put(text, "models", "gauge", counts.models, "Models ready to be rendered.");
+    put(text, "images", "gauge", counts.images, "Light images ready to be used.");
+    put(text, "model_cache_bytes", "gauge", counts.used_bytes,
         "Memory of files, tables, texels, messages and frames, on the GPU too.");
-    put(report, "model_cache_limit_bytes", "gauge", counts.budget_bytes, "The most they may take.");
-    put(report, "model_cache_hits_total", "counter", counts.hits,
+    put(text, "model_cache_limit_bytes", "gauge", counts.budget_bytes, "The most they may take.");
+    put(text, "model_cache_hits_total", "counter", counts.hits,
         "Uses of a model or image that was ready.");
-    put(report, "model_cache_misses_total", "counter", counts.misses,
+    put(text, "model_cache_misses_total", "counter", counts.misses,
         "Uses that had to wait for a build.");
-    put(report, "model_cache_evictions_total", "counter", counts.evictions,
+    put(text, "model_cache_evictions_total", "counter", counts.evictions,
         "Models and images forgotten to make room.");
 }
 
@@ -178,47 +177,48 @@ static uint64_t count_descriptors(void)
     return n - 1; /* the one it is read through */
 }
 
-static void write_process(const struct session_host *host, struct report *report)
+static void write_process(const struct session_host *host, struct text_buffer *text)
 {
     uint64_t now = loop_now_us();
     struct timespec cpu = {0};
     struct rlimit files = {0};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
     getrlimit(RLIMIT_NOFILE, &files);
-    head(report, "thread_busy_seconds", "gauge",
+    head(text, "thread_busy_seconds", "gauge",
          "How long the GL thread, or the longest at work of the pool, has been at one piece.");
-    report_add(report, "sheen_thread_busy_seconds{thread=\"gl\"} ");
-    seconds(report, render_thread_busy_us(host->render_thread, now));
-    report_add(report, "\nsheen_thread_busy_seconds{thread=\"pool\"} ");
-    seconds(report, pool_busy_us(host->pool, now));
-    report_add(report, "\nsheen_thread_busy_seconds{thread=\"read\"} ");
-    seconds(report, pool_busy_us(host->readers, now));
-    report_add(report, "\n");
-    put(report, "log_lines_left_out_total", "counter", log_left_out(),
+    text_buffer_add(text, "sheen_thread_busy_seconds{thread=\"gl\"} ");
+    seconds(text, render_thread_busy_us(host->render_thread, now));
+    text_buffer_add(text, "\nsheen_thread_busy_seconds{thread=\"pool\"} ");
+    seconds(text, pool_busy_us(host->pool, now));
+    text_buffer_add(text, "\nsheen_thread_busy_seconds{thread=\"read\"} ");
+    seconds(text, pool_busy_us(host->readers, now));
+    text_buffer_add(text, "\n");
+    put(text, "log_lines_left_out_total", "counter", log_left_out(),
         "Log lines above the most a second.");
     /* The names that every Prometheus client has for these. */
-    report_add(report,
-               "# HELP process_start_time_seconds Unix time of the start.\n"
-               "# TYPE process_start_time_seconds gauge\nprocess_start_time_seconds %lld\n"
-               "# HELP process_cpu_seconds_total Processor time, all threads.\n"
-               "# TYPE process_cpu_seconds_total counter\nprocess_cpu_seconds_total %lld.%06ld\n"
-               "# HELP process_resident_memory_bytes Memory in use.\n"
-               "# TYPE process_resident_memory_bytes gauge\nprocess_resident_memory_bytes %" PRIu64
-               "\n# HELP process_open_fds Open descriptors.\n"
-               "# TYPE process_open_fds gauge\nprocess_open_fds %" PRIu64
-               "\n# HELP process_max_fds The most there may be.\n"
-               "# TYPE process_max_fds gauge\nprocess_max_fds %llu\n",
-               (long long)time(NULL) - (long long)((now - host->stats.start_us) / 1000000),
-               (long long)cpu.tv_sec, cpu.tv_nsec / 1000, resident_bytes(), count_descriptors(),
-               (unsigned long long)files.rlim_cur);
+    text_buffer_add(
+        text,
+        "# HELP process_start_time_seconds Unix time of the start.\n"
+        "# TYPE process_start_time_seconds gauge\nprocess_start_time_seconds %lld\n"
+        "# HELP process_cpu_seconds_total Processor time, all threads.\n"
+        "# TYPE process_cpu_seconds_total counter\nprocess_cpu_seconds_total %lld.%06ld\n"
+        "# HELP process_resident_memory_bytes Memory in use.\n"
+        "# TYPE process_resident_memory_bytes gauge\nprocess_resident_memory_bytes %" PRIu64
+        "\n# HELP process_open_fds Open descriptors.\n"
+        "# TYPE process_open_fds gauge\nprocess_open_fds %" PRIu64
+        "\n# HELP process_max_fds The most there may be.\n"
+        "# TYPE process_max_fds gauge\nprocess_max_fds %llu\n",
+        (long long)time(NULL) - (long long)((now - host->stats.start_us) / 1000000),
+        (long long)cpu.tv_sec, cpu.tv_nsec / 1000, resident_bytes(), count_descriptors(),
+        (unsigned long long)files.rlim_cur);
 }
 
-void metrics_write(const struct session_host *host, struct report *report)
+void metrics_write(const struct session_host *host, struct text_buffer *text)
 {
-    write_build(host, report);
-    write_sessions(host, report);
-    write_requests(host, report);
-    write_stages(host, report);
-    write_store(host, report);
-    write_process(host, report);
+    write_build(host, text);
+    write_sessions(host, text);
+    write_requests(host, text);
+    write_stages(host, text);
+    write_store(host, text);
+    write_process(host, text);
 }

@@ -7,6 +7,6 @@
 #include "server/session/session.h"
 #include "server/base/text_buffer.h"
 
-void metrics_write(const struct session_host *host, struct report *report);
+void metrics_write(const struct session_host *host, struct text_buffer *text);
 
 #endif

@@ -37,7 +37,7 @@ static const char *who_is_stuck(const struct monitor *monitor)
 
 /* --- HTTP */
 
-static int get(void *owner, const char *path, struct report *body)
+static int get(void *owner, const char *path, struct text_buffer *body)
 {
     const struct monitor *monitor = owner;
     const char *stuck = who_is_stuck(monitor);
@@ -49,15 +49,15 @@ static int get(void *owner, const char *path, struct report *body)
     if (!ready && strcmp(path, "/healthz") != 0)
         return 404;
     if (stuck) {
-        report_add(body, "%s has been at one piece of work for more than %llu s\n", stuck,
-                   (unsigned long long)(monitor->stuck_us / 1000000));
+        text_buffer_add(body, "%s has been at one piece of work for more than %llu s\n", stuck,
+                        (unsigned long long)(monitor->stuck_us / 1000000));
         return 503;
     }
     if (ready && monitor->host->draining) {
-        report_add(body, "shutting down\n");
+        text_buffer_add(body, "shutting down\n");
         return 503;
     }
-    report_add(body, "ok\n");
+    text_buffer_add(body, "ok\n");
     return 200;
 }
 

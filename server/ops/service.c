@@ -20,7 +20,7 @@
 #include "server/frame/request.h"
 #include "server/session/session.h"
 
-#define SERVICE_TRIM_US 5000000u /* spares that lay unused for so long are given back */
+#define SERVICE_TRIM_US 5000000u /* block_cache that lay unused for so long are given back */
 #define SERVICE_LAST_WORK_US                                                                       \
     3000000u                         /* for other threads, when every client has gone in a drain   \
                                       */
@@ -37,8 +37,8 @@ struct service {
     struct loop_source signals;
     int signal_fd;
     struct session *sessions;
-    struct losses losses; /* of the GPU */
-    uint64_t trimmed_us;  /* when the spares were last */
+    struct gpu_loss_log gpu_losses; /* of the GPU */
+    uint64_t trimmed_us;            /* when the block_cache were last */
     enum service_end end;
     bool overdue; /* drain-timeout has passed, and the log has it */
     bool single;  /* ends with its session */
@@ -140,8 +140,8 @@ static void drain(struct service *service);
 static void count_losses(struct service *service)
 {
     struct session_host *host = &service->host;
-    while (service->losses.n < render_thread_losses(host->render_thread)) {
-        bool often = losses_add(&service->losses, loop_now_us(), host->limits.gpu_losses);
+    while (service->gpu_losses.n < render_thread_losses(host->render_thread)) {
+        bool often = gpu_loss_log_add(&service->gpu_losses, loop_now_us(), host->limits.gpu_losses);
         host->gpu_generation++;
         log_event(LOG_ERROR, "the GPU was lost", log_number("generation", host->gpu_generation));
         if (!often || host->draining)
@@ -171,7 +171,7 @@ static void after_batch(void *owner)
     request_start_next(&service->host);
     loop_set_ticking(service->host.loop, service->sessions || any_paused(service) ||
                                              service->host.draining ||
-                                             spares_bytes(service->host.spares) > 0);
+                                             block_cache_bytes(service->host.block_cache) > 0);
     if (service->sessions || !(service->single || service->host.draining))
         return;
     /* Nobody is left to answer; other threads may still be at work. */
@@ -198,7 +198,7 @@ static void tick(void *owner)
         session_tick(session, now);
     if (now - service->trimmed_us > SERVICE_TRIM_US) {
         service->trimmed_us = now;
-        spares_trim(service->host.spares);
+        block_cache_trim(service->host.block_cache);
     }
     for (size_t i = 0; i < service->n_listeners; i++)
         if (listener_is_paused(service->listeners[i]))
@@ -412,9 +412,10 @@ static bool start(struct service *service, struct error *error)
     const struct loop_hooks hooks = {after_batch, tick, service};
     jpeg_keep_defaults();
     host->is_private = service->single;
-    if (!(host->spares = spares_create((size_t)options->limits.spare_memory)))
+    if (!(host->block_cache = block_cache_create((size_t)options->limits.spare_memory)))
         return error_set(error, ERROR_SERVER, "no memory for the daemon");
-    const struct renderer_options renderer = {.device = options->device, .spares = host->spares};
+    const struct renderer_options renderer = {.device = options->device,
+                                              .block_cache = host->block_cache};
     /* The reader of cages starts while the device opens. */
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
         !workers_init(&host->workers, NULL, &options->limits, error) ||
@@ -434,8 +435,8 @@ static bool start(struct service *service, struct error *error)
     host->gpu_generation = 1;
     host->max_upload_bytes =
         limits->memory_budget < limits->max_upload ? limits->memory_budget : limits->max_upload;
-    host->memory =
-        (struct memory){.store = host->store, .limits = &host->limits, .spares = host->spares};
+    host->memory = (struct memory){
+        .store = host->store, .limits = &host->limits, .block_cache = host->block_cache};
     allow_descriptors(limits->max_connections + SERVICE_OWN_DESCRIPTORS);
     stats_init(&host->stats);
     if (service->single)
@@ -567,7 +568,7 @@ void service_destroy(struct service *service)
         close(service->signal_fd);
     loop_destroy(host->loop);
     access_destroy(host->access);
-    spares_destroy(host->spares);
+    block_cache_destroy(host->block_cache);
     if (host->models_fd >= 0)
         close(host->models_fd);
     free(service);

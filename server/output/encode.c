@@ -12,8 +12,8 @@ _Static_assert(MAX_CHANNELS <= PICTURE_MAX_CHANNELS, "a picture holds all channe
 
 struct encode_job;
 
-struct strip_work {
-    struct work work;
+struct strip_task {
+    struct task task;
     struct encode_job *job;
     size_t index;
     size_t start, size; /* of what was written, from where to where it is the frame's */
@@ -35,12 +35,12 @@ struct encode_job {
     struct workers *workers;
 
     struct error error; /* why it failed */
-    struct work file_work;
+    struct task file_task;
     size_t file_size;
     struct jpeg_layout jpeg;
     struct strip_layout png;
     atomic_bool has_alpha; /* PNG: a strip has been found not to be opaque */
-    struct strip_work *strips;
+    struct strip_task *strips;
     size_t n_strips, n_strips_left;
     bool (*join)(struct encode_job *job); /* the strips; false: no memory */
 };
@@ -86,25 +86,25 @@ void encoded_destroy(struct encoded *encoded)
     if (encoded->released)
         encoded->released(encoded->memory_of);
     frame_finish(&encoded->frame);
-    struct spares *spares = encoded->spares;
+    struct block_cache *block_cache = encoded->block_cache;
     for (size_t i = 0; i < encoded->n_blocks; i++)
-        spares_give(spares, encoded->blocks[i]);
-    spares_give(spares, encoded->blocks);
-    spares_give(spares, encoded->pieces);
-    spares_give(spares, encoded);
+        block_cache_give(block_cache, encoded->blocks[i]);
+    block_cache_give(block_cache, encoded->blocks);
+    block_cache_give(block_cache, encoded->pieces);
+    block_cache_give(block_cache, encoded);
 }
 
 static void end_job(struct encode_job *job, const struct error *error)
 {
     struct encoded *encoded = job->encoded;
-    struct spares *spares = encoded->spares;
+    struct block_cache *block_cache = encoded->block_cache;
     if (error) {
         encoded_destroy(encoded);
         encoded = NULL;
     }
     job->finished(job->owner, encoded, error);
-    spares_give(spares, job->strips);
-    spares_give(spares, job);
+    block_cache_give(block_cache, job->strips);
+    block_cache_give(block_cache, job);
 }
 
 static void set_no_memory(const struct encode_job *job, struct error *error)
@@ -128,8 +128,8 @@ static void add_piece(struct encoded *encoded, const uint8_t *bytes, size_t size
 /* Room for n blocks and as many pieces. */
 static bool allocate(struct encoded *encoded, size_t n)
 {
-    encoded->blocks = spares_take(encoded->spares, n * sizeof *encoded->blocks);
-    encoded->pieces = spares_take(encoded->spares, n * sizeof *encoded->pieces);
+    encoded->blocks = block_cache_take(encoded->block_cache, n * sizeof *encoded->blocks);
+    encoded->pieces = block_cache_take(encoded->block_cache, n * sizeof *encoded->pieces);
     encoded->n_blocks = encoded->blocks ? n : 0;
     for (size_t i = 0; i < encoded->n_blocks; i++)
         encoded->blocks[i] = NULL;
@@ -154,12 +154,12 @@ static void start_raw(struct encode_job *job)
 /* --- strips: block 1 + i is strip i, block 0 what stands before them */
 
 /* NULL: the strip has failed. */
-static uint8_t *take_strip(struct strip_work *strip, size_t bound)
+static uint8_t *take_strip(struct strip_task *strip, size_t bound)
 {
     struct encoded *encoded = strip->job->encoded;
     uint8_t **block = &encoded->blocks[1 + strip->index];
     if (!*block) /* it has none from a first try */
-        *block = fault_at("encode") ? NULL : spares_take(encoded->spares, bound);
+        *block = fault_at("encode") ? NULL : block_cache_take(encoded->block_cache, bound);
     if (!*block)
         set_no_memory(strip->job, &strip->error);
     return *block;
@@ -168,7 +168,7 @@ static uint8_t *take_strip(struct strip_work *strip, size_t bound)
 static void add_strips(struct encode_job *job)
 {
     for (size_t i = 0; i < job->n_strips; i++) {
-        const struct strip_work *strip = &job->strips[i];
+        const struct strip_task *strip = &job->strips[i];
         add_piece(job->encoded, job->encoded->blocks[1 + i] + strip->start,
                   strip->size - strip->start);
     }
@@ -178,18 +178,18 @@ static void add_strips(struct encode_job *job)
 static bool repeat_strips(struct encode_job *job)
 {
     for (size_t i = 0; i < job->n_strips; i++) {
-        struct strip_work *strip = &job->strips[i];
+        struct strip_task *strip = &job->strips[i];
         if (strip->has_alpha == atomic_load(&job->has_alpha))
             continue;
         job->n_strips_left++;
-        pool_submit(job->pool, &strip->work, job->urgency);
+        pool_submit(job->pool, &strip->task, job->urgency);
     }
     return job->n_strips_left > 0;
 }
 
-static void strip_done(struct work *work)
+static void strip_done(struct task *task)
 {
-    const struct strip_work *strip = work->owner;
+    const struct strip_task *strip = task->owner;
     struct encode_job *job = strip->job;
     if (strip->error.kind != ERROR_NONE)
         job->error = strip->error;
@@ -205,10 +205,10 @@ static void strip_done(struct work *work)
 }
 
 static void start_strips(struct encode_job *job, size_t n,
-                         void (*run)(struct work *work, void *worker),
+                         void (*run)(struct task *task, void *worker),
                          bool (*join)(struct encode_job *job))
 {
-    job->strips = spares_take(job->encoded->spares, n * sizeof *job->strips);
+    job->strips = block_cache_take(job->encoded->block_cache, n * sizeof *job->strips);
     if (!job->strips || !allocate(job->encoded, n + 1)) {
         end_job_no_memory(job);
         return;
@@ -216,18 +216,18 @@ static void start_strips(struct encode_job *job, size_t n,
     job->n_strips = job->n_strips_left = n;
     job->join = join;
     for (size_t i = 0; i < n; i++) {
-        struct strip_work *strip = &job->strips[i];
-        *strip = (struct strip_work){.job = job, .index = i};
-        strip->work = (struct work){run, strip_done, strip, NULL};
-        pool_submit(job->pool, &strip->work, job->urgency);
+        struct strip_task *strip = &job->strips[i];
+        *strip = (struct strip_task){.job = job, .index = i};
+        strip->task = (struct task){run, strip_done, strip, NULL};
+        pool_submit(job->pool, &strip->task, job->urgency);
     }
 }
 
 /* --- ZSTD: a table and the strips */
 
-static void zstd_run(struct work *work, void *worker)
+static void zstd_run(struct task *task, void *worker)
 {
-    struct strip_work *strip = work->owner;
+    struct strip_task *strip = task->owner;
     struct encode_job *job = strip->job;
     struct encoders *encoders = worker;
     struct codec_strip place = codec_strip_at(&job->layout, strip->index);
@@ -243,9 +243,9 @@ static void zstd_run(struct work *work, void *worker)
 
 static bool zstd_join(struct encode_job *job)
 {
-    struct spares *spares = job->encoded->spares;
-    uint32_t *lengths = spares_take(spares, job->n_strips * sizeof *lengths);
-    uint8_t *table = spares_take(spares, job->layout.table_bytes);
+    struct block_cache *block_cache = job->encoded->block_cache;
+    uint32_t *lengths = block_cache_take(block_cache, job->n_strips * sizeof *lengths);
+    uint8_t *table = block_cache_take(block_cache, job->layout.table_bytes);
     job->encoded->blocks[0] = table;
     bool ok = lengths && table;
     for (size_t i = 0; ok && i < job->n_strips; i++)
@@ -255,15 +255,15 @@ static bool zstd_join(struct encode_job *job)
         add_piece(job->encoded, table, job->layout.table_bytes);
         add_strips(job);
     }
-    spares_give(spares, lengths);
+    block_cache_give(block_cache, lengths);
     return ok;
 }
 
 /* --- JPEG: a head and the strips */
 
-static void jpeg_run(struct work *work, void *worker)
+static void jpeg_run(struct task *task, void *worker)
 {
-    struct strip_work *strip = work->owner;
+    struct strip_task *strip = task->owner;
     struct encode_job *job = strip->job;
     struct encoders *encoders = worker;
     uint8_t *bytes = take_strip(strip, job->jpeg.strips.bound);
@@ -277,7 +277,7 @@ static bool jpeg_join(struct encode_job *job)
     struct encoded *encoded = job->encoded;
     const size_t start = job->strips[0].start;
     const size_t bound = jpeg_head_bound(start, job->attributes, job->n_attributes);
-    uint8_t *head = spares_take(encoded->spares, bound);
+    uint8_t *head = block_cache_take(encoded->block_cache, bound);
     encoded->blocks[0] = head;
     if (!head)
         return false;
@@ -296,15 +296,16 @@ static void start_jpeg(struct encode_job *job)
 
 /* --- PNG: a head and the strips, of which the last holds the tail */
 
-static void png_run(struct work *work, void *worker)
+static void png_run(struct task *task, void *worker)
 {
-    struct strip_work *strip = work->owner;
+    struct strip_task *strip = task->owner;
     struct encode_job *job = strip->job;
     struct encoders *encoders = worker;
     const uint8_t *rgba = job->encoded->frame.plane[0];
     struct png_strip written = {0};
     uint8_t *bytes = take_strip(strip, job->png.bound);
-    uint8_t *row = bytes ? spares_take(job->encoded->spares, png_row_bytes(&job->png)) : NULL;
+    uint8_t *row =
+        bytes ? block_cache_take(job->encoded->block_cache, png_row_bytes(&job->png)) : NULL;
     /* Most pictures are opaque: none is searched for alpha before its strips are encoded. */
     if (!atomic_load(&job->has_alpha) && !png_strip_is_opaque(&job->png, strip->index, rgba))
         atomic_store(&job->has_alpha, true);
@@ -314,7 +315,7 @@ static void png_run(struct work *work, void *worker)
     else
         png_strip_encode(encoders->png, &job->png, strip->index, rgba, strip->has_alpha, row, bytes,
                          &written, &strip->error);
-    spares_give(job->encoded->spares, row);
+    block_cache_give(job->encoded->block_cache, row);
     strip->size = written.size;
     strip->checksum = written.checksum;
 }
@@ -322,10 +323,10 @@ static void png_run(struct work *work, void *worker)
 static bool png_join(struct encode_job *job)
 {
     struct encoded *encoded = job->encoded;
-    struct strip_work *last = &job->strips[job->n_strips - 1];
+    struct strip_task *last = &job->strips[job->n_strips - 1];
     const bool has_alpha = atomic_load(&job->has_alpha);
     uint8_t *head =
-        spares_take(encoded->spares, png_head_bound(job->attributes, job->n_attributes));
+        block_cache_take(encoded->block_cache, png_head_bound(job->attributes, job->n_attributes));
     encoded->blocks[0] = head;
     if (!head)
         return false;
@@ -385,10 +386,10 @@ static void add_channels(const struct encode_job *job, struct picture *picture)
     }
 }
 
-static void file_run(struct work *work, void *worker)
+static void file_run(struct task *task, void *worker)
 {
     (void)worker;
-    struct encode_job *job = work->owner;
+    struct encode_job *job = task->owner;
     struct picture picture = {.format = file_format(job->format.encoding),
                               .width_px = job->layout.width_px,
                               .height_px = job->layout.height_px,
@@ -402,13 +403,13 @@ static void file_run(struct work *work, void *worker)
         if (job->layout.planes & (1u << plane))
             planes[n_planes++] = (struct picture_block){job->encoded->frame.plane[plane],
                                                         codec_plane_bytes(&job->layout, plane)};
-    workers_write_image(job->workers, &picture, planes, n_planes, job->encoded->spares,
+    workers_write_image(job->workers, &picture, planes, n_planes, job->encoded->block_cache,
                         &job->encoded->blocks[0], &job->file_size, &job->error);
 }
 
-static void file_done(struct work *work)
+static void file_done(struct task *task)
 {
-    struct encode_job *job = work->owner;
+    struct encode_job *job = task->owner;
     frame_finish(&job->encoded->frame);
     if (!job->encoded->blocks[0]) {
         end_job(job, &job->error);
@@ -424,8 +425,8 @@ static void start_file(struct encode_job *job)
         end_job_no_memory(job);
         return;
     }
-    job->file_work = (struct work){file_run, file_done, job, NULL};
-    pool_submit(job->pool, &job->file_work, job->urgency);
+    job->file_task = (struct task){file_run, file_done, job, NULL};
+    pool_submit(job->pool, &job->file_task, job->urgency);
 }
 
 _Static_assert((int)JPEG_420 == (int)sheen_JpegSubsampling_JPEG_420, "same order");
@@ -465,19 +466,19 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
                   void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
                   void *owner)
 {
-    struct spares *spares = frame->spares;
-    struct encode_job *job = spares_take(spares, sizeof *job);
-    struct encoded *encoded = spares_take(spares, sizeof *encoded);
+    struct block_cache *block_cache = frame->block_cache;
+    struct encode_job *job = block_cache_take(block_cache, sizeof *job);
+    struct encoded *encoded = block_cache_take(block_cache, sizeof *encoded);
     if (!job || !encoded) {
-        spares_give(spares, job);
-        spares_give(spares, encoded);
+        block_cache_give(block_cache, job);
+        block_cache_give(block_cache, encoded);
         frame_finish(frame);
         struct error error = {0};
         error_set(&error, ERROR_SERVER, "no memory to encode a frame: try again later");
         finished(owner, NULL, &error);
         return;
     }
-    *encoded = (struct encoded){.frame = *frame, .spares = spares};
+    *encoded = (struct encoded){.frame = *frame, .block_cache = block_cache};
     *frame = (struct frame){0};
     *job = (struct encode_job){
         .encoded = encoded,

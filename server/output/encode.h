@@ -33,7 +33,7 @@ struct encoded {
     struct frame frame; /* RAW: the planes themselves */
     uint8_t **blocks;   /* what the pieces lie in, if not in the frame */
     size_t n_blocks;
-    struct spares *spares; /* the frame's: where all of it comes from */
+    struct block_cache *block_cache; /* the frame's: where all of it comes from */
 
     unsigned *unsent;                  /* counted down at the end; may be NULL */
     void (*released)(void *memory_of); /* what its memory was charged to; may be NULL */

@@ -412,7 +412,7 @@ static void add_legend(const struct painting *painting, const struct frame *fram
     add_marks(painting, &legend);
     struct error error = {0};
     if (!legend_draw(frame->plane[0], frame->width_px, frame->height_px, &legend, workers,
-                     frame->spares, &error) &&
+                     frame->block_cache, &error) &&
         !atomic_flag_test_and_set(&told))
         log_event(LOG_WARN, "legends lack their numbers", log_text("text", error.text));
 }

@@ -64,7 +64,7 @@ struct canvas {
     uint8_t *rgba;
     uint32_t width_px, height_px;
     struct workers *workers;
-    struct spares *spares;
+    struct block_cache *block_cache;
     struct error *error;
 };
 
@@ -72,17 +72,18 @@ static bool write_text(const struct canvas *canvas, int x, int y, int size_px,
                        enum text_align align, const char *line)
 {
     struct text text;
-    if (!workers_draw_text(canvas->workers, canvas->spares, &text, line, size_px, canvas->error))
+    if (!workers_draw_text(canvas->workers, canvas->block_cache, &text, line, size_px,
+                           canvas->error))
         return false;
     text_draw(&text, canvas->rgba, canvas->width_px, canvas->height_px, x, y, align, TEXT_COLOUR);
-    spares_give(canvas->spares, text.coverage);
+    block_cache_give(canvas->block_cache, text.coverage);
     return true;
 }
 
 bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
-                 struct workers *workers, struct spares *spares, struct error *error)
+                 struct workers *workers, struct block_cache *block_cache, struct error *error)
 {
-    const struct canvas canvas = {rgba, width_px, height_px, workers, spares, error};
+    const struct canvas canvas = {rgba, width_px, height_px, workers, block_cache, error};
     int font = (int)(height_px / FONT_SHARE);
     font = font < MIN_FONT_PX ? MIN_FONT_PX : font;
     struct box panel = {.width = PANEL_WIDTH * font, .height = (int)(PANEL_HEIGHT * font)};

@@ -26,9 +26,9 @@ struct legend {
     struct legend_mark marks[LEGEND_MAX_MARKS];
 };
 
-/* Draws over the pixels of a colour plane, its texts' masks in memory of `spares` (NULL: malloc's).
- * False, saying why, when a text cannot be drawn; the bar is. */
+/* Draws over the pixels of a colour plane, its texts' masks in memory of `block_cache` (NULL:
+ * malloc's). False, saying why, when a text cannot be drawn; the bar is. */
 bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
-                 struct workers *workers, struct spares *spares, struct error *error);
+                 struct workers *workers, struct block_cache *block_cache, struct error *error);
 
 #endif

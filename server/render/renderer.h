@@ -43,7 +43,7 @@ struct renderer_options {
      * that fails. NULL: nobody is. */
     void (*lost)(void *owner);
     void *owner;
-    struct spares *spares; /* memory of frames, which outlives them; NULL: malloc's */
+    struct block_cache *block_cache; /* memory of frames, which outlives them; NULL: malloc's */
 };
 #define RENDERER_NAME_BYTES 256
 
@@ -91,7 +91,7 @@ struct frame {
      * pixels of tiles of fewer than 2^18, one in eight of larger tiles; and where no light can be
      * missed, nothing is counted and both get 1 for each tile that shows surface. */
     uint64_t seen_px, met_px;
-    struct spares *spares; /* the renderer's: where the planes come from */
+    struct block_cache *block_cache; /* the renderer's: where the planes come from */
     struct canvas *canvas; /* the renderer's, between two steps; NULL once the frame is whole */
 };
 

@@ -4,7 +4,7 @@
 
 struct answer {
     struct answer *next;
-    struct spares *spares;
+    struct block_cache *block_cache;
     uint32_t seq;
     enum request_class request_class;
     bool ready, last;
@@ -16,10 +16,11 @@ struct answer {
 struct answer *answer_expect(struct answer_list *list, uint32_t seq,
                              enum request_class request_class)
 {
-    struct answer *answer = spares_take(list->spares, sizeof *answer);
+    struct answer *answer = block_cache_take(list->block_cache, sizeof *answer);
     if (!answer)
         return NULL;
-    *answer = (struct answer){.spares = list->spares, .seq = seq, .request_class = request_class};
+    *answer = (struct answer){
+        .block_cache = list->block_cache, .seq = seq, .request_class = request_class};
     if (list->tail)
         list->tail->next = answer;
     else
@@ -43,8 +44,8 @@ static void drop(struct answer_list *list, struct answer *before)
         list->tail = before;
     list->n--;
     encoded_destroy(answer->encoded);
-    spares_give(list->spares, answer->message);
-    spares_give(list->spares, answer);
+    block_cache_give(list->block_cache, answer->message);
+    block_cache_give(list->block_cache, answer);
 }
 
 void answer_list_finish(struct answer_list *list)
@@ -59,7 +60,7 @@ bool answer_fill(struct answer *answer, uint8_t type, const void *body)
     answer->ready = true;
     if (!message_encode(type, answer->seq, body, buffer, sizeof buffer, &answer->length))
         return false;
-    answer->message = spares_take(answer->spares, answer->length);
+    answer->message = block_cache_take(answer->block_cache, answer->length);
     if (!answer->message)
         return false;
     memcpy(answer->message, buffer, answer->length);

@@ -12,11 +12,11 @@
 struct answer; /* one that is owed; lives in its list until it is sent */
 
 struct answer_list {
-    struct answer *head, *tail; /* in the order of their requests */
-    unsigned n;                 /* owed */
-    bool is_ordered;            /* as minor version 0 has it */
-    unsigned unsent;            /* interactive frames handed to the connection: at most 1 */
-    struct spares *spares;      /* where the answers' memory comes from, or NULL */
+    struct answer *head, *tail;      /* in the order of their requests */
+    unsigned n;                      /* owed */
+    bool is_ordered;                 /* as minor version 0 has it */
+    unsigned unsent;                 /* interactive frames handed to the connection: at most 1 */
+    struct block_cache *block_cache; /* where the answers' memory comes from, or NULL */
 };
 
 /* A request has come; `request_class` is that of its frame, CLASS_STILL for what has none. NULL

@@ -197,7 +197,7 @@ struct session *session_create(struct session_host *host, int fd,
         return NULL;
     }
     session->host = host;
-    session->conn.spares = session->answers.spares = host->spares;
+    session->conn.block_cache = session->answers.block_cache = host->block_cache;
     session->peer = peer;
     session->client = *client;
     session->admitted = client->kind != CLIENT_TLS;

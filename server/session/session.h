@@ -32,7 +32,7 @@ struct session_host {
     struct loop *loop;
     struct pool *pool, *readers;
     struct render_thread *render_thread;
-    struct spares *spares; /* the memory of frames and of their requests and answers */
+    struct block_cache *block_cache; /* the memory of frames and of their requests and answers */
     struct workers workers;
     struct store *store;
     struct access *access; /* another one after a reload */

@@ -1,7 +1,7 @@
 /* What the files of sessions share: session.c has a session's life and its messages,
  * session_input.c their order and the room for long ones,
- * session_answer.c how answers leave, session_ask.c what each request asks for, session_stats.c
- * the answer to STATS_QUERY, session_access.c who the client is, session_watch.c what clients may
+ * session_reply.c how answers leave, session_requests.c what each request asks for, session_stats.c
+ * the answer to STATS_QUERY, session_access.c who the client is, session_limits.c what clients may
  * not do too long or too much of. Private to them. Thread: the loop's. */
 #ifndef SHEEN_SESSION_SESSION_INTERNAL_H
 #define SHEEN_SESSION_SESSION_INTERNAL_H
@@ -37,7 +37,7 @@ void session_reply(struct session *session, uint32_t seq, uint8_t type, const vo
 void session_reply_error(struct session *session, uint32_t seq, sheen_ErrorCode code,
                          const char *text);
 
-/* --- session_ask.c: one message each, decoded, in its turn; each is answered */
+/* --- session_requests.c: one message each, decoded, in its turn; each is answered */
 
 void session_upload_begin(struct session *session, uint32_t seq, const sheen_UploadBegin *begin);
 void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *body,
@@ -56,7 +56,7 @@ void session_turn_away(struct session *session, const char *why);
 /* A client behind TLS says who it is. False when it has been turned away. */
 bool session_admit(struct session *session, const sheen_Hello *hello);
 
-/* --- session_watch.c */
+/* --- session_limits.c */
 
 /* A line in the log, and one more in the statistics. */
 void session_log_disconnect(struct session *session, const char *reason);

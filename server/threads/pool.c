@@ -9,7 +9,7 @@
 struct pool_thread {
     struct pool *pool;
     pthread_t thread;
-    atomic_ullong busy_since_us; /* when its present work began or beat; 0: it has none */
+    atomic_ullong busy_since_us; /* when its present task began or beat; 0: it has none */
 };
 
 static _Thread_local struct pool_thread *this_thread; /* NULL outside of a pool */
@@ -19,8 +19,8 @@ struct pool {
     struct pool_worker worker;
     struct completions *completions;
     pthread_mutex_t lock;
-    pthread_cond_t changed; /* works, a start, the end */
-    struct work_list lists[POOL_URGENCIES];
+    pthread_cond_t changed; /* tasks, a start, the end */
+    struct task_list lists[POOL_URGENCIES];
     bool ending;
     unsigned n_urgent_threads; /* the first to start */
     unsigned n_threads, n_started, n_failed;
@@ -28,22 +28,22 @@ struct pool {
     struct pool_thread threads[];
 };
 
-static struct work *next_work(struct pool *pool, int least_urgent)
+static struct task *next_task(struct pool *pool, int least_urgent)
 {
-    struct work *work = NULL;
+    struct task *task = NULL;
     pthread_mutex_lock(&pool->lock);
     for (;;) {
-        for (int urgency = POOL_URGENT; urgency <= least_urgent && !work; urgency++)
-            work = work_list_pop(&pool->lists[urgency]);
-        if (work || pool->ending)
+        for (int urgency = POOL_URGENT; urgency <= least_urgent && !task; urgency++)
+            task = task_list_pop(&pool->lists[urgency]);
+        if (task || pool->ending)
             break;
         pthread_cond_wait(&pool->changed, &pool->lock);
     }
     pthread_mutex_unlock(&pool->lock);
-    return work;
+    return task;
 }
 
-/* Starts the calling thread's worker; *least_urgent says which works it takes. */
+/* Starts the calling thread's worker; *least_urgent says which tasks it takes. */
 static bool start_worker(struct pool *pool, void **worker, int *least_urgent)
 {
     struct error error = {0};
@@ -67,11 +67,11 @@ static void *thread_main(void *argument)
     int least_urgent;
     if (!start_worker(pool, &worker, &least_urgent))
         return NULL;
-    for (struct work *work; (work = next_work(pool, least_urgent));) {
+    for (struct task *task; (task = next_task(pool, least_urgent));) {
         atomic_store(&self->busy_since_us, loop_now_us());
-        work->run(work, worker);
+        task->run(task, worker);
         atomic_store(&self->busy_since_us, 0);
-        completions_post(pool->completions, work);
+        completions_post(pool->completions, task);
     }
     if (pool->worker.stop)
         pool->worker.stop(worker);
@@ -154,11 +154,11 @@ void pool_beat(void)
         atomic_store(&this_thread->busy_since_us, loop_now_us());
 }
 
-void pool_submit(struct pool *pool, struct work *work, enum pool_urgency urgency)
+void pool_submit(struct pool *pool, struct task *task, enum pool_urgency urgency)
 {
     pthread_mutex_lock(&pool->lock);
-    work_list_push(&pool->lists[urgency], work);
-    /* One that is woken may not take this work. */
+    task_list_push(&pool->lists[urgency], task);
+    /* One that is woken may not take this task. */
     pool->n_urgent_threads ? pthread_cond_broadcast(&pool->changed)
                            : pthread_cond_signal(&pool->changed);
     pthread_mutex_unlock(&pool->lock);

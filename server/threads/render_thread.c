@@ -71,9 +71,9 @@ void render_thread_destroy(struct render_thread *thread)
     free(thread);
 }
 
-void render_thread_submit(struct render_thread *thread, struct work *work)
+void render_thread_submit(struct render_thread *thread, struct task *task)
 {
-    pool_submit(thread->pool, work, POOL_URGENT);
+    pool_submit(thread->pool, task, POOL_URGENT);
 }
 
 const struct renderer_info *render_thread_info(const struct render_thread *thread)

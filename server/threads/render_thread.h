@@ -1,7 +1,7 @@
 /* The one thread that owns the renderer, and with it the GL context, for the daemon's life.
  * Works submitted here see their `worker` as `struct renderer *` and run in order; nobody else
  * calls renderer_*() with a renderer. A device that is lost is opened again there (renderer.h); the
- * loop's thread is told of it by the work that fails. Thread: the functions here are for the loop's
+ * loop's thread is told of it by the task that fails. Thread: the functions here are for the loop's
  * thread. */
 #ifndef SHEEN_THREADS_RENDER_THREAD_H
 #define SHEEN_THREADS_RENDER_THREAD_H
@@ -15,10 +15,10 @@ struct render_thread;
 struct render_thread *render_thread_create(const struct renderer_options *options,
                                            struct completions *completions, struct error *error);
 
-/* Finishes every submitted work and closes the device. NULL is safe. */
+/* Finishes every submitted task and closes the device. NULL is safe. */
 void render_thread_destroy(struct render_thread *thread);
 
-void render_thread_submit(struct render_thread *thread, struct work *work);
+void render_thread_submit(struct render_thread *thread, struct task *task);
 
 /* How often the device has been lost, or could not be opened again. */
 uint32_t render_thread_losses(const struct render_thread *thread);

@@ -12,28 +12,28 @@ struct completions {
     struct loop_source source; /* the eventfd */
     int event_fd;
     pthread_mutex_t lock;
-    struct work_list list;
+    struct task_list list;
 };
 
-void work_list_push(struct work_list *list, struct work *work)
+void task_list_push(struct task_list *list, struct task *task)
 {
-    work->next = NULL;
+    task->next = NULL;
     if (list->tail)
-        list->tail->next = work;
+        list->tail->next = task;
     else
-        list->head = work;
-    list->tail = work;
+        list->head = task;
+    list->tail = task;
 }
 
-struct work *work_list_pop(struct work_list *list)
+struct task *task_list_pop(struct task_list *list)
 {
-    struct work *work = list->head;
-    if (!work)
+    struct task *task = list->head;
+    if (!task)
         return NULL;
-    list->head = work->next;
+    list->head = task->next;
     if (!list->head)
         list->tail = NULL;
-    return work;
+    return task;
 }
 
 static void wake_ready(struct loop_source *source, uint32_t events)
@@ -80,11 +80,11 @@ void completions_destroy(struct completions *completions)
     free(completions);
 }
 
-void completions_post(struct completions *completions, struct work *work)
+void completions_post(struct completions *completions, struct task *task)
 {
     pthread_mutex_lock(&completions->lock);
     bool was_empty = !completions->list.head;
-    work_list_push(&completions->list, work);
+    task_list_push(&completions->list, task);
     pthread_mutex_unlock(&completions->lock);
     const uint64_t one = 1;
     if (was_empty && write(completions->event_fd, &one, sizeof one) < 0 && errno != EAGAIN)
@@ -94,9 +94,9 @@ void completions_post(struct completions *completions, struct work *work)
 void completions_deliver(struct completions *completions)
 {
     pthread_mutex_lock(&completions->lock);
-    struct work_list list = completions->list;
-    completions->list = (struct work_list){NULL, NULL};
+    struct task_list list = completions->list;
+    completions->list = (struct task_list){NULL, NULL};
     pthread_mutex_unlock(&completions->lock);
-    for (struct work *work; (work = work_list_pop(&list));)
-        work->done(work);
+    for (struct task *task; (task = task_list_pop(&list));)
+        task->done(task);
 }

@@ -1,6 +1,6 @@
 /* One piece of work for another thread, and the way back to the loop's thread.
  *
- * A work is embedded in the object it serves and belongs to it; nothing is allocated to hand it
+ * A task is embedded in the object it serves and belongs to it; nothing is allocated to hand it
  * over. From pool_submit() until done() has been called it must not be touched by its owner. */
 #ifndef SHEEN_THREADS_TASK_H
 #define SHEEN_THREADS_TASK_H
@@ -10,30 +10,30 @@
 #include "server/base/error.h"
 #include "server/net/loop.h"
 
-struct work {
-    void (*run)(struct work *work, void *worker); /* on a worker thread; `worker` is its own */
-    void (*done)(struct work *work);              /* on the loop's thread; may free the work */
+struct task {
+    void (*run)(struct task *task, void *worker); /* on a worker thread; `worker` is its own */
+    void (*done)(struct task *task);              /* on the loop's thread; may free the task */
     void *owner;
-    struct work *next; /* of the queue that holds it */
+    struct task *next; /* of the queue that holds it */
 };
 
 /* First in, first out. Not safe for threads: its owner locks. */
-struct work_list {
-    struct work *head, *tail;
+struct task_list {
+    struct task *head, *tail;
 };
 
-void work_list_push(struct work_list *list, struct work *work);
-struct work *work_list_pop(struct work_list *list); /* NULL when empty */
+void task_list_push(struct task_list *list, struct task *task);
+struct task *task_list_pop(struct task_list *list); /* NULL when empty */
 
-/* Finished works on their way to the loop's thread: a locked list and an eventfd. It can hold no
+/* Finished tasks on their way to the loop's thread: a locked list and an eventfd. It can hold no
  * more than was submitted, and what is submitted is bounded where it is admitted (scheduler.h,
  * store.h). */
 struct completions;
 
 struct completions *completions_create(struct loop *loop, struct error *error);
-void completions_destroy(struct completions *completions);              /* NULL is safe */
-void completions_post(struct completions *completions, struct work *w); /* any thread */
-/* Calls done() of all finished works. The loop does this itself; at the end of the daemon, when
+void completions_destroy(struct completions *completions);                 /* NULL is safe */
+void completions_post(struct completions *completions, struct task *task); /* any thread */
+/* Calls done() of all finished tasks. The loop does this itself; at the end of the daemon, when
  * the loop has stopped, somebody must. */
 void completions_deliver(struct completions *completions);
 

@@ -148,11 +148,11 @@ bool workers_read_image(struct workers *workers, struct image *image, const void
 }
 
 /* All that is left of an answer. */
-static bool take_file(struct source *answer, struct spares *spares, uint8_t **bytes, size_t *size,
-                      struct error *error)
+static bool take_file(struct source *answer, struct block_cache *block_cache, uint8_t **bytes,
+                      size_t *size, struct error *error)
 {
     *size = answer->left;
-    *bytes = spares_take(spares, *size);
+    *bytes = block_cache_take(block_cache, *size);
     if (!*bytes)
         return error_set(error, ERROR_SERVER, "no memory for a file of %zu bytes: try again later",
                          *size);
@@ -161,8 +161,9 @@ static bool take_file(struct source *answer, struct spares *spares, uint8_t **by
 }
 
 bool workers_write_image(struct workers *workers, const struct picture *picture,
-                         const struct picture_block *blocks, size_t n_blocks, struct spares *spares,
-                         uint8_t **bytes, size_t *size, struct error *error)
+                         const struct picture_block *blocks, size_t n_blocks,
+                         struct block_cache *block_cache, uint8_t **bytes, size_t *size,
+                         struct error *error)
 {
     uint64_t memory_bytes = WORKERS_LEAST_MEMORY_BYTES;
     for (size_t i = 0; i < n_blocks; i++)
@@ -177,25 +178,25 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
     ok = ok &&
          worker_run(workers->images, &call, JOB_WRITE_IMAGE, &limits, "the picture", ERROR_IMAGE,
                     error) &&
-         take_file(&call.answer, spares, bytes, size, error);
+         take_file(&call.answer, block_cache, bytes, size, error);
     worker_call_finish(&call);
     return ok;
 }
 
 /* The mask that is left of an answer. */
-static bool take_text(struct source *answer, struct spares *spares, struct text *text,
+static bool take_text(struct source *answer, struct block_cache *block_cache, struct text *text,
                       struct error *error)
 {
-    float *coverage = spares_take(spares, answer->left);
+    float *coverage = block_cache_take(block_cache, answer->left);
     if (!coverage)
         return error_set(error, ERROR_SERVER, "no memory for a line of text: try again later");
     if (text_take(answer, coverage, text))
         return true;
-    spares_give(spares, coverage);
+    block_cache_give(block_cache, coverage);
     return error_set(error, ERROR_SERVER, "a line of text came back broken");
 }
 
-bool workers_draw_text(struct workers *workers, struct spares *spares, struct text *text,
+bool workers_draw_text(struct workers *workers, struct block_cache *block_cache, struct text *text,
                        const char *line, int size_px, struct error *error)
 {
     const struct job_limits limits = limits_within_budget(workers, WORKERS_LEAST_MEMORY_BYTES);
@@ -209,7 +210,7 @@ bool workers_draw_text(struct workers *workers, struct spares *spares, struct te
     ok = ok &&
          worker_run(workers->images, &call, JOB_DRAW_TEXT, &limits, "a line of text", ERROR_SERVER,
                     error) &&
-         take_text(&call.answer, spares, text, error);
+         take_text(&call.answer, block_cache, text, error);
     worker_call_finish(&call);
     return ok;
 }

@@ -45,12 +45,13 @@ bool workers_read_cage(struct workers *workers, struct cage *cage, const void *b
 /* As image_decode(). */
 bool workers_read_image(struct workers *workers, struct image *image, const void *bytes,
                         size_t size, const char *name, uint32_t max_px, struct error *error);
-/* As image_encode(); the picture's channels lie in the blocks. The bytes are of `spares`. */
+/* As image_encode(); the picture's channels lie in the blocks. The bytes are of `block_cache`. */
 bool workers_write_image(struct workers *workers, const struct picture *picture,
-                         const struct picture_block *blocks, size_t n_blocks, struct spares *spares,
-                         uint8_t **bytes, size_t *size, struct error *error);
-/* As text_create(), but that the mask is of `spares`. */
-bool workers_draw_text(struct workers *workers, struct spares *spares, struct text *text,
+                         const struct picture_block *blocks, size_t n_blocks,
+                         struct block_cache *block_cache, uint8_t **bytes, size_t *size,
+                         struct error *error);
+/* As text_create(), but that the mask is of `block_cache`. */
+bool workers_draw_text(struct workers *workers, struct block_cache *block_cache, struct text *text,
                        const char *line, int size_px, struct error *error);
 
 #endif

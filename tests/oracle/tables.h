@@ -1,5 +1,5 @@
-/* The tables of server/surface built from a cage and evaluated by server/surface/evaluate.h, in double
- * from the single precision points: what the shaders do, without their arithmetic. */
+/* The tables of server/surface built from a cage and evaluated by server/surface/evaluate.h, in
+ * double from the single precision points: what the shaders do, without their arithmetic. */
 #ifndef SHEEN_TESTS_ORACLE_TABLES_H
 #define SHEEN_TESTS_ORACLE_TABLES_H
 

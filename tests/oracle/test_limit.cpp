@@ -1,6 +1,7 @@
-/* test_limit MODEL...: the tables of server/surface, evaluated on the CPU as server/surface/tables.h
- * describes them, against libosd in double at random (face, u, v): no GPU, no service. Then what
- * libosd cannot tell: that the rings of an extraordinary vertex meet, down to the deepest. */
+/* test_limit MODEL...: the tables of server/surface, evaluated on the CPU as
+ * server/surface/tables.h describes them, against libosd in double at random (face, u, v): no GPU,
+ * no service. Then what libosd cannot tell: that the rings of an extraordinary vertex meet, down to
+ * the deepest. */
 #include <cmath>
 #include <cstdio>
 #include <map>

@@ -41,7 +41,7 @@ def interlaced_png(width, height):
 
 
 class Table(unittest.TestCase):
-    """What the table's values mean is in tests/unit/test_service_limits.c."""
+    """What the table's values mean is in tests/unit/test_ops_limits.c."""
 
     def test_help_and_file_have_the_same_limits(self):
         text = run("--help").stdout

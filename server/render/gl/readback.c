@@ -95,9 +95,9 @@ static bool read_packed(struct renderer *r, const struct frame_request *request,
     if (!(request->planes & (NEED_DEPTH | PLANE_PTEX)))
         return true;
     size_t pixels = (size_t)tile->width * tile->height, bytes = pixels * 20;
-    struct spares *spares = r->options.spares;
-    float *depth = spares_take(spares, pixels * 4);
-    void *other = spares_take(spares, pixels * 16);
+    struct block_cache *block_cache = r->options.block_cache;
+    float *depth = block_cache_take(block_cache, pixels * 4);
+    void *other = block_cache_take(block_cache, pixels * 16);
     bool ok = depth && other;
     if (ok && request->planes & NEED_DEPTH)
         read_part(r->target.hit_depth, GL_RED, GL_FLOAT, part, pixels * 4, depth);
@@ -115,8 +115,8 @@ static bool read_packed(struct renderer *r, const struct frame_request *request,
         read_four(r->target.ptex, GL_RGBA_INTEGER, GL_UNSIGNED_INT, part, other);
         pack_ptex(other, &rows, tile);
     }
-    spares_give(spares, depth);
-    spares_give(spares, other);
+    block_cache_give(block_cache, depth);
+    block_cache_give(block_cache, other);
     return ok || error_set(error, ERROR_SERVER,
                            "out of memory: reading a tile back needs %zu bytes", bytes);
 }
@@ -172,6 +172,6 @@ void frame_finish(struct frame *frame)
 {
     canvas_give_back(frame);
     for (int p = 0; p < PLANE_COUNT; p++)
-        spares_give(frame->spares, frame->plane[p]);
+        block_cache_give(frame->block_cache, frame->plane[p]);
     *frame = (struct frame){0};
 }

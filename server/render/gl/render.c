@@ -11,16 +11,16 @@ enum { TILE_MIN_PX = 128 };
 enum { MARGIN_PX = COVER_BLOCK_PX };
 
 static bool frame_init(struct frame *frame, const struct frame_request *request,
-                       struct spares *spares, struct error *error)
+                       struct block_cache *block_cache, struct error *error)
 {
     *frame = (struct frame){
-        .width_px = request->width_px, .height_px = request->height_px, .spares = spares};
+        .width_px = request->width_px, .height_px = request->height_px, .block_cache = block_cache};
     size_t pixels = (size_t)request->width_px * request->height_px;
     for (int p = 0; p < PLANE_COUNT; p++) {
         if (!(request->planes & 1u << p))
             continue;
         size_t bytes = pixels * renderer_plane_bytes((enum renderer_plane)(1 << p));
-        frame->plane[p] = spares_take(spares, bytes);
+        frame->plane[p] = block_cache_take(block_cache, bytes);
         if (!frame->plane[p]) {
             frame_finish(frame);
             return error_set(error, ERROR_SERVER,
@@ -243,7 +243,7 @@ bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *f
     *frame = (struct frame){0};
     work->x = work->y = work->n_programs = 0;
     if (!request_check(&r->info, work->request, error) ||
-        !frame_init(frame, work->request, r->options.spares, error))
+        !frame_init(frame, work->request, r->options.block_cache, error))
         return false;
     work->serial = ++r->n_begun;
     work->in_place = work->in_place && target_can_hold(&r->info, work->request);

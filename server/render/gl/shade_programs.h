@@ -1,4 +1,5 @@
-/* The programs of stage 3 that are kept: those used last. Private to server/render/gl; GL thread only. */
+/* The programs of stage 3 that are kept: those used last. Private to server/render/gl; GL thread
+ * only. */
 #ifndef SHEEN_RENDER_GL_SHADE_PROGRAMS_H
 #define SHEEN_RENDER_GL_SHADE_PROGRAMS_H
 

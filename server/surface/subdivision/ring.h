@@ -27,7 +27,8 @@ struct ring_creases {
     bool chaikin;
 };
 
-/* What the vertex has beside this sheet, where several meet (server/surface/subdivision/sheets.h). */
+/* What the vertex has beside this sheet, where several meet (server/surface/subdivision/sheets.h).
+ */
 struct ring_sheets {
     /* The vertex's sharp edges at the ring's own level of refinement. NULL: the vertex has no other
      * sheet; after crease_settle() also: the others matter no more, since the vertex is sharp or

@@ -81,7 +81,7 @@ static struct frame make_frame(uint32_t planes)
         size_t size = (size_t)WIDTH * HEIGHT * codec_pixel_bytes(plane);
         if (!(planes & (1u << plane)))
             continue;
-        uint8_t *bytes = spares_take(NULL, size);
+        uint8_t *bytes = block_cache_take(NULL, size);
         assert_non_null(bytes);
         for (size_t i = 0; i < size; i++)
             bytes[i] = (uint8_t)((i * i + plane) >> 7);

@@ -25,10 +25,10 @@ static struct file file_of(const char *text)
     return file;
 }
 
-static struct id_map read_texts(const char *map_text, const char *overflow_text)
+static struct user_namespace read_texts(const char *map_text, const char *overflow_text)
 {
     struct file map = file_of(map_text), overflow = file_of(overflow_text);
-    struct id_map found = id_map_read(map.path, overflow.path);
+    struct user_namespace found = user_namespace_read(map.path, overflow.path);
     unlink(map.path);
     unlink(overflow.path);
     return found;
@@ -74,7 +74,8 @@ static void the_overflow_id_is_the_kernels(void **state)
 static void files_may_be_missing(void **state)
 {
     (void)state;
-    struct id_map map = id_map_read("/proc/self/no_map", "/proc/sys/kernel/no_overflow");
+    struct user_namespace map =
+        user_namespace_read("/proc/self/no_map", "/proc/sys/kernel/no_overflow");
     assert_false(map.is_whole);
     assert_int_equal(map.overflow, 65534);
 }
@@ -82,11 +83,11 @@ static void files_may_be_missing(void **state)
 static void one_id_is_hidden_where_the_map_has_gaps(void **state)
 {
     (void)state;
-    const struct id_map part = {false, 65534}, whole = {true, 65534};
-    assert_true(id_map_hides(&part, 65534));
-    assert_false(id_map_hides(&part, 0));
-    assert_false(id_map_hides(&part, 65533));
-    assert_false(id_map_hides(&whole, 65534));
+    const struct user_namespace part = {false, 65534}, whole = {true, 65534};
+    assert_true(user_namespace_hides(&part, 65534));
+    assert_false(user_namespace_hides(&part, 0));
+    assert_false(user_namespace_hides(&part, 65533));
+    assert_false(user_namespace_hides(&whole, 65534));
 }
 
 int main(void)
@@ -97,5 +98,5 @@ int main(void)
         cmocka_unit_test(files_may_be_missing),
         cmocka_unit_test(one_id_is_hidden_where_the_map_has_gaps),
     };
-    return cmocka_run_group_tests_name("id_map", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("user_namespace", tests, NULL, NULL);
 }

@@ -27,12 +27,12 @@ struct fixture {
     atomic_bool stop;
 };
 
-static int get(void *owner, const char *path, struct report *body)
+static int get(void *owner, const char *path, struct text_buffer *body)
 {
     (void)owner;
     int n = strcmp(path, "/large") == 0 ? LINES : strcmp(path, "/endless") == 0 ? 1000000 : 1;
     for (int i = 0; i < n; i++)
-        report_add(body, "line %04d\n", i % 10000);
+        text_buffer_add(body, "line %04d\n", i % 10000);
     return 200;
 }
 
