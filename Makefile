@@ -75,7 +75,9 @@ WORKER_SHARED_SRC := server/sandbox/stream.c server/sandbox/job.c server/sandbox
 ZYGOTE_SRC := server/sandbox/zygote.c server/sandbox/sandbox.c server/sandbox/threads.c
 # The rooms of the daemon alone.
 SERVICE_SRC := $(foreach room,net session frame assets output threads ops,$(wildcard server/$(room)/*.c))
-CLIENT_SRC := $(wildcard client/*.c)
+CLIENT_LIB_SRC := $(wildcard client/lib/*.c)
+CLIENT_CLI_SRC := $(wildcard client/cli/*.c)
+CLIENT_SRC := $(CLIENT_LIB_SRC) $(CLIENT_CLI_SRC)
 SHADERS := $(sort $(wildcard shaders/*.glsl))
 
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
@@ -148,7 +150,7 @@ $(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/allocati
 # --- tests ---------------------------------------------------------------------------------------
 # Every test links everything but the two mains.
 LIB_OBJ := $(filter-out %/server/ops/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
-           $(CAGE_TASKS_OBJ) $(IMAGE_TASKS_OBJ) $(call obj,$(ZYGOTE_SRC)) $(filter-out %/client/main.c.o,$(call obj,$(CLIENT_SRC)))
+           $(CAGE_TASKS_OBJ) $(IMAGE_TASKS_OBJ) $(call obj,$(ZYGOTE_SRC)) $(filter-out %/client/cli/main.c.o,$(call obj,$(CLIENT_SRC)))
 TEST_LIB := $(BUILD)/libtests.a
 $(TEST_LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && ar rcsP $@ $^
@@ -189,7 +191,7 @@ FUZZ_LINK := -Wl,--as-needed $(patsubst %,-Wl$(comma)--wrap=%,$(FUZZ_WRAPPED)) \
              $(if $(FUZZ),-fsanitize=fuzzer)
 FUZZ_ARCHIVE := $(BUILD)/libfuzz.a
 $(FUZZ_ARCHIVE): $(filter-out %/server/ops/main.c.o,$(SERVER_OBJ)) $(CAGE_TASKS_OBJ) \
-                 $(call obj,$(filter-out client/main.c,$(CLIENT_SRC)))
+                 $(call obj,$(filter-out client/cli/main.c,$(CLIENT_SRC)))
 	$(Q)rm -f $@ && ar rcsP $@ $^
 $(FUZZ_TARGETS): $(BUILD)/tests/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.c.o $(FUZZ_SHARED) $(FUZZ_ARCHIVE)
 	@mkdir -p $(@D)

@@ -38,7 +38,8 @@ $found"
 }
 common='server/base'
 room protocol '' 'both sides speak by it'
-room client 'protocol' 'a client needs nothing of the daemon'
+room client/lib 'protocol' 'a client needs nothing of the daemon'
+room client/cli 'client/lib|protocol' 'the command is libsheen'"'"'s first user'
 room server/base 'protocol|server/net' 'everybody knows it'
 room server/cage "$common" 'a cage is data: no format, no surface'
 room server/cage/read "$common|server/cage|protocol" 'readers run in the worker program'
@@ -72,16 +73,18 @@ no_include server/cage/read 'protocol/([^m]|m[^o])' 'of the protocol a reader kn
 no_include server/image 'protocol/([^s]|s[^r])' 'of the protocol pictures know srgb.h alone'
 no_include server/render 'protocol/([^s]|s[^r])' 'of the protocol a device knows srgb.h alone'
 no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
+no_include client/cli 'client/lib/([^cs]|c[^l]|s[^ht]|sta[^t])' 'of libsheen the command knows sheen.h, status.h and clock.h alone'
+no_include client/cli 'protocol/(address|codec|tls)' 'of the protocol the command knows no byte: libsheen says it'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/render/gl/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
-    'socket calls' 'server client protocol' server/net/ server/ops/ server/threads/worker.c server/sandbox/zygote.c client/connection.c client/private_daemon.c
+    'socket calls' 'server client protocol' server/net/ server/ops/ server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
 only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol'
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
     'server client protocol'
 only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp
 only_in '#include <turbojpeg|\btj[A-Z][A-Za-z0-9]*\(' 'libjpeg-turbo code' 'server client protocol' server/output/jpeg.c
-only_in '#include <jansson' 'jansson code' 'server client protocol' client/gltf_pack.c
+only_in '#include <jansson' 'jansson code' 'server client protocol' client/cli/gltf_pack.c
 only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32)(_combine)?\(' 'zlib code' \
     'server client protocol' server/output/png.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf

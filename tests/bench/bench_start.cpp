@@ -13,7 +13,7 @@
 #pragma GCC diagnostic ignored "-Wshadow" /* sheen_server is a struct and a function */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers" /* the defaults are C's */
 extern "C" {
-#include "client/sheen.h"
+#include "client/lib/sheen.h"
 }
 #include "tests/oracle/model.h"
 

@@ -14,7 +14,7 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow" /* sheen_server is a struct and a function */
 extern "C" {
-#include "client/sheen.h"
+#include "client/lib/sheen.h"
 }
 #pragma GCC diagnostic pop
 #include "tests/bench/daemon.h"

@@ -5,7 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "client/session.h"
+#include "client/lib/session.h"
 #include "tests/fuzz/fuzz.h"
 
 #define WIDTH_PX 8

@@ -15,7 +15,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "client/sheen.h"
+#include "client/lib/sheen.h"
 #include "protocol/codec.h"
 #include "protocol/message.h"
 

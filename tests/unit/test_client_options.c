@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/commands.h"
-#include "client/json.h"
-#include "client/lights_text.h"
-#include "client/values.h"
+#include "client/cli/commands.h"
+#include "client/cli/json.h"
+#include "client/cli/lights_text.h"
+#include "client/cli/values.h"
 
 static void numbers_are_strict(void **state)
 {

@@ -12,10 +12,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "client/connection.h"
-#include "client/machine_memory.h"
-#include "client/private_daemon.h"
-#include "client/sheen.h"
+#include "client/lib/connection.h"
+#include "client/lib/machine_memory.h"
+#include "client/lib/private_daemon.h"
+#include "client/lib/sheen.h"
 
 static char folder[64], script_path[96], report_path[96];
 

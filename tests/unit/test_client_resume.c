@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "client/resume.h"
+#include "client/cli/resume.h"
 
 #define LOST_MS 5000000
 

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "client/status.h"
+#include "client/lib/status.h"
 
 static void expect_text(const char *given, const char *shown)
 {

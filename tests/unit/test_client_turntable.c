@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "client/turntable.h"
+#include "client/cli/turntable.h"
 
 #define PI 3.14159265358979323846
 #define N_ANGLES 720

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/commands.h"
+#include "client/cli/commands.h"
 #include "protocol/limits.h"
 #include "protocol/message.h"
 #include "protocol/ranges.h"

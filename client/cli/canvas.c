@@ -1,0 +1,97 @@
+#include "client/cli/canvas.h"
+
+#include <math.h>
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client/cli/file.h"
+#include "client/cli/glyphs.h"
+#include "client/lib/status.h"
+#include "protocol/srgb.h"
+
+bool canvas_init(struct canvas *canvas, uint32_t width_px, uint32_t height_px)
+{
+    size_t bytes = (size_t)3 * width_px * height_px;
+    *canvas = (struct canvas){width_px, height_px, malloc(bytes)};
+    if (canvas->rgb)
+        memset(canvas->rgb, 255, bytes);
+    return canvas->rgb != NULL;
+}
+
+void canvas_finish(struct canvas *canvas)
+{
+    free(canvas->rgb);
+    *canvas = (struct canvas){0};
+}
+
+static uint8_t *pixel_at(struct canvas *canvas, uint32_t x, uint32_t y)
+{
+    if (x >= canvas->width_px || y >= canvas->height_px)
+        return NULL;
+    return canvas->rgb + 3 * ((size_t)y * canvas->width_px + x);
+}
+
+/* One channel of a picture's pixel over the canvas, mixed as linear light. */
+static uint8_t over(uint8_t top, uint8_t alpha, uint8_t below)
+{
+    if (alpha == 255)
+        return top;
+    double share = alpha / 255.0;
+    double light =
+        share * srgb_to_linear(top / 255.0) + (1 - share) * srgb_to_linear(below / 255.0);
+    return (uint8_t)lround(255 * srgb_from_linear(light));
+}
+
+void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t (*rgba)[4],
+                    uint32_t width_px, uint32_t height_px)
+{
+    for (uint32_t j = 0; j < height_px; j++)
+        for (uint32_t i = 0; i < width_px; i++, rgba++) {
+            uint8_t *to = pixel_at(canvas, x + i, y + j);
+            for (int k = 0; to && k < 3; k++)
+                to[k] = over((*rgba)[k], (*rgba)[3], to[k]);
+        }
+}
+
+/* A square of the text's ink. */
+static void ink(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t x_end, uint32_t size)
+{
+    for (uint32_t k = 0; k < size * size; k++) {
+        uint8_t *to = x + k % size < x_end ? pixel_at(canvas, x + k % size, y + k / size) : NULL;
+        if (to)
+            memset(to, 0, 3);
+    }
+}
+
+void canvas_text(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t x_end, uint32_t scale,
+                 const char *text)
+{
+    for (; *text && x < x_end; text++, x += GLYPH_ADVANCE * scale)
+        for (int k = 0; k < GLYPH_WIDTH * GLYPH_HEIGHT; k++) {
+            int column = k % GLYPH_WIDTH, row = k / GLYPH_WIDTH;
+            if (glyph_has(*text, column, row))
+                ink(canvas, x + (uint32_t)column * scale, y + (uint32_t)row * scale, x_end, scale);
+        }
+}
+
+enum sheen_status canvas_write_png(const struct canvas *canvas, const char *path,
+                                   struct sheen_error *error)
+{
+    png_image image = {.version = PNG_IMAGE_VERSION,
+                       .width = canvas->width_px,
+                       .height = canvas->height_px,
+                       .format = PNG_FORMAT_RGB};
+    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image); /* never more, for any pixels */
+    uint8_t *file = malloc(bytes);
+    if (!file)
+        return status_set(error, SHEEN_NO_MEMORY, "no memory for a picture of %zu bytes",
+                          (size_t)bytes);
+    enum sheen_status status;
+    if (png_image_write_to_memory(&image, file, &bytes, 0, canvas->rgb, 0, NULL))
+        status = file_write(path, file, bytes, error);
+    else
+        status = status_set(error, SHEEN_BAD_IMAGE, "%s: %s", path, image.message);
+    free(file);
+    return status;
+}

@@ -1,0 +1,179 @@
+/* sheen render: one frame of a model into a file. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "client/cli/commands.h"
+#include "client/cli/file.h"
+#include "client/cli/job.h"
+#include "client/cli/scene_json.h"
+#include "client/cli/values.h"
+
+static bool apply_output(struct options *options, const char *value, char *why)
+{
+    options->output = value;
+    return value_format(value, &options->request.format) ||
+           options_refuse(why, "must end in .png .exr .jpg .jpeg .tif or .tiff");
+}
+
+static bool apply_aov(struct options *options, const char *value, char *why)
+{
+    return value_planes(value, &options->aov_planes) ||
+           options_refuse(why, "must be some of P,N,ptex,light,k,dlight,coverage");
+}
+
+static bool check(struct options *options, char *why)
+{
+    if (!options->output)
+        return options_refuse(why, "-o FILE is missing");
+    if (options->aov_planes && options->request.format != SHEEN_FILE_EXR)
+        return options_refuse(why, "--aov needs an output that ends in .exr");
+    options->request.planes |= options->aov_planes;
+    return options_check_jpeg(options, why) && options_check_scene(options, why);
+}
+
+static void print_json(struct json *json, const struct options *options, const struct job *job,
+                       const struct sheen_frame *frame, const struct sheen_model_info *info)
+{
+    json_object_begin(json, NULL);
+    json_string(json, "file", options->output);
+    json_uint(json, "file_bytes", frame->file_bytes);
+    json_uint(json, "width", frame->width_px);
+    json_uint(json, "height", frame->height_px);
+    job_json_origin(json, job, options, frame);
+    json_string(json, "address", options->server ? options->server : "private");
+    json_string(json, "model", options->model);
+    if (info->faces)
+        json_uint(json, "faces", info->faces);
+    if (options->request.jpeg_quality)
+        json_uint(json, "jpeg_quality", options->request.jpeg_quality);
+    if (options->request.format == SHEEN_FILE_JPEG)
+        json_string(json, "jpeg_subsampling",
+                    value_subsampling_name(options->request.jpeg_subsampling));
+    json_bool(json, "blank", frame->blank);
+    job_json_times(json, &frame->times);
+    job_json_schedule(json, &options->request);
+    scene_json(json, &options->request, frame);
+    json_lines(json, "warnings", info->warnings);
+    json_object_end(json);
+}
+
+/* To whom little of the light is met. */
+static const char *light_advice(const struct sheen_request *request)
+{
+    bool is_placed = false;
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        is_placed = is_placed || request->lights[i].is_placed;
+    return is_placed ? "move it with --light-center, --light-u and --light-v, or leave these and "
+                       "--light out for a tunnel, which is met everywhere"
+                     : "--light tunnel, or no --light, is met everywhere; or place it with "
+                       "--light-center, --light-u and --light-v";
+}
+
+static void print_summary(struct job *job, const struct options *options,
+                          const struct sheen_frame *frame, const struct sheen_model_info *info)
+{
+    progress_clear(&job->progress);
+    job_print_warnings(job, info->warnings);
+    if (frame->up_source == SHEEN_UP_GUESSED)
+        progress_note(
+            &job->progress,
+            "up: %s, guessed from the model's box; where it is wrong, --up %s, or another",
+            frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "y" : "z");
+    if (frame->blank)
+        fprintf(stderr,
+                "sheen: warning: no pixel shows the surface: see --eye, --target, --fov and "
+                "--ortho; without them a camera frames the model\n");
+    if (frame->light_share < 0.5)
+        progress_note(&job->progress, "the light is met on %.2g %% of what is seen: %s",
+                      100 * frame->light_share, light_advice(&options->request));
+    fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", ", options->output, frame->width_px,
+            frame->height_px);
+    if (info->faces)
+        fprintf(stderr, "%" PRIu32 " %s, ", info->faces, value_noun(info->faces, "face", "faces"));
+    fprintf(stderr, "%s, %.0f ms\n", frame->device, (double)frame->times.total_us / 1e3);
+}
+
+/* What there is to say about the model. The frame is here by then and outlives a daemon that is
+ * not: the info says that the rest is unknown, its counts are 0. */
+static void ask_about_model(struct job *job, const char *model, struct sheen_model_info *info)
+{
+    struct sheen_error error;
+    if (sheen_query_model(job->session, job->model_id, &job->report, info, &error) == SHEEN_OK)
+        return;
+    *info = (struct sheen_model_info){0};
+    snprintf(info->warnings, sizeof(info->warnings), "%.1000s: its warnings are unknown: %s", model,
+             error.text);
+}
+
+static int run(const struct options *options)
+{
+    struct job job = {0};
+    struct sheen_request request = options->request;
+    struct sheen_frame frame = {0};
+    struct sheen_model_info info;
+    enum sheen_status status = file_check_writable(options->output, &job.error);
+    if (status)
+        return job_finish(&job, status);
+    status = job_init(&job, options);
+    if (!status)
+        status = job_render(&job, options, &request, &frame);
+    if (!status)
+        status = file_write(options->output, frame.file, frame.file_bytes, &job.error);
+    /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
+    if (!status)
+        ask_about_model(&job, options->model, &info);
+    if (!status && !options->quiet)
+        print_summary(&job, options, &frame, &info);
+    if (!status && options->json) {
+        struct json json = {.out = stdout};
+        print_json(&json, options, &job, &frame, &info);
+        status = job_finish_json(&job, &json);
+    }
+    sheen_frame_finish(&frame);
+    return job_finish(&job, status);
+}
+
+static const struct option_row ROWS[] = {
+    {"output", 'o', "FILE",
+     "the picture; its ending tells the format: .png .exr .jpg .jpeg .tif .tiff", apply_output},
+    {"aov", 0, "LIST",
+     "planes beside colour, EXR only: some of P (position), N (normal), ptex,\n"
+     "light (s, t on the light), k (principal curvatures), dlight (change of s, t\n"
+     "by a pixel right and down), coverage (share of the pixel that shows surface),\n"
+     "with commas between",
+     apply_aov},
+    {0},
+};
+
+static const struct option_row *const TABLES[] = {ROWS,
+                                                  OPTIONS_JPEG,
+                                                  OPTIONS_SIZE,
+                                                  OPTIONS_SCENE,
+                                                  OPTIONS_SURFACE,
+                                                  OPTIONS_SCHEDULE,
+                                                  OPTIONS_MODEL,
+                                                  OPTIONS_COMMON,
+                                                  OPTIONS_RECONNECT,
+                                                  OPTIONS_OUTPUT,
+                                                  NULL};
+
+const struct command COMMAND_RENDER = {
+    .name = "render",
+    .arguments = "MODEL -o FILE [option]...",
+    .summary =
+        "Renders the reflection lines on a model's limit surface, exact at every pixel.\n"
+        "MODEL is a control cage: OBJ, GLB, or glTF with the buffers that it names beside it.",
+    .tables = TABLES,
+    .examples =
+        "  sheen render hood.obj -o hood.png\n"
+        "  sheen render hood.glb -o hood.png --size 1920x1080 --eye 3,-4,2 --target 0,0,0.5\n"
+        "  sheen render hood.glb -o hood.png --pattern stripes:count=40,duty=0.3,bg=#202020\n"
+        "  sheen render hood.obj -o hood.jpg --jpeg-quality 80 --jpeg-subsampling 420\n"
+        "  sheen render hood.obj -o hood.exr --aov P,N,ptex --json\n"
+        "  sheen render hood.obj -o hood.png --server tls:render1:7410 --ca ours.pem "
+        "--token-file token\n",
+    .takes_model = true,
+    .check = check,
+    .codes = CODE_FILES | CODE_SERVER,
+    .run = run,
+};

@@ -1,0 +1,175 @@
+/* sheen stats: what the daemon is doing. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "client/cli/commands.h"
+#include "client/cli/job.h"
+
+/* What rates are counted over: of a daemon that has just started, whose one request would look like
+ * a thousand a second, a second. */
+static double window_s(const struct sheen_stats *stats)
+{
+    return stats->window_us < 1000000 ? 1 : (double)stats->window_us / 1e6;
+}
+
+static double per_second(const struct sheen_stats *stats, uint64_t n)
+{
+    return (double)n / window_s(stats);
+}
+
+static void json_times(struct json *json, const char *key, const struct sheen_times *times)
+{
+    json_object_begin(json, key);
+    job_json_times(json, times);
+    json_object_end(json);
+}
+
+static void json_latency(struct json *json, const char *key, const struct sheen_latency *latency)
+{
+    json_object_begin(json, key);
+    json_uint(json, "frames", latency->frames);
+    json_uint(json, "p50_us", latency->p50_us);
+    json_uint(json, "p95_us", latency->p95_us);
+    json_uint(json, "p99_us", latency->p99_us);
+    json_object_end(json);
+}
+
+static void print_json(struct json *json, const struct sheen_stats *stats)
+{
+    json_object_begin(json, NULL);
+    json_string(json, "server", stats->server);
+    json_string(json, "device", stats->device);
+    json_string(json, "driver", stats->driver);
+    json_bool(json, "software", stats->software);
+    json_uint(json, "uptime_us", stats->uptime_us);
+    json_uint(json, "sessions", stats->sessions);
+    json_uint(json, "queued", stats->queued);
+    json_uint(json, "frames", stats->frames);
+    json_uint(json, "errors", stats->errors);
+    json_uint(json, "superseded", stats->superseded);
+    json_uint(json, "cancelled", stats->cancelled);
+    json_uint(json, "late", stats->late);
+    json_uint(json, "disconnected", stats->disconnected);
+    json_uint(json, "interactive_us", stats->interactive_us);
+    json_uint(json, "still_us", stats->still_us);
+    json_uint(json, "batch_us", stats->batch_us);
+    json_uint(json, "memory_bytes", stats->memory_bytes);
+    json_uint(json, "models", stats->models);
+    json_uint(json, "model_bytes", stats->model_bytes);
+    json_uint(json, "images", stats->images);
+    json_uint(json, "uploads_bytes", stats->uploads_bytes);
+    json_uint(json, "sent_bytes", stats->sent_bytes);
+    json_times(json, "mean", &stats->mean);
+    json_uint(json, "window_us", stats->window_us);
+    json_double(json, "requests_per_s", per_second(stats, stats->window_requests));
+    json_double(json, "frames_per_s", per_second(stats, stats->window_frames));
+    json_double(json, "sent_bytes_per_s", per_second(stats, stats->window_sent_bytes));
+    json_object_begin(json, "latency");
+    json_latency(json, "interactive", &stats->interactive);
+    json_latency(json, "still", &stats->still);
+    json_latency(json, "batch", &stats->batch);
+    json_object_end(json);
+    json_times(json, "p50", &stats->p50);
+    json_times(json, "p95", &stats->p95);
+    json_times(json, "p99", &stats->p99);
+    json_object_end(json);
+}
+
+static void print_times(const char *name, const struct sheen_times *times)
+{
+    const uint64_t us[] = {times->tables_us, times->visibility_us, times->evaluate_us,
+                           times->shade_us,  times->readback_us,   times->encode_us,
+                           times->total_us};
+    printf("%-10s", name);
+    for (size_t i = 0; i < sizeof(us) / sizeof(*us); i++)
+        printf(" %10.2f", (double)us[i] / 1e3);
+    putchar('\n');
+}
+
+static void print_latency(const char *name, const struct sheen_stats *stats,
+                          const struct sheen_latency *latency)
+{
+    printf("%-12s %10" PRIu64 " %10.1f %10.2f %10.2f %10.2f\n", name, latency->frames,
+           per_second(stats, latency->frames), (double)latency->p50_us / 1e3,
+           (double)latency->p95_us / 1e3, (double)latency->p99_us / 1e3);
+}
+
+static void print_table(const struct sheen_stats *stats)
+{
+    printf("%-10s sheend %s, up %.0f s\n", "server", stats->server, (double)stats->uptime_us / 1e6);
+    printf("%-10s %s (%s)%s\n", "device", stats->device, stats->driver,
+           stats->software ? ", software" : "");
+    printf("%-10s %u, %u requests queued\n", "sessions", stats->sessions, stats->queued);
+    printf("%-10s %" PRIu64 " sent, %" PRIu64 " errors\n", "frames", stats->frames, stats->errors);
+    printf("%-10s %" PRIu64 " superseded, %" PRIu64 " cancelled, %" PRIu64 " late; %" PRIu64
+           " clients disconnected\n",
+           "", stats->superseded, stats->cancelled, stats->late, stats->disconnected);
+    printf("%-10s interactive %.1f, still %.1f, batch %.1f s\n", "renderer",
+           (double)stats->interactive_us / 1e6, (double)stats->still_us / 1e6,
+           (double)stats->batch_us / 1e6);
+    printf("%-10s %" PRIu64 " bytes of the budget in use\n", "memory", stats->memory_bytes);
+    printf("%-10s %u, %" PRIu64 " bytes on the GPU; %u images\n", "models", stats->models,
+           stats->model_bytes, stats->images);
+    printf("%-10s %" PRIu64 " bytes in, %" PRIu64 " bytes out\n", "traffic", stats->uploads_bytes,
+           stats->sent_bytes);
+    printf("%-10s %.1f requests/s, %.1f frames/s, %.0f bytes/s over the last %.0f s\n", "rates",
+           per_second(stats, stats->window_requests), per_second(stats, stats->window_frames),
+           per_second(stats, stats->window_sent_bytes), window_s(stats));
+    printf("%-12s %10s %10s %10s %10s %10s\n", "ms of class", "frames", "frames/s", "p50", "p95",
+           "p99");
+    print_latency("interactive", stats, &stats->interactive);
+    print_latency("still", stats, &stats->still);
+    print_latency("batch", stats, &stats->batch);
+    printf("%-10s %10s %10s %10s %10s %10s %10s %10s\n", "ms a frame", "tables", "visibility",
+           "evaluate", "shade", "readback", "encode", "total");
+    print_times("mean", &stats->mean);
+    print_times("p50", &stats->p50);
+    print_times("p95", &stats->p95);
+    print_times("p99", &stats->p99);
+}
+
+/* It is one daemon that is asked: the numbers of the next are no answer. */
+static bool check(struct options *options, char *why)
+{
+    (void)why;
+    options->reconnect_s = 0;
+    return true;
+}
+
+static int run(const struct options *options)
+{
+    struct job job;
+    struct sheen_stats stats;
+    enum sheen_status status = job_init(&job, options);
+    if (!status)
+        status = sheen_query_stats(job.session, &stats, &job.error);
+    if (!status && options->json) {
+        struct json json = {.out = stdout};
+        print_json(&json, &stats);
+        status = job_finish_json(&job, &json);
+    } else if (!status) {
+        print_table(&stats);
+    }
+    return job_finish(&job, status);
+}
+
+static const struct option_row *const TABLES[] = {OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};
+
+const struct command COMMAND_STATS = {
+    .name = "stats",
+    .arguments = "[option]...",
+    .summary =
+        "Says what a daemon is doing: how much, how fast. Of the last minute: rates (over a "
+        "second\n"
+        "at least), percentiles of each stage, and by class those of a frame's way from the\n"
+        "request's last byte to the answer's first; and the mean of the last 64 frames. Without a\n"
+        "server it tells of a fresh private daemon: the device that this machine has. It gives up\n"
+        "at once when the daemon ends meanwhile: the one that takes its place has numbers of its\n"
+        "own.",
+    .tables = TABLES,
+    .examples = "  sheen stats --server unix:/run/sheen/sheen.sock\n"
+                "  sheen stats --json\n",
+    .check = check,
+    .codes = CODE_OUTPUT | CODE_SERVER,
+    .run = run,
+};

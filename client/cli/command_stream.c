@@ -1,0 +1,501 @@
+/* sheen stream: requests back to back while the camera or the light moves, and what each stage
+ * took. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client/lib/clock.h"
+#include "client/cli/commands.h"
+#include "client/cli/file.h"
+#include "client/cli/job.h"
+#include "client/cli/lights_text.h"
+#include "client/lib/status.h"
+#include "client/cli/turntable.h"
+#include "client/cli/values.h"
+
+#define PROBE_PX 64     /* the longer side of the frame that only tells the camera */
+#define IN_FLIGHT 2u    /* the next request waits at the daemon while a frame travels */
+#define LIGHT_SWING 0.1 /* of the light's u edge */
+
+/* One frame's numbers; the last is ours: from request to decoded frame. */
+enum stage { TABLES, VISIBILITY, EVALUATE, SHADE, READBACK, ENCODE, TOTAL, ROUND_TRIP, N_STAGES };
+static const char *const STAGE_NAMES[N_STAGES] = {
+    "tables", "visibility", "evaluate", "shade", "readback", "encode", "total", "round_trip"};
+
+struct record {
+    enum { WANTED, DRAWN, LATE } state;
+    uint32_t number; /* of the frame, from 0 */
+    uint64_t stage_us[N_STAGES];
+    uint64_t data_bytes;
+};
+
+/* Answers may come in another order than requests: a refusal before an older frame, a frame that
+ * was asked for again after a newer one. */
+struct sent {
+    uint32_t frame;
+    int64_t us;
+};
+
+struct stream {
+    struct sheen_request request; /* its camera and light move */
+    bool has_camera;              /* before any frame */
+    struct sheen_camera camera;   /* of the first frame */
+    double axis[3];               /* that it goes about: the model's up */
+    uint64_t tables_us;           /* that the first frame would have waited */
+    struct sheen_light light;     /* the first: the one that moves */
+    struct sheen_frame frame;
+    struct record *records;                /* [frames], by the frame's number */
+    uint32_t n_drawn, n_late;              /* frames that came, and that were not drawn in time */
+    uint64_t written_bytes;                /* of their files, if there are any */
+    struct sent sent[SHEEN_MAX_IN_FLIGHT]; /* by the request's number modulo its size */
+    int64_t start_us, elapsed_us; /* of all frames but the first, which may wait for tables */
+};
+
+static void move(struct stream *stream, const struct options *options, uint32_t number)
+{
+    const double degree = 3.14159265358979323846 / 180;
+    double angle = number * options->orbit_deg * degree;
+    /* Every frame is wanted: none may take the place of another. */
+    stream->request.has_view = stream->request.request_class != SHEEN_BATCH;
+    stream->request.view = number;
+    stream->request.camera = stream->camera;
+    stream->request.lights[0] = stream->light;
+    if (!options->light_only) {
+        turntable_turn(&stream->camera, stream->axis, angle, &stream->request.camera);
+        return;
+    }
+    for (int i = 0; i < 3; i++)
+        stream->request.lights[0].centre[i] += LIGHT_SWING * sin(angle) * stream->light.u[i];
+}
+
+static enum sheen_status send_one(struct job *job, struct stream *stream, uint32_t number)
+{
+    struct sent sent = {.frame = number, .us = clock_now_us()};
+    enum sheen_status status = sheen_send(job->session, &stream->request, &job->error);
+    stream->sent[sheen_last_number(job->session) % SHEEN_MAX_IN_FLIGHT] = sent;
+    return status;
+}
+
+/* A frame's file. It counts as drawn when it is there: after a loss of the server what has no file
+ * is asked for again, and nothing else. */
+static enum sheen_status write_one(struct job *job, struct stream *stream,
+                                   const struct options *options, uint32_t number)
+{
+    if (!options->output)
+        return SHEEN_OK;
+    char *path = frame_names_path(&options->frame_names, number);
+    if (!path)
+        return status_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
+    enum sheen_status status =
+        file_write(path, stream->frame.file, stream->frame.file_bytes, &job->error);
+    free(path);
+    if (!status)
+        stream->written_bytes += stream->frame.file_bytes;
+    return status;
+}
+
+/* The first frame's colours are those of all that follow, so that a colour is one value. */
+static void keep_range(struct stream *stream)
+{
+    struct sheen_show *show = &stream->request.show;
+    if (show->kind != SHEEN_SHOW_LINES && show->range == 0)
+        show->range = stream->frame.show_range;
+}
+
+static enum sheen_status receive_one(struct job *job, struct stream *stream,
+                                     const struct options *options)
+{
+    enum sheen_status status =
+        sheen_receive(job->session, &job->report, &stream->frame, &job->error);
+    const struct sent *sent = &stream->sent[stream->frame.number % SHEEN_MAX_IN_FLIGHT];
+    bool is_late = status == SHEEN_LATE && stream->request.deadline_ms;
+    if (status && !is_late)
+        return status;
+    job_answered(job);
+    if (is_late) {
+        stream->records[sent->frame].state = LATE;
+        stream->n_late++;
+        return SHEEN_OK;
+    }
+    keep_range(stream);
+    const struct sheen_times *times = &stream->frame.times;
+    uint64_t round_trip_us = (uint64_t)(clock_now_us() - sent->us);
+    status = write_one(job, stream, options, sent->frame);
+    if (status)
+        return status;
+    stream->n_drawn++;
+    stream->records[sent->frame] = (struct record){
+        .state = DRAWN,
+        .number = sent->frame,
+        .stage_us = {times->tables_us, times->visibility_us, times->evaluate_us, times->shade_us,
+                     times->readback_us, times->encode_us, times->total_us, round_trip_us},
+        .data_bytes = stream->frame.data_bytes,
+    };
+    return SHEEN_OK;
+}
+
+static void keep_axis(struct stream *stream, const struct sheen_frame *frame)
+{
+    const double *up = frame->up_source == SHEEN_UP_UNKNOWN ? frame->camera.up : frame->up;
+    memcpy(stream->axis, up, sizeof(stream->axis));
+}
+
+/* Puts the camera of a turntable by what the daemon says of its own camera and of the model. */
+static void place_camera(struct stream *stream, const struct options *options,
+                         const struct sheen_frame *frame, const struct sheen_model_info *info)
+{
+    const struct sheen_camera *asked = &options->request.camera;
+    double middle[3];
+    for (int i = 0; i < 3; i++)
+        middle[i] = 0.5 * (info->box_min[i] + info->box_max[i]);
+    stream->camera = frame->camera;
+    keep_axis(stream, frame);
+    turntable_fit(&stream->camera, stream->axis, info->box_min, info->box_max,
+                  (double)stream->request.width_px / stream->request.height_px,
+                  asked->has_target ? NULL : middle);
+    stream->camera.projection =
+        options->given & GIVEN_ORTHO ? SHEEN_PROJECTION_ORTHOGRAPHIC : SHEEN_PROJECTION_PERSPECTIVE;
+    stream->camera.fov_deg = asked->fov_deg;
+    stream->camera.ortho_height = asked->ortho_height;
+    stream->camera.zoom = asked->zoom;
+    memcpy(stream->camera.zoom_at, asked->zoom_at, sizeof(asked->zoom_at));
+    stream->request.camera = stream->camera;
+    stream->tables_us = frame->times.tables_us;
+    stream->has_camera = true;
+}
+
+/* Where no eye is given: a small frame by the daemon's own camera tells from which side it looks
+ * and which way is up, the model's info where its middle is. */
+static enum sheen_status find_camera(struct job *job, struct stream *stream,
+                                     const struct options *options)
+{
+    struct sheen_request probe = options->request;
+    struct sheen_frame frame = {0};
+    struct sheen_model_info info;
+    memcpy(probe.model_id, job->model_id, SHEEN_ID_BYTES);
+    uint32_t longer = probe.width_px > probe.height_px ? probe.width_px : probe.height_px;
+    double scale = fmin(1, (double)PROBE_PX / longer);
+    probe.width_px = (uint32_t)fmax(1, round(scale * probe.width_px));
+    probe.height_px = (uint32_t)fmax(1, round(scale * probe.height_px));
+    probe.camera.projection = SHEEN_PROJECTION_PERSPECTIVE;
+    probe.camera.fov_deg = ((struct sheen_request)SHEEN_REQUEST_DEFAULTS).camera.fov_deg;
+    probe.camera.zoom = 0;
+    probe.n_lights = 1;
+    probe.lights[0] = (struct sheen_light){.pattern = SHEEN_PATTERN_DEFAULTS};
+    probe.show = (struct sheen_show){0};
+    probe.format = SHEEN_PLANES_ZSTD;
+    probe.jpeg_quality = 0;
+    probe.jpeg_subsampling = SHEEN_JPEG_444;
+    probe.request_class = stream->request.request_class;
+    probe.deadline_ms = 0;
+    enum sheen_status status =
+        sheen_render(job->session, &probe, &job->report, &frame, &job->error);
+    if (!status)
+        status = sheen_query_model(job->session, job->model_id, &job->report, &info, &job->error);
+    if (!status) {
+        job_answered(job);
+        place_camera(stream, options, &frame, &info);
+    }
+    sheen_frame_finish(&frame);
+    return status;
+}
+
+/* It goes alone, and has time: its answer tells the camera and the light that move. */
+static enum sheen_status first_frame(struct job *job, struct stream *stream,
+                                     const struct options *options)
+{
+    stream->request.deadline_ms = 0;
+    enum sheen_status status = send_one(job, stream, 0);
+    if (!status)
+        status = receive_one(job, stream, options);
+    if (status)
+        return status;
+    stream->request.deadline_ms = options->request.deadline_ms;
+    progress_clear(&job->progress);
+    if (!stream->has_camera) {
+        stream->camera = stream->frame.camera;
+        keep_axis(stream, &stream->frame);
+    }
+    stream->light = stream->frame.lights[0];
+    stream->records[0].stage_us[TABLES] += stream->tables_us;
+    stream->start_us = clock_now_us();
+    return SHEEN_OK;
+}
+
+static uint32_t n_answered(const struct stream *stream)
+{
+    return stream->n_drawn + stream->n_late;
+}
+
+/* All that have no answer yet. */
+static enum sheen_status run_frames(struct job *job, struct stream *stream,
+                                    const struct options *options)
+{
+    enum sheen_status status = job_upload_images(job, options, &stream->request);
+    if (!status && !stream->has_camera && options->request.camera.auto_view && !options->light_only)
+        status = find_camera(job, stream, options);
+    if (!status && n_answered(stream) == 0)
+        status = first_frame(job, stream, options);
+    uint32_t next = 0, n_in_flight = 0, granted = sheen_server(job->session).max_in_flight;
+    uint32_t most = granted < IN_FLIGHT ? granted : IN_FLIGHT;
+    while (!status && n_answered(stream) < options->frames) {
+        while (next < options->frames && stream->records[next].state != WANTED)
+            next++;
+        if (next < options->frames && n_in_flight < most) {
+            move(stream, options, next);
+            status = send_one(job, stream, next++);
+            n_in_flight++;
+        } else {
+            status = receive_one(job, stream, options);
+            n_in_flight--;
+            job->report.report(job->report.context, "frames", n_answered(stream), options->frames);
+        }
+    }
+    stream->elapsed_us = clock_now_us() - stream->start_us;
+    return status;
+}
+
+/* Moves the records of drawn frames to the front, in the frames' order. */
+static void keep_drawn(struct stream *stream, uint32_t n_frames)
+{
+    uint32_t n_kept = 0;
+    for (uint32_t i = 0; i < n_frames; i++)
+        if (stream->records[i].state == DRAWN)
+            stream->records[n_kept++] = stream->records[i];
+}
+
+static double frames_per_second(const struct stream *stream, uint32_t n_frames)
+{
+    if (n_frames < 2)
+        return 1e6 / (double)stream->records[0].stage_us[ROUND_TRIP];
+    return (n_frames - 1) * 1e6 / (double)stream->elapsed_us;
+}
+
+static int compare_us(const void *a, const void *b)
+{
+    uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
+    return left < right ? -1 : left > right;
+}
+
+/* sorted[] is scratch of n_frames. */
+static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t *sorted,
+                        const struct options *options)
+{
+    const struct sheen_frame *frame = &stream->frame;
+    printf("%u %s, %ux%u, %s\n", n_frames, value_noun(n_frames, "frame", "frames"), frame->width_px,
+           frame->height_px, frame->device);
+    printf("%-12s %10s %10s %10s   ms\n", "stage", "min", "median", "p95");
+    for (int stage = 0; stage < N_STAGES; stage++) {
+        for (uint32_t i = 0; i < n_frames; i++)
+            sorted[i] = stream->records[i].stage_us[stage];
+        qsort(sorted, n_frames, sizeof(*sorted), compare_us);
+        uint32_t p95 = (uint32_t)(((uint64_t)n_frames * 95 + 99) / 100) - 1; /* nearest rank */
+        printf("%-12s %10.2f %10.2f %10.2f\n", STAGE_NAMES[stage], (double)sorted[0] / 1e3,
+               (double)sorted[(n_frames - 1) / 2] / 1e3, (double)sorted[p95] / 1e3);
+    }
+    printf("%.1f frames per second%s\n", frames_per_second(stream, n_frames),
+           n_frames > 1 ? ", the first left out" : "");
+    if (stream->request.show.range > 0)
+        printf("colours of %s end at %.6g either way, in all frames\n",
+               text_show_kind(stream->request.show.kind), stream->request.show.range);
+    if (stream->n_late > 0)
+        printf("%u more %s late\n", stream->n_late, value_noun(stream->n_late, "was", "were"));
+    if (options->output)
+        printf("%s: %u %s, %" PRIu64 " bytes\n", options->output, n_frames,
+               value_noun(n_frames, "file", "files"), stream->written_bytes);
+}
+
+static void json_file(struct json *json, const struct options *options, uint32_t number)
+{
+    char *path = options->output ? frame_names_path(&options->frame_names, number) : NULL;
+    if (path)
+        json_string(json, "file", path);
+    free(path);
+}
+
+static void print_json(struct json *json, const struct stream *stream, uint32_t n_frames,
+                       const struct job *job, const struct options *options)
+{
+    const struct sheen_frame *frame = &stream->frame;
+    json_object_begin(json, NULL);
+    json_uint(json, "width", frame->width_px);
+    json_uint(json, "height", frame->height_px);
+    job_json_origin(json, job, options, frame);
+    json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
+    json_uint(json, "late", stream->n_late);
+    if (options->output) {
+        json_string(json, "output", options->output);
+        json_uint(json, "written", n_frames);
+        json_uint(json, "written_bytes", stream->written_bytes);
+    }
+    job_json_schedule(json, &stream->request);
+    if (stream->request.show.kind != SHEEN_SHOW_LINES)
+        json_string(json, "show", text_show_kind(stream->request.show.kind));
+    if (stream->request.show.range > 0)
+        json_double(json, "show_range", stream->request.show.range);
+    json_array_begin(json, "frames");
+    for (uint32_t i = 0; i < n_frames; i++) {
+        json_object_begin(json, NULL);
+        json_uint(json, "number", stream->records[i].number);
+        json_file(json, options, stream->records[i].number);
+        for (int stage = 0; stage < N_STAGES; stage++) {
+            char key[24];
+            snprintf(key, sizeof(key), "%s_us", STAGE_NAMES[stage]);
+            json_uint(json, key, stream->records[i].stage_us[stage]);
+        }
+        json_uint(json, "data_bytes", stream->records[i].data_bytes);
+        json_object_end(json);
+    }
+    json_array_end(json);
+    json_object_end(json);
+}
+
+/* Before the work, by the first file's name. */
+static enum sheen_status check_writable(struct job *job, const struct options *options)
+{
+    if (!options->output)
+        return SHEEN_OK;
+    char *path = frame_names_path(&options->frame_names, 0);
+    enum sheen_status status =
+        path ? file_check_writable(path, &job->error)
+             : status_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
+    free(path);
+    return status;
+}
+
+static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_t *sorted,
+                                 const struct options *options)
+{
+    enum sheen_status status = check_writable(job, options);
+    if (status)
+        return status;
+    status = job_init(job, options);
+    if (!status)
+        status = run_frames(job, stream, options);
+    while (status && job_resume(job, options, &status))
+        status = run_frames(job, stream, options);
+    progress_clear(&job->progress);
+    if (status)
+        return status;
+    keep_drawn(stream, options->frames);
+    if (!options->json) {
+        print_table(stream, stream->n_drawn, sorted, options);
+        return SHEEN_OK;
+    }
+    struct json json = {.out = stdout};
+    print_json(&json, stream, stream->n_drawn, job, options);
+    return job_finish_json(job, &json);
+}
+
+static int run(const struct options *options)
+{
+    struct job job = {0};
+    struct stream stream = {.request = options->request};
+    if (!options->output)
+        stream.request.format = SHEEN_PLANES_ZSTD;
+    if (!(options->given & GIVEN_CLASS))
+        stream.request.request_class = SHEEN_INTERACTIVE;
+    stream.records = calloc(options->frames, sizeof(*stream.records));
+    uint64_t *sorted = calloc(options->frames, sizeof(*sorted));
+    enum sheen_status status = stream.records && sorted
+                                   ? run_job(&job, &stream, sorted, options)
+                                   : status_set(&job.error, SHEEN_NO_MEMORY,
+                                                "no memory for %u frames' times", options->frames);
+    sheen_frame_finish(&stream.frame);
+    free(sorted);
+    free(stream.records);
+    return job_finish(&job, status);
+}
+
+static bool apply_frames(struct options *options, const char *value, char *why)
+{
+    options->given |= GIVEN_FRAMES;
+    return options_whole(&OPTION_RANGES[OPTION_RANGE_FRAMES], value, &options->frames, why);
+}
+
+static bool apply_output(struct options *options, const char *value, char *why)
+{
+    static const char example[] = "as FRAME_%04d.png";
+    options->output = value;
+    if (!frame_names_parse(value, &options->frame_names))
+        return options_refuse(why,
+                              "must have one %%d, or one like %%04d (a width of 1 to 9), in the "
+                              "file's name and no other %%, %s",
+                              example);
+    return value_format(value, &options->request.format) ||
+           options_refuse(why, "must end in .png .exr .jpg .jpeg .tif or .tiff, %s", example);
+}
+
+static bool apply_orbit(struct options *options, const char *value, char *why)
+{
+    return options_number(&OPTION_RANGES[OPTION_RANGE_ORBIT], value, &options->orbit_deg, why);
+}
+
+static bool apply_light_only(struct options *options, const char *value, char *why)
+{
+    (void)value;
+    (void)why;
+    return options->light_only = true;
+}
+
+static bool check(struct options *options, char *why)
+{
+    if (!(options->given & GIVEN_FRAMES))
+        return options_refuse(why, "--frames N is missing");
+    return options_check_jpeg(options, why) && options_check_scene(options, why);
+}
+
+static const struct option_row ROWS[] = {
+    {"frames", 'n', "N", "how many, {}", apply_frames},
+    {"orbit", 0, "DEG",
+     "the camera turns by so many degrees a frame, {}\n"
+     "(default: 1), about the model's up (--up, the file's, or as guessed): without\n"
+     "--eye about the middle of the model's box, from one distance from which all of\n"
+     "it stays in the picture, the first frame included; --target alone: about that\n"
+     "point, further back where that is needed; --eye: about --target, as far as it\n"
+     "is. --fov, --ortho and --zoom then look closer, each frame alike",
+     apply_orbit},
+    {"output", 'o', "PATTERN",
+     "writes each frame into a file, as FRAME_%04d.png: one %d, or one like %04d\n"
+     "(a width of 1 to 9), stands for its number, from 0; the ending tells the\n"
+     "format: .png .exr .jpg .jpeg .tif .tiff (default: lossless planes are asked\n"
+     "for, and dropped). A late frame has no file",
+     apply_output},
+    {"light-only", 0, NULL,
+     "the light swings along its u edge by a tenth of it instead, a full swing\n"
+     "in 360 degrees of --orbit; only the shade stage runs anew",
+     apply_light_only},
+    {0},
+};
+
+static const struct option_row *const TABLES_LIST[] = {ROWS,
+                                                       OPTIONS_JPEG,
+                                                       OPTIONS_SIZE,
+                                                       OPTIONS_SCENE,
+                                                       OPTIONS_SURFACE,
+                                                       OPTIONS_SCHEDULE,
+                                                       OPTIONS_MODEL,
+                                                       OPTIONS_COMMON,
+                                                       OPTIONS_RECONNECT,
+                                                       OPTIONS_OUTPUT,
+                                                       NULL};
+
+const struct command COMMAND_STREAM = {
+    .name = "stream",
+    .arguments = "MODEL --frames N [option]...",
+    .summary = "Asks for frames back to back, at most two in flight, and prints the time of each "
+               "stage;\n"
+               "with -o writes them, as a turntable.",
+    .tables = TABLES_LIST,
+    .examples = "  sheen stream hood.obj --frames 100\n"
+                "  sheen stream hood.obj --frames 72 --orbit 5 -o hood_%04d.png\n"
+                "  sheen stream hood.obj --frames 100 --light-only --size 1920x1080\n"
+                "  sheen stream hood.obj --frames 100 --class batch --deadline 500\n"
+                "  sheen stream hood.obj --frames 360 --server unix:/run/sheen/sheen.sock --json\n",
+    .takes_model = true,
+    .check = check,
+    .codes = CODE_FILES | CODE_SERVER,
+    .run = run,
+};

@@ -1,0 +1,15 @@
+/* The commands, one file each. */
+#ifndef SHEEN_CLIENT_COMMANDS_H
+#define SHEEN_CLIENT_COMMANDS_H
+
+#include "client/cli/options.h"
+
+extern const struct command COMMAND_RENDER;
+extern const struct command COMMAND_STREAM;
+extern const struct command COMMAND_INFO;
+extern const struct command COMMAND_STATS;
+extern const struct command COMMAND_LIGHTS;
+extern const struct command COMMAND_PATTERNS;
+extern const struct command COMMAND_LEVELS;
+
+#endif

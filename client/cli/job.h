@@ -1,0 +1,68 @@
+/* What the commands have in common: read a file, connect, upload, report, give back.
+ *
+ * Thread: one. */
+#ifndef SHEEN_CLIENT_JOB_H
+#define SHEEN_CLIENT_JOB_H
+
+#include "client/cli/json.h"
+#include "client/cli/options.h"
+#include "client/cli/progress.h"
+#include "client/cli/resume.h"
+#include "client/lib/sheen.h"
+
+struct job {
+    struct sheen_session *session;
+    uint8_t model_id[SHEEN_ID_BYTES]; /* zeros for commands without a model */
+    struct progress progress;
+    struct sheen_progress report; /* for libsheen */
+    struct sheen_error error;     /* of the last failure */
+    struct resume resume;
+    bool has_images; /* the session's daemon has all that the request shows */
+};
+
+/* Reads options->model (if any), connects and uploads it; goes on like job_resume() when that is
+ * cut off. On failure job->error says why; the job must be finished all the same. */
+enum sheen_status job_init(struct job *job, const struct options *options);
+
+/* After a failure, *status, that the loss of the server at options->server is the reason of: tries
+ * for options->reconnect_s seconds to connect to the one that takes its place and to upload the
+ * model there, and says so in one line unless --quiet. True when it has, *status is SHEEN_OK then:
+ * images are to be uploaded and what has no answer to be asked again. Else *status and job->error
+ * say what stands in the way. */
+bool job_resume(struct job *job, const struct options *options, enum sheen_status *status);
+
+/* To be called for each answer: it is what job_resume() knows progress by. */
+void job_answered(struct job *job);
+
+/* Uploads the images of a command's lights, once a session, and writes their ids and the model's
+ * into the request, which must be the same each time. */
+enum sheen_status job_upload_images(struct job *job, const struct options *options,
+                                    struct sheen_request *request);
+
+/* job_upload_images() and one frame, from whichever server is there to draw it. No request may be
+ * in flight. */
+enum sheen_status job_render(struct job *job, const struct options *options,
+                             struct sheen_request *request, struct sheen_frame *frame);
+
+/* Gives everything back; prints job->error as one line if `status` is a failure. Returns the exit
+ * code. */
+int job_finish(struct job *job, enum sheen_status status);
+
+/* Ends `json` on standard output; SHEEN_BAD_IMAGE when it cannot be written. */
+enum sheen_status job_finish_json(struct job *job, struct json *json);
+
+/* "sheen: warning: LINE" for each line; the lines name their file. */
+void job_print_warnings(struct job *job, const char *lines);
+
+/* Key class, and deadline_ms where there is one. */
+void job_json_schedule(struct json *json, const struct sheen_request *request);
+
+/* Keys device, driver, software, server, model_sha256 and weld: what made the frame, and of which
+ * model. */
+void job_json_origin(struct json *json, const struct job *job, const struct options *options,
+                     const struct sheen_frame *frame);
+
+/* Keys tables_us to total_us into the object that is open. */
+void job_json_times(struct json *json, const struct sheen_times *times);
+
+#endif

@@ -1,0 +1,289 @@
+#include "client/cli/options.h"
+
+#include <getopt.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client/cli/lights_text.h"
+#include "client/cli/values.h"
+
+#define MAX_OPTIONS 64
+#define FIRST_LONG 256 /* getopt's number of row 0; letters are below */
+#define HELP_COLUMN 30
+#define HELP_BYTES 1024 /* of one option */
+#define DEFAULT_RECONNECT_S 30
+
+const struct range OPTION_RANGES[N_OPTION_RANGES] = {
+    [OPTION_RANGE_FRAMES] = {NULL, "--frames", 1, 1000000, false, ""},
+    [OPTION_RANGE_ORBIT] = {NULL, "--orbit", -360, 360, false, "degrees"},
+    [OPTION_RANGE_RECONNECT] = {NULL, "--reconnect", 0, 86400, false, "seconds"},
+};
+
+bool options_refuse(char *why, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(why, OPTIONS_WHY_BYTES, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool options_number(const struct range *range, const char *value, double *number, char *why)
+{
+    char wanted[RANGE_TEXT_BYTES];
+    return (value_double(value, number) && range_holds(range, *number)) ||
+           options_refuse(why, "must be a number %s", range_text(range, wanted));
+}
+
+bool options_whole(const struct range *range, const char *value, uint32_t *number, char *why)
+{
+    char wanted[RANGE_TEXT_BYTES];
+    return (value_uint32(value, number) && range_holds(range, *number)) ||
+           options_refuse(why, "must be a whole number %s", range_text(range, wanted));
+}
+
+bool options_check_light(struct options *options, char *why)
+{
+    unsigned whole = GIVEN_LIGHT_CENTER | GIVEN_LIGHT_U | GIVEN_LIGHT_V;
+    unsigned light = options->given & whole;
+    if (light != 0 && light != whole)
+        return options_refuse(why, "--light-center, --light-u and --light-v come together");
+    options->request.lights[options->request.n_lights - 1].is_placed = light != 0;
+    return true;
+}
+
+/* Range and legend may be given before their kind. */
+static bool check_show(const struct options *options, char *why)
+{
+    const struct sheen_show *show = &options->request.show;
+    if (options->given & GIVEN_LEGEND && show->kind == SHEEN_SHOW_LINES)
+        return options_refuse(why, "--legend is for the false colour of --show; lines have none");
+    char wanted[RANGE_TEXT_BYTES];
+    const struct range *range =
+        &RANGES[show->kind == SHEEN_SHOW_DRAFT ? RANGE_SHOW_DRAFT : RANGE_SHOW_CURVATURE];
+    return show->range == 0 || range_holds(range, show->range) ||
+           options_refuse(why, "--show-range '%.9g': must be a number %s for --show %s",
+                          show->range, range_text(range, wanted), text_show_kind(show->kind));
+}
+
+static bool check_size(const struct sheen_request *request, char *why)
+{
+    const struct range *range = &RANGES[RANGE_JPEG_SIDE];
+    return request->format != SHEEN_FILE_JPEG ||
+           (range_holds(range, request->width_px) && range_holds(range, request->height_px)) ||
+           options_refuse(why, "--size: a JPEG file has at most %g pixels a side", range->greatest);
+}
+
+bool options_check_scene(struct options *options, char *why)
+{
+    const unsigned any =
+        GIVEN_EYE | GIVEN_TARGET | GIVEN_UP | GIVEN_FOV | GIVEN_ORTHO | GIVEN_VIEW | GIVEN_ZOOM;
+    bool has_eye = options->given & GIVEN_EYE;
+    if (has_eye && !(options->given & GIVEN_TARGET))
+        return options_refuse(why, "--eye needs a --target to look at");
+    if (has_eye && options->given & GIVEN_VIEW)
+        return options_refuse(why, "--eye and --view exclude each other: --view stands by itself");
+    if (options->given & GIVEN_FOV && options->given & GIVEN_ORTHO)
+        return options_refuse(why, "--fov and --ortho exclude each other");
+    if (options->given & any)
+        options->request.camera.projection = options->given & GIVEN_ORTHO
+                                                 ? SHEEN_PROJECTION_ORTHOGRAPHIC
+                                                 : SHEEN_PROJECTION_PERSPECTIVE;
+    options->request.camera.auto_view = !has_eye;
+    options->request.camera.has_target = options->given & GIVEN_TARGET;
+    options->request.camera.auto_up = !(options->given & GIVEN_UP);
+    return check_size(&options->request, why) && check_show(options, why) &&
+           options_check_light(options, why);
+}
+
+/* All rows of a command in one list. */
+static size_t collect(const struct command *command, const struct option_row *rows[MAX_OPTIONS])
+{
+    size_t n = 0;
+    for (const struct option_row *const *table = command->tables; *table; table++)
+        for (const struct option_row *row = *table; row->name && n < MAX_OPTIONS; row++)
+            rows[n++] = row;
+    return n;
+}
+
+static const struct option_row *row_of(int chosen, const struct option_row *const *rows, size_t n)
+{
+    if (chosen >= FIRST_LONG)
+        return rows[chosen - FIRST_LONG];
+    for (size_t i = 0; i < n; i++)
+        if (rows[i]->letter == chosen)
+            return rows[i];
+    return NULL;
+}
+
+/* Fills getopt's own tables from ours. */
+static void describe(const struct option_row *const *rows, size_t n, struct option *longs,
+                     char *shorts)
+{
+    *shorts++ = ':'; /* a missing value is told from an unknown option */
+    for (size_t i = 0; i < n; i++) {
+        longs[i] = (struct option){.name = rows[i]->name,
+                                   .has_arg = rows[i]->argument ? required_argument : no_argument,
+                                   .val = FIRST_LONG + (int)i};
+        if (!rows[i]->letter)
+            continue;
+        *shorts++ = rows[i]->letter;
+        if (rows[i]->argument)
+            *shorts++ = ':';
+    }
+    *shorts = 0;
+    longs[n] = (struct option){0};
+}
+
+static enum options_result wrong(char *why, const char *format, const char *what)
+{
+    options_refuse(why, format, what);
+    return OPTIONS_WRONG;
+}
+
+static enum options_result parse_options(int argc, char **argv,
+                                         const struct option_row *const *rows, size_t n,
+                                         struct options *options, char *why)
+{
+    struct option longs[MAX_OPTIONS + 1];
+    char shorts[2 * MAX_OPTIONS + 2];
+    describe(rows, n, longs, shorts);
+    opterr = 0;
+    optind = 0; /* begins anew */
+    for (;;) {
+        int chosen = getopt_long(argc, argv, shorts, longs, NULL);
+        if (chosen == -1)
+            return OPTIONS_RUN;
+        const char *given = argv[optind - 1];
+        if (chosen == ':')
+            return wrong(why, "%s needs a value", given);
+        const struct option_row *row = chosen == '?' ? NULL : row_of(chosen, rows, n);
+        if (!row)
+            return wrong(why, "%s is no option here", given);
+        if (strcmp(row->name, "help") == 0)
+            return OPTIONS_HELP;
+        char reason[OPTIONS_WHY_BYTES];
+        if (!row->apply(options, optarg, reason)) {
+            options_refuse(why, "--%s '%.60s': %.150s", row->name, optarg ? optarg : "", reason);
+            return OPTIONS_WRONG;
+        }
+    }
+}
+
+enum options_result options_parse(const struct command *command, int argc, char **argv,
+                                  struct options *options, char why[static OPTIONS_WHY_BYTES])
+{
+    const struct option_row *rows[MAX_OPTIONS];
+    size_t n = collect(command, rows);
+    *options = (struct options){
+        .request = SHEEN_REQUEST_DEFAULTS, .reconnect_s = DEFAULT_RECONNECT_S, .orbit_deg = 1};
+    enum options_result result = parse_options(argc, argv, rows, n, options, why);
+    if (result != OPTIONS_RUN)
+        return result;
+    if (command->takes_model) {
+        if (optind >= argc)
+            return wrong(why, "%s", "a MODEL file is missing");
+        options->model = argv[optind++];
+    }
+    if (optind < argc)
+        return wrong(why, "'%.150s' is one argument too many", argv[optind]);
+    const char *server = getenv("SHEEN_SERVER");
+    if (!options->server && server && *server)
+        options->server = server;
+    const char *token_file = getenv("SHEEN_TOKEN_FILE");
+    if (!options->token_file && token_file && *token_file)
+        options->token_file = token_file;
+    if (!options->cert != !options->key)
+        return wrong(why, "%s", "--cert and --key come together");
+    if (options->server && options->device)
+        return wrong(why, "--device is for a private daemon; the one at %.120s has its own",
+                     options->server);
+    if (options->server && options->memory_budget_bytes)
+        return wrong(
+            why,
+            "--memory-budget is for a private daemon; the one at %.120s has its own, which "
+            "its operator gives to sheend",
+            options->server);
+    return !command->check || command->check(options, why) ? OPTIONS_RUN : OPTIONS_WRONG;
+}
+
+static bool names_option(const struct range *range, const char *name)
+{
+    const char *at = range->option ? strstr(range->option, name) : NULL;
+    return at && strncmp(at - 2, "--", 2) == 0 && strchr(", ", at[strlen(name)]);
+}
+
+/* The range of the option that is the `n`-th of it; NULL: there are fewer. */
+static const struct range *range_of_option(const char *name, size_t n)
+{
+    for (size_t i = 0; i < N_RANGES + N_OPTION_RANGES; i++) {
+        const struct range *range = i < N_RANGES ? &RANGES[i] : &OPTION_RANGES[i - N_RANGES];
+        if (names_option(range, name) && n-- == 0)
+            return range;
+    }
+    return NULL;
+}
+
+/* The row's help with its ranges in place. */
+static void fill_help(const struct option_row *row, char help[static HELP_BYTES])
+{
+    char text[RANGE_TEXT_BYTES];
+    size_t used = 0, n = 0;
+    for (const char *from = row->help; *from && used + 1 < HELP_BYTES;) {
+        const struct range *range =
+            strncmp(from, "{}", 2) == 0 ? range_of_option(row->name, n) : NULL;
+        if (range) {
+            used += (size_t)snprintf(help + used, HELP_BYTES - used, "%s", range_text(range, text));
+            from += 2;
+            n++;
+        } else {
+            help[used++] = *from++;
+        }
+    }
+    help[used < HELP_BYTES ? used : HELP_BYTES - 1] = 0;
+}
+
+static void help_row(const struct option_row *row, FILE *out)
+{
+    char help[HELP_BYTES];
+    fill_help(row, help);
+    int column = row->letter ? fprintf(out, "  -%c, --%s", row->letter, row->name)
+                             : fprintf(out, "      --%s", row->name);
+    if (row->argument)
+        column += fprintf(out, " %s", row->argument);
+    for (const char *line = help; *line;) {
+        int length = (int)strcspn(line, "\n");
+        if (column >= HELP_COLUMN) {
+            fputc('\n', out);
+            column = 0;
+        }
+        fprintf(out, "%*s%.*s\n", HELP_COLUMN - column, "", length, line);
+        line += length + (line[length] == '\n');
+        column = 0;
+    }
+}
+
+void options_help(const struct command *command, FILE *out)
+{
+    const struct option_row *rows[MAX_OPTIONS];
+    size_t n = collect(command, rows);
+    fprintf(out, "usage: sheen %s %s\n%s\n\n", command->name, command->arguments, command->summary);
+    for (size_t i = 0; i < n; i++)
+        help_row(rows[i], out);
+    if (command->takes_model)
+        fputs("\nMODEL is a file, or server:NAME for one below the folder that the daemon at "
+              "--server gives\n"
+              "with --models.\n",
+              out);
+    if (command->old_name)
+        fprintf(out, "\nThe command's old name, %s, still works.\n", command->old_name);
+    fprintf(out, "\nexamples:\n%s\nExit codes: 0 done, 2 wrong usage", command->examples);
+    if (command->codes & CODE_FILES)
+        fputs(", 3 bad model or image, or what cannot be written", out);
+    else if (command->codes & CODE_OUTPUT)
+        fputs(", 3 standard output cannot be written", out);
+    if (command->codes & CODE_SERVER)
+        fputs(",\n4 no or lost server, 5 device failed", out);
+    fputs(".\n", out);
+}

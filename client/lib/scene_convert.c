@@ -1,0 +1,186 @@
+#include "client/lib/scene_convert.h"
+
+#include <string.h>
+
+_Static_assert((int)SHEEN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same order");
+_Static_assert((int)SHEEN_DISTANCE == (int)sheen_PatternKind_PATTERN_DISTANCE, "same order");
+_Static_assert((int)SHEEN_SPHERE == (int)sheen_LightKind_LIGHT_SPHERE, "same order");
+_Static_assert((int)SHEEN_ENVIRONMENT == (int)sheen_LineFamily_LINES_ENVIRONMENT, "same order");
+_Static_assert((int)SHEEN_SHOW_DRAFT == (int)sheen_ShowKind_SHOW_DRAFT, "same order");
+_Static_assert(SHEEN_MAX_LIGHTS == sizeof((sheen_Render *)0)->lights / sizeof(sheen_Light),
+               "as many as the wire carries");
+_Static_assert(SHEEN_MAX_LINES == sizeof((sheen_Pattern *)0)->at / sizeof(double),
+               "as many as the wire carries");
+
+sheen_Vec3 message_vec3(const double v[3])
+{
+    return (sheen_Vec3){v[0], v[1], v[2]};
+}
+
+void message_get_vec3(double v[3], const sheen_Vec3 *message)
+{
+    v[0] = message->x;
+    v[1] = message->y;
+    v[2] = message->z;
+}
+
+sheen_Colour message_colour(const float c[4])
+{
+    return (sheen_Colour){c[0], c[1], c[2], c[3]};
+}
+
+static void get_colour(float c[4], const sheen_Colour *message)
+{
+    const float value[4] = {message->r, message->g, message->b, message->a};
+    memcpy(c, value, sizeof(value));
+}
+
+static sheen_Pattern to_pattern(const struct sheen_pattern *pattern)
+{
+    bool is_lines = pattern->kind == SHEEN_LINES;
+    sheen_Pattern message = {
+        .kind = (sheen_PatternKind)pattern->kind,
+        .has_count = true,
+        .count = pattern->count,
+        .has_period = pattern->period != 0,
+        .period = pattern->period,
+        .has_duty = true,
+        .duty = pattern->duty,
+        .has_rotation_deg = true,
+        .rotation_deg = pattern->rotation_deg,
+        .has_offset = true,
+        .offset = pattern->offset,
+        .has_soft = true,
+        .soft = pattern->soft,
+        .has_opacity = true,
+        .opacity = pattern->opacity,
+        .has_width = is_lines,
+        .width = pattern->width,
+        .has_foreground = pattern->has_colours,
+        .foreground = message_colour(pattern->foreground),
+        .has_background = pattern->has_colours,
+        .background = message_colour(pattern->background),
+        .has_image_sha256 = pattern->kind == SHEEN_IMAGE,
+    };
+    memcpy(message.image_sha256, pattern->image_id, SHEEN_ID_BYTES);
+    for (; is_lines && message.at_count < pattern->n_at && message.at_count < SHEEN_MAX_LINES;
+         message.at_count++)
+        message.at[message.at_count] = pattern->at[message.at_count];
+    return message;
+}
+
+static sheen_Light to_light(const struct sheen_light *light)
+{
+    return (sheen_Light){
+        .has_kind = light->has_kind || light->is_placed,
+        .kind = (sheen_LightKind)light->kind,
+        .has_one_sided = true,
+        .one_sided = light->one_sided,
+        .has_centre = light->is_placed,
+        .centre = message_vec3(light->centre),
+        .has_u = light->is_placed,
+        .u = message_vec3(light->u),
+        .has_v = light->is_placed,
+        .v = message_vec3(light->v),
+        .has_pattern = true,
+        .pattern = to_pattern(&light->pattern),
+    };
+}
+
+void lights_to_message(sheen_Render *render, const struct sheen_request *request)
+{
+    const struct sheen_lines *lines = &request->lines;
+    render->has_lines = true;
+    render->lines = (sheen_Lines){
+        .family = (sheen_LineFamily)lines->family,
+        .has_direction = lines->has_direction,
+        .direction = message_vec3(lines->direction),
+        .has_eye = lines->eye_kind == SHEEN_EYE_POINT,
+        .eye = message_vec3(lines->eye),
+        .has_eye_direction = lines->eye_kind == SHEEN_EYE_DIRECTION,
+        .eye_direction = message_vec3(lines->eye),
+    };
+    for (uint32_t i = 0; i < request->n_lights; i++)
+        render->lights[i] = to_light(&request->lights[i]);
+    render->lights_count = (pb_size_t)request->n_lights;
+    render->has_show = request->show.kind != SHEEN_SHOW_LINES || request->show.range != 0;
+    render->show = (sheen_Show){
+        .kind = (sheen_ShowKind)request->show.kind,
+        .has_direction = request->show.kind == SHEEN_SHOW_DRAFT,
+        .direction = message_vec3(request->show.direction),
+        .has_range = request->show.range != 0,
+        .range = request->show.range,
+        .has_legend = request->show.without_legend,
+        .legend = !request->show.without_legend,
+    };
+}
+
+static void from_pattern(struct sheen_pattern *pattern, const sheen_Pattern *message)
+{
+    *pattern = (struct sheen_pattern){
+        .kind = (enum sheen_pattern_kind)message->kind,
+        .count = message->count,
+        .period = message->has_period ? message->period : 0,
+        .duty = message->duty,
+        .rotation_deg = message->rotation_deg,
+        .offset = message->offset,
+        .soft = message->soft,
+        .opacity = message->opacity,
+        .n_at = message->at_count,
+        .width = message->width,
+        .has_colours = true,
+    };
+    memcpy(pattern->at, message->at, sizeof(pattern->at));
+    memcpy(pattern->image_id, message->image_sha256, SHEEN_ID_BYTES);
+    get_colour(pattern->foreground, &message->foreground);
+    get_colour(pattern->background, &message->background);
+}
+
+static void get_extreme(struct sheen_extreme *extreme, bool has_value, const sheen_Extreme *message)
+{
+    *extreme = (struct sheen_extreme){
+        .has_value = has_value,
+        .value = message->value,
+        .has_place = message->has_position,
+        .x_px = message->x_px,
+        .y_px = message->y_px,
+        .has_ptex = message->has_face,
+        .face = message->face,
+        .u = message->u,
+        .v = message->v,
+    };
+    message_get_vec3(extreme->position, &message->position);
+}
+
+void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
+{
+    const sheen_Lines *lines = &body->lines;
+    frame->lines = (struct sheen_lines){
+        .family = (enum sheen_line_family)lines->family,
+        .has_direction = lines->has_direction,
+        .eye_kind = lines->has_eye             ? SHEEN_EYE_POINT
+                    : lines->has_eye_direction ? SHEEN_EYE_DIRECTION
+                                               : SHEEN_EYE_CAMERA,
+    };
+    message_get_vec3(frame->lines.direction, &lines->direction);
+    message_get_vec3(frame->lines.eye, lines->has_eye ? &lines->eye : &lines->eye_direction);
+    frame->show_range = body->has_show_range ? body->show_range : 0;
+    get_extreme(&frame->show_least, body->has_show_least, &body->show_least);
+    get_extreme(&frame->show_greatest, body->has_show_greatest, &body->show_greatest);
+    frame->has_colours = body->has_miss && body->has_empty && body->has_base;
+    get_colour(frame->miss, &body->miss);
+    get_colour(frame->empty, &body->empty);
+    get_colour(frame->base, &body->base);
+    frame->n_lights = body->lights_count;
+    for (uint32_t i = 0; i < frame->n_lights; i++) {
+        const sheen_Light *from = &body->lights[i];
+        struct sheen_light *to = &frame->lights[i];
+        to->kind = (enum sheen_light_kind)from->kind;
+        to->has_kind = to->is_placed = true;
+        to->one_sided = from->one_sided;
+        message_get_vec3(to->centre, &from->centre);
+        message_get_vec3(to->u, &from->u);
+        message_get_vec3(to->v, &from->v);
+        from_pattern(&to->pattern, &from->pattern);
+    }
+}

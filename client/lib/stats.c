@@ -1,0 +1,65 @@
+#include <string.h>
+
+#include "client/lib/session.h"
+#include "client/lib/status.h"
+#include "client/lib/times.h"
+
+static struct sheen_latency latency_from_message(const sheen_Latency *latency)
+{
+    return (struct sheen_latency){latency->frames, latency->p50_us, latency->p95_us,
+                                  latency->p99_us};
+}
+
+enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_stats *stats,
+                                    struct sheen_error *error)
+{
+    uint32_t seq;
+    sheen_Stats body;
+    enum sheen_status status = session_check(session, error);
+    if (status)
+        return status;
+    if (!stats || session->n_pending)
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          "a statistics query needs a struct, and no request in flight");
+    status = session_send(session, MESSAGE_STATS_QUERY, NULL, &seq, error);
+    if (!status)
+        status = session_receive(session, seq, MESSAGE_STATS, NULL, &body, error);
+    if (status)
+        return status;
+    *stats = (struct sheen_stats){
+        .uptime_us = body.uptime_us,
+        .sessions = body.sessions,
+        .queued = body.queued,
+        .frames = body.frames,
+        .errors = body.errors,
+        .models = body.models,
+        .images = body.images,
+        .model_bytes = body.model_bytes,
+        .uploads_bytes = body.uploads_bytes,
+        .sent_bytes = body.sent_bytes,
+        .superseded = body.superseded,
+        .cancelled = body.cancelled,
+        .late = body.late,
+        .disconnected = body.disconnected,
+        .interactive_us = body.interactive_us,
+        .still_us = body.still_us,
+        .batch_us = body.batch_us,
+        .memory_bytes = body.memory_bytes,
+        .mean = times_from_message(&body.mean),
+        .window_us = body.window_us,
+        .window_requests = body.window_requests,
+        .window_frames = body.window_frames,
+        .window_sent_bytes = body.window_sent_bytes,
+        .interactive = latency_from_message(&body.interactive),
+        .still = latency_from_message(&body.still),
+        .batch = latency_from_message(&body.batch),
+        .p50 = times_from_message(&body.p50),
+        .p95 = times_from_message(&body.p95),
+        .p99 = times_from_message(&body.p99),
+        .software = body.software,
+    };
+    memcpy(stats->device, body.device, sizeof(stats->device));
+    memcpy(stats->driver, body.driver, sizeof(stats->driver));
+    memcpy(stats->server, body.server, sizeof(stats->server));
+    return SHEEN_OK;
+}
