@@ -70,8 +70,4 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
  * newlines pass if `lines`. */
 bool message_is_text(const char *text, bool lines);
 
-/* Bytes of the UTF-8 character that begins at `text`, 1 to 4; 0 when it is malformed or one of the
- * control characters U+0080 to U+009F. Reads no further than a 0. */
-size_t message_utf8_length(const char *text);
-
 #endif

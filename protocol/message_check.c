@@ -8,6 +8,7 @@
 
 #include "protocol/codec.h"
 #include "protocol/ranges.h"
+#include "protocol/text.h"
 
 static bool __attribute__((format(printf, 2, 3))) refuse(char *text, const char *format, ...)
 {
@@ -18,33 +19,13 @@ static bool __attribute__((format(printf, 2, 3))) refuse(char *text, const char 
     return false;
 }
 
-size_t message_utf8_length(const char *text)
-{
-    const unsigned char *c = (const unsigned char *)text;
-    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
-    if (*c < 0x80)
-        return 1;
-    size_t n = *c >= 0xf0 && *c < 0xf8 ? 4 : *c >= 0xe0 ? 3 : *c >= 0xc0 ? 2 : 0;
-    if (n == 0 || *c >= 0xf8)
-        return 0;
-    uint32_t code = *c & (0xffu >> (n + 1));
-    for (size_t i = 1; i < n; i++) {
-        if ((c[i] & 0xc0) != 0x80)
-            return 0;
-        code = code << 6 | (c[i] & 0x3f);
-    }
-    bool surrogate = code >= 0xd800 && code < 0xe000;
-    bool c1_control = code < 0xa0;
-    return code < least[n] || code > 0x10ffff || surrogate || c1_control ? 0 : n;
-}
-
 bool message_is_text(const char *text, bool lines)
 {
     const unsigned char *c = (const unsigned char *)text;
     while (*c) {
         if ((*c < 0x20 && !(lines && *c == '\n')) || *c == 0x7f)
             return false;
-        size_t n = message_utf8_length((const char *)c);
+        size_t n = text_utf8_length((const char *)c);
         if (n == 0)
             return false;
         c += n;

@@ -73,8 +73,8 @@ no_include server/cage/read 'protocol/([^m]|m[^o])' 'of the protocol a reader kn
 no_include server/image 'protocol/([^s]|s[^r])' 'of the protocol pictures know srgb.h alone'
 no_include server/render 'protocol/([^s]|s[^r])' 'of the protocol a device knows srgb.h alone'
 no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
-no_include client/cli 'client/lib/([^cs]|c[^l]|s[^ht]|sta[^t])' 'of libsheen the command knows sheen.h, status.h and clock.h alone'
-no_include client/cli 'protocol/(address|codec|tls)' 'of the protocol the command knows no byte: libsheen says it'
+no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows sheen.h alone'
+no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the protocol the command knows no byte: libsheen says it'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/render/gl/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
     'socket calls' 'server client protocol' server/net/ server/ops/ server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c

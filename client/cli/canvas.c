@@ -7,7 +7,7 @@
 
 #include "client/cli/file.h"
 #include "client/cli/glyphs.h"
-#include "client/lib/status.h"
+#include "client/cli/failure.h"
 #include "protocol/srgb.h"
 
 bool canvas_init(struct canvas *canvas, uint32_t width_px, uint32_t height_px)
@@ -85,13 +85,13 @@ enum sheen_status canvas_write_png(const struct canvas *canvas, const char *path
     png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image); /* never more, for any pixels */
     uint8_t *file = malloc(bytes);
     if (!file)
-        return status_set(error, SHEEN_NO_MEMORY, "no memory for a picture of %zu bytes",
-                          (size_t)bytes);
+        return failure_set(error, SHEEN_NO_MEMORY, "no memory for a picture of %zu bytes",
+                           (size_t)bytes);
     enum sheen_status status;
     if (png_image_write_to_memory(&image, file, &bytes, 0, canvas->rgb, 0, NULL))
         status = file_write(path, file, bytes, error);
     else
-        status = status_set(error, SHEEN_BAD_IMAGE, "%s: %s", path, image.message);
+        status = failure_set(error, SHEEN_BAD_IMAGE, "%s: %s", path, image.message);
     free(file);
     return status;
 }

@@ -9,7 +9,7 @@
 #include "client/cli/file.h"
 #include "client/cli/glyphs.h"
 #include "client/cli/job.h"
-#include "client/lib/status.h"
+#include "client/cli/failure.h"
 #include "client/cli/values.h"
 
 enum { FIRST_LEVEL = 1, LAST_LEVEL = 3, N_LEVELS = LAST_LEVEL - FIRST_LEVEL + 1 };
@@ -162,7 +162,8 @@ static enum sheen_status draw(struct job *job, const struct options *options,
     struct sheen_frame frame = {0};
     enum sheen_status status = render(job, options, &request, SHEEN_SURFACE_EXACT, 0, exact);
     if (!status && !figure_init(figure, &request))
-        status = status_set(&job->error, SHEEN_NO_MEMORY, "no memory for nine panels of that size");
+        status =
+            failure_set(&job->error, SHEEN_NO_MEMORY, "no memory for nine panels of that size");
     for (int row = 0; row < N_LEVELS && !status; row++)
         status = draw_row(job, options, &request, row, exact, &frame, figure);
     sheen_frame_finish(&frame);

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/lib/clock.h"
+#include "client/cli/clock.h"
 #include "client/cli/commands.h"
 #include "client/cli/file.h"
 #include "client/cli/job.h"
 #include "client/cli/lights_text.h"
-#include "client/lib/status.h"
+#include "client/cli/failure.h"
 #include "client/cli/turntable.h"
 #include "client/cli/values.h"
 
@@ -87,7 +87,7 @@ static enum sheen_status write_one(struct job *job, struct stream *stream,
         return SHEEN_OK;
     char *path = frame_names_path(&options->frame_names, number);
     if (!path)
-        return status_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
+        return failure_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
     enum sheen_status status =
         file_write(path, stream->frame.file, stream->frame.file_bytes, &job->error);
     free(path);
@@ -360,7 +360,7 @@ static enum sheen_status check_writable(struct job *job, const struct options *o
     char *path = frame_names_path(&options->frame_names, 0);
     enum sheen_status status =
         path ? file_check_writable(path, &job->error)
-             : status_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
+             : failure_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
     free(path);
     return status;
 }
@@ -401,8 +401,8 @@ static int run(const struct options *options)
     uint64_t *sorted = calloc(options->frames, sizeof(*sorted));
     enum sheen_status status = stream.records && sorted
                                    ? run_job(&job, &stream, sorted, options)
-                                   : status_set(&job.error, SHEEN_NO_MEMORY,
-                                                "no memory for %u frames' times", options->frames);
+                                   : failure_set(&job.error, SHEEN_NO_MEMORY,
+                                                 "no memory for %u frames' times", options->frames);
     sheen_frame_finish(&stream.frame);
     free(sorted);
     free(stream.records);

@@ -10,7 +10,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "client/lib/status.h"
+#include "client/cli/failure.h"
 #include "protocol/limits.h"
 
 #define TEMPORARY_TRIES 100
@@ -20,19 +20,19 @@ static enum sheen_status read_open(int fd, const char *path, enum sheen_status s
 {
     struct stat about;
     if (fstat(fd, &about) != 0)
-        return status_set(error, status, "%s: %s", path, strerror(errno));
+        return failure_set(error, status, "%s: %s", path, strerror(errno));
     if (!S_ISREG(about.st_mode))
-        return status_set(error, status, "%s: is not a plain file", path);
+        return failure_set(error, status, "%s: is not a plain file", path);
     if (about.st_size == 0)
-        return status_set(error, status, "%s: is empty", path);
+        return failure_set(error, status, "%s: is empty", path);
     if ((uint64_t)about.st_size > PROTOCOL_MAX_UPLOAD_BYTES)
-        return status_set(error, SHEEN_TOO_BIG, "%s: %lld bytes; at most %llu can be uploaded",
-                          path, (long long)about.st_size,
-                          (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
+        return failure_set(error, SHEEN_TOO_BIG, "%s: %lld bytes; at most %llu can be uploaded",
+                           path, (long long)about.st_size,
+                           (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
     size_t size = (size_t)about.st_size;
     uint8_t *buffer = malloc(size);
     if (!buffer)
-        return status_set(error, SHEEN_NO_MEMORY, "%s: no memory for %zu bytes", path, size);
+        return failure_set(error, SHEEN_NO_MEMORY, "%s: no memory for %zu bytes", path, size);
     for (size_t done = 0; done < size;) {
         ssize_t n = read(fd, buffer + done, size - done);
         if (n > 0) {
@@ -40,7 +40,7 @@ static enum sheen_status read_open(int fd, const char *path, enum sheen_status s
         } else if (n == 0 || errno != EINTR) {
             const char *why = n == 0 ? "it became shorter while it was read" : strerror(errno);
             free(buffer);
-            return status_set(error, status, "%s: %s", path, why);
+            return failure_set(error, status, "%s: %s", path, why);
         }
     }
     *bytes = buffer;
@@ -55,7 +55,7 @@ static enum sheen_status read_and_close(int fd, const char *path, enum sheen_sta
                                         uint8_t **bytes, size_t *n_bytes, struct sheen_error *error)
 {
     if (fd < 0)
-        return status_set(error, status, "%s: %s", path, strerror(errno));
+        return failure_set(error, status, "%s: %s", path, strerror(errno));
     enum sheen_status result = read_open(fd, path, status, bytes, n_bytes, error);
     close(fd);
     return result;
@@ -82,14 +82,14 @@ enum sheen_status file_read_line(const char *path, char *line, size_t size,
 {
     FILE *file = fopen(path, "re");
     if (!file)
-        return status_set(error, SHEEN_BAD_ARGUMENT, "cannot read %s: %s", path, strerror(errno));
+        return failure_set(error, SHEEN_BAD_ARGUMENT, "cannot read %s: %s", path, strerror(errno));
     bool ok = fgets(line, (int)size, file) != NULL;
     size_t length = ok ? strcspn(line, "\r\n") : 0;
     bool whole = ok && (line[length] || feof(file));
     fclose(file);
     if (length == 0 || !whole)
-        return status_set(error, SHEEN_BAD_ARGUMENT,
-                          "%s: its first line must be a text of 1 to %zu bytes", path, size - 2);
+        return failure_set(error, SHEEN_BAD_ARGUMENT,
+                           "%s: its first line must be a text of 1 to %zu bytes", path, size - 2);
     line[length] = 0;
     return SHEEN_OK;
 }
@@ -105,14 +105,14 @@ enum sheen_status file_check_writable(const char *path, struct sheen_error *erro
 {
     struct stat about;
     if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
-        return status_set(error, SHEEN_BAD_IMAGE, "%s: is there and is not a plain file", path);
+        return failure_set(error, SHEEN_BAD_IMAGE, "%s: is there and is not a plain file", path);
     char *folder = folder_of(path);
     if (!folder)
-        return status_set(error, SHEEN_NO_MEMORY, "no memory for a path");
+        return failure_set(error, SHEEN_NO_MEMORY, "no memory for a path");
     int reason = access(folder, W_OK | X_OK) == 0 ? 0 : errno;
     free(folder);
-    return reason ? status_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path,
-                               strerror(reason))
+    return reason ? failure_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path,
+                                strerror(reason))
                   : SHEEN_OK;
 }
 
@@ -188,6 +188,6 @@ enum sheen_status file_write(const char *path, const uint8_t *bytes, size_t n_by
         unlink(name);
     free(name);
     return is_written ? SHEEN_OK
-                      : status_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path,
-                                   strerror(reason));
+                      : failure_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path,
+                                    strerror(reason));
 }

@@ -6,10 +6,10 @@
 #include <string.h>
 #include <time.h>
 
-#include "client/lib/clock.h"
+#include "client/cli/clock.h"
 #include "client/cli/file.h"
 #include "client/cli/gltf_pack.h"
-#include "client/lib/status.h"
+#include "client/cli/failure.h"
 #include "client/cli/values.h"
 #include "client/cli/weld_tag.h"
 
@@ -28,7 +28,7 @@ static enum sheen_status identify(struct job *job, const uint8_t *bytes, size_t 
 {
     if (sheen_file_id(bytes, n_bytes, id))
         return SHEEN_OK;
-    return status_set(&job->error, SHEEN_NO_MEMORY, "libcrypto cannot compute a SHA-256");
+    return failure_set(&job->error, SHEEN_NO_MEMORY, "libcrypto cannot compute a SHA-256");
 }
 
 /* A file is read again for each server: answers about two versions of it must not be mixed. */
@@ -37,10 +37,10 @@ static enum sheen_status keep_id(struct job *job, uint8_t kept[SHEEN_ID_BYTES],
                                  const char *path)
 {
     if (job->resume.is_answered && memcmp(kept, id, SHEEN_ID_BYTES) != 0)
-        return status_set(&job->error, status,
-                          "%s: it has changed since the first answer about it came; ask for "
-                          "everything again",
-                          path);
+        return failure_set(&job->error, status,
+                           "%s: it has changed since the first answer about it came; ask for "
+                           "everything again",
+                           path);
     memcpy(kept, id, SHEEN_ID_BYTES);
     return SHEEN_OK;
 }
@@ -126,10 +126,10 @@ static enum sheen_status connect_and_upload(struct job *job, const struct option
     if (local)
         status = read_model(job, options, &bytes, &n_bytes);
     else if (at_server && options->weld)
-        status = status_set(&job->error, SHEEN_BAD_ARGUMENT,
-                            "%s: --weld is for a file that is sent; for one at the server put the "
-                            "line 't weld 0/0/0' into it",
-                            options->model);
+        status = failure_set(&job->error, SHEEN_BAD_ARGUMENT,
+                             "%s: --weld is for a file that is sent; for one at the server put the "
+                             "line 't weld 0/0/0' into it",
+                             options->model);
     if (!status)
         status = connect_server(job, options, timeout_ms);
     if (!status && at_server)
@@ -161,10 +161,10 @@ static bool begin_resume(struct job *job, const struct options *options)
         return true;
     }
     snprintf(text, sizeof(text), "%s", job->error.text);
-    status_set(&job->error, job->error.status,
-               "%.400s; %u servers in a row went before they answered: see their logs before "
-               "asking again",
-               text, job->resume.n_losses);
+    failure_set(&job->error, job->error.status,
+                "%.400s; %u servers in a row went before they answered: see their logs before "
+                "asking again",
+                text, job->resume.n_losses);
     return false;
 }
 
@@ -262,7 +262,7 @@ enum sheen_status job_finish_json(struct job *job, struct json *json)
 {
     if (json_finish(json))
         return SHEEN_OK;
-    return status_set(&job->error, SHEEN_BAD_IMAGE, "standard output cannot be written");
+    return failure_set(&job->error, SHEEN_BAD_IMAGE, "standard output cannot be written");
 }
 
 void job_print_warnings(struct job *job, const char *lines)

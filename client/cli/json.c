@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "protocol/message.h"
+#include "protocol/text.h"
 
 /* File names may hold any bytes: what is not UTF-8 becomes U+FFFD, so that the text stays JSON. */
 static void write_string(FILE *out, const char *value, size_t length)
@@ -13,7 +13,7 @@ static void write_string(FILE *out, const char *value, size_t length)
     fputc('"', out);
     for (size_t i = 0; i < length;) {
         unsigned char c = (unsigned char)value[i];
-        size_t n = message_utf8_length(value + i);
+        size_t n = text_utf8_length(value + i);
         if (n == 0)
             fputs("\\ufffd", out);
         else if (c == '"' || c == '\\')

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "client/cli/commands.h"
-#include "protocol/frame.h"
 
 #define EXIT_WRONG_USAGE 2
 
@@ -50,7 +49,7 @@ int main(int argc, char **argv)
         return 0;
     }
     if (strcmp(name, "--version") == 0) {
-        printf("sheen %s, protocol %d.%d\n", SHEEN_VERSION, PROTOCOL_MAJOR, PROTOCOL_MINOR);
+        printf("sheen %s\n", sheen_version());
         return 0;
     }
     for (size_t i = 0; i < N_COMMANDS; i++) {

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "client/lib/clock.h"
+#include "client/cli/clock.h"
 
 #define BAR_CELLS 30
 #define INTERVAL_MS 100

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/lib/status.h"
+#include "client/cli/failure.h"
 #include "protocol/model_format.h"
 
 /* Two line ends: a file may end in a backslash, which continues its line. */
@@ -14,13 +14,14 @@ enum sheen_status weld_tag_append(const char *path, uint8_t **bytes, size_t *n_b
                                   struct sheen_error *error)
 {
     if (model_format_is_gltf(path, *bytes, *n_bytes))
-        return status_set(error, SHEEN_BAD_ARGUMENT,
-                          "%s: --weld is for OBJ; equal positions inside a mesh of a glTF file are "
-                          "joined without it",
-                          path);
+        return failure_set(
+            error, SHEEN_BAD_ARGUMENT,
+            "%s: --weld is for OBJ; equal positions inside a mesh of a glTF file are "
+            "joined without it",
+            path);
     uint8_t *longer = realloc(*bytes, *n_bytes + TAG_BYTES);
     if (!longer)
-        return status_set(error, SHEEN_NO_MEMORY, "%s: no memory to add to it", path);
+        return failure_set(error, SHEEN_NO_MEMORY, "%s: no memory to add to it", path);
     memcpy(longer + *n_bytes, TAG, TAG_BYTES);
     *bytes = longer;
     *n_bytes += TAG_BYTES;

@@ -11,18 +11,25 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
-#include "client/lib/clock.h"
 #include "client/lib/status.h"
+
+static int64_t now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
 
 /* Waits for `events`: 1 ready, 0 the time is over, -1 errno. */
 static int wait_for(const struct connection *connection, short events)
 {
-    int64_t end = clock_now_ms() + connection->timeout_ms;
+    int64_t end = now_ms() + connection->timeout_ms;
     struct pollfd entry = {.fd = connection->fd, .events = events};
     for (;;) {
-        int64_t left = connection->timeout_ms ? end - clock_now_ms() : -1;
+        int64_t left = connection->timeout_ms ? end - now_ms() : -1;
         if (connection->timeout_ms && left < 0)
             left = 0;
         int n = poll(&entry, 1, left > INT_MAX ? INT_MAX : (int)left);

@@ -65,6 +65,9 @@ struct sheen_error {
     char text[640]; /* one line, UTF-8, no newline: what, where, what to do */
 };
 
+/* The library's version and the wire's: "0.1.0, protocol 1.2". */
+const char *sheen_version(void);
+
 /* The exit code that the `sheen` command ends with: 0, 2, 3, 4 or 5. */
 int sheen_status_exit_code(enum sheen_status status);
 bool sheen_status_is_fatal(enum sheen_status status);

@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "protocol/message.h"
+#include "protocol/text.h"
 #include "server/net/loop.h"
 
 #define LINE_BYTES 16384 /* room for five values of nothing but escapes */
@@ -45,7 +45,7 @@ static void put_quoted(struct line *line, const char *text)
 {
     put_text(line, "\"");
     for (const char *c = text; *c && c - text < LOG_VALUE_BYTES;) {
-        size_t n = message_utf8_length(c);
+        size_t n = text_utf8_length(c);
         char escape[8];
         if (*c == '"' || *c == '\\')
             snprintf(escape, sizeof escape, "\\%c", *c);

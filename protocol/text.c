@@ -1,0 +1,65 @@
+#include "protocol/text.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+size_t text_utf8_length(const char *text)
+{
+    const unsigned char *c = (const unsigned char *)text;
+    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
+    if (*c < 0x80)
+        return 1;
+    size_t n = *c >= 0xf0 && *c < 0xf8 ? 4 : *c >= 0xe0 ? 3 : *c >= 0xc0 ? 2 : 0;
+    if (n == 0 || *c >= 0xf8)
+        return 0;
+    uint32_t code = *c & (0xffu >> (n + 1));
+    for (size_t i = 1; i < n; i++) {
+        if ((c[i] & 0xc0) != 0x80)
+            return 0;
+        code = code << 6 | (c[i] & 0x3f);
+    }
+    bool surrogate = code >= 0xd800 && code < 0xe000;
+    bool c1_control = code < 0xa0;
+    return code < least[n] || code > 0x10ffff || surrogate || c1_control ? 0 : n;
+}
+
+/* Whether a mark begins at `c` that turns the direction of the text behind it, so that a terminal
+ * shows it in another order: U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069. */
+static bool turns_text(const char *c)
+{
+    static const char marks[][4] = {
+        "\u061c", "\u200e", "\u200f", "\u202a", "\u202b", "\u202c",
+        "\u202d", "\u202e", "\u2066", "\u2067", "\u2068", "\u2069",
+    };
+    for (size_t i = 0; i < sizeof(marks) / sizeof(*marks); i++)
+        if (strncmp(c, marks[i], strlen(marks[i])) == 0)
+            return true;
+    return false;
+}
+
+static void hide_controls(char *text)
+{
+    char *to = text;
+    for (const char *from = text; *from;) {
+        size_t length = text_utf8_length(from);
+        bool c1_control = from[0] == '\xc2' && ((unsigned char)from[1] & 0xe0) == 0x80;
+        bool shown =
+            length > 0 && (unsigned char)*from >= 0x20 && *from != 0x7f && !turns_text(from);
+        size_t n = length > 0 ? length : c1_control ? 2 : 1;
+        if (shown)
+            memmove(to, from, n);
+        else
+            *to = '?';
+        to += shown ? n : 1;
+        from += n;
+    }
+    *to = 0;
+}
+
+void text_format_line(char *line, size_t size, const char *format, va_list arguments)
+{
+    vsnprintf(line, size, format, arguments);
+    hide_controls(line);
+}
