@@ -9,18 +9,18 @@
 static void print_findings(struct json *json, const struct sheen_model_info *info)
 {
     static const char *const KINDS[] = {
-        [SHEEN_FOUND_REPEATED_CORNER] = "repeated-corner",
-        [SHEEN_FOUND_FEW_CORNERS] = "few-corners",
-        [SHEEN_FOUND_KEYHOLE] = "keyhole",
-        [SHEEN_FOUND_CREASE_WITHOUT_EDGE] = "crease-without-edge",
-        [SHEEN_FOUND_CORNER_WITHOUT_VERTEX] = "corner-without-vertex",
-        [SHEEN_FOUND_HOLE_WITHOUT_FACE] = "hole-without-face",
-        [SHEEN_FOUND_UNWELDED] = "unwelded",
-        [SHEEN_FOUND_TRIANGLES] = "triangles",
-        [SHEEN_FOUND_WOUND_AGAINST] = "wound-against",
-        [SHEEN_FOUND_FACE_TWICE] = "face-twice",
-        [SHEEN_FOUND_INSIDE_OUT] = "inside-out",
-        [SHEEN_FOUND_OTHER] = "other",
+        [SHEEN_FINDING_REPEATED_CORNER] = "repeated-corner",
+        [SHEEN_FINDING_FEW_CORNERS] = "few-corners",
+        [SHEEN_FINDING_KEYHOLE] = "keyhole",
+        [SHEEN_FINDING_CREASE_WITHOUT_EDGE] = "crease-without-edge",
+        [SHEEN_FINDING_CORNER_WITHOUT_VERTEX] = "corner-without-vertex",
+        [SHEEN_FINDING_HOLE_WITHOUT_FACE] = "hole-without-face",
+        [SHEEN_FINDING_UNWELDED] = "unwelded",
+        [SHEEN_FINDING_TRIANGLES] = "triangles",
+        [SHEEN_FINDING_WOUND_AGAINST] = "wound-against",
+        [SHEEN_FINDING_FACE_TWICE] = "face-twice",
+        [SHEEN_FINDING_INSIDE_OUT] = "inside-out",
+        [SHEEN_FINDING_OTHER] = "other",
     };
     json_array_begin(json, "findings");
     for (uint32_t i = 0; i < info->n_findings; i++) {

@@ -34,7 +34,7 @@ static bool apply_output(struct options *options, const char *value, char *why)
 {
     options->output = value;
     return (value_format(value, &options->request.format) &&
-            options->request.format == SHEEN_FILE_PNG) ||
+            options->request.format == SHEEN_FORMAT_PNG) ||
            options_refuse(why, "must end in .png");
 }
 
@@ -47,8 +47,8 @@ static bool check(struct options *options, char *why)
         request->width_px = 480;
         request->height_px = 360;
     }
-    request->format = SHEEN_PLANES_ZSTD;
-    request->planes = SHEEN_COLOUR | SHEEN_NORMAL | SHEEN_PTEX;
+    request->format = SHEEN_FORMAT_ZSTD;
+    request->planes = SHEEN_PLANE_COLOUR | SHEEN_PLANE_NORMAL | SHEEN_PLANE_PTEX;
     return options_check_scene(options, why);
 }
 

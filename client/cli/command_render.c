@@ -25,7 +25,7 @@ static bool check(struct options *options, char *why)
 {
     if (!options->output)
         return options_refuse(why, "-o FILE is missing");
-    if (options->aov_planes && options->request.format != SHEEN_FILE_EXR)
+    if (options->aov_planes && options->request.format != SHEEN_FORMAT_EXR)
         return options_refuse(why, "--aov needs an output that ends in .exr");
     options->request.planes |= options->aov_planes;
     return options_check_jpeg(options, why) && options_check_scene(options, why);
@@ -46,7 +46,7 @@ static void print_json(struct json *json, const struct options *options, const s
         json_uint(json, "faces", info->faces);
     if (options->request.jpeg_quality)
         json_uint(json, "jpeg_quality", options->request.jpeg_quality);
-    if (options->request.format == SHEEN_FILE_JPEG)
+    if (options->request.format == SHEEN_FORMAT_JPEG)
         json_string(json, "jpeg_subsampling",
                     value_subsampling_name(options->request.jpeg_subsampling));
     json_bool(json, "blank", frame->blank);

@@ -58,7 +58,7 @@ static void move(struct stream *stream, const struct options *options, uint32_t 
     const double degree = 3.14159265358979323846 / 180;
     double angle = number * options->orbit_deg * degree;
     /* Every frame is wanted: none may take the place of another. */
-    stream->request.has_view = stream->request.request_class != SHEEN_BATCH;
+    stream->request.has_view = stream->request.request_class != SHEEN_CLASS_BATCH;
     stream->request.view = number;
     stream->request.camera = stream->camera;
     stream->request.lights[0] = stream->light;
@@ -185,7 +185,7 @@ static enum sheen_status find_camera(struct job *job, struct stream *stream,
     probe.n_lights = 1;
     probe.lights[0] = (struct sheen_light){.pattern = SHEEN_PATTERN_DEFAULTS};
     probe.show = (struct sheen_show){0};
-    probe.format = SHEEN_PLANES_ZSTD;
+    probe.format = SHEEN_FORMAT_ZSTD;
     probe.jpeg_quality = 0;
     probe.jpeg_subsampling = SHEEN_JPEG_444;
     probe.request_class = stream->request.request_class;
@@ -394,9 +394,9 @@ static int run(const struct options *options)
     struct job job = {0};
     struct stream stream = {.request = options->request};
     if (!options->output)
-        stream.request.format = SHEEN_PLANES_ZSTD;
+        stream.request.format = SHEEN_FORMAT_ZSTD;
     if (!(options->given & GIVEN_CLASS))
-        stream.request.request_class = SHEEN_INTERACTIVE;
+        stream.request.request_class = SHEEN_CLASS_INTERACTIVE;
     stream.records = calloc(options->frames, sizeof(*stream.records));
     uint64_t *sorted = calloc(options->frames, sizeof(*sorted));
     enum sheen_status status = stream.records && sorted

@@ -52,11 +52,11 @@ const struct text_row TEXT_PATTERNS[] = {
 
 #define KIND(kind) (1u << (kind))
 #define ALL_KINDS                                                                                  \
-    (KIND(SHEEN_STRIPES) | KIND(SHEEN_LATTICE) | KIND(SHEEN_CIRCLES) | KIND(SHEEN_LINES) |         \
-     KIND(SHEEN_RAINBOW) | KIND(SHEEN_DISTANCE))
-#define PERIODIC (ALL_KINDS & ~KIND(SHEEN_LINES))
-#define WAVES (PERIODIC & ~KIND(SHEEN_RAINBOW))
-#define TWO_COLOURS (ALL_KINDS & ~KIND(SHEEN_RAINBOW))
+    (KIND(SHEEN_PATTERN_STRIPES) | KIND(SHEEN_PATTERN_LATTICE) | KIND(SHEEN_PATTERN_CIRCLES) |     \
+     KIND(SHEEN_PATTERN_LINES) | KIND(SHEEN_PATTERN_RAINBOW) | KIND(SHEEN_PATTERN_DISTANCE))
+#define PERIODIC (ALL_KINDS & ~KIND(SHEEN_PATTERN_LINES))
+#define WAVES (PERIODIC & ~KIND(SHEEN_PATTERN_RAINBOW))
+#define TWO_COLOURS (ALL_KINDS & ~KIND(SHEEN_PATTERN_RAINBOW))
 
 /* Numbers among a pattern's keys. */
 static const struct number_key {
@@ -72,7 +72,8 @@ static const struct number_key {
     {"offset", offsetof(struct sheen_pattern, offset), RANGE_PATTERN_OFFSET, PERIODIC},
     {"soft", offsetof(struct sheen_pattern, soft), RANGE_SOFT, TWO_COLOURS},
     {"opacity", offsetof(struct sheen_pattern, opacity), RANGE_OPACITY, ALL_KINDS},
-    {"width", offsetof(struct sheen_pattern, width), RANGE_PATTERN_WIDTH, KIND(SHEEN_LINES)},
+    {"width", offsetof(struct sheen_pattern, width), RANGE_PATTERN_WIDTH,
+     KIND(SHEEN_PATTERN_LINES)},
 };
 #define N_NUMBERS (sizeof(NUMBERS) / sizeof(*NUMBERS))
 
@@ -174,7 +175,8 @@ static bool parse_part(char *part, struct sheen_pattern *pattern, char *why)
             return check_kind(NUMBERS[i].kinds, part, pattern, why) &&
                    parse_number(&NUMBERS[i], value, pattern, why);
     if (strcmp(part, "at") == 0)
-        return check_kind(KIND(SHEEN_LINES), part, pattern, why) && parse_at(value, pattern, why);
+        return check_kind(KIND(SHEEN_PATTERN_LINES), part, pattern, why) &&
+               parse_at(value, pattern, why);
     bool is_foreground = strcmp(part, "fg") == 0;
     if (!is_foreground && strcmp(part, "bg") != 0)
         return refuse(why, "there is no part '%.20s'; sheen patterns lists them", part);
@@ -195,18 +197,19 @@ bool text_pattern(const char *text, struct sheen_pattern *value, const char **im
         value->foreground[k] = 1;
     value->background[3] = 1;
     if (strncmp(text, "image:", 6) == 0) {
-        value->kind = SHEEN_IMAGE;
+        value->kind = SHEEN_PATTERN_IMAGE;
         *image_path = text + 6;
         return **image_path || refuse(why, "image: needs the name of a file");
     }
-    static const enum sheen_pattern_kind kinds[] = {SHEEN_STRIPES, SHEEN_LATTICE, SHEEN_CIRCLES,
-                                                    SHEEN_LINES,   SHEEN_RAINBOW, SHEEN_DISTANCE};
+    static const enum sheen_pattern_kind kinds[] = {SHEEN_PATTERN_STRIPES, SHEEN_PATTERN_LATTICE,
+                                                    SHEEN_PATTERN_CIRCLES, SHEEN_PATTERN_LINES,
+                                                    SHEEN_PATTERN_RAINBOW, SHEEN_PATTERN_DISTANCE};
     if (kind < 0 || (size_t)kind >= sizeof(kinds) / sizeof(*kinds))
         return refuse(why,
                       "the patterns are stripes, lattice, circles, lines, rainbow, distance and "
                       "image:FILE");
     value->kind = kinds[kind];
-    if (value->kind == SHEEN_LINES) {
+    if (value->kind == SHEEN_PATTERN_LINES) {
         value->n_at = 1;
         value->at[0] = 0.5;
     }
@@ -238,7 +241,7 @@ bool text_light(const char *text, struct sheen_light *value, char why[static LIG
     value->one_sided = strcmp(text + length, ":one-sided") == 0;
     if (text[length] && !value->one_sided)
         return refuse(why, "only one-sided may follow the ':'");
-    return !value->one_sided || kind <= SHEEN_PLANE ||
+    return !value->one_sided || kind <= SHEEN_LIGHT_PLANE ||
            refuse(why, "one-sided is for rectangle and plane");
 }
 
@@ -252,7 +255,7 @@ bool text_lines(const char *text, struct sheen_lines *value, char why[static LIG
     value->has_direction = text[length] == ':';
     if (!value->has_direction)
         return true;
-    if (family == SHEEN_REFLECTION || family == SHEEN_HIGHLIGHT)
+    if (family == SHEEN_LINES_REFLECTION || family == SHEEN_LINES_HIGHLIGHT)
         return refuse(why, "a direction belongs to isophote, zebra and environment");
     return value_direction(text + length + 1, value->direction) ||
            refuse(why, "the direction must be " VALUE_DIRECTION_WORDS);
@@ -262,10 +265,10 @@ bool text_line_eye(const char *text, struct sheen_lines *value, char why[static 
 {
     bool is_direction = strncmp(text, "dir:", 4) == 0;
     if (strcmp(text, "camera") == 0) {
-        value->eye_kind = SHEEN_EYE_CAMERA;
+        value->eye_kind = SHEEN_LINE_EYE_CAMERA;
         return true;
     }
-    value->eye_kind = is_direction ? SHEEN_EYE_DIRECTION : SHEEN_EYE_POINT;
+    value->eye_kind = is_direction ? SHEEN_LINE_EYE_DIRECTION : SHEEN_LINE_EYE_POINT;
     return (is_direction ? value_direction(text + 4, value->eye) : value_vec3(text, value->eye)) ||
            refuse(why, "must be camera, a point X,Y,Z or a direction of view dir:X,Y,Z or dir:-z, "
                        "not 0,0,0");

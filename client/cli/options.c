@@ -70,7 +70,7 @@ static bool check_show(const struct options *options, char *why)
 static bool check_size(const struct sheen_request *request, char *why)
 {
     const struct range *range = &RANGES[RANGE_JPEG_SIDE];
-    return request->format != SHEEN_FILE_JPEG ||
+    return request->format != SHEEN_FORMAT_JPEG ||
            (range_holds(range, request->width_px) && range_holds(range, request->height_px)) ||
            options_refuse(why, "--size: a JPEG file has at most %g pixels a side", range->greatest);
 }

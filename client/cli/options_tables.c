@@ -317,7 +317,7 @@ static bool apply_jpeg_subsampling(struct options *options, const char *value, c
 
 bool options_check_jpeg(const struct options *options, char *why)
 {
-    return !(options->given & GIVEN_JPEG) || options->request.format == SHEEN_FILE_JPEG ||
+    return !(options->given & GIVEN_JPEG) || options->request.format == SHEEN_FORMAT_JPEG ||
            options_refuse(why, "--jpeg-quality and --jpeg-subsampling need an output that ends in "
                                ".jpg or .jpeg");
 }

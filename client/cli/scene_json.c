@@ -60,7 +60,7 @@ static void json_family(struct json *json, const struct sheen_lines *lines)
         json_vec3(json, "lines_direction", lines->direction);
     json_object_begin(json, "line_eye");
     json_string(json, "kind", eyes[lines->eye_kind]);
-    if (lines->eye_kind != SHEEN_EYE_CAMERA)
+    if (lines->eye_kind != SHEEN_LINE_EYE_CAMERA)
         json_vec3(json, eyes[lines->eye_kind], lines->eye);
     json_object_end(json);
 }
@@ -77,14 +77,14 @@ static void json_pattern(struct json *json, const struct sheen_pattern *pattern)
     json_double(json, "offset", pattern->offset);
     json_double(json, "soft", pattern->soft);
     json_double(json, "opacity", pattern->opacity);
-    if (pattern->kind == SHEEN_LINES) {
+    if (pattern->kind == SHEEN_PATTERN_LINES) {
         json_array_begin(json, "at");
         for (uint32_t i = 0; i < pattern->n_at; i++)
             json_double(json, NULL, pattern->at[i]);
         json_array_end(json);
         json_double(json, "width", pattern->width);
     }
-    if (pattern->kind == SHEEN_IMAGE)
+    if (pattern->kind == SHEEN_PATTERN_IMAGE)
         json_hex(json, "image_sha256", pattern->image_id, SHEEN_ID_BYTES);
     json_colour(json, "fg", pattern->foreground);
     json_colour(json, "bg", pattern->background);
@@ -159,7 +159,7 @@ static void json_show(struct json *json, const struct sheen_show *show,
 static void json_planes(struct json *json, uint32_t planes)
 {
     json_array_begin(json, "aov");
-    for (uint32_t plane = SHEEN_COLOUR << 1; plane < 1u << SHEEN_PLANES; plane <<= 1)
+    for (uint32_t plane = SHEEN_PLANE_COLOUR << 1; plane < 1u << SHEEN_N_PLANES; plane <<= 1)
         if (planes & plane)
             json_string(json, NULL, value_plane_name(plane));
     json_array_end(json);

@@ -105,9 +105,10 @@ bool value_colour(const char *text, float value[static 4])
 static const struct {
     const char *name;
     uint32_t plane;
-} PLANES[] = {{"P", SHEEN_POSITION},       {"N", SHEEN_NORMAL},    {"ptex", SHEEN_PTEX},
-              {"light", SHEEN_LIGHT},      {"k", SHEEN_CURVATURE}, {"dlight", SHEEN_LIGHT_CHANGE},
-              {"coverage", SHEEN_COVERAGE}};
+} PLANES[] = {{"P", SHEEN_PLANE_POSITION},       {"N", SHEEN_PLANE_NORMAL},
+              {"ptex", SHEEN_PLANE_PTEX},        {"light", SHEEN_PLANE_LIGHT},
+              {"k", SHEEN_PLANE_CURVATURE},      {"dlight", SHEEN_PLANE_LIGHT_CHANGE},
+              {"coverage", SHEEN_PLANE_COVERAGE}};
 #define N_PLANES (sizeof(PLANES) / sizeof(*PLANES))
 
 const char *value_plane_name(uint32_t plane)
@@ -160,9 +161,9 @@ bool value_format(const char *path, enum sheen_format *format)
     static const struct {
         const char *ending;
         enum sheen_format format;
-    } endings[] = {{".png", SHEEN_FILE_PNG},  {".exr", SHEEN_FILE_EXR},
-                   {".jpg", SHEEN_FILE_JPEG}, {".jpeg", SHEEN_FILE_JPEG},
-                   {".tif", SHEEN_FILE_TIFF}, {".tiff", SHEEN_FILE_TIFF}};
+    } endings[] = {{".png", SHEEN_FORMAT_PNG},  {".exr", SHEEN_FORMAT_EXR},
+                   {".jpg", SHEEN_FORMAT_JPEG}, {".jpeg", SHEEN_FORMAT_JPEG},
+                   {".tif", SHEEN_FORMAT_TIFF}, {".tiff", SHEEN_FORMAT_TIFF}};
     const char *slash = strrchr(path, '/');
     const char *name = slash ? slash + 1 : path;
     const char *dot = strrchr(name, '.');
@@ -192,9 +193,9 @@ const char *value_subsampling_name(enum sheen_jpeg_subsampling subsampling)
 }
 
 static const char *const CLASS_NAMES[] = {
-    [SHEEN_STILL] = "still",
-    [SHEEN_INTERACTIVE] = "interactive",
-    [SHEEN_BATCH] = "batch",
+    [SHEEN_CLASS_STILL] = "still",
+    [SHEEN_CLASS_INTERACTIVE] = "interactive",
+    [SHEEN_CLASS_BATCH] = "batch",
 };
 
 bool value_class(const char *text, enum sheen_class *request_class)

@@ -10,17 +10,17 @@
 
 _Static_assert((int)SHEEN_MAX_IN_FLIGHT == (int)PROTOCOL_MAX_CREDITS, "what a daemon may grant");
 _Static_assert((int)SHEEN_VIEW_ISO == (int)sheen_View_VIEW_ISO, "same order");
-_Static_assert((int)SHEEN_BATCH == (int)sheen_RequestClass_CLASS_BATCH, "same order");
-_Static_assert((int)SHEEN_FILE_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
+_Static_assert((int)SHEEN_CLASS_BATCH == (int)sheen_RequestClass_CLASS_BATCH, "same order");
+_Static_assert((int)SHEEN_FORMAT_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
 _Static_assert((int)SHEEN_JPEG_420 == (int)sheen_JpegSubsampling_JPEG_420, "same order");
-_Static_assert((int)SHEEN_COVERAGE == (int)sheen_Plane_PLANE_COVERAGE, "same bits");
+_Static_assert((int)SHEEN_PLANE_COVERAGE == (int)sheen_Plane_PLANE_COVERAGE, "same bits");
 
 /* What a frame owns. */
 struct sheen_frame_memory {
     uint8_t *data; /* a file's bytes, or what planes are unpacked from */
     size_t data_capacity;
-    void *plane[SHEEN_PLANES];
-    size_t plane_capacity[SHEEN_PLANES];
+    void *plane[SHEEN_N_PLANES];
+    size_t plane_capacity[SHEEN_N_PLANES];
 };
 
 static void fill_camera(sheen_Render *render, const struct sheen_camera *camera)
@@ -74,7 +74,7 @@ static void fill_render(sheen_Render *render, const struct sheen_request *reques
         .surface = (sheen_SurfaceKind)request->surface,
         .has_surface_level = request->surface_level != 0,
         .surface_level = request->surface_level,
-        .has_request_class = request->request_class != SHEEN_STILL,
+        .has_request_class = request->request_class != SHEEN_CLASS_STILL,
         .request_class = (sheen_RequestClass)request->request_class,
         .has_view = request->has_view,
         .view = request->view,
@@ -242,7 +242,7 @@ static enum sheen_status unpack_planes(struct sheen_session *session, struct she
                                        const struct codec_layout *layout, struct sheen_error *error)
 {
     struct sheen_frame_memory *memory = frame->memory;
-    for (unsigned plane = 0; plane < SHEEN_PLANES; plane++) {
+    for (unsigned plane = 0; plane < SHEEN_N_PLANES; plane++) {
         if (!(layout->planes & 1u << plane))
             continue;
         size_t bytes = codec_plane_bytes(layout, plane);
@@ -254,7 +254,7 @@ static enum sheen_status unpack_planes(struct sheen_session *session, struct she
     }
     const char *wrong = NULL;
     size_t size = (size_t)frame->data_bytes;
-    if (frame->format == SHEEN_PLANES_RAW) {
+    if (frame->format == SHEEN_FORMAT_RAW) {
         wrong = codec_raw_decode(layout, memory->data, size, frame->plane);
     } else {
         if (!session->decoder)
@@ -299,7 +299,7 @@ static enum sheen_status receive_frame(struct sheen_session *session,
     if (status)
         return status;
     fill_frame(frame, body);
-    if (frame->format == SHEEN_PLANES_RAW || frame->format == SHEEN_PLANES_ZSTD)
+    if (frame->format == SHEEN_FORMAT_RAW || frame->format == SHEEN_FORMAT_ZSTD)
         return unpack_planes(session, frame, &layout, error);
     frame->file = frame->memory->data;
     frame->file_bytes = (size_t)body->data_bytes;
@@ -440,7 +440,7 @@ void sheen_frame_finish(struct sheen_frame *frame)
         return;
     if (frame->memory) {
         free(frame->memory->data);
-        for (unsigned plane = 0; plane < SHEEN_PLANES; plane++)
+        for (unsigned plane = 0; plane < SHEEN_N_PLANES; plane++)
             free(frame->memory->plane[plane]);
         free(frame->memory);
     }

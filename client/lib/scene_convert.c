@@ -2,10 +2,12 @@
 
 #include <string.h>
 
-_Static_assert((int)SHEEN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same order");
-_Static_assert((int)SHEEN_DISTANCE == (int)sheen_PatternKind_PATTERN_DISTANCE, "same order");
-_Static_assert((int)SHEEN_SPHERE == (int)sheen_LightKind_LIGHT_SPHERE, "same order");
-_Static_assert((int)SHEEN_ENVIRONMENT == (int)sheen_LineFamily_LINES_ENVIRONMENT, "same order");
+_Static_assert((int)SHEEN_PATTERN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same order");
+_Static_assert((int)SHEEN_PATTERN_DISTANCE == (int)sheen_PatternKind_PATTERN_DISTANCE,
+               "same order");
+_Static_assert((int)SHEEN_LIGHT_SPHERE == (int)sheen_LightKind_LIGHT_SPHERE, "same order");
+_Static_assert((int)SHEEN_LINES_ENVIRONMENT == (int)sheen_LineFamily_LINES_ENVIRONMENT,
+               "same order");
 _Static_assert((int)SHEEN_SHOW_DRAFT == (int)sheen_ShowKind_SHOW_DRAFT, "same order");
 _Static_assert(SHEEN_MAX_LIGHTS == sizeof((sheen_Render *)0)->lights / sizeof(sheen_Light),
                "as many as the wire carries");
@@ -37,7 +39,7 @@ static void get_colour(float c[4], const sheen_Colour *message)
 
 static sheen_Pattern to_pattern(const struct sheen_pattern *pattern)
 {
-    bool is_lines = pattern->kind == SHEEN_LINES;
+    bool is_lines = pattern->kind == SHEEN_PATTERN_LINES;
     sheen_Pattern message = {
         .kind = (sheen_PatternKind)pattern->kind,
         .has_count = true,
@@ -60,7 +62,7 @@ static sheen_Pattern to_pattern(const struct sheen_pattern *pattern)
         .foreground = message_colour(pattern->foreground),
         .has_background = pattern->has_colours,
         .background = message_colour(pattern->background),
-        .has_image_sha256 = pattern->kind == SHEEN_IMAGE,
+        .has_image_sha256 = pattern->kind == SHEEN_PATTERN_IMAGE,
     };
     memcpy(message.image_sha256, pattern->image_id, SHEEN_ID_BYTES);
     for (; is_lines && message.at_count < pattern->n_at && message.at_count < SHEEN_MAX_LINES;
@@ -95,9 +97,9 @@ void lights_to_message(sheen_Render *render, const struct sheen_request *request
         .family = (sheen_LineFamily)lines->family,
         .has_direction = lines->has_direction,
         .direction = message_vec3(lines->direction),
-        .has_eye = lines->eye_kind == SHEEN_EYE_POINT,
+        .has_eye = lines->eye_kind == SHEEN_LINE_EYE_POINT,
         .eye = message_vec3(lines->eye),
-        .has_eye_direction = lines->eye_kind == SHEEN_EYE_DIRECTION,
+        .has_eye_direction = lines->eye_kind == SHEEN_LINE_EYE_DIRECTION,
         .eye_direction = message_vec3(lines->eye),
     };
     for (uint32_t i = 0; i < request->n_lights; i++)
@@ -158,9 +160,9 @@ void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
     frame->lines = (struct sheen_lines){
         .family = (enum sheen_line_family)lines->family,
         .has_direction = lines->has_direction,
-        .eye_kind = lines->has_eye             ? SHEEN_EYE_POINT
-                    : lines->has_eye_direction ? SHEEN_EYE_DIRECTION
-                                               : SHEEN_EYE_CAMERA,
+        .eye_kind = lines->has_eye             ? SHEEN_LINE_EYE_POINT
+                    : lines->has_eye_direction ? SHEEN_LINE_EYE_DIRECTION
+                                               : SHEEN_LINE_EYE_CAMERA,
     };
     message_get_vec3(frame->lines.direction, &lines->direction);
     message_get_vec3(frame->lines.eye, lines->has_eye ? &lines->eye : &lines->eye_direction);

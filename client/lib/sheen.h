@@ -34,7 +34,7 @@
 #include <stdint.h>
 
 #define SHEEN_ID_BYTES 32 /* SHA-256 of a file's bytes */
-#define SHEEN_PLANES 8
+#define SHEEN_N_PLANES 8
 #define SHEEN_MAX_IN_FLIGHT 64 /* requests sent and not yet received: the most any daemon takes */
 
 enum sheen_status {
@@ -157,18 +157,18 @@ enum sheen_status sheen_find_model(struct sheen_session *session, const char *na
 
 /* What a file has that it is probably not meant to have; its warning says so in words. */
 enum sheen_finding_kind {
-    SHEEN_FOUND_REPEATED_CORNER,       /* faces that lost a corner which repeats its neighbour */
-    SHEEN_FOUND_FEW_CORNERS,           /* faces passed over: fewer than three different corners */
-    SHEEN_FOUND_KEYHOLE,               /* the same: a vertex at corners that are no neighbours */
-    SHEEN_FOUND_CREASE_WITHOUT_EDGE,   /* tags passed over */
-    SHEEN_FOUND_CORNER_WITHOUT_VERTEX, /* the same */
-    SHEEN_FOUND_HOLE_WITHOUT_FACE,     /* the same */
-    SHEEN_FOUND_UNWELDED,      /* repeated positions, where no face shares a vertex with another */
-    SHEEN_FOUND_TRIANGLES,     /* plain ones: faces */
-    SHEEN_FOUND_WOUND_AGAINST, /* edges that two faces run along in one direction */
-    SHEEN_FOUND_FACE_TWICE,    /* faces that are there again */
-    SHEEN_FOUND_INSIDE_OUT,    /* closed bodies whose faces turn inwards */
-    SHEEN_FOUND_OTHER,         /* what a later daemon says */
+    SHEEN_FINDING_REPEATED_CORNER,       /* faces that lost a corner which repeats its neighbour */
+    SHEEN_FINDING_FEW_CORNERS,           /* faces passed over: fewer than three different corners */
+    SHEEN_FINDING_KEYHOLE,               /* the same: a vertex at corners that are no neighbours */
+    SHEEN_FINDING_CREASE_WITHOUT_EDGE,   /* tags passed over */
+    SHEEN_FINDING_CORNER_WITHOUT_VERTEX, /* the same */
+    SHEEN_FINDING_HOLE_WITHOUT_FACE,     /* the same */
+    SHEEN_FINDING_UNWELDED,  /* repeated positions, where no face shares a vertex with another */
+    SHEEN_FINDING_TRIANGLES, /* plain ones: faces */
+    SHEEN_FINDING_WOUND_AGAINST, /* edges that two faces run along in one direction */
+    SHEEN_FINDING_FACE_TWICE,    /* faces that are there again */
+    SHEEN_FINDING_INSIDE_OUT,    /* closed bodies whose faces turn inwards */
+    SHEEN_FINDING_OTHER,         /* what a later daemon says */
 };
 
 struct sheen_finding {
@@ -216,25 +216,26 @@ enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t
 
 /* Bits. Floats are NaN where nothing is hit, but ptex u and v and coverage, which are 0. */
 enum sheen_plane {
-    SHEEN_COLOUR = 1,        /* uint8_t[4] RGBA as displayed (sRGB), straight alpha */
-    SHEEN_POSITION = 2,      /* float[3] */
-    SHEEN_NORMAL = 4,        /* float[3], unit, along the face winding */
-    SHEEN_PTEX = 8,          /* uint32_t face (0xffffffff: none), float u, float v */
-    SHEEN_LIGHT = 16,        /* float s, t on the first light; NaN where it is not met, too */
-    SHEEN_CURVATURE = 32,    /* float k.min, k.max in 1/unit, signed against the normal: below
-                                0 where a body seen from outside is convex */
-    SHEEN_LIGHT_CHANGE = 64, /* float ds/dx ds/dy dt/dx dt/dy by a pixel right and down; as LIGHT */
-    SHEEN_COVERAGE = 128,    /* float share of the pixel that shows surface, 0 where none is; for
-                                the exact surface, filtered, only */
+    SHEEN_PLANE_COLOUR = 1,     /* uint8_t[4] RGBA as displayed (sRGB), straight alpha */
+    SHEEN_PLANE_POSITION = 2,   /* float[3] */
+    SHEEN_PLANE_NORMAL = 4,     /* float[3], unit, along the face winding */
+    SHEEN_PLANE_PTEX = 8,       /* uint32_t face (0xffffffff: none), float u, float v */
+    SHEEN_PLANE_LIGHT = 16,     /* float s, t on the first light; NaN where it is not met, too */
+    SHEEN_PLANE_CURVATURE = 32, /* float k.min, k.max in 1/unit, signed against the normal: below
+                             0 where a body seen from outside is convex */
+    SHEEN_PLANE_LIGHT_CHANGE =
+        64, /* float ds/dx ds/dy dt/dx dt/dy by a pixel right and down; as LIGHT */
+    SHEEN_PLANE_COVERAGE = 128, /* float share of the pixel that shows surface, 0 where none is; for
+                             the exact surface, filtered, only */
 };
 
 enum sheen_format {
-    SHEEN_PLANES_RAW,  /* decoded planes; sent as they are */
-    SHEEN_PLANES_ZSTD, /* decoded planes; sent compressed, lossless */
-    SHEEN_FILE_PNG,    /* an encoded file, colour only */
-    SHEEN_FILE_EXR,    /* an encoded file, any planes */
-    SHEEN_FILE_JPEG,
-    SHEEN_FILE_TIFF,
+    SHEEN_FORMAT_RAW,  /* decoded planes; sent as they are */
+    SHEEN_FORMAT_ZSTD, /* decoded planes; sent compressed, lossless */
+    SHEEN_FORMAT_PNG,  /* an encoded file, colour only */
+    SHEEN_FORMAT_EXR,  /* an encoded file, any planes */
+    SHEEN_FORMAT_JPEG,
+    SHEEN_FORMAT_TIFF,
 };
 
 enum sheen_projection {
@@ -280,35 +281,40 @@ struct sheen_camera {
 #define SHEEN_MAX_LINES 16
 
 enum sheen_pattern_kind {
-    SHEEN_STRIPES,
-    SHEEN_LATTICE,
-    SHEEN_CIRCLES,
-    SHEEN_IMAGE,
-    SHEEN_LINES,    /* single lines */
-    SHEEN_RAINBOW,  /* hue */
-    SHEEN_DISTANCE, /* bands by the length of the ray; not for lights at infinity */
+    SHEEN_PATTERN_STRIPES,
+    SHEEN_PATTERN_LATTICE,
+    SHEEN_PATTERN_CIRCLES,
+    SHEEN_PATTERN_IMAGE,
+    SHEEN_PATTERN_LINES,    /* single lines */
+    SHEEN_PATTERN_RAINBOW,  /* hue */
+    SHEEN_PATTERN_DISTANCE, /* bands by the length of the ray; not for lights at infinity */
 };
 
 /* What a light shows; formulas in shaders/README.md of the sources. */
 struct sheen_pattern {
     enum sheen_pattern_kind kind;
-    double count;                       /* periods over the light's width, (0, 100000] */
-    double period;                      /* in the light's units, > 0; 0: by count */
-    double duty;                        /* bright part of a period, [0, 1] */
-    double rotation_deg, offset;        /* offset in periods */
-    double soft;                        /* share of a period (SHEEN_LINES: of the width) that
-                                           each edge takes, [0, 1] */
-    double opacity;                     /* over the shaded base, [0, 1] */
-    uint32_t n_at;                      /* SHEEN_LINES: 1 to SHEEN_MAX_LINES, else 0 */
-    double at[SHEEN_MAX_LINES], width;  /* places and width, in widths of the light */
-    bool has_colours;                   /* false: the daemon's (white on black) */
+    double count;                      /* periods over the light's width, (0, 100000] */
+    double period;                     /* in the light's units, > 0; 0: by count */
+    double duty;                       /* bright part of a period, [0, 1] */
+    double rotation_deg, offset;       /* offset in periods */
+    double soft;                       /* share of a period (SHEEN_PATTERN_LINES: of the width) that
+                                          each edge takes, [0, 1] */
+    double opacity;                    /* over the shaded base, [0, 1] */
+    uint32_t n_at;                     /* SHEEN_PATTERN_LINES: 1 to SHEEN_MAX_LINES, else 0 */
+    double at[SHEEN_MAX_LINES], width; /* places and width, in widths of the light */
+    bool has_colours;                  /* false: the daemon's (white on black) */
     float foreground[4], background[4]; /* RGBA in [0, 1], as displayed */
-    uint8_t image_id[SHEEN_ID_BYTES];   /* SHEEN_IMAGE: an uploaded image */
+    uint8_t image_id[SHEEN_ID_BYTES];   /* SHEEN_PATTERN_IMAGE: an uploaded image */
 };
 #define SHEEN_PATTERN_DEFAULTS                                                                     \
     ((struct sheen_pattern){.count = 40, .duty = 0.5, .opacity = 1, .width = 0.01})
 
-enum sheen_light_kind { SHEEN_RECTANGLE, SHEEN_PLANE, SHEEN_TUNNEL, SHEEN_SPHERE };
+enum sheen_light_kind {
+    SHEEN_LIGHT_RECTANGLE,
+    SHEEN_LIGHT_PLANE,
+    SHEEN_LIGHT_TUNNEL,
+    SHEEN_LIGHT_SPHERE
+};
 
 /* Rectangle and plane: x = centre + (s - 1/2) u + (t - 1/2) v, for the rectangle s and t in [0, 1].
  * Tunnel: u is the radius, v along the axis through centre. Sphere at infinity: v is its axis. */
@@ -322,14 +328,14 @@ struct sheen_light {
 };
 
 enum sheen_line_family {
-    SHEEN_REFLECTION,
-    SHEEN_HIGHLIGHT,
-    SHEEN_ISOPHOTE,
-    SHEEN_ZEBRA,
-    SHEEN_ENVIRONMENT,
+    SHEEN_LINES_REFLECTION,
+    SHEEN_LINES_HIGHLIGHT,
+    SHEEN_LINES_ISOPHOTE,
+    SHEEN_LINES_ZEBRA,
+    SHEEN_LINES_ENVIRONMENT,
 };
 
-enum sheen_line_eye { SHEEN_EYE_CAMERA, SHEEN_EYE_POINT, SHEEN_EYE_DIRECTION };
+enum sheen_line_eye { SHEEN_LINE_EYE_CAMERA, SHEEN_LINE_EYE_POINT, SHEEN_LINE_EYE_DIRECTION };
 
 struct sheen_lines {
     enum sheen_line_family family;
@@ -382,9 +388,9 @@ enum sheen_jpeg_subsampling {
 
 /* How the daemon treats a request when it has many. */
 enum sheen_class {
-    SHEEN_STILL,       /* somebody waits for it */
-    SHEEN_INTERACTIVE, /* somebody drags: first, and only the newest of a view counts */
-    SHEEN_BATCH,       /* nobody waits; never replaced */
+    SHEEN_CLASS_STILL,       /* somebody waits for it */
+    SHEEN_CLASS_INTERACTIVE, /* somebody drags: first, and only the newest of a view counts */
+    SHEEN_CLASS_BATCH,       /* nobody waits; never replaced */
 };
 
 struct sheen_request {
@@ -402,7 +408,7 @@ struct sheen_request {
     struct sheen_show show;             /* in the colour plane; not with WIREFRAME */
     uint32_t planes;                    /* enum sheen_plane bits */
     enum sheen_format format;
-    uint32_t jpeg_quality; /* SHEEN_FILE_JPEG: 1 to 100; 0: the daemon's, 95 */
+    uint32_t jpeg_quality; /* SHEEN_FORMAT_JPEG: 1 to 100; 0: the daemon's, 95 */
     enum sheen_jpeg_subsampling jpeg_subsampling; /* the same */
     enum sheen_surface surface;
     uint32_t surface_level; /* 0 to 6; exact: 0 */
@@ -417,8 +423,8 @@ struct sheen_request {
                             .camera = {.up = {0, 0, 1}, .fov_deg = 35},                            \
                             .n_lights = 1,                                                         \
                             .lights = {{.pattern = SHEEN_PATTERN_DEFAULTS}},                       \
-                            .planes = SHEEN_COLOUR,                                                \
-                            .format = SHEEN_FILE_PNG})
+                            .planes = SHEEN_PLANE_COLOUR,                                          \
+                            .format = SHEEN_FORMAT_PNG})
 
 /* What the daemon spent, in microseconds; 0: not done for this frame. Visibility, evaluate and
  * shade are the device's own time where its timer queries count all of it (hardware); the rest is
@@ -436,12 +442,12 @@ struct sheen_frame {
     uint32_t width_px, height_px;
     uint32_t planes;
     enum sheen_format format;
-    uint8_t *file; /* SHEEN_FILE_*: the file's bytes; else NULL */
+    uint8_t *file; /* a file: the file's bytes; else NULL */
     size_t file_bytes;
-    void *plane[SHEEN_PLANES];  /* SHEEN_PLANES_*: by bit number; rows top first, tightly packed;
-                                   NULL for planes that were not asked for */
-    uint64_t data_bytes;        /* that travelled */
-    struct sheen_camera camera; /* as used */
+    void *plane[SHEEN_N_PLANES]; /* planes: by bit number; rows top first, tightly packed;
+                                  NULL for planes that were not asked for */
+    uint64_t data_bytes;         /* that travelled */
+    struct sheen_camera camera;  /* as used */
     struct sheen_lines lines;
     uint32_t n_lights;
     struct sheen_light lights[SHEEN_MAX_LIGHTS];

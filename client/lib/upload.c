@@ -99,8 +99,8 @@ broken:
 /* A server may send any 32 bits; some compilers take an enum for signed. */
 static enum sheen_finding_kind known_kind(sheen_FindingKind kind)
 {
-    return (uint32_t)kind < (uint32_t)SHEEN_FOUND_OTHER ? (enum sheen_finding_kind)kind
-                                                        : SHEEN_FOUND_OTHER;
+    return (uint32_t)kind < (uint32_t)SHEEN_FINDING_OTHER ? (enum sheen_finding_kind)kind
+                                                          : SHEEN_FINDING_OTHER;
 }
 
 static void copy_findings(struct sheen_model_info *info, const sheen_ModelInfo *body)
@@ -108,7 +108,7 @@ static void copy_findings(struct sheen_model_info *info, const sheen_ModelInfo *
     _Static_assert(sizeof(info->findings) / sizeof(*info->findings) ==
                        sizeof(body->findings) / sizeof(*body->findings),
                    "the schema's bound");
-    _Static_assert((int)SHEEN_FOUND_OTHER - 1 == (int)_sheen_FindingKind_MAX,
+    _Static_assert((int)SHEEN_FINDING_OTHER - 1 == (int)_sheen_FindingKind_MAX,
                    "the kinds have the schema's numbers");
     info->n_findings = body->findings_count;
     for (size_t i = 0; i < body->findings_count; i++) {

@@ -63,8 +63,8 @@ void measure(report *report, table *table, const std::string &path, const char *
                            std::istreambuf_iterator<char>());
     pair_of_samples pair = measure_pairs(
         report->given().runs,
-        [&](int) { return first_frame(path, file, SHEEN_PLANES_ZSTD, device); },
-        [&](int) { return first_frame(path, file, SHEEN_FILE_PNG, device); });
+        [&](int) { return first_frame(path, file, SHEEN_FORMAT_ZSTD, device); },
+        [&](int) { return first_frame(path, file, SHEEN_FORMAT_PNG, device); });
     const std::string name = model_name(path);
     table->row({name, count((double)read_cage_file(path)->n_faces), number(pair.a.median(), 0),
                 number(pair.a.least(), 0), number(pair.b.median(), 0), number(pair.b.least(), 0)});

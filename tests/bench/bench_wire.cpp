@@ -28,10 +28,10 @@ struct encoding {
     const char *name;
     sheen_format format;
 };
-const encoding encodings[] = {{"raw", SHEEN_PLANES_RAW},
-                              {"zstd", SHEEN_PLANES_ZSTD},
-                              {"jpeg", SHEEN_FILE_JPEG},
-                              {"png", SHEEN_FILE_PNG}};
+const encoding encodings[] = {{"raw", SHEEN_FORMAT_RAW},
+                              {"zstd", SHEEN_FORMAT_ZSTD},
+                              {"jpeg", SHEEN_FORMAT_JPEG},
+                              {"png", SHEEN_FORMAT_PNG}};
 
 void check(sheen_status status, const sheen_error &error)
 {
@@ -65,7 +65,7 @@ class client
         request.lights[0].pattern.duty = 0.5;
         request.lights[0].pattern.opacity = 1;
         request.lights[0].pattern.width = 0.01;
-        request.planes = SHEEN_COLOUR;
+        request.planes = SHEEN_PLANE_COLOUR;
     }
     ~client()
     {

@@ -33,7 +33,7 @@ static void a_file_arrives_whole(void **state)
     struct sheen_error error;
     struct sheen_session *session;
     struct sheen_frame frame = {0};
-    struct sheen_request request = small_request(SHEEN_FILE_PNG);
+    struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
     int reports = 0;
     const struct sheen_progress progress = {count_reports, &reports};
     assert_int_equal(open_session(&fake, serve_file_in_two, &session, &error), SHEEN_OK);
@@ -125,15 +125,15 @@ static void serve_zstd_bomb(int fd)
 static void lying_frames(void **state)
 {
     (void)state;
-    render_ends_with(serve_gone_mid_frame, SHEEN_FILE_PNG, SHEEN_LOST_SERVER, "lost server");
+    render_ends_with(serve_gone_mid_frame, SHEEN_FORMAT_PNG, SHEEN_LOST_SERVER, "lost server");
     assert_int_equal(sheen_status_exit_code(SHEEN_LOST_SERVER), 4);
-    render_ends_with(serve_too_much_data, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "DATA");
-    render_ends_with(serve_no_end, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "end of DATA");
-    render_ends_with(serve_early_end, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "end of DATA");
-    render_ends_with(serve_empty_data, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "DATA");
-    render_ends_with(serve_other_size, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "asked for");
-    render_ends_with(serve_raw_of_wrong_length, SHEEN_PLANES_RAW, SHEEN_BAD_PEER, "bytes");
-    render_ends_with(serve_zstd_bomb, SHEEN_PLANES_ZSTD, SHEEN_BAD_PEER, "more bytes");
+    render_ends_with(serve_too_much_data, SHEEN_FORMAT_PNG, SHEEN_BAD_PEER, "DATA");
+    render_ends_with(serve_no_end, SHEEN_FORMAT_PNG, SHEEN_BAD_PEER, "end of DATA");
+    render_ends_with(serve_early_end, SHEEN_FORMAT_PNG, SHEEN_BAD_PEER, "end of DATA");
+    render_ends_with(serve_empty_data, SHEEN_FORMAT_PNG, SHEEN_BAD_PEER, "DATA");
+    render_ends_with(serve_other_size, SHEEN_FORMAT_PNG, SHEEN_BAD_PEER, "asked for");
+    render_ends_with(serve_raw_of_wrong_length, SHEEN_FORMAT_RAW, SHEEN_BAD_PEER, "bytes");
+    render_ends_with(serve_zstd_bomb, SHEEN_FORMAT_ZSTD, SHEEN_BAD_PEER, "more bytes");
 }
 
 /* A colour plane packed as the daemon packs it; pixel bytes count up. */
@@ -189,9 +189,9 @@ static void serve_lying_table(int fd)
 static void packed_planes(void **state)
 {
     (void)state;
-    render_ends_with(serve_packed, SHEEN_PLANES_ZSTD, SHEEN_OK, "");
-    render_ends_with(serve_truncated_zstd, SHEEN_PLANES_ZSTD, SHEEN_BAD_PEER, "strip");
-    render_ends_with(serve_lying_table, SHEEN_PLANES_ZSTD, SHEEN_BAD_PEER, "strip lengths");
+    render_ends_with(serve_packed, SHEEN_FORMAT_ZSTD, SHEEN_OK, "");
+    render_ends_with(serve_truncated_zstd, SHEEN_FORMAT_ZSTD, SHEEN_BAD_PEER, "strip");
+    render_ends_with(serve_lying_table, SHEEN_FORMAT_ZSTD, SHEEN_BAD_PEER, "strip lengths");
 }
 
 static void requests_in_flight(void **state)
@@ -202,7 +202,7 @@ static void requests_in_flight(void **state)
     struct sheen_session *session;
     struct sheen_model_info info;
     struct sheen_frame frame = {0};
-    struct sheen_request request = small_request(SHEEN_PLANES_ZSTD);
+    struct sheen_request request = small_request(SHEEN_FORMAT_ZSTD);
     assert_int_equal(open_session(&fake, serve_packed, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     const int most = (int)sheen_server(session).max_in_flight;
@@ -262,8 +262,8 @@ static void answers_out_of_order(void **state)
     struct sheen_error error;
     struct sheen_session *session;
     struct sheen_frame frame = {0};
-    struct sheen_request request = small_request(SHEEN_PLANES_RAW);
-    request.request_class = SHEEN_INTERACTIVE;
+    struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
+    request.request_class = SHEEN_CLASS_INTERACTIVE;
     uint32_t number[3];
     assert_int_equal(open_session(&fake, serve_out_of_order, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_server(session).max_in_flight, 3);
@@ -306,7 +306,7 @@ static void more_than_is_granted_is_refused(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_request request = small_request(SHEEN_PLANES_RAW);
+    struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
     assert_int_equal(open_session(&fake, serve_one_at_a_time, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
     assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
@@ -326,7 +326,8 @@ static void serve_unknown_number(int fd)
 static void answers_to_nothing_are_refused(void **state)
 {
     (void)state;
-    render_ends_with(serve_unknown_number, SHEEN_FILE_PNG, SHEEN_BAD_PEER, "no request in flight");
+    render_ends_with(serve_unknown_number, SHEEN_FORMAT_PNG, SHEEN_BAD_PEER,
+                     "no request in flight");
 }
 
 /* What the options say stands in the message. */
@@ -362,8 +363,8 @@ static void classes_travel(void **state)
     struct sheen_error error;
     struct sheen_session *session;
     struct sheen_frame frame = {0};
-    struct sheen_request request = small_request(SHEEN_PLANES_RAW);
-    request.request_class = SHEEN_INTERACTIVE;
+    struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
+    request.request_class = SHEEN_CLASS_INTERACTIVE;
     request.has_view = true;
     request.view = 9;
     request.deadline_ms = 250;
@@ -376,7 +377,7 @@ static void classes_travel(void **state)
     assert_true(seen_render.has_view && seen_render.has_deadline_ms);
     assert_int_equal(seen_render.view, 9);
     assert_int_equal(seen_render.deadline_ms, 250);
-    request.request_class = SHEEN_BATCH; /* which has no view */
+    request.request_class = SHEEN_CLASS_BATCH; /* which has no view */
     assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
     assert_non_null(strstr(error.text, "view"));
     sheen_frame_finish(&frame);
@@ -393,7 +394,7 @@ static void jpeg_options_travel(void **state)
         struct sheen_error error;
         struct sheen_session *session;
         struct sheen_frame frame = {0};
-        struct sheen_request request = small_request(SHEEN_FILE_JPEG);
+        struct sheen_request request = small_request(SHEEN_FORMAT_JPEG);
         assert_int_equal(
             open_session(&fake, is_newer ? serve_and_keep_newer : serve_and_keep, &session, &error),
             SHEEN_OK);
@@ -451,7 +452,7 @@ static void every_error_has_its_status(void **state)
     struct sheen_error error;
     struct sheen_session *session;
     struct sheen_frame frame = {0};
-    struct sheen_request request = small_request(SHEEN_FILE_PNG);
+    struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
     assert_int_equal(open_session(&fake, serve_every_error, &session, &error), SHEEN_OK);
     for (size_t i = 0; i < sizeof(expected) / sizeof(*expected); i++) {
         enum sheen_status status = sheen_render(session, &request, NULL, &frame, &error);
@@ -491,7 +492,7 @@ static void a_lost_frame_is_asked_for_again(void **state)
     struct sheen_error error;
     struct sheen_session *session;
     struct sheen_frame frame = {0};
-    struct sheen_request request = small_request(SHEEN_FILE_PNG);
+    struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
     assert_int_equal(open_session(&fake, serve_lost_frames, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_OK);
     assert_memory_equal(frame.file, "012", 3);
@@ -521,8 +522,8 @@ static void a_lost_frame_gives_way_to_a_newer_one(void **state)
     struct sheen_error error;
     struct sheen_session *session;
     struct sheen_frame frame = {0};
-    struct sheen_request request = small_request(SHEEN_PLANES_RAW);
-    request.request_class = SHEEN_INTERACTIVE;
+    struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
+    request.request_class = SHEEN_CLASS_INTERACTIVE;
     assert_int_equal(open_session(&fake, serve_lost_view, &session, &error), SHEEN_OK);
     for (int i = 0; i < 3; i++)
         assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
@@ -542,20 +543,20 @@ static void bad_arguments_send_nothing(void **state)
     struct sheen_session *session;
     struct sheen_frame frame = {0};
     assert_int_equal(open_session(&fake, serve_packed, &session, &error), SHEEN_OK);
-    struct sheen_request request = small_request(SHEEN_PLANES_ZSTD);
+    struct sheen_request request = small_request(SHEEN_FORMAT_ZSTD);
     request.width_px = 0;
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     request.width_px = 1001; /* this server's limit is 1000 */
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     assert_non_null(strstr(error.text, "1 to 1000"));
-    request = small_request(SHEEN_PLANES_ZSTD);
+    request = small_request(SHEEN_FORMAT_ZSTD);
     request.lights[0].pattern.duty = 2;
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     request = small_request((enum sheen_format)17);
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     assert_int_equal(sheen_render(session, NULL, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     assert_int_equal(sheen_render(NULL, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
-    request = small_request(SHEEN_PLANES_ZSTD);
+    request = small_request(SHEEN_FORMAT_ZSTD);
     assert_int_equal(sheen_render(session, &request, NULL, NULL, &error), SHEEN_BAD_ARGUMENT);
     /* The session still works. */
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_OK);

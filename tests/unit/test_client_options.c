@@ -69,17 +69,17 @@ static void planes_and_formats(void **state)
     assert_true(value_planes("P,N,ptex,light,k,dlight,coverage", &planes));
     assert_int_equal(planes, 254);
     assert_true(value_planes("k", &planes));
-    assert_int_equal(planes, SHEEN_CURVATURE);
+    assert_int_equal(planes, SHEEN_PLANE_CURVATURE);
     static const char *const bad[] = {"", "p", "P,", ",P", "P,,N", "P N", "depth"};
     for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++)
         assert_false(value_planes(bad[i], &planes));
     enum sheen_format format;
     assert_true(value_format("a/b.c/hood.EXR", &format));
-    assert_int_equal(format, SHEEN_FILE_EXR);
+    assert_int_equal(format, SHEEN_FORMAT_EXR);
     assert_true(value_format("x.jpeg", &format));
-    assert_int_equal(format, SHEEN_FILE_JPEG);
+    assert_int_equal(format, SHEEN_FORMAT_JPEG);
     assert_true(value_format("x.tiff", &format));
-    assert_int_equal(format, SHEEN_FILE_TIFF);
+    assert_int_equal(format, SHEEN_FORMAT_TIFF);
     static const char *const unknown[] = {"", "png", ".png", "a.png/b", "a.bmp", "a.", "a.png "};
     for (size_t i = 0; i < sizeof(unknown) / sizeof(*unknown); i++)
         assert_false(value_format(unknown[i], &format));
@@ -95,20 +95,20 @@ static void patterns(void **state)
     assert_true(pattern.count == 40 && pattern.duty == 0.5 && !pattern.has_colours);
     assert_null(image);
     assert_true(text_pattern("circles:count=7,bg=#000080,duty=0.25", &pattern, &image, why));
-    assert_int_equal(pattern.kind, SHEEN_CIRCLES);
+    assert_int_equal(pattern.kind, SHEEN_PATTERN_CIRCLES);
     assert_true(pattern.count == 7 && pattern.duty == 0.25 && pattern.has_colours);
     assert_true(pattern.foreground[0] == 1 && pattern.background[3] == 1);
     assert_true(text_pattern("lattice:count=3", &pattern, &image, why));
-    assert_int_equal(pattern.kind, SHEEN_LATTICE);
+    assert_int_equal(pattern.kind, SHEEN_PATTERN_LATTICE);
     assert_true(text_pattern("image:a:b,c.png", &pattern, &image, why));
-    assert_int_equal(pattern.kind, SHEEN_IMAGE);
+    assert_int_equal(pattern.kind, SHEEN_PATTERN_IMAGE);
     assert_string_equal(image, "a:b,c.png");
     assert_true(text_pattern("lines:at=0.1/0.5,width=0.02,soft=0", &pattern, &image, why));
-    assert_int_equal(pattern.kind, SHEEN_LINES);
+    assert_int_equal(pattern.kind, SHEEN_PATTERN_LINES);
     assert_true(pattern.n_at == 2 && pattern.at[1] == 0.5 && pattern.width == 0.02);
     assert_true(text_pattern("rainbow:period=3,rotation=-45,offset=0.25,opacity=0.5", &pattern,
                              &image, why));
-    assert_true(pattern.kind == SHEEN_RAINBOW && pattern.period == 3 &&
+    assert_true(pattern.kind == SHEEN_PATTERN_RAINBOW && pattern.period == 3 &&
                 pattern.rotation_deg == -45 && pattern.offset == 0.25 && pattern.opacity == 0.5);
     static const char *const bad[][2] = {{"stripes:at=1", "at changes nothing of stripes"},
                                          {"stripes:width=0.1", "width changes nothing of stripes"},
@@ -153,9 +153,10 @@ static void families_and_lights(void **state)
     struct sheen_light light;
     char why[LIGHTS_WHY_BYTES];
     assert_true(text_lines("isophote:0,0,1", &lines, why));
-    assert_true(lines.family == SHEEN_ISOPHOTE && lines.has_direction && lines.direction[2] == 1);
+    assert_true(lines.family == SHEEN_LINES_ISOPHOTE && lines.has_direction &&
+                lines.direction[2] == 1);
     assert_true(text_lines("zebra", &lines, why));
-    assert_true(lines.family == SHEEN_ZEBRA && !lines.has_direction);
+    assert_true(lines.family == SHEEN_LINES_ZEBRA && !lines.has_direction);
     assert_false(text_lines("reflection:0,0,1", &lines, why));
     assert_false(text_lines("zebras", &lines, why));
     assert_false(text_lines("isophote:1,2", &lines, why));
@@ -168,17 +169,17 @@ static void families_and_lights(void **state)
     assert_false(text_show("draft:zz", &show, why));
     assert_non_null(strstr(why, "x, y, z, -x, -y, -z"));
     assert_true(text_light("plane:one-sided", &light, why));
-    assert_true(light.kind == SHEEN_PLANE && light.one_sided);
+    assert_true(light.kind == SHEEN_LIGHT_PLANE && light.one_sided);
     assert_true(text_light("sphere", &light, why));
-    assert_true(light.kind == SHEEN_SPHERE && !light.one_sided);
+    assert_true(light.kind == SHEEN_LIGHT_SPHERE && !light.one_sided);
     assert_false(text_light("tunnel:one-sided", &light, why));
     assert_false(text_light("plane:two-sided", &light, why));
     assert_true(text_line_eye("1,2,3", &lines, why));
-    assert_true(lines.eye_kind == SHEEN_EYE_POINT && lines.eye[2] == 3);
+    assert_true(lines.eye_kind == SHEEN_LINE_EYE_POINT && lines.eye[2] == 3);
     assert_true(text_line_eye("dir:0,0,-1", &lines, why));
-    assert_true(lines.eye_kind == SHEEN_EYE_DIRECTION && lines.eye[2] == -1);
+    assert_true(lines.eye_kind == SHEEN_LINE_EYE_DIRECTION && lines.eye[2] == -1);
     assert_true(text_line_eye("camera", &lines, why));
-    assert_int_equal(lines.eye_kind, SHEEN_EYE_CAMERA);
+    assert_int_equal(lines.eye_kind, SHEEN_LINE_EYE_CAMERA);
     assert_false(text_line_eye("dir:", &lines, why));
 }
 
@@ -236,7 +237,7 @@ static void good_command_lines(void **state)
     assert_string_equal(options.model, "m.obj");
     assert_int_equal(options.request.width_px, 1280);
     assert_int_equal(options.request.camera.projection, SHEEN_PROJECTION_AUTO);
-    assert_int_equal(options.request.planes, SHEEN_COLOUR);
+    assert_int_equal(options.request.planes, SHEEN_PLANE_COLOUR);
     assert_false(options.request.lights[0].is_placed || options.request.lights[0].has_kind);
     assert_int_equal(parse(&COMMAND_RENDER,
                            "--json --size 64x32 --eye -1,-2,3 m.glb --target 0,0,0 --ortho 2 "
@@ -249,7 +250,7 @@ static void good_command_lines(void **state)
     assert_true(!options.request.camera.auto_view && options.request.camera.auto_up);
     assert_true(options.request.lights[0].is_placed && options.json && options.quiet);
     assert_int_equal(options.request.planes, 7);
-    assert_int_equal(options.request.format, SHEEN_FILE_EXR);
+    assert_int_equal(options.request.format, SHEEN_FORMAT_EXR);
     assert_true(options.request.has_miss && !options.request.has_empty);
     assert_int_equal(parse(&COMMAND_RENDER,
                            "m.obj -o o.png --pattern lines --light tunnel --light plane "
@@ -259,11 +260,14 @@ static void good_command_lines(void **state)
                      OPTIONS_RUN);
     assert_int_equal(options.request.n_lights, 3);
     const struct sheen_light *lights = options.request.lights;
-    assert_true(lights[0].kind == SHEEN_TUNNEL && lights[0].pattern.kind == SHEEN_LINES);
+    assert_true(lights[0].kind == SHEEN_LIGHT_TUNNEL &&
+                lights[0].pattern.kind == SHEEN_PATTERN_LINES);
     assert_true(lights[0].has_kind && lights[1].has_kind);
-    assert_true(lights[1].kind == SHEEN_PLANE && lights[1].pattern.kind == SHEEN_CIRCLES);
+    assert_true(lights[1].kind == SHEEN_LIGHT_PLANE &&
+                lights[1].pattern.kind == SHEEN_PATTERN_CIRCLES);
     assert_true(!lights[0].is_placed && lights[1].is_placed && !lights[2].is_placed);
-    assert_true(lights[2].kind == SHEEN_SPHERE && lights[2].pattern.kind == SHEEN_STRIPES);
+    assert_true(lights[2].kind == SHEEN_LIGHT_SPHERE &&
+                lights[2].pattern.kind == SHEEN_PATTERN_STRIPES);
     assert_true(options.request.unfiltered);
     assert_int_equal(options.request.surface, SHEEN_SURFACE_EXACT);
     assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --surface wireframe:5", &options, why),
@@ -290,7 +294,7 @@ static void good_command_lines(void **state)
         parse(&COMMAND_STREAM, "m.obj --frames 10 --class batch --deadline 250", &options, why),
         OPTIONS_RUN);
     assert_true(options.given & GIVEN_CLASS);
-    assert_int_equal(options.request.request_class, SHEEN_BATCH);
+    assert_int_equal(options.request.request_class, SHEEN_CLASS_BATCH);
     assert_int_equal(options.request.deadline_ms, 250);
     assert_int_equal(parse(&COMMAND_RENDER,
                            "m.obj --jpeg-quality 1 -o a.JPEG --jpeg-subsampling 420", &options,
@@ -304,7 +308,7 @@ static void good_command_lines(void **state)
     assert_int_equal(options.request.jpeg_quality, 100);
     assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --class interactive", &options, why),
                      OPTIONS_RUN);
-    assert_int_equal(options.request.request_class, SHEEN_INTERACTIVE);
+    assert_int_equal(options.request.request_class, SHEEN_CLASS_INTERACTIVE);
     assert_int_equal(parse(&COMMAND_INFO, "m.obj --server unix:/tmp/s", &options, why),
                      OPTIONS_RUN);
     assert_string_equal(options.server, "unix:/tmp/s");

@@ -301,7 +301,7 @@ static void last_words_are_heard(void **state)
 /* ---- what is said of a model ---- */
 
 static const uint32_t KINDS[] = {
-    0, SHEEN_FOUND_OTHER - 1, SHEEN_FOUND_OTHER, 0x7fffffff, 0x80000000, 0xffffffff};
+    0, SHEEN_FINDING_OTHER - 1, SHEEN_FINDING_OTHER, 0x7fffffff, 0x80000000, 0xffffffff};
 #define N_KINDS (sizeof(KINDS) / sizeof(*KINDS))
 
 static void serve_kinds(int fd)
@@ -328,7 +328,7 @@ static void kinds_of_later_servers_are_other(void **state)
     assert_int_equal(info.n_findings, N_KINDS);
     for (size_t i = 0; i < N_KINDS; i++)
         assert_int_equal(info.findings[i].kind,
-                         KINDS[i] < SHEEN_FOUND_OTHER ? KINDS[i] : SHEEN_FOUND_OTHER);
+                         KINDS[i] < SHEEN_FINDING_OTHER ? KINDS[i] : SHEEN_FINDING_OTHER);
     sheen_close(session);
     fake_finish(&fake);
 }
