@@ -162,7 +162,7 @@ static enum sheen_status ask(struct job *job, struct sheen_model_info *info)
 static int run(const struct options *options)
 {
     struct job job;
-    struct sheen_model_info info;
+    struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
     enum sheen_status status = job_init(&job, options);
     if (!status)
         status = ask(&job, &info);

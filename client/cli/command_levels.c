@@ -159,7 +159,7 @@ static enum sheen_status draw(struct job *job, const struct options *options,
                               struct sheen_frame *exact, struct figure *figure)
 {
     struct sheen_request request = options->request;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     enum sheen_status status = render(job, options, &request, SHEEN_SURFACE_EXACT, 0, exact);
     if (!status && !figure_init(figure, &request))
         status =
@@ -206,7 +206,7 @@ static void print_json(struct json *json, const struct options *options, const s
 static int run(const struct options *options)
 {
     struct job job = {0};
-    struct sheen_frame exact = {0};
+    struct sheen_frame exact = SHEEN_FRAME_DEFAULTS;
     struct figure figure = {0};
     enum sheen_status status = file_check_writable(options->output, &job.error);
     if (status)

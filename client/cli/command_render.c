@@ -36,7 +36,7 @@ static void print_json(struct json *json, const struct options *options, const s
 {
     json_object_begin(json, NULL);
     json_string(json, "file", options->output);
-    json_uint(json, "file_bytes", frame->file_bytes);
+    json_uint(json, "file_bytes", frame->data_bytes);
     json_uint(json, "width", frame->width_px);
     json_uint(json, "height", frame->height_px);
     job_json_origin(json, job, options, frame);
@@ -109,8 +109,8 @@ static int run(const struct options *options)
 {
     struct job job = {0};
     struct sheen_request request = options->request;
-    struct sheen_frame frame = {0};
-    struct sheen_model_info info;
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
+    struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
     enum sheen_status status = file_check_writable(options->output, &job.error);
     if (status)
         return job_finish(&job, status);
@@ -118,7 +118,7 @@ static int run(const struct options *options)
     if (!status)
         status = job_render(&job, options, &request, &frame);
     if (!status)
-        status = file_write(options->output, frame.file, frame.file_bytes, &job.error);
+        status = file_write(options->output, frame.data, frame.data_bytes, &job.error);
     /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
     if (!status)
         ask_about_model(&job, options->model, &info);

@@ -139,7 +139,7 @@ static bool check(struct options *options, char *why)
 static int run(const struct options *options)
 {
     struct job job;
-    struct sheen_stats stats;
+    struct sheen_stats stats = SHEEN_STATS_DEFAULTS;
     enum sheen_status status = job_init(&job, options);
     if (!status)
         status = sheen_query_stats(job.session, &stats, &job.error);

@@ -89,10 +89,10 @@ static enum sheen_status write_one(struct job *job, struct stream *stream,
     if (!path)
         return failure_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
     enum sheen_status status =
-        file_write(path, stream->frame.file, stream->frame.file_bytes, &job->error);
+        file_write(path, stream->frame.data, stream->frame.data_bytes, &job->error);
     free(path);
     if (!status)
-        stream->written_bytes += stream->frame.file_bytes;
+        stream->written_bytes += stream->frame.data_bytes;
     return status;
 }
 
@@ -172,8 +172,8 @@ static enum sheen_status find_camera(struct job *job, struct stream *stream,
                                      const struct options *options)
 {
     struct sheen_request probe = options->request;
-    struct sheen_frame frame = {0};
-    struct sheen_model_info info;
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
+    struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
     memcpy(probe.model_id, job->model_id, SHEEN_ID_BYTES);
     uint32_t longer = probe.width_px > probe.height_px ? probe.width_px : probe.height_px;
     double scale = fmin(1, (double)PROBE_PX / longer);
@@ -238,8 +238,11 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
         status = find_camera(job, stream, options);
     if (!status && n_answered(stream) == 0)
         status = first_frame(job, stream, options);
-    uint32_t next = 0, n_in_flight = 0, granted = sheen_server(job->session).max_in_flight;
-    uint32_t most = granted < IN_FLIGHT ? granted : IN_FLIGHT;
+    struct sheen_server server = SHEEN_SERVER_DEFAULTS;
+    if (!status)
+        status = sheen_get_server(job->session, &server, &job->error);
+    uint32_t next = 0, n_in_flight = 0;
+    uint32_t most = server.max_in_flight < IN_FLIGHT ? server.max_in_flight : IN_FLIGHT;
     while (!status && n_answered(stream) < options->frames) {
         while (next < options->frames && stream->records[next].state != WANTED)
             next++;
@@ -392,7 +395,7 @@ static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_
 static int run(const struct options *options)
 {
     struct job job = {0};
-    struct stream stream = {.request = options->request};
+    struct stream stream = {.request = options->request, .frame = SHEEN_FRAME_DEFAULTS};
     if (!options->output)
         stream.request.format = SHEEN_FORMAT_ZSTD;
     if (!(options->given & GIVEN_CLASS))

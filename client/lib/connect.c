@@ -1,10 +1,12 @@
 /* Opening and closing a session. */
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "client/lib/session.h"
+#include "client/lib/sized.h"
 #include "client/lib/status.h"
 
 /* Until the daemon has greeted. */
@@ -95,11 +97,11 @@ static enum sheen_status shake_hands(struct sheen_session *session,
     }
     size_t length = 0;
     session->last_seq = 1;
-    if (!message_hello_encode(session->last_seq, options->model_id, &hello, session->buffer,
-                              sizeof(session->buffer), &length))
+    if (!message_hello_encode(session->last_seq, options->model_id, &hello, session->output,
+                              sizeof(session->output), &length))
         return status_set(error, SHEEN_BAD_ARGUMENT, "HELLO does not fit its buffer");
     enum sheen_status status =
-        connection_write(&session->connection, session->buffer, length, error);
+        connection_write(&session->connection, session->output, length, error);
     if (status)
         status = session_fail(session, status, error);
     else
@@ -112,24 +114,27 @@ enum sheen_status sheen_connect(struct sheen_session **session,
                                 const struct sheen_connect_options *options,
                                 struct sheen_error *error)
 {
-    if (!session || !options)
-        return status_set(error, SHEEN_BAD_ARGUMENT, "session or options is NULL");
+    struct sheen_connect_options whole = SHEEN_CONNECT_DEFAULTS;
+    if (!session)
+        return status_set(error, SHEEN_BAD_ARGUMENT, "session is NULL");
     *session = NULL;
+    enum sheen_status status = sized_take(&whole, sizeof(whole), options, "options", error);
+    if (status)
+        return status;
     struct sheen_session *made = calloc(1, sizeof(*made));
     if (!made)
         return status_set(error, SHEEN_NO_MEMORY, "no memory for a session");
     made->connection.fd = -1;
     made->daemon.stderr_fd = -1;
-    made->share = options->share;
-    enum sheen_status status =
-        options->address ? open_address(made, options, error) : start_private(made, options, error);
+    made->share = whole.share;
+    status = whole.address ? open_address(made, &whole, error) : start_private(made, &whole, error);
     if (!status)
-        status = shake_hands(made, options, error);
+        status = shake_hands(made, &whole, error);
     if (status) {
         sheen_close(made);
         return status;
     }
-    made->connection.timeout_ms = options->timeout_ms;
+    made->connection.timeout_ms = whole.timeout_ms;
     *session = made;
     return SHEEN_OK;
 }
@@ -141,12 +146,18 @@ void sheen_close(struct sheen_session *session)
     connection_finish(&session->connection);
     private_daemon_finish(&session->daemon);
     codec_decoder_destroy(session->decoder);
+    free(session->answer.data);
     free(session);
 }
 
-struct sheen_server sheen_server(const struct sheen_session *session)
+enum sheen_status sheen_get_server(const struct sheen_session *session, struct sheen_server *server,
+                                   struct sheen_error *error)
 {
-    return (struct sheen_server){
+    enum sheen_status status = session ? sized_check(server, "server", error)
+                                       : status_set(error, SHEEN_BAD_ARGUMENT, "session is NULL");
+    if (status)
+        return status;
+    const struct sheen_server whole = {
         .version = session->hello.server,
         .device = session->hello.device,
         .driver = session->hello.driver,
@@ -156,4 +167,15 @@ struct sheen_server sheen_server(const struct sheen_session *session)
         .max_upload_bytes = session->hello.max_upload_bytes,
         .max_in_flight = session->hello.credits,
     };
+    sized_give(server, &whole, sizeof(whole));
+    return SHEEN_OK;
+}
+
+int sheen_descriptor(const struct sheen_session *session, short *events)
+{
+    bool is_good = session && !session->broken;
+    short wants = is_good && session->connection.wants ? session->connection.wants : POLLIN;
+    if (events)
+        *events = is_good ? wants : 0;
+    return is_good ? session->connection.fd : -1;
 }

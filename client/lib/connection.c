@@ -234,20 +234,24 @@ enum sheen_status connection_write(struct connection *connection, const void *by
 }
 
 enum sheen_status connection_read(struct connection *connection, void *bytes, size_t n_bytes,
-                                  struct sheen_error *error)
+                                  size_t *n_got, struct sheen_error *error)
 {
-    uint8_t *next = bytes;
-    while (n_bytes > 0) {
+    uint8_t *first = bytes;
+    connection->wants = 0;
+    while (*n_got < n_bytes) {
         short events;
-        ssize_t n = read_some(connection, next, n_bytes, &events);
+        ssize_t n = read_some(connection, first + *n_got, n_bytes - *n_got, &events);
         if (n > 0) {
-            next += n;
-            n_bytes -= (size_t)n;
+            *n_got += (size_t)n;
             continue;
         }
         if (n == 0)
             return status_set(error, SHEEN_LOST_SERVER,
                               "lost server: it closed the connection before its answer was whole");
+        if (connection->must_not_wait && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+            connection->wants = events;
+            return status_set(error, SHEEN_AGAIN, "no answer is whole yet");
+        }
         enum sheen_status status = retry(connection, events, error);
         if (status)
             return status;

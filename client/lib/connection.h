@@ -18,6 +18,8 @@ struct connection {
     enum address_kind kind;      /* of a pair: ADDRESS_UNIX */
     uint32_t timeout_ms;         /* without a byte moved; 0: for ever */
     struct tls_channel *channel; /* of a tls: address; NULL: plain */
+    bool must_not_wait;          /* connection_read() says SHEEN_AGAIN instead */
+    short wants;                 /* what poll() is to wait for, after SHEEN_AGAIN; else 0 */
 };
 
 /* Connects. `files` are for a tls: address, whose handshake happens in the first write and read.
@@ -32,11 +34,12 @@ enum sheen_status connection_open(struct connection *connection, const struct ad
 enum sheen_status connection_pair(struct connection *connection, int *peer_fd, uint32_t timeout_ms,
                                   struct sheen_error *error);
 
-/* SHEEN_LOST_SERVER when the peer is gone, SHEEN_TIMEOUT. */
+/* SHEEN_LOST_SERVER when the peer is gone, SHEEN_TIMEOUT. A read goes on at *n_got and counts it up
+ * to n_bytes, so that it can be asked again after SHEEN_AGAIN. */
 enum sheen_status connection_write(struct connection *connection, const void *bytes, size_t n_bytes,
                                    struct sheen_error *error);
 enum sheen_status connection_read(struct connection *connection, void *bytes, size_t n_bytes,
-                                  struct sheen_error *error);
+                                  size_t *n_got, struct sheen_error *error);
 
 void connection_finish(struct connection *connection); /* closes; closed is safe */
 

@@ -1,5 +1,6 @@
 #include "client/lib/scene_convert.h"
 
+#include <math.h>
 #include <string.h>
 
 _Static_assert((int)SHEEN_PATTERN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same order");
@@ -9,24 +10,29 @@ _Static_assert((int)SHEEN_LIGHT_SPHERE == (int)sheen_LightKind_LIGHT_SPHERE, "sa
 _Static_assert((int)SHEEN_LINES_ENVIRONMENT == (int)sheen_LineFamily_LINES_ENVIRONMENT,
                "same order");
 _Static_assert((int)SHEEN_SHOW_DRAFT == (int)sheen_ShowKind_SHOW_DRAFT, "same order");
+_Static_assert((int)SHEEN_VIEW_ISO == (int)sheen_View_VIEW_ISO, "same order");
+_Static_assert((int)SHEEN_CLASS_BATCH == (int)sheen_RequestClass_CLASS_BATCH, "same order");
+_Static_assert((int)SHEEN_FORMAT_TIFF == (int)sheen_Encoding_ENCODING_TIFF, "same order");
+_Static_assert((int)SHEEN_JPEG_420 == (int)sheen_JpegSubsampling_JPEG_420, "same order");
+_Static_assert((int)SHEEN_PLANE_COVERAGE == (int)sheen_Plane_PLANE_COVERAGE, "same bits");
 _Static_assert(SHEEN_MAX_LIGHTS == sizeof((sheen_Render *)0)->lights / sizeof(sheen_Light),
                "as many as the wire carries");
 _Static_assert(SHEEN_MAX_LINES == sizeof((sheen_Pattern *)0)->at / sizeof(double),
                "as many as the wire carries");
 
-sheen_Vec3 message_vec3(const double v[3])
+static sheen_Vec3 message_vec3(const double v[3])
 {
     return (sheen_Vec3){v[0], v[1], v[2]};
 }
 
-void message_get_vec3(double v[3], const sheen_Vec3 *message)
+static void message_get_vec3(double v[3], const sheen_Vec3 *message)
 {
     v[0] = message->x;
     v[1] = message->y;
     v[2] = message->z;
 }
 
-sheen_Colour message_colour(const float c[4])
+static sheen_Colour message_colour(const float c[4])
 {
     return (sheen_Colour){c[0], c[1], c[2], c[3]};
 }
@@ -89,7 +95,7 @@ static sheen_Light to_light(const struct sheen_light *light)
     };
 }
 
-void lights_to_message(sheen_Render *render, const struct sheen_request *request)
+static void fill_lights(sheen_Render *render, const struct sheen_request *request)
 {
     const struct sheen_lines *lines = &request->lines;
     render->has_lines = true;
@@ -115,6 +121,69 @@ void lights_to_message(sheen_Render *render, const struct sheen_request *request
         .has_legend = request->show.without_legend,
         .legend = !request->show.without_legend,
     };
+}
+
+static void fill_camera(sheen_Render *render, const struct sheen_camera *camera)
+{
+    if (camera->projection == SHEEN_PROJECTION_AUTO)
+        return;
+    bool ortho = camera->projection == SHEEN_PROJECTION_ORTHOGRAPHIC;
+    render->has_camera = true;
+    render->camera = (sheen_Camera){
+        .has_eye = !camera->auto_view,
+        .eye = message_vec3(camera->eye),
+        .has_target = !camera->auto_view || camera->has_target,
+        .target = message_vec3(camera->target),
+        .has_up = !camera->auto_up,
+        .up = message_vec3(camera->up),
+        .has_fov_deg = !ortho,
+        .fov_deg = camera->fov_deg,
+        .has_ortho_height = ortho,
+        .ortho_height = camera->ortho_height,
+        .has_view = camera->auto_view && camera->view != SHEEN_VIEW_AROUND,
+        .view = (sheen_View)camera->view,
+        .has_zoom = camera->zoom > 0,
+        .zoom = camera->zoom,
+        .has_zoom_x = camera->zoom > 0,
+        .zoom_x = camera->zoom_at[0],
+        .has_zoom_y = camera->zoom > 0,
+        .zoom_y = camera->zoom_at[1],
+    };
+}
+
+void scene_to_message(sheen_Render *render, const struct sheen_request *request)
+{
+    *render = (sheen_Render){
+        .width_px = request->width_px,
+        .height_px = request->height_px,
+        .has_miss = request->has_miss,
+        .miss = message_colour(request->miss),
+        .has_empty = request->has_empty,
+        .empty = message_colour(request->empty),
+        .has_base = request->has_base,
+        .base = message_colour(request->base),
+        .has_unfiltered = request->unfiltered,
+        .unfiltered = request->unfiltered,
+        .planes = request->planes,
+        .encoding = (sheen_Encoding)request->format,
+        .has_jpeg_quality = request->jpeg_quality != 0,
+        .jpeg_quality = request->jpeg_quality,
+        .has_jpeg_subsampling = request->jpeg_subsampling != SHEEN_JPEG_444,
+        .jpeg_subsampling = (sheen_JpegSubsampling)request->jpeg_subsampling,
+        .has_surface = request->surface != SHEEN_SURFACE_EXACT,
+        .surface = (sheen_SurfaceKind)request->surface,
+        .has_surface_level = request->surface_level != 0,
+        .surface_level = request->surface_level,
+        .has_request_class = request->request_class != SHEEN_CLASS_STILL,
+        .request_class = (sheen_RequestClass)request->request_class,
+        .has_view = request->has_view,
+        .view = request->view,
+        .has_deadline_ms = request->deadline_ms != 0,
+        .deadline_ms = request->deadline_ms,
+    };
+    memcpy(render->model_sha256, request->model_id, SHEEN_ID_BYTES);
+    fill_camera(render, &request->camera);
+    fill_lights(render, request);
 }
 
 static void from_pattern(struct sheen_pattern *pattern, const sheen_Pattern *message)
@@ -154,7 +223,7 @@ static void get_extreme(struct sheen_extreme *extreme, bool has_value, const she
     message_get_vec3(extreme->position, &message->position);
 }
 
-void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
+static void get_lights(struct sheen_frame *frame, const sheen_Frame *body)
 {
     const sheen_Lines *lines = &body->lines;
     frame->lines = (struct sheen_lines){
@@ -185,4 +254,24 @@ void lights_from_message(struct sheen_frame *frame, const sheen_Frame *body)
         message_get_vec3(to->v, &from->v);
         from_pattern(&to->pattern, &from->pattern);
     }
+}
+
+void scene_from_message(struct sheen_frame *frame, const sheen_Frame *body)
+{
+    const sheen_Camera *camera = &body->camera;
+    frame->camera = (struct sheen_camera){
+        .projection =
+            camera->has_ortho_height ? SHEEN_PROJECTION_ORTHOGRAPHIC : SHEEN_PROJECTION_PERSPECTIVE,
+        .fov_deg = camera->fov_deg,
+        .ortho_height = camera->ortho_height,
+    };
+    message_get_vec3(frame->camera.eye, &camera->eye);
+    message_get_vec3(frame->camera.target, &camera->target);
+    message_get_vec3(frame->camera.up, &camera->up);
+    message_get_vec3(frame->up, &body->up);
+    frame->up_source = body->has_up && body->has_up_source ? (enum sheen_up_source)body->up_source
+                                                           : SHEEN_UP_UNKNOWN;
+    frame->blank = body->blank;
+    frame->light_share = body->has_light_share ? body->light_share : NAN;
+    get_lights(frame, body);
 }

@@ -15,6 +15,14 @@ enum sheen_status session_fail(struct sheen_session *session, enum sheen_status 
     return status;
 }
 
+size_t session_find_pending(const struct sheen_session *session, uint32_t seq)
+{
+    size_t i = 0;
+    while (i < session->n_pending && session->pending[i].seq != seq)
+        i++;
+    return i;
+}
+
 enum sheen_status session_check(const struct sheen_session *session, struct sheen_error *error)
 {
     if (!session)
@@ -32,25 +40,52 @@ enum sheen_status session_bad_peer(struct sheen_session *session, struct sheen_e
     return session_fail(session, SHEEN_BAD_PEER, error);
 }
 
+/* Reads the rest of the header or body that is on its way, n_bytes in all. */
+static enum sheen_status fill(struct sheen_session *session, uint8_t *bytes, size_t n_bytes,
+                              struct sheen_error *error)
+{
+    struct session_input *input = &session->input;
+    enum sheen_status status =
+        connection_read(&session->connection, bytes, n_bytes, &input->n_got, error);
+    if (status)
+        return status == SHEEN_AGAIN ? status : session_fail(session, status, error);
+    input->n_got = 0;
+    return SHEEN_OK;
+}
+
 static enum sheen_status read_header(struct sheen_session *session, struct message_header *header,
                                      struct sheen_error *error)
 {
-    uint8_t bytes[MESSAGE_HEADER_BYTES];
-    enum sheen_status status = connection_read(&session->connection, bytes, sizeof(bytes), error);
-    if (status)
-        return session_fail(session, status, error);
-    *header = (struct message_header){0};
-    enum header_error wrong = message_header_decode(header, bytes);
-    if (wrong == HEADER_OK)
-        return SHEEN_OK;
-    if (wrong == HEADER_BAD_MAJOR) {
-        status_set(error, SHEEN_BAD_VERSION,
-                   "the server speaks version %u of the protocol, this client version %u; "
-                   "install the same version of sheen on both sides",
-                   (unsigned)header->major, (unsigned)PROTOCOL_MAJOR);
-        return session_fail(session, SHEEN_BAD_VERSION, error);
+    struct session_input *input = &session->input;
+    if (!input->has_header) {
+        enum sheen_status status = fill(session, input->head, sizeof(input->head), error);
+        if (status)
+            return status;
+        input->header = (struct message_header){0};
+        enum header_error wrong = message_header_decode(&input->header, input->head);
+        if (wrong == HEADER_BAD_MAJOR) {
+            status_set(error, SHEEN_BAD_VERSION,
+                       "the server speaks version %u of the protocol, this client version %u; "
+                       "install the same version of sheen on both sides",
+                       (unsigned)input->header.major, (unsigned)PROTOCOL_MAJOR);
+            return session_fail(session, SHEEN_BAD_VERSION, error);
+        }
+        if (wrong != HEADER_OK)
+            return session_bad_peer(session, error, input->header.type, header_error_text(wrong));
+        input->has_header = true;
     }
-    return session_bad_peer(session, error, header->type, header_error_text(wrong));
+    *header = input->header;
+    return SHEEN_OK;
+}
+
+enum sheen_status session_read_raw(struct sheen_session *session,
+                                   const struct message_header *header, uint8_t *bytes,
+                                   struct sheen_error *error)
+{
+    enum sheen_status status = fill(session, bytes, header->length, error);
+    if (!status)
+        session->input.has_header = false;
+    return status;
 }
 
 enum sheen_status session_read_body(struct sheen_session *session,
@@ -58,14 +93,14 @@ enum sheen_status session_read_body(struct sheen_session *session,
                                     struct sheen_error *error)
 {
     char text[MESSAGE_TEXT_BYTES];
-    if (header->length > sizeof(session->buffer))
+    uint8_t *bytes = session->input.body;
+    if (header->length > sizeof(session->input.body))
         return session_bad_peer(session, error, header->type, "its body is too long");
-    enum sheen_status status =
-        connection_read(&session->connection, session->buffer, header->length, error);
+    enum sheen_status status = session_read_raw(session, header, bytes, error);
     if (status)
-        return session_fail(session, status, error);
-    if (!message_decode(header->type, session->buffer, header->length, body)) {
-        message_find_fault(header->type, session->buffer, header->length, text);
+        return status;
+    if (!message_decode(header->type, bytes, header->length, body)) {
+        message_find_fault(header->type, bytes, header->length, text);
         return session_bad_peer(session, error, header->type, text);
     }
     if (!message_check_answer(header->type, body, text))
@@ -123,10 +158,13 @@ static enum sheen_status last_words(struct sheen_session *session, enum sheen_st
 {
     struct message_header header;
     struct sheen_error words;
-    if (status != SHEEN_LOST_SERVER)
+    bool is_inside =
+        session->input.has_header || session->input.n_got > 0 || session->answer.is_open;
+    if (status != SHEEN_LOST_SERVER || is_inside)
         return session_fail(session, status, error);
     session->broken = true;
     session->connection.timeout_ms = LAST_WORDS_MS;
+    session->connection.must_not_wait = false;
     enum sheen_status said;
     do {
         said = read_header(session, &header, &words);
@@ -153,11 +191,11 @@ enum sheen_status session_send_again(struct sheen_session *session, uint8_t type
                                      uint32_t seq, struct sheen_error *error)
 {
     size_t length = 0;
-    if (!message_encode(type, seq, body, session->buffer, sizeof(session->buffer), &length))
+    if (!message_encode(type, seq, body, session->output, sizeof(session->output), &length))
         return status_set(error, SHEEN_BAD_ARGUMENT, "a text of the %s is too long",
                           message_type_name(type));
     enum sheen_status status =
-        connection_write(&session->connection, session->buffer, length, error);
+        connection_write(&session->connection, session->output, length, error);
     return status ? last_words(session, status, error) : SHEEN_OK;
 }
 

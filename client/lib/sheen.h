@@ -1,25 +1,42 @@
-/* libsheen: exact reflection lines from a sheend, in C.
+/* libsheen: exact reflection lines from a sheend, for programs in C11 and C++17.
  *
  *     struct sheen_error error;
  *     struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS; // a private daemon
- *     struct sheen_request request = SHEEN_REQUEST_DEFAULTS;         // 1280x720, a PNG
+ *     struct sheen_request request = SHEEN_REQUEST_DEFAULTS;         // 1280x720, a PNG file
+ *     struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
  *     struct sheen_session *session = NULL;
- *     struct sheen_frame frame = {0};
  *
  *     sheen_file_id(bytes, n_bytes, request.model_id);
- *     memcpy(options.model_id, request.model_id, SHEEN_ID_BYTES);
  *     if (sheen_connect(&session, &options, &error) ||
  *         sheen_upload(session, SHEEN_FILE_MODEL, request.model_id, bytes, n_bytes, "hood.obj",
- * NULL, &error) || sheen_render(session, &request, NULL, &frame, &error)) fprintf(stderr, "%s\n",
- * error.text); else fwrite(frame.file, 1, frame.file_bytes, out); sheen_frame_finish(&frame);
+ *                      NULL, &error) ||
+ *         sheen_render(session, &request, NULL, &frame, &error))
+ *         fprintf(stderr, "%s\n", error.text);
+ *     else
+ *         fwrite(frame.data, 1, frame.data_bytes, out);
+ *     sheen_frame_finish(&frame);
  *     sheen_close(session);
  *
- * Every call blocks until it is done, has failed, or nothing has moved for `timeout_ms`.
+ * In C++ the defaults are functions: `sheen_request request = sheen_request_defaults();`.
+ *
+ * Waiting: a call blocks until it is done, has failed, or no byte has moved for `timeout_ms`. A
+ * program with an event loop of its own waits on sheen_descriptor() and takes frames by
+ * sheen_try_receive().
  *
  * Failure: functions return SHEEN_OK (0) or a status, and then fill *error, which may be NULL.
- * After a status for which sheen_status_is_fatal() is true the session only takes sheen_close();
- * after any other it goes on working. Arguments are checked: NULL, NaN and values out of range
- * cost SHEEN_BAD_ARGUMENT and send nothing.
+ * After a status for which sheen_status_is_fatal() is true the session takes nothing but
+ * sheen_close(); after any other it goes on working. Arguments are checked: a NULL that is not
+ * allowed, NaN and values out of range cost SHEEN_BAD_ARGUMENT, and nothing is sent.
+ *
+ * Growth: a later version of the library with the same soname may add members at the end of the
+ * structs that begin with `size`, and adds none to the others. `size` is the struct's sizeof in the
+ * program, as the defaults set it, and 16 at least. The library touches no byte beyond it.
+ *   - A program that was compiled with an older sheen.h: the members that it lacks have their
+ *     defaults in what it gives, and are not written in what it gets.
+ *   - A program that was compiled with a newer sheen.h than the library: the members that the
+ *     library lacks must be zero in what the program gives (else SHEEN_BAD_ARGUMENT), and are zero
+ *     in what it gets.
+ * Enumerators keep their numbers.
  *
  * Thread: a session belongs to one thread at a time; different sessions are independent. No SIGPIPE
  * is raised, no signal handler installed, no global state kept.
@@ -33,8 +50,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SHEEN_ID_BYTES 32 /* SHA-256 of a file's bytes */
-#define SHEEN_N_PLANES 8
+#ifdef __cplusplus
+extern "C" {
+#endif
+#if defined(__GNUC__)
+#pragma GCC visibility push(default)
+#endif
+
+#define SHEEN_ID_BYTES 32      /* SHA-256 of a file's bytes */
+#define SHEEN_N_PLANES 8       /* how many enumerators enum sheen_plane has */
 #define SHEEN_MAX_IN_FLIGHT 64 /* requests sent and not yet received: the most any daemon takes */
 
 enum sheen_status {
@@ -58,6 +82,7 @@ enum sheen_status {
     SHEEN_BAD_VERSION,   /* fatal: the peer speaks another major version exit code 4 */
     SHEEN_NO_MEMORY,     /* fatal: memory is short here                  exit code 4 */
     SHEEN_DEVICE_FAILED, /* EGL or the GPU failed, or there is none      exit code 5 */
+    SHEEN_AGAIN,         /* sheen_try_receive(): no answer is whole yet  exit code 4 */
 };
 
 struct sheen_error {
@@ -65,18 +90,24 @@ struct sheen_error {
     char text[640]; /* one line, UTF-8, no newline: what, where, what to do */
 };
 
-/* The library's version and the wire's: "0.1.0, protocol 1.2". */
+/* The library's version and the wire's: "0.1.0, protocol 1.2". Pure. */
 const char *sheen_version(void);
 
-/* The exit code that the `sheen` command ends with: 0, 2, 3, 4 or 5. */
+/* The exit code that the `sheen` command ends with: 0, 2, 3, 4 or 5. Pure, as the next one. */
 int sheen_status_exit_code(enum sheen_status status);
 bool sheen_status_is_fatal(enum sheen_status status);
+
+/* Zeroes a struct that begins with `size`, of `size` bytes, and sets its size: the defaults of what
+ * the library fills in. For languages without the macros below.
+ * Does nothing when size is below 16. */
+void sheen_struct_init(void *sized_struct, size_t size);
 
 /* ---- sessions ---- */
 
 struct sheen_session;
 
 struct sheen_connect_options {
+    size_t size;
     const char *address; /* unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; NULL: a private daemon */
     const char *device;  /* private daemon: "auto", "software" or a number; NULL: auto */
     /* Private daemon: what files, tables and frames may take together, 4 MiB or more; 0: half of
@@ -84,16 +115,20 @@ struct sheen_connect_options {
     uint64_t memory_budget_bytes;
     uint32_t timeout_ms;         /* with no byte moved; 0: for ever */
     uint32_t connect_timeout_ms; /* the same, until the daemon has greeted; 0: timeout_ms */
-    /* A balancer picks a node by it: of the model that will be asked for, and where that is a file
-     * at the server, sheen_file_id() of the text "server:" NAME. Zeros: any node. */
+    /* A balancer picks a node by it: the id of the model that will be asked for, and where that is
+     * a file at the server, sheen_file_id() of the text "server:" NAME. Zeros: any node. */
     uint8_t model_id[SHEEN_ID_BYTES];
     /* For tls: addresses; PEM files. The daemon's certificate is checked against `ca`, NULL: what
-     * the system trusts. It may want cert and key, or a token, of the client. */
+     * the system trusts. The daemon may want cert and key, or a token, of the client. */
     const char *ca, *cert, *key;
     const char *token; /* sent over TLS only */
     bool share;        /* whoever knows its SHA-256 may use what this session uploads */
 };
-#define SHEEN_CONNECT_DEFAULTS ((struct sheen_connect_options){.timeout_ms = 300000})
+#define SHEEN_CONNECT_DEFAULTS                                                                     \
+    ((struct sheen_connect_options){.size = sizeof(struct sheen_connect_options),                  \
+                                    .timeout_ms = 300000})
+/* Writes the defaults into the first `size` bytes. */
+void sheen_connect_options_init(struct sheen_connect_options *options, size_t size);
 
 /* Connects and shakes hands. On success *session is the caller's, to be given back with
  * sheen_close(); on failure it is NULL: SHEEN_NO_SERVER, SHEEN_LOST_SERVER (it went away, or the
@@ -113,6 +148,7 @@ void sheen_close(struct sheen_session *session);
 
 /* What the daemon said of itself. Strings live as long as the session. */
 struct sheen_server {
+    size_t size;
     const char *version;
     const char *device, *driver;
     bool software;
@@ -120,7 +156,17 @@ struct sheen_server {
     uint64_t max_upload_bytes;
     uint32_t max_in_flight; /* requests sent and not yet received, 1 to SHEEN_MAX_IN_FLIGHT */
 };
-struct sheen_server sheen_server(const struct sheen_session *session);
+#define SHEEN_SERVER_DEFAULTS ((struct sheen_server){.size = sizeof(struct sheen_server)})
+
+/* Sends nothing. SHEEN_BAD_ARGUMENT alone. */
+enum sheen_status sheen_get_server(const struct sheen_session *session, struct sheen_server *server,
+                                   struct sheen_error *error);
+
+/* The session's socket, to wait on with poll() beside others; it stays the library's, which alone
+ * reads, writes and closes it. *events gets what to wait for before the next sheen_try_receive():
+ * POLLIN, or POLLOUT while TLS must write first. -1 for a session that is NULL or has failed;
+ * *events is then 0. */
+int sheen_descriptor(const struct sheen_session *session, short *events);
 
 /* Called now and then by the calls that take it: for uploads with stage "upload" and bytes, and
  * with whatever stage the daemon reports ("tables" and faces). May be called with done == total.
@@ -140,9 +186,9 @@ bool sheen_file_id(const void *bytes, size_t n_bytes, uint8_t id[SHEEN_ID_BYTES]
 /* Makes the daemon have a file: bytes travel only if it lacks them, from where a broken upload
  * ended. `id` is what sheen_file_id() says; the daemon checks it. `name` is the file's name,
  * folders are dropped; its ending tells a model's format; an OBJ file with the line "t weld 0/0/0"
- * has its equal positions joined. progress may be NULL. Not while requests
- * are in flight (SHEEN_BAD_ARGUMENT). SHEEN_TOO_BIG, SHEEN_BAD_MODEL, SHEEN_BAD_IMAGE when the
- * daemon refuses it. */
+ * has its equal positions joined. progress may be NULL. Not while requests are in flight
+ * (SHEEN_BAD_ARGUMENT). SHEEN_TOO_BIG, SHEEN_BAD_MODEL, SHEEN_BAD_IMAGE when the daemon refuses
+ * it. */
 enum sheen_status sheen_upload(struct sheen_session *session, enum sheen_file_kind kind,
                                const uint8_t id[SHEEN_ID_BYTES], const void *bytes, size_t n_bytes,
                                const char *name, const struct sheen_progress *progress,
@@ -157,18 +203,18 @@ enum sheen_status sheen_find_model(struct sheen_session *session, const char *na
 
 /* What a file has that it is probably not meant to have; its warning says so in words. */
 enum sheen_finding_kind {
-    SHEEN_FINDING_REPEATED_CORNER,       /* faces that lost a corner which repeats its neighbour */
-    SHEEN_FINDING_FEW_CORNERS,           /* faces passed over: fewer than three different corners */
-    SHEEN_FINDING_KEYHOLE,               /* the same: a vertex at corners that are no neighbours */
+    SHEEN_FINDING_REPEATED_CORNER, /* faces that lost a corner which repeats its neighbour */
+    SHEEN_FINDING_FEW_CORNERS,     /* faces passed over: fewer than three different corners */
+    SHEEN_FINDING_KEYHOLE, /* faces passed over: a vertex at corners that are no neighbours */
     SHEEN_FINDING_CREASE_WITHOUT_EDGE,   /* tags passed over */
-    SHEEN_FINDING_CORNER_WITHOUT_VERTEX, /* the same */
-    SHEEN_FINDING_HOLE_WITHOUT_FACE,     /* the same */
+    SHEEN_FINDING_CORNER_WITHOUT_VERTEX, /* tags passed over */
+    SHEEN_FINDING_HOLE_WITHOUT_FACE,     /* tags passed over */
     SHEEN_FINDING_UNWELDED,  /* repeated positions, where no face shares a vertex with another */
-    SHEEN_FINDING_TRIANGLES, /* plain ones: faces */
+    SHEEN_FINDING_TRIANGLES, /* faces that are plain triangles */
     SHEEN_FINDING_WOUND_AGAINST, /* edges that two faces run along in one direction */
     SHEEN_FINDING_FACE_TWICE,    /* faces that are there again */
     SHEEN_FINDING_INSIDE_OUT,    /* closed bodies whose faces turn inwards */
-    SHEEN_FINDING_OTHER,         /* what a later daemon says */
+    SHEEN_FINDING_OTHER,         /* a kind that only a later daemon knows */
 };
 
 struct sheen_finding {
@@ -179,18 +225,22 @@ struct sheen_finding {
     uint32_t face;  /* the first, from 0 */
 };
 
+struct sheen_valence {
+    uint32_t valence, count;
+};
+
 #define SHEEN_MAX_FINDINGS 16
 #define SHEEN_MAX_VALENCES 64
 struct sheen_model_info {
+    size_t size;
     uint8_t id[SHEEN_ID_BYTES];
     char name[256];
     uint64_t file_bytes;
     uint32_t vertices, faces, triangles, quads, ngons; /* of the cage */
     uint32_t ptex_faces, boundary_edges;
     uint32_t n_valences; /* entries below; the last one sums the rest when there are more */
-    struct {
-        uint32_t valence, count;
-    } extraordinary[SHEEN_MAX_VALENCES];   /* interior vertices with other than 4 edges */
+    struct sheen_valence
+        extraordinary[SHEEN_MAX_VALENCES]; /* interior vertices with other than 4 edges */
     uint32_t boundary_extraordinary;       /* boundary vertices with other than 2 faces */
     uint32_t sharp_edges, semisharp_edges; /* creases: infinitely sharp, and others */
     uint32_t sharp_vertices;               /* with sharpness of their own, infinite or not */
@@ -206,6 +256,8 @@ struct sheen_model_info {
     uint32_t n_findings; /* at most one of each kind that is known here */
     struct sheen_finding findings[SHEEN_MAX_FINDINGS];
 };
+#define SHEEN_MODEL_INFO_DEFAULTS                                                                  \
+    ((struct sheen_model_info){.size = sizeof(struct sheen_model_info)})
 
 /* What an uploaded model is and costs; builds its tables if that has not happened. */
 enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t id[SHEEN_ID_BYTES],
@@ -222,16 +274,17 @@ enum sheen_plane {
     SHEEN_PLANE_PTEX = 8,       /* uint32_t face (0xffffffff: none), float u, float v */
     SHEEN_PLANE_LIGHT = 16,     /* float s, t on the first light; NaN where it is not met, too */
     SHEEN_PLANE_CURVATURE = 32, /* float k.min, k.max in 1/unit, signed against the normal: below
-                             0 where a body seen from outside is convex */
+                                   0 where a body seen from outside is convex */
     SHEEN_PLANE_LIGHT_CHANGE =
-        64, /* float ds/dx ds/dy dt/dx dt/dy by a pixel right and down; as LIGHT */
+        64,                     /* float ds/dx ds/dy dt/dx dt/dy by a pixel right and down; NaN as
+                                      SHEEN_PLANE_LIGHT is */
     SHEEN_PLANE_COVERAGE = 128, /* float share of the pixel that shows surface, 0 where none is; for
-                             the exact surface, filtered, only */
+                                   the exact surface, filtered, only */
 };
 
 enum sheen_format {
-    SHEEN_FORMAT_RAW,  /* decoded planes; sent as they are */
-    SHEEN_FORMAT_ZSTD, /* decoded planes; sent compressed, lossless */
+    SHEEN_FORMAT_RAW,  /* planes, sent as they are */
+    SHEEN_FORMAT_ZSTD, /* planes, sent compressed, lossless */
     SHEEN_FORMAT_PNG,  /* an encoded file, colour only */
     SHEEN_FORMAT_EXR,  /* an encoded file, any planes */
     SHEEN_FORMAT_JPEG,
@@ -298,7 +351,7 @@ struct sheen_pattern {
     double duty;                       /* bright part of a period, [0, 1] */
     double rotation_deg, offset;       /* offset in periods */
     double soft;                       /* share of a period (SHEEN_PATTERN_LINES: of the width) that
-                                          each edge takes, [0, 1] */
+                                           each edge takes, [0, 1] */
     double opacity;                    /* over the shaded base, [0, 1] */
     uint32_t n_at;                     /* SHEEN_PATTERN_LINES: 1 to SHEEN_MAX_LINES, else 0 */
     double at[SHEEN_MAX_LINES], width; /* places and width, in widths of the light */
@@ -308,12 +361,13 @@ struct sheen_pattern {
 };
 #define SHEEN_PATTERN_DEFAULTS                                                                     \
     ((struct sheen_pattern){.count = 40, .duty = 0.5, .opacity = 1, .width = 0.01})
+void sheen_pattern_init(struct sheen_pattern *pattern); /* writes the defaults */
 
 enum sheen_light_kind {
     SHEEN_LIGHT_RECTANGLE,
     SHEEN_LIGHT_PLANE,
     SHEEN_LIGHT_TUNNEL,
-    SHEEN_LIGHT_SPHERE
+    SHEEN_LIGHT_SPHERE,
 };
 
 /* Rectangle and plane: x = centre + (s - 1/2) u + (t - 1/2) v, for the rectangle s and t in [0, 1].
@@ -394,6 +448,7 @@ enum sheen_class {
 };
 
 struct sheen_request {
+    size_t size;
     uint8_t model_id[SHEEN_ID_BYTES]; /* an uploaded model */
     uint32_t width_px, height_px;     /* 1 to the daemon's limit */
     struct sheen_camera camera;
@@ -405,26 +460,32 @@ struct sheen_request {
     float empty[4];                     /* where no surface is hit */
     float base[4];                      /* of the surface, where patterns are transparent */
     bool unfiltered;                    /* one sample a pixel, for comparison */
-    struct sheen_show show;             /* in the colour plane; not with WIREFRAME */
+    struct sheen_show show;             /* in the colour plane; not with SHEEN_SURFACE_WIREFRAME */
     uint32_t planes;                    /* enum sheen_plane bits */
     enum sheen_format format;
     uint32_t jpeg_quality; /* SHEEN_FORMAT_JPEG: 1 to 100; 0: the daemon's, 95 */
-    enum sheen_jpeg_subsampling jpeg_subsampling; /* the same */
+    enum sheen_jpeg_subsampling jpeg_subsampling; /* of SHEEN_FORMAT_JPEG */
     enum sheen_surface surface;
     uint32_t surface_level; /* 0 to 6; exact: 0 */
     enum sheen_class request_class;
     bool has_view;        /* STILL: may be replaced too; INTERACTIVE without: view 0 */
     uint32_t view;        /* which of the program's pictures this is */
     uint32_t deadline_ms; /* from when the daemon has read it, at most 3600000; 0: none */
+    bool undecoded;       /* SHEEN_FORMAT_RAW and _ZSTD: the frame's planes stay as they came, in
+                             frame.data, laid out as protocol/README.md, chapter 5, says; for who
+                             passes them on or stores them */
 };
 #define SHEEN_REQUEST_DEFAULTS                                                                     \
-    ((struct sheen_request){.width_px = 1280,                                                      \
+    ((struct sheen_request){.size = sizeof(struct sheen_request),                                  \
+                            .width_px = 1280,                                                      \
                             .height_px = 720,                                                      \
                             .camera = {.up = {0, 0, 1}, .fov_deg = 35},                            \
                             .n_lights = 1,                                                         \
                             .lights = {{.pattern = SHEEN_PATTERN_DEFAULTS}},                       \
                             .planes = SHEEN_PLANE_COLOUR,                                          \
                             .format = SHEEN_FORMAT_PNG})
+/* Writes the defaults into the first `size` bytes. */
+void sheen_request_init(struct sheen_request *request, size_t size);
 
 /* What the daemon spent, in microseconds; 0: not done for this frame. Visibility, evaluate and
  * shade are the device's own time where its timer queries count all of it (hardware); the rest is
@@ -433,20 +494,21 @@ struct sheen_times {
     uint64_t tables_us, visibility_us, evaluate_us, shade_us, readback_us, encode_us, total_us;
 };
 
-/* A frame. Zero it before first use; it may then be given to any number of calls, which reuse its
- * memory, and at last to sheen_frame_finish(). After a failure its fields are undefined, but it may
- * still be reused and must still be finished. */
+/* A frame. It begins as SHEEN_FRAME_DEFAULTS; it may then be given to any number of calls, which
+ * reuse its memory, and at last to sheen_frame_finish(). After a failure its other members are
+ * undefined, but it may still be reused and must still be finished. */
 struct sheen_frame {
+    size_t size;
+    struct sheen_frame_memory *memory; /* the library's */
     uint32_t number;        /* of its request: sheen_last_number(); set whatever the answer is */
     uint32_t superseded_by; /* SHEEN_SUPERSEDED: the request that took its place */
     uint32_t width_px, height_px;
     uint32_t planes;
     enum sheen_format format;
-    uint8_t *file; /* a file: the file's bytes; else NULL */
-    size_t file_bytes;
-    void *plane[SHEEN_N_PLANES]; /* planes: by bit number; rows top first, tightly packed;
-                                  NULL for planes that were not asked for */
-    uint64_t data_bytes;         /* that travelled */
+    uint8_t *data;     /* a file's bytes, or planes that were to stay undecoded; else NULL */
+    size_t data_bytes; /* that travelled */
+    void *plane[SHEEN_N_PLANES]; /* decoded planes by bit number; rows top first, tightly packed;
+                                    NULL for planes that were not asked for, or are in `data` */
     struct sheen_camera camera;  /* as used */
     struct sheen_lines lines;
     uint32_t n_lights;
@@ -463,26 +525,38 @@ struct sheen_frame {
     struct sheen_times times;
     char device[128], driver[128], server[32];
     bool software;
-    struct sheen_frame_memory *memory; /* the library's */
 };
+#define SHEEN_FRAME_DEFAULTS ((struct sheen_frame){.size = sizeof(struct sheen_frame)})
 
 /* Renders one frame: sheen_send() and sheen_receive(). */
 enum sheen_status sheen_render(struct sheen_session *session, const struct sheen_request *request,
                                const struct sheen_progress *progress, struct sheen_frame *frame,
                                struct sheen_error *error);
 
-/* Sends a request without waiting, up to sheen_server().max_in_flight of them (SHEEN_BAD_ARGUMENT
- * beyond), and receives the next answer: frames of a class in the order sent, failures as soon as
- * the daemon knows; frame->number tells whose it is. A request that the daemon refuses, replaces or
- * gives up fails in its sheen_receive(). One whose frame goes with the daemon's GPU is sent again,
- * up to SHEEN_MAX_RETRIES times, and comes after what was sent meanwhile; but when a newer request
- * of its view is in flight, that takes its place (SHEEN_SUPERSEDED). */
-#define SHEEN_MAX_RETRIES 5
+/* Sends a request without waiting for its answer. Up to sheen_server.max_in_flight requests may be
+ * in flight (SHEEN_BAD_ARGUMENT beyond). */
 enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_request *request,
                              struct sheen_error *error);
+
+/* Waits for the next answer: frames of a class come in the order sent, failures as soon as the
+ * daemon knows; frame->number tells whose answer it is. A request that the daemon refuses, replaces
+ * or gives up fails here. One whose frame was lost with the daemon's GPU is sent again, up to
+ * SHEEN_MAX_RETRIES times, and its frame comes after what was sent meanwhile; but when a newer
+ * request of its view is in flight, that takes its place (SHEEN_SUPERSEDED). SHEEN_BAD_ARGUMENT
+ * when nothing is in flight. */
+#define SHEEN_MAX_RETRIES 5
 enum sheen_status sheen_receive(struct sheen_session *session,
                                 const struct sheen_progress *progress, struct sheen_frame *frame,
                                 struct sheen_error *error);
+
+/* The same without waiting: SHEEN_AGAIN when no answer is whole yet; *frame is then as it was, and
+ * what has come of the answer is kept in the session. Any frame may be given the next time. A
+ * program calls it until it says SHEEN_AGAIN, and only then waits on sheen_descriptor(): bytes that
+ * were read ahead wake no poll(). timeout_ms is the program's to hold. It may wait after all, for a
+ * moment, to send a request again, and to learn why a private daemon has ended. */
+enum sheen_status sheen_try_receive(struct sheen_session *session,
+                                    const struct sheen_progress *progress,
+                                    struct sheen_frame *frame, struct sheen_error *error);
 
 /* The number of the request sent last; never 0 after a sheen_send(). */
 uint32_t sheen_last_number(const struct sheen_session *session);
@@ -493,7 +567,8 @@ uint32_t sheen_last_number(const struct sheen_session *session);
 enum sheen_status sheen_cancel(struct sheen_session *session, uint32_t number,
                                struct sheen_error *error);
 
-void sheen_frame_finish(struct sheen_frame *frame); /* frees and zeroes it; a zeroed one is safe */
+/* Frees what the frame holds, and zeroes it but for its size. NULL and a zeroed frame are safe. */
+void sheen_frame_finish(struct sheen_frame *frame);
 
 /* ---- statistics ---- */
 
@@ -504,6 +579,7 @@ struct sheen_latency {
 };
 
 struct sheen_stats {
+    size_t size;
     uint64_t uptime_us;
     uint32_t sessions, queued; /* now */
     uint64_t frames, errors;   /* since the start */
@@ -524,8 +600,68 @@ struct sheen_stats {
     char device[128], driver[128], server[32];
     bool software;
 };
+#define SHEEN_STATS_DEFAULTS ((struct sheen_stats){.size = sizeof(struct sheen_stats)})
 
+/* What the daemon is doing. Not while requests are in flight (SHEEN_BAD_ARGUMENT). */
 enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_stats *stats,
                                     struct sheen_error *error);
+
+/* ---- the defaults as functions, for C++ ---- */
+
+static inline struct sheen_connect_options sheen_connect_defaults(void)
+{
+    struct sheen_connect_options options;
+    sheen_connect_options_init(&options, sizeof(options));
+    return options;
+}
+
+static inline struct sheen_request sheen_request_defaults(void)
+{
+    struct sheen_request request;
+    sheen_request_init(&request, sizeof(request));
+    return request;
+}
+
+static inline struct sheen_pattern sheen_pattern_defaults(void)
+{
+    struct sheen_pattern pattern;
+    sheen_pattern_init(&pattern);
+    return pattern;
+}
+
+static inline struct sheen_frame sheen_frame_defaults(void)
+{
+    struct sheen_frame frame;
+    sheen_struct_init(&frame, sizeof(frame));
+    return frame;
+}
+
+static inline struct sheen_server sheen_server_defaults(void)
+{
+    struct sheen_server server;
+    sheen_struct_init(&server, sizeof(server));
+    return server;
+}
+
+static inline struct sheen_model_info sheen_model_info_defaults(void)
+{
+    struct sheen_model_info info;
+    sheen_struct_init(&info, sizeof(info));
+    return info;
+}
+
+static inline struct sheen_stats sheen_stats_defaults(void)
+{
+    struct sheen_stats stats;
+    sheen_struct_init(&stats, sizeof(stats));
+    return stats;
+}
+
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "client/lib/session.h"
+#include "client/lib/sized.h"
 #include "client/lib/status.h"
 #include "client/lib/times.h"
 
@@ -18,15 +19,18 @@ enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_
     enum sheen_status status = session_check(session, error);
     if (status)
         return status;
-    if (!stats || session->n_pending)
+    status = sized_check(stats, "stats", error);
+    if (status)
+        return status;
+    if (session->n_pending)
         return status_set(error, SHEEN_BAD_ARGUMENT,
-                          "a statistics query needs a struct, and no request in flight");
+                          "a statistics query needs that no request is in flight");
     status = session_send(session, MESSAGE_STATS_QUERY, NULL, &seq, error);
     if (!status)
         status = session_receive(session, seq, MESSAGE_STATS, NULL, &body, error);
     if (status)
         return status;
-    *stats = (struct sheen_stats){
+    struct sheen_stats whole = {
         .uptime_us = body.uptime_us,
         .sessions = body.sessions,
         .queued = body.queued,
@@ -58,8 +62,9 @@ enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_
         .p99 = times_from_message(&body.p99),
         .software = body.software,
     };
-    memcpy(stats->device, body.device, sizeof(stats->device));
-    memcpy(stats->driver, body.driver, sizeof(stats->driver));
-    memcpy(stats->server, body.server, sizeof(stats->server));
+    memcpy(whole.device, body.device, sizeof(whole.device));
+    memcpy(whole.driver, body.driver, sizeof(whole.driver));
+    memcpy(whole.server, body.server, sizeof(whole.server));
+    sized_give(stats, &whole, sizeof(whole));
     return SHEEN_OK;
 }

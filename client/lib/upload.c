@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "client/lib/session.h"
+#include "client/lib/sized.h"
 #include "client/lib/status.h"
 
 bool sheen_file_id(const void *bytes, size_t n_bytes, uint8_t id[SHEEN_ID_BYTES])
@@ -206,12 +207,18 @@ enum sheen_status sheen_query_model(struct sheen_session *session, const uint8_t
     enum sheen_status status = session_check(session, error);
     if (status)
         return status;
-    if (!id || !info || session->n_pending)
+    status = sized_check(info, "info", error);
+    if (status)
+        return status;
+    if (!id || session->n_pending)
         return status_set(error, SHEEN_BAD_ARGUMENT,
-                          "a model query needs an id and an info, and no request in flight");
+                          "a model query needs an id, and no request in flight");
     memcpy(ask.sha256, id, SHEEN_ID_BYTES);
     status = query(session, &ask, progress, &body, error);
-    if (!status)
-        copy_info(info, &body);
-    return status;
+    if (status)
+        return status;
+    struct sheen_model_info whole;
+    copy_info(&whole, &body);
+    sized_give(info, &whole, sizeof(whole));
+    return SHEEN_OK;
 }

@@ -9,19 +9,11 @@
 #include <iterator>
 #include <stdexcept>
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow" /* sheen_server is a struct and a function */
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers" /* the defaults are C's */
-extern "C" {
 #include "client/lib/sheen.h"
-}
 #include "tests/oracle/model.h"
 
 namespace
 {
-
-const sheen_request defaults = SHEEN_REQUEST_DEFAULTS;
-#pragma GCC diagnostic pop
 
 void check(sheen_status status, const sheen_error &error)
 {
@@ -36,12 +28,11 @@ double first_frame(const std::string &path, const std::string &file, sheen_forma
     const double start = now_ms();
     sheen_error error;
     sheen_session *session;
-    sheen_connect_options options = {};
+    sheen_connect_options options = sheen_connect_defaults();
     options.device = device;
-    options.timeout_ms = 300000;
     check(sheen_connect(&session, &options, &error), error);
-    sheen_request request = defaults;
-    sheen_frame frame = {};
+    sheen_request request = sheen_request_defaults();
+    sheen_frame frame = sheen_frame_defaults();
     request.width_px = 640;
     request.height_px = 480;
     request.format = format;

@@ -11,12 +11,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow" /* sheen_server is a struct and a function */
-extern "C" {
 #include "client/lib/sheen.h"
-}
-#pragma GCC diagnostic pop
 #include "tests/bench/daemon.h"
 #include "tests/oracle/scene.h"
 #include "tests/oracle/model.h"
@@ -48,9 +43,8 @@ class client
     {
         std::ifstream file(path, std::ios::binary);
         std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-        sheen_connect_options options = {};
+        sheen_connect_options options = sheen_connect_defaults();
         options.address = address.c_str();
-        options.timeout_ms = 300000;
         check(sheen_connect(&session, &options, &error), error);
         sheen_file_id(bytes.data(), bytes.size(), request.model_id);
         check(sheen_upload(session, SHEEN_FILE_MODEL, request.model_id, bytes.data(), bytes.size(),
@@ -59,13 +53,6 @@ class client
         request.width_px = view.width_px;
         request.height_px = view.height_px;
         request.camera.projection = SHEEN_PROJECTION_PERSPECTIVE;
-        request.n_lights = 1;
-        request.lights[0].pattern = sheen_pattern{};
-        request.lights[0].pattern.count = 40;
-        request.lights[0].pattern.duty = 0.5;
-        request.lights[0].pattern.opacity = 1;
-        request.lights[0].pattern.width = 0.01;
-        request.planes = SHEEN_PLANE_COLOUR;
     }
     ~client()
     {
@@ -94,8 +81,8 @@ class client
   private:
     frame_request view;
     sheen_session *session = nullptr;
-    sheen_request request = {};
-    sheen_frame frame = {};
+    sheen_request request = sheen_request_defaults();
+    sheen_frame frame = sheen_frame_defaults();
     sheen_error error = {};
 };
 

@@ -1,5 +1,6 @@
 /* A server that lies to libsheen. The first byte chooses what the client waits for, the second the
- * planes and encoding of the frame; the rest is what the server says before it hangs up. */
+ * planes and encoding of the frame; the rest is what the server says before it hangs up. For frames
+ * the first byte also says after which share of it the client asks without waiting. */
 #include <fcntl.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -13,9 +14,11 @@
 #define SEQ 1
 #define MAX_BYTES 65536 /* a socket takes so many without a reader */
 
-static void receive_frames(struct sheen_session *session, uint8_t choice)
+/* `late` is what the server says after the client has asked once. */
+static void receive_frames(struct sheen_session *session, uint8_t choice, int server,
+                           const uint8_t *late, size_t n_late)
 {
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_error error;
     for (uint32_t i = 0; i < 2; i++)
         session->pending[session->n_pending++] = (struct session_pending){
@@ -25,8 +28,14 @@ static void receive_frames(struct sheen_session *session, uint8_t choice)
                        .planes = choice & 0x80 ? CODEC_ALL_PLANES : 1,
                        .encoding = (sheen_Encoding)(choice % (sheen_Encoding_ENCODING_TIFF + 1))},
         };
+    enum sheen_status status = sheen_try_receive(session, NULL, &frame, &error);
+    MUST(write(server, late, n_late) == (ssize_t)n_late);
+    close(server);
+    if (status != SHEEN_OK && status != SHEEN_AGAIN)
+        goto finish;
     while (session->n_pending > 0 && sheen_receive(session, NULL, &frame, &error) == SHEEN_OK)
         MUST(frame.width_px == WIDTH_PX && frame.data_bytes > 0);
+finish:
     sheen_frame_finish(&frame);
 }
 
@@ -52,14 +61,17 @@ void fuzz_one(const uint8_t *bytes, size_t size)
         return;
     MUST(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0);
     MUST(fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0);
-    MUST(write(ends[1], bytes + 2, size - 2) == (ssize_t)(size - 2));
-    close(ends[1]);
+    bool is_frames = bytes[0] >= sizeof types;
+    size_t n_late = is_frames ? (size - 2) * bytes[0] / 256 : 0, n_early = size - 2 - n_late;
+    MUST(write(ends[1], bytes + 2, n_early) == (ssize_t)n_early);
     session =
         (struct sheen_session){.connection = {.fd = ends[0], .timeout_ms = 1000}, .last_seq = SEQ};
-    if (bytes[0] < sizeof types)
+    if (is_frames) {
+        receive_frames(&session, bytes[1], ends[1], bytes + 2 + n_early, n_late);
+    } else {
+        close(ends[1]);
         receive_answer(&session, types[bytes[0]]);
-    else
-        receive_frames(&session, bytes[1]);
+    }
     codec_decoder_destroy(session.decoder);
     connection_finish(&session.connection);
 }

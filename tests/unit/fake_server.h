@@ -193,6 +193,13 @@ static inline enum sheen_status open_session(struct fake *fake, void (*serve)(in
     return sheen_connect(session, &options, error);
 }
 
+static inline struct sheen_server server_of(const struct sheen_session *session)
+{
+    struct sheen_server server = SHEEN_SERVER_DEFAULTS;
+    assert_int_equal(sheen_get_server(session, &server, NULL), SHEEN_OK);
+    return server;
+}
+
 static inline struct sheen_request small_request(enum sheen_format format)
 {
     struct sheen_request request = SHEEN_REQUEST_DEFAULTS;
@@ -224,7 +231,7 @@ static inline void render_ends_with(void (*serve)(int fd), enum sheen_format for
     struct fake fake;
     struct sheen_error error = {0};
     struct sheen_session *session;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_request request = small_request(format);
     assert_int_equal(open_session(&fake, serve, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), status);

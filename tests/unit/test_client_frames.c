@@ -32,21 +32,21 @@ static void a_file_arrives_whole(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
     int reports = 0;
     const struct sheen_progress progress = {count_reports, &reports};
     assert_int_equal(open_session(&fake, serve_file_in_two, &session, &error), SHEEN_OK);
-    assert_string_equal(sheen_server(session).device, "fake device");
+    assert_string_equal(server_of(session).device, "fake device");
     assert_int_equal(sheen_render(session, &request, &progress, &frame, &error), SHEEN_OK);
     assert_int_equal(reports, 1);
-    assert_int_equal(frame.file_bytes, 10);
-    assert_memory_equal(frame.file, "0123456789", 10);
+    assert_int_equal(frame.data_bytes, 10);
+    assert_memory_equal(frame.data, "0123456789", 10);
     assert_int_equal(frame.times.total_us, 7);
     assert_true(frame.camera.eye[0] == 1 && frame.camera.fov_deg == 35);
     assert_int_equal(frame.camera.projection, SHEEN_PROJECTION_PERSPECTIVE);
     sheen_frame_finish(&frame);
-    assert_null(frame.file);
+    assert_null(frame.data);
     sheen_close(session);
     fake_finish(&fake);
 }
@@ -200,12 +200,12 @@ static void requests_in_flight(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_model_info info;
-    struct sheen_frame frame = {0};
+    struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_request request = small_request(SHEEN_FORMAT_ZSTD);
     assert_int_equal(open_session(&fake, serve_packed, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
-    const int most = (int)sheen_server(session).max_in_flight;
+    const int most = (int)server_of(session).max_in_flight;
     assert_int_equal(most, 4); /* of a server that grants nothing else */
     for (int i = 0; i < most; i++)
         assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
@@ -221,7 +221,7 @@ static void requests_in_flight(void **state)
         assert_true(i == 0 || frame.plane[0] == memory); /* no new memory for a second frame */
         memory = frame.plane[0];
         assert_null(frame.plane[1]);
-        assert_null(frame.file);
+        assert_null(frame.data);
     }
     sheen_frame_finish(&frame);
     sheen_frame_finish(&frame);
@@ -261,12 +261,12 @@ static void answers_out_of_order(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
     request.request_class = SHEEN_CLASS_INTERACTIVE;
     uint32_t number[3];
     assert_int_equal(open_session(&fake, serve_out_of_order, &session, &error), SHEEN_OK);
-    assert_int_equal(sheen_server(session).max_in_flight, 3);
+    assert_int_equal(server_of(session).max_in_flight, 3);
     for (int i = 0; i < 3; i++) {
         assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
         number[i] = sheen_last_number(session);
@@ -362,7 +362,7 @@ static void classes_travel(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
     request.request_class = SHEEN_CLASS_INTERACTIVE;
     request.has_view = true;
@@ -393,7 +393,7 @@ static void jpeg_options_travel(void **state)
         struct fake fake;
         struct sheen_error error;
         struct sheen_session *session;
-        struct sheen_frame frame = {0};
+        struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
         struct sheen_request request = small_request(SHEEN_FORMAT_JPEG);
         assert_int_equal(
             open_session(&fake, is_newer ? serve_and_keep_newer : serve_and_keep, &session, &error),
@@ -451,7 +451,7 @@ static void every_error_has_its_status(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
     assert_int_equal(open_session(&fake, serve_every_error, &session, &error), SHEEN_OK);
     for (size_t i = 0; i < sizeof(expected) / sizeof(*expected); i++) {
@@ -491,11 +491,11 @@ static void a_lost_frame_is_asked_for_again(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
     assert_int_equal(open_session(&fake, serve_lost_frames, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_OK);
-    assert_memory_equal(frame.file, "012", 3);
+    assert_memory_equal(frame.data, "012", 3);
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_GPU_LOST);
     assert_int_equal(sheen_status_exit_code(SHEEN_GPU_LOST), 4);
     assert_false(sheen_status_is_fatal(SHEEN_GPU_LOST));
@@ -521,7 +521,7 @@ static void a_lost_frame_gives_way_to_a_newer_one(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
     request.request_class = SHEEN_CLASS_INTERACTIVE;
     assert_int_equal(open_session(&fake, serve_lost_view, &session, &error), SHEEN_OK);
@@ -541,7 +541,7 @@ static void bad_arguments_send_nothing(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_frame frame = {0};
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     assert_int_equal(open_session(&fake, serve_packed, &session, &error), SHEEN_OK);
     struct sheen_request request = small_request(SHEEN_FORMAT_ZSTD);
     request.width_px = 0;

@@ -106,7 +106,8 @@ static void a_silent_server_costs_its_time(void **state)
     struct sheen_error error;
     struct sheen_session *session;
     fake_start(&fake, serve_silence);
-    struct sheen_connect_options options = {.address = fake.address, .timeout_ms = 100};
+    struct sheen_connect_options options = {
+        .size = sizeof(options), .address = fake.address, .timeout_ms = 100};
     assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_TIMEOUT);
     assert_non_null(strstr(error.text, "0.1 s"));
     fake_finish(&fake);
@@ -132,10 +133,12 @@ static void a_server_that_has_greeted_has_more_time(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_stats stats;
+    struct sheen_stats stats = SHEEN_STATS_DEFAULTS;
     fake_start(&fake, serve_greeting_alone);
-    struct sheen_connect_options options = {
-        .address = fake.address, .timeout_ms = 300, .connect_timeout_ms = 2000};
+    struct sheen_connect_options options = {.size = sizeof(options),
+                                            .address = fake.address,
+                                            .timeout_ms = 300,
+                                            .connect_timeout_ms = 2000};
     assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_OK);
     assert_int_equal(sheen_query_stats(session, &stats, &error), SHEEN_TIMEOUT);
     assert_non_null(strstr(error.text, "0.3 s"));
@@ -148,7 +151,8 @@ static void nobody_listens(void **state)
     (void)state;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_connect_options options = {.address = "unix:/tmp/sheen-no-such-socket"};
+    struct sheen_connect_options options = {.size = sizeof(options),
+                                            .address = "unix:/tmp/sheen-no-such-socket"};
     assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_NO_SERVER);
     assert_non_null(strstr(error.text, "/tmp/sheen-no-such-socket"));
     assert_int_equal(sheen_status_exit_code(SHEEN_NO_SERVER), 4);
@@ -321,7 +325,7 @@ static void kinds_of_later_servers_are_other(void **state)
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
-    struct sheen_model_info info;
+    struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
     uint8_t id[SHEEN_ID_BYTES] = {0};
     assert_int_equal(open_session(&fake, serve_kinds, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_query_model(session, id, NULL, &info, &error), SHEEN_OK);

@@ -1,0 +1,224 @@
+/* libsheen with programs that were compiled with an older or a newer sheen.h: sizes of structs. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/unit/fake_server.h"
+
+#define CANARY 0xa5
+
+/* A struct of a later sheen.h. */
+struct newer_request {
+    struct sheen_request request;
+    uint64_t later;
+};
+struct newer_stats {
+    struct sheen_stats stats;
+    uint64_t later;
+};
+struct newer_options {
+    struct sheen_connect_options options;
+    uint64_t later;
+};
+
+static void serve_raw(int fd)
+{
+    static const uint8_t bytes[WIDTH * HEIGHT * 4];
+    greet(fd);
+    for (int i = 0; i < 2; i++) {
+        uint32_t seq = read_message(fd, NULL, 0).seq;
+        const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_RAW, sizeof(bytes));
+        if (!seq)
+            return;
+        send_message(fd, MESSAGE_FRAME, seq, &frame);
+        send_data(fd, seq, bytes, sizeof(bytes), MESSAGE_END);
+    }
+}
+
+static void assert_canary(const void *bytes, size_t from, size_t to)
+{
+    for (size_t i = from; i < to; i++)
+        assert_int_equal(((const uint8_t *)bytes)[i], CANARY);
+}
+
+static void an_older_program_gives_and_gets_less(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
+    struct sheen_frame frame;
+    assert_int_equal(open_session(&fake, serve_raw, &session, &error), SHEEN_OK);
+    /* Before `undecoded` and `times` were there. */
+    memset(&request.undecoded, CANARY, sizeof(request) - offsetof(struct sheen_request, undecoded));
+    request.size = offsetof(struct sheen_request, undecoded);
+    memset(&frame, CANARY, sizeof(frame));
+    sheen_struct_init(&frame, offsetof(struct sheen_frame, times));
+    assert_canary(&frame, offsetof(struct sheen_frame, times), sizeof(frame));
+    assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_OK);
+    assert_non_null(frame.plane[0]); /* decoded: the default */
+    assert_int_equal(frame.n_lights, 1);
+    assert_int_equal(frame.size, offsetof(struct sheen_frame, times));
+    assert_canary(&frame, offsetof(struct sheen_frame, times), sizeof(frame));
+
+    struct sheen_server server;
+    memset(&server, CANARY, sizeof(server));
+    server.size = offsetof(struct sheen_server, max_in_flight);
+    assert_int_equal(sheen_get_server(session, &server, &error), SHEEN_OK);
+    assert_int_equal(server.max_upload_bytes, 1000000);
+    assert_canary(&server, offsetof(struct sheen_server, max_in_flight), sizeof(server));
+
+    sheen_frame_finish(&frame);
+    assert_int_equal(frame.size, offsetof(struct sheen_frame, times));
+    assert_canary(&frame, offsetof(struct sheen_frame, times), sizeof(frame));
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+static void serve_queries(int fd)
+{
+    const sheen_Stats stats = {.frames = 7, .device = "d", .driver = "e", .server = "f"};
+    const sheen_ModelInfo info = {.vertices = 9, .name = "cube.obj"};
+    greet(fd);
+    for (struct message_header header; (header = read_message(fd, NULL, 0)).seq != 0;)
+        if (header.type == MESSAGE_STATS_QUERY)
+            send_message(fd, MESSAGE_STATS, header.seq, &stats);
+        else
+            send_message(fd, MESSAGE_MODEL_INFO, header.seq, &info);
+}
+
+static void answers_fill_what_the_program_has(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    const uint8_t id[SHEEN_ID_BYTES] = {1};
+    assert_int_equal(open_session(&fake, serve_queries, &session, &error), SHEEN_OK);
+    struct sheen_stats stats;
+    memset(&stats, CANARY, sizeof(stats));
+    stats.size = offsetof(struct sheen_stats, models);
+    assert_int_equal(sheen_query_stats(session, &stats, &error), SHEEN_OK);
+    assert_int_equal(stats.frames, 7);
+    assert_canary(&stats, offsetof(struct sheen_stats, models), sizeof(stats));
+    struct sheen_model_info info;
+    memset(&info, CANARY, sizeof(info));
+    info.size = offsetof(struct sheen_model_info, faces);
+    assert_int_equal(sheen_query_model(session, id, NULL, &info, &error), SHEEN_OK);
+    assert_int_equal(info.vertices, 9);
+    assert_canary(&info, offsetof(struct sheen_model_info, faces), sizeof(info));
+    /* A newer program finds zero where this library has nothing to say. */
+    struct newer_stats newer = {.later = 5};
+    newer.stats.size = sizeof(newer);
+    assert_int_equal(sheen_query_stats(session, &newer.stats, &error), SHEEN_OK);
+    assert_int_equal(newer.stats.frames, 7);
+    assert_int_equal(newer.stats.size, sizeof(newer));
+    assert_int_equal(newer.later, 0);
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+static void a_newer_program_asks_for_what_is_known(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
+    struct newer_request newer;
+    assert_int_equal(open_session(&fake, serve_raw, &session, &error), SHEEN_OK);
+    sheen_request_init(&newer.request, sizeof(newer));
+    assert_int_equal(newer.later, 0);
+    newer.request.width_px = WIDTH;
+    newer.request.height_px = HEIGHT;
+    newer.request.format = SHEEN_FORMAT_RAW;
+    assert_int_equal(sheen_render(session, &newer.request, NULL, &frame, &error), SHEEN_OK);
+    newer.later = 1;
+    assert_int_equal(sheen_send(session, &newer.request, &error), SHEEN_BAD_ARGUMENT);
+    assert_non_null(strstr(error.text, "newer"));
+    newer.later = 0;
+    assert_int_equal(sheen_render(session, &newer.request, NULL, &frame, &error), SHEEN_OK);
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    fake_finish(&fake);
+
+    struct newer_options options = {.options = SHEEN_CONNECT_DEFAULTS, .later = 1};
+    options.options.size = sizeof(options);
+    assert_int_equal(sheen_connect(&session, &options.options, &error), SHEEN_BAD_ARGUMENT);
+    assert_non_null(strstr(error.text, "newer"));
+}
+
+static void a_size_that_was_never_set_is_refused(void **state)
+{
+    (void)state;
+    struct fake fake;
+    struct sheen_error error;
+    struct sheen_session *session;
+    struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
+    struct sheen_stats stats = SHEEN_STATS_DEFAULTS;
+    struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
+    struct sheen_server server = SHEEN_SERVER_DEFAULTS;
+    static const size_t bad[] = {0, 15, ((size_t)1 << 20) + 1, (size_t)CANARY << 56, SIZE_MAX};
+    assert_int_equal(open_session(&fake, serve_raw, &session, &error), SHEEN_OK);
+    for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++) {
+        struct sheen_connect_options options = {.size = bad[i]};
+        struct sheen_session *none;
+        assert_int_equal(sheen_connect(&none, &options, &error), SHEEN_BAD_ARGUMENT);
+        request.size = frame.size = stats.size = info.size = server.size = bad[i];
+        assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
+        assert_non_null(strstr(error.text, "request.size"));
+        assert_int_equal(sheen_query_stats(session, &stats, &error), SHEEN_BAD_ARGUMENT);
+        assert_int_equal(sheen_query_model(session, request.model_id, NULL, &info, &error),
+                         SHEEN_BAD_ARGUMENT);
+        assert_int_equal(sheen_get_server(session, &server, &error), SHEEN_BAD_ARGUMENT);
+        request.size = sizeof(request);
+        assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
+        assert_non_null(strstr(error.text, "frame.size"));
+    }
+    sheen_close(session);
+    fake_finish(&fake);
+}
+
+/* The macros and the functions say the same. */
+static void defaults_are_the_same_both_ways(void **state)
+{
+    (void)state;
+    const struct sheen_request macro = SHEEN_REQUEST_DEFAULTS, made = sheen_request_defaults();
+    assert_memory_equal(&macro.camera, &made.camera, sizeof(macro.camera));
+    assert_memory_equal(&macro.lights, &made.lights, sizeof(macro.lights));
+    assert_memory_equal(&macro.lines, &made.lines, sizeof(macro.lines));
+    assert_memory_equal(&macro.show, &made.show, sizeof(macro.show));
+    assert_true(made.size == sizeof(made) && macro.size == sizeof(macro));
+    assert_true(made.width_px == 1280 && made.height_px == 720 && made.n_lights == 1);
+    assert_true(made.planes == SHEEN_PLANE_COLOUR && made.format == SHEEN_FORMAT_PNG);
+    const struct sheen_pattern pattern = sheen_pattern_defaults();
+    assert_true(pattern.count == 40 && pattern.duty == 0.5 && pattern.opacity == 1);
+    const struct sheen_connect_options options = sheen_connect_defaults();
+    assert_true(options.size == sizeof(options) && options.timeout_ms == 300000);
+    assert_int_equal(sheen_frame_defaults().size, sizeof(struct sheen_frame));
+    assert_int_equal(sheen_stats_defaults().size, sizeof(struct sheen_stats));
+    assert_int_equal(sheen_server_defaults().size, sizeof(struct sheen_server));
+    assert_int_equal(sheen_model_info_defaults().size, sizeof(struct sheen_model_info));
+    /* Of an older program: no byte more than it has. */
+    struct sheen_request older;
+    memset(&older, CANARY, sizeof(older));
+    sheen_request_init(&older, offsetof(struct sheen_request, camera));
+    assert_int_equal(older.width_px, 1280);
+    assert_canary(&older, offsetof(struct sheen_request, camera), sizeof(older));
+    sheen_request_init(NULL, sizeof(older));
+    sheen_request_init(&older, 15);
+    assert_int_equal(older.size, offsetof(struct sheen_request, camera));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_older_program_gives_and_gets_less),
+        cmocka_unit_test(answers_fill_what_the_program_has),
+        cmocka_unit_test(a_newer_program_asks_for_what_is_known),
+        cmocka_unit_test(a_size_that_was_never_set_is_refused),
+        cmocka_unit_test(defaults_are_the_same_both_ways),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
