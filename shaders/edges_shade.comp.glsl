@@ -6,6 +6,7 @@ layout(binding = 5, r32f) writeonly uniform image2D coverage;
 
 const int PIECES = 4;
 const int QUARTERS = 4, PARTS = QUARTERS * PIECES;
+const uint ALL_STRIPS = (1u << ROUNDING_PARTS) - 1u;
 const int SIDE = 2;  // SIDE x SIDE squares a quarter
 const int SQUARES = SIDE * SIDE;
 const float SIZE = 0.5 / float(SIDE);
@@ -19,13 +20,6 @@ vec2 square_of(vec2 middle, int i)
     return middle + (vec2(i % SIDE, i / SIDE) - 0.5 * float(SIDE - 1)) * SIZE;
 }
 
-// Shades the part of a piece that these many squares show, in one go, at their middle.
-Shown shade_part(Piece piece, ivec2 p, vec2 place, float n, Shown behind)
-{
-    float z = depth_at(piece, place), size = sqrt(n) * SIZE;
-    return scaled(shade_ray(piece.hit, pixel_offset(p) + place, place - piece.at, size, z, behind), n);
-}
-
 // Less of a square is not shaded.
 const float LEAST_SEEN = 1e-4;
 
@@ -34,25 +28,33 @@ const float MEETS_PX = 6.0;
 
 struct Around {
     Piece piece[PIECES];
-    vec3 beyond[PIECES];  // of pieces with a rounding: which way the other side of the crease faces
     int n;
     bool beside_empty;
 };
 
-// There is no rounding where the other side is not around.
-void find_beyond(inout Around around)
+Piece piece_at(Around around, int k)
 {
-    for (int k = 0; k < PIECES; k++) {
-        float nearest = MEETS_PX;
-        for (int j = 0; j < PIECES; j++) {
-            float off = off_paraboloid(around.piece[k].hit, around.piece[j].hit.x);
-            if (max(j, k) < around.n && j != k && off < nearest) {
-                nearest = off;
-                around.beyond[k] = around.piece[j].hit.n;
-            }
+    Piece piece = around.piece[0];
+    for (int i = 1; i < PIECES; i++)
+        if (k == i)
+            piece = around.piece[i];
+    return piece;
+}
+
+// Which way the other side of the crease faces where piece k is rounded towards; 0 where it is not around.
+vec3 beyond_crease(Around around, int k)
+{
+    vec3 beyond = vec3(0.0);
+    Hit hit = piece_at(around, k).hit;
+    float nearest = MEETS_PX;
+    for (int j = 0; j < PIECES; j++) {
+        float off = off_paraboloid(hit, around.piece[j].hit.x);
+        if (j < around.n && j != k && off < nearest) {
+            nearest = off;
+            beyond = around.piece[j].hit.n;
         }
-        around.piece[k].rounding = nearest < MEETS_PX ? around.piece[k].rounding : 0.0;
     }
+    return beyond;
 }
 
 // The distinct pieces of surface around.
@@ -78,22 +80,12 @@ Around pieces_around(ivec2 p)
         // A piece that would hide what the pixel's centre shows ends before it.
         if (i > 0 && depth_at(piece, vec2(0.0)) < ends && !end_at(piece, vec2(0.0)))
             continue;
-        around.piece[around.n++] = piece;
+        for (int k = 0; k < PIECES; k++)  // no store to a place that is computed: some devices keep such arrays in memory
+            if (k == around.n)
+                around.piece[k] = piece;
+        around.n++;
     }
-    find_beyond(around);
     return around;
-}
-
-Piece piece_at(Around around, int k, out vec3 beyond)
-{
-    Piece piece = around.piece[0];
-    beyond = around.beyond[0];
-    for (int i = 1; i < PIECES; i++)
-        if (k == i) {
-            piece = around.piece[i];
-            beyond = around.beyond[i];
-        }
-    return piece;
 }
 
 // How much of each piece the quarter's squares show, and the sum of these squares' middles. Of a square a piece
@@ -101,25 +93,26 @@ Piece piece_at(Around around, int k, out vec3 beyond)
 void share_quarter(Around around, int quarter, inout vec3 seen[PARTS])
 {
     vec2 middle = (vec2(quarter & 1, quarter >> 1) - 0.5) * 0.5;
-    vec4 part[PIECES], z[PIECES];
-    for (int k = 0; k < PIECES; k++) {
-        for (int i = 0; i < SQUARES; i++) {
-            z[k][i] = depth_at(around.piece[k], square_of(middle, i));
-            bool there = k < around.n && z[k][i] > 0.0;
-            part[k][i] = there ? piece_share(around.piece[k], square_of(middle, i), SIZE) : 0.0;
+    vec3 sum[PIECES] = vec3[PIECES](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    for (int i = 0; i < SQUARES; i++) {
+        vec2 square = square_of(middle, i);
+        vec4 part, z;  // of each piece
+        for (int k = 0; k < PIECES; k++) {
+            z[k] = depth_at(around.piece[k], square);
+            bool there = k < around.n && z[k] > 0.0;
+            part[k] = there ? piece_share(around.piece[k], square, SIZE) : 0.0;
+        }
+        for (int k = 0; k < PIECES; k++) {
+            float left = 1.0;
+            for (int j = 0; j < PIECES; j++)
+                if (j != k)
+                    left -= (j < k ? z[j] <= z[k] : z[j] < z[k]) ? part[j] : 0.0;
+            float own = min(part[k], max(left, 0.0));
+            sum[k] += vec3(own * square, own);
         }
     }
-    for (int k = 0; k < PIECES; k++) {
-        vec4 left = vec4(1.0);
-        for (int j = 0; j < PIECES; j++)
-            if (j != k)
-                left -= mix(vec4(0.0), part[j], j < k ? lessThanEqual(z[j], z[k]) : lessThan(z[j], z[k]));
-        vec4 own = min(part[k], max(left, 0.0));
-        vec3 sum = vec3(0.0, 0.0, dot(own, vec4(1.0)));
-        for (int i = 0; i < SQUARES; i++)
-            sum.xy += own[i] * square_of(middle, i);
-        seen[PIECES * quarter + k] = sum;
-    }
+    for (int k = 0; k < PIECES; k++)
+        seen[PIECES * quarter + k] = sum[k];
 }
 
 void main()
@@ -141,26 +134,40 @@ void main()
 
     // What of it is the rounding of a crease.
     vec4 rounded = vec4(0.0);
+    vec3 beyond[PIECES];
     uint creases = 0u;
-    for (int k = 0; k < PIECES; k++) {
-        float share = float(QUARTERS * SQUARES) * rounding_share(around.piece[k]);
-        bool is_crease = k < around.n && around.piece[k].rounding > 0.0 && squares[k] > 0.0;
-        rounded[k] = is_crease ? min(share, squares[k]) / squares[k] : 0.0;
-        creases |= uint(rounded[k] > 0.0) << k;
-    }
-
-    Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
-    vec3 beyond;
-    for (; left != 0u; left &= left - 1u) {  // a part each turn, of whatever piece has one left
-        int i = findLSB(left), k = i % PIECES;
-        vec3 own = seen[i];
-        Shown part = shade_part(piece_at(around, k, beyond), p, own.xy / own.z, own.z, behind);
-        sum = added(sum, scaled(part, 1.0 - rounded[k]));
-    }
+    for (int k = 0; k < PIECES; k++)
+        creases |= uint(k < around.n && around.piece[k].rounding > 0.0 && squares[k] > 0.0) << k;
     for (; creases != 0u; creases &= creases - 1u) {
         int k = findLSB(creases);
-        Piece piece = piece_at(around, k, beyond);
-        sum = added(sum, scaled(shade_rounding(piece, beyond, p, behind), rounded[k] * squares[k]));
+        vec3 other = beyond_crease(around, k);
+        float share = float(QUARTERS * SQUARES) * rounding_share(piece_at(around, k));
+        for (int i = 0; i < PIECES; i++)
+            if (i == k && other != vec3(0.0)) {
+                beyond[i] = other;
+                rounded[i] = min(share, squares[i]) / squares[i];
+                left |= rounded[i] > 0.0 ? ALL_STRIPS << PARTS + ROUNDING_PARTS * i : 0u;
+            }
+    }
+
+    // A part each turn, of whatever piece has one left, then the strips of roundings. All in one loop: the light's
+    // and the pattern's code is long, and stands here once.
+    Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
+    for (; left != 0u; left &= left - 1u) {
+        int i = findLSB(left), strip = i - PARTS;
+        bool is_strip = strip >= 0;
+        int k = is_strip ? strip / ROUNDING_PARTS : i % PIECES;
+        vec3 own = seen[min(i, PARTS - 1)];
+        Piece piece = piece_at(around, k);
+        vec2 place = is_strip ? rounding_place(piece) : own.xy / own.z, q = pixel_offset(p) + place;
+        float z = depth_at(piece, place);
+        vec3 side = normal_at(piece.hit, move_to(piece.hit, place - piece.at, q, z));
+        Strip part = is_strip ? rounding_strip(piece, side, beyond[k], strip % ROUNDING_PARTS)
+                              : Strip(mat2(sqrt(own.z) * SIZE), side, vec3(0.0));
+        Sample at = sample_over(q, part.sides, z, part.n, piece.hit.h, piece.hit.n);
+        at.dn[0] = is_strip ? part.turn : at.dn[0];
+        float n = is_strip ? rounded[k] * squares[k] / float(ROUNDING_PARTS) : own.z * (1.0 - rounded[k]);
+        sum = added(sum, scaled(lay_over(behind, at, meet(at), q), n));
     }
 
     // What is between pieces: nothing lies behind, unless something beside is empty.

@@ -20,25 +20,24 @@ vec3 rounding_normal(vec3 side, vec3 other, float t)
     return normalize(mix(side, other, 0.5 * (1.0 - t) * (1.0 - t)));
 }
 
-// Parts that lie along the crease, each averaged over all that its normal turns.
-Shown shade_rounding(Piece piece, vec3 other, ivec2 p, Shown behind)
+vec2 rounding_place(Piece piece)
 {
     vec2 g = normalize(piece.foot);
-    float part = piece.rounding / float(ROUNDING_PARTS);
-    vec2 place = clamp(g * (dot(g, piece.at + piece.foot) - 0.5 * piece.rounding), -0.5, 0.5);
-    vec2 q = pixel_offset(p) + place;
-    Hit hit = piece.hit;
-    float z = depth_at(piece, place);
-    vec3 move = move_to(hit, place - piece.at, q, z);
-    vec3 side = normal_at(hit, move);
-    Shown sum = Shown(vec4(0.0), 0.0);
-    for (int i = 0; i < ROUNDING_PARTS; i++) {
-        vec3 inner = rounding_normal(side, other, float(i) / float(ROUNDING_PARTS));
-        vec3 outer = rounding_normal(side, other, float(i + 1) / float(ROUNDING_PARTS));
-        Sample at = sample_over(q, mat2(g * part, vec2(-g.y, g.x)), z, normalize(inner + outer),
-                                hit.h, hit.n);
-        at.dn[0] = inner - outer;
-        sum = added(sum, lay_over(behind, at, meet(at), q));
-    }
-    return scaled(sum, 1.0 / float(ROUNDING_PARTS));
+    return clamp(g * (dot(g, piece.at + piece.foot) - 0.5 * piece.rounding), -0.5, 0.5);
+}
+
+// A part that lies along the crease, averaged over all that its normal turns.
+struct Strip {
+    mat2 sides;  // px
+    vec3 n;
+    vec3 turn;   // of the normal across it
+};
+
+Strip rounding_strip(Piece piece, vec3 side, vec3 other, int i)
+{
+    vec2 g = normalize(piece.foot);
+    vec3 inner = rounding_normal(side, other, float(i) / float(ROUNDING_PARTS));
+    vec3 outer = rounding_normal(side, other, float(i + 1) / float(ROUNDING_PARTS));
+    mat2 sides = mat2(g * (piece.rounding / float(ROUNDING_PARTS)), vec2(-g.y, g.x));
+    return Strip(sides, normalize(inner + outer), inner - outer);
 }
