@@ -180,6 +180,7 @@ void request_queue_frame(struct request *request)
 void request_drop_frame(struct request *request)
 {
     drop_polygons(request);
+    frame_work_finish(&request->frame_work);
     frame_finish(&request->frame);
     encoded_destroy(request->held);
     request->held = NULL;

@@ -1,4 +1,5 @@
 #include "server/frame/scene_convert.h"
+#include "server/scene/defaults.h"
 
 #include <math.h>
 #include <string.h>
@@ -59,7 +60,7 @@ static void to_camera(const sheen_Camera *from, const struct wire_subject *subje
     if (from->has_target)
         wire_to_vec3(&from->target, to->target);
     if (from->has_target && !(from->has_eye && from->has_up))
-        renderer_default_roll(up, to);
+        scene_default_roll(up, to);
     if (from->has_fov_deg)
         to->fov_deg = from->fov_deg;
     if (!from->has_ortho_height)
@@ -103,7 +104,7 @@ sheen_UpSource wire_model_up(const sheen_Render *render, const struct wire_subje
         return sheen_UpSource_UP_GIVEN;
     }
     if (subject->up == CAGE_UP_UNSAID) {
-        renderer_guess_up(subject->tables->box_min, subject->tables->box_max, up);
+        scene_guess_up(subject->tables->box_min, subject->tables->box_max, up);
         return sheen_UpSource_UP_GUESSED;
     }
     up[0] = subject->up == CAGE_UP_X;
@@ -128,12 +129,12 @@ void wire_to_frame_request(const sheen_Render *render, const struct wire_subject
     };
     double up[3];
     wire_model_up(render, subject, up);
-    renderer_default_camera(subject->tables, up, (enum default_view)asked->view, render->width_px,
-                            render->height_px, &request->camera);
+    scene_default_camera(subject->tables, up, (enum default_view)asked->view, render->width_px,
+                         render->height_px, &request->camera);
     to_camera(asked, subject, up, &request->camera);
     if (asked->has_zoom)
-        renderer_zoom(&request->camera, render->width_px, render->height_px, asked->zoom,
-                      asked->zoom_x, asked->zoom_y);
+        scene_zoom(&request->camera, render->width_px, render->height_px, asked->zoom,
+                   asked->zoom_x, asked->zoom_y);
     wire_to_lines(&render->lines, up, &request->lines);
     for (uint32_t i = 0; i < request->n_lights; i++)
         wire_to_light(render->lights_count ? &render->lights[i] : &default_light, subject, up,

@@ -5,8 +5,9 @@
 
 #include "protocol/message.h"
 #include "server/base/error.h"
-#include "server/render/renderer.h"
 #include "server/frame/scheduler.h"
+#include "server/scene/frame_request.h"
+#include "server/surface/tables.h"
 
 /* The model that a request is about, for what the request leaves out. */
 struct wire_subject {

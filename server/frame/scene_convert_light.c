@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "server/frame/scene_convert.h"
+#include "server/scene/defaults.h"
 
 #define SAME(a, b) ((int)(a) == (int)(b))
 _Static_assert(SAME(PATTERN_IMAGE, sheen_PatternKind_PATTERN_IMAGE) &&
@@ -87,7 +88,7 @@ void wire_to_light(const sheen_Light *from, const struct wire_subject *subject, 
         wire_to_vec3(&from->u, to->u);
         wire_to_vec3(&from->v, to->v);
     } else {
-        renderer_default_light(subject->tables->box_min, subject->tables->box_max, up, to);
+        scene_default_light(subject->tables->box_min, subject->tables->box_max, up, to);
     }
     to_pattern(from->has_pattern ? &from->pattern : &default_pattern, &to->pattern);
 }

@@ -6,7 +6,7 @@
 
 #include "protocol/codec.h"
 #include "protocol/message.h"
-#include "server/render/renderer.h"
+#include "server/scene/frame.h"
 #include "server/output/jpeg.h"
 #include "server/threads/pool.h"
 #include "server/threads/workers.h"

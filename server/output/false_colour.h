@@ -14,7 +14,7 @@
 #define SHEEN_OUTPUT_FALSE_COLOUR_H
 
 #include "protocol/message.h"
-#include "server/render/renderer.h"
+#include "server/scene/frame.h"
 #include "server/threads/workers.h"
 
 /* The least and the greatest value of a scale, of all pixels whose centre has one. */

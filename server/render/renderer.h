@@ -10,29 +10,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/base/error.h"
-#include "server/scene/scene.h"
-#include "server/image/image.h"
-#include "server/surface/tables.h"
 #include "server/base/block_cache.h"
+#include "server/base/error.h"
+#include "server/image/image.h"
+#include "server/scene/frame.h"
+#include "server/surface/tables.h"
 
 struct renderer;
 struct renderer_model;    /* one cage's tables on the GPU */
 struct renderer_image;    /* one light image on the GPU */
 struct renderer_polygons; /* a model's polygons of one level, in main memory */
-
-/* Planes a frame can carry, one bit each. */
-enum renderer_plane {
-    PLANE_COLOUR = 1 << 0,       /* uint8_t[4] RGBA, straight alpha */
-    PLANE_POSITION = 1 << 1,     /* float[3] world, NaN where nothing is hit */
-    PLANE_NORMAL = 1 << 2,       /* float[3] unit, world, along the face winding; NaN where none */
-    PLANE_PTEX = 1 << 3,         /* uint32 face (0xffffffff: none), float u, float v: 12 bytes */
-    PLANE_LIGHT = 1 << 4,        /* float s, t on the first light; NaN where it is not met */
-    PLANE_CURVATURE = 1 << 5,    /* float k.min, k.max, 1/unit, signed against N; NaN where none */
-    PLANE_LIGHT_CHANGE = 1 << 6, /* float ds/dx ds/dy dt/dx dt/dy, a pixel; NaN as PLANE_LIGHT */
-    PLANE_COVERAGE = 1 << 7,     /* float share of the pixel that shows surface, [0, 1] */
-};
-#define PLANE_COUNT 8
 
 struct renderer_options {
     const char *device; /* "auto", "software" or a number: the n-th EGL device */
@@ -55,44 +42,6 @@ struct renderer_info {
     bool timed_by_device; /* frame_times are its own, by timer queries */
     uint32_t max_width_px, max_height_px;
     size_t max_texels; /* per buffer texture */
-};
-
-struct frame_request {
-    uint32_t width_px, height_px;
-    struct camera camera;
-    struct lines lines;
-    struct light lights[MAX_LIGHTS]; /* the first lies over the second, and so on */
-    uint32_t n_lights;               /* 1 to MAX_LIGHTS */
-    float miss[4];                   /* colour where no light is met */
-    float empty[4];                  /* colour where no surface is hit */
-    float base[4];                   /* of the surface, where patterns are transparent */
-    bool unfiltered;                 /* one sample a pixel, for comparison */
-    bool count_light;                /* say in frame.met_px where lights are met */
-    uint32_t planes;                 /* enum renderer_plane bits to read back */
-    struct surface surface;
-};
-
-/* What each stage took of the device's time, without what the processor did meanwhile, where
- * renderer_info says timed_by_device; else by the clock, waiting for the device after each.
- * Readback: by the clock. */
-struct frame_times {
-    uint64_t visibility_us, evaluate_us, shade_us, readback_us;
-};
-
-/* One finished frame. Plane pointers are rows top first, tightly packed, NULL when not asked for;
- * they belong to the caller, who gives them back with frame_finish(). */
-struct frame {
-    uint32_t width_px, height_px;
-    void *plane[PLANE_COUNT]; /* indexed by bit number */
-    struct frame_times times;
-    bool shows_surface; /* false: no pixel shows any of the model */
-    /* With frame_request.count_light: how many pixels show surface at their centre, and on how many
-     * of these the reflected ray meets a light. They are samples for a share, met_px / seen_px: all
-     * pixels of tiles of fewer than 2^18, one in eight of larger tiles; and where no light can be
-     * missed, nothing is counted and both get 1 for each tile that shows surface. */
-    uint64_t seen_px, met_px;
-    struct block_cache *block_cache; /* the renderer's: where the planes come from */
-    struct canvas *canvas; /* the renderer's, between two steps; NULL once the frame is whole */
 };
 
 /* EGL by device enumeration, surfaceless, OpenGL 4.5 core. NULL with ERROR_DEVICE when there is
@@ -142,10 +91,11 @@ struct frame_work {
 
     uint64_t serial; /* the renderer's own from here on */
     uint32_t tile_width, tile_height;
-    uint32_t x, y;       /* of the next tile */
-    unsigned stage;      /* of polygons: what comes next of it */
-    size_t part;         /* and from where */
-    unsigned n_programs; /* made for it so far */
+    uint32_t x, y;         /* of the next tile */
+    unsigned stage;        /* of polygons: what comes next of it */
+    size_t part;           /* and from where */
+    unsigned n_programs;   /* made for it so far */
+    struct canvas *canvas; /* what is drawn of its tile; NULL: nothing, or the frame is whole */
 };
 
 /* So many frames of polygons may be under way, begun and neither whole nor given up; one more fails
@@ -165,8 +115,8 @@ enum frame_step {
 };
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and
- * makes its planes. A frame that is given up between two steps needs frame_finish() alone, on any
- * thread, also when the renderer has gone. */
+ * makes its planes. A frame that is given up between two steps needs frame_work_finish() and
+ * frame_finish(). */
 bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct frame *frame,
                     struct error *error);
 /* Draws the next tile, or the next part of one, or makes ready for it.
@@ -187,10 +137,13 @@ bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct f
 enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error);
 
+/* Gives back what the device has set aside for the frame's next step. Any thread, also when the
+ * renderer has gone; needed only by a frame that is given up, safe after any step. */
+void frame_work_finish(struct frame_work *work);
+
 /* Begin and all steps at once. */
 bool renderer_render(struct renderer *renderer, struct renderer_model *model,
                      const struct frame_request *request, struct frame *frame, struct error *error);
-void frame_finish(struct frame *frame);
 
 /* What the polygons of a model at a level (RANGE_LEVEL) take on the device, kept from their first
  * frame until the model goes. 0: they are too many, and their frame fails with the words for it.
@@ -207,41 +160,5 @@ struct renderer_polygons *renderer_polygons_create(const struct limit_tables *ta
                                                    uint32_t level, const struct frame_watch *watch,
                                                    struct error *error);
 void renderer_polygons_destroy(struct renderer_polygons *polygons); /* NULL is safe */
-
-/* Bytes of one pixel of a plane (a single bit). */
-size_t renderer_plane_bytes(enum renderer_plane plane);
-
-/* Which way is up where no file says it: y when the box is thinner in y than in z by more than 1 %,
- * else z. */
-void renderer_guess_up(const double box_min[3], const double box_max[3], double up[3]);
-
-/* A camera that frames the model: 35 degrees, 4 % of the picture free at the two opposite edges
- * that it comes nearest to. `up` says where above is, of any length; NULL: guessed. */
-void renderer_default_camera(const struct limit_tables *tables, const double up[3],
-                             enum default_view view, uint32_t width_px, uint32_t height_px,
-                             struct camera *camera);
-
-/* Sets camera->up for a model whose up is `up`, of any length but 0; eye and target must be set.
- * Where the camera does not look along it (within 1e-6 rad): to `up` itself. Where it does: to the
- * horizontal direction that the front view looks along when the camera looks down, to the opposite
- * one when it looks up. */
-void renderer_default_roll(const double up[3], struct camera *camera);
-
-/* Looks closer at a place of the picture: (x, y) is (0, 0) at its top left and (1, 1) at its bottom
- * right (RANGE_ZOOM_AT) and comes to lie in its middle; `factor` is RANGE_ZOOM. A perspective
- * camera's eye stays and its target moves, so that lines stay where they are on the surface; an
- * orthographic camera's eye and target both move across. fov_deg and ortho_height both become
- * smaller, whichever the camera uses, and may leave their ranges, which is for the caller to check.
- */
-void renderer_zoom(struct camera *camera, uint32_t width_px, uint32_t height_px, double factor,
-                   double x, double y);
-
-/* Sets centre, u and v for the light's kind, by the box and `up` (NULL: guessed) alone, so that
- * lines stay where they are whoever looks. Lines run along the longer of the model's horizontal
- * sides. A tunnel is about that direction, three times as wide as the box: every ray from the model
- * meets it but one that runs along its axis. A sphere is that tunnel, infinitely wide; rectangle
- * and plane hang over the model, seen from below where one-sided. */
-void renderer_default_light(const double box_min[3], const double box_max[3], const double up[3],
-                            struct light *light);
 
 #endif

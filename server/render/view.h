@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "server/render/renderer.h"
+#include "server/scene/scene.h"
 
 /* A rectangle of the picture, px. */
 struct tile {

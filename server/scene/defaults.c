@@ -1,8 +1,9 @@
 /* The view and the light of a request that names none. */
-#include "server/render/renderer.h"
+#include "server/scene/defaults.h"
 
 #include <math.h>
 
+#include "server/surface/tables.h"
 #include "server/surface/vec.h"
 
 static const double DEGREE = 3.14159265358979323846 / 180;
@@ -82,7 +83,7 @@ static void frame_model(const struct limit_tables *tables, struct vec forward, s
 /* Where no file says it: Y up is most modellers' convention, Z up that of CAD, and a body is rarely
  * thinner along a horizontal axis than along its up axis, so the thinner of the two is up: clearly
  * thinner, so that rounding does not turn a model. */
-void renderer_guess_up(const double box_min[3], const double box_max[3], double up[3])
+void scene_guess_up(const double box_min[3], const double box_max[3], double up[3])
 {
     bool z_up = 0.99 * (box_max[2] - box_min[2]) <= box_max[1] - box_min[1];
     put(z_up ? (struct vec){0, 0, 1} : (struct vec){0, 1, 0}, up);
@@ -114,7 +115,7 @@ static struct vec upward_of(const double box_min[3], const double box_max[3], co
 {
     double guessed[3];
     if (!up)
-        renderer_guess_up(box_min, box_max, guessed);
+        scene_guess_up(box_min, box_max, guessed);
     return vec_unit(get(up ? up : guessed));
 }
 
@@ -151,9 +152,9 @@ static struct vec standpoint(enum default_view view, const double box_min[3],
     return vec_mad(from, cos(elevation) * sin(azimuth), e2);
 }
 
-void renderer_default_camera(const struct limit_tables *tables, const double up[3],
-                             enum default_view view, uint32_t width_px, uint32_t height_px,
-                             struct camera *camera)
+void scene_default_camera(const struct limit_tables *tables, const double up[3],
+                          enum default_view view, uint32_t width_px, uint32_t height_px,
+                          struct camera *camera)
 {
     const double *box_min = tables->box_min, *box_max = tables->box_max;
     double fov_deg = 35, margin = 0.92;
@@ -163,11 +164,11 @@ void renderer_default_camera(const struct limit_tables *tables, const double up[
     *camera = (struct camera){.kind = CAMERA_PERSPECTIVE, .fov_deg = fov_deg};
     put(up ? get(up) : upward, camera->up);
     put(vec_scale(from, -1), camera->target);
-    renderer_default_roll(camera->up, camera);
+    scene_default_roll(camera->up, camera);
     frame_model(tables, vec_scale(from, -1), get(camera->up), tan_x, tan_y, camera);
 }
 
-void renderer_default_roll(const double up[3], struct camera *camera)
+void scene_default_roll(const double up[3], struct camera *camera)
 {
     struct vec view = vec_unit(vec_sub(get(camera->target), get(camera->eye)));
     struct vec upward = vec_unit(get(up));
@@ -176,8 +177,8 @@ void renderer_default_roll(const double up[3], struct camera *camera)
     put(!along ? get(up) : vec_dot(view, upward) < 0 ? ahead : vec_scale(ahead, -1), camera->up);
 }
 
-void renderer_zoom(struct camera *camera, uint32_t width_px, uint32_t height_px, double factor,
-                   double x, double y)
+void scene_zoom(struct camera *camera, uint32_t width_px, uint32_t height_px, double factor,
+                double x, double y)
 {
     bool ortho = camera->kind == CAMERA_ORTHOGRAPHIC;
     struct vec eye = get(camera->eye), view = vec_sub(get(camera->target), eye);
@@ -194,8 +195,8 @@ void renderer_zoom(struct camera *camera, uint32_t width_px, uint32_t height_px,
     camera->fov_deg = 2 * atan(tangent / factor) / DEGREE;
 }
 
-void renderer_default_light(const double box_min[3], const double box_max[3], const double up[3],
-                            struct light *light)
+void scene_default_light(const double box_min[3], const double box_max[3], const double up[3],
+                         struct light *light)
 {
     struct vec upward = upward_of(box_min, box_max, up), middle = box_middle(box_min, box_max);
     struct vec e1 = horizontal_axis(upward), e2 = vec_cross(upward, e1);

@@ -1,5 +1,4 @@
-/* Is a frame request one that can be rendered? */
-#include "server/render/gl/gpu.h"
+#include "server/scene/request_check.h"
 
 #include <math.h>
 
@@ -156,14 +155,14 @@ static bool check_planes(const struct frame_request *request, struct error *erro
                      "planes: coverage is known for the exact surface, filtered, only");
 }
 
-bool request_check(const struct renderer_info *info, const struct frame_request *request,
-                   struct error *error)
+bool request_check(const struct frame_request *request, uint32_t max_width_px,
+                   uint32_t max_height_px, struct error *error)
 {
-    if (request->width_px < 1 || request->height_px < 1 || request->width_px > info->max_width_px ||
-        request->height_px > info->max_height_px)
-        return error_set(
-            error, ERROR_REQUEST, "size %ux%u is not in 1x1 to %ux%u, the limit of this device",
-            request->width_px, request->height_px, info->max_width_px, info->max_height_px);
+    if (request->width_px < 1 || request->height_px < 1 || request->width_px > max_width_px ||
+        request->height_px > max_height_px)
+        return error_set(error, ERROR_REQUEST,
+                         "size %ux%u is not in 1x1 to %ux%u, the limit of this device",
+                         request->width_px, request->height_px, max_width_px, max_height_px);
     if (request->n_lights < 1)
         return error_set(error, ERROR_REQUEST, "no light: there must be one");
     if (!check_number(request->n_lights, RANGE_LIGHTS, "the number of lights", error))

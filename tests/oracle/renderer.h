@@ -9,6 +9,7 @@
 #define line_eye_kind renderer_line_eye_kind
 extern "C" {
 #include "server/render/renderer.h"
+#include "server/scene/defaults.h"
 }
 #undef line_family
 #undef line_eye_kind

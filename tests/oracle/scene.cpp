@@ -78,8 +78,8 @@ frame_request scene::request(uint32_t width_px, uint32_t height_px) const
         pattern.foreground[i] = 1;
     pattern.background[3] = 1;
     request.planes = PLANE_COLOUR;
-    renderer_default_camera(&tables, nullptr, VIEW_AROUND, width_px, height_px, &request.camera);
-    renderer_default_light(tables.box_min, tables.box_max, nullptr, &request.lights[0]);
+    scene_default_camera(&tables, nullptr, VIEW_AROUND, width_px, height_px, &request.camera);
+    scene_default_light(tables.box_min, tables.box_max, nullptr, &request.lights[0]);
     return request;
 }
 

@@ -3,6 +3,7 @@
 #define SHEEN_TESTS_POLYGON_SCENE_H
 
 #include "server/render/renderer.h"
+#include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
 
 struct scene {
@@ -46,9 +47,9 @@ static inline struct frame_request request_for(const struct scene *scene)
         .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_CURVATURE,
     };
     const struct limit_tables *tables = &scene->tables;
-    renderer_default_camera(tables, NULL, VIEW_AROUND, request.width_px, request.height_px,
-                            &request.camera);
-    renderer_default_light(tables->box_min, tables->box_max, NULL, &request.lights[0]);
+    scene_default_camera(tables, NULL, VIEW_AROUND, request.width_px, request.height_px,
+                         &request.camera);
+    scene_default_light(tables->box_min, tables->box_max, NULL, &request.lights[0]);
     return request;
 }
 
@@ -58,7 +59,7 @@ static inline void assert_same(const struct frame *a, const struct frame *b)
         if (a->plane[p])
             assert_memory_equal(a->plane[p], b->plane[p],
                                 (size_t)a->width_px * a->height_px *
-                                    renderer_plane_bytes((enum renderer_plane)(1 << p)));
+                                    frame_plane_bytes((enum frame_plane)(1 << p)));
 }
 
 #endif

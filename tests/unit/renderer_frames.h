@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/render/renderer.h"
+#include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
 
 static inline struct renderer *open_renderer(size_t max_texels)
@@ -46,8 +47,8 @@ static inline struct frame_request request_for(const struct limit_tables *tables
                                 .background = {0, 0, 0, 1}}}},
         .planes = PLANE_COLOUR | PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_LIGHT,
     };
-    renderer_default_camera(tables, NULL, VIEW_AROUND, width, height, &request.camera);
-    renderer_default_light(tables->box_min, tables->box_max, NULL, &request.lights[0]);
+    scene_default_camera(tables, NULL, VIEW_AROUND, width, height, &request.camera);
+    scene_default_light(tables->box_min, tables->box_max, NULL, &request.lights[0]);
     return request;
 }
 
@@ -76,7 +77,7 @@ static inline void assert_same_frames(const struct frame *a, const struct frame 
     size_t pixels = (size_t)a->width_px * a->height_px;
     for (int p = 0; p < PLANE_COUNT; p++) {
         assert_int_equal(a->plane[p] != NULL, b->plane[p] != NULL);
-        size_t bytes = pixels * renderer_plane_bytes((enum renderer_plane)(1 << p));
+        size_t bytes = pixels * frame_plane_bytes((enum frame_plane)(1 << p));
         if (a->plane[p] && memcmp(a->plane[p], b->plane[p], bytes) != 0)
             fail_msg("plane %d differs", p);
     }

@@ -150,7 +150,7 @@ static void test_wireframe(void **state)
         for (int p = 1; p < PLANE_COUNT; p++)
             if (wire.plane[p])
                 assert_memory_equal(wire.plane[p], polygon.plane[p],
-                                    pixels * renderer_plane_bytes((enum renderer_plane)(1 << p)));
+                                    pixels * frame_plane_bytes((enum frame_plane)(1 << p)));
         for (size_t k = 0; k < pixels; k++) {
             const uint8_t *rgba = (const uint8_t *)wire.plane[0] + 4 * k;
             if (face_of(&wire, k) == UINT32_MAX) {

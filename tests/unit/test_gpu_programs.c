@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "server/render/gl/gpu.h"
+#include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
 
 struct scene {
@@ -40,8 +41,8 @@ static void scene_init(struct scene *scene, const char *text)
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
     assert_non_null(scene->model);
     const struct limit_tables *tables = &scene->tables;
-    renderer_default_camera(tables, NULL, VIEW_AROUND, 48, 40, &scene->request.camera);
-    renderer_default_light(tables->box_min, tables->box_max, NULL, &scene->request.lights[0]);
+    scene_default_camera(tables, NULL, VIEW_AROUND, 48, 40, &scene->request.camera);
+    scene_default_light(tables->box_min, tables->box_max, NULL, &scene->request.lights[0]);
 }
 
 static void scene_finish(struct scene *scene)

@@ -63,8 +63,7 @@ static struct frame_request request_of(const struct scene *scene, uint32_t width
     for (uint32_t i = 0; i < n_lights; i++) {
         request.lights[i] = request.lights[0];
         request.lights[i].kind = kinds[i];
-        renderer_default_light(scene->tables.box_min, scene->tables.box_max, NULL,
-                               &request.lights[i]);
+        scene_default_light(scene->tables.box_min, scene->tables.box_max, NULL, &request.lights[i]);
     }
     return request;
 }

@@ -60,6 +60,7 @@ static void draw(struct scene *scene, struct drawn *drawn, const struct frame_re
 
 static void finish(struct drawn *drawn)
 {
+    frame_work_finish(&drawn->work);
     frame_finish(&drawn->frame);
     renderer_polygons_destroy(drawn->polygons);
 }
@@ -188,7 +189,7 @@ static void test_given_up(void **state)
     begin(&scene, &late, &request, 0);
     assert_int_equal(step(&scene, &late), FRAME_MORE);
     close_scene(&scene);
-    assert_non_null(late.frame.canvas);
+    assert_non_null(late.work.canvas);
     finish(&late); /* as at the daemon's end */
 }
 

@@ -137,7 +137,7 @@ static void test_shading(void **state)
         key.pattern = (uint8_t)(at % (PATTERN_DISTANCE + 1)), at /= PATTERN_DISTANCE + 1;
         key.light = (uint8_t)(at % (LIGHT_SPHERE + 1)), at /= LIGHT_SPHERE + 1;
         key.family = (uint8_t)at;
-        if (key.light > 0 && shade_is_at_infinity((enum line_family)key.family))
+        if (key.light > 0 && family_is_at_infinity((enum line_family)key.family))
             continue;
         char name[PATH_BYTES / 2];
         snprintf(name, sizeof name, "shade-%d-%d-%d-%d-%d", key.family, key.light, key.pattern,

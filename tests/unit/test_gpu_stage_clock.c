@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "server/render/renderer.h"
+#include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
 
 static const char CUBE[] = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n"
@@ -42,8 +43,8 @@ static void scene_init(struct scene *scene, bool device_times)
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
     assert_non_null(scene->model);
     const struct limit_tables *tables = &scene->tables;
-    renderer_default_camera(tables, NULL, VIEW_AROUND, 640, 480, &scene->request.camera);
-    renderer_default_light(tables->box_min, tables->box_max, NULL, &scene->request.lights[0]);
+    scene_default_camera(tables, NULL, VIEW_AROUND, 640, 480, &scene->request.camera);
+    scene_default_light(tables->box_min, tables->box_max, NULL, &scene->request.lights[0]);
 }
 
 static void scene_finish(struct scene *scene)

@@ -79,7 +79,7 @@ static double largest_difference(const struct frame *a, const struct frame *b, i
 {
     enum { MOST_ALONE = 6 };
     size_t n = (size_t)a->width_px * a->height_px *
-               renderer_plane_bytes((enum renderer_plane)(1 << plane)) / sizeof(float);
+               frame_plane_bytes((enum frame_plane)(1 << plane)) / sizeof(float);
     const float *x = a->plane[plane], *y = b->plane[plane];
     double largest = 0;
     size_t n_alone = 0;

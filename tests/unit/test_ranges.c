@@ -12,7 +12,7 @@
 #include "protocol/limits.h"
 #include "protocol/message.h"
 #include "protocol/ranges.h"
-#include "server/render/gl/gpu.h"
+#include "server/scene/request_check.h"
 #include "server/frame/scene_convert.h"
 #include "tests/unit/good_render.h"
 
@@ -274,14 +274,12 @@ static const struct wire_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
 
 static bool renderer_takes(const struct field *field, double value)
 {
-    const struct renderer_info info = {.max_width_px = PROTOCOL_MAX_SIZE_PX,
-                                       .max_height_px = PROTOCOL_MAX_SIZE_PX};
     struct frame_request frame;
     struct error error = {0};
     wire_to_frame_request(&GOOD, &SUBJECT, &frame);
-    assert_true(request_check(&info, &frame, &error));
+    assert_true(request_check(&frame, PROTOCOL_MAX_SIZE_PX, PROTOCOL_MAX_SIZE_PX, &error));
     field->frame(&frame, value);
-    return request_check(&info, &frame, &error);
+    return request_check(&frame, PROTOCOL_MAX_SIZE_PX, PROTOCOL_MAX_SIZE_PX, &error);
 }
 
 static void all_say(const struct field *field, double value, bool takes)
@@ -345,7 +343,6 @@ static void every_range_is_tried(void **state)
 static void directions_agree(void **state)
 {
     (void)state;
-    const struct renderer_info info = {.max_width_px = 16384, .max_height_px = 16384};
     char text[MESSAGE_TEXT_BYTES];
     unsigned n_refused = 0, n_taken = 0;
     srand(7);
@@ -374,7 +371,7 @@ static void directions_agree(void **state)
         wire_to_frame_request(&render, &SUBJECT, &frame);
         wire_to_vec3(&render.camera.up, frame.camera.up); /* where it is parallel, too */
         bool is_taken = message_check_render(&render, 16384, 16384, text);
-        if (request_check(&info, &frame, &error) != is_taken)
+        if (request_check(&frame, 16384, 16384, &error) != is_taken)
             fail_msg("case %d: message %d '%s', renderer '%s'", i, is_taken, text, error.text);
         n_taken += is_taken;
         n_refused += !is_taken;

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "server/render/patch_grids.h"
-#include "server/render/renderer.h"
+#include "server/scene/defaults.h"
 #include "server/surface/evaluate.h"
 #include "tests/unit/cage_tables.h"
 
@@ -47,7 +47,7 @@ static void look(struct scene *scene, bool orthographic, double closer)
 {
     struct camera camera;
     const struct limit_tables *t = &scene->tables;
-    renderer_default_camera(t, NULL, VIEW_AROUND, WIDTH, HEIGHT, &camera);
+    scene_default_camera(t, NULL, VIEW_AROUND, WIDTH, HEIGHT, &camera);
     for (int i = 0; i < 3; i++) {
         double away = (camera.eye[i] - camera.target[i]) / closer;
         camera.target[i] = 0.5 * (t->box_min[i] + t->box_max[i]);

@@ -11,6 +11,7 @@
 
 #include "server/output/metadata.h"
 #include "server/frame/scene_convert.h"
+#include "server/scene/defaults.h"
 
 static const struct limit_tables TABLES = {.box_max = {4, 2, 1}};
 static const struct wire_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
@@ -100,7 +101,7 @@ static void test_cameras_in_part(void **state)
     const struct camera whole = camera_for(NULL);
     const sheen_Camera turned = {.has_up = true, .up = {1, 0, 0}};
     struct camera camera = camera_for(&turned), framed;
-    renderer_default_camera(&TABLES, (const double[]){1, 0, 0}, VIEW_AROUND, 640, 480, &framed);
+    scene_default_camera(&TABLES, (const double[]){1, 0, 0}, VIEW_AROUND, 640, 480, &framed);
     assert_memory_equal(camera.eye, framed.eye, sizeof camera.eye);
     assert_memory_equal(camera.target, framed.target, sizeof camera.target);
     assert_true(camera.up[0] == 1 && camera.fov_deg == whole.fov_deg);

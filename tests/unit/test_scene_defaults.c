@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "server/render/view.h"
+#include "server/scene/defaults.h"
 #include "server/surface/evaluate.h"
 #include "server/surface/support.h"
 #include "tests/unit/cage_tables.h"
@@ -22,7 +23,7 @@ static void frame_box(const double box_min[3], const double box_max[3], const do
     struct limit_tables tables = {0};
     memcpy(tables.box_min, box_min, sizeof tables.box_min);
     memcpy(tables.box_max, box_max, sizeof tables.box_max);
-    renderer_default_camera(&tables, up, VIEW_AROUND, width_px, height_px, camera);
+    scene_default_camera(&tables, up, VIEW_AROUND, width_px, height_px, camera);
 }
 
 static struct reach reach_of(const double box_min[3], const double box_max[3], const double up[3],
@@ -117,12 +118,12 @@ static void test_a_near_tie_stays_z_up(void **state)
     static const double zero[3] = {0, 0, 0};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         double up[3];
-        renderer_guess_up(zero, (const double[]){1, cases[i].depth, 1}, up);
+        scene_guess_up(zero, (const double[]){1, cases[i].depth, 1}, up);
         for (int k = 0; k < 3; k++)
             assert_true(up[k] == (k == cases[i].up));
     }
     double up[3];
-    renderer_guess_up(zero, zero, up);
+    scene_guess_up(zero, zero, up);
     assert_true(up[2] == 1);
 }
 
@@ -155,7 +156,7 @@ static double fill_of(const struct limit_tables *tables, enum default_view view,
 {
     struct camera camera;
     struct view seen_by;
-    renderer_default_camera(tables, NULL, view, 640, 480, &camera);
+    scene_default_camera(tables, NULL, view, 640, 480, &camera);
     view_init(&seen_by, &camera, 640, 480, tables->hull_min, tables->hull_max);
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (size_t i = 0; i < n; i++) {
@@ -234,7 +235,7 @@ static void test_the_tunnel(void **state)
             high[k] = low[k] + cases[i].size[k];
         }
         up[cases[i].up] = 5;
-        renderer_default_light(low, high, up, &light);
+        scene_default_light(low, high, up, &light);
         double tunnel = vec_length(vec_of(light.u));
         for (int k = 0; k < 3; k++) {
             assert_true(fabs(light.centre[k] - 0.5 * (low[k] + high[k])) < 1e-12);
@@ -253,7 +254,7 @@ static void test_flat_lights_face_the_model(void **state)
     for (size_t n = 0; n < sizeof ups / sizeof ups[0]; n++)
         for (enum light_kind kind = LIGHT_RECTANGLE; kind <= LIGHT_PLANE; kind++) {
             struct light light = {.kind = kind};
-            renderer_default_light(low, high, ups[n], &light);
+            scene_default_light(low, high, ups[n], &light);
             struct vec m = vec_unit(vec_cross(vec_of(light.u), vec_of(light.v)));
             struct vec up = vec_unit(vec_of(ups[n]));
             struct vec middle = {2, 1, 0.5}, above = vec_sub(vec_of(light.centre), middle);

@@ -10,11 +10,6 @@ bool stage_edges_init(struct renderer *r, struct error *error)
     return r->edges_doubt;
 }
 
-bool edges_wanted(const struct frame_request *request)
-{
-    return !request->unfiltered && request->surface.kind == SURFACE_EXACT;
-}
-
 void stage_edges(struct renderer *r, const struct tile *shaded)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};

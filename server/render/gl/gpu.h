@@ -351,8 +351,6 @@ void stage_edges_doubt(struct renderer *renderer);
 /* After it: the rays of the pixels that show the rounding of a crease, against the surface. */
 void stage_rounded(struct renderer *renderer, const struct renderer_model *model,
                    const struct table_programs *programs);
-/* Whether it does. */
-bool edges_wanted(const struct frame_request *request);
 /* Stages 1 and 2 of polygons: the same planes from a mesh that is whole. Empty, then slice by
  * slice. */
 bool stage_polygons_begin(struct renderer *renderer, const struct tile *tile, struct error *error);
@@ -415,7 +413,7 @@ struct tile tile_within(const struct tile *part, const struct tile *place);
 struct canvas_set *canvases_create(void);
 void canvases_release(struct canvas_set *set);
 /* Takes into use what the frame has drawn of its tile, if anything. */
-void canvas_resume(struct renderer *renderer, struct frame_work *work, struct frame *frame);
+void canvas_resume(struct renderer *renderer, struct frame_work *work);
 /* The next part of a tile of polygons, as much as a step may take. *is_whole: it was the last, and
  * stands in the frame. */
 bool draw_polygons(struct renderer *renderer, const struct renderer_model *model,
@@ -423,9 +421,9 @@ bool draw_polygons(struct renderer *renderer, const struct renderer_model *model
                    struct frame *frame, bool *is_whole, struct error *error);
 /* Keeps what is drawn until the frame's next step: others may use the planes meanwhile. */
 bool canvas_set_aside(struct renderer *renderer, const struct renderer_model *model,
-                      const struct frame_work *work, struct frame *frame, struct error *error);
+                      struct frame_work *work, struct error *error);
 /* The frame needs it no more. Any thread. */
-void canvas_give_back(struct frame *frame);
+void canvas_give_back(struct frame_work *work);
 /* Is a frame under way that is drawn of this mesh? */
 bool canvas_needs(const struct renderer *renderer, const struct polygon_mesh *mesh);
 
@@ -452,9 +450,5 @@ bool watch_check(const struct frame_watch *watch, struct error *error);
 
 /* Turns a pending GL error into ERROR_DEVICE; `doing` names what was tried. */
 bool gpu_check(const char *doing, struct error *error);
-
-/* ERROR_REQUEST naming the field and its range, or true. */
-bool request_check(const struct renderer_info *info, const struct frame_request *request,
-                   struct error *error);
 
 #endif

@@ -23,7 +23,7 @@ bool is_kept(const struct kept *kept, const struct renderer_model *model,
            kept->surface.kind == request->surface.kind &&
            kept->surface.level == request->surface.level &&
            (kept->ptex || !(request->planes & PLANE_PTEX)) &&
-           (kept->edges || !edges_wanted(request));
+           (kept->edges || !request_has_coverage(request));
 }
 
 void planes_swap(struct renderer *r, struct planes *others)
@@ -162,7 +162,7 @@ static struct kept view_of(const struct renderer_model *model, const struct fram
         .camera = request->camera,
         .surface = request->surface,
         .ptex = request->planes & PLANE_PTEX || !is_exact, /* polygons always write it */
-        .edges = edges_wanted(request),
+        .edges = request_has_coverage(request),
         .any_cut = is_exact,
     };
 }

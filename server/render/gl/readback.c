@@ -11,7 +11,7 @@ struct rows {
 
 static struct rows tile_rows(const struct frame *frame, int plane, const struct tile *tile)
 {
-    size_t pixel = renderer_plane_bytes((enum renderer_plane)(1 << plane));
+    size_t pixel = frame_plane_bytes((enum frame_plane)(1 << plane));
     size_t stride = pixel * frame->width_px;
     char *first = (char *)frame->plane[plane] + tile->y * stride + tile->x * pixel;
     return (struct rows){first, stride, pixel};
@@ -147,31 +147,4 @@ bool readback(struct renderer *r, const struct frame_request *request, const str
     }
     return read_packed(r, request, view, &part, tile, frame, error) &&
            gpu_check("reading a frame back", error);
-}
-
-size_t renderer_plane_bytes(enum renderer_plane plane)
-{
-    switch (plane) {
-    case PLANE_COLOUR:
-    case PLANE_COVERAGE:
-        return 4;
-    case PLANE_POSITION:
-    case PLANE_NORMAL:
-    case PLANE_PTEX:
-        return 12;
-    case PLANE_LIGHT:
-    case PLANE_CURVATURE:
-        return 8;
-    case PLANE_LIGHT_CHANGE:
-        return 16;
-    }
-    return 0;
-}
-
-void frame_finish(struct frame *frame)
-{
-    canvas_give_back(frame);
-    for (int p = 0; p < PLANE_COUNT; p++)
-        block_cache_give(frame->block_cache, frame->plane[p]);
-    *frame = (struct frame){0};
 }

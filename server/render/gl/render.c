@@ -2,6 +2,7 @@
 #include "server/render/gl/gpu.h"
 
 #include "server/base/fault.h"
+#include "server/scene/request_check.h"
 
 /* Larger frames are drawn in tiles: about 80 bytes a pixel live on the device. */
 enum { TILE_MAX_PX = 4096 };
@@ -9,27 +10,6 @@ enum { TILE_MAX_PX = 4096 };
 enum { TILE_MIN_PX = 128 };
 /* Drawn around a tile and not kept: stages look at neighbours, and these at theirs. */
 enum { MARGIN_PX = COVER_BLOCK_PX };
-
-static bool frame_init(struct frame *frame, const struct frame_request *request,
-                       struct block_cache *block_cache, struct error *error)
-{
-    *frame = (struct frame){
-        .width_px = request->width_px, .height_px = request->height_px, .block_cache = block_cache};
-    size_t pixels = (size_t)request->width_px * request->height_px;
-    for (int p = 0; p < PLANE_COUNT; p++) {
-        if (!(request->planes & 1u << p))
-            continue;
-        size_t bytes = pixels * renderer_plane_bytes((enum renderer_plane)(1 << p));
-        frame->plane[p] = block_cache_take(block_cache, bytes);
-        if (!frame->plane[p]) {
-            frame_finish(frame);
-            return error_set(error, ERROR_SERVER,
-                             "out of memory: a plane of a %ux%u frame needs %zu bytes",
-                             request->width_px, request->height_px, bytes);
-        }
-    }
-    return true;
-}
 
 bool watch_check(const struct frame_watch *watch, struct error *error)
 {
@@ -74,7 +54,7 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
     stage_evaluate(r, model, programs);
     if (!stage_gaps(r, model, programs, view, error))
         return false;
-    if (edges_wanted(request)) {
+    if (request_has_coverage(request)) {
         stage_edges(r, &cut);
         stage_silhouette(r, model, programs);
         stage_edges_doubt(r);
@@ -231,7 +211,7 @@ static bool render_in_place(struct renderer *r, const struct renderer_model *mod
     bool ok = render_tile(r, model, work, view, tile, frame, &is_whole, error);
     target_swap_lists(&r->target, lists);
     if (ok)
-        collect_tile(r, edges_wanted(request));
+        collect_tile(r, request_has_coverage(request));
     if (ok && is_last)
         collect_end(r, model, request);
     return ok;
@@ -242,7 +222,8 @@ bool renderer_begin(struct renderer *r, struct frame_work *work, struct frame *f
 {
     *frame = (struct frame){0};
     work->x = work->y = work->n_programs = 0;
-    if (!request_check(&r->info, work->request, error) ||
+    work->canvas = NULL;
+    if (!request_check(work->request, r->info.max_width_px, r->info.max_height_px, error) ||
         !frame_init(frame, work->request, r->options.block_cache, error))
         return false;
     work->serial = ++r->n_begun;
@@ -293,7 +274,7 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
         collect_begin(r, work);
     const struct tile tile = place_tile(r, work);
     if (is_of_polygons(work))
-        canvas_resume(r, work, frame);
+        canvas_resume(r, work);
     r->watch = work->watch;
     r->made = work->polygons;
     view_init(&view, &request->camera, request->width_px, request->height_px,
@@ -302,7 +283,7 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
               prepare(r, work, &is_ready, error);
     *next = FRAME_PROGRAM;
     if (ok && !is_ready)
-        return !frame->canvas || canvas_set_aside(r, model, work, frame, error);
+        return !work->canvas || canvas_set_aside(r, model, work, error);
     ok = ok && (in_place ? render_in_place(r, model, work, &view, &tile, frame, error)
                          : render_tile(r, model, work, &view, &tile, frame, &is_whole, error));
     *next = is_whole ? FRAME_DONE : FRAME_MORE;
@@ -311,8 +292,8 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
     else if (!ok || !in_place)
         r->kept.model_serial = 0;
     if (ok && !is_whole)
-        return canvas_set_aside(r, model, work, frame, error);
-    canvas_give_back(frame);
+        return canvas_set_aside(r, model, work, error);
+    canvas_give_back(work);
     return ok;
 }
 
@@ -330,6 +311,7 @@ enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
         if (renderer_check_lost(r))
             error_set(error, ERROR_GPU_LOST,
                       "the GPU was lost while it drew this frame: ask again");
+        canvas_give_back(work);
         frame_finish(frame);
         return FRAME_FAILED;
     }
@@ -341,6 +323,11 @@ enum frame_step renderer_step(struct renderer *r, struct renderer_model *model,
         work->y += work->tile_height;
     }
     return work->y < work->request->height_px ? FRAME_MORE : FRAME_DONE;
+}
+
+void frame_work_finish(struct frame_work *work)
+{
+    canvas_give_back(work);
 }
 
 bool renderer_render(struct renderer *r, struct renderer_model *model,
@@ -359,8 +346,10 @@ bool renderer_render(struct renderer *r, struct renderer_model *model,
             next = polygons ? FRAME_MORE : FRAME_FAILED;
         }
     } while (next == FRAME_MORE || next == FRAME_PROGRAM);
-    if (next == FRAME_FAILED)
+    if (next == FRAME_FAILED) {
+        frame_work_finish(&work);
         frame_finish(frame);
+    }
     renderer_polygons_destroy(polygons);
     return next == FRAME_DONE;
 }

@@ -41,21 +41,12 @@ static struct shade_key key_of(const struct frame_request *request, const struct
         return (struct shade_key){
             .family = (uint8_t)family, .light = (uint8_t)light->kind, .which = (uint8_t)which};
     return (struct shade_key){.family = (uint8_t)family,
-                              .light = shade_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
+                              .light = family_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
                               .pattern = (uint8_t)pattern->kind,
                               .soft = pattern->soft > 0,
                               .picture = image ? picture_kind(image->pixels) : 0,
                               .has_several = request->n_lights > 1,
                               .which = (uint8_t)which};
-}
-
-/* Are there lights that a ray may miss? What is at infinity is met wherever there is a normal. */
-static bool share_wanted(const struct frame_request *request)
-{
-    bool may_miss = request->count_light && !shade_is_at_infinity(request->lines.family);
-    for (uint32_t i = 0; i < request->n_lights; i++)
-        may_miss = may_miss && request->lights[i].kind != LIGHT_SPHERE;
-    return may_miss;
 }
 
 /* What each of the frame's lights takes, in the order of use. */
@@ -64,9 +55,9 @@ static int kinds_of(const struct frame_request *request, enum shaded kinds[SHADE
     static const enum shaded closer[] = {SHADED_EDGES, SHADED_TURNS, SHADED_ROUNDED};
     int n = 0;
     kinds[n++] = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
-    for (size_t i = 0; edges_wanted(request) && i < sizeof closer / sizeof closer[0]; i++)
+    for (size_t i = 0; request_has_coverage(request) && i < sizeof closer / sizeof closer[0]; i++)
         kinds[n++] = closer[i];
-    if (share_wanted(request))
+    if (request_may_miss_light(request))
         kinds[n++] = SHADED_SHARE;
     return n;
 }
@@ -263,7 +254,7 @@ static void fill_block(struct light_block *block, const struct frame_request *re
     const struct light *light = &request->lights[i];
     *block = (struct light_block){.is_hindmost = i + 1 == request->n_lights, .is_foremost = i == 0};
     fill_eye(block, request);
-    if (shade_is_at_infinity(request->lines.family))
+    if (family_is_at_infinity(request->lines.family))
         fill_family(block, request);
     else
         fill_light(block, light, get(request->camera.eye));
@@ -313,7 +304,7 @@ static void bind_picture(const struct renderer *r, const struct frame_request *r
     if (!image)
         return;
     enum line_family family = request->lines.family;
-    bool no_light = shade_is_at_infinity(family);
+    bool no_light = family_is_at_infinity(family);
     bool along_s = no_light ? family == LINES_ENVIRONMENT : light->kind != LIGHT_RECTANGLE;
     bool along_t = no_light ? family == LINES_ZEBRA
                             : light->kind == LIGHT_PLANE || light->kind == LIGHT_TUNNEL;
@@ -458,7 +449,7 @@ void shade_read_share(const struct renderer *r, const struct frame_request *requ
     GLuint counts[2] = {any_seen, any_seen};
     if (!request->count_light)
         return;
-    if (share_wanted(request)) {
+    if (request_may_miss_light(request)) {
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         glGetNamedBufferSubData(r->target.unsolved, 0, sizeof counts, counts);
     }
@@ -478,9 +469,9 @@ static void shade_light(struct renderer *r, const struct frame_request *request,
     bind_lights(&r->target, i);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     dispatch_groups(program_of(r, request, light, all), r->target.groups);
-    if (edges_wanted(request))
+    if (request_has_coverage(request))
         shade_listed(r, request, light);
-    if (share_wanted(request))
+    if (request_may_miss_light(request))
         share_light(r, request, i);
 }
 

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "server/base/error.h"
-#include "server/scene/scene.h"
+#include "server/scene/frame_request.h"
 
 /* What a program of stage 3 makes: the colours of all pixels, of all by one sample each, of those
  * listed; the planes that go with them; or the share of what is seen that the light is met on. */
@@ -38,12 +38,6 @@ struct shade_key {
     uint8_t which;         /* enum shaded */
     uint8_t has_several;   /* lights: what lies behind comes from textures, others than none */
 };
-
-/* Families that need no light: one program stands for all kinds. */
-static inline bool shade_is_at_infinity(enum line_family family)
-{
-    return family == LINES_ISOPHOTE || family == LINES_ZEBRA || family == LINES_ENVIRONMENT;
-}
 
 struct shade_program {
     struct shade_key key;

@@ -90,10 +90,10 @@ static struct canvas *take(struct renderer *r)
     return taken;
 }
 
-void canvas_give_back(struct frame *frame)
+void canvas_give_back(struct frame_work *work)
 {
-    struct canvas *canvas = frame->canvas;
-    frame->canvas = NULL;
+    struct canvas *canvas = work->canvas;
+    work->canvas = NULL;
     if (!canvas)
         return;
     struct canvas_set *set = canvas->set; /* the canvas is the next frame's at once */
@@ -101,28 +101,28 @@ void canvas_give_back(struct frame *frame)
     canvases_release(set);
 }
 
-void canvas_resume(struct renderer *r, struct frame_work *work, struct frame *frame)
+void canvas_resume(struct renderer *r, struct frame_work *work)
 {
-    if (frame->canvas && is_current(r, frame->canvas->context)) {
-        planes_swap(r, &frame->canvas->planes);
+    if (work->canvas && is_current(r, work->canvas->context)) {
+        planes_swap(r, &work->canvas->planes);
         return;
     }
     /* A new tile, or one that was lost with the device. */
-    canvas_give_back(frame);
+    canvas_give_back(work);
     work->stage = FILL;
     work->part = 0;
 }
 
 bool canvas_set_aside(struct renderer *r, const struct renderer_model *model,
-                      const struct frame_work *work, struct frame *frame, struct error *error)
+                      struct frame_work *work, struct error *error)
 {
-    if (!frame->canvas && !(frame->canvas = take(r)))
+    if (!work->canvas && !(work->canvas = take(r)))
         return error_set(error, ERROR_SERVER,
                          "%d other frames of polygons are being drawn: try again later",
                          MAX_CANVASES);
-    frame->canvas->model_serial = model->serial;
-    frame->canvas->level = work->request->surface.level;
-    planes_swap(r, &frame->canvas->planes);
+    work->canvas->model_serial = model->serial;
+    work->canvas->level = work->request->surface.level;
+    planes_swap(r, &work->canvas->planes);
     return true;
 }
 
@@ -206,6 +206,6 @@ bool draw_polygons(struct renderer *r, const struct renderer_model *model, struc
         if (!draw_stage(r, work, &slice, frame, error))
             return false;
         *is_whole = work->stage == WHOLE;
-    } while (!*is_whole && !frame->canvas && slice.left > 0);
+    } while (!*is_whole && !work->canvas && slice.left > 0);
     return stage_clock_read(r);
 }
