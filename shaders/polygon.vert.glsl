@@ -1,4 +1,4 @@
-// The polygons of server/render/gl/mesh.h, for polygon.frag.glsl and wireframe.frag.glsl.
+// The polygons of server/render/mesh.h, for polygon.frag.glsl and wireframe.frag.glsl.
 
 layout(location = 0) in vec3 position;  // relative to the mesh's centre, world axes
 layout(location = 1) in vec3 normal;    // unit, zero where there is none

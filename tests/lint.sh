@@ -48,7 +48,7 @@ room server/surface/subdivision "$common|server/cage|server/surface" 'builders o
 room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
 room server/scene "$common|protocol|server/surface" 'a request is data'
-room server/render "$common|server/image|server/scene|server/surface" 'what every device needs, so no GL'
+room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl "$common|protocol|server/scene|server/surface|server/render" 'a device draws, it serves nobody'
 room server/net "$common|protocol|server/frame" 'connections do not know what is said over them'
 room server/threads "$common|server/cage|server/image|server/net|server/ops|server/render|server/sandbox" \

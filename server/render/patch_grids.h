@@ -19,7 +19,6 @@
  */
 enum { PIECE_SIDES = 12, PIECE_GRIDS = PIECE_SIDES * PIECE_SIDES };
 extern const uint8_t piece_cells[PIECE_SIDES];
-enum { COVER_BLOCK_PX = 8 };
 
 /* As shaders/visibility.vert.glsl reads it. */
 struct piece {

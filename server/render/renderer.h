@@ -13,6 +13,7 @@
 #include "server/base/block_cache.h"
 #include "server/base/error.h"
 #include "server/image/image.h"
+#include "server/render/frame_watch.h"
 #include "server/scene/frame.h"
 #include "server/surface/tables.h"
 
@@ -68,13 +69,6 @@ size_t renderer_image_bytes(const struct image *image);
 struct renderer_image *renderer_image_create(struct renderer *renderer, const struct image *image,
                                              struct error *error);
 void renderer_image_destroy(struct renderer *renderer, struct renderer_image *image);
-
-/* Who waits for a frame: asked between its tiles and its lights, and the faces of its polygons.
- * Once nobody does the frame fails, so that a client that has gone holds nobody up. */
-struct frame_watch {
-    bool (*is_abandoned)(void *owner); /* NULL: never; called by who draws or makes polygons */
-    void *owner;
-};
 
 /* A frame in the making, one tile a step, so that the GL thread can turn to other frames in
  * between; of polygons a step is a part of a tile, and they are put on the device in several, too.

@@ -5,12 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "server/render/tiles.h"
 #include "server/scene/scene.h"
-
-/* A rectangle of the picture, px. */
-struct tile {
-    uint32_t x, y, width, height;
-};
 
 /* Camera space: x right, y down, z forward from the eye (shaders/view.glsl). */
 struct view {

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "protocol/srgb.h"
-#include "server/render/gl/mesh.h"
+#include "server/render/mesh.h"
 #include "server/surface/evaluate.h"
 #include "tests/unit/polygon_scene.h"
 

@@ -109,7 +109,7 @@ static bool guess_gaps(struct renderer *r, const struct renderer_model *model,
     r->pieces.n_guesses = 0;
     for (size_t i = 0; i < n; i++) {
         const struct tile pixel = {place->x + (at[i] & 0xffff), place->y + (at[i] >> 16), 1, 1};
-        if (!watch_check(&r->watch, error) ||
+        if (!frame_watch_check(&r->watch, error) ||
             !pieces_guess(&r->pieces, model->tables, &model->clusters, view, &pixel, error))
             return false;
         end[i] = (uint32_t)r->pieces.n_guesses;

@@ -6,7 +6,7 @@
 #include <stdatomic.h>
 
 #include "server/render/gl/egl.h"
-#include "server/render/gl/mesh.h"
+#include "server/render/mesh.h"
 #include "server/render/patch_grids.h"
 #include "server/render/renderer.h"
 #include "server/render/gl/shade_programs.h"
@@ -406,8 +406,6 @@ void collect_end(struct renderer *renderer, const struct renderer_model *model,
 /* After a frame of one tile: they are kept. */
 void planes_keep(struct renderer *renderer, const struct renderer_model *model,
                  const struct frame_request *request);
-/* A part of the picture as one of the target. */
-struct tile tile_within(const struct tile *part, const struct tile *place);
 
 /* NULL when memory is short. Released once by the renderer, any thread. */
 struct canvas_set *canvases_create(void);
@@ -444,9 +442,6 @@ void dispatch_groups(GLuint program, GLuint groups);
 bool readback(struct renderer *renderer, const struct frame_request *request,
               const struct view *view, const struct tile *drawn, const struct tile *tile,
               struct frame *frame, struct error *error);
-
-/* False, with ERROR_SERVER, once nobody waits for the frame being drawn. */
-bool watch_check(const struct frame_watch *watch, struct error *error);
 
 /* Turns a pending GL error into ERROR_DEVICE; `doing` names what was tried. */
 bool gpu_check(const char *doing, struct error *error);

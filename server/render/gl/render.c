@@ -4,29 +4,6 @@
 #include "server/base/fault.h"
 #include "server/scene/request_check.h"
 
-/* Larger frames are drawn in tiles: about 80 bytes a pixel live on the device. */
-enum { TILE_MAX_PX = 4096 };
-/* Smaller tiles would be mostly margin. */
-enum { TILE_MIN_PX = 128 };
-/* Drawn around a tile and not kept: stages look at neighbours, and these at theirs. */
-enum { MARGIN_PX = COVER_BLOCK_PX };
-
-bool watch_check(const struct frame_watch *watch, struct error *error)
-{
-    return !watch->is_abandoned || !watch->is_abandoned(watch->owner) ||
-           error_set(error, ERROR_SERVER, "nobody waits for this frame any more");
-}
-
-struct tile tile_within(const struct tile *part, const struct tile *place)
-{
-    return (struct tile){part->x - place->x, part->y - place->y, part->width, part->height};
-}
-
-static bool is_same_tile(const struct tile *a, const struct tile *b)
-{
-    return a->x == b->x && a->y == b->y && a->width == b->width && a->height == b->height;
-}
-
 /* Stages 1 and 2, unless the target holds their planes already. Margins are evaluated, and then no
  * more is asked of them where they are not shaded. */
 static bool draw_surface(struct renderer *r, const struct renderer_model *model,
@@ -60,7 +37,7 @@ static bool draw_surface(struct renderer *r, const struct renderer_model *model,
         stage_edges_doubt(r);
         stage_rounded(r, model, programs);
     }
-    if (!is_same_tile(drawn, shaded)) {
+    if (!tile_is_same(drawn, shaded)) {
         pieces_cut_blocks(&r->pieces, &cut);
         stage_gather(r);
     }
@@ -111,43 +88,20 @@ static bool render_tile(struct renderer *r, const struct renderer_model *model,
     return stage_clock_wait(r, &frame->times.readback_us);
 }
 
-static uint32_t at_most(uint32_t value, uint32_t limit)
-{
-    return value < limit ? value : limit;
-}
-
-/* A tile's size: the whole frame where that is allowed, else about square. */
-static void cut(uint32_t width_px, uint32_t height_px, uint64_t tile_px, uint32_t *tile_width,
-                uint32_t *tile_height)
-{
-    uint32_t side = TILE_MAX_PX;
-    *tile_width = at_most(width_px, side);
-    *tile_height = at_most(height_px, side);
-    if (!tile_px || (uint64_t)*tile_width * *tile_height <= tile_px)
-        return;
-    while (side > TILE_MIN_PX && (uint64_t)side * side > tile_px)
-        side -= TILE_MIN_PX;
-    *tile_width = at_most(width_px, side);
-    uint64_t rows = tile_px / *tile_width;
-    *tile_height = at_most(height_px, rows < side ? side : (uint32_t)rows);
-    *tile_height = at_most(*tile_height, TILE_MAX_PX);
-}
-
-/* Blocks of tiles that are drawn in place fall on those of the whole. */
 static void cut_frame(struct frame_work *work)
 {
-    uint32_t height_px = work->request->height_px;
-    cut(work->request->width_px, height_px, work->tile_px, &work->tile_width, &work->tile_height);
-    if (work->in_place && work->tile_height < height_px)
-        work->tile_height -= work->tile_height % COVER_BLOCK_PX;
+    const struct frame_request *request = work->request;
+    const struct tile_size size =
+        tiles_cut(request->width_px, request->height_px, work->tile_px, work->in_place);
+    work->tile_width = size.width;
+    work->tile_height = size.height;
 }
 
 uint64_t renderer_canvas_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px)
 {
-    uint32_t width, height;
-    cut(width_px, height_px, tile_px, &width, &height);
-    return target_bytes(at_most(width_px, width + 2 * MARGIN_PX),
-                        at_most(height_px, height + 2 * MARGIN_PX));
+    const struct tile_size tile = tiles_cut(width_px, height_px, tile_px, false);
+    const struct tile_size drawn = tile_size_with_margin(&tile, width_px, height_px);
+    return target_bytes(drawn.width, drawn.height);
 }
 
 static bool is_single(const struct frame_work *work)
@@ -156,26 +110,17 @@ static bool is_single(const struct frame_work *work)
            work->tile_height == work->request->height_px;
 }
 
-_Static_assert(TILE_MIN_PX % COVER_BLOCK_PX == 0 && MARGIN_PX % COVER_BLOCK_PX == 0,
-               "whole blocks");
-
-/* The next tile, in planes that have been chosen, and what must be drawn for it. What the tiles
- * before have left of the frame beside it is its margin there; what they have evaluated of it as
- * their margin is done anew. */
+/* The next tile, in planes that have been chosen, and what must be drawn for it. Where the tiles
+ * before stand in the same planes they are its margin; what they have evaluated of it as their
+ * margin is done anew. */
 static struct tile place_tile(struct renderer *r, const struct frame_work *work)
 {
     const struct frame_request *request = work->request;
+    const struct tile_size size = {work->tile_width, work->tile_height};
     const struct tile whole = {0, 0, request->width_px, request->height_px};
-    const struct tile tile = {work->x, work->y,
-                              at_most(request->width_px - work->x, work->tile_width),
-                              at_most(request->height_px - work->y, work->tile_height)};
+    const struct tile tile = tile_at(work->x, work->y, &size, whole.width, whole.height);
     bool in_place = r->in_use == PLANES_TILED, goes_on = in_place && r->collecting.frame;
-    uint32_t left = goes_on ? 0 : at_most(tile.x, MARGIN_PX);
-    uint32_t above = goes_on ? 0 : at_most(tile.y, MARGIN_PX);
-    uint32_t right = at_most(request->width_px - tile.x - tile.width, MARGIN_PX);
-    uint32_t below = at_most(request->height_px - tile.y - tile.height, MARGIN_PX);
-    const struct tile drawn = {tile.x - left, tile.y - above, left + tile.width + right,
-                               above + tile.height + below};
+    const struct tile drawn = tile_with_margin(&tile, !goes_on, whole.width, whole.height);
     r->drawing = (struct drawing){in_place ? whole : drawn, drawn, in_place ? tile : drawn};
     return tile;
 }
@@ -279,7 +224,7 @@ static bool step(struct renderer *r, struct renderer_model *model, struct frame_
     r->made = work->polygons;
     view_init(&view, &request->camera, request->width_px, request->height_px,
               model->tables->hull_min, model->tables->hull_max);
-    bool ok = watch_check(&work->watch, error) && reserve(r, work, error) &&
+    bool ok = frame_watch_check(&work->watch, error) && reserve(r, work, error) &&
               prepare(r, work, &is_ready, error);
     *next = FRAME_PROGRAM;
     if (ok && !is_ready)

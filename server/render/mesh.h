@@ -8,13 +8,14 @@
  *
  * Neighbouring Ptex faces each have their own vertices along the edge between them: so creases stay
  * creases. */
-#ifndef SHEEN_RENDER_GL_MESH_H
-#define SHEEN_RENDER_GL_MESH_H
+#ifndef SHEEN_RENDER_MESH_H
+#define SHEEN_RENDER_MESH_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/render/renderer.h"
+#include "server/render/frame_watch.h"
+#include "server/surface/tables.h"
 
 #define MESH_MAX_VERTICES ((uint64_t)8 << 20) /* of one mesh: 256 MiB, and 192 MiB of indices */
 #define MESH_IS_FAN 0x80000000u

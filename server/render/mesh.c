@@ -1,9 +1,9 @@
-#include "server/render/gl/mesh.h"
+#include "server/render/mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "server/render/gl/gpu.h"
+#include "server/render/renderer.h"
 #include "server/surface/evaluate.h"
 
 /* Quads along an edge of a Ptex face. */
@@ -247,7 +247,7 @@ bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t le
         const struct limit_node *root = &tables->nodes[face];
         if (root->kind == LIMIT_HOLE)
             continue;
-        if (!watch_check(watch, error)) {
+        if (!frame_watch_check(watch, error)) {
             mesh_finish(mesh);
             return false;
         }

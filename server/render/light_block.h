@@ -1,0 +1,24 @@
+/* A light, its pattern and the line family as the formulas of shaders/ take them: computed in
+ * double precision relative to the camera's eye, then rounded to single. Pure, any thread. */
+#ifndef SHEEN_RENDER_LIGHT_BLOCK_H
+#define SHEEN_RENDER_LIGHT_BLOCK_H
+
+#include "server/scene/frame_request.h"
+
+/* std140 block `Light` of shaders/lines.glsl. */
+struct light_block {
+    float line_eye[4], origin[4];
+    float axis_n[4], axis_u[4], axis_v[4];
+    float size[4];
+    float foreground[4], background[4], miss[4], empty[4], base[4];
+    float turn[4], wave[4];
+    float single[MAX_LINES];
+    float opacity, half_width;
+    int32_t n_single, is_hindmost, is_foremost, is_one_sided, has_direction;
+    _Alignas(16) int32_t want[4];
+};
+
+/* For light i of the request, which has been checked. */
+void light_block_fill(struct light_block *block, const struct frame_request *request, uint32_t i);
+
+#endif
