@@ -87,7 +87,7 @@ bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *pla
     struct face_builder builder = {.tables = tables, .plan = plan};
     if (!arena_init(&builder.arena, plan->arena_bytes))
         return error_set(error, ERROR_SERVER, "out of memory while building tables");
-    shared_rings_init(&builder.rings, plan->cage->face_start[plan->cage->n_faces]);
+    ring_cache_init(&builder.rings, plan->cage->face_start[plan->cage->n_faces]);
     bool ok = true;
     for (size_t p = first; p < last && (ok = limit_goes_on(watch, error)); p++) {
         builder.next = plan->offsets[p];
@@ -95,7 +95,7 @@ bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *pla
         assert(builder.next.node == plan->offsets[p + 1].node);
         assert(builder.next.texel == plan->offsets[p + 1].texel);
     }
-    shared_rings_finish(&builder.rings);
+    ring_cache_finish(&builder.rings);
     arena_finish(&builder.arena);
     return ok;
 }

@@ -15,7 +15,7 @@ struct walker {
     const osd_levels *truth;
     int n_levels;
     struct arena arena;
-    struct shared_rings rings;
+    struct ring_cache rings;
     refine_walk found;
 
     /* The quad is face `face` of that level, corner for corner. */
@@ -87,10 +87,10 @@ refine_walk walk_levels(const cage &cage, int n_levels)
     walk.found.n_faces.resize((size_t)n_levels + 1);
     if (!arena_init(&walk.arena, plan->arena_bytes))
         throw std::runtime_error("out of memory");
-    shared_rings_init(&walk.rings, cage.face_start[cage.n_faces]);
+    ring_cache_init(&walk.rings, cage.face_start[cage.n_faces]);
     for (uint32_t face = 0; face < cage.n_faces; face++)
         compare_face(&walk, face);
-    shared_rings_finish(&walk.rings);
+    ring_cache_finish(&walk.rings);
     arena_finish(&walk.arena);
     return walk.found;
 }

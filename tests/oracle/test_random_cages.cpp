@@ -12,7 +12,7 @@
 #include "tests/oracle/verdict.h"
 
 extern "C" {
-#include "server/surface/subdivision/sheets.h"
+#include "server/surface/topology/nonmanifold.h"
 }
 
 namespace
@@ -52,10 +52,10 @@ void look_at_sheets(const cage &cage, census *all)
     if (!topology_init(&t, &cage, &error))
         throw std::runtime_error(error.text);
     for (uint32_t c = 0; c < cage.face_start[cage.n_faces]; c++) {
-        const vertex_sheets *sheets = sheets_at(&t, c);
+        const nonmanifold_vertex *sheets = nonmanifold_at(&t, c);
         if (!sheets || t.vertex_flags[corner_vertex(&t, c)] & VERTEX_SHARP)
             continue;
-        worn_off |= t.sheet_level[sheets->first_level].semisharp.n > 0;
+        worn_off |= t.vertex_creases[sheets->first_step].semisharp.n > 0;
         foreign |= !runs_through(t, c);
     }
     topology_finish(&t);

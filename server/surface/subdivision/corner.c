@@ -5,7 +5,7 @@
 
 #include "server/surface/bound.h"
 #include "server/surface/subdivision/crease.h"
-#include "server/surface/subdivision/shared.h"
+#include "server/surface/subdivision/ring_cache.h"
 #include "server/surface/texels.h"
 
 /* What a vertex's own rule takes that a window of its ring lacks. */
@@ -77,9 +77,9 @@ static void refine_window_sums(const struct net *in, struct net *out)
     out->ring.centre = vec_mad(vec_scale(in->ring.centre, (n - 2) / n), 1 / (n * n), sum);
 }
 
-static struct vec limit_position(const struct ring *ring, const struct ring_modes *modes)
+static struct vec limit_position(const struct ring *ring, const struct dart_masks *modes)
 {
-    return ring_is_dart(ring) ? ring_mode_apply(modes->position, ring) : shared_limit(ring);
+    return ring_is_dart(ring) ? dart_mask_apply(modes->position, ring) : ring_cache_limit(ring);
 }
 
 static struct vec to_frame(struct vec p, struct vec origin, const struct vec axis[3])
@@ -101,7 +101,7 @@ static void phantom_points(const struct ring *ring, struct vec grid[5][5])
 }
 
 /* The net of level 0 in a frame: only i,j <= 2 are set. */
-static void first_net(const struct quad *quad, const struct vertex_facts *facts,
+static void first_net(const struct quad *quad, const struct vertex_limit *facts,
                       const struct vec axis[3], struct net *net)
 {
     struct vec grid[4][4], origin = facts->limit;
@@ -171,7 +171,7 @@ static void ring_points(const struct ring *ring, struct vec grid[5][5])
 }
 
 /* One level further: refine, then move the limit position back to zero. */
-static void next_net(const struct net *in, const struct ring_modes *modes, struct net *out)
+static void next_net(const struct net *in, const struct dart_masks *modes, struct net *out)
 {
     struct vec coarse[5][5];
     for (int j = 0; j < 5; j++)
@@ -234,21 +234,21 @@ static void write_frame(const struct vec axis[3], float texel[4])
 
 /* The frame in which single precision keeps everything: axis[2] is the normal where there is one.
  */
-static bool vertex_frame(const struct ring *ring, const struct known_modes *known,
-                         struct ring_modes *modes, struct vec axis[3], struct arena *arena)
+static bool vertex_frame(const struct ring *ring, const struct dart_mask_list *known,
+                         struct dart_masks *modes, struct vec axis[3], struct arena *arena)
 {
     struct vec t1, t2;
     bool has_normal = ring_tangents(ring, &t1, &t2);
     if (ring_is_dart(ring)) {
-        known_modes_find(known, ring, arena, modes);
-        t1 = ring_mode_apply(modes->tangent[0], ring);
-        t2 = ring_mode_apply(modes->tangent[1], ring);
+        dart_mask_list_find(known, ring, arena, modes);
+        t1 = dart_mask_apply(modes->tangent[0], ring);
+        t2 = dart_mask_apply(modes->tangent[1], ring);
     }
     return ring_frame(ring, t1, t2, axis) && has_normal;
 }
 
-static void find_facts(struct vertex_facts *facts, const struct ring *ring,
-                       const struct known_modes *known, struct arena *arena)
+static void find_facts(struct vertex_limit *facts, const struct ring *ring,
+                       const struct dart_mask_list *known, struct arena *arena)
 {
     facts->has_normal = vertex_frame(ring, known, &facts->modes, facts->axis, arena);
     facts->limit = limit_position(ring, &facts->modes);
@@ -268,7 +268,7 @@ enum { FRAME_LEVEL = 28 };
 /* axis[2] is the normal of that corner. axis[0] lies along its slowest direction: a cone becomes a
  * needle there, a sector of many quads a fan that one wave stretches, and the digits of what lies
  * across would drown in any other axis. Takes the vertex's frame, in which net[0] is. */
-static void own_frame(struct net net[2], const struct ring_modes *modes, struct vec axis[3])
+static void own_frame(struct net net[2], const struct dart_masks *modes, struct vec axis[3])
 {
     for (unsigned n = 0; n < FRAME_LEVEL; n++)
         next_net(&net[n & 1], modes, &net[(n + 1) & 1]);
@@ -299,12 +299,12 @@ unsigned corner_levels(const struct ring *ring)
  */
 enum { WEIGHED_LEVELS = 6 };
 
-bool corner_table(const struct quad *quad, unsigned levels, const struct known_modes *known,
+bool corner_table(const struct quad *quad, unsigned levels, const struct dart_mask_list *known,
                   struct arena *arena, float (*texels)[4], struct limit_bound *bounds,
                   double origin[3])
 {
     const struct ring *ring = &quad->corner[0];
-    struct vertex_facts own, *facts = shared_facts(ring);
+    struct vertex_limit own, *facts = ring_cache_vertex(ring);
     if (!facts) {
         facts = &own;
         facts->is_known = false;

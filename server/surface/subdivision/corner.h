@@ -13,11 +13,11 @@
  * sum of that corner's two edges.
  *
  * Thread: any, as long as no other thread uses the arena or rings that are kept for several corners
- * (shared.h). */
+ * (ring_cache.h). */
 #ifndef SHEEN_SURFACE_SUBDIVISION_CORNER_H
 #define SHEEN_SURFACE_SUBDIVISION_CORNER_H
 
-#include "server/surface/subdivision/known_modes.h"
+#include "server/surface/subdivision/dart_mask_list.h"
 #include "server/surface/subdivision/quad.h"
 #include "server/surface/tables.h"
 
@@ -33,7 +33,7 @@ unsigned corner_levels(const struct ring *ring);
  * that have been computed already; NULL is the empty list, and a dart's modes are then computed
  * here. Never fails: plans size the arena beforehand. Returns whether the vertex has a limit
  * normal. */
-bool corner_table(const struct quad *quad, unsigned levels, const struct known_modes *known,
+bool corner_table(const struct quad *quad, unsigned levels, const struct dart_mask_list *known,
                   struct arena *arena, float (*texels)[4], struct limit_bound *bounds,
                   double origin[3]);
 

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "server/cage/cage.h"
-#include "server/surface/subdivision/shared.h"
-#include "server/surface/subdivision/sheets.h"
+#include "server/surface/subdivision/ring_cache.h"
+#include "server/surface/topology/nonmanifold.h"
 
 static bool is_infinite(float sharpness)
 {
@@ -46,8 +46,8 @@ float crease_child_chaikin(float sharpness, const struct crease_sum *sum)
 static struct crease_sum sum_of(const struct ring *ring)
 {
     struct crease_sum sum = {0, 0};
-    if (ring->sheets.level)
-        return ring->sheets.level->semisharp;
+    if (ring->sheets.creases)
+        return ring->sheets.creases->semisharp;
     for (uint32_t k = 0; ring->creases.chaikin && k < ring_edges(ring); k++)
         crease_add(&sum, crease_edge(ring, k));
     return sum;
@@ -94,8 +94,8 @@ void crease_refine(const struct ring *in, struct ring *out)
     out->sharpness = crease_child_vertex(in->sharpness);
     out->creases.chaikin = in->creases.chaikin;
     out->sheets = in->sheets;
-    if (in->sheets.level && in->sheets.level->semisharp.n)
-        out->sheets.level++;
+    if (in->sheets.creases && in->sheets.creases->semisharp.n)
+        out->sheets.creases++;
     if (!in->creases.edge)
         return;
     const struct crease_sum sum = sum_of(in);
@@ -110,7 +110,7 @@ bool crease_is_semisharp(const struct ring *ring)
 {
     if (is_semisharp(ring->sharpness))
         return true;
-    if (ring->sheets.level && ring->sheets.level->semisharp.n && !is_infinite(ring->sharpness))
+    if (ring->sheets.creases && ring->sheets.creases->semisharp.n && !is_infinite(ring->sharpness))
         return true;
     for (uint32_t k = 0; ring->creases.edge && k < ring_edges(ring); k++)
         if (is_semisharp(crease_edge(ring, k)))
@@ -133,8 +133,8 @@ enum crease_rule crease_vertex_rule(const struct ring *ring, uint32_t end[2])
             end[n] = k;
         n++;
     }
-    if (ring->sheets.level)
-        n = ring->sheets.level->n_sharp;
+    if (ring->sheets.creases)
+        n = ring->sheets.creases->n_sharp;
     if (ring->sharpness > 0 || n > 2)
         return RULE_CORNER;
     return n == 2 ? RULE_CREASE : n == 1 ? RULE_DART : RULE_SMOOTH;
@@ -161,7 +161,7 @@ static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t 
 static struct ring alone(const struct ring *ring)
 {
     struct ring out = *ring;
-    const struct sheet_level *sheets = ring->sheets.level;
+    const struct vertex_creases *sheets = ring->sheets.creases;
     if (!sheets)
         return out;
     if (sheets->n_sharp > 2)
@@ -192,11 +192,11 @@ struct ring crease_settle(const struct ring *ring, struct arena *arena)
         first = (first + n - 1) % n;
     while (crease_edge(ring, last) <= 0)
         last = (last + 1) % n;
-    if (!shared_find_derived(ring, first, &out)) {
+    if (!ring_cache_find_derived(ring, first, &out)) {
         uint32_t n_faces = (last + n - first) % n;
         const struct ring whole = out;
         out = cut_sector(&whole, first, n_faces ? n_faces : n, rule == RULE_CORNER, arena);
-        out = shared_keep_derived(ring, first, &out);
+        out = ring_cache_keep_derived(ring, first, &out);
     }
     out.at = (ring->at + n - first) % n;
     return out;

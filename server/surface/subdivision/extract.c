@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "server/surface/subdivision/crease.h"
-#include "server/surface/subdivision/sheets.h"
+#include "server/surface/topology/nonmanifold.h"
 
 static struct vec vertex_position(const struct topology *t, uint32_t vertex)
 {
@@ -18,7 +18,7 @@ static struct vec position(const struct topology *t, uint32_t corner)
 
 static struct ring_sheets sheets_beside(const struct topology *t, const struct sector *sector)
 {
-    const struct vertex_sheets *sheets = sheets_at(t, sector->first);
+    const struct nonmanifold_vertex *sheets = nonmanifold_at(t, sector->first);
     if (!sheets)
         return (struct ring_sheets){0};
     uint32_t last = sector->first;
@@ -27,7 +27,7 @@ static struct ring_sheets sheets_beside(const struct topology *t, const struct s
     bool runs_through = !sector->closed && corner_vertex(t, corner_next(t, sector->first)) !=
                                                corner_vertex(t, corner_prev(t, last));
     return (struct ring_sheets){
-        .level = &t->sheet_level[sheets->first_level],
+        .creases = &t->vertex_creases[sheets->first_step],
         .end = {vertex_position(t, sheets->end[0]), vertex_position(t, sheets->end[1])},
         .ends_outside = !runs_through,
     };
@@ -78,27 +78,27 @@ static void set_far_sharpness(const struct topology *t, const struct sector *sec
 }
 
 /* Keeps a large ring for all the corners of its sector. */
-static void share(const struct topology *t, struct shared_rings *rings, enum shared_kind kind,
+static void share(const struct topology *t, struct ring_cache *rings, enum cached_kind kind,
                   const struct sector *sector, struct ring *ring)
 {
-    struct shared_ring *kept;
-    if (!shared_keep(rings, kind, ring, &kept))
+    struct cached_ring *kept;
+    if (!ring_cache_keep(rings, kind, ring, &kept))
         return;
     for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at))
-        shared_see_from(rings, kind, at, kept, k);
+        ring_cache_see_from(rings, kind, at, kept, k);
     *ring = kept->ring;
     ring->at = sector->at;
 }
 
-static struct ring vertex_ring(const struct topology *t, uint32_t c, struct shared_rings *rings,
+static struct ring vertex_ring(const struct topology *t, uint32_t c, struct ring_cache *rings,
                                struct arena *arena)
 {
     struct ring ring;
-    if (!shared_find(rings, SHARED_CAGE, c, &ring)) {
+    if (!ring_cache_find(rings, CACHED_CAGE, c, &ring)) {
         struct sector sector;
         ring = cage_ring(t, c, true, &sector, arena);
         set_far_sharpness(t, &sector, &ring);
-        share(t, rings, SHARED_CAGE, &sector, &ring);
+        share(t, rings, CACHED_CAGE, &sector, &ring);
     }
     return crease_settle(&ring, arena);
 }
@@ -119,11 +119,11 @@ static struct ring refine_cage_ring(const struct topology *t, const struct vec *
 /* The same with the points that all share: a smooth triangle's edges are not its ring's. */
 static struct ring refined_vertex_ring(const struct topology *t,
                                        const struct refined_points *points, uint32_t c,
-                                       struct shared_rings *rings, struct arena *arena)
+                                       struct ring_cache *rings, struct arena *arena)
 {
     struct sector sector;
     struct ring ring;
-    if (shared_find(rings, SHARED_REFINED_CAGE, c, &ring))
+    if (ring_cache_find(rings, CACHED_REFINED_CAGE, c, &ring))
         return ring;
     ring = refine_cage_ring(t, points->face, c, &sector, arena);
     for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at)) {
@@ -131,13 +131,13 @@ static struct ring refined_vertex_ring(const struct topology *t,
         if (!sector.closed && k + 1 == sector.n_faces)
             ring.edge[k + 1] = points->edge[corner_prev(t, at)];
     }
-    share(t, rings, SHARED_REFINED_CAGE, &sector, &ring);
+    share(t, rings, CACHED_REFINED_CAGE, &sector, &ring);
     return ring;
 }
 
 /* Around the edge point of half-edge c, listed from its far end: end, face, start, face across. */
 static struct ring refined_edge_ring(const struct topology *t, const struct refined_points *points,
-                                     uint32_t c, uint32_t at, struct shared_rings *rings,
+                                     uint32_t c, uint32_t at, struct ring_cache *rings,
                                      struct arena *arena)
 {
     uint32_t twin = t->twin[c];
@@ -172,13 +172,13 @@ static struct ring refined_edge_ring(const struct topology *t, const struct refi
  * large one, alike for all its corners, from its first. Each quad lies between the edge points
  * before and after its corner. */
 static struct ring refined_face_ring(const struct topology *t, const struct refined_points *points,
-                                     uint32_t c, struct shared_rings *rings, struct arena *arena)
+                                     uint32_t c, struct ring_cache *rings, struct arena *arena)
 {
     uint32_t start = t->cage->face_start[t->face[c]], n = face_size(t, t->face[c]);
-    uint32_t first = n < SHARED_MIN_FACES ? c : start;
-    struct shared_ring *kept;
+    uint32_t first = n < RING_CACHE_MIN_FACES ? c : start;
+    struct cached_ring *kept;
     struct ring ring;
-    if (shared_find(rings, SHARED_FACE, c, &ring))
+    if (ring_cache_find(rings, CACHED_FACE, c, &ring))
         return ring;
     ring = ring_take(arena, n, true, false);
     ring.at = c - first;
@@ -187,16 +187,16 @@ static struct ring refined_face_ring(const struct topology *t, const struct refi
         ring.edge[k] = points->edge[corner_prev(t, at)];
         ring.face[k] = points->vertex[corner_vertex(t, at)];
     }
-    if (!shared_keep(rings, SHARED_FACE, &ring, &kept))
+    if (!ring_cache_keep(rings, CACHED_FACE, &ring, &kept))
         return ring;
     for (uint32_t k = 0; k < n; k++)
-        shared_see_from(rings, SHARED_FACE, start + k, kept, k);
+        ring_cache_see_from(rings, CACHED_FACE, start + k, kept, k);
     ring = kept->ring;
     ring.at = c - start;
     return ring;
 }
 
-struct quad extract_quad(const struct topology *t, uint32_t c, struct shared_rings *rings,
+struct quad extract_quad(const struct topology *t, uint32_t c, struct ring_cache *rings,
                          struct arena *arena)
 {
     struct quad quad;
@@ -220,7 +220,7 @@ void extract_plain_grid(const struct topology *t, uint32_t c, struct vec grid[4]
 }
 
 struct quad extract_refined_quad(const struct topology *t, const struct refined_points *points,
-                                 uint32_t c, struct shared_rings *rings, struct arena *arena)
+                                 uint32_t c, struct ring_cache *rings, struct arena *arena)
 {
     struct quad quad;
     uint32_t before = corner_prev(t, c);

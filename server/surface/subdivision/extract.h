@@ -6,9 +6,9 @@
 #define SHEEN_SURFACE_SUBDIVISION_EXTRACT_H
 
 #include "server/surface/subdivision/quad.h"
-#include "server/surface/subdivision/shared.h"
+#include "server/surface/subdivision/ring_cache.h"
 #include "server/surface/tables.h"
-#include "server/surface/subdivision/topology.h"
+#include "server/surface/topology/topology.h"
 
 struct refined_points {
     struct vec *vertex; /* [vertices] */
@@ -23,7 +23,7 @@ void refined_points_finish(struct refined_points *points);
 
 /* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (crease.h). Large
  * ones are kept in `rings`, where they are looked for first. */
-struct quad extract_quad(const struct topology *topology, uint32_t c, struct shared_rings *rings,
+struct quad extract_quad(const struct topology *topology, uint32_t c, struct ring_cache *rings,
                          struct arena *arena);
 
 /* The 4x4 control points of a plain quad (topology.h), as quad_grid() gives them, without its
@@ -34,7 +34,7 @@ void extract_plain_grid(const struct topology *topology, uint32_t c, struct vec 
  * point (its corner 2). */
 struct quad extract_refined_quad(const struct topology *topology,
                                  const struct refined_points *points, uint32_t c,
-                                 struct shared_rings *rings, struct arena *arena);
+                                 struct ring_cache *rings, struct arena *arena);
 
 /* The most faces around any vertex, or corners of any face, of the cage. */
 size_t extract_largest_ring(const struct topology *topology);

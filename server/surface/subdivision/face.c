@@ -4,7 +4,7 @@
 #include "server/surface/bound.h"
 #include "server/surface/subdivision/corner.h"
 #include "server/surface/subdivision/crease.h"
-#include "server/surface/subdivision/modes.h"
+#include "server/surface/subdivision/dart_masks.h"
 #include "server/surface/subdivision/strip.h"
 #include "server/surface/texels.h"
 
@@ -44,11 +44,11 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
 {
     const struct ring *ring = &quad->corner[corner];
     unsigned levels = corner_levels(ring);
-    if (ring_is_dart(ring) && ring->n_faces > MODES_MAX_VALENCE) {
+    if (ring_is_dart(ring) && ring->n_faces > DART_MAX_VALENCE) {
         b->dart_valence = ring->n_faces;
     } else if (!b->tables) {
         if (ring_is_dart(ring))
-            known_modes_add(b->modes, ring, &b->arena);
+            dart_mask_list_add(b->modes, ring, &b->arena);
     } else {
         struct limit_node *out = &b->tables->nodes[node];
         struct quad turned = quad_rotated(quad, corner);
@@ -126,7 +126,7 @@ static void measure_extent(struct face_builder *b, const struct quad *quad)
     struct vec grid[4][4], middle = {0, 0, 0};
     for (unsigned i = 0; i < 4; i++)
         if (!ring_is_dart(&quad->corner[i]))
-            extend_box(b, shared_limit(&quad->corner[i]));
+            extend_box(b, ring_cache_limit(&quad->corner[i]));
     if (quad_extraordinary(quad))
         return;
     static const double weight[4] = {1.0 / 48, 23.0 / 48, 23.0 / 48, 1.0 / 48};

@@ -9,8 +9,8 @@ struct face_builder {
     struct limit_tables *tables; /* NULL: measure only */
     const struct limit_plan *plan;
     struct arena arena;
-    struct shared_rings rings;
-    struct known_modes **modes; /* while measuring: the plan's */
+    struct ring_cache rings;
+    struct dart_mask_list **modes; /* while measuring: the plan's */
     struct plan_offsets next;
     size_t n_regular, n_corner, n_strip, n_split, n_hole;
     double box_min[3], box_max[3]; /* of the limit positions met while measuring */

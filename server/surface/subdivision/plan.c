@@ -3,9 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "server/surface/subdivision/modes.h"
+#include "server/surface/subdivision/dart_masks.h"
 #include "server/surface/subdivision/face.h"
-#include "server/surface/subdivision/known_modes.h"
+#include "server/surface/subdivision/dart_mask_list.h"
 
 /* Boundary mode NONE: faces at a boundary are support only, unless all boundary edges at their
  * vertices are sharp by themselves (OpenSubdiv sdc/options.h). */
@@ -41,7 +41,7 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
                                    .box_max = {-INFINITY, -INFINITY, -INFINITY}};
     if (!arena_init(&measure.arena, plan->arena_bytes))
         return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
-    shared_rings_init(&measure.rings, plan->cage->face_start[plan->cage->n_faces]);
+    ring_cache_init(&measure.rings, plan->cage->face_start[plan->cage->n_faces]);
     uint64_t node = plan->n_ptex, texel = 0, bound = 0;
     bool ok = true;
     for (uint32_t p = 0; p < plan->n_ptex && ok && (ok = limit_goes_on(watch, error)); p++) {
@@ -55,7 +55,7 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
             ok = error_set(error, ERROR_MODEL,
                            "a crease ends at a vertex of %u faces, more than the %d that sheen "
                            "evaluates",
-                           measure.dart_valence, MODES_MAX_VALENCE);
+                           measure.dart_valence, DART_MAX_VALENCE);
         else if (node > INT32_MAX || texel > UINT32_MAX)
             ok = error_set(error, ERROR_MODEL,
                            "the cage needs more than %u table texels: split it in parts",
@@ -73,7 +73,7 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
         plan->box_min[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_min[k] : 0;
         plan->box_max[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_max[k] : 0;
     }
-    shared_rings_finish(&measure.rings);
+    ring_cache_finish(&measure.rings);
     arena_finish(&measure.arena);
     return ok;
 }
@@ -170,7 +170,7 @@ void limit_plan_destroy(struct limit_plan *plan)
         return;
     topology_finish(&plan->topology);
     refined_points_finish(&plan->refined);
-    known_modes_finish(&plan->modes);
+    dart_mask_list_finish(&plan->modes);
     free(plan->first_ptex);
     free(plan->corner);
     free(plan->hole);

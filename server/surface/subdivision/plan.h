@@ -19,7 +19,7 @@ struct limit_plan {
     uint32_t *corner;              /* [Ptex faces]: the cage corner at its (0,0) */
     uint8_t *hole;                 /* [cage faces]: no surface; NULL when there is none */
     struct plan_offsets *offsets;  /* [Ptex faces + 1] */
-    struct known_modes *modes;     /* of its darts */
+    struct dart_mask_list *modes;  /* of its darts */
     size_t n_ptex;
     size_t n_regular, n_corner, n_strip, n_split, n_hole;
     double box_min[3], box_max[3]; /* of limit positions, all over the surface */

@@ -1,7 +1,7 @@
 #include "server/surface/subdivision/quad.h"
 
 #include "server/surface/subdivision/crease.h"
-#include "server/surface/subdivision/shared.h"
+#include "server/surface/subdivision/ring_cache.h"
 
 unsigned quad_extraordinary(const struct quad *quad)
 {
@@ -77,10 +77,10 @@ static struct ring seen_from(struct ring ring, uint32_t at, struct arena *arena)
 static struct ring refined(const struct ring *ring, struct arena *arena)
 {
     struct ring fine;
-    if (!shared_find_derived(ring, SHARED_REFINED, &fine)) {
+    if (!ring_cache_find_derived(ring, RING_REFINED, &fine)) {
         fine = ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
         ring_refine(ring, &fine);
-        fine = shared_keep_derived(ring, SHARED_REFINED, &fine);
+        fine = ring_cache_keep_derived(ring, RING_REFINED, &fine);
     }
     fine.at = ring->at;
     return fine;

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "server/surface/subdivision/sheets.h"
+#include "server/surface/topology/nonmanifold.h"
 #include "server/surface/tables.h"
 
 static const double PI = 3.14159265358979323846;
@@ -59,7 +59,7 @@ static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
     if (rule == RULE_CORNER)
         return in->centre;
     if (rule == RULE_CREASE) {
-        const struct vec *foreign = in->sheets.level ? in->sheets.end : NULL;
+        const struct vec *foreign = in->sheets.creases ? in->sheets.end : NULL;
         struct vec ends =
             foreign ? vec_add(foreign[0], foreign[1]) : vec_add(in->edge[end[0]], in->edge[end[1]]);
         return vec_mad(vec_scale(in->centre, 0.75), 0.125, ends);
@@ -75,7 +75,7 @@ static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
  * single precision as sharpness is everywhere. */
 static double rule_weight(const struct ring *in, const struct ring *out)
 {
-    const struct sheet_level *sheets = in->sheets.level;
+    const struct vertex_creases *sheets = in->sheets.creases;
     struct crease_sum ending = {0, 0};
     if (out->sharpness <= 0)
         crease_add(&ending, in->sharpness);

@@ -27,13 +27,14 @@ struct ring_creases {
     bool chaikin;
 };
 
-/* What the vertex has beside this sheet, where several meet (server/surface/subdivision/sheets.h).
+/* What the vertex has beside this sheet, where several meet
+ * (server/surface/topology/nonmanifold.h).
  */
 struct ring_sheets {
     /* The vertex's sharp edges at the ring's own level of refinement. NULL: the vertex has no other
      * sheet; after crease_settle() also: the others matter no more, since the vertex is sharp or
      * the crease through it ends this sheet. */
-    const struct sheet_level *level;
+    const struct vertex_creases *creases;
     struct vec end[2]; /* the far ends of the crease through the vertex, which ends its sheets */
     bool ends_outside; /* it does not end this one, which is closed or has one edge as both ends */
 };
@@ -48,9 +49,10 @@ struct ring {
     struct ring_creases creases; /* edge is NULL: smooth, but for the ends of an open ring */
     struct ring_sheets sheets;
     struct vec centre;
-    struct vec *edge;           /* [n_faces + !closed] */
-    struct vec *face;           /* [n_faces] */
-    struct shared_ring *shared; /* where it is kept for all its corners (shared.h); NULL: nowhere */
+    struct vec *edge; /* [n_faces + !closed] */
+    struct vec *face; /* [n_faces] */
+    struct cached_ring
+        *cached; /* where it is kept for all its corners (ring_cache.h); NULL: nowhere */
 };
 
 /* A smooth ring with room for its points; with_creases: and for sharpness, all zero. */
@@ -67,7 +69,7 @@ static inline uint32_t ring_edges(const struct ring *ring)
  * or between two sides of the same edge, at a vertex where other sheets have the crease. */
 static inline bool ring_has_foreign_crease(const struct ring *settled)
 {
-    return settled->sheets.level;
+    return settled->sheets.creases;
 }
 
 /* Edge and face by steps from the quad at ring->at: edge(0) is the quad's next corner, edge(1) its

@@ -9,7 +9,7 @@
 static float straight_crease(const struct ring *ring, int edge)
 {
     if (!ring->closed || ring->n_faces != 4 || !ring->creases.edge || ring->sharpness > 0 ||
-        ring->sheets.level)
+        ring->sheets.creases)
         return 0;
     float sharpness = crease_edge(ring, ring_edge_index(ring, edge));
     bool straight = crease_edge(ring, ring_edge_index(ring, edge + 2)) == sharpness &&

@@ -15,7 +15,7 @@
 #include "server/surface/subdivision/crease.h"
 #include "server/surface/evaluate.h"
 #include "server/surface/subdivision/extract.h"
-#include "server/surface/subdivision/known_modes.h"
+#include "server/surface/subdivision/dart_mask_list.h"
 #include "server/surface/subdivision/plan.h"
 
 enum { N = 150 }; /* faces: more than a table's window */
@@ -23,7 +23,7 @@ enum { N = 150 }; /* faces: more than a table's window */
 struct fan {
     struct cage cage;
     struct limit_plan *plan;
-    struct shared_rings rings;
+    struct ring_cache rings;
     struct arena arena;
 };
 
@@ -35,7 +35,7 @@ static void fan_read(struct fan *fan, const char *text, size_t size)
     fan->plan = limit_plan_create(&fan->cage, NULL, &error);
     if (!fan->plan)
         fail_msg("%s", error.text);
-    shared_rings_init(&fan->rings, fan->cage.face_start[fan->cage.n_faces]);
+    ring_cache_init(&fan->rings, fan->cage.face_start[fan->cage.n_faces]);
     assert_true(arena_init(&fan->arena, fan->plan->arena_bytes));
 }
 
@@ -65,7 +65,7 @@ static void fan_init(struct fan *fan, bool closed, const char *tags)
 static void fan_finish(struct fan *fan)
 {
     arena_finish(&fan->arena);
-    shared_rings_finish(&fan->rings);
+    ring_cache_finish(&fan->rings);
     limit_plan_destroy(fan->plan);
     cage_finish(&fan->cage);
 }
@@ -83,7 +83,7 @@ static void assert_made_once(bool closed, const char *tags, int n_sectors)
         struct quad quad = extract_quad(&fan.plan->topology, 4 * face, &fan.rings, &fan.arena);
         for (int depth = 0; depth < DEPTH; depth++) {
             const struct ring *ring = &quad.corner[0];
-            assert_true(ring->n_faces >= SHARED_MIN_FACES);
+            assert_true(ring->n_faces >= RING_CACHE_MIN_FACES);
             n_changes += depth == 0 && ring->edge != last[0];
             if (n_sectors == 1 && face > 0)
                 assert_ptr_equal(ring->edge, last[depth]);
@@ -187,25 +187,25 @@ static void test_modes(void **state)
 {
     (void)state;
     enum { FACES = 12, POINTS = 2 * FACES + 1 };
-    struct ring_modes own, found;
-    struct known_modes *known = NULL;
+    struct dart_masks own, found;
+    struct dart_mask_list *known = NULL;
     struct arena arena;
     assert_true(arena_init(&arena, 1 << 16));
     for (uint32_t i = 0; i < 3; i++) {
         struct ring ring = ring_take(&arena, FACES, true, true);
-        const struct known_modes *newest = known;
+        const struct dart_mask_list *newest = known;
         ring.creases.edge[i == 2 ? 7 : i] = CAGE_SHARPNESS_INFINITE;
-        known_modes_add(&known, &ring, &arena);
+        dart_mask_list_add(&known, &ring, &arena);
         assert_int_equal(known != newest, i == 0);
-        known_modes_find(known, &ring, &arena, &found);
-        ring_modes_init(&own, &ring, &arena);
+        dart_mask_list_find(known, &ring, &arena, &found);
+        dart_masks_find(&own, &ring, &arena);
         for (int k = 0; k < POINTS; k++) {
             assert_float_equal(found.position[k], own.position[k], 1e-12);
             assert_float_equal(fabs(found.tangent[0][k]), fabs(own.tangent[0][k]), 1e-9);
             assert_float_equal(fabs(found.tangent[1][k]), fabs(own.tangent[1][k]), 1e-9);
         }
     }
-    known_modes_finish(&known);
+    dart_mask_list_finish(&known);
     arena_finish(&arena);
 }
 

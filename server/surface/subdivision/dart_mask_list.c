@@ -1,36 +1,37 @@
-#include "server/surface/subdivision/known_modes.h"
+#include "server/surface/subdivision/dart_mask_list.h"
 
 #include <stdlib.h>
 
 #include "server/cage/cage.h"
 #include "server/surface/subdivision/crease.h"
 
-static const struct known_modes *look_up(const struct known_modes *list, const struct ring *ring)
+static const struct dart_mask_list *look_up(const struct dart_mask_list *list,
+                                            const struct ring *ring)
 {
     while (list && list->n_faces != ring->n_faces)
         list = list->older;
     return list;
 }
 
-void known_modes_add(struct known_modes **list, const struct ring *ring, struct arena *arena)
+void dart_mask_list_add(struct dart_mask_list **list, const struct ring *ring, struct arena *arena)
 {
-    if (ring->n_faces < KNOWN_MODES_MIN_FACES || look_up(*list, ring))
+    if (ring->n_faces < DART_MASK_LIST_MIN_FACES || look_up(*list, ring))
         return;
-    struct known_modes *made = malloc(sizeof *made);
+    struct dart_mask_list *made = malloc(sizeof *made);
     if (!made)
         return;
-    *made = (struct known_modes){.n_faces = ring->n_faces, .older = *list};
+    *made = (struct dart_mask_list){.n_faces = ring->n_faces, .older = *list};
     size_t mark = arena->used;
     struct ring like = ring_take(arena, ring->n_faces, true, true);
     like.creases.edge[0] = CAGE_SHARPNESS_INFINITE;
-    ring_modes_init(&made->modes, &like, arena);
+    dart_masks_find(&made->modes, &like, arena);
     arena->used = mark;
     *list = made;
 }
 
-void known_modes_finish(struct known_modes **list)
+void dart_mask_list_finish(struct dart_mask_list **list)
 {
-    for (struct known_modes *known = *list, *older; known; known = older) {
+    for (struct dart_mask_list *known = *list, *older; known; known = older) {
         older = known->older;
         free(known);
     }
@@ -48,12 +49,12 @@ static void turn(const double *mask, uint32_t n, uint32_t by, double *out)
     }
 }
 
-void known_modes_find(const struct known_modes *list, const struct ring *ring, struct arena *arena,
-                      struct ring_modes *modes)
+void dart_mask_list_find(const struct dart_mask_list *list, const struct ring *ring,
+                         struct arena *arena, struct dart_masks *modes)
 {
-    const struct known_modes *known = look_up(list, ring);
+    const struct dart_mask_list *known = look_up(list, ring);
     if (!known) {
-        ring_modes_init(modes, ring, arena);
+        dart_masks_find(modes, ring, arena);
         return;
     }
     uint32_t edge[2];

@@ -1,9 +1,9 @@
-#include "server/surface/subdivision/topology.h"
+#include "server/surface/topology/topology.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/surface/subdivision/sheets.h"
+#include "server/surface/topology/nonmanifold.h"
 
 /* Edges around each vertex, counted while the half-edges are paired. */
 struct vertex_count {
@@ -230,10 +230,10 @@ static bool sharpen_vertices(struct topology *t, struct error *error)
 /* The semi-sharp edges around a vertex. */
 static struct crease_sum sum_creases(const struct topology *t, const struct sector *sector)
 {
-    const struct vertex_sheets *sheets = sheets_at(t, sector->first);
+    const struct nonmanifold_vertex *sheets = nonmanifold_at(t, sector->first);
     struct crease_sum sum = {0, 0};
     if (sheets)
-        return t->sheet_level[sheets->first_level].semisharp;
+        return t->vertex_creases[sheets->first_step].semisharp;
     for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at))
         crease_add(&sum, edge_sharpness(t, at));
     return sum;
@@ -286,7 +286,7 @@ bool topology_init(struct topology *t, const struct cage *cage, struct error *er
         goto no_memory;
     flag_vertices(t, count);
     flag_creased_vertices(t);
-    if (!sheets_init(t) || !find_child_sharpness(t))
+    if (!nonmanifold_find(t) || !find_child_sharpness(t))
         goto no_memory;
     free(count);
     return true;
@@ -308,7 +308,7 @@ void topology_finish(struct topology *t)
     free(t->child_sharpness);
     free(t->vertex_sharpness);
     free(t->sheets);
-    free(t->sheet_level);
+    free(t->vertex_creases);
     *t = (struct topology){0};
 }
 

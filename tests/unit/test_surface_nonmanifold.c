@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "server/surface/evaluate.h"
-#include "server/surface/subdivision/sheets.h"
+#include "server/surface/topology/nonmanifold.h"
 #include "tests/unit/cage_tables.h"
 
 enum { PAGES = 3, SPINE_Z = 3, MAX_CREASES = 4 };
@@ -173,13 +173,13 @@ static void test_closed_sheet(void **state)
     }
 }
 
-static const struct sheet_level *levels_of(const struct topology *t)
+static const struct vertex_creases *levels_of(const struct topology *t)
 {
-    const struct vertex_sheets *sheets = sheets_at(t, 1); /* the middle at face 0 */
+    const struct nonmanifold_vertex *sheets = nonmanifold_at(t, 1); /* the middle at face 0 */
     assert_non_null(sheets);
     assert_int_equal(sheets->vertex, 0);
     assert_int_equal(sheets->end[0] + sheets->end[1], 3);
-    return &t->sheet_level[sheets->first_level];
+    return &t->vertex_creases[sheets->first_step];
 }
 
 /* What the list says, level for level. */
@@ -195,7 +195,7 @@ static void test_levels(void **state)
     assert_true(cage_read(&cage, text, size, "book.obj", &error));
     assert_true(topology_init(&t, &cage, &error));
     assert_int_equal(t.n_sheets, 1); /* the spine's ends are sharp anyway */
-    const struct sheet_level *level = levels_of(&t);
+    const struct vertex_creases *level = levels_of(&t);
     assert_int_equal(level[0].n_sharp, 5);
     assert_float_equal(level[0].semisharp.sum, 1.75, 0);
     assert_int_equal(level[0].semisharp.n, 2);
@@ -204,8 +204,8 @@ static void test_levels(void **state)
     assert_int_equal(level[2].n_sharp, 3);
     assert_int_equal(level[2].semisharp.n, 0);
     assert_int_equal(level[1].semisharp.n, 1);
-    assert_int_equal(t.n_sheet_levels, 3);
-    assert_null(sheets_at(&t, 0)); /* an end of the spine */
+    assert_int_equal(t.n_vertex_creases, 3);
+    assert_null(nonmanifold_at(&t, 0)); /* an end of the spine */
     topology_finish(&t);
     cage_finish(&cage);
 }

@@ -4,8 +4,8 @@
  * two faces share in opposite directions have twins; all others (boundary edges, edges of three
  * and more faces, edges that two faces run along in the same direction) end a sector, as
  * OpenSubdiv makes them infinitely sharp (far/topologyRefinerFactory.cpp). Read-only once built. */
-#ifndef SHEEN_SURFACE_SUBDIVISION_TOPOLOGY_H
-#define SHEEN_SURFACE_SUBDIVISION_TOPOLOGY_H
+#ifndef SHEEN_SURFACE_TOPOLOGY_TOPOLOGY_H
+#define SHEEN_SURFACE_TOPOLOGY_TOPOLOGY_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -24,9 +24,9 @@ struct topology {
     float *child_sharpness;  /* [corners]: of the half at the corner after one step, by Chaikin's
                                 rule; NULL: without that, or no creases */
     float *vertex_sharpness; /* [vertices]; NULL: no sharp vertices in the cage */
-    struct vertex_sheets *sheets;    /* [n_sheets], by vertex: sheets.h */
-    struct sheet_level *sheet_level; /* [n_sheet_levels] */
-    size_t n_sheets, n_sheet_levels;
+    struct nonmanifold_vertex *sheets;     /* [n_sheets], by vertex: nonmanifold.h */
+    struct vertex_creases *vertex_creases; /* [n_vertex_creases] */
+    size_t n_sheets, n_vertex_creases;
     bool quads_only;
 };
 

@@ -1,4 +1,4 @@
-#include "server/surface/subdivision/sheets.h"
+#include "server/surface/topology/nonmanifold.h"
 
 #include <stdlib.h>
 
@@ -83,17 +83,17 @@ static void add_sheet(const struct topology *t, uint32_t first, struct sharp_edg
     }
 }
 
-static bool add_level(struct topology *t, size_t *capacity, struct sheet_level level)
+static bool add_level(struct topology *t, size_t *capacity, struct vertex_creases level)
 {
-    if (t->n_sheet_levels == *capacity) {
+    if (t->n_vertex_creases == *capacity) {
         size_t larger = *capacity ? 2 * *capacity : 64;
-        struct sheet_level *grown = realloc(t->sheet_level, larger * sizeof *grown);
+        struct vertex_creases *grown = realloc(t->vertex_creases, larger * sizeof *grown);
         if (!grown)
             return false;
-        t->sheet_level = grown;
+        t->vertex_creases = grown;
         *capacity = larger;
     }
-    t->sheet_level[t->n_sheet_levels++] = level;
+    t->vertex_creases[t->n_vertex_creases++] = level;
     return true;
 }
 
@@ -115,8 +115,8 @@ static bool add_levels(struct topology *t, size_t *capacity, struct sharp_edges 
 {
     for (bool is_last = false; !is_last;) {
         is_last = edges->n_semisharp == 0;
-        struct sheet_level level = {.n_sharp =
-                                        edges->n_ends + edges->n_infinite + edges->n_semisharp};
+        struct vertex_creases level = {.n_sharp =
+                                           edges->n_ends + edges->n_infinite + edges->n_semisharp};
         for (uint32_t k = 0; k < edges->n_semisharp; k++)
             crease_add(&level.semisharp, edges->semisharp[k]);
         wear_off(edges, t->cage->chaikin, &level.semisharp);
@@ -134,15 +134,15 @@ static bool add_vertices(struct topology *t, const struct sheet_list *list, floa
         struct sharp_edges edges = {.semisharp = room, .end = {v, v}};
         for (last = first; last < list->n && list->sheet[last].vertex == v; last++)
             add_sheet(t, list->sheet[last].first, &edges);
-        t->sheets[t->n_sheets++] =
-            (struct vertex_sheets){v, {edges.end[0], edges.end[1]}, (uint32_t)t->n_sheet_levels};
+        t->sheets[t->n_sheets++] = (struct nonmanifold_vertex){
+            v, {edges.end[0], edges.end[1]}, (uint32_t)t->n_vertex_creases};
         if (!add_levels(t, &capacity, &edges))
             return false;
     }
     return true;
 }
 
-bool sheets_init(struct topology *t)
+bool nonmanifold_find(struct topology *t)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
     size_t n_wanted = 0;
@@ -164,11 +164,11 @@ bool sheets_init(struct topology *t)
 static int compare_vertex(const void *key, const void *element)
 {
     uint32_t vertex = *(const uint32_t *)key,
-             other = ((const struct vertex_sheets *)element)->vertex;
+             other = ((const struct nonmanifold_vertex *)element)->vertex;
     return vertex < other ? -1 : vertex > other;
 }
 
-const struct vertex_sheets *sheets_at(const struct topology *t, uint32_t corner)
+const struct nonmanifold_vertex *nonmanifold_at(const struct topology *t, uint32_t corner)
 {
     uint32_t vertex = corner_vertex(t, corner);
     if (!t->n_sheets || !is_wanted(t, corner))

@@ -1,10 +1,10 @@
-#include "server/surface/subdivision/modes.h"
+#include "server/surface/subdivision/dart_masks.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { MAX_SIZE = 2 * MODES_MAX_VALENCE + 2 };
-/* The slowest ratio of eigenvalues at MODES_MAX_VALENCE is about 0.99. */
+enum { MAX_SIZE = 2 * DART_MAX_VALENCE + 2 };
+/* The slowest ratio of eigenvalues at DART_MAX_VALENCE is about 0.99. */
 static const int ITERATIONS = 4000;
 
 /* The ring's points as one array: the vertex, its edges, its faces. */
@@ -78,12 +78,12 @@ static void flat_ring(struct ring *ring)
 }
 
 /* Exchanges the tangents if they run against the winding. */
-static void orient(struct ring_modes *modes, const struct ring *ring, struct arena *arena)
+static void orient(struct dart_masks *modes, const struct ring *ring, struct arena *arena)
 {
     struct ring flat = ring_take(arena, ring->n_faces, true, false);
     flat_ring(&flat);
-    struct vec t1 = ring_mode_apply(modes->tangent[0], &flat);
-    struct vec t2 = ring_mode_apply(modes->tangent[1], &flat);
+    struct vec t1 = dart_mask_apply(modes->tangent[0], &flat);
+    struct vec t2 = dart_mask_apply(modes->tangent[1], &flat);
     if (vec_cross(t1, t2).z < 0)
         scale(modes->tangent[1], ring_size(ring), -1);
 }
@@ -134,7 +134,7 @@ static void find_tangents(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int ite
     }
 }
 
-void ring_modes_init(struct ring_modes *modes, const struct ring *ring, struct arena *arena)
+void dart_masks_find(struct dart_masks *modes, const struct ring *ring, struct arena *arena)
 {
     uint32_t n = ring_size(ring);
     double matrix[MAX_SIZE][MAX_SIZE];
@@ -147,7 +147,7 @@ void ring_modes_init(struct ring_modes *modes, const struct ring *ring, struct a
     arena->used = mark;
 }
 
-struct vec ring_mode_apply(const double *mask, const struct ring *ring)
+struct vec dart_mask_apply(const double *mask, const struct ring *ring)
 {
     struct vec sum = {0, 0, 0};
     for (uint32_t i = 0; i < ring_size(ring); i++)

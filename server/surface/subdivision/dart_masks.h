@@ -4,18 +4,18 @@
  * A dart is an interior vertex where one infinitely sharp edge ends. There subdivision has no
  * symmetry and no masks in closed form. The masks are the leading left eigenvectors of the ring's
  * own subdivision matrix (limit-surface 4.5), found by subspace iteration. */
-#ifndef SHEEN_SURFACE_SUBDIVISION_MODES_H
-#define SHEEN_SURFACE_SUBDIVISION_MODES_H
+#ifndef SHEEN_SURFACE_SUBDIVISION_DART_MASKS_H
+#define SHEEN_SURFACE_SUBDIVISION_DART_MASKS_H
 
 #include "server/surface/subdivision/ring.h"
 
-enum { MODES_MAX_VALENCE = 64 };
+enum { DART_MAX_VALENCE = 64 };
 
 /* Weights of the vertex, its edges, its faces, in that order. tangent[0] is the slowest mode; the
  * two are right-handed along the winding. */
-struct ring_modes {
-    double position[2 * MODES_MAX_VALENCE + 2];
-    double tangent[2][2 * MODES_MAX_VALENCE + 2];
+struct dart_masks {
+    double position[2 * DART_MAX_VALENCE + 2];
+    double tangent[2][2 * DART_MAX_VALENCE + 2];
 };
 
 /* Not where the vertex is sharp as well, or follows a foreign crease: those have limits of their
@@ -25,9 +25,9 @@ static inline bool ring_is_dart(const struct ring *settled)
     return settled->creases.edge && !(settled->sharpness > 0) && !ring_has_foreign_crease(settled);
 }
 
-/* The ring is a dart's, of at most MODES_MAX_VALENCE quads. Takes a few rings of arena. */
-void ring_modes_init(struct ring_modes *modes, const struct ring *ring, struct arena *arena);
+/* The ring is a dart's, of at most DART_MAX_VALENCE quads. Takes a few rings of arena. */
+void dart_masks_find(struct dart_masks *modes, const struct ring *ring, struct arena *arena);
 
-struct vec ring_mode_apply(const double *mask, const struct ring *ring);
+struct vec dart_mask_apply(const double *mask, const struct ring *ring);
 
 #endif
