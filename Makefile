@@ -45,7 +45,8 @@ endif
 WARN := -Wall -Wextra -Werror -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-qual
 CWARN := $(WARN) -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
 # No contraction: the tables must not depend on the processor that built them.
-BASE := $(OPT) -g -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
+# Two folders give equal programs.
+BASE := $(OPT) -g $(if $(COVERAGE),,-ffile-prefix-map=$(CURDIR)=.) -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
         -I. -I$(BUILD)/gen -MMD -MP -DSHEEN_VERSION=\"$(VERSION)\" -pthread
 CFLAGS += -std=c11 -D_GNU_SOURCE $(CWARN) $(BASE)
 # The check of vptr makes a pipe, which workers may not.
@@ -96,17 +97,24 @@ CAGE_WORKER_OBJ := $(call obj,server/sandbox/cage_main.c $(CAGE_SRC) server/sand
                    $(CAGE_TASKS_OBJ) $(WORKER_OBJ)
 IMAGE_WORKER_OBJ := $(call obj,server/sandbox/image_main.c $(IMAGE_SRC) server/sandbox/image_code.c) \
                     $(IMAGE_TASKS_OBJ) $(WORKER_OBJ)
-CLIENT_OBJ := $(call obj,$(CLIENT_SRC)) $(PROTOCOL_OBJ)
+# libsheen and the command. What both need of the protocol's text and numbers is in each: libsheen shows
+# nothing but what sheen.h declares.
+LIBSHEEN_OBJ := $(call obj,$(CLIENT_LIB_SRC)) $(PROTOCOL_OBJ)
+$(LIBSHEEN_OBJ): CFLAGS += -fPIC -fvisibility=hidden
+$(LIBSHEEN_OBJ): Makefile # objects of before had no such flags
+CLI_OBJ := $(call obj,$(CLIENT_CLI_SRC) protocol/number.c protocol/ranges.c protocol/text.c)
 
 SERVER_LIBS := -lepoxy -lprotobuf-nanopb -lzstd -lz -lturbojpeg -lssl -lcrypto -linih -lm
 CAGE_WORKER_LIBS := -ltinygltf -lm
 IMAGE_WORKER_LIBS := -lOpenImageIO -lOpenImageIO_Util -lm
-CLIENT_LIBS := -lprotobuf-nanopb -lzstd -lssl -lcrypto -lpng -ljansson -lm
+LIBSHEEN_LIBS := -lprotobuf-nanopb -lzstd -lssl -lcrypto -lm
+CLIENT_LIBS := $(LIBSHEEN_LIBS) -lpng -ljansson
 TEST_LIBS := $(SERVER_LIBS) $(CAGE_WORKER_LIBS) $(IMAGE_WORKER_LIBS) -lpng -ljansson
 
 .PHONY: all
 PROGRAMS := $(BUILD)/sheend $(BUILD)/sheend-cage $(BUILD)/sheend-image $(BUILD)/sheen
-all: $(PROGRAMS)
+LIBRARIES := $(BUILD)/libsheen.so.0 $(BUILD)/libsheen.a
+all: $(PROGRAMS) $(LIBRARIES)
 
 $(BUILD)/sheend: $(SERVER_OBJ)
 	$(call say,LD $@)
@@ -117,9 +125,20 @@ $(BUILD)/sheend-cage: $(CAGE_WORKER_OBJ)
 $(BUILD)/sheend-image: $(IMAGE_WORKER_OBJ)
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(IMAGE_WORKER_LIBS)
-$(BUILD)/sheen: $(CLIENT_OBJ)
+# The command has libsheen inside: it starts wherever it is copied to, and asks no loader for a folder.
+$(BUILD)/sheen: $(CLI_OBJ) $(BUILD)/libsheen.a
 	$(call say,LD $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CLIENT_LIBS)
+$(BUILD)/libsheen.so.0: $(LIBSHEEN_OBJ) client/lib/sheen.map
+	$(call say,LD $@)
+	$(Q)$(CC) $(LDFLAGS) -shared -Wl,-soname,libsheen.so.0 -Wl,--version-script=client/lib/sheen.map \
+	    $(if $(SANITIZE),,-Wl,-z,defs) -o $@ $(LIBSHEEN_OBJ) $(LIBSHEEN_LIBS)
+# One object, in which hidden names are local: they meet no name of a program's.
+$(BUILD)/obj/libsheen.o: $(LIBSHEEN_OBJ)
+	$(Q)$(LD) -r -o $@ $^ && objcopy --localize-hidden $@
+$(BUILD)/libsheen.a: $(BUILD)/obj/libsheen.o
+	$(call say,AR $@)
+	$(Q)rm -f $@ && ar rcsD $@ $^
 
 $(BUILD)/obj/gen/%.c.o: $(BUILD)/gen/%.c
 	@mkdir -p $(@D)
