@@ -135,13 +135,14 @@ static int run(const struct options *options)
 
 static const struct option_row ROWS[] = {
     {"output", 'o', "FILE",
-     "the picture; its ending tells the format: .png .exr .jpg .jpeg .tif .tiff", apply_output},
+     "the picture; its ending tells the format: .png .exr .jpg .jpeg .tif .tiff", apply_output,
+     NULL},
     {"aov", 0, "LIST",
      "planes beside colour, EXR only: some of P (position), N (normal), ptex,\n"
      "light (s, t on the light), k (principal curvatures), dlight (change of s, t\n"
      "by a pixel right and down), coverage (share of the pixel that shows surface),\n"
      "with commas between",
-     apply_aov},
+     apply_aov, "P N ptex light k dlight coverage P,N"},
     {0},
 };
 

@@ -451,7 +451,7 @@ static bool check(struct options *options, char *why)
 }
 
 static const struct option_row ROWS[] = {
-    {"frames", 'n', "N", "how many, {}", apply_frames},
+    {"frames", 'n', "N", "how many, {}", apply_frames, NULL},
     {"orbit", 0, "DEG",
      "the camera turns by so many degrees a frame, {}\n"
      "(default: 1), about the model's up (--up, the file's, or as guessed): without\n"
@@ -459,17 +459,17 @@ static const struct option_row ROWS[] = {
      "it stays in the picture, the first frame included; --target alone: about that\n"
      "point, further back where that is needed; --eye: about --target, as far as it\n"
      "is. --fov, --ortho and --zoom then look closer, each frame alike",
-     apply_orbit},
+     apply_orbit, NULL},
     {"output", 'o', "PATTERN",
      "writes each frame into a file, as FRAME_%04d.png: one %d, or one like %04d\n"
      "(a width of 1 to 9), stands for its number, from 0; the ending tells the\n"
      "format: .png .exr .jpg .jpeg .tif .tiff (default: lossless planes are asked\n"
      "for, and dropped). A late frame has no file",
-     apply_output},
+     apply_output, NULL},
     {"light-only", 0, NULL,
      "the light swings along its u edge by a tenth of it instead, a full swing\n"
      "in 360 degrees of --orbit; only the shade stage runs anew",
-     apply_light_only},
+     apply_light_only, NULL},
     {0},
 };
 

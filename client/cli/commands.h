@@ -12,4 +12,8 @@ extern const struct command COMMAND_LIGHTS;
 extern const struct command COMMAND_PATTERNS;
 extern const struct command COMMAND_LEVELS;
 
+/* All of them, in the order in which they are listed. */
+#define N_COMMANDS 7
+extern const struct command *const COMMANDS[N_COMMANDS];
+
 #endif

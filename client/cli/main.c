@@ -6,11 +6,6 @@
 
 #define EXIT_WRONG_USAGE 2
 
-static const struct command *const COMMANDS[] = {
-    &COMMAND_RENDER, &COMMAND_STREAM,   &COMMAND_INFO,  &COMMAND_STATS,
-    &COMMAND_LIGHTS, &COMMAND_PATTERNS, &COMMAND_LEVELS};
-#define N_COMMANDS (sizeof(COMMANDS) / sizeof(*COMMANDS))
-
 static void print_help(FILE *out)
 {
     fputs("usage: sheen COMMAND [argument]...\n"

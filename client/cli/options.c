@@ -8,10 +8,7 @@
 #include "client/cli/lights_text.h"
 #include "client/cli/values.h"
 
-#define MAX_OPTIONS 64
 #define FIRST_LONG 256 /* getopt's number of row 0; letters are below */
-#define HELP_COLUMN 30
-#define HELP_BYTES 1024 /* of one option */
 #define DEFAULT_RECONNECT_S 30
 
 const struct range OPTION_RANGES[N_OPTION_RANGES] = {
@@ -97,12 +94,12 @@ bool options_check_scene(struct options *options, char *why)
            options_check_light(options, why);
 }
 
-/* All rows of a command in one list. */
-static size_t collect(const struct command *command, const struct option_row *rows[MAX_OPTIONS])
+size_t options_rows(const struct command *command,
+                    const struct option_row *rows[static OPTIONS_MAX_ROWS])
 {
     size_t n = 0;
     for (const struct option_row *const *table = command->tables; *table; table++)
-        for (const struct option_row *row = *table; row->name && n < MAX_OPTIONS; row++)
+        for (const struct option_row *row = *table; row->name && n < OPTIONS_MAX_ROWS; row++)
             rows[n++] = row;
     return n;
 }
@@ -146,8 +143,8 @@ static enum options_result parse_options(int argc, char **argv,
                                          const struct option_row *const *rows, size_t n,
                                          struct options *options, char *why)
 {
-    struct option longs[MAX_OPTIONS + 1];
-    char shorts[2 * MAX_OPTIONS + 2];
+    struct option longs[OPTIONS_MAX_ROWS + 1];
+    char shorts[2 * OPTIONS_MAX_ROWS + 2];
     describe(rows, n, longs, shorts);
     opterr = 0;
     optind = 0; /* begins anew */
@@ -174,8 +171,8 @@ static enum options_result parse_options(int argc, char **argv,
 enum options_result options_parse(const struct command *command, int argc, char **argv,
                                   struct options *options, char why[static OPTIONS_WHY_BYTES])
 {
-    const struct option_row *rows[MAX_OPTIONS];
-    size_t n = collect(command, rows);
+    const struct option_row *rows[OPTIONS_MAX_ROWS];
+    size_t n = options_rows(command, rows);
     *options = (struct options){
         .request = SHEEN_REQUEST_DEFAULTS, .reconnect_s = DEFAULT_RECONNECT_S, .orbit_deg = 1};
     enum options_result result = parse_options(argc, argv, rows, n, options, why);
@@ -206,84 +203,4 @@ enum options_result options_parse(const struct command *command, int argc, char 
             "its operator gives to sheend",
             options->server);
     return !command->check || command->check(options, why) ? OPTIONS_RUN : OPTIONS_WRONG;
-}
-
-static bool names_option(const struct range *range, const char *name)
-{
-    const char *at = range->option ? strstr(range->option, name) : NULL;
-    return at && strncmp(at - 2, "--", 2) == 0 && strchr(", ", at[strlen(name)]);
-}
-
-/* The range of the option that is the `n`-th of it; NULL: there are fewer. */
-static const struct range *range_of_option(const char *name, size_t n)
-{
-    for (size_t i = 0; i < N_RANGES + N_OPTION_RANGES; i++) {
-        const struct range *range = i < N_RANGES ? &RANGES[i] : &OPTION_RANGES[i - N_RANGES];
-        if (names_option(range, name) && n-- == 0)
-            return range;
-    }
-    return NULL;
-}
-
-/* The row's help with its ranges in place. */
-static void fill_help(const struct option_row *row, char help[static HELP_BYTES])
-{
-    char text[RANGE_TEXT_BYTES];
-    size_t used = 0, n = 0;
-    for (const char *from = row->help; *from && used + 1 < HELP_BYTES;) {
-        const struct range *range =
-            strncmp(from, "{}", 2) == 0 ? range_of_option(row->name, n) : NULL;
-        if (range) {
-            used += (size_t)snprintf(help + used, HELP_BYTES - used, "%s", range_text(range, text));
-            from += 2;
-            n++;
-        } else {
-            help[used++] = *from++;
-        }
-    }
-    help[used < HELP_BYTES ? used : HELP_BYTES - 1] = 0;
-}
-
-static void help_row(const struct option_row *row, FILE *out)
-{
-    char help[HELP_BYTES];
-    fill_help(row, help);
-    int column = row->letter ? fprintf(out, "  -%c, --%s", row->letter, row->name)
-                             : fprintf(out, "      --%s", row->name);
-    if (row->argument)
-        column += fprintf(out, " %s", row->argument);
-    for (const char *line = help; *line;) {
-        int length = (int)strcspn(line, "\n");
-        if (column >= HELP_COLUMN) {
-            fputc('\n', out);
-            column = 0;
-        }
-        fprintf(out, "%*s%.*s\n", HELP_COLUMN - column, "", length, line);
-        line += length + (line[length] == '\n');
-        column = 0;
-    }
-}
-
-void options_help(const struct command *command, FILE *out)
-{
-    const struct option_row *rows[MAX_OPTIONS];
-    size_t n = collect(command, rows);
-    fprintf(out, "usage: sheen %s %s\n%s\n\n", command->name, command->arguments, command->summary);
-    for (size_t i = 0; i < n; i++)
-        help_row(rows[i], out);
-    if (command->takes_model)
-        fputs("\nMODEL is a file, or server:NAME for one below the folder that the daemon at "
-              "--server gives\n"
-              "with --models.\n",
-              out);
-    if (command->old_name)
-        fprintf(out, "\nThe command's old name, %s, still works.\n", command->old_name);
-    fprintf(out, "\nexamples:\n%s\nExit codes: 0 done, 2 wrong usage", command->examples);
-    if (command->codes & CODE_FILES)
-        fputs(", 3 bad model or image, or what cannot be written", out);
-    else if (command->codes & CODE_OUTPUT)
-        fputs(", 3 standard output cannot be written", out);
-    if (command->codes & CODE_SERVER)
-        fputs(",\n4 no or lost server, 5 device failed", out);
-    fputs(".\n", out);
 }

@@ -1,4 +1,5 @@
-/* The command line: one table per command that drives parsing and --help alike.
+/* The command line: one table per command that drives parsing, --help, the manual pages and the
+ * shells' completions alike.
  *
  * Strings in struct options point into argv. Thread: one (getopt_long() has global state). */
 #ifndef SHEEN_CLIENT_OPTIONS_H
@@ -66,6 +67,7 @@ struct option_row {
      * RANGES and OPTION_RANGES that names the option. */
     const char *help;
     bool (*apply)(struct options *options, const char *value, char *why);
+    const char *words; /* values to complete, with blanks between; NULL: none, or files */
 };
 
 /* Exit codes besides 0 and 2, which every command has. */
@@ -112,6 +114,31 @@ enum options_result options_parse(const struct command *command, int argc, char 
                                   struct options *options, char why[static OPTIONS_WHY_BYTES]);
 
 void options_help(const struct command *command, FILE *out);
+
+/* What options_help() and the manual pages say. */
+
+/* All rows of a command; returns how many. */
+#define OPTIONS_MAX_ROWS 64
+size_t options_rows(const struct command *command,
+                    const struct option_row *rows[static OPTIONS_MAX_ROWS]);
+
+/* The row's help with its ranges in place, lines with '\n' between. */
+#define OPTIONS_HELP_BYTES 1024
+void options_row_help(const struct option_row *row, char help[static OPTIONS_HELP_BYTES]);
+
+/* The command's exit codes in ascending order; returns how many. */
+struct exit_code {
+    int code;
+    const char *meaning;
+};
+#define OPTIONS_MAX_CODES 5
+size_t options_codes(const struct command *command,
+                     struct exit_code codes[static OPTIONS_MAX_CODES]);
+
+/* What MODEL is, of commands that take one. */
+#define OPTIONS_MODEL_TEXT                                                                         \
+    "MODEL is a file, or server:NAME for one below the folder that the daemon at --server gives\n" \
+    "with --models."
 
 /* Of an option_row: --size. */
 bool options_apply_size(struct options *options, const char *value, char *why);

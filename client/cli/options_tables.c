@@ -326,12 +326,12 @@ const struct option_row OPTIONS_JPEG[] = {
     {"jpeg-quality", 0, "N",
      "of a .jpg, as libjpeg has it: {}, the lower the\n"
      "smaller the file (default: 95)",
-     apply_jpeg_quality},
+     apply_jpeg_quality, NULL},
     {"jpeg-subsampling", 0, "KIND",
      "of a .jpg's colour: 444, one sample for each pixel, 422, for two side by\n"
      "side, or 420, for two by two: smaller files, coloured edges less sharp\n"
      "(default: 444)",
-     apply_jpeg_subsampling},
+     apply_jpeg_subsampling, "444 422 420"},
     {0},
 };
 
@@ -340,11 +340,11 @@ const struct option_row OPTIONS_SCHEDULE[] = {
      "what the daemon puts first when it has many: interactive, then still, then\n"
      "batch, of which the last two keep a fifth of its time each (default: still;\n"
      "stream: interactive)",
-     apply_class},
+     apply_class, "interactive still batch"},
     {"deadline", 0, "MS",
      "of no use later than this after the daemon has read the request,\n"
      "{} (default: none)",
-     apply_deadline},
+     apply_deadline, NULL},
     {0},
 };
 
@@ -353,7 +353,7 @@ const struct option_row OPTIONS_MODEL[] = {
      "joins an OBJ file's vertices at exactly equal positions, as glTF's are inside\n"
      "a mesh anyway; the file is sent with the line 't weld 0/0/0' behind it and is\n"
      "named by the SHA-256 of both",
-     apply_weld},
+     apply_weld, NULL},
     {0},
 };
 
@@ -361,33 +361,34 @@ const struct option_row OPTIONS_COMMON[] = {
     {"server", 0, "ADDRESS",
      "a running daemon: unix:PATH, tcp:HOST:PORT or tls:HOST:PORT (default:\n"
      "SHEEN_SERVER from the environment, else a private daemon for this command)",
-     apply_server},
+     apply_server, NULL},
     {"ca", 0, "FILE",
      "PEM, the authority of a tls: server's certificate (default: those the system\n"
      "trusts)",
-     apply_ca},
-    {"cert", 0, "FILE", "PEM, the certificate to show to a tls: server; with --key", apply_cert},
-    {"key", 0, "FILE", "PEM, its key", apply_key},
+     apply_ca, NULL},
+    {"cert", 0, "FILE", "PEM, the certificate to show to a tls: server; with --key", apply_cert,
+     NULL},
+    {"key", 0, "FILE", "PEM, its key", apply_key, NULL},
     {"token-file", 0, "FILE",
      "a file whose first line is the token to show to a tls: server (default:\n"
      "SHEEN_TOKEN_FILE from the environment, else none)",
-     apply_token_file},
+     apply_token_file, NULL},
     {"share", 0, NULL,
      "whoever knows the SHA-256 of what is uploaded may use it too (default: this\n"
      "user alone)",
-     apply_share},
+     apply_share, NULL},
     {"device", 0, "DEVICE",
      "of the private daemon: auto, software, or a number from 0 (default: auto,\n"
      "a GPU when there is one)",
-     apply_device},
+     apply_device, "auto software"},
     {"memory-budget", 0, "BYTES",
      "of the private daemon: most that the model, its tables, images and frames may\n"
      "take together, in main memory and on the device, 4M or more, as 800M or 16G\n"
      "(default: half of the memory that the machine has, or its control group may\n"
      "take)",
-     apply_memory_budget},
-    {"quiet", 'q', NULL, "no progress, summary, notices or warnings on standard error",
-     apply_quiet},
+     apply_memory_budget, NULL},
+    {"quiet", 'q', NULL, "no progress, summary, notices or warnings on standard error", apply_quiet,
+     NULL},
     {0},
 };
 
@@ -397,13 +398,13 @@ const struct option_row OPTIONS_RECONNECT[] = {
      "the connection: what has no answer is asked again of the one that takes its\n"
      "place, {} (default: 30; 0: give up at once). A server that\n"
      "was never there, and a private daemon, are not waited for",
-     apply_reconnect},
+     apply_reconnect, NULL},
     {0},
 };
 
 const struct option_row OPTIONS_OUTPUT[] = {
-    {"json", 0, NULL, "one JSON object on standard output", apply_json},
-    {"help", 'h', NULL, "this text", NULL},
+    {"json", 0, NULL, "one JSON object on standard output", apply_json, NULL},
+    {"help", 'h', NULL, "this text", NULL, NULL},
     {0},
 };
 
@@ -412,7 +413,7 @@ const struct option_row OPTIONS_SIZE[] = {
      "width and height of the picture (default: 1280x720)\n"
      "each {} (JPEG: {}); a device's\n"
      "own limit may be lower",
-     options_apply_size},
+     options_apply_size, NULL},
     {0},
 };
 
@@ -420,82 +421,82 @@ const struct option_row OPTIONS_SCENE[] = {
     {"eye", 0, "X,Y,Z",
      "where the camera stands, in the model's units; with --target\n"
      "(default: a camera that frames the model)",
-     apply_eye},
+     apply_eye, NULL},
     {"target", 0, "X,Y,Z",
      "the point it looks at; without --eye the default camera stays where it is\n"
      "and turns to it",
-     apply_target},
+     apply_target, NULL},
     {"view", 0, "NAME",
      "the model framed from the front, back, left, right, top, bottom or iso (all\n"
      "axes alike): with z up the front is at -y and the right at x, with y up at z\n"
      "and x; not with --eye (default: from above the front right)",
-     apply_view},
+     apply_view, "front back left right top bottom iso"},
     {"zoom", 0, "FACTOR@X,Y",
      "a closer look from the same eye, so that lines stay on the surface: FACTOR\n"
      "{} times as close at the place X,Y of the picture,\n"
      "0,0 its top left and 1,1 its bottom right (default: 0.5,0.5, the middle)",
-     apply_zoom},
+     apply_zoom, NULL},
     {"up", 0, "X,Y,Z",
      "which way is up, for the camera and for the light: a direction X,Y,Z or x, y,\n"
      "z, -x, -y, -z, +x and so on (default: what the file says, glTF: y; else z, or y where the "
      "model is\n"
      "thinner in y by more than 1 %: where that is wrong, as for a door that stands,\n"
      "say it)",
-     apply_up},
+     apply_up, "x y z -x -y -z"},
     {"fov", 0, "DEG",
      "vertical field of view, {} (default: 35);\n"
      "without --eye and --target it zooms from where the default camera stands",
-     apply_fov},
+     apply_fov, NULL},
     {"ortho", 0, "HEIGHT",
      "orthographic: units from top to bottom of the picture,\n"
      "{}; without --eye and --target it looks at the\n"
      "model as the default camera does",
-     apply_ortho},
+     apply_ortho, NULL},
     {"lines", 0, "FAMILY",
      "reflection, highlight, isophote, zebra or environment, the last three with\n"
      ":X,Y,Z as wanted; sheen lights explains them (default: reflection)",
-     apply_lines},
+     apply_lines, "reflection highlight isophote zebra environment"},
     {"light", 0, "KIND",
      "rectangle, plane, tunnel or sphere, the first two with :one-sided as wanted;\n"
      "each --light after the first begins another, over which the earlier lie\n"
      "(default: tunnel; rectangle when the light is placed)",
-     apply_light},
+     apply_light, "rectangle plane tunnel sphere rectangle:one-sided plane:one-sided"},
     {"light-center", 0, "X,Y,Z",
      "the middle of the latest light; with --light-u and --light-v (default: by the\n"
      "model and --up alone, whatever the camera: a tunnel about the longer horizontal\n"
      "side, which every reflected ray meets; a rectangle or plane above the model)",
-     apply_light_center},
+     apply_light_center, NULL},
     {"light-u", 0, "X,Y,Z",
      "its edge that stripes are counted along; a tunnel's radius; its length is\n"
      "{}",
-     apply_light_u},
+     apply_light_u, NULL},
     {"light-v", 0, "X,Y,Z",
      "its other edge, not along --light-u; the axis of a tunnel or sphere; its\n"
      "length is {}",
-     apply_light_v},
+     apply_light_v, NULL},
     {"pattern", 0, "PATTERN",
      "of the latest light: stripes, lattice, circles, lines, rainbow or distance,\n"
      "then :count=40,duty=0.5,... as far as wanted, or image:FILE (PNG,\n"
      "JPEG, TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM); sheen patterns lists\n"
      "all parts (default: stripes:count=40,duty=0.5)",
-     apply_pattern},
+     apply_pattern, "stripes lattice circles rainbow distance"},
     {"line-eye", 0, "EYE",
      "whose view the lines are computed for: camera, a point X,Y,Z, or dir:X,Y,Z\n"
      "for an eye at infinity that looks that way; holds the lines while the\n"
      "camera moves (default: camera)",
-     apply_line_eye},
+     apply_line_eye, "camera"},
     {"base", 0, "COLOUR", "the surface, shaded, where patterns are transparent (default: #b3b8bf)",
-     apply_base},
+     apply_base, NULL},
     {"filter", 0, "KIND",
      "exact: lines averaged over each pixel's footprint, or off: one sample a\n"
      "pixel (default: exact)",
-     apply_filter},
+     apply_filter, "exact off"},
     {"miss", 0, "COLOUR",
      "where no light is met: #rrggbb or #rrggbbaa\n"
      "(default: #29303b, a dark blue-grey)",
-     apply_miss},
+     apply_miss, NULL},
     {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa (default: #808080, grey)",
-     apply_empty},
+     apply_empty, NULL},
     {0},
 };
 
@@ -504,19 +505,19 @@ const struct option_row OPTIONS_SURFACE[] = {
      "exact (default): the limit surface; for comparison polygon:LEVEL, the cage\n"
      "subdivided LEVEL times ({}), normals interpolated as a graphics\n"
      "card does, or wireframe:LEVEL, the edges of those polygons",
-     apply_surface},
+     apply_surface, "exact polygon:1 polygon:2 polygon:3 wireframe:1 wireframe:2 wireframe:3"},
     {"show", 0, "KIND",
      "false colour with a legend: curvature (the principal curvature of larger\n"
      "magnitude), gaussian, mean, normal, ptex, draft:X,Y,Z (degrees to the pull\n"
      "direction X,Y,Z, or a word as for --up), or lines (default: lines)",
-     apply_show},
+     apply_show, "curvature gaussian mean normal ptex draft:z lines"},
     {"show-range", 0, "VALUE",
      "where the colours of --show end, both ways: 1/unit, gaussian 1/unit^2,\n"
      "{} (default: 98 of 100 pixels are inside,\n"
      "stream: of the first frame's, for all frames); draft\n"
      "{} (default: 3)",
-     apply_show_range},
+     apply_show_range, NULL},
     {"legend", 0, "on|off", "of --show, over the lower right corner of the picture (default: on)",
-     apply_legend},
+     apply_legend, "on off"},
     {0},
 };
