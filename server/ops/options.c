@@ -23,17 +23,9 @@ static void print_row(const struct option_row *row)
     printf("%c %-*s", row->flags & OPTION_RELOADS ? '*' : ' ', HELP_COLUMN - 2, name);
     if (strlen(name) >= HELP_COLUMN - 2)
         printf("\n%-*s", HELP_COLUMN, "");
-    for (const char *c = row->help; *c; c++)
+    char help[OPTION_HELP_BYTES];
+    for (const char *c = option_help(row, help); *c; c++)
         *c == '\n' ? (void)printf("\n%-*s", HELP_COLUMN, "") : (void)putchar(*c);
-    if (row->type == OPTION_NUMBER)
-        printf(", %llu to %llu", (unsigned long long)row->min, (unsigned long long)row->max);
-    char range[LIMITS_RANGE_BYTES + 2] = "";
-    if (option_limit(row)) {
-        memcpy(range, "; ", 2);
-        limits_range(option_limit(row), range + 2);
-    }
-    if (row->initial)
-        printf(" (default: %s%s)", row->initial, range);
     putchar('\n');
 }
 

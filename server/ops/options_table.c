@@ -255,6 +255,22 @@ const struct option_row *option_rows(size_t *n)
     return rows;
 }
 
+const char *option_help(const struct option_row *row, char text[static OPTION_HELP_BYTES])
+{
+    char range[LIMITS_RANGE_BYTES + 2] = "", numbers[64] = "", initial[192] = "";
+    if (row->type == OPTION_NUMBER)
+        snprintf(numbers, sizeof numbers, ", %llu to %llu", (unsigned long long)row->min,
+                 (unsigned long long)row->max);
+    if (option_limit(row)) {
+        memcpy(range, "; ", 2);
+        limits_range(option_limit(row), range + 2);
+    }
+    if (row->initial)
+        snprintf(initial, sizeof initial, " (default: %s%s)", row->initial, range);
+    snprintf(text, OPTION_HELP_BYTES, "%s%s%s", row->help, numbers, initial);
+    return text;
+}
+
 static bool set_number(const struct option_row *row, void *value, const char *text,
                        struct error *error)
 {

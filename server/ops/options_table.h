@@ -1,4 +1,4 @@
-/* The rows of the options' table. For options.c and options_table.c alone. */
+/* The rows of the options' table: for options.c, and for the manual pages (deploy/manual). */
 #ifndef SHEEN_OPS_OPTIONS_TABLE_H
 #define SHEEN_OPS_OPTIONS_TABLE_H
 
@@ -43,6 +43,10 @@ const struct option_row *option_rows(size_t *n);
 
 /* The row's limit, which says what values it takes; NULL when it is none. */
 const struct limits_row *option_limit(const struct option_row *row);
+
+/* The row's help with its range and its default, lines with '\n' between. Returns `text`. */
+#define OPTION_HELP_BYTES 1024
+const char *option_help(const struct option_row *row, char text[static OPTION_HELP_BYTES]);
 
 /* Reads `text` into the row's value. ERROR_REQUEST names the option and its range. */
 bool option_set(const struct option_row *row, struct settings *settings, const char *text,
