@@ -14,14 +14,18 @@
 #   make lint       format, static analysis, dependency rules
 #   make format     let clang-format rewrite the sources
 #   make deps       install Debian packages (needs root or sudo)
-#   make install    PREFIX=/usr/local DESTDIR=
+#   make install    PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=: programs, libsheen, manual pages, completions,
+#                   systemd's units; builds nothing again
 #   make clean
 # SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize, SANITIZE=thread
 # with ThreadSanitizer into build/thread. FUZZ=1 and COVERAGE=1 are the builds of make fuzz and
 # make fuzz-coverage.
 
 VERSION := 0.1.0
+# Of the manual pages: the version's day, so that equal sources give equal files.
+DATE := 2026-11-30
 PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
 CC ?= gcc
 CXX ?= g++
 SANITIZE ?=
@@ -114,7 +118,8 @@ TEST_LIBS := $(SERVER_LIBS) $(CAGE_WORKER_LIBS) $(IMAGE_WORKER_LIBS) -lpng -ljan
 .PHONY: all
 PROGRAMS := $(BUILD)/sheend $(BUILD)/sheend-cage $(BUILD)/sheend-image $(BUILD)/sheen
 LIBRARIES := $(BUILD)/libsheen.so.0 $(BUILD)/libsheen.a
-all: $(PROGRAMS) $(LIBRARIES)
+MANUAL := $(BUILD)/manual/made
+all: $(PROGRAMS) $(LIBRARIES) $(MANUAL)
 
 $(BUILD)/sheend: $(SERVER_OBJ)
 	$(call say,LD $@)
@@ -139,6 +144,21 @@ $(BUILD)/obj/libsheen.o: $(LIBSHEEN_OBJ)
 $(BUILD)/libsheen.a: $(BUILD)/obj/libsheen.o
 	$(call say,AR $@)
 	$(Q)rm -f $@ && ar rcsD $@ $^
+
+# Manual pages and completions, written by two programs that have the tables of options inside. Neither is
+# installed: so sheen and sheend need no option that nobody but a build would use.
+MANUAL_SHARED := $(call obj,$(patsubst %,deploy/manual/%.c,page shell output))
+$(BUILD)/sheen-pages: $(call obj,deploy/manual/sheen_pages.c) $(MANUAL_SHARED) \
+                      $(filter-out %/cli/main.c.o,$(CLI_OBJ)) $(BUILD)/libsheen.a
+	$(call say,LD $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CLIENT_LIBS)
+$(BUILD)/sheend-pages: $(call obj,deploy/manual/sheend_pages.c) $(MANUAL_SHARED) $(filter-out %/ops/main.c.o,$(SERVER_OBJ))
+	$(call say,LD $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
+$(MANUAL): $(BUILD)/sheen-pages $(BUILD)/sheend-pages
+	@mkdir -p $(@D)
+	$(call say,MAN $(@D))
+	$(Q)rm -f $(@D)/* && $(BUILD)/sheen-pages $(DATE) $(@D) && $(BUILD)/sheend-pages $(DATE) $(@D) && touch $@
 
 $(BUILD)/obj/gen/%.c.o: $(BUILD)/gen/%.c
 	@mkdir -p $(@D)
@@ -299,10 +319,32 @@ demo:
 deps:
 	sh deploy/deps.sh
 
+# What is installed knows PREFIX and LIBDIR, so these files are made where they go: nothing is built again.
+DEST := $(DESTDIR)$(PREFIX)
+DEST_LIB := $(DESTDIR)$(LIBDIR)
 install: all
-	install -Dm755 $(BUILD)/sheend $(DESTDIR)$(PREFIX)/bin/sheend
-	install -Dm755 -t $(DESTDIR)$(PREFIX)/libexec/sheen $(BUILD)/sheend-cage $(BUILD)/sheend-image
-	install -Dm755 $(BUILD)/sheen $(DESTDIR)$(PREFIX)/bin/sheen
+	install -Dm755 -t $(DEST)/bin $(BUILD)/sheend $(BUILD)/sheen
+	install -Dm755 -t $(DEST)/libexec/sheen $(BUILD)/sheend-cage $(BUILD)/sheend-image
+	install -Dm644 $(BUILD)/libsheen.so.0 $(DEST_LIB)/libsheen.so.$(VERSION)
+	ln -sf libsheen.so.$(VERSION) $(DEST_LIB)/libsheen.so.0
+	ln -sf libsheen.so.0 $(DEST_LIB)/libsheen.so
+	install -Dm644 -t $(DEST_LIB) $(BUILD)/libsheen.a
+	install -Dm644 -t $(DEST)/include client/lib/sheen.h
+	install -d $(DEST_LIB)/pkgconfig
+	sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR:$(PREFIX)/%=$${prefix}/%)|; s|@VERSION@|$(VERSION)|' \
+	    client/lib/sheen.pc.in > $(DEST_LIB)/pkgconfig/sheen.pc
+	install -Dm644 -t $(DEST)/share/man/man1 $(BUILD)/manual/*.1
+	install -Dm644 -t $(DEST)/share/man/man5 $(BUILD)/manual/*.5
+	install -Dm644 -t $(DEST)/share/man/man8 $(BUILD)/manual/*.8
+	for name in sheen sheend; do \
+	    install -Dm644 $(BUILD)/manual/$$name.bash $(DEST)/share/bash-completion/completions/$$name || exit 1; done
+	install -Dm644 -t $(DEST)/share/zsh/site-functions $(BUILD)/manual/_sheen $(BUILD)/manual/_sheend
+	install -Dm644 -t $(DEST)/share/fish/vendor_completions.d $(BUILD)/manual/sheen.fish $(BUILD)/manual/sheend.fish
+	install -d $(DEST)/lib/systemd/system
+	sed 's|/usr/local/bin|$(PREFIX)/bin|' deploy/systemd/sheend.service > $(DEST)/lib/systemd/system/sheend.service
+	install -m644 -t $(DEST)/lib/systemd/system deploy/systemd/sheend.socket deploy/systemd/sheend-metrics.socket
+	install -Dm644 deploy/systemd/sheend.sysusers $(DEST)/lib/sysusers.d/sheend.conf
+	install -Dm644 -t $(DEST)/share/doc/sheen deploy/systemd/sheend.conf
 
 clean:
 	rm -rf build

@@ -40,6 +40,7 @@ common='server/base'
 room protocol '' 'both sides speak by it'
 room client/lib 'protocol' 'a client needs nothing of the daemon'
 room client/cli 'client/lib|protocol' 'the command is libsheen'"'"'s first user'
+room deploy/manual 'client/cli|client/lib|server/ops' 'manual pages are written from the tables of options'
 room server/base 'protocol|server/net' 'everybody knows it'
 room server/cage "$common" 'a cage is data: no format, no surface'
 room server/cage/read "$common|server/cage|protocol" 'readers run in the worker program'
@@ -93,7 +94,7 @@ only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protoco
 cppcheck --quiet --std=c11 --language=c --inline-suppr --error-exitcode=1 -I. \
     --enable=warning,performance,portability --suppress=missingInclude \
     --suppress=normalCheckLevelMaxBranches --suppress=unknownMacro \
-    $(printf '%s\n' $files | grep -E '^(server|client|protocol)/.*\.c$') || fail "cppcheck"
+    $(printf '%s\n' $files | grep -E '^(server|client|protocol|deploy)/.*\.c$') || fail "cppcheck"
 
 [ "$failed" = 0 ] && echo "lint: clean"
 exit "$failed"

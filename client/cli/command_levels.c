@@ -231,7 +231,7 @@ static const struct option_row ROWS[] = {
     {"output", 'o', "FILE", "the picture, a PNG of three rows and three columns of panels",
      apply_output, NULL},
     {"size", 0, "WxH",
-     "width and height of one panel (default: 480x360)\n"
+     "width and height of one panel (default: 480x360),\n"
      "each {}; a device's own limit may be lower",
      options_apply_size, NULL},
     {0},

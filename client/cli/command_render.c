@@ -142,7 +142,7 @@ static const struct option_row ROWS[] = {
      "light (s, t on the light), k (principal curvatures), dlight (change of s, t\n"
      "by a pixel right and down), coverage (share of the pixel that shows surface),\n"
      "with commas between",
-     apply_aov, "P N ptex light k dlight coverage P,N"},
+     apply_aov, "P N ptex light k dlight coverage"},
     {0},
 };
 

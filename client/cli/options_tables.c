@@ -410,7 +410,7 @@ const struct option_row OPTIONS_OUTPUT[] = {
 
 const struct option_row OPTIONS_SIZE[] = {
     {"size", 0, "WxH",
-     "width and height of the picture (default: 1280x720)\n"
+     "width and height of the picture (default: 1280x720),\n"
      "each {} (JPEG: {}); a device's\n"
      "own limit may be lower",
      options_apply_size, NULL},

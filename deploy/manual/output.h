@@ -1,0 +1,17 @@
+/* The files that the page writers make. A failure ends the program with one line on standard error and
+ * exit code 1. Thread: one. */
+#ifndef SHEEN_MANUAL_OUTPUT_H
+#define SHEEN_MANUAL_OUTPUT_H
+
+#include <stdio.h>
+
+#include "deploy/manual/shell.h"
+
+/* A new file in the folder, to be given to output_close(). */
+FILE *output_open(const char *folder, const char *name);
+void output_close(FILE *out);
+
+/* The program's completions: NAME.bash, _NAME (zsh) and NAME.fish. */
+void output_shells(const char *folder, const struct shell_program *program);
+
+#endif
