@@ -65,7 +65,7 @@ void shell_bash(FILE *out, const struct shell_program *program)
         out,
         "# bash completion of %s. Bash cuts words at '=' and ':': they are put together again.\n"
         "_%s() {\n"
-        "    local tokens=() glue= word cur prev command= words= files= is_value= i\n"
+        "    local tokens=() glue= word cur prev= command= words= files= is_value= i\n"
         "    for ((i = 1; i <= COMP_CWORD; i++)); do\n"
         "        word=${COMP_WORDS[i]}\n"
         "        if [[ $word == = && ${tokens[*]: -1} == --* ]]; then\n"
