@@ -1,0 +1,147 @@
+/* --help, and what completions say, beside the tables of options. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/unit/command_line.h"
+
+static void help_shows_every_option(void **state)
+{
+    (void)state;
+    static const struct command *const commands[] = {
+        &COMMAND_RENDER, &COMMAND_STREAM, &COMMAND_INFO, &COMMAND_STATS, &COMMAND_LEVELS};
+    for (size_t i = 0; i < 5; i++) {
+        char *text = NULL;
+        size_t size = 0;
+        FILE *out = open_memstream(&text, &size);
+        options_help(commands[i], out);
+        fclose(out);
+        for (const struct option_row *const *table = commands[i]->tables; *table; table++)
+            for (const struct option_row *row = *table; row->name; row++) {
+                char name[40];
+                snprintf(name, sizeof(name), "--%s", row->name);
+                assert_non_null(strstr(text, name));
+                assert_true(row->help && *row->help);
+            }
+        assert_non_null(strstr(text, "examples:"));
+        free(text);
+    }
+}
+
+/* Valid until the next. */
+static const char *help_of(const struct command *command)
+{
+    static char text[1 << 15];
+    FILE *out = fmemopen(text, sizeof(text), "w");
+    options_help(command, out);
+    fclose(out);
+    return text;
+}
+
+/* Each its own, and none promises an answer to a question that it does not ask. */
+static void help_has_the_commands_exit_codes(void **state)
+{
+    (void)state;
+    static const struct {
+        const struct command *command;
+        const char *codes; /* in this order */
+    } cases[] = {{&COMMAND_RENDER, "02345"}, {&COMMAND_STREAM, "02345"}, {&COMMAND_INFO, "02345"},
+                 {&COMMAND_LEVELS, "02345"}, {&COMMAND_STATS, "02345"},  {&COMMAND_LIGHTS, "023"},
+                 {&COMMAND_PATTERNS, "023"}};
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        char found[11] = "";
+        const char *codes = strstr(help_of(cases[i].command), "Exit codes: ");
+        assert_non_null(codes);
+        for (; *codes; codes++) {
+            const char digit[] = {*codes, 0};
+            if (strchr("0123456789", *codes) && codes[1] == ' ')
+                strcat(found, digit);
+        }
+        assert_string_equal(found, cases[i].codes);
+    }
+    const char *text = help_of(&COMMAND_LEVELS);
+    assert_non_null(strstr(text, "usage: sheen levels "));
+    assert_non_null(strstr(text, "old name, figure7, still works"));
+}
+
+/* No place of a range is left open. */
+static void help_has_the_ranges(void **state)
+{
+    (void)state;
+    static const struct command *const commands[] = {&COMMAND_RENDER, &COMMAND_STREAM,
+                                                     &COMMAND_LEVELS};
+    static const char *const wanted[] = {"from 1e-6 to 179 degrees", "from 1 to 1000000",
+                                         "each from 1 to 65536 pixels"};
+    for (size_t i = 0; i < 3; i++) {
+        const char *text = help_of(commands[i]);
+        assert_null(strstr(text, "{}"));
+        assert_non_null(strstr(text, wanted[i]));
+    }
+}
+
+/* The size that --help says is the one that a command takes without --size. */
+static void help_says_its_own_default_size(void **state)
+{
+    (void)state;
+    static const struct {
+        const struct command *command;
+        const char *line;
+    } cases[] = {{&COMMAND_RENDER, "m.obj -o a.png"},
+                 {&COMMAND_STREAM, "m.obj --frames 1"},
+                 {&COMMAND_LEVELS, "m.obj -o a.png"}};
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct options options;
+        char why[OPTIONS_WHY_BYTES], wanted[40], *text = NULL;
+        size_t size = 0;
+        assert_int_equal(parse(cases[i].command, cases[i].line, &options, why), OPTIONS_RUN);
+        snprintf(wanted, sizeof(wanted), "(default: %ux%u),", options.request.width_px,
+                 options.request.height_px);
+        FILE *out = open_memstream(&text, &size);
+        options_help(cases[i].command, out);
+        fclose(out);
+        const char *row = strstr(text, "--size WxH"), *end = strchr(row, '\n');
+        assert_memory_equal(end - strlen(wanted), wanted, strlen(wanted));
+        assert_null(strstr(end, "--size WxH"));
+        free(text);
+    }
+}
+
+/* What the shells complete is what the option takes. */
+static void completed_words_are_values(void **state)
+{
+    (void)state;
+    int n_words = 0;
+    for (size_t i = 0; i < N_COMMANDS; i++) {
+        const struct option_row *rows[OPTIONS_MAX_ROWS];
+        size_t n = options_rows(COMMANDS[i], rows);
+        for (size_t k = 0; k < n; k++) {
+            char words[160], why[OPTIONS_WHY_BYTES];
+            snprintf(words, sizeof(words), "%s", rows[k]->words ? rows[k]->words : "");
+            for (char *word = strtok(words, " "); word; word = strtok(NULL, " ")) {
+                struct options options = {.request = SHEEN_REQUEST_DEFAULTS};
+                options.request.format = SHEEN_FORMAT_EXR; /* for --aov */
+                if (!rows[k]->apply(&options, word, why))
+                    fail_msg("--%s %s: %s", rows[k]->name, word, why);
+                n_words++;
+            }
+            assert_true(!rows[k]->words || rows[k]->argument);
+        }
+    }
+    assert_true(n_words > 100);
+}
+
+int main(void)
+{
+    unsetenv("SHEEN_SERVER");
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(help_shows_every_option),
+        cmocka_unit_test(help_has_the_commands_exit_codes),
+        cmocka_unit_test(help_has_the_ranges),
+        cmocka_unit_test(help_says_its_own_default_size),
+        cmocka_unit_test(completed_words_are_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
