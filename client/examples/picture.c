@@ -1,5 +1,5 @@
-/* picture MODEL FILE.png [ADDRESS]: a picture of the model's reflection lines, from the daemon at ADDRESS
- * or a private one.
+/* picture MODEL FILE.png [ADDRESS]: a picture of the model's reflection lines, from the daemon at
+ * ADDRESS or a private one.
  *
  *     cc picture.c $(pkg-config --cflags --libs sheen) -o picture */
 #include <stdio.h>

@@ -1,6 +1,6 @@
-/* turntable MODEL FRAMES [ADDRESS]: asks for frames as the camera goes round, from an event loop that could
- * wait for other things too, and prints for each how much of it shows surface. The planes come compressed
- * and are decoded by the library.
+/* turntable MODEL FRAMES [ADDRESS]: asks for frames as the camera goes round, from an event loop
+ * that could wait for other things too, and prints for each how much of it shows surface. The
+ * planes come compressed and are decoded by the library.
  *
  *     c++ -std=c++17 turntable.cpp $(pkg-config --cflags --libs sheen) -o turntable */
 #include <cmath>
@@ -36,7 +36,7 @@ void check(sheen_status status, const sheen_error &error)
 
 using session_pointer = std::unique_ptr<sheen_session, decltype(&sheen_close)>;
 
-session_pointer connect(const char *address, const sheen_request &request)
+session_pointer open_session(const char *address, const sheen_request &request)
 {
     sheen_error error;
     sheen_session *session;
@@ -47,7 +47,8 @@ session_pointer connect(const char *address, const sheen_request &request)
     return session_pointer(session, sheen_close);
 }
 
-/* Waits for the next frame as an event loop does: the socket is one of the things that poll() watches. */
+/* Waits for the next frame as an event loop does: the socket is one of the things that poll()
+ * watches. */
 void wait_for_frame(sheen_session *session, sheen_frame *frame)
 {
     sheen_error error;
@@ -81,7 +82,7 @@ void run(const char *path, int n_frames, const char *address)
     sheen_frame frame = sheen_frame_defaults();
     std::unique_ptr<sheen_frame, decltype(&sheen_frame_finish)> owner(&frame, sheen_frame_finish);
     sheen_file_id(bytes.data(), bytes.size(), request.model_id);
-    const session_pointer session = connect(address, request);
+    const session_pointer session = open_session(address, request);
     check(sheen_upload(session.get(), SHEEN_FILE_MODEL, request.model_id, bytes.data(),
                        bytes.size(), path, nullptr, &error),
           error);
@@ -112,7 +113,7 @@ int main(int argc, char **argv)
         return 2;
     }
     try {
-        run(argv[1], std::atoi(argv[2]), argc > 3 ? argv[3] : nullptr);
+        run(argv[1], int(std::strtol(argv[2], nullptr, 10)), argc > 3 ? argv[3] : nullptr);
     } catch (const failure &reason) {
         std::fprintf(stderr, "turntable: %s\n", reason.what());
         return sheen_status_exit_code(reason.status);

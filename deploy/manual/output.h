@@ -1,5 +1,5 @@
-/* The files that the page writers make. A failure ends the program with one line on standard error and
- * exit code 1. Thread: one. */
+/* The files that the page writers make. A failure ends the program with one line on standard error
+ * and exit code 1. Thread: one. */
 #ifndef SHEEN_MANUAL_OUTPUT_H
 #define SHEEN_MANUAL_OUTPUT_H
 

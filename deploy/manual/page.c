@@ -25,8 +25,8 @@ static void put_escaped(FILE *out, const char *text, size_t length)
     }
 }
 
-/* One paragraph, filled into lines, of which the first has been begun up to `column`; each sentence begins
- * one. Returns what comes behind it. */
+/* One paragraph, filled into lines, of which the first has been begun up to `column`; each sentence
+ * begins one. Returns what comes behind it. */
 static const char *put_paragraph(FILE *out, const char *text, size_t column)
 {
     bool is_first = true;

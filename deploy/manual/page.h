@@ -1,6 +1,7 @@
-/* A manual page in the man(7) language, as man, mandoc and groff read it. Texts are plain: what they
- * hold of the language is escaped. In a text '\n' is a blank, as lines are filled anew; an empty line
- * begins a paragraph. Errors stay in the stream. Thread: one stream belongs to one thread. */
+/* A manual page in the man(7) language, as man, mandoc and groff read it. Texts are plain: what
+ * they hold of the language is escaped. In a text '\n' is a blank, as lines are filled anew; an
+ * empty line begins a paragraph. Errors stay in the stream. Thread: one stream belongs to one
+ * thread. */
 #ifndef SHEEN_MANUAL_PAGE_H
 #define SHEEN_MANUAL_PAGE_H
 

@@ -1,5 +1,5 @@
-/* sheen_pages DATE FOLDER: writes the manual pages of the command, sheen.1 and sheen-COMMAND.1, and its
- * completions for bash, zsh and fish, all from the table of options that --help prints. */
+/* sheen_pages DATE FOLDER: writes the manual pages of the command, sheen.1 and sheen-COMMAND.1, and
+ * its completions for bash, zsh and fish, all from the table of options that --help prints. */
 #include <stdlib.h>
 #include <string.h>
 

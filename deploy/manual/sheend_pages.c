@@ -1,5 +1,5 @@
-/* sheend_pages DATE FOLDER: writes the manual pages of the daemon, sheend.8 and sheend.conf.5, and its
- * completions for bash, zsh and fish, all from the table of options that --help prints. */
+/* sheend_pages DATE FOLDER: writes the manual pages of the daemon, sheend.8 and sheend.conf.5, and
+ * its completions for bash, zsh and fish, all from the table of options that --help prints. */
 #include <string.h>
 
 #include "deploy/manual/output.h"

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-/* A help's first part: up to a default, an explanation or a second sentence, in one line. Characters of
- * `escaped` get a backslash, and a quote ends and begins the quoted text again. */
+/* A help's first part: up to a default, an explanation or a second sentence, in one line.
+ * Characters of `escaped` get a backslash, and a quote ends and begins the quoted text again. */
 static void put_summary(FILE *out, const char *help, const char *escaped)
 {
     static const char *const ends[] = {" (", "; ", ": ", ". ", ".\n"};

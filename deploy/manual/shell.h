@@ -1,5 +1,5 @@
-/* What bash, zsh and fish complete of a program. Errors stay in the stream. Pure but for that; thread:
- * one stream belongs to one thread. */
+/* What bash, zsh and fish complete of a program. Errors stay in the stream. Thread: one stream
+ * belongs to one thread. */
 #ifndef SHEEN_MANUAL_SHELL_H
 #define SHEEN_MANUAL_SHELL_H
 
