@@ -63,7 +63,7 @@ room server/frame "$common|protocol|server/assets|server/output|server/render|se
     'a frame tells its session by events'
 room server/session "$common|protocol|server/assets|server/frame|server/net|server/ops|server/output|server/threads" \
     'a session is one client'"'"'s messages'
-room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/session|server/threads" \
+room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/render/gl|server/session|server/threads" \
     'the daemon as a whole'
 
 no_include() { # folder, pattern of what it must not include, why

@@ -52,7 +52,9 @@ static void decode_done(struct task *task)
     const struct build_order *order = &build->order;
     if (build->ok) {
         const struct image *pixels = &build->image->pixels;
-        build->image->reserved_bytes = image_bytes(pixels) + renderer_image_bytes(pixels);
+        build->image->reserved_bytes =
+            image_bytes(pixels) +
+            renderer_image_bytes(render_thread_device(order->render_thread), pixels);
         build->ok = order->reserve(order->owner, build->image->reserved_bytes, &build->error);
     }
     if (!build->ok) {

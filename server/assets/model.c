@@ -216,7 +216,8 @@ static void read_done(struct task *task)
     const struct build_order *order = &build->order;
     if (build->ok) {
         const struct limit_tables *tables = &build->model->tables;
-        build->model->device_bytes = limit_tables_bytes(tables);
+        build->model->device_bytes =
+            renderer_model_bytes(render_thread_device(order->render_thread), tables);
         size_t bytes =
             build->model->device_bytes + limit_tables_host_bytes(tables) + OVERHEAD_BYTES;
         build->ok = order->reserve(order->owner, bytes, &build->error) && start_ranges(build);

@@ -14,7 +14,7 @@ struct request;
 
 /* What the device keeps for a frame that is drawn in parts, while others are drawn: 0 but for
  * polygons. `render` has passed message_check_render(). */
-uint64_t request_canvas_bytes(const struct session_host *host, const sheen_Render *render);
+uint64_t request_paused_bytes(const struct session_host *host, const sheen_Render *render);
 
 /* Both fill `answer` in the end, unless the session goes; they may have ended when they return. */
 void request_query(struct session *session, struct answer *answer, uint32_t seq,

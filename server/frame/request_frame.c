@@ -42,11 +42,12 @@ static uint64_t tile_px(const struct session_host *host, const sheen_Render *ren
                                                    : px;
 }
 
-uint64_t request_canvas_bytes(const struct session_host *host, const sheen_Render *render)
+uint64_t request_paused_bytes(const struct session_host *host, const sheen_Render *render)
 {
     return render->surface == sheen_SurfaceKind_SURFACE_EXACT
                ? 0
-               : renderer_canvas_bytes(render->width_px, render->height_px, tile_px(host, render));
+               : renderer_paused_bytes(render_thread_device(host->render_thread), render->width_px,
+                                       render->height_px, tile_px(host, render));
 }
 
 /* --- into the queue */
@@ -402,8 +403,8 @@ static void step_done(struct task *task)
     struct session_host *host = request->host;
     request->is_busy = false;
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
-                      request->step == FRAME_MORE || request->step == FRAME_PROGRAM);
-    if (request->step == FRAME_MORE || request->step == FRAME_DONE) {
+                      request->step == FRAME_MORE);
+    if (request->frame_work.has_drawn && request->step != FRAME_FAILED) {
         note_polygons(request);
         costs_learn(&host->costs, request->cost_key, next_tile_px(request), request->step_us);
         request->entry.estimate_us =

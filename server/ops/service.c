@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "server/output/jpeg.h"
+#include "server/render/gl/device.h"
 #include "server/net/listen.h"
 #include "server/ops/gpu_loss_log.h"
 #include "server/assets/model_file.h"
@@ -420,7 +421,8 @@ static bool start(struct service *service, struct error *error)
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
         !workers_init(&host->workers, NULL, &options->limits, error) ||
         !(service->completions = completions_create(host->loop, error)) ||
-        !(host->render_thread = render_thread_create(&renderer, service->completions, error)) ||
+        !(host->render_thread =
+              render_thread_create(&gl_device, &renderer, service->completions, error)) ||
         !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1, &encode_worker,
                                    service->completions, error)) ||
         !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_worker){0},

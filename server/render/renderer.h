@@ -1,8 +1,9 @@
-/* The renderer: limit tables in, frames out. The one header through which the service reaches the
- * GPU; no GL type or call appears here.
+/* The renderer: limit tables in, frames out. The one header through which the service reaches a
+ * device, whichever it is: each is a folder below this one, which fills in the functions of
+ * device.h and gives them a name in its own device.h.
  *
- * Thread: functions that take a struct renderer are called by the thread that created it (the GL
- * thread); all others by any. */
+ * Thread: functions that take a struct renderer are called by the thread that created it (the
+ * render thread); all others by any. */
 #ifndef SHEEN_RENDER_RENDERER_H
 #define SHEEN_RENDER_RENDERER_H
 
@@ -17,63 +18,71 @@
 #include "server/scene/frame.h"
 #include "server/surface/tables.h"
 
-struct renderer;
-struct renderer_model;    /* one cage's tables on the GPU */
-struct renderer_image;    /* one light image on the GPU */
+struct renderer_device;   /* a kind of device: its functions */
+struct renderer;          /* a device that has been opened */
+struct renderer_model;    /* one cage's tables on the device */
+struct renderer_image;    /* one light image on the device */
 struct renderer_polygons; /* a model's polygons of one level, in main memory */
 
 struct renderer_options {
-    const char *device; /* "auto", "software" or a number: the n-th EGL device */
-    size_t max_texels;  /* tests only: pretend that buffer textures hold no more; 0: ask */
-    size_t slice;      /* tests only: triangles of polygons drawn a step, about; 0: by the device */
-    bool device_times; /* tests only: frame_times by timer queries on a software device, too */
-    /* Told on the GL thread of every context that is lost, and of every try to open another one
-     * that fails. NULL: nobody is. */
+    const char *device; /* which of the machine's, in words that the kind of device knows */
+    /* Called on the render thread whenever the device is lost, and for every try to open it again
+     * that fails. NULL: nobody is told. */
     void (*lost)(void *owner);
     void *owner;
     struct block_cache *block_cache; /* memory of frames, which outlives them; NULL: malloc's */
+    /* For tests. */
+    size_t max_texels; /* pretend that the device's tables hold no more; 0: ask the device */
+    size_t slice;      /* triangles of polygons drawn a step, about; 0: by the device */
+    bool device_times; /* frame_times by the device's own clock on a software device, too */
 };
 #define RENDERER_NAME_BYTES 256
 
 /* What the device is, in its own words. Strings live as long as the renderer. */
 struct renderer_info {
-    const char *device; /* GL_RENDERER */
-    const char *driver; /* GL_VERSION */
-    bool software; /* EGL says so (EGL_MESA_device_software) or no hardware node is behind it */
-    bool timed_by_device; /* frame_times are its own, by timer queries */
+    const char *device, *driver;
+    bool software;        /* it computes on the machine's processors */
+    bool timed_by_device; /* frame_times are its own, not the clock's */
     uint32_t max_width_px, max_height_px;
-    size_t max_texels; /* per buffer texture */
+    size_t max_texels; /* of one table, where the device has such a limit */
 };
 
-/* EGL by device enumeration, surfaceless, OpenGL 4.5 core. NULL with ERROR_DEVICE when there is
- * none, saying what was found.
+/* Opens a device. NULL with ERROR_DEVICE when there is none, saying what was found.
  *
- * The device may go: a reset, or work that does not end (2 s; a software device has all time). The
- * tile that it was at fails with ERROR_GPU_LOST. What is called next opens the same device again;
- * models and images are put there again when they are drawn next, and frames go on with their next
- * tile. */
-struct renderer *renderer_create(const struct renderer_options *options, struct error *error);
+ * The device may go. The tile that it was at fails with ERROR_GPU_LOST. What is called next opens
+ * the same device again; models and images are put there again when they are drawn next, and frames
+ * go on with their next tile. */
+struct renderer *renderer_create(const struct renderer_device *device,
+                                 const struct renderer_options *options, struct error *error);
 void renderer_destroy(struct renderer *renderer); /* NULL is safe */
 const struct renderer_info *renderer_info(const struct renderer *renderer);
 
-/* Uploads tables. The tables must stay until the model is destroyed (their bounds choose the
- * grids every frame, and a device that was lost gets them again). */
+/* Puts tables on the device. The tables must stay until the model is destroyed: their bounds choose
+ * the grids every frame, and a device that was lost gets them again. */
 struct renderer_model *renderer_model_create(struct renderer *renderer,
                                              const struct limit_tables *tables,
                                              struct error *error);
 void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model);
 
-/* What an image takes on the device, with all its smaller copies. Any thread. */
-size_t renderer_image_bytes(const struct image *image);
-/* Uploads an image, which must stay as tables do. */
+/* Puts an image on the device. The image must stay as tables do. */
 struct renderer_image *renderer_image_create(struct renderer *renderer, const struct image *image,
                                              struct error *error);
 void renderer_image_destroy(struct renderer *renderer, struct renderer_image *image);
 
-/* A frame in the making, one tile a step, so that the GL thread can turn to other frames in
- * between; of polygons a step is a part of a tile, and they are put on the device in several, too.
- * Fill in the first group and call renderer_begin(), then renderer_step() until it says something
- * else than FRAME_MORE, FRAME_PROGRAM or FRAME_POLYGONS. */
+/* Memory that the device takes beside the main memory of its caller. Any thread. */
+/* For a model's tables. */
+size_t renderer_model_bytes(const struct renderer_device *device,
+                            const struct limit_tables *tables);
+/* For an image and what is made of it. */
+size_t renderer_image_bytes(const struct renderer_device *device, const struct image *image);
+/* For a frame of polygons between its steps, cut into such tiles. */
+uint64_t renderer_paused_bytes(const struct renderer_device *device, uint32_t width_px,
+                               uint32_t height_px, uint64_t tile_px);
+
+/* A frame in the making, one tile a step, so that the render thread can turn to other frames in
+ * between; of polygons a step is a part of a tile, and the device takes them in several steps, too.
+ * Fill in the first group and call renderer_begin(), then renderer_step() for as long as it says
+ * FRAME_MORE or FRAME_POLYGONS. */
 struct frame_work {
     const struct frame_request *request; /* stays until the last step, as the model does */
     uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
@@ -83,13 +92,10 @@ struct frame_work {
     struct frame_watch watch;
     const struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
 
-    uint64_t serial; /* the renderer's own from here on */
-    uint32_t tile_width, tile_height;
-    uint32_t x, y;         /* of the next tile */
-    unsigned stage;        /* of polygons: what comes next of it */
-    size_t part;           /* and from where */
-    unsigned n_programs;   /* made for it so far */
-    struct canvas *canvas; /* what is drawn of its tile; NULL: nothing, or the frame is whole */
+    /* The renderer's from here on. */
+    bool has_drawn; /* the last step drew a tile or a part of one; else it made the device ready for
+                       it, which tells nothing about the time that tiles take */
+    struct frame_state *state; /* the device's, from begin to the last step; NULL: none */
 };
 
 /* So many frames of polygons may be under way, begun and neither whole nor given up; one more fails
@@ -98,9 +104,6 @@ enum { RENDERER_MAX_SLICED = 24 };
 
 enum frame_step {
     FRAME_MORE, /* steps are left */
-    /* No tile, but one of the programs that the frame takes was made for the device, which may take
-     * as long as several: go on. */
-    FRAME_PROGRAM,
     /* The device has no polygons for the request's surface, or no longer: set frame_work.polygons
      * and go on. Making them takes as long as many tiles. */
     FRAME_POLYGONS,
@@ -118,7 +121,7 @@ bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct f
  * Evaluated planes are kept: those of the last frame of one tile, those of the last of fewer than
  * 4,096 pixels, and those of the last in tiles in_place, if no other frame of the kind was drawn
  * between its tiles. A frame of the exact surface of the same model, size and camera takes them,
- * whatever its light, pattern, colours and tiles: it has only stage 3, and one step. (Polygons kept
+ * whatever its light, pattern, colours and tiles: it is shaded alone, in one step. (Polygons kept
  * by a frame of one tile serve such frames.)
  *
  * A frame of the exact surface is the same, bit by bit, as one tile and in tiles in_place of any
@@ -131,8 +134,9 @@ bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct f
 enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error);
 
-/* Gives back what the device has set aside for the frame's next step. Any thread, also when the
- * renderer has gone; needed only by a frame that is given up, safe after any step. */
+/* Gives back what the device keeps for the frame's next step. Any thread, also when the renderer
+ * has gone; needed only by a frame that is given up, safe at any time after struct frame_work has
+ * been filled in. */
 void frame_work_finish(struct frame_work *work);
 
 /* Begin and all steps at once. */
@@ -143,10 +147,6 @@ bool renderer_render(struct renderer *renderer, struct renderer_model *model,
  * frame until the model goes. 0: they are too many, and their frame fails with the words for it.
  * Any thread. */
 size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level);
-
-/* What a frame of polygons takes on the device between its steps, cut into such tiles. Any thread.
- */
-uint64_t renderer_canvas_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px);
 
 /* Makes them for frame_work.polygons; they take as much again here. ERROR_REQUEST when they are too
  * many, ERROR_SERVER when memory is short or nobody waits (asked for every face). Any thread. */

@@ -82,7 +82,7 @@ static uint64_t frame_bytes(const struct session *session, const sheen_Render *r
     codec_layout_init(&sent, render->width_px, render->height_px, render->planes);
     const struct encode_format format = encode_format_of(render);
     return all.raw_bytes + encode_bytes(&sent, &format) +
-           request_canvas_bytes(session->host, render);
+           request_paused_bytes(session->host, render);
 }
 
 /* Answers and returns false when the frame could never be made here. In a private daemon the charge

@@ -7,6 +7,7 @@
 #include "server/threads/pool.h"
 
 struct render_thread {
+    const struct renderer_device *kind;
     struct renderer_options options;
     /* For the loop's thread: the renderer writes its own names anew when it opens the device again.
      */
@@ -25,7 +26,7 @@ static void device_lost(void *owner)
 static bool open_device(void *owner, void **worker, struct error *error)
 {
     struct render_thread *thread = owner;
-    struct renderer *renderer = renderer_create(&thread->options, error);
+    struct renderer *renderer = renderer_create(thread->kind, &thread->options, error);
     if (!renderer)
         return false;
     thread->info = *renderer_info(renderer);
@@ -42,7 +43,8 @@ static void close_device(void *worker)
     renderer_destroy(worker);
 }
 
-struct render_thread *render_thread_create(const struct renderer_options *options,
+struct render_thread *render_thread_create(const struct renderer_device *device,
+                                           const struct renderer_options *options,
                                            struct completions *completions, struct error *error)
 {
     struct render_thread *thread = calloc(1, sizeof *thread);
@@ -50,6 +52,7 @@ struct render_thread *render_thread_create(const struct renderer_options *option
         error_set(error, ERROR_SERVER, "no memory for the render thread");
         return NULL;
     }
+    thread->kind = device;
     thread->options = *options;
     thread->options.lost = device_lost;
     thread->options.owner = thread;
@@ -74,6 +77,11 @@ void render_thread_destroy(struct render_thread *thread)
 void render_thread_submit(struct render_thread *thread, struct task *task)
 {
     pool_submit(thread->pool, task, POOL_URGENT);
+}
+
+const struct renderer_device *render_thread_device(const struct render_thread *thread)
+{
+    return thread->kind;
 }
 
 const struct renderer_info *render_thread_info(const struct render_thread *thread)

@@ -12,7 +12,8 @@
 struct render_thread;
 
 /* Opens the device on the new thread and waits for it. NULL with the renderer's ERROR_DEVICE. */
-struct render_thread *render_thread_create(const struct renderer_options *options,
+struct render_thread *render_thread_create(const struct renderer_device *device,
+                                           const struct renderer_options *options,
                                            struct completions *completions, struct error *error);
 
 /* Finishes every submitted task and closes the device. NULL is safe. */
@@ -25,6 +26,9 @@ uint32_t render_thread_losses(const struct render_thread *thread);
 
 /* As pool_busy_us(). */
 uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us);
+
+/* As it was created with. */
+const struct renderer_device *render_thread_device(const struct render_thread *thread);
 
 /* Constant while the thread lives. */
 const struct renderer_info *render_thread_info(const struct render_thread *thread);

@@ -88,7 +88,7 @@ drawing::drawing(const scene &scene, const char *device) : renderer(nullptr), mo
     error error;
     renderer_options options = {};
     options.device = device;
-    renderer = renderer_create(&options, &error);
+    renderer = renderer_create(&gl_device, &options, &error);
     check(renderer != nullptr, error);
     model = renderer_model_create(renderer, &scene.tables, &error);
     if (!model)

@@ -2,6 +2,7 @@
 #ifndef SHEEN_TESTS_POLYGON_SCENE_H
 #define SHEEN_TESTS_POLYGON_SCENE_H
 
+#include "server/render/gl/device.h"
 #include "server/render/renderer.h"
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
@@ -17,7 +18,7 @@ static inline void open_scene(struct scene *scene, size_t slice)
 {
     const struct renderer_options options = {.device = "software", .slice = slice};
     struct error error = {0};
-    scene->renderer = renderer_create(&options, &error);
+    scene->renderer = renderer_create(&gl_device, &options, &error);
     if (!scene->renderer)
         fail_msg("%s", error.text);
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "server/render/gl/device.h"
 #include "server/render/renderer.h"
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
@@ -12,7 +13,7 @@ static inline struct renderer *open_renderer(size_t max_texels)
 {
     struct error error = {0};
     struct renderer_options options = {.device = "auto", .max_texels = max_texels};
-    struct renderer *renderer = renderer_create(&options, &error);
+    struct renderer *renderer = renderer_create(&gl_device, &options, &error);
     if (!renderer)
         fail_msg("%s", error.text);
     return renderer;

@@ -122,7 +122,7 @@ static struct frame render_in_tiles(const struct limit_tables *tables,
     unsigned n_tiles = 0;
     if (!renderer_begin(renderer, &work, &frame, &error))
         fail_msg("%s", error.text);
-    for (; step == FRAME_MORE || step == FRAME_PROGRAM; n_tiles += step != FRAME_PROGRAM)
+    for (; step == FRAME_MORE; n_tiles += work.has_drawn)
         step = renderer_step(renderer, model, &work, &frame, &error);
     assert_int_equal(step, FRAME_DONE);
     assert_true(n_tiles > 1);

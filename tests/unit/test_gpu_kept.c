@@ -31,7 +31,7 @@ static enum frame_step step(struct renderer *renderer, struct renderer_model *mo
     enum frame_step next;
     do
         next = renderer_step(renderer, model, work, frame, &error);
-    while (next == FRAME_PROGRAM);
+    while (next == FRAME_MORE && !work->has_drawn);
     if (next != FRAME_MORE && next != FRAME_DONE)
         fail_msg("%s", error.text);
     return next;
@@ -139,7 +139,8 @@ static void test_serves_every_cut(void **state)
             assert_true(is_reused(&after));
             assert_same_frames(&fresh, &after);
             /* What tiles need for themselves is no larger than one. */
-            assert_true(renderer->resting[PLANES_APART].target.width < request.width_px);
+            assert_true(gl_renderer_of(renderer)->resting[PLANES_APART].target.width <
+                        request.width_px);
             frame_finish(&before);
             frame_finish(&after);
             renderer_model_destroy(renderer, model);

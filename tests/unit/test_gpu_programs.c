@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "server/render/gl/device.h"
 #include "server/render/gl/gpu.h"
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
@@ -35,7 +36,7 @@ static void scene_init(struct scene *scene, const char *text)
                                                                 .foreground = {1, 1, 1, 1}}}},
                                         .planes = PLANE_COLOUR}};
     build(text, strlen(text), &scene->tables);
-    scene->renderer = renderer_create(&options, &error);
+    scene->renderer = renderer_create(&gl_device, &options, &error);
     if (!scene->renderer)
         fail_msg("%s", error.text);
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
@@ -68,8 +69,10 @@ static unsigned draw(struct scene *scene, struct frame_work *work, struct frame 
     unsigned n_programs = 0;
     enum frame_step next;
     assert_true(renderer_begin(scene->renderer, work, frame, &error));
-    while ((next = step(scene, work, frame)) == FRAME_PROGRAM)
+    while ((next = step(scene, work, frame)) == FRAME_MORE) {
+        assert_false(work->has_drawn);
         n_programs++;
+    }
     assert_int_equal(next, FRAME_DONE);
     return n_programs;
 }
@@ -95,7 +98,7 @@ static void test_one_a_step(void **state)
     usual.width_px = usual.height_px =
         64; /* a power of two, for which drivers have code of its own */
     assert_int_equal(draw_anew(&scene, &usual), 0);
-    assert_int_equal(scene.renderer->target.width, 65);
+    assert_int_equal(gl_renderer_of(scene.renderer)->target.width, 65);
     other.lights[0].pattern.kind = PATTERN_CIRCLES;
     other.planes |= PLANE_CURVATURE;
     struct error error = {0};
@@ -103,7 +106,8 @@ static void test_one_a_step(void **state)
     struct frame_work work = {.request = &other};
     assert_true(renderer_begin(scene.renderer, &work, &frame, &error));
     for (int k = 0; k < 5; k++) {
-        assert_int_equal(step(&scene, &work, &frame), FRAME_PROGRAM);
+        assert_int_equal(step(&scene, &work, &frame), FRAME_MORE);
+        assert_false(work.has_drawn);
         assert_int_equal(draw_anew(&scene, &usual), 0);
     }
     assert_int_equal(step(&scene, &work, &frame), FRAME_DONE);
@@ -125,7 +129,7 @@ static void test_ends(void **state)
     struct frame frame;
     struct frame_work work = {.request = &scene.request};
     assert_true(renderer_begin(scene.renderer, &work, &frame, &error));
-    work.n_programs = MAX_FRAME_PROGRAMS; /* others have taken all of them away */
+    gl_frame_of(&work)->n_programs = MAX_FRAME_PROGRAMS; /* others have taken all of them away */
     assert_int_equal(step(&scene, &work, &frame), FRAME_DONE);
     frame_finish(&frame);
     scene_finish(&scene);
@@ -183,22 +187,24 @@ static void test_table_sets(void **state)
     (void)state;
     struct scene scene;
     struct error error = {0};
-    struct renderer_model model = {.points.n = 1, .nodes.n = 1, .adjacency.n = 1};
+    struct gl_model model = {.points.n = 1, .nodes.n = 1, .adjacency.n = 1};
     scene_init(&scene, tetrahedron);
-    GLuint first = programs_for(scene.renderer, &model, false, &error)->evaluate;
+    GLuint first = programs_for(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate;
     for (model.points.n = 2; model.points.n <= MAX_PROGRAM_SETS; model.points.n++)
-        assert_non_null(programs_for(scene.renderer, &model, false, &error));
+        assert_non_null(programs_for(gl_renderer_of(scene.renderer), &model, false, &error));
     model.points.n = 1;
-    assert_int_equal(programs_for(scene.renderer, &model, false, &error)->evaluate, first);
+    assert_int_equal(programs_for(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
+                     first);
     int n = count_programs();
     for (int k = 1; k <= 2; k++) {
         model.points.n = MAX_PROGRAM_SETS + k;
-        if (!programs_for(scene.renderer, &model, k == 1, &error))
+        if (!programs_for(gl_renderer_of(scene.renderer), &model, k == 1, &error))
             fail_msg("%s", error.text);
     }
     assert_int_equal(count_programs(), n);
     model.points.n = 1; /* asked for later than the others */
-    assert_int_equal(programs_for(scene.renderer, &model, false, &error)->evaluate, first);
+    assert_int_equal(programs_for(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
+                     first);
     assert_int_equal(draw_anew(&scene, &scene.request), 4);
     scene_finish(&scene);
 }
@@ -213,8 +219,10 @@ static void test_no_powers_of_two(void **state)
     struct scene scene; /* one face: a texel of adjacency */
     scene_init(&scene, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
     draw_anew(&scene, &scene.request);
-    const GLuint buffers[] = {scene.model->points.buffer[0], scene.model->nodes.buffer[0],
-                              scene.model->adjacency.buffer[0], scene.renderer->piece_buffer};
+    const struct gl_model *model = gl_model_of(scene.model);
+    const GLuint buffers[] = {model->points.buffer[0], model->nodes.buffer[0],
+                              model->adjacency.buffer[0],
+                              gl_renderer_of(scene.renderer)->piece_buffer};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) {
         GLint64 bytes;
         glGetNamedBufferParameteri64v(buffers[i], GL_BUFFER_SIZE, &bytes);

@@ -296,9 +296,9 @@ static void test_unknown_devices(void **state)
 {
     (void)state;
     struct error error = {0};
-    assert_null(renderer_create(&(struct renderer_options){.device = "999"}, &error));
+    assert_null(renderer_create(&gl_device, &(struct renderer_options){.device = "999"}, &error));
     assert_int_equal(error.kind, ERROR_DEVICE);
-    assert_null(renderer_create(&(struct renderer_options){.device = "gpu"}, &error));
+    assert_null(renderer_create(&gl_device, &(struct renderer_options){.device = "gpu"}, &error));
     assert_int_equal(error.kind, ERROR_REQUEST);
 }
 

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "protocol/srgb.h"
+#include "server/render/gl/device.h"
 #include "server/render/renderer.h"
 #include "tests/unit/cage_tables.h"
 
@@ -45,7 +46,7 @@ static void scene_init(struct scene *scene, int n, int ridge, double sharpness)
     *scene = (struct scene){0};
     build(text, used, &scene->tables);
     const struct renderer_options options = {.device = "auto"};
-    scene->renderer = renderer_create(&options, &error);
+    scene->renderer = renderer_create(&gl_device, &options, &error);
     if (!scene->renderer)
         fail_msg("%s", error.text);
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);

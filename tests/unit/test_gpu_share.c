@@ -20,7 +20,7 @@ static struct frame render_tiled(const struct scene *scene, const struct frame_r
         fail_msg("%s", error.text);
     do
         step = renderer_step(scene->renderer, scene->model, &work, &frame, &error);
-    while (step == FRAME_MORE || step == FRAME_PROGRAM);
+    while (step == FRAME_MORE);
     assert_int_equal(step, FRAME_DONE);
     return frame;
 }

@@ -33,7 +33,7 @@ static enum frame_step step(struct scene *scene, struct drawn *drawn)
     do
         step = renderer_step(scene->renderer, scene->model, &drawn->work, &drawn->frame,
                              &drawn->error);
-    while (step == FRAME_PROGRAM);
+    while (step == FRAME_MORE && !drawn->work.has_drawn);
     if (step == FRAME_POLYGONS) {
         assert_null(drawn->polygons);
         drawn->polygons = renderer_polygons_create(&scene->tables, drawn->request.surface.level,
@@ -189,7 +189,7 @@ static void test_given_up(void **state)
     begin(&scene, &late, &request, 0);
     assert_int_equal(step(&scene, &late), FRAME_MORE);
     close_scene(&scene);
-    assert_non_null(late.work.canvas);
+    assert_non_null(late.work.state);
     finish(&late); /* as at the daemon's end */
 }
 

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "server/render/gl/device.h"
 #include "server/render/renderer.h"
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
@@ -37,7 +38,7 @@ static void scene_init(struct scene *scene, bool device_times)
                                                                 .opacity = 1}}},
                                         .planes = PLANE_COLOUR}};
     build(CUBE, strlen(CUBE), &scene->tables);
-    scene->renderer = renderer_create(&options, &error);
+    scene->renderer = renderer_create(&gl_device, &options, &error);
     if (!scene->renderer)
         fail_msg("%s", error.text);
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
@@ -135,11 +136,11 @@ static void test_tiles(void **state)
     do {
         next = renderer_step(scene.renderer, scene.model, &work, &frame, &error);
         assert_int_not_equal(next, FRAME_FAILED);
-        if (next == FRAME_PROGRAM)
+        if (!work.has_drawn)
             continue;
         assert_true(frame.times.shade_us > before.shade_us);
         before = frame.times;
-    } while (next == FRAME_MORE || next == FRAME_PROGRAM);
+    } while (next == FRAME_MORE);
     frame_finish(&frame);
     scene_finish(&scene);
 }

@@ -52,7 +52,7 @@ static enum frame_step draw_tile(struct renderer *renderer, struct renderer_mode
     enum frame_step step;
     do
         step = renderer_step(renderer, model, work, frame, error);
-    while (step == FRAME_PROGRAM);
+    while (step == FRAME_MORE && !work->has_drawn);
     return step;
 }
 

@@ -52,19 +52,19 @@ int banks_bind(const struct bank_set *set, int unit)
 }
 
 /* What there is of it. */
-static void take_down(struct renderer_model *model)
+static void take_down(struct gl_model *model)
 {
     banks_finish(&model->points);
     banks_finish(&model->nodes);
     banks_finish(&model->adjacency);
 }
 
-bool model_upload(struct renderer *renderer, struct renderer_model *model, struct error *error)
+bool model_upload(struct gl_renderer *r, struct gl_model *model, struct error *error)
 {
-    if (is_current(renderer, model->context))
+    if (is_current(r, model->context))
         return true;
-    const struct limit_tables *tables = model->tables;
-    size_t max = renderer->info.max_texels;
+    const struct limit_tables *tables = model->base.tables;
+    size_t max = r->base.info.max_texels;
     /* A node's three texels stay in one bank. */
     size_t node_max = max / 3 * 3;
     model->points = model->nodes = model->adjacency = (struct bank_set){0};
@@ -74,40 +74,40 @@ bool model_upload(struct renderer *renderer, struct renderer_model *model, struc
                 node_max, "nodes", error) ||
         !upload(&model->adjacency, MAX_ADJACENCY_BANKS, GL_RGBA32UI, tables->adjacency,
                 tables->n_faces, 16, max, "adjacency", error) ||
-        !programs_for(renderer, model, false, error)) {
+        !programs_for(r, model, false, error)) {
         take_down(model);
         return false;
     }
-    model->context = renderer->context;
+    model->context = r->context;
     return true;
 }
 
-struct renderer_model *renderer_model_create(struct renderer *renderer,
-                                             const struct limit_tables *tables, struct error *error)
+struct renderer_model *gl_model_create(struct renderer *renderer, const struct limit_tables *tables,
+                                       struct error *error)
 {
-    struct renderer_model *model = calloc(1, sizeof *model);
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    struct gl_model *model = calloc(1, sizeof *model);
     if (!model) {
         error_set(error, ERROR_SERVER, "out of memory");
         return NULL;
     }
-    model->tables = tables;
-    model->serial = ++renderer->next_serial;
+    model->base.tables = tables;
+    model->serial = ++r->next_serial;
     /* On a device that is lost meanwhile it comes with its first frame. */
     if (clusters_init(&model->clusters, tables, error) &&
-        (!renderer_ready(renderer, error) || model_upload(renderer, model, error) ||
-         renderer_check_lost(renderer)))
-        return model;
+        (!gl_ready(r, error) || model_upload(r, model, error) || gl_check_lost(r)))
+        return &model->base;
     clusters_finish(&model->clusters);
     free(model);
     return NULL;
 }
 
-void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model)
+void gl_model_destroy(struct renderer *renderer, struct renderer_model *base)
 {
-    if (!model)
-        return;
-    if (is_current(renderer, model->context)) {
-        polygons_forget(&renderer->polygons, model->serial);
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    struct gl_model *model = gl_model_of(base);
+    if (is_current(r, model->context)) {
+        polygons_forget(&r->polygons, model->serial);
         take_down(model);
     }
     clusters_finish(&model->clusters);

@@ -3,14 +3,14 @@
 
 #include "server/render/gl/program.h"
 
-bool stage_edges_init(struct renderer *r, struct error *error)
+bool stage_edges_init(struct gl_renderer *r, struct error *error)
 {
     r->edges_find = program_create_single(PROGRAM_EDGES_FIND, error);
     r->edges_doubt = r->edges_find ? program_create_single(PROGRAM_EDGES_DOUBT, error) : 0;
     return r->edges_doubt;
 }
 
-void stage_edges(struct renderer *r, const struct tile *shaded)
+void stage_edges(struct gl_renderer *r, const struct tile *shaded)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
     static const GLfloat nothing[4] = {0, 0, 0, 0};
@@ -38,7 +38,7 @@ void stage_edges(struct renderer *r, const struct tile *shaded)
     dispatch_groups(r->edges_find, target->groups);
 }
 
-void stage_edges_doubt(struct renderer *r)
+void stage_edges_doubt(struct gl_renderer *r)
 {
     const struct target *target = &r->target;
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -3,7 +3,7 @@
 
 #include "server/render/gl/program.h"
 
-bool stage_evaluate_init(struct renderer *r, struct error *error)
+bool stage_evaluate_init(struct gl_renderer *r, struct error *error)
 {
     r->doubt = program_create_single(PROGRAM_DOUBT, error);
     r->gaps.find = r->doubt ? program_create_single(PROGRAM_GAPS, error) : 0;
@@ -19,7 +19,7 @@ static void bind_seen(const struct target *target, GLuint unit)
 }
 
 /* The tables, and what stage 1 left. */
-static void bind_tables(const struct renderer *r, const struct renderer_model *model)
+static void bind_tables(const struct gl_renderer *r, const struct gl_model *model)
 {
     int unit = banks_bind(&model->points, 0);
     unit = banks_bind(&model->nodes, unit);
@@ -27,7 +27,7 @@ static void bind_tables(const struct renderer *r, const struct renderer_model *m
     bind_seen(&r->target, (GLuint)unit);
 }
 
-static void bind_planes(const struct renderer *r, const struct renderer_model *model)
+static void bind_planes(const struct gl_renderer *r, const struct gl_model *model)
 {
     bind_tables(r, model);
     glBindImageTexture(0, r->target.hit_depth, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
@@ -47,7 +47,7 @@ static void solve_listed(GLuint list)
 }
 
 /* Adds to the unsolved ones what only the depths beside it give away. */
-static void doubt(const struct renderer *r)
+static void doubt(const struct gl_renderer *r)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     bind_seen(&r->target, 0);
@@ -55,7 +55,7 @@ static void doubt(const struct renderer *r)
     dispatch_groups(r->doubt, r->target.restless);
 }
 
-void stage_evaluate(struct renderer *r, const struct renderer_model *model,
+void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
                     const struct table_programs *programs)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
@@ -82,7 +82,7 @@ void stage_evaluate(struct renderer *r, const struct renderer_model *model,
 
 /* Lists the pixels in gaps, in place of those that strayed. Returns how many there are; waits for
  * the device. */
-static GLuint find_gaps(const struct renderer *r)
+static GLuint find_gaps(const struct gl_renderer *r)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
     const struct target *target = &r->target;
@@ -101,23 +101,22 @@ static GLuint find_gaps(const struct renderer *r)
 }
 
 /* Guesses for each of the listed pixels, x | y << 16; *end: where they end among all of them. */
-static bool guess_gaps(struct renderer *r, const struct renderer_model *model,
-                       const struct view *view, const uint32_t *at, size_t n, uint32_t *end,
-                       struct error *error)
+static bool guess_gaps(struct gl_renderer *r, const struct gl_model *model, const struct view *view,
+                       const uint32_t *at, size_t n, uint32_t *end, struct error *error)
 {
     const struct tile *place = &r->drawing.place;
     r->pieces.n_guesses = 0;
     for (size_t i = 0; i < n; i++) {
         const struct tile pixel = {place->x + (at[i] & 0xffff), place->y + (at[i] >> 16), 1, 1};
         if (!frame_watch_check(&r->watch, error) ||
-            !pieces_guess(&r->pieces, model->tables, &model->clusters, view, &pixel, error))
+            !pieces_guess(&r->pieces, model->base.tables, &model->clusters, view, &pixel, error))
             return false;
         end[i] = (uint32_t)r->pieces.n_guesses;
     }
     return true;
 }
 
-bool stage_gaps(struct renderer *r, const struct renderer_model *model,
+bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
                 const struct table_programs *programs, const struct view *view, struct error *error)
 {
     uint32_t at[MAX_GAPS] = {0}, end[MAX_GAPS];
@@ -140,7 +139,7 @@ bool stage_gaps(struct renderer *r, const struct renderer_model *model,
     return true;
 }
 
-void stage_silhouette(struct renderer *r, const struct renderer_model *model,
+void stage_silhouette(struct gl_renderer *r, const struct gl_model *model,
                       const struct table_programs *programs)
 {
     bind_tables(r, model);
@@ -149,7 +148,7 @@ void stage_silhouette(struct renderer *r, const struct renderer_model *model,
     solve_listed(r->target.strays);
 }
 
-void stage_rounded(struct renderer *r, const struct renderer_model *model,
+void stage_rounded(struct gl_renderer *r, const struct gl_model *model,
                    const struct table_programs *programs)
 {
     bind_tables(r, model);

@@ -3,14 +3,14 @@
 
 #include "server/render/gl/program.h"
 
-bool stage_gather_init(struct renderer *r, struct error *error)
+bool stage_gather_init(struct gl_renderer *r, struct error *error)
 {
     r->gather = program_create_single(PROGRAM_GATHER, error);
     glCreateBuffers(1, &r->block_buffer);
     return r->gather;
 }
 
-void stage_gather(struct renderer *r)
+void stage_gather(struct gl_renderer *r)
 {
     enum { BLOCKS_PER_GROUP = 8 };
     static const GLuint no_work[4] = {0, 1, 1, 0};
@@ -33,7 +33,7 @@ void stage_gather(struct renderer *r)
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 
-bool gather_found_any(const struct renderer *r)
+bool gather_found_any(const struct gl_renderer *r)
 {
     GLuint workgroups = 0;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -8,7 +8,7 @@
 #include "server/render/gl/egl.h"
 #include "server/render/mesh.h"
 #include "server/render/patch_grids.h"
-#include "server/render/renderer.h"
+#include "server/render/device.h"
 #include "server/render/gl/shade_programs.h"
 #include "server/render/view.h"
 
@@ -37,23 +37,23 @@ struct table_programs {
     int point_banks, node_banks, adjacency_banks;
     bool ptex;
     GLuint visibility, evaluate, unsolved, rounded, silhouette;
-    uint64_t used; /* by the clock of struct renderer */
+    uint64_t used; /* by the clock of struct gl_renderer */
 };
 
 /* Which context of the renderer an object's GL names are of. Those of an earlier one went with it:
  * they are dropped, never deleted, since they may be another object's by now. */
 typedef uint32_t context_number; /* from 1; 0: of none, the object is not on the device */
 
-struct renderer_model {
-    const struct limit_tables *tables;
+struct gl_model {
+    struct renderer_model base;
     struct clusters clusters; /* of the tables */
     context_number context;
     struct bank_set points, nodes, adjacency;
     uint64_t serial; /* never reused: tells whose planes are kept */
 };
 
-struct renderer_image {
-    const struct image *pixels;
+struct gl_image {
+    struct renderer_image base;
     context_number context;
     GLuint texture;
 };
@@ -166,27 +166,44 @@ struct drawing {
  * are appended to those of the whole picture, and stage 3 of a later frame runs over these. */
 enum { COLLECTED_LISTS = 4 };
 struct collecting {
-    uint64_t frame; /* frame_work.serial of the frame whose tiles have all been collected so far;
+    uint64_t frame; /* gl_frame.serial of the frame whose tiles have all been collected so far;
                        0: there is none, or it was given up */
     GLuint n[COLLECTED_LISTS]; /* entries of each list so far */
 };
 
+/* What a tile of polygons goes through. */
+enum tile_stage { TILE_FILL, TILE_SHADE, TILE_EDGES, TILE_WHOLE };
+
 /* What a frame of polygons has drawn of its tile, while others are drawn between its steps
  * (slices.c). */
-enum { MAX_CANVASES = RENDERER_MAX_SLICED };
-struct canvas {
+enum { MAX_PAUSED_TILES = RENDERER_MAX_SLICED };
+struct paused_tile {
     struct planes planes;
     context_number context; /* of the planes */
     uint64_t model_serial;  /* whose mesh of this level the device must keep meanwhile */
     uint32_t level;
     atomic_bool is_taken; /* by a frame, which gives it back on any thread */
-    struct canvas_set *set;
+    struct paused_tiles *set;
 };
 
 /* On the heap: frames may give theirs back when the renderer has gone. */
-struct canvas_set {
-    atomic_uint holders; /* the renderer, and the frames with a canvas; the last one frees it */
-    struct canvas canvas[MAX_CANVASES];
+struct paused_tiles {
+    atomic_uint holders; /* the renderer, and the frames with a paused; the last one frees it */
+    struct paused_tile paused[MAX_PAUSED_TILES];
+};
+
+/* What a frame does between two steps. */
+struct gl_frame {
+    struct frame_state base;
+    struct block_cache *block_cache; /* where it lies */
+    const struct frame_work *work;   /* during a step */
+    uint64_t serial;                 /* of all frames begun */
+    struct tile_size tile;
+    uint32_t x, y;              /* of the next tile */
+    enum tile_stage stage;      /* of polygons: what comes next of it */
+    size_t part;                /* and from where */
+    unsigned n_programs;        /* made for it so far */
+    struct paused_tile *paused; /* what is drawn of its tile; NULL: nothing */
 };
 
 /* A part of a tile's polygons. */
@@ -223,11 +240,10 @@ enum { MAX_GAPS = 512 };
 /* Most models take one or two: their tables fill a bank each. */
 enum { MAX_PROGRAM_SETS = 4 };
 
-struct renderer {
+struct gl_renderer {
+    struct renderer base;
     struct egl egl;
-    struct renderer_options options;
-    struct renderer_info info;
-    char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES]; /* of info */
+    char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES]; /* of base.info */
     context_number context;
     bool is_lost; /* the context: nothing but opening another one makes a GL call */
     /* In use: as struct planes. */
@@ -243,7 +259,7 @@ struct renderer {
     const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
     struct pieces pieces;
     struct polygons polygons;
-    struct canvas_set *canvases; /* they stay where they are when the device is lost */
+    struct paused_tiles *paused_tiles; /* they stay where they are when the device is lost */
     struct table_programs programs[MAX_PROGRAM_SETS];
     int n_programs;
     uint64_t programs_clock;
@@ -263,38 +279,69 @@ struct renderer {
     uint64_t n_begun; /* frames */
 };
 
+/* The device's own objects, by the heads that others know them by. */
+static inline struct gl_model *gl_model_of(struct renderer_model *model)
+{
+    return (struct gl_model *)(void *)model;
+}
+static inline struct gl_image *gl_image_of(struct renderer_image *image) /* NULL: NULL */
+{
+    return (struct gl_image *)(void *)image;
+}
+static inline struct gl_frame *gl_frame_of(const struct frame_work *work)
+{
+    return (struct gl_frame *)(void *)work->state;
+}
+static inline struct gl_renderer *gl_renderer_of(struct renderer *renderer)
+{
+    return (struct gl_renderer *)(void *)renderer;
+}
+
 /* Makes sure that there is a context: opens another one in place of one that is lost, as the first
  * was. ERROR_GPU_LOST when the device gives none yet. */
-bool renderer_ready(struct renderer *renderer, struct error *error);
+bool gl_ready(struct gl_renderer *renderer, struct error *error);
 /* Has the context been lost? Once so, always, until another is opened. */
-bool renderer_check_lost(struct renderer *renderer);
+bool gl_check_lost(struct gl_renderer *renderer);
 /* Are these names of the context that there is? */
-static inline bool is_current(const struct renderer *renderer, context_number context)
+static inline bool is_current(const struct gl_renderer *renderer, context_number context)
 {
     return context == renderer->context && !renderer->is_lost;
 }
 /* Waits for the device. False when it is lost, as one is that does not come back in time. */
-bool renderer_wait(struct renderer *renderer);
+bool gl_wait(struct gl_renderer *renderer);
 
 /* Has the device timer queries that tell the truth? */
-bool stage_clock_by_device(const struct renderer *renderer);
-void stage_clock_init(struct renderer *renderer);
+bool stage_clock_by_device(const struct gl_renderer *renderer);
+void stage_clock_init(struct gl_renderer *renderer);
 /* A tile begins: what the processor does from here on belongs to its first stage by the clock. */
-void stage_clock_begin(struct renderer *renderer);
+void stage_clock_begin(struct gl_renderer *renderer);
 /* The device is about to get the commands of a stage, and has got them all. The stage's time is
  * added to *stage, by the clock after waiting for the device, or by stage_clock_read(), until which
  * the pointer stays. False when the device is lost. */
-void stage_clock_start(struct renderer *renderer);
-bool stage_clock_end(struct renderer *renderer, uint64_t *stage);
+void stage_clock_start(struct gl_renderer *renderer);
+bool stage_clock_end(struct gl_renderer *renderer, uint64_t *stage);
 /* Waits for the stages that have ended, where that has not been done, and adds their times. False
  * when the device is lost. */
-bool stage_clock_read(struct renderer *renderer);
+bool stage_clock_read(struct gl_renderer *renderer);
 /* Waits for the device and adds what has passed by the clock. False when it is lost. */
-bool stage_clock_wait(struct renderer *renderer, uint64_t *stage);
+bool stage_clock_wait(struct gl_renderer *renderer, uint64_t *stage);
+
+/* As struct renderer_device has them. */
+struct renderer_model *gl_model_create(struct renderer *renderer, const struct limit_tables *tables,
+                                       struct error *error);
+void gl_model_destroy(struct renderer *renderer, struct renderer_model *model);
+struct renderer_image *gl_image_create(struct renderer *renderer, const struct image *image,
+                                       struct error *error);
+void gl_image_destroy(struct renderer *renderer, struct renderer_image *image);
+size_t gl_image_bytes(const struct image *image);
+uint64_t gl_paused_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px);
+bool gl_frame_begin(struct renderer *renderer, struct frame_work *work, struct error *error);
+enum frame_step gl_frame_step(struct renderer *renderer, struct renderer_model *model,
+                              struct frame_work *work, struct frame *frame, struct error *error);
 
 /* Puts on the device what is not there. */
-bool model_upload(struct renderer *renderer, struct renderer_model *model, struct error *error);
-bool image_upload(struct renderer *renderer, struct renderer_image *image, struct error *error);
+bool model_upload(struct gl_renderer *renderer, struct gl_model *model, struct error *error);
+bool image_upload(struct gl_renderer *renderer, struct gl_image *image, struct error *error);
 
 /* Every bank of a set bound to texture units from `unit`; returns the next free unit. */
 int banks_bind(const struct bank_set *set, int unit);
@@ -302,8 +349,8 @@ int banks_bind(const struct bank_set *set, int unit);
 /* The programs for a model that is on the device, until the next call: compiled where they are not
  * kept, in place of those not asked for for longest where there is no room. NULL with ERROR_DEVICE
  * when the driver cannot. */
-const struct table_programs *programs_for(struct renderer *renderer,
-                                          const struct renderer_model *model, bool ptex,
+const struct table_programs *programs_for(struct gl_renderer *renderer,
+                                          const struct gl_model *model, bool ptex,
                                           struct error *error);
 
 /* Makes the target hold a tile, and mostly what it held before. ERROR_DEVICE when the device has no
@@ -326,59 +373,60 @@ void target_swap_lists(struct target *a, struct target *b);
 void target_finish(struct target *target);
 
 /* The three stages, on the tile that the view block in view_buffer describes. */
-bool stage_visibility_init(struct renderer *renderer, struct error *error);
-void stage_visibility(struct renderer *renderer, const struct renderer_model *model,
+bool stage_visibility_init(struct gl_renderer *renderer, struct error *error);
+void stage_visibility(struct gl_renderer *renderer, const struct gl_model *model,
                       const struct table_programs *programs);
-bool stage_evaluate_init(struct renderer *renderer, struct error *error);
-void stage_evaluate(struct renderer *renderer, const struct renderer_model *model,
+bool stage_evaluate_init(struct gl_renderer *renderer, struct error *error);
+void stage_evaluate(struct gl_renderer *renderer, const struct gl_model *model,
                     const struct table_programs *programs);
 /* After it: the pixels of which stage 1 has seen nothing but triangles beyond silhouettes. Waits
  * for the device. Errors as pieces_choose(). */
-bool stage_gaps(struct renderer *renderer, const struct renderer_model *model,
+bool stage_gaps(struct gl_renderer *renderer, const struct gl_model *model,
                 const struct table_programs *programs, const struct view *view,
                 struct error *error);
 /* Lists the pixels of a part of the target that stage 3 looks at more closely; the coverage of all
  * others there. Lists around it too those that silhouettes are wanted of, in the list `strays` that
  * stage 2 is done with, as it is with `unsolved`, which holds those at edges. */
-bool stage_edges_init(struct renderer *renderer, struct error *error);
-void stage_edges(struct renderer *renderer, const struct tile *shaded);
+bool stage_edges_init(struct gl_renderer *renderer, struct error *error);
+void stage_edges(struct gl_renderer *renderer, const struct tile *shaded);
 /* After it: where the pieces that these show end at silhouettes. */
-void stage_silhouette(struct renderer *renderer, const struct renderer_model *model,
+void stage_silhouette(struct gl_renderer *renderer, const struct gl_model *model,
                       const struct table_programs *programs);
 /* After it: the pixels at edges become the list `edges`, but where that does not agree with what
  * the pixels around show: they go to `rounded`. */
-void stage_edges_doubt(struct renderer *renderer);
+void stage_edges_doubt(struct gl_renderer *renderer);
 /* After it: the rays of the pixels that show the rounding of a crease, against the surface. */
-void stage_rounded(struct renderer *renderer, const struct renderer_model *model,
+void stage_rounded(struct gl_renderer *renderer, const struct gl_model *model,
                    const struct table_programs *programs);
 /* Stages 1 and 2 of polygons: the same planes from a mesh that is whole. Empty, then slice by
  * slice. */
-bool stage_polygons_begin(struct renderer *renderer, const struct tile *tile, struct error *error);
-bool stage_polygons(struct renderer *renderer, struct slice *slice, struct error *error);
+bool stage_polygons_begin(struct gl_renderer *renderer, const struct tile *tile,
+                          struct error *error);
+bool stage_polygons(struct gl_renderer *renderer, struct slice *slice, struct error *error);
 /* A plane's pixels that stage 3 is about to write. */
-void clear_shaded(const struct renderer *renderer, GLuint texture, GLenum format,
+void clear_shaded(const struct gl_renderer *renderer, GLuint texture, GLenum format,
                   const GLfloat *texel);
-bool stage_shade_init(struct renderer *renderer, struct error *error);
+bool stage_shade_init(struct gl_renderer *renderer, struct error *error);
 /* Makes one of the programs that the frame takes and that are not there yet, or says that they are
  * all there, for the target as it is: until the next call. */
-bool stage_shade_prepare(struct renderer *renderer, const struct frame_request *request,
+bool stage_shade_prepare(struct gl_renderer *renderer, const struct frame_request *request,
                          bool *is_ready, struct error *error);
-bool stage_shade(struct renderer *renderer, const struct frame_request *request,
+bool stage_shade(struct gl_renderer *renderer, const struct frame_request *request,
                  struct error *error);
 /* After stage_shade: adds to frame.seen_px and met_px what the tile has of them. */
-void shade_read_share(const struct renderer *renderer, const struct frame_request *request,
+void shade_read_share(const struct gl_renderer *renderer, const struct frame_request *request,
                       bool any_seen, struct frame *frame);
 
 /* After stage_shade: the polygons' edges in place of the colour, by the depths of stage_polygons,
  * slice by slice. */
-bool stage_wireframe(struct renderer *renderer, struct slice *slice, struct error *error);
+bool stage_wireframe(struct gl_renderer *renderer, struct slice *slice, struct error *error);
 
 /* Are they on the device, wholly? */
 bool polygons_have(struct polygons *polygons, uint64_t model_serial, uint32_t level);
 bool polygons_are_whole(const struct polygon_mesh *mesh);
 /* The mesh, after putting the next chunks of it on the device, about so many bytes, from
  * renderer.made, unless it is whole. NULL on failure. */
-struct polygon_mesh *polygons_put(struct renderer *renderer, const struct renderer_model *model,
+struct polygon_mesh *polygons_put(struct gl_renderer *renderer, const struct gl_model *model,
                                   uint32_t level, size_t most, struct error *error);
 /* Drops the meshes of a model that goes. */
 void polygons_forget(struct polygons *polygons, uint64_t model_serial);
@@ -386,44 +434,44 @@ void polygons_forget(struct polygons *polygons, uint64_t model_serial);
 void polygons_lose(struct polygons *polygons);
 
 /* Whether planes hold all that stages 1 and 2 would draw for this request. */
-bool is_kept(const struct kept *kept, const struct renderer_model *model,
+bool is_kept(const struct kept *kept, const struct gl_model *model,
              const struct frame_request *request);
 /* The planes in use change places with others. */
-void planes_swap(struct renderer *renderer, struct planes *others);
+void planes_swap(struct gl_renderer *renderer, struct planes *others);
 /* Takes into use the planes that a frame's next tile is drawn into. At the first tile of a frame
- * whose view some planes hold already, these are taken, and work->tile_width and tile_height are
- * set to the frame's: it has only stage 3 left, in one tile. */
-void planes_choose(struct renderer *renderer, const struct renderer_model *model,
-                   struct frame_work *work);
+ * whose view some planes hold already, these are taken, and own->tile is set to the frame's size:
+ * it has only stage 3 left, in one tile. */
+void planes_choose(struct gl_renderer *renderer, const struct gl_model *model,
+                   struct gl_frame *own);
 /* Before a tile is drawn into PLANES_TILED: what they hold is lost, unless it is the frame's own.
  */
-void collect_begin(struct renderer *renderer, const struct frame_work *work);
+void collect_begin(struct gl_renderer *renderer, const struct gl_frame *own);
 /* After a tile: the lists of PLANES_APART join those of the tiles before, those at edges too. */
-void collect_tile(struct renderer *renderer, bool edges);
+void collect_tile(struct gl_renderer *renderer, bool edges);
 /* After the last: the planes are kept if all tiles have been collected. */
-void collect_end(struct renderer *renderer, const struct renderer_model *model,
+void collect_end(struct gl_renderer *renderer, const struct gl_model *model,
                  const struct frame_request *request);
 /* After a frame of one tile: they are kept. */
-void planes_keep(struct renderer *renderer, const struct renderer_model *model,
+void planes_keep(struct gl_renderer *renderer, const struct gl_model *model,
                  const struct frame_request *request);
 
 /* NULL when memory is short. Released once by the renderer, any thread. */
-struct canvas_set *canvases_create(void);
-void canvases_release(struct canvas_set *set);
+struct paused_tiles *paused_tiles_create(void);
+void paused_tiles_release(struct paused_tiles *set);
 /* Takes into use what the frame has drawn of its tile, if anything. */
-void canvas_resume(struct renderer *renderer, struct frame_work *work);
+void tile_resume(struct gl_renderer *renderer, struct gl_frame *own);
 /* The next part of a tile of polygons, as much as a step may take. *is_whole: it was the last, and
  * stands in the frame. */
-bool draw_polygons(struct renderer *renderer, const struct renderer_model *model,
-                   struct frame_work *work, const struct view *view, const struct tile *drawn,
-                   struct frame *frame, bool *is_whole, struct error *error);
+bool draw_polygons(struct gl_renderer *renderer, const struct gl_model *model, struct gl_frame *own,
+                   const struct view *view, const struct tile *drawn, struct frame *frame,
+                   bool *is_whole, struct error *error);
 /* Keeps what is drawn until the frame's next step: others may use the planes meanwhile. */
-bool canvas_set_aside(struct renderer *renderer, const struct renderer_model *model,
-                      struct frame_work *work, struct error *error);
+bool tile_pause(struct gl_renderer *renderer, const struct gl_model *model, struct gl_frame *own,
+                struct error *error);
 /* The frame needs it no more. Any thread. */
-void canvas_give_back(struct frame_work *work);
+void tile_give_back(struct gl_frame *own);
 /* Is a frame under way that is drawn of this mesh? */
-bool canvas_needs(const struct renderer *renderer, const struct polygon_mesh *mesh);
+bool mesh_is_needed(const struct gl_renderer *renderer, const struct polygon_mesh *mesh);
 
 /* Draws into a framebuffer from here on: the part of the picture that it stands for, and of that
  * `drawn` alone; nearest first by reversed depth. */
@@ -432,14 +480,14 @@ void raster_begin(GLuint framebuffer, const struct tile *place, const struct til
 /* After stage 1 or polygons: lists the pixels near what is seen, target.groups, over which
  * dispatch_groups() runs a program; and those that may have to ask their neighbours,
  * target.restless. Planes that it writes must be cleared before: it leaves gaps. */
-bool stage_gather_init(struct renderer *renderer, struct error *error);
-void stage_gather(struct renderer *renderer);
+bool stage_gather_init(struct gl_renderer *renderer, struct error *error);
+void stage_gather(struct gl_renderer *renderer);
 /* Has it found any, for the tile that was drawn last? Waits for the device. */
-bool gather_found_any(const struct renderer *renderer);
+bool gather_found_any(const struct gl_renderer *renderer);
 void dispatch_groups(GLuint program, GLuint groups);
 
 /* Copies the planes asked for from the target into the frame: `tile`, which lies in `drawn`. */
-bool readback(struct renderer *renderer, const struct frame_request *request,
+bool readback(struct gl_renderer *renderer, const struct frame_request *request,
               const struct view *view, const struct tile *drawn, const struct tile *tile,
               struct frame *frame, struct error *error);
 

@@ -15,7 +15,7 @@ static bool same_camera(const struct camera *a, const struct camera *b)
            a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
 }
 
-bool is_kept(const struct kept *kept, const struct renderer_model *model,
+bool is_kept(const struct kept *kept, const struct gl_model *model,
              const struct frame_request *request)
 {
     return kept->model_serial == model->serial && kept->width_px == request->width_px &&
@@ -26,7 +26,7 @@ bool is_kept(const struct kept *kept, const struct renderer_model *model,
            (kept->edges || !request_has_coverage(request));
 }
 
-void planes_swap(struct renderer *r, struct planes *others)
+void planes_swap(struct gl_renderer *r, struct planes *others)
 {
     const struct planes used = {r->target, r->kept};
     r->target = others->target;
@@ -34,7 +34,7 @@ void planes_swap(struct renderer *r, struct planes *others)
     *others = used;
 }
 
-static void use(struct renderer *r, enum planes_of which)
+static void use(struct gl_renderer *r, enum planes_of which)
 {
     if (r->in_use == which)
         return;
@@ -45,31 +45,30 @@ static void use(struct renderer *r, enum planes_of which)
 
 /* The planes that hold the frame's view, bit by bit as drawing it anew would; PLANES_KINDS: none.
  */
-static enum planes_of find_kept(const struct renderer *r, const struct renderer_model *model,
-                                const struct frame_work *work, bool is_single)
+static enum planes_of find_kept(const struct gl_renderer *r, const struct gl_model *model,
+                                const struct gl_frame *own, bool is_single)
 {
     for (int i = PLANES_WHOLE; i <= PLANES_TILED; i++) {
         const struct kept *kept = r->in_use == (enum planes_of)i ? &r->kept : &r->resting[i].kept;
         bool same_cut = is_single == (i != PLANES_TILED);
-        bool serves = same_cut || (kept->any_cut && (is_single || work->in_place));
-        if (serves && is_kept(kept, model, work->request))
+        bool serves = same_cut || (kept->any_cut && (is_single || own->work->in_place));
+        if (serves && is_kept(kept, model, own->work->request))
             return (enum planes_of)i;
     }
     return PLANES_KINDS;
 }
 
-void planes_choose(struct renderer *r, const struct renderer_model *model, struct frame_work *work)
+void planes_choose(struct gl_renderer *r, const struct gl_model *model, struct gl_frame *own)
 {
-    const struct frame_request *request = work->request;
+    const struct frame_request *request = own->work->request;
     bool is_exact = request->surface.kind == SURFACE_EXACT;
-    bool is_single =
-        work->tile_width == request->width_px && work->tile_height == request->height_px;
-    bool in_place = is_exact && work->in_place, is_first = work->x == 0 && work->y == 0;
+    bool is_single = own->tile.width == request->width_px && own->tile.height == request->height_px;
+    bool in_place = is_exact && own->work->in_place, is_first = own->x == 0 && own->y == 0;
     if (is_first && (is_single || in_place)) {
-        enum planes_of kept = find_kept(r, model, work, is_single);
+        enum planes_of kept = find_kept(r, model, own, is_single);
         if (kept < PLANES_KINDS) {
-            work->tile_width = request->width_px;
-            work->tile_height = request->height_px;
+            own->tile.width = request->width_px;
+            own->tile.height = request->height_px;
             use(r, kept);
             return;
         }
@@ -94,12 +93,12 @@ static const struct {
 };
 enum { ROUNDED = 3 };
 
-void collect_begin(struct renderer *r, const struct frame_work *work)
+void collect_begin(struct gl_renderer *r, const struct gl_frame *own)
 {
     r->kept.model_serial = 0;
-    if (work->x == 0 && work->y == 0)
-        r->collecting = (struct collecting){.frame = work->serial};
-    else if (r->collecting.frame != work->serial)
+    if (own->x == 0 && own->y == 0)
+        r->collecting = (struct collecting){.frame = own->serial};
+    else if (r->collecting.frame != own->serial)
         r->collecting.frame = 0;
 }
 
@@ -127,7 +126,7 @@ static void write_head(GLuint list, GLuint n, GLuint per_group)
     glNamedBufferSubData(list, 0, sizeof head, head);
 }
 
-void collect_tile(struct renderer *r, bool edges)
+void collect_tile(struct gl_renderer *r, bool edges)
 {
     const struct target *tile = &r->resting[PLANES_APART].target;
     struct collecting *all = &r->collecting;
@@ -152,7 +151,7 @@ void collect_tile(struct renderer *r, bool edges)
     }
 }
 
-static struct kept view_of(const struct renderer_model *model, const struct frame_request *request)
+static struct kept view_of(const struct gl_model *model, const struct frame_request *request)
 {
     bool is_exact = request->surface.kind == SURFACE_EXACT;
     return (struct kept){
@@ -167,7 +166,7 @@ static struct kept view_of(const struct renderer_model *model, const struct fram
     };
 }
 
-void collect_end(struct renderer *r, const struct renderer_model *model,
+void collect_end(struct gl_renderer *r, const struct gl_model *model,
                  const struct frame_request *request)
 {
     if (!r->collecting.frame)
@@ -178,7 +177,7 @@ void collect_end(struct renderer *r, const struct renderer_model *model,
     r->collecting.frame = 0;
 }
 
-void planes_keep(struct renderer *r, const struct renderer_model *model,
+void planes_keep(struct gl_renderer *r, const struct gl_model *model,
                  const struct frame_request *request)
 {
     if (is_kept(&r->kept, model, request))

@@ -16,7 +16,7 @@ static bool compile(struct polygons *p, struct error *error)
 }
 
 /* The framebuffer with these colour planes of the target, and its depths. */
-static void attach(struct renderer *r, const GLuint *planes, GLsizei n)
+static void attach(struct gl_renderer *r, const GLuint *planes, GLsizei n)
 {
     static const GLenum all[4] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
                                   GL_COLOR_ATTACHMENT3};
@@ -97,14 +97,14 @@ static void draw(struct slice *slice, GLuint program)
     draw_run(slice, chunk, first, n);
 }
 
-static void attach_planes(struct renderer *r)
+static void attach_planes(struct gl_renderer *r)
 {
     const GLuint planes[4] = {r->target.hit_depth, r->target.normal, r->target.shape,
                               r->target.ptex};
     attach(r, planes, 4);
 }
 
-bool stage_polygons_begin(struct renderer *r, const struct tile *tile, struct error *error)
+bool stage_polygons_begin(struct gl_renderer *r, const struct tile *tile, struct error *error)
 {
     static const GLuint no_face[4] = {UINT32_MAX, 0, 0, 0};
     static const GLfloat nothing[4] = {0, 0, 0, 0};
@@ -122,7 +122,7 @@ bool stage_polygons_begin(struct renderer *r, const struct tile *tile, struct er
     return gpu_check("clearing for polygons", error);
 }
 
-bool stage_polygons(struct renderer *r, struct slice *slice, struct error *error)
+bool stage_polygons(struct gl_renderer *r, struct slice *slice, struct error *error)
 {
     attach_planes(r);
     raster_begin(r->polygons.framebuffer, slice->tile, slice->tile);
@@ -130,7 +130,7 @@ bool stage_polygons(struct renderer *r, struct slice *slice, struct error *error
     return gpu_check("drawing polygons", error);
 }
 
-bool stage_wireframe(struct renderer *r, struct slice *slice, struct error *error)
+bool stage_wireframe(struct gl_renderer *r, struct slice *slice, struct error *error)
 {
     struct polygons *p = &r->polygons;
     attach(r, &r->target.colour, 1);

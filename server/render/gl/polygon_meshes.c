@@ -39,10 +39,10 @@ void polygons_lose(struct polygons *p)
 
 /* A free place for a mesh of so many bytes: the meshes not used for longest make room, but for
  * those that frames are being drawn of, which their models' owners are charged with. */
-static struct polygon_mesh *make_room(struct renderer *r, size_t bytes)
+static struct polygon_mesh *make_room(struct gl_renderer *r, size_t bytes)
 {
     /* No frame is being drawn of one of them at least. */
-    _Static_assert((int)MAX_CANVASES < (int)MAX_POLYGON_MESHES, "there is one to drop");
+    _Static_assert((int)MAX_PAUSED_TILES < (int)MAX_POLYGON_MESHES, "there is one to drop");
     struct polygons *p = &r->polygons;
     for (;;) {
         struct polygon_mesh *free_one = NULL, *oldest = NULL;
@@ -50,7 +50,7 @@ static struct polygon_mesh *make_room(struct renderer *r, size_t bytes)
             struct polygon_mesh *mesh = &p->mesh[i];
             if (!mesh->model_serial)
                 free_one = mesh;
-            else if (!canvas_needs(r, mesh) && (!oldest || mesh->used < oldest->used))
+            else if (!mesh_is_needed(r, mesh) && (!oldest || mesh->used < oldest->used))
                 oldest = mesh;
         }
         if (free_one && (!oldest || p->bytes + bytes <= MAX_CACHED_BYTES))
@@ -78,9 +78,8 @@ static void describe_vertices(const struct polygon_chunk *chunk)
 }
 
 /* A place for it, with nothing in it yet. */
-static struct polygon_mesh *begin(struct renderer *r, const struct mesh *made,
-                                  const struct renderer_model *model, uint32_t level,
-                                  struct error *error)
+static struct polygon_mesh *begin(struct gl_renderer *r, const struct mesh *made,
+                                  const struct gl_model *model, uint32_t level, struct error *error)
 {
     struct mesh_part *part = malloc((made->n_parts + 1) * sizeof *part);
     struct polygon_chunk *chunk = calloc(made->n_chunks + 1, sizeof *chunk);
@@ -144,7 +143,7 @@ bool polygons_have(struct polygons *p, uint64_t model_serial, uint32_t level)
     return mesh && polygons_are_whole(mesh);
 }
 
-struct polygon_mesh *polygons_put(struct renderer *r, const struct renderer_model *model,
+struct polygon_mesh *polygons_put(struct gl_renderer *r, const struct gl_model *model,
                                   uint32_t level, size_t most, struct error *error)
 {
     struct polygons *p = &r->polygons;

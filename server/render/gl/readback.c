@@ -87,7 +87,7 @@ static void pack_ptex(const uint32_t (*texels)[4], const struct rows *rows, cons
     }
 }
 
-static bool read_packed(struct renderer *r, const struct frame_request *request,
+static bool read_packed(struct gl_renderer *r, const struct frame_request *request,
                         const struct view *view, const struct tile *part, const struct tile *tile,
                         struct frame *frame, struct error *error)
 {
@@ -95,7 +95,7 @@ static bool read_packed(struct renderer *r, const struct frame_request *request,
     if (!(request->planes & (NEED_DEPTH | PLANE_PTEX)))
         return true;
     size_t pixels = (size_t)tile->width * tile->height, bytes = pixels * 20;
-    struct block_cache *block_cache = r->options.block_cache;
+    struct block_cache *block_cache = r->base.options.block_cache;
     float *depth = block_cache_take(block_cache, pixels * 4);
     void *other = block_cache_take(block_cache, pixels * 16);
     bool ok = depth && other;
@@ -121,7 +121,7 @@ static bool read_packed(struct renderer *r, const struct frame_request *request,
                            "out of memory: reading a tile back needs %zu bytes", bytes);
 }
 
-bool readback(struct renderer *r, const struct frame_request *request, const struct view *view,
+bool readback(struct gl_renderer *r, const struct frame_request *request, const struct view *view,
               const struct tile *drawn, const struct tile *tile, struct frame *frame,
               struct error *error)
 {

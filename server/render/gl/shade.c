@@ -19,7 +19,8 @@ static struct shade_key key_of(const struct frame_request *request, const struct
 {
     enum line_family family = request->lines.family;
     const struct pattern *pattern = &light->pattern;
-    const struct renderer_image *image = pattern->kind == PATTERN_IMAGE ? pattern->image : NULL;
+    const struct gl_image *image =
+        pattern->kind == PATTERN_IMAGE ? gl_image_of(pattern->image) : NULL;
     if (which == SHADED_SHARE) /* whatever the light shows */
         return (struct shade_key){
             .family = (uint8_t)family, .light = (uint8_t)light->kind, .which = (uint8_t)which};
@@ -27,7 +28,7 @@ static struct shade_key key_of(const struct frame_request *request, const struct
                               .light = family_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
                               .pattern = (uint8_t)pattern->kind,
                               .soft = pattern->soft > 0,
-                              .picture = image ? picture_kind(image->pixels) : 0,
+                              .picture = image ? picture_kind(image->base.pixels) : 0,
                               .has_several = request->n_lights > 1,
                               .which = (uint8_t)which};
 }
@@ -50,7 +51,7 @@ static bool planes_wanted(const struct frame_request *request)
     return request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE);
 }
 
-bool stage_shade_init(struct renderer *r, struct error *error)
+bool stage_shade_init(struct gl_renderer *r, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const GLuint nothing[3] = {0, 1, 1};
@@ -70,7 +71,7 @@ bool stage_shade_init(struct renderer *r, struct error *error)
     return gpu_check("the shading stage", error);
 }
 
-void clear_shaded(const struct renderer *r, GLuint texture, GLenum format, const GLfloat *texel)
+void clear_shaded(const struct gl_renderer *r, GLuint texture, GLenum format, const GLfloat *texel)
 {
     const struct tile part = tile_within(&r->drawing.shaded, &r->drawing.place);
     glClearTexSubImage(texture, 0, (GLint)part.x, (GLint)part.y, 0, (GLsizei)part.width,
@@ -78,7 +79,7 @@ void clear_shaded(const struct renderer *r, GLuint texture, GLenum format, const
 }
 
 /* What lies outside the groups shows no surface. */
-static void clear_planes(const struct renderer *r, const struct frame_request *request)
+static void clear_planes(const struct gl_renderer *r, const struct frame_request *request)
 {
     static const GLfloat none[4] = {NAN, NAN, NAN, NAN};
     static const GLfloat clear[4] = {0};
@@ -99,10 +100,10 @@ static GLint wrapping(bool goes_on)
     return goes_on ? GL_REPEAT : GL_CLAMP_TO_EDGE;
 }
 
-static void bind_picture(const struct renderer *r, const struct frame_request *request,
+static void bind_picture(const struct gl_renderer *r, const struct frame_request *request,
                          const struct light *light)
 {
-    const struct renderer_image *image = light->pattern.image;
+    const struct gl_image *image = gl_image_of(light->pattern.image);
     glBindTextureUnit(0, image ? image->texture : r->blank_texture);
     if (!image)
         return;
@@ -143,7 +144,7 @@ static void bind_planes(const struct target *target, enum shaded which)
 
 /* Runs a program over nothing, with all that it will find when it runs over pixels: a software
  * device makes its code then, which takes most of a compilation. */
-static void run_over_nothing(const struct renderer *r, const struct frame_request *request,
+static void run_over_nothing(const struct gl_renderer *r, const struct frame_request *request,
                              const struct light *light, struct shade_program *program)
 {
     bind_picture(r, request, light);
@@ -155,7 +156,7 @@ static void run_over_nothing(const struct renderer *r, const struct frame_reques
     program->is_made = true;
 }
 
-bool stage_shade_prepare(struct renderer *r, const struct frame_request *request, bool *is_ready,
+bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *request, bool *is_ready,
                          struct error *error)
 {
     const struct light *missing_light = NULL;
@@ -197,21 +198,21 @@ static void dispatch_listed(GLuint program, GLuint list)
 }
 
 /* One that stage_shade_prepare() has made. */
-static GLuint program_of(struct renderer *r, const struct frame_request *request,
+static GLuint program_of(struct gl_renderer *r, const struct frame_request *request,
                          const struct light *light, enum shaded which)
 {
     return shade_programs_find(&r->shading, key_of(request, light, which))->name;
 }
 
 /* Of the foremost light, whose block is in place. */
-static void shade_planes(struct renderer *r, const struct frame_request *request)
+static void shade_planes(struct gl_renderer *r, const struct frame_request *request)
 {
     bind_planes(&r->target, SHADED_PLANES);
     dispatch_groups(program_of(r, request, &request->lights[0], SHADED_PLANES), r->target.groups);
 }
 
 /* The pixels that are listed, by how they are shaded. */
-static void shade_listed(struct renderer *r, const struct frame_request *request,
+static void shade_listed(struct gl_renderer *r, const struct frame_request *request,
                          const struct light *light)
 {
     GLuint rounded = program_of(r, request, light, SHADED_ROUNDED);
@@ -230,7 +231,7 @@ static void shade_listed(struct renderer *r, const struct frame_request *request
 enum { SHARE_STRIDE = 8 };
 
 /* Counts in a list that stage 2 is done with. */
-static void share_light(struct renderer *r, const struct frame_request *request, uint32_t i)
+static void share_light(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
 {
     static const GLuint nothing[2] = {0, 0};
     const struct tile *inside = &r->inside;
@@ -246,8 +247,8 @@ static void share_light(struct renderer *r, const struct frame_request *request,
     dispatch_groups(program, r->target.groups);
 }
 
-void shade_read_share(const struct renderer *r, const struct frame_request *request, bool any_seen,
-                      struct frame *frame)
+void shade_read_share(const struct gl_renderer *r, const struct frame_request *request,
+                      bool any_seen, struct frame *frame)
 {
     GLuint counts[2] = {any_seen, any_seen};
     if (!request->count_light)
@@ -260,7 +261,7 @@ void shade_read_share(const struct renderer *r, const struct frame_request *requ
     frame->met_px += counts[1];
 }
 
-static void shade_light(struct renderer *r, const struct frame_request *request, uint32_t i)
+static void shade_light(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
 {
     const struct light *light = &request->lights[i];
     enum shaded all = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
@@ -278,7 +279,7 @@ static void shade_light(struct renderer *r, const struct frame_request *request,
         share_light(r, request, i);
 }
 
-bool stage_shade(struct renderer *r, const struct frame_request *request, struct error *error)
+bool stage_shade(struct gl_renderer *r, const struct frame_request *request, struct error *error)
 {
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
     clear_planes(r, request);

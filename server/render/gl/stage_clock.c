@@ -11,54 +11,54 @@ static uint64_t now_us(void)
     return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
 }
 
-bool stage_clock_by_device(const struct renderer *r)
+bool stage_clock_by_device(const struct gl_renderer *r)
 {
     GLint bits = 0;
     glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
     /* Those of llvmpipe leave the vertex stage out. */
-    return bits >= 32 && (!r->egl.software || r->options.device_times);
+    return bits >= 32 && (!r->egl.software || r->base.options.device_times);
 }
 
-void stage_clock_init(struct renderer *r)
+void stage_clock_init(struct gl_renderer *r)
 {
-    if (r->info.timed_by_device)
+    if (r->base.info.timed_by_device)
         glCreateQueries(GL_TIMESTAMP, 2 * MAX_CLOCKED_STAGES, &r->clock.mark[0][0]);
 }
 
-void stage_clock_begin(struct renderer *r)
+void stage_clock_begin(struct gl_renderer *r)
 {
     r->clock.n = 0;
     r->clock.since_us = now_us();
 }
 
-void stage_clock_start(struct renderer *r)
+void stage_clock_start(struct gl_renderer *r)
 {
-    if (r->info.timed_by_device)
+    if (r->base.info.timed_by_device)
         glQueryCounter(r->clock.mark[r->clock.n][0], GL_TIMESTAMP);
 }
 
-bool stage_clock_end(struct renderer *r, uint64_t *stage)
+bool stage_clock_end(struct gl_renderer *r, uint64_t *stage)
 {
-    if (!r->info.timed_by_device)
+    if (!r->base.info.timed_by_device)
         return stage_clock_wait(r, stage);
     glQueryCounter(r->clock.mark[r->clock.n][1], GL_TIMESTAMP);
     r->clock.stage[r->clock.n++] = stage;
     return true;
 }
 
-bool stage_clock_wait(struct renderer *r, uint64_t *stage)
+bool stage_clock_wait(struct gl_renderer *r, uint64_t *stage)
 {
-    bool ok = renderer_wait(r);
+    bool ok = gl_wait(r);
     uint64_t now = now_us();
     *stage += now - r->clock.since_us;
     r->clock.since_us = now;
     return ok;
 }
 
-bool stage_clock_read(struct renderer *r)
+bool stage_clock_read(struct gl_renderer *r)
 {
     uint64_t waited = 0;
-    if (!r->info.timed_by_device)
+    if (!r->base.info.timed_by_device)
         return true;
     if (!stage_clock_wait(r, &waited))
         return false;

@@ -13,7 +13,7 @@ static void delete_all(const struct table_programs *programs)
 }
 
 /* A free place, made free if need be. */
-static struct table_programs *make_room(struct renderer *r)
+static struct table_programs *make_room(struct gl_renderer *r)
 {
     if (r->n_programs < MAX_PROGRAM_SETS)
         return &r->programs[r->n_programs++];
@@ -32,7 +32,7 @@ static GLuint create(enum table_program program, const struct table_layout *layo
     return program_create(&source, error);
 }
 
-const struct table_programs *programs_for(struct renderer *r, const struct renderer_model *model,
+const struct table_programs *programs_for(struct gl_renderer *r, const struct gl_model *model,
                                           bool ptex, struct error *error)
 {
     int point_banks = model->points.n, node_banks = model->nodes.n;
@@ -46,7 +46,7 @@ const struct table_programs *programs_for(struct renderer *r, const struct rende
         }
     }
     const struct table_layout layout = {point_banks, node_banks, adjacency_banks,
-                                        r->info.max_texels, ptex};
+                                        r->base.info.max_texels, ptex};
     struct table_programs made = {.point_banks = point_banks,
                                   .node_banks = node_banks,
                                   .adjacency_banks = adjacency_banks,

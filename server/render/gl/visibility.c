@@ -40,7 +40,7 @@ static uint32_t *fill_indices(uint32_t *index, int grid, uint32_t first)
     return index;
 }
 
-bool stage_visibility_init(struct renderer *r, struct error *error)
+bool stage_visibility_init(struct gl_renderer *r, struct error *error)
 {
     size_t n = 0;
     for (int g = 0; g < PIECE_GRIDS; g++) {
@@ -64,7 +64,8 @@ bool stage_visibility_init(struct renderer *r, struct error *error)
 }
 
 /* Pieces [first, first + n) of those on the device, all of one grid. */
-static void draw_pieces(const struct renderer *r, GLuint program, int grid, size_t first, size_t n)
+static void draw_pieces(const struct gl_renderer *r, GLuint program, int grid, size_t first,
+                        size_t n)
 {
     uint32_t per_instance = pieces_per_instance(grid);
     glUniform2i(glGetUniformLocation(program, "grid"), (GLint)cells_along(grid, 0),
@@ -83,7 +84,7 @@ static size_t cut(size_t i, size_t low, size_t high)
 }
 
 /* Pieces [begin, end), at most as many as a buffer texture holds. */
-static void draw_range(struct renderer *r, GLuint program, size_t begin, size_t end)
+static void draw_range(struct gl_renderer *r, GLuint program, size_t begin, size_t end)
 {
     const struct pieces *pieces = &r->pieces;
     size_t cells = 0, piece_bytes = sizeof *pieces->piece; /* a power of two */
@@ -121,7 +122,7 @@ void raster_begin(GLuint framebuffer, const struct tile *place, const struct til
 
 /* What stage 1 draws on; and what stage 2 leaves alone where nothing is seen, since a framebuffer
  * is cleared by all of a software device's threads. */
-static void clear(const struct renderer *r, bool want_ptex)
+static void clear(const struct gl_renderer *r, bool want_ptex)
 {
     static const GLenum planes[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
                                      GL_COLOR_ATTACHMENT2};
@@ -138,7 +139,7 @@ static void clear(const struct renderer *r, bool want_ptex)
     glNamedFramebufferDrawBuffers(framebuffer, 1, planes);
 }
 
-void stage_visibility(struct renderer *r, const struct renderer_model *model,
+void stage_visibility(struct gl_renderer *r, const struct gl_model *model,
                       const struct table_programs *programs)
 {
     raster_begin(r->target.framebuffer, &r->drawing.place, &r->drawing.drawn);
@@ -149,7 +150,7 @@ void stage_visibility(struct renderer *r, const struct renderer_model *model,
     glBindTextureUnit((GLuint)(model->points.n + model->nodes.n + model->adjacency.n),
                       r->piece_texture);
     glBindVertexArray(r->vertex_array);
-    size_t n = r->pieces.first[PIECE_GRIDS], most = r->info.max_texels;
+    size_t n = r->pieces.first[PIECE_GRIDS], most = r->base.info.max_texels;
     for (size_t begin = 0; begin < n; begin += most)
         draw_range(r, program, begin, n - begin < most ? n : begin + most);
 }

@@ -1,0 +1,155 @@
+#include "server/render/gl/device.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/base/fault.h"
+#include "server/render/gl/gpu.h"
+
+/* How long the device may take for the stages of a tile; those are made for a hundredth of that. */
+#define LOST_AFTER_NS 2000000000u
+
+static void query_info(struct gl_renderer *r)
+{
+    GLint texels = 0, texture = 0, viewport[2] = {0, 0};
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
+    GLint width = texture < viewport[0] ? texture : viewport[0];
+    GLint height = texture < viewport[1] ? texture : viewport[1];
+    snprintf(r->device, sizeof r->device, "%s", (const char *)glGetString(GL_RENDERER));
+    snprintf(r->driver, sizeof r->driver, "%s", (const char *)glGetString(GL_VERSION));
+    r->base.info = (struct renderer_info){
+        .device = r->device,
+        .driver = r->driver,
+        .software = r->egl.software,
+        .max_width_px = (uint32_t)width,
+        .max_height_px = (uint32_t)height,
+        .max_texels = (size_t)texels,
+    };
+    r->base.info.timed_by_device = stage_clock_by_device(r);
+    size_t max_texels = r->base.options.max_texels;
+    if (max_texels && max_texels < r->base.info.max_texels)
+        r->base.info.max_texels = max_texels;
+}
+
+/* What every context begins with. */
+static bool begin_context(struct gl_renderer *r, struct error *error)
+{
+    r->context++;
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    stage_clock_init(r);
+    glCreateBuffers(1, &r->view_buffer);
+    glNamedBufferData(r->view_buffer, sizeof(struct view_block), NULL, GL_STREAM_DRAW);
+    return stage_visibility_init(r, error) && stage_gather_init(r, error) &&
+           stage_evaluate_init(r, error) && stage_edges_init(r, error) &&
+           stage_shade_init(r, error);
+}
+
+static void destroy(struct renderer *renderer)
+{
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    /* GL objects go with their context. */
+    egl_finish(&r->egl);
+    pieces_finish(&r->pieces);
+    polygons_lose(&r->polygons);
+    paused_tiles_release(r->paused_tiles);
+    free(r);
+}
+
+static struct renderer *create(const struct renderer_options *options, struct error *error)
+{
+    struct gl_renderer *r = calloc(1, sizeof *r);
+    if (!r) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    r->base.device = &gl_device;
+    r->base.options = *options;
+    r->paused_tiles = paused_tiles_create();
+    if (!r->paused_tiles) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        free(r);
+        return NULL;
+    }
+    if (!egl_init(&r->egl, options->device ? options->device : "auto", error)) {
+        paused_tiles_release(r->paused_tiles);
+        free(r);
+        return NULL;
+    }
+    query_info(r);
+    if (!begin_context(r, error)) {
+        destroy(&r->base);
+        return NULL;
+    }
+    return &r->base;
+}
+
+static void lose(struct gl_renderer *r)
+{
+    r->is_lost = true;
+    if (r->base.options.lost)
+        r->base.options.lost(r->base.options.owner);
+}
+
+bool gl_check_lost(struct gl_renderer *r)
+{
+    if (!r->is_lost && (fault_at("gpu.lost") || glGetGraphicsResetStatus() != GL_NO_ERROR))
+        lose(r);
+    return r->is_lost;
+}
+
+bool gl_wait(struct gl_renderer *r)
+{
+    GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    GLenum came;
+    bool late;
+    do {
+        came = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, LOST_AFTER_NS);
+        late = came == GL_TIMEOUT_EXPIRED || fault_at("gpu.fence");
+    } while (came == GL_TIMEOUT_EXPIRED && r->egl.software);
+    glDeleteSync(fence);
+    if (late && !r->is_lost)
+        lose(r);
+    return !gl_check_lost(r);
+}
+
+bool gl_ready(struct gl_renderer *r, struct error *error)
+{
+    if (!r->is_lost)
+        return true;
+    /* Only what is in main memory stays; every GL name went with the context. */
+    polygons_lose(&r->polygons);
+    const struct gl_renderer old = *r;
+    *r = (struct gl_renderer){.base = old.base,
+                              .egl = old.egl,
+                              .context = old.context,
+                              .pieces = old.pieces,
+                              .paused_tiles = old.paused_tiles,
+                              .next_serial = old.next_serial};
+    memcpy(r->device, old.device, sizeof r->device);
+    memcpy(r->driver, old.driver, sizeof r->driver);
+    struct error why;
+    if (egl_reopen(&r->egl) && begin_context(r, &why) && !gl_check_lost(r))
+        return true;
+    if (!r->is_lost)
+        lose(r);
+    return error_set(error, ERROR_GPU_LOST,
+                     "the GPU was lost and does not come back yet: try again later");
+}
+
+const struct renderer_device gl_device = {
+    .create = create,
+    .destroy = destroy,
+    .model_create = gl_model_create,
+    .model_destroy = gl_model_destroy,
+    .image_create = gl_image_create,
+    .image_destroy = gl_image_destroy,
+    .model_bytes = limit_tables_bytes,
+    .image_bytes = gl_image_bytes,
+    .paused_bytes = gl_paused_bytes,
+    .begin = gl_frame_begin,
+    .step = gl_frame_step,
+};

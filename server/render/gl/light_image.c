@@ -1,0 +1,60 @@
+/* Light images as textures, with all their smaller copies. */
+#include "server/render/gl/gpu.h"
+
+#include <stdlib.h>
+
+size_t gl_image_bytes(const struct image *image)
+{
+    size_t texels = (size_t)image->width_px * image->height_px;
+    return (texels + texels / 3) * (image->is_float ? 8 : 4); /* RGBA16F or SRGB8_ALPHA8 */
+}
+
+bool image_upload(struct gl_renderer *r, struct gl_image *image, struct error *error)
+{
+    if (is_current(r, image->context))
+        return true;
+    const struct image *pixels = image->base.pixels;
+    GLsizei width = (GLsizei)pixels->width_px, height = (GLsizei)pixels->height_px;
+    GLsizei levels = 32 - __builtin_clz((unsigned)(width > height ? width : height));
+    glCreateTextures(GL_TEXTURE_2D, 1, &image->texture);
+    glTextureStorage2D(image->texture, levels, pixels->is_float ? GL_RGBA16F : GL_SRGB8_ALPHA8,
+                       width, height);
+    glTextureSubImage2D(image->texture, 0, 0, 0, width, height, GL_RGBA,
+                        pixels->is_float ? GL_FLOAT : GL_UNSIGNED_BYTE, pixels->pixels);
+    glGenerateTextureMipmap(image->texture);
+    glTextureParameteri(image->texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(image->texture, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    if (!gpu_check("a light image", error)) {
+        glDeleteTextures(1, &image->texture);
+        return false;
+    }
+    image->context = r->context;
+    return true;
+}
+
+struct renderer_image *gl_image_create(struct renderer *renderer, const struct image *image,
+                                       struct error *error)
+{
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    struct gl_image *out = calloc(1, sizeof *out);
+    if (!out) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    out->base.pixels = image;
+    /* On a device that is lost meanwhile it comes with its first frame. */
+    if (!gl_ready(r, error) || image_upload(r, out, error) || gl_check_lost(r))
+        return &out->base;
+    free(out);
+    return NULL;
+}
+
+void gl_image_destroy(struct renderer *renderer, struct renderer_image *base)
+{
+    struct gl_image *image = gl_image_of(base);
+    if (is_current(gl_renderer_of(renderer), image->context))
+        glDeleteTextures(1, &image->texture);
+    free(image);
+}
