@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/device_internal.h"
 #include "tests/unit/renderer_frames.h"
 
 enum { ALL_PLANES = (1 << PLANE_COUNT) - 1, MOST_TILES = 64 };

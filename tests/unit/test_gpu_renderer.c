@@ -15,7 +15,7 @@
 #include "tests/unit/renderer_frames.h"
 
 /* Tables spread over several buffers give the same frame. */
-static void assert_banks_do_not_show(const struct limit_tables *tables, size_t max_texels)
+static void assert_cuts_do_not_show(const struct limit_tables *tables, size_t max_texels)
 {
     struct frame_request request = request_for(tables, 320, 200);
     struct frame frame[2];
@@ -32,23 +32,23 @@ static void assert_banks_do_not_show(const struct limit_tables *tables, size_t m
     frame_finish(&frame[1]);
 }
 
-static void test_point_banks(void **state)
+static void test_point_textures(void **state)
 {
     (void)state;
     struct limit_tables tables;
     build_file("tests/models/fender.obj", &tables);
-    assert_banks_do_not_show(&tables, tables.n_texels / 5 + 1);
+    assert_cuts_do_not_show(&tables, tables.n_texels / 5 + 1);
     limit_tables_finish(&tables);
 }
 
 /* 144 regular faces: 2448 point texels, 432 node texels. */
-static void test_node_banks(void **state)
+static void test_node_textures(void **state)
 {
     (void)state;
     struct limit_tables tables;
     build_torus(12, &tables);
     assert_int_equal(tables.n_regular, 144);
-    assert_banks_do_not_show(&tables, 307);
+    assert_cuts_do_not_show(&tables, 307);
     limit_tables_finish(&tables);
 }
 
@@ -305,8 +305,8 @@ static void test_unknown_devices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_point_banks),
-        cmocka_unit_test(test_node_banks),
+        cmocka_unit_test(test_point_textures),
+        cmocka_unit_test(test_node_textures),
         cmocka_unit_test(test_too_few_texels),
         cmocka_unit_test(test_light_only),
         cmocka_unit_test(test_image_pattern),

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/buffer_textures.h"
 #include "server/render/gl/shaders.h"
 #include "server/render/gl/sources.h"
 
@@ -149,15 +149,15 @@ static void test_shading(void **state)
     validate_all();
 }
 
-/* Every number of banks of one table with every number of banks of each other, with PTEX and
+/* Every number of buffer textures of one table with every number of each other, with PTEX and
  * without, by devices that hold as few texels as OpenGL allows, and many. */
 static void test_tables(void **state)
 {
     (void)state;
     int n_layouts = 0;
-    for (int points = 1; points <= MAX_POINT_BANKS; points++) {
-        for (int nodes = 1; nodes <= MAX_NODE_BANKS; nodes++) {
-            int adjacency = 1 + (points + nodes) % MAX_ADJACENCY_BANKS;
+    for (int points = 1; points <= MAX_POINT_TEXTURES; points++) {
+        for (int nodes = 1; nodes <= MAX_NODE_TEXTURES; nodes++) {
+            int adjacency = 1 + (points + nodes) % MAX_ADJACENCY_TEXTURES;
             bool ptex = (points / 2 + nodes) % 2;
             const struct table_layout layout = {
                 points, nodes, adjacency, (points + nodes) % 3 ? 65536 : (size_t)1 << 27, ptex};

@@ -1,4 +1,6 @@
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/check.h"
+
+#include <epoxy/gl.h>
 
 bool gpu_check(const char *doing, struct error *error)
 {

@@ -4,11 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/base/fault.h"
-#include "server/render/gl/gpu.h"
-
-/* How long the device may take for the stages of a tile; those are made for a hundredth of that. */
-#define LOST_AFTER_NS 2000000000u
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/frame.h"
+#include "server/render/gl/light_image.h"
+#include "server/render/gl/model.h"
 
 static void query_info(struct gl_renderer *r)
 {
@@ -23,7 +22,7 @@ static void query_info(struct gl_renderer *r)
     r->base.info = (struct renderer_info){
         .device = r->device,
         .driver = r->driver,
-        .software = r->egl.software,
+        .software = r->context.egl.software,
         .max_width_px = (uint32_t)width,
         .max_height_px = (uint32_t)height,
         .max_texels = (size_t)texels,
@@ -37,24 +36,24 @@ static void query_info(struct gl_renderer *r)
 /* What every context begins with. */
 static bool begin_context(struct gl_renderer *r, struct error *error)
 {
-    r->context++;
+    r->context.number++;
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     stage_clock_init(r);
     glCreateBuffers(1, &r->view_buffer);
     glNamedBufferData(r->view_buffer, sizeof(struct view_block), NULL, GL_STREAM_DRAW);
-    return stage_visibility_init(r, error) && stage_gather_init(r, error) &&
-           stage_evaluate_init(r, error) && stage_edges_init(r, error) &&
-           stage_shade_init(r, error);
+    return stage_visibility_init(&r->visibility, error) && stage_gather_init(&r->gather, error) &&
+           stage_evaluate_init(&r->evaluate, error) && stage_edges_init(&r->edges, error) &&
+           stage_shade_init(&r->shade, error);
 }
 
 static void destroy(struct renderer *renderer)
 {
     struct gl_renderer *r = gl_renderer_of(renderer);
     /* GL objects go with their context. */
-    egl_finish(&r->egl);
+    egl_finish(&r->context.egl);
     pieces_finish(&r->pieces);
-    polygons_lose(&r->polygons);
+    polygons_lose(&r->meshes);
     paused_tiles_release(r->paused_tiles);
     free(r);
 }
@@ -68,13 +67,15 @@ static struct renderer *create(const struct renderer_options *options, struct er
     }
     r->base.device = &gl_device;
     r->base.options = *options;
+    r->context.lost = options->lost;
+    r->context.owner = options->owner;
     r->paused_tiles = paused_tiles_create();
     if (!r->paused_tiles) {
         error_set(error, ERROR_SERVER, "out of memory");
         free(r);
         return NULL;
     }
-    if (!egl_init(&r->egl, options->device ? options->device : "auto", error)) {
+    if (!egl_init(&r->context.egl, options->device ? options->device : "auto", error)) {
         paused_tiles_release(r->paused_tiles);
         free(r);
         return NULL;
@@ -87,44 +88,14 @@ static struct renderer *create(const struct renderer_options *options, struct er
     return &r->base;
 }
 
-static void lose(struct gl_renderer *r)
-{
-    r->is_lost = true;
-    if (r->base.options.lost)
-        r->base.options.lost(r->base.options.owner);
-}
-
-bool gl_check_lost(struct gl_renderer *r)
-{
-    if (!r->is_lost && (fault_at("gpu.lost") || glGetGraphicsResetStatus() != GL_NO_ERROR))
-        lose(r);
-    return r->is_lost;
-}
-
-bool gl_wait(struct gl_renderer *r)
-{
-    GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-    GLenum came;
-    bool late;
-    do {
-        came = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, LOST_AFTER_NS);
-        late = came == GL_TIMEOUT_EXPIRED || fault_at("gpu.fence");
-    } while (came == GL_TIMEOUT_EXPIRED && r->egl.software);
-    glDeleteSync(fence);
-    if (late && !r->is_lost)
-        lose(r);
-    return !gl_check_lost(r);
-}
-
 bool gl_ready(struct gl_renderer *r, struct error *error)
 {
-    if (!r->is_lost)
+    if (!r->context.is_lost)
         return true;
     /* Only what is in main memory stays; every GL name went with the context. */
-    polygons_lose(&r->polygons);
+    polygons_lose(&r->meshes);
     const struct gl_renderer old = *r;
     *r = (struct gl_renderer){.base = old.base,
-                              .egl = old.egl,
                               .context = old.context,
                               .pieces = old.pieces,
                               .paused_tiles = old.paused_tiles,
@@ -132,10 +103,10 @@ bool gl_ready(struct gl_renderer *r, struct error *error)
     memcpy(r->device, old.device, sizeof r->device);
     memcpy(r->driver, old.driver, sizeof r->driver);
     struct error why;
-    if (egl_reopen(&r->egl) && begin_context(r, &why) && !gl_check_lost(r))
+    if (egl_reopen(&r->context.egl) && begin_context(r, &why) && !context_check_lost(&r->context))
         return true;
-    if (!r->is_lost)
-        lose(r);
+    if (!r->context.is_lost)
+        context_lose(&r->context);
     return error_set(error, ERROR_GPU_LOST,
                      "the GPU was lost and does not come back yet: try again later");
 }

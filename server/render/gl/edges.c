@@ -1,13 +1,13 @@
-/* Which pixels edges of the surface run through (shaders/edges.glsl). */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/edges.h"
 
+#include "server/render/gl/device_internal.h"
 #include "server/render/gl/program.h"
 
-bool stage_edges_init(struct gl_renderer *r, struct error *error)
+bool stage_edges_init(struct edges_stage *stage, struct error *error)
 {
-    r->edges_find = program_create_single(PROGRAM_EDGES_FIND, error);
-    r->edges_doubt = r->edges_find ? program_create_single(PROGRAM_EDGES_DOUBT, error) : 0;
-    return r->edges_doubt;
+    stage->find = program_create_single(PROGRAM_EDGES_FIND, error);
+    stage->doubt = stage->find ? program_create_single(PROGRAM_EDGES_DOUBT, error) : 0;
+    return stage->doubt;
 }
 
 void stage_edges(struct gl_renderer *r, const struct tile *shaded)
@@ -32,10 +32,10 @@ void stage_edges(struct gl_renderer *r, const struct tile *shaded)
     glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
     glBindImageTexture(6, target->silhouette, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    glProgramUniform4i(r->edges_find, glGetUniformLocation(r->edges_find, "shaded"),
+    glProgramUniform4i(r->edges.find, glGetUniformLocation(r->edges.find, "shaded"),
                        (GLint)shaded->x, (GLint)shaded->y, (GLint)shaded->width,
                        (GLint)shaded->height);
-    dispatch_groups(r->edges_find, target->groups);
+    dispatch_groups(r->edges.find, target->groups);
 }
 
 void stage_edges_doubt(struct gl_renderer *r)
@@ -51,6 +51,6 @@ void stage_edges_doubt(struct gl_renderer *r)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->edges);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->rounded);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, target->unsolved);
-    glUseProgram(r->edges_doubt);
+    glUseProgram(r->edges.doubt);
     glDispatchComputeIndirect(0);
 }

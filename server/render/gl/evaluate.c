@@ -1,15 +1,16 @@
-/* Stage 2: the pixel's ray against the limit surface, in passes over fewer and fewer pixels. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/evaluate.h"
 
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/model.h"
 #include "server/render/gl/program.h"
 
-bool stage_evaluate_init(struct gl_renderer *r, struct error *error)
+bool stage_evaluate_init(struct evaluate_stage *stage, struct error *error)
 {
-    r->doubt = program_create_single(PROGRAM_DOUBT, error);
-    r->gaps.find = r->doubt ? program_create_single(PROGRAM_GAPS, error) : 0;
-    glCreateBuffers(1, &r->gaps.ends);
-    glCreateBuffers(1, &r->gaps.guesses);
-    return r->gaps.find;
+    stage->doubt = program_create_single(PROGRAM_DOUBT, error);
+    stage->gaps = stage->doubt ? program_create_single(PROGRAM_GAPS, error) : 0;
+    glCreateBuffers(1, &stage->gap_ends);
+    glCreateBuffers(1, &stage->gap_guesses);
+    return stage->gaps;
 }
 
 static void bind_seen(const struct target *target, GLuint unit)
@@ -21,9 +22,9 @@ static void bind_seen(const struct target *target, GLuint unit)
 /* The tables, and what stage 1 left. */
 static void bind_tables(const struct gl_renderer *r, const struct gl_model *model)
 {
-    int unit = banks_bind(&model->points, 0);
-    unit = banks_bind(&model->nodes, unit);
-    unit = banks_bind(&model->adjacency, unit);
+    int unit = buffer_textures_bind(&model->points, 0);
+    unit = buffer_textures_bind(&model->nodes, unit);
+    unit = buffer_textures_bind(&model->adjacency, unit);
     bind_seen(&r->target, (GLuint)unit);
 }
 
@@ -52,7 +53,7 @@ static void doubt(const struct gl_renderer *r)
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     bind_seen(&r->target, 0);
     glBindImageTexture(0, r->target.hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
-    dispatch_groups(r->doubt, r->target.restless);
+    dispatch_groups(r->evaluate.doubt, r->target.restless);
 }
 
 void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
@@ -93,7 +94,7 @@ static GLuint find_gaps(const struct gl_renderer *r)
     glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     glBindImageTexture(1, target->seen, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG32UI);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->strays);
-    glUseProgram(r->gaps.find);
+    glUseProgram(r->evaluate.gaps);
     solve_listed(target->unsolved);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     glGetNamedBufferSubData(target->strays, 0, sizeof head, head);
@@ -121,20 +122,21 @@ bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
 {
     uint32_t at[MAX_GAPS] = {0}, end[MAX_GAPS];
     GLuint n = find_gaps(r);
-    r->gaps.too_many = n > MAX_GAPS;
+    r->evaluate.too_many_gaps = n > MAX_GAPS;
     if (n == 0 || n > MAX_GAPS)
         return true;
     glGetNamedBufferSubData(r->target.strays, LIST_HEAD_BYTES, (GLsizeiptr)(n * sizeof *at), at);
     if (!guess_gaps(r, model, view, at, n, end, error))
         return false;
-    glNamedBufferData(r->gaps.ends, (GLsizeiptr)(n * sizeof *end), end, GL_STREAM_DRAW);
-    glNamedBufferData(r->gaps.guesses, (GLsizeiptr)(r->pieces.n_guesses * sizeof(struct guess)),
-                      r->pieces.guess, GL_STREAM_DRAW);
+    glNamedBufferData(r->evaluate.gap_ends, (GLsizeiptr)(n * sizeof *end), end, GL_STREAM_DRAW);
+    glNamedBufferData(r->evaluate.gap_guesses,
+                      (GLsizeiptr)(r->pieces.n_guesses * sizeof(struct guess)), r->pieces.guess,
+                      GL_STREAM_DRAW);
     bind_planes(r, model);
     glUseProgram(programs->unsolved);
     glUniform1i(glGetUniformLocation(programs->unsolved, "n_asked"), 0);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->gaps.ends);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->gaps.guesses);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->evaluate.gap_ends);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->evaluate.gap_guesses);
     solve_listed(r->target.strays);
     return true;
 }

@@ -1,8 +1,10 @@
-/* One frame: tiles, and the three stages of each. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/frame.h"
 
 #include "server/base/fault.h"
-#include "server/scene/request_check.h"
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/light_image.h"
+#include "server/render/gl/model.h"
+#include "server/render/gl/readback.h"
 
 /* Stages 1 and 2, unless the target holds their planes already. Margins are evaluated, and then no
  * more is asked of them where they are not shaded. */
@@ -186,10 +188,10 @@ bool gl_frame_begin(struct renderer *renderer, struct frame_work *work, struct e
 static bool upload_all(struct gl_renderer *r, struct gl_model *model,
                        const struct frame_request *request, struct error *error)
 {
-    bool ok = model_upload(r, model, error);
+    bool ok = gl_model_upload(r, model, error);
     for (uint32_t i = 0; ok && i < request->n_lights; i++) {
         struct gl_image *image = gl_image_of(request->lights[i].pattern.image);
-        ok = !image || image_upload(r, image, error);
+        ok = !image || gl_image_upload(r, image, error);
     }
     return ok;
 }
@@ -257,12 +259,12 @@ enum frame_step gl_frame_step(struct renderer *renderer, struct renderer_model *
     own->work = work;
     if (ready && is_of_polygons(work->request) && !work->polygons &&
         (fault_at("gpu.polygons") ||
-         !polygons_have(&r->polygons, shown->serial, work->request->surface.level)))
+         !polygons_have(&r->meshes, shown->serial, work->request->surface.level)))
         return FRAME_POLYGONS;
     bool is_whole = false;
     if (!ready || !step(r, shown, own, frame, &work->has_drawn, &is_whole, error)) {
         /* Whatever failed then, this is why. */
-        if (gl_check_lost(r))
+        if (context_check_lost(&r->context))
             error_set(error, ERROR_GPU_LOST,
                       "the GPU was lost while it drew this frame: ask again");
         return FRAME_FAILED;

@@ -1,13 +1,13 @@
-/* Which pixels the passes after stage 1 run over (shaders/groups.glsl). */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/gather.h"
 
+#include "server/render/gl/device_internal.h"
 #include "server/render/gl/program.h"
 
-bool stage_gather_init(struct gl_renderer *r, struct error *error)
+bool stage_gather_init(struct gather_stage *stage, struct error *error)
 {
-    r->gather = program_create_single(PROGRAM_GATHER, error);
-    glCreateBuffers(1, &r->block_buffer);
-    return r->gather;
+    stage->program = program_create_single(PROGRAM_GATHER, error);
+    glCreateBuffers(1, &stage->block_buffer);
+    return stage->program;
 }
 
 void stage_gather(struct gl_renderer *r)
@@ -19,13 +19,13 @@ void stage_gather(struct gl_renderer *r)
     glNamedBufferSubData(r->target.restless, 0, sizeof no_work, no_work);
     if (!n)
         return;
-    glNamedBufferData(r->block_buffer, (GLsizeiptr)(n * sizeof *r->pieces.block), r->pieces.block,
-                      GL_STREAM_DRAW);
-    glUseProgram(r->gather);
-    glUniform1ui(glGetUniformLocation(r->gather, "n_blocks"), (GLuint)n);
+    glNamedBufferData(r->gather.block_buffer, (GLsizeiptr)(n * sizeof *r->pieces.block),
+                      r->pieces.block, GL_STREAM_DRAW);
+    glUseProgram(r->gather.program);
+    glUniform1ui(glGetUniformLocation(r->gather.program, "n_blocks"), (GLuint)n);
     glBindTextureUnit(1, r->target.seen_depth);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->target.groups);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->block_buffer);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->gather.block_buffer);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.restless);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     glDispatchCompute((GLuint)(groups < GROUP_ROW ? groups : GROUP_ROW),

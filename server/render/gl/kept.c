@@ -1,9 +1,11 @@
-/* Which planes a frame is drawn into, and when a later frame of the same view may reuse them
- * instead of drawing. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/kept.h"
 
 #include <stddef.h>
 #include <string.h>
+
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/frame.h"
+#include "server/render/gl/model.h"
 
 /* Frames of fewer pixels, thumbnails and probes, have planes of their own. */
 enum { SMALL_PX = 4096 };
@@ -135,7 +137,7 @@ void collect_tile(struct gl_renderer *r, bool edges)
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (int k = 0; k < (edges ? COLLECTED_LISTS : 1); k++) {
         GLuint from = list_of(tile, k), n = list_length(from);
-        if (r->gaps.too_many || (k == ROUNDED && all->n[k] + n > ROUNDED_IN_ANY_CUT)) {
+        if (r->evaluate.too_many_gaps || (k == ROUNDED && all->n[k] + n > ROUNDED_IN_ANY_CUT)) {
             all->frame = 0;
             return;
         }
@@ -183,6 +185,7 @@ void planes_keep(struct gl_renderer *r, const struct gl_model *model,
     if (is_kept(&r->kept, model, request))
         return;
     r->kept = view_of(model, request);
-    if (r->gaps.too_many || (r->kept.edges && list_length(r->target.rounded) > ROUNDED_IN_ANY_CUT))
+    if (r->evaluate.too_many_gaps ||
+        (r->kept.edges && list_length(r->target.rounded) > ROUNDED_IN_ANY_CUT))
         r->kept.any_cut = false;
 }

@@ -1,7 +1,9 @@
-/* Light images as textures, with all their smaller copies. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/light_image.h"
 
 #include <stdlib.h>
+
+#include "server/render/gl/check.h"
+#include "server/render/gl/device_internal.h"
 
 size_t gl_image_bytes(const struct image *image)
 {
@@ -9,9 +11,9 @@ size_t gl_image_bytes(const struct image *image)
     return (texels + texels / 3) * (image->is_float ? 8 : 4); /* RGBA16F or SRGB8_ALPHA8 */
 }
 
-bool image_upload(struct gl_renderer *r, struct gl_image *image, struct error *error)
+bool gl_image_upload(struct gl_renderer *r, struct gl_image *image, struct error *error)
 {
-    if (is_current(r, image->context))
+    if (context_is_current(&r->context, image->context))
         return true;
     const struct image *pixels = image->base.pixels;
     GLsizei width = (GLsizei)pixels->width_px, height = (GLsizei)pixels->height_px;
@@ -30,7 +32,7 @@ bool image_upload(struct gl_renderer *r, struct gl_image *image, struct error *e
         glDeleteTextures(1, &image->texture);
         return false;
     }
-    image->context = r->context;
+    image->context = r->context.number;
     return true;
 }
 
@@ -45,7 +47,7 @@ struct renderer_image *gl_image_create(struct renderer *renderer, const struct i
     }
     out->base.pixels = image;
     /* On a device that is lost meanwhile it comes with its first frame. */
-    if (!gl_ready(r, error) || image_upload(r, out, error) || gl_check_lost(r))
+    if (!gl_ready(r, error) || gl_image_upload(r, out, error) || context_check_lost(&r->context))
         return &out->base;
     free(out);
     return NULL;
@@ -54,7 +56,7 @@ struct renderer_image *gl_image_create(struct renderer *renderer, const struct i
 void gl_image_destroy(struct renderer *renderer, struct renderer_image *base)
 {
     struct gl_image *image = gl_image_of(base);
-    if (is_current(gl_renderer_of(renderer), image->context))
+    if (context_is_current(&gl_renderer_of(renderer)->context, image->context))
         glDeleteTextures(1, &image->texture);
     free(image);
 }

@@ -1,12 +1,12 @@
-/* The conventional picture: polygons into the planes that stages 1 and 2 fill for the exact
- * surface, and their edges over the shaded picture. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/polygon.h"
 
 #include <math.h>
 
+#include "server/render/gl/check.h"
+#include "server/render/gl/device_internal.h"
 #include "server/render/gl/program.h"
 
-static bool compile(struct polygons *p, struct error *error)
+static bool compile(struct polygon_stage *p, struct error *error)
 {
     if (!p->fill)
         p->fill = program_create_single(PROGRAM_POLYGONS, error);
@@ -108,7 +108,7 @@ bool stage_polygons_begin(struct gl_renderer *r, const struct tile *tile, struct
 {
     static const GLuint no_face[4] = {UINT32_MAX, 0, 0, 0};
     static const GLfloat nothing[4] = {0, 0, 0, 0};
-    struct polygons *p = &r->polygons;
+    struct polygon_stage *p = &r->polygons;
     if (!compile(p, error))
         return false;
     if (!p->framebuffer)
@@ -132,7 +132,7 @@ bool stage_polygons(struct gl_renderer *r, struct slice *slice, struct error *er
 
 bool stage_wireframe(struct gl_renderer *r, struct slice *slice, struct error *error)
 {
-    struct polygons *p = &r->polygons;
+    struct polygon_stage *p = &r->polygons;
     attach(r, &r->target.colour, 1);
     raster_begin(p->framebuffer, slice->tile, slice->tile);
     glDepthFunc(GL_EQUAL);

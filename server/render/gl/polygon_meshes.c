@@ -1,15 +1,17 @@
-/* The meshes of polygons that the device keeps: put there piece by piece, the oldest making room.
- */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/polygon_meshes.h"
 
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/render/gl/check.h"
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/model.h"
+
 /* What all meshes together may keep on the device beside those in use. */
 static const size_t MAX_CACHED_BYTES = (size_t)512 << 20;
 
-static void drop(struct polygons *p, struct polygon_mesh *mesh)
+static void drop(struct polygon_meshes *p, struct polygon_mesh *mesh)
 {
     p->bytes -= mesh->bytes;
     for (size_t i = 0; i < mesh->n_put; i++) {
@@ -21,20 +23,20 @@ static void drop(struct polygons *p, struct polygon_mesh *mesh)
     *mesh = (struct polygon_mesh){0};
 }
 
-void polygons_forget(struct polygons *p, uint64_t model_serial)
+void polygons_forget(struct polygon_meshes *p, uint64_t model_serial)
 {
     for (int i = 0; i < MAX_POLYGON_MESHES; i++)
         if (p->mesh[i].model_serial == model_serial)
             drop(p, &p->mesh[i]);
 }
 
-void polygons_lose(struct polygons *p)
+void polygons_lose(struct polygon_meshes *p)
 {
     for (int i = 0; i < MAX_POLYGON_MESHES; i++) {
         free(p->mesh[i].part);
         free(p->mesh[i].chunk);
     }
-    *p = (struct polygons){0};
+    *p = (struct polygon_meshes){0};
 }
 
 /* A free place for a mesh of so many bytes: the meshes not used for longest make room, but for
@@ -43,7 +45,7 @@ static struct polygon_mesh *make_room(struct gl_renderer *r, size_t bytes)
 {
     /* No frame is being drawn of one of them at least. */
     _Static_assert((int)MAX_PAUSED_TILES < (int)MAX_POLYGON_MESHES, "there is one to drop");
-    struct polygons *p = &r->polygons;
+    struct polygon_meshes *p = &r->meshes;
     for (;;) {
         struct polygon_mesh *free_one = NULL, *oldest = NULL;
         for (int i = 0; i < MAX_POLYGON_MESHES; i++) {
@@ -104,7 +106,7 @@ static struct polygon_mesh *begin(struct gl_renderer *r, const struct mesh *made
         .bytes = bytes,
         .centre = {made->centre[0], made->centre[1], made->centre[2]},
     };
-    r->polygons.bytes += bytes;
+    r->meshes.bytes += bytes;
     return mesh;
 }
 
@@ -124,7 +126,7 @@ static size_t put(struct polygon_mesh *mesh, const struct mesh *made)
     return vertex_bytes + index_bytes;
 }
 
-static struct polygon_mesh *find(struct polygons *p, uint64_t model_serial, uint32_t level)
+static struct polygon_mesh *find(struct polygon_meshes *p, uint64_t model_serial, uint32_t level)
 {
     for (int i = 0; i < MAX_POLYGON_MESHES; i++)
         if (p->mesh[i].model_serial == model_serial && p->mesh[i].level == level)
@@ -137,7 +139,7 @@ bool polygons_are_whole(const struct polygon_mesh *mesh)
     return mesh->n_put == mesh->n_chunks;
 }
 
-bool polygons_have(struct polygons *p, uint64_t model_serial, uint32_t level)
+bool polygons_have(struct polygon_meshes *p, uint64_t model_serial, uint32_t level)
 {
     const struct polygon_mesh *mesh = find(p, model_serial, level);
     return mesh && polygons_are_whole(mesh);
@@ -146,7 +148,7 @@ bool polygons_have(struct polygons *p, uint64_t model_serial, uint32_t level)
 struct polygon_mesh *polygons_put(struct gl_renderer *r, const struct gl_model *model,
                                   uint32_t level, size_t most, struct error *error)
 {
-    struct polygons *p = &r->polygons;
+    struct polygon_meshes *p = &r->meshes;
     struct polygon_mesh *mesh = find(p, model->serial, level);
     if (!mesh && !(mesh = begin(r, &r->made->mesh, model, level, error)))
         return NULL;

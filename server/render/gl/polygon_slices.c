@@ -1,20 +1,17 @@
-/* Frames of polygons, slice by slice: meshes of millions of triangles keep a software device busy
- * for seconds, and others are drawn in between. What a frame has drawn of its tile stays in its
- * planes, which are set aside meanwhile, so that the picture is that of one stroke. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/polygon_slices.h"
 
 #include <stdlib.h>
+
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/frame.h"
+#include "server/render/gl/model.h"
+#include "server/render/gl/quirks.h"
 
 /* What a step draws, and puts on the device: on a software device it takes no longer than a tile
  * does (server/frame/request_frame.c). On hardware the aim is the same; that has not been
  * measured. */
 static const size_t SOFTWARE_TRIANGLES = 65536, HARDWARE_TRIANGLES = (size_t)1 << 21;
 static const size_t SOFTWARE_BYTES = (size_t)4 << 20, HARDWARE_BYTES = (size_t)32 << 20;
-
-/* A software device draws what it has been given while it is given more: in slices of 65536
- * triangles a car of 12.9 million at 1280x720 took 0.8 s so on llvmpipe, and 1.6 s with nothing
- * handed on before a slice's end, 1.1 s in one stroke. */
-static const size_t SOFTWARE_TRIANGLES_AT_ONCE = 8192;
 
 static size_t triangles_a_step(const struct gl_renderer *r)
 {
@@ -54,7 +51,7 @@ bool mesh_is_needed(const struct gl_renderer *r, const struct polygon_mesh *mesh
 {
     for (int i = 0; i < MAX_PAUSED_TILES; i++) {
         struct paused_tile *paused = &r->paused_tiles->paused[i];
-        if (is_current(r, paused->context) && atomic_load(&paused->is_taken) &&
+        if (context_is_current(&r->context, paused->context) && atomic_load(&paused->is_taken) &&
             paused->model_serial == mesh->model_serial && paused->level == mesh->level)
             return true;
     }
@@ -69,9 +66,9 @@ static struct paused_tile *take(struct gl_renderer *r)
         struct paused_tile *paused = &r->paused_tiles->paused[i], *smaller = paused;
         if (atomic_load(&paused->is_taken))
             continue;
-        if (!is_current(r, paused->context))
+        if (!context_is_current(&r->context, paused->context))
             paused->planes = (struct planes){0};
-        paused->context = r->context;
+        paused->context = r->context.number;
         if (!taken || paused->planes.target.width > taken->planes.target.width) {
             smaller = taken;
             taken = paused;
@@ -100,7 +97,7 @@ void tile_give_back(struct gl_frame *own)
 
 void tile_resume(struct gl_renderer *r, struct gl_frame *own)
 {
-    if (own->paused && is_current(r, own->paused->context)) {
+    if (own->paused && context_is_current(&r->context, own->paused->context)) {
         planes_swap(r, &own->paused->planes);
         return;
     }

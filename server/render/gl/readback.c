@@ -1,7 +1,9 @@
-/* From the target's images to the planes of a frame in main memory. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/readback.h"
 
 #include <math.h>
+
+#include "server/render/gl/check.h"
+#include "server/render/gl/device_internal.h"
 
 /* The rows of a tile inside a plane of the whole frame. */
 struct rows {

@@ -1,18 +1,12 @@
-/* Stage 3: the lights in the mirror. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/shade.h"
 
 #include <math.h>
 
+#include "server/render/gl/check.h"
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/light_image.h"
+#include "server/render/gl/quirks.h"
 #include "server/render/light_block.h"
-
-/* What a software device makes a program anew for: an image whose texels are others, or which has a
- * side that is a power of two. */
-static uint8_t picture_kind(const struct image *pixels)
-{
-    uint32_t width = pixels->width_px, height = pixels->height_px;
-    return (uint8_t)(pixels->is_float | !(width & (width - 1)) << 1 |
-                     !(height & (height - 1)) << 2 | (width == 1 && height == 1) << 3);
-}
 
 static struct shade_key key_of(const struct frame_request *request, const struct light *light,
                                enum shaded which)
@@ -28,7 +22,7 @@ static struct shade_key key_of(const struct frame_request *request, const struct
                               .light = family_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
                               .pattern = (uint8_t)pattern->kind,
                               .soft = pattern->soft > 0,
-                              .picture = image ? picture_kind(image->base.pixels) : 0,
+                              .picture = image ? image_quirks(image->base.pixels) : 0,
                               .has_several = request->n_lights > 1,
                               .which = (uint8_t)which};
 }
@@ -51,7 +45,7 @@ static bool planes_wanted(const struct frame_request *request)
     return request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE);
 }
 
-bool stage_shade_init(struct gl_renderer *r, struct error *error)
+bool stage_shade_init(struct shade_stage *stage, struct error *error)
 {
     static const uint8_t white[4] = {255, 255, 255, 255};
     static const GLuint nothing[3] = {0, 1, 1};
@@ -59,15 +53,16 @@ bool stage_shade_init(struct gl_renderer *r, struct error *error)
         .n_lights = 1, .lights = {{.kind = LIGHT_TUNNEL}}, .count_light = true};
     enum shaded kinds[SHADED_KINDS];
     for (int k = kinds_of(&usual, kinds); k-- > 0;)
-        if (!shade_programs_compile(&r->shading, key_of(&usual, &usual.lights[0], kinds[k]), error))
+        if (!shade_programs_compile(&stage->programs, key_of(&usual, &usual.lights[0], kinds[k]),
+                                    error))
             return false;
-    glCreateBuffers(1, &r->light_buffer);
-    glNamedBufferData(r->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
-    glCreateBuffers(1, &r->no_groups);
-    glNamedBufferStorage(r->no_groups, sizeof nothing, nothing, 0);
-    glCreateTextures(GL_TEXTURE_2D, 1, &r->blank_texture);
-    glTextureStorage2D(r->blank_texture, 1, GL_RGBA8, 1, 1);
-    glTextureSubImage2D(r->blank_texture, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    glCreateBuffers(1, &stage->light_buffer);
+    glNamedBufferData(stage->light_buffer, sizeof(struct light_block), NULL, GL_STREAM_DRAW);
+    glCreateBuffers(1, &stage->no_groups);
+    glNamedBufferStorage(stage->no_groups, sizeof nothing, nothing, 0);
+    glCreateTextures(GL_TEXTURE_2D, 1, &stage->blank_texture);
+    glTextureStorage2D(stage->blank_texture, 1, GL_RGBA8, 1, 1);
+    glTextureSubImage2D(stage->blank_texture, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
     return gpu_check("the shading stage", error);
 }
 
@@ -104,7 +99,7 @@ static void bind_picture(const struct gl_renderer *r, const struct frame_request
                          const struct light *light)
 {
     const struct gl_image *image = gl_image_of(light->pattern.image);
-    glBindTextureUnit(0, image ? image->texture : r->blank_texture);
+    glBindTextureUnit(0, image ? image->texture : r->shade.blank_texture);
     if (!image)
         return;
     enum line_family family = request->lines.family;
@@ -151,7 +146,7 @@ static void run_over_nothing(const struct gl_renderer *r, const struct frame_req
     bind_planes(&r->target, (enum shaded)program->key.which);
     bind_lights(&r->target, 0);
     glUseProgram(program->name);
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->no_groups);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->shade.no_groups);
     glDispatchComputeIndirect(0);
     program->is_made = true;
 }
@@ -163,7 +158,7 @@ bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *requ
     struct shade_key missing = {0};
     enum shaded kinds[SHADED_KINDS];
     int n_kinds = kinds_of(request, kinds);
-    shade_programs_begin(&r->shading);
+    shade_programs_begin(&r->shade.programs);
     /* The last one is the planes', of the foremost light. All are looked for, so that they stay. */
     for (uint32_t i = 0; i < request->n_lights * (uint32_t)n_kinds + planes_wanted(request); i++) {
         uint32_t of = i / (uint32_t)n_kinds;
@@ -171,7 +166,7 @@ bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *requ
         const struct light *light = &request->lights[is_planes ? 0 : of];
         struct shade_key key =
             key_of(request, light, is_planes ? SHADED_PLANES : kinds[i % (uint32_t)n_kinds]);
-        const struct shade_program *program = shade_programs_find(&r->shading, key);
+        const struct shade_program *program = shade_programs_find(&r->shade.programs, key);
         if (program && program->is_made)
             continue;
         missing_light = light;
@@ -180,9 +175,9 @@ bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *requ
     *is_ready = !missing_light;
     if (*is_ready)
         return true;
-    struct shade_program *program = shade_programs_find(&r->shading, missing);
+    struct shade_program *program = shade_programs_find(&r->shade.programs, missing);
     if (!program)
-        program = shade_programs_compile(&r->shading, missing, error);
+        program = shade_programs_compile(&r->shade.programs, missing, error);
     if (program)
         run_over_nothing(r, request, missing_light, program);
     return program;
@@ -201,7 +196,7 @@ static void dispatch_listed(GLuint program, GLuint list)
 static GLuint program_of(struct gl_renderer *r, const struct frame_request *request,
                          const struct light *light, enum shaded which)
 {
-    return shade_programs_find(&r->shading, key_of(request, light, which))->name;
+    return shade_programs_find(&r->shade.programs, key_of(request, light, which))->name;
 }
 
 /* Of the foremost light, whose block is in place. */
@@ -267,7 +262,7 @@ static void shade_light(struct gl_renderer *r, const struct frame_request *reque
     enum shaded all = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
     struct light_block block;
     light_block_fill(&block, request, i);
-    glNamedBufferSubData(r->light_buffer, 0, sizeof block, &block);
+    glNamedBufferSubData(r->shade.light_buffer, 0, sizeof block, &block);
     bind_picture(r, request, light);
     bind_planes(&r->target, all);
     bind_lights(&r->target, i);
@@ -281,7 +276,7 @@ static void shade_light(struct gl_renderer *r, const struct frame_request *reque
 
 bool stage_shade(struct gl_renderer *r, const struct frame_request *request, struct error *error)
 {
-    glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->light_buffer);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->shade.light_buffer);
     clear_planes(r, request);
     for (uint32_t i = request->n_lights; i-- > 0;) {
         if (!frame_watch_check(&r->watch, error))

@@ -96,9 +96,8 @@ struct program_source source_of_tables(enum table_program program,
              "#define POINT_BANKS %d\n#define NODE_BANKS %d\n#define ADJACENCY_BANKS %d\n"
              "#define BANK_TEXELS %zu\n#define NODE_BANK_TEXELS %zu\n#define "
              "TEXTURES_FREE %d\n%s",
-             layout->point_banks, layout->node_banks, layout->adjacency_banks, layout->max_texels,
-             layout->max_texels / 3 * 3,
-             layout->point_banks + layout->node_banks + layout->adjacency_banks,
+             layout->n_points, layout->n_nodes, layout->n_adjacency, layout->max_texels,
+             layout->max_texels / 3 * 3, layout->n_points + layout->n_nodes + layout->n_adjacency,
              layout->ptex ? "#define PTEX\n" : "");
     return source;
 }

@@ -52,9 +52,9 @@ enum table_program {
     TABLE_PROGRAMS
 };
 struct table_layout {
-    int point_banks, node_banks, adjacency_banks;
-    size_t max_texels; /* of a buffer texture */
-    bool ptex;         /* PLANE_PTEX is written */
+    int n_points, n_nodes, n_adjacency; /* buffer textures */
+    size_t max_texels;                  /* of a buffer texture */
+    bool ptex;                          /* PLANE_PTEX is written */
 };
 struct program_source source_of_tables(enum table_program program,
                                        const struct table_layout *layout);

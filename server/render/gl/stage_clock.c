@@ -1,8 +1,9 @@
-/* What the stages of a tile took: by timer queries on the device, so that it never stands still
- * between them, or by the clock, waiting for each. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/stage_clock.h"
 
 #include <time.h>
+
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/quirks.h"
 
 static uint64_t now_us(void)
 {
@@ -15,8 +16,8 @@ bool stage_clock_by_device(const struct gl_renderer *r)
 {
     GLint bits = 0;
     glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
-    /* Those of llvmpipe leave the vertex stage out. */
-    return bits >= 32 && (!r->egl.software || r->base.options.device_times);
+    return bits >= 32 &&
+           (tells_device_times(r->context.egl.software) || r->base.options.device_times);
 }
 
 void stage_clock_init(struct gl_renderer *r)
@@ -48,7 +49,7 @@ bool stage_clock_end(struct gl_renderer *r, uint64_t *stage)
 
 bool stage_clock_wait(struct gl_renderer *r, uint64_t *stage)
 {
-    bool ok = gl_wait(r);
+    bool ok = context_wait(&r->context);
     uint64_t now = now_us();
     *stage += now - r->clock.since_us;
     r->clock.since_us = now;

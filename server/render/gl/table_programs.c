@@ -1,6 +1,7 @@
-/* The programs that read limit tables, one set for each way the tables are spread over banks. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/table_programs.h"
 
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/model.h"
 #include "server/render/gl/program.h"
 
 static void delete_all(const struct table_programs *programs)
@@ -13,14 +14,14 @@ static void delete_all(const struct table_programs *programs)
 }
 
 /* A free place, made free if need be. */
-static struct table_programs *make_room(struct gl_renderer *r)
+static struct table_programs *make_room(struct program_sets *sets)
 {
-    if (r->n_programs < MAX_PROGRAM_SETS)
-        return &r->programs[r->n_programs++];
-    struct table_programs *oldest = &r->programs[0];
-    for (int i = 1; i < r->n_programs; i++)
-        if (r->programs[i].used < oldest->used)
-            oldest = &r->programs[i];
+    if (sets->n < MAX_PROGRAM_SETS)
+        return &sets->set[sets->n++];
+    struct table_programs *oldest = &sets->set[0];
+    for (int i = 1; i < sets->n; i++)
+        if (sets->set[i].used < oldest->used)
+            oldest = &sets->set[i];
     delete_all(oldest);
     return oldest;
 }
@@ -35,23 +36,23 @@ static GLuint create(enum table_program program, const struct table_layout *layo
 const struct table_programs *programs_for(struct gl_renderer *r, const struct gl_model *model,
                                           bool ptex, struct error *error)
 {
-    int point_banks = model->points.n, node_banks = model->nodes.n;
-    int adjacency_banks = model->adjacency.n;
-    for (int i = 0; i < r->n_programs; i++) {
-        struct table_programs *p = &r->programs[i];
-        if (p->point_banks == point_banks && p->node_banks == node_banks &&
-            p->adjacency_banks == adjacency_banks && p->ptex == ptex) {
-            p->used = ++r->programs_clock;
+    struct program_sets *sets = &r->programs;
+    int n_points = model->points.n, n_nodes = model->nodes.n, n_adjacency = model->adjacency.n;
+    for (int i = 0; i < sets->n; i++) {
+        struct table_programs *p = &sets->set[i];
+        if (p->n_points == n_points && p->n_nodes == n_nodes && p->n_adjacency == n_adjacency &&
+            p->ptex == ptex) {
+            p->used = ++sets->clock;
             return p;
         }
     }
-    const struct table_layout layout = {point_banks, node_banks, adjacency_banks,
-                                        r->base.info.max_texels, ptex};
-    struct table_programs made = {.point_banks = point_banks,
-                                  .node_banks = node_banks,
-                                  .adjacency_banks = adjacency_banks,
+    const struct table_layout layout = {n_points, n_nodes, n_adjacency, r->base.info.max_texels,
+                                        ptex};
+    struct table_programs made = {.n_points = n_points,
+                                  .n_nodes = n_nodes,
+                                  .n_adjacency = n_adjacency,
                                   .ptex = ptex,
-                                  .used = ++r->programs_clock};
+                                  .used = ++sets->clock};
     made.visibility = create(PROGRAM_VISIBILITY, &layout, error);
     made.evaluate = made.visibility ? create(PROGRAM_EVALUATE, &layout, error) : 0;
     made.unsolved = made.evaluate ? create(PROGRAM_UNSOLVED, &layout, error) : 0;
@@ -61,7 +62,7 @@ const struct table_programs *programs_for(struct gl_renderer *r, const struct gl
         delete_all(&made);
         return NULL;
     }
-    struct table_programs *p = make_room(r);
+    struct table_programs *p = make_room(sets);
     *p = made;
     return p;
 }

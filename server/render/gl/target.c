@@ -1,6 +1,9 @@
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/target.h"
 
 #include <stddef.h>
+
+#include "server/render/gl/check.h"
+#include "server/render/gl/quirks.h"
 
 /* Every image of a target: where its name is kept, its format, and what a pixel takes. */
 static const struct {

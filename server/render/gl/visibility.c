@@ -1,11 +1,11 @@
-/* Stage 1: grids over the chosen pieces into the visibility buffer. */
-#include "server/render/gl/gpu.h"
+#include "server/render/gl/visibility.h"
 
 #include <stdlib.h>
 
-/* So many cells are drawn by other threads, where the device is software, while this one goes on.
- */
-static const size_t FLUSH_CELLS = 16384;
+#include "server/render/gl/check.h"
+#include "server/render/gl/device_internal.h"
+#include "server/render/gl/model.h"
+#include "server/render/gl/quirks.h"
 
 /* A grid's cells along u and v. */
 static uint32_t cells_along(int grid, int side)
@@ -40,11 +40,11 @@ static uint32_t *fill_indices(uint32_t *index, int grid, uint32_t first)
     return index;
 }
 
-bool stage_visibility_init(struct gl_renderer *r, struct error *error)
+bool stage_visibility_init(struct visibility_stage *stage, struct error *error)
 {
     size_t n = 0;
     for (int g = 0; g < PIECE_GRIDS; g++) {
-        r->grid_first[g] = n;
+        stage->grid_first[g] = n;
         n += indices_per_instance(g);
     }
     uint32_t *index = malloc(n * sizeof *index), *at = index;
@@ -53,13 +53,13 @@ bool stage_visibility_init(struct gl_renderer *r, struct error *error)
     for (int g = 0; g < PIECE_GRIDS; g++)
         for (uint32_t k = 0; k < pieces_per_instance(g); k++)
             at = fill_indices(at, g, k * (cells_along(g, 0) + 1) * (cells_along(g, 1) + 1));
-    glCreateBuffers(1, &r->grid_buffer);
-    glNamedBufferStorage(r->grid_buffer, (GLsizeiptr)(n * sizeof *index), index, 0);
+    glCreateBuffers(1, &stage->grid_buffer);
+    glNamedBufferStorage(stage->grid_buffer, (GLsizeiptr)(n * sizeof *index), index, 0);
     free(index);
-    glCreateVertexArrays(1, &r->vertex_array);
-    glVertexArrayElementBuffer(r->vertex_array, r->grid_buffer);
-    glCreateBuffers(1, &r->piece_buffer);
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &r->piece_texture);
+    glCreateVertexArrays(1, &stage->vertex_array);
+    glVertexArrayElementBuffer(stage->vertex_array, stage->grid_buffer);
+    glCreateBuffers(1, &stage->piece_buffer);
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &stage->piece_texture);
     return gpu_check("the grids", error);
 }
 
@@ -74,7 +74,7 @@ static void draw_pieces(const struct gl_renderer *r, GLuint program, int grid, s
     glUniform1i(glGetUniformLocation(program, "n_pieces"), (GLint)n);
     glUniform1i(glGetUniformLocation(program, "pieces_per_instance"), (GLint)per_instance);
     glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)indices_per_instance(grid), GL_UNSIGNED_INT,
-                            (const void *)(r->grid_first[grid] * sizeof(uint32_t)),
+                            (const void *)(r->visibility.grid_first[grid] * sizeof(uint32_t)),
                             (GLsizei)((n + per_instance - 1) / per_instance));
 }
 
@@ -88,11 +88,12 @@ static void draw_range(struct gl_renderer *r, GLuint program, size_t begin, size
 {
     const struct pieces *pieces = &r->pieces;
     size_t cells = 0, piece_bytes = sizeof *pieces->piece; /* a power of two */
-    glNamedBufferData(r->piece_buffer, (GLsizeiptr)(no_power_of_two(end - begin) * piece_bytes),
-                      NULL, GL_STREAM_DRAW);
-    glNamedBufferSubData(r->piece_buffer, 0, (GLsizeiptr)((end - begin) * piece_bytes),
+    glNamedBufferData(r->visibility.piece_buffer,
+                      (GLsizeiptr)(no_power_of_two(end - begin) * piece_bytes), NULL,
+                      GL_STREAM_DRAW);
+    glNamedBufferSubData(r->visibility.piece_buffer, 0, (GLsizeiptr)((end - begin) * piece_bytes),
                          pieces->piece + begin);
-    glTextureBuffer(r->piece_texture, GL_RGBA32UI, r->piece_buffer);
+    glTextureBuffer(r->visibility.piece_texture, GL_RGBA32UI, r->visibility.piece_buffer);
     for (int g = 0; g < PIECE_GRIDS; g++) {
         size_t first = cut(pieces->first[g], begin, end);
         size_t n = cut(pieces->first[g + 1], begin, end) - first;
@@ -146,10 +147,10 @@ void stage_visibility(struct gl_renderer *r, const struct gl_model *model,
     clear(r, programs->ptex);
     GLuint program = programs->visibility;
     glUseProgram(program);
-    banks_bind(&model->nodes, banks_bind(&model->points, 0));
+    buffer_textures_bind(&model->nodes, buffer_textures_bind(&model->points, 0));
     glBindTextureUnit((GLuint)(model->points.n + model->nodes.n + model->adjacency.n),
-                      r->piece_texture);
-    glBindVertexArray(r->vertex_array);
+                      r->visibility.piece_texture);
+    glBindVertexArray(r->visibility.vertex_array);
     size_t n = r->pieces.first[PIECE_GRIDS], most = r->base.info.max_texels;
     for (size_t begin = 0; begin < n; begin += most)
         draw_range(r, program, begin, n - begin < most ? n : begin + most);

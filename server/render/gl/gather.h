@@ -1,0 +1,27 @@
+/* Which pixels the passes after stage 1 run over (shaders/groups.glsl). GL thread. */
+#ifndef SHEEN_RENDER_GL_GATHER_H
+#define SHEEN_RENDER_GL_GATHER_H
+
+#include <epoxy/gl.h>
+
+#include <stdbool.h>
+
+#include "server/base/error.h"
+
+struct gl_renderer;
+
+struct gather_stage {
+    GLuint program;
+    GLuint block_buffer; /* the blocks of the last tile gathered */
+};
+
+bool stage_gather_init(struct gather_stage *stage, struct error *error);
+/* After stage 1 or polygons: lists the pixels near what is seen, target.groups, over which
+ * dispatch_groups() runs a program; and those that may have to ask their neighbours,
+ * target.restless. Planes that it writes must be cleared before: it leaves gaps. */
+void stage_gather(struct gl_renderer *r);
+/* Has it found any, for the tile that was drawn last? Waits for the device. */
+bool gather_found_any(const struct gl_renderer *r);
+void dispatch_groups(GLuint program, GLuint groups);
+
+#endif

@@ -1,0 +1,32 @@
+/* Light images as textures, with all their smaller copies. GL thread. */
+#ifndef SHEEN_RENDER_GL_LIGHT_IMAGE_H
+#define SHEEN_RENDER_GL_LIGHT_IMAGE_H
+
+#include <epoxy/gl.h>
+
+#include "server/render/device.h"
+#include "server/render/gl/context.h"
+
+struct gl_renderer;
+
+struct gl_image {
+    struct renderer_image base;
+    context_number context;
+    GLuint texture;
+};
+
+static inline struct gl_image *gl_image_of(struct renderer_image *image) /* NULL: NULL */
+{
+    return (struct gl_image *)(void *)image;
+}
+
+/* As struct renderer_device has them. */
+struct renderer_image *gl_image_create(struct renderer *renderer, const struct image *image,
+                                       struct error *error);
+void gl_image_destroy(struct renderer *renderer, struct renderer_image *image);
+size_t gl_image_bytes(const struct image *image);
+
+/* Puts the image on the device where it is not. */
+bool gl_image_upload(struct gl_renderer *r, struct gl_image *image, struct error *error);
+
+#endif

@@ -1,0 +1,71 @@
+#include "server/render/gl/model.h"
+
+#include <stdlib.h>
+
+#include "server/render/gl/device_internal.h"
+
+/* What has come to the device. */
+static void take_down(struct gl_model *model)
+{
+    buffer_textures_finish(&model->points);
+    buffer_textures_finish(&model->nodes);
+    buffer_textures_finish(&model->adjacency);
+}
+
+bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error *error)
+{
+    if (context_is_current(&r->context, model->context))
+        return true;
+    const struct limit_tables *tables = model->base.tables;
+    const struct texels points = {tables->texels, tables->n_texels, sizeof *tables->texels,
+                                  GL_RGBA32F, "points"};
+    const struct texels nodes = {tables->nodes, 3 * tables->n_nodes, 16, GL_RGBA32UI, "nodes"};
+    const struct texels adjacency = {tables->adjacency, tables->n_faces, 16, GL_RGBA32UI,
+                                     "adjacency"};
+    size_t max = r->base.info.max_texels;
+    /* A node's three texels stay in one buffer texture. */
+    size_t node_max = max / 3 * 3;
+    model->points = model->nodes = model->adjacency = (struct buffer_textures){0};
+    if (!buffer_textures_init(&model->points, &points, MAX_POINT_TEXTURES, max, error) ||
+        !buffer_textures_init(&model->nodes, &nodes, MAX_NODE_TEXTURES, node_max, error) ||
+        !buffer_textures_init(&model->adjacency, &adjacency, MAX_ADJACENCY_TEXTURES, max, error) ||
+        !programs_for(r, model, false, error)) {
+        take_down(model);
+        return false;
+    }
+    model->context = r->context.number;
+    return true;
+}
+
+struct renderer_model *gl_model_create(struct renderer *renderer, const struct limit_tables *tables,
+                                       struct error *error)
+{
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    struct gl_model *model = calloc(1, sizeof *model);
+    if (!model) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    model->base.tables = tables;
+    model->serial = ++r->next_serial;
+    /* On a device that is lost meanwhile it comes with its first frame. */
+    if (clusters_init(&model->clusters, tables, error) &&
+        (!gl_ready(r, error) || gl_model_upload(r, model, error) ||
+         context_check_lost(&r->context)))
+        return &model->base;
+    clusters_finish(&model->clusters);
+    free(model);
+    return NULL;
+}
+
+void gl_model_destroy(struct renderer *renderer, struct renderer_model *base)
+{
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    struct gl_model *model = gl_model_of(base);
+    if (context_is_current(&r->context, model->context)) {
+        polygons_forget(&r->meshes, model->serial);
+        take_down(model);
+    }
+    clusters_finish(&model->clusters);
+    free(model);
+}

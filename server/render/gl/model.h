@@ -1,0 +1,33 @@
+/* A model's tables on the device. GL thread. */
+#ifndef SHEEN_RENDER_GL_MODEL_H
+#define SHEEN_RENDER_GL_MODEL_H
+
+#include "server/render/clusters.h"
+#include "server/render/device.h"
+#include "server/render/gl/buffer_textures.h"
+#include "server/render/gl/context.h"
+
+struct gl_renderer;
+
+struct gl_model {
+    struct renderer_model base;
+    struct clusters clusters; /* of the tables */
+    context_number context;
+    struct buffer_textures points, nodes, adjacency;
+    uint64_t serial; /* never reused: tells whose planes are kept */
+};
+
+static inline struct gl_model *gl_model_of(struct renderer_model *model)
+{
+    return (struct gl_model *)(void *)model;
+}
+
+/* As struct renderer_device has them. */
+struct renderer_model *gl_model_create(struct renderer *renderer, const struct limit_tables *tables,
+                                       struct error *error);
+void gl_model_destroy(struct renderer *renderer, struct renderer_model *model);
+
+/* Puts the tables on the device where they are not. */
+bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error *error);
+
+#endif

@@ -1,0 +1,35 @@
+/* Stages 1 and 2 of polygons: the planes that they fill for the exact surface, from a mesh; and the
+ * polygons' edges. GL thread. */
+#ifndef SHEEN_RENDER_GL_POLYGON_H
+#define SHEEN_RENDER_GL_POLYGON_H
+
+#include <epoxy/gl.h>
+
+#include "server/render/gl/polygon_meshes.h"
+#include "server/render/view.h"
+
+/* All zero until first used. */
+struct polygon_stage {
+    GLuint fill, edges; /* programs */
+    GLuint framebuffer;
+};
+
+/* A part of a tile's polygons. */
+struct slice {
+    const struct polygon_mesh *mesh;
+    const struct view *view;
+    const struct tile *tile;
+    size_t part;      /* the next one to draw */
+    size_t left;      /* indices that may be drawn yet; the last part may exceed them */
+    size_t at_once;   /* indices after which the device shall begin with them */
+    size_t not_begun; /* indices that it has been given since */
+};
+
+/* The planes without a polygon; then the polygons of a mesh that is whole, slice by slice. */
+bool stage_polygons_begin(struct gl_renderer *r, const struct tile *tile, struct error *error);
+bool stage_polygons(struct gl_renderer *r, struct slice *slice, struct error *error);
+/* After stage_shade(): the polygons' edges in place of the colour, by the depths of
+ * stage_polygons(), slice by slice. */
+bool stage_wireframe(struct gl_renderer *r, struct slice *slice, struct error *error);
+
+#endif

@@ -1,0 +1,37 @@
+/* What the stages of a tile took: by timer queries on the device, so that it never stands still
+ * between them, or by the clock, waiting for each. GL thread. */
+#ifndef SHEEN_RENDER_GL_STAGE_CLOCK_H
+#define SHEEN_RENDER_GL_STAGE_CLOCK_H
+
+#include <epoxy/gl.h>
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct gl_renderer;
+
+enum { MAX_CLOCKED_STAGES = 3 };
+struct stage_clock {
+    GLuint mark[MAX_CLOCKED_STAGES][2];  /* queries: each stage's start and end on the device */
+    uint64_t *stage[MAX_CLOCKED_STAGES]; /* where its time is added */
+    int n;                               /* stages that have ended since the last reading */
+    uint64_t since_us;                   /* when the clock was last read */
+};
+
+/* Has the device timer queries that tell the truth? */
+bool stage_clock_by_device(const struct gl_renderer *renderer);
+void stage_clock_init(struct gl_renderer *renderer);
+/* A tile begins: what the processor does from here on belongs to its first stage by the clock. */
+void stage_clock_begin(struct gl_renderer *renderer);
+/* The device is about to get the commands of a stage, and has got them all. The stage's time is
+ * added to *stage, by the clock after waiting for the device, or by stage_clock_read(), until which
+ * the pointer stays. False when the device is lost. */
+void stage_clock_start(struct gl_renderer *renderer);
+bool stage_clock_end(struct gl_renderer *renderer, uint64_t *stage);
+/* Waits for the stages that have ended, where that has not been done, and adds their times. False
+ * when the device is lost. */
+bool stage_clock_read(struct gl_renderer *renderer);
+/* Waits for the device and adds what has passed by the clock. False when it is lost. */
+bool stage_clock_wait(struct gl_renderer *renderer, uint64_t *stage);
+
+#endif

@@ -1,0 +1,30 @@
+/* Stage 1: grids over the chosen parts of the surface into the visibility buffer. GL thread. */
+#ifndef SHEEN_RENDER_GL_VISIBILITY_H
+#define SHEEN_RENDER_GL_VISIBILITY_H
+
+#include <epoxy/gl.h>
+
+#include "server/base/error.h"
+#include "server/render/patch_grids.h"
+
+struct gl_model;
+struct gl_renderer;
+struct table_programs;
+
+struct visibility_stage {
+    GLuint vertex_array;
+    GLuint grid_buffer; /* element indices of an instance of each grid */
+    size_t grid_first[PIECE_GRIDS];
+    GLuint piece_buffer, piece_texture; /* the pieces that are drawn, and a texture of them */
+};
+
+bool stage_visibility_init(struct visibility_stage *stage, struct error *error);
+/* Draws r->pieces on the tile that the view block in r->view_buffer describes. */
+void stage_visibility(struct gl_renderer *r, const struct gl_model *model,
+                      const struct table_programs *programs);
+
+/* Draws into a framebuffer from here on: the part of the picture that it stands for, and of that
+ * `drawn` alone; nearest first by reversed depth. */
+void raster_begin(GLuint framebuffer, const struct tile *place, const struct tile *drawn);
+
+#endif
