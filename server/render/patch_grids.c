@@ -11,7 +11,7 @@
 
 /* How far a triangle may be from the surface, px. Stage 2 mends the rest. */
 static const double TOLERANCE_PX = 0.5;
-/* Pieces are cut in four at most this often: 2^20 squares across a face. */
+/* Squares are cut in four at most this often: 2^20 squares across a face. */
 enum { MAX_DEPTH = 20 };
 /* Grid vertices of a tile: what a software device draws in a few seconds, and many times what a
  * million faces need. */
@@ -19,16 +19,16 @@ static const uint64_t MAX_VERTICES = 24000000;
 /* The coordinates s and t of a guess, each from 0 to 2, are stored in so many steps. */
 enum { GUESS_STEPS = 8191 };
 
-const uint8_t piece_cells[PIECE_SIDES] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+const uint8_t grid_cells[GRID_SIDES] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 
 /* What choosing needs at every turn. */
 struct chooser {
-    struct pieces *out;
+    struct patch_grids *out;
     const struct limit_tables *tables;
     const struct view *view;
     struct view_sides sides; /* the tile's */
     const struct tile *tile;
-    bool guesses;       /* are asked for, not pieces */
+    bool guesses;       /* are asked for, not grids */
     size_t first_guess; /* of these */
     uint32_t blocks[2]; /* of the tile: across and down */
     size_t n_chosen;
@@ -84,24 +84,24 @@ static void cover(struct chooser *c, const struct extent *e)
         memset(c->out->is_covered + (size_t)y * c->blocks[0] + first[0], 1, last[0] - first[0] + 1);
 }
 
-static bool grow(struct pieces *out)
+static bool grow(struct patch_grids *out)
 {
-    size_t capacity = out->piece_capacity ? 2 * out->piece_capacity : 4096;
-    struct piece *piece = realloc(out->piece, capacity * sizeof *piece);
-    if (piece)
-        out->piece = piece;
-    struct piece *chosen = realloc(out->chosen, capacity * sizeof *chosen);
+    size_t capacity = out->capacity ? 2 * out->capacity : 4096;
+    struct patch_grid *grid = realloc(out->grid, capacity * sizeof *grid);
+    if (grid)
+        out->grid = grid;
+    struct patch_grid *chosen = realloc(out->chosen, capacity * sizeof *chosen);
     if (chosen)
         out->chosen = chosen;
-    if (piece && chosen)
-        out->piece_capacity = capacity;
-    return piece && chosen;
+    if (grid && chosen)
+        out->capacity = capacity;
+    return grid && chosen;
 }
 
-/* The middle of a piece, for pieces_guess(). */
-static void add_guess(struct chooser *c, const struct piece *piece, const struct extent *extent)
+/* The middle of a grid, for patch_grids_guess(). */
+static void add_guess(struct chooser *c, const struct patch_grid *grid, const struct extent *extent)
 {
-    struct pieces *out = c->out;
+    struct patch_grids *out = c->out;
     if (c->no_memory || out->n_guesses - c->first_guess > MAX_GUESSES)
         return;
     if (out->n_guesses == out->guess_capacity) {
@@ -113,50 +113,50 @@ static void add_guess(struct chooser *c, const struct piece *piece, const struct
         out->guess = guess;
         out->guess_capacity = capacity;
     }
-    unsigned square = piece->where >> 6 & 3;
-    double size = ldexp(1, -(int)(piece->where >> 8));
-    double s = (square == 1 || square == 2) + (piece->x + 0.5) * size;
-    double t = (square >= 2) + (piece->y + 0.5) * size;
+    unsigned square = grid->where >> 6 & 3;
+    double size = ldexp(1, -(int)(grid->where >> 8));
+    double s = (square == 1 || square == 2) + (grid->x + 0.5) * size;
+    double t = (square >= 2) + (grid->y + 0.5) * size;
     out->guess[out->n_guesses++] = (struct guess){
-        .node = piece->node,
-        .where = (piece->where & 63) | (uint32_t)lround(s / 2 * GUESS_STEPS) << 6 |
+        .node = grid->node,
+        .where = (grid->where & 63) | (uint32_t)lround(s / 2 * GUESS_STEPS) << 6 |
                  (uint32_t)lround(t / 2 * GUESS_STEPS) << 19,
         .depth = (float)fmax(extent->centre[2], c->view->near),
     };
 }
 
-static void emit(struct chooser *c, unsigned grid, struct piece piece, const struct extent *extent)
+static void emit(struct chooser *c, unsigned shape, struct patch_grid grid,
+                 const struct extent *extent)
 {
-    struct pieces *out = c->out;
+    struct patch_grids *out = c->out;
     if (c->guesses) {
-        add_guess(c, &piece, extent);
+        add_guess(c, &grid, extent);
         return;
     }
-    c->n_vertices +=
-        (piece_cells[grid / PIECE_SIDES] + 1u) * (piece_cells[grid % PIECE_SIDES] + 1u);
+    c->n_vertices += (grid_cells[shape / GRID_SIDES] + 1u) * (grid_cells[shape % GRID_SIDES] + 1u);
     if (c->n_vertices > MAX_VERTICES || c->no_memory)
         return;
     cover(c, extent);
-    if (c->n_chosen == out->piece_capacity && !grow(out)) {
+    if (c->n_chosen == out->capacity && !grow(out)) {
         c->no_memory = true;
         return;
     }
-    piece.where |= grid << 16;
-    out->chosen[c->n_chosen++] = piece;
-    out->first[grid + 1]++;
+    grid.where |= shape << 16;
+    out->chosen[c->n_chosen++] = grid;
+    out->first[shape + 1]++;
 }
 
 /* A counting sort of what has been chosen. */
-static void sort_by_grid(struct chooser *c)
+static void sort_by_shape(struct chooser *c)
 {
-    struct pieces *out = c->out;
-    size_t next[PIECE_GRIDS];
-    for (int g = 0; g < PIECE_GRIDS; g++) {
+    struct patch_grids *out = c->out;
+    size_t next[GRID_SHAPES];
+    for (int g = 0; g < GRID_SHAPES; g++) {
         next[g] = out->first[g];
         out->first[g + 1] += out->first[g];
     }
     for (size_t i = 0; i < c->n_chosen; i++)
-        out->piece[next[out->chosen[i].where >> 16]++] = out->chosen[i];
+        out->grid[next[out->chosen[i].where >> 16]++] = out->chosen[i];
 }
 
 /* The B-spline points of [a, b] of a segment on [0, 1]: blossoms at the finer knots. */
@@ -180,50 +180,50 @@ static void restrict_segment(const struct vec *p, int stride, double a, double b
     }
 }
 
-/* The 16 points of the patch that a piece is part of, in the node's frame, world units. */
-static void patch_points(const struct limit_tables *tables, const struct piece *piece,
-                         struct vec grid[16])
+/* The 16 points of the patch that a grid covers a part of, in the node's frame, world units. */
+static void patch_points(const struct limit_tables *tables, const struct patch_grid *grid,
+                         struct vec net[16])
 {
-    const struct limit_node *node = &tables->nodes[piece->node];
-    int level = piece->where & 63;
-    unsigned square = piece->where >> 6 & 3;
+    const struct limit_node *node = &tables->nodes[grid->node];
+    int level = grid->where & 63;
+    unsigned square = grid->where >> 6 & 3;
     struct limit_patch patch;
     /* A place in its middle; the rest of a STRIP comes after all levels. */
     bool rest = node->kind == LIMIT_STRIP && !square;
     double x = square == 1 || square == 2 ? 1.5 : 0.5, y = square >= 2 ? 1.5 : 0.5;
     limit_patch_of_level(&patch, tables, node, rest ? level + 1 : level, ldexp(x, -level),
                          ldexp(y, -level));
-    limit_patch_points(&patch, grid);
+    limit_patch_points(&patch, net);
 }
 
-static struct extent square_extent(const struct chooser *c, const struct piece *piece,
+static struct extent square_extent(const struct chooser *c, const struct patch_grid *grid,
                                    const struct vec patch[16])
 {
-    double size = ldexp(1, -(int)(piece->where >> 8));
-    double x = piece->x * size, y = piece->y * size;
-    struct vec rows[16], grid[16], middle = {0, 0, 0};
+    double size = ldexp(1, -(int)(grid->where >> 8));
+    double x = grid->x * size, y = grid->y * size;
+    struct vec rows[16], net[16], middle = {0, 0, 0};
     for (int j = 0; j < 4; j++)
         restrict_segment(patch + 4 * j, 1, x, x + size, rows + 4 * j);
     for (int i = 0; i < 4; i++) {
         struct vec column[4];
         restrict_segment(rows + i, 4, y, y + size, column);
         for (int j = 0; j < 4; j++)
-            grid[4 * j + i] = column[j];
+            net[4 * j + i] = column[j];
     }
     for (int k = 0; k < 16; k++)
-        middle = vec_mad(middle, 1.0 / 16, grid[k]);
+        middle = vec_mad(middle, 1.0 / 16, net[k]);
     for (int k = 0; k < 16; k++)
-        grid[k] = vec_sub(grid[k], middle);
-    const struct limit_node *node = &c->tables->nodes[piece->node];
-    struct limit_bound bound = bound_of_grid(grid, 4, false, true);
+        net[k] = vec_sub(net[k], middle);
+    const struct limit_node *node = &c->tables->nodes[grid->node];
+    struct limit_bound bound = bound_of_grid(net, 4, false, true);
     if (!c->view->perspective) {
         /* What runs along the view does not show. */
         struct vec forward = {c->view->axis[2][0], c->view->axis[2][1], c->view->axis[2][2]};
         for (int k = 0; k < 16; k++) {
-            struct vec p = limit_frame_to_world(c->tables, node, grid[k]);
-            grid[k] = vec_mad(p, -vec_dot(p, forward), forward);
+            struct vec p = limit_frame_to_world(c->tables, node, net[k]);
+            net[k] = vec_mad(p, -vec_dot(p, forward), forward);
         }
-        struct limit_bound plain = bound_of_grid(grid, 4, false, false);
+        struct limit_bound plain = bound_of_grid(net, 4, false, false);
         if (bound_bend(&plain) < bound_bend(&bound))
             bound = plain;
     }
@@ -235,16 +235,16 @@ static struct extent square_extent(const struct chooser *c, const struct piece *
     return extent;
 }
 
-static void choose_square(struct chooser *c, struct piece piece, const struct extent *extent);
+static void choose_square(struct chooser *c, struct patch_grid grid, const struct extent *extent);
 
 /* Too large for the finest grid: four quarters, each with its own bounds. */
-static void choose_quarters(struct chooser *c, struct piece piece)
+static void choose_quarters(struct chooser *c, struct patch_grid grid)
 {
     struct vec patch[16];
-    patch_points(c->tables, &piece, patch);
+    patch_points(c->tables, &grid, patch);
     for (uint32_t i = 0; i < 4; i++) {
-        struct piece quarter = {piece.node, piece.where + (1u << 8), 2 * piece.x + (i & 1),
-                                2 * piece.y + (i >> 1)};
+        struct patch_grid quarter = {grid.node, grid.where + (1u << 8), 2 * grid.x + (i & 1),
+                                     2 * grid.y + (i >> 1)};
         struct extent extent = square_extent(c, &quarter, patch);
         choose_square(c, quarter, &extent);
     }
@@ -252,52 +252,52 @@ static void choose_quarters(struct chooser *c, struct piece piece)
 
 /* The grid of fewest cells whose triangles stray no more than an eighth of `allowed`. False when
  * the finest do. */
-static bool find_grid(const struct limit_bound *bound, double allowed, unsigned *grid)
+static bool find_shape(const struct limit_bound *bound, double allowed, unsigned *shape)
 {
     double u = bound->u / allowed, mixed = bound->mixed / allowed, v = bound->v / allowed;
     double border_u = bound->border_u / allowed, border_v = bound->border_v / allowed;
     unsigned fewest = UINT_MAX;
-    for (unsigned i = 0; i < PIECE_SIDES && piece_cells[i] < fewest; i++) {
-        double m = piece_cells[i], left = 1 - u / (m * m);
+    for (unsigned i = 0; i < GRID_SIDES && grid_cells[i] < fewest; i++) {
+        double m = grid_cells[i], left = 1 - u / (m * m);
         if (left <= 0 || border_u > m * m)
             continue;
         /* v / n^2 + 2 mixed / (m n) = left */
         double n =
             fmax((mixed / m + sqrt(mixed / m * (mixed / m) + left * v)) / left, sqrt(border_v));
         unsigned k = 0;
-        while (k < PIECE_SIDES && piece_cells[k] < n)
+        while (k < GRID_SIDES && grid_cells[k] < n)
             k++;
-        if (k == PIECE_SIDES || piece_cells[i] * piece_cells[k] >= fewest)
+        if (k == GRID_SIDES || grid_cells[i] * grid_cells[k] >= fewest)
             continue;
-        fewest = piece_cells[i] * piece_cells[k];
-        *grid = i * PIECE_SIDES + k;
+        fewest = grid_cells[i] * grid_cells[k];
+        *shape = i * GRID_SIDES + k;
     }
     return fewest < UINT_MAX;
 }
 
-static void choose_square(struct chooser *c, struct piece piece, const struct extent *extent)
+static void choose_square(struct chooser *c, struct patch_grid grid, const struct extent *extent)
 {
     if (is_outside(c, extent) || c->n_vertices > MAX_VERTICES)
         return;
     double allowed = 8 * TOLERANCE_PX / in_px(c, extent, 1);
-    unsigned grid = 0;
+    unsigned shape = 0;
     if (bound_bend(&extent->bound) <= allowed ||
-        (!c->guesses && find_grid(&extent->bound, allowed, &grid)))
-        emit(c, grid, piece, extent);
-    else if (piece.where >> 8 < MAX_DEPTH)
-        choose_quarters(c, piece);
+        (!c->guesses && find_shape(&extent->bound, allowed, &shape)))
+        emit(c, shape, grid, extent);
+    else if (grid.where >> 8 < MAX_DEPTH)
+        choose_quarters(c, grid);
     else
-        emit(c, PIECE_GRIDS - 1, piece, extent);
+        emit(c, GRID_SHAPES - 1, grid, extent);
 }
 
 static void choose_regular(struct chooser *c, uint32_t node)
 {
     struct extent extent = {.bound = c->tables->bounds[c->tables->bound_first[node]]};
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
-    choose_square(c, (struct piece){node, 0, 0, 0}, &extent);
+    choose_square(c, (struct patch_grid){node, 0, 0, 0}, &extent);
 }
 
-/* One quad for the whole where that is flat enough, else a piece for each patch across the crease.
+/* One quad for the whole where that is flat enough, else a grid for each patch across the crease.
  */
 static void choose_strip(struct chooser *c, uint32_t node)
 {
@@ -308,13 +308,13 @@ static void choose_strip(struct chooser *c, uint32_t node)
     if (is_outside(c, &extent))
         return;
     if (in_px(c, &extent, bound_bend(&extent.bound)) <= 8 * TOLERANCE_PX) {
-        emit(c, 0, (struct piece){node, 0, 0, 0}, &extent);
+        emit(c, 0, (struct patch_grid){node, 0, 0, 0}, &extent);
         return;
     }
     for (uint32_t n = 1; n <= levels + 1; n++) {
         extent.bound = bounds[n];
         uint32_t where = n <= levels ? n | 3u << 6 : levels;
-        choose_square(c, (struct piece){node, where, 0, 0}, &extent);
+        choose_square(c, (struct patch_grid){node, where, 0, 0}, &extent);
     }
 }
 
@@ -335,9 +335,9 @@ static void choose_corner(struct chooser *c, uint32_t node)
             in_px(c, &extent, bound_bend(&extent.bound)) < TOLERANCE_PX)
             break;
         for (uint32_t square = 1; square <= 3; square++)
-            choose_square(c, (struct piece){node, (level + 1) | square << 6, 0, 0}, &extent);
+            choose_square(c, (struct patch_grid){node, (level + 1) | square << 6, 0, 0}, &extent);
     }
-    emit(c, 0, (struct piece){node, level, 0, 0}, &extent);
+    emit(c, 0, (struct patch_grid){node, level, 0, 0}, &extent);
 }
 
 static void choose_node(struct chooser *c, uint32_t node)
@@ -369,7 +369,7 @@ static void choose_cluster(struct chooser *c, const struct clusters *clusters, s
 
 static bool reserve_blocks(struct chooser *c, struct error *error)
 {
-    struct pieces *out = c->out;
+    struct patch_grids *out = c->out;
     c->blocks[0] = (c->tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
     c->blocks[1] = (c->tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
     memset(out->first, 0, sizeof out->first);
@@ -404,7 +404,7 @@ static bool choose_all(struct chooser *c, const struct clusters *clusters, struc
     for (size_t k = 0; k < clusters->n; k++)
         choose_cluster(c, clusters, k);
     if (c->no_memory)
-        return error_set(error, ERROR_SERVER, "out of memory for the pieces of a frame");
+        return error_set(error, ERROR_SERVER, "out of memory for the grids of a frame");
     if (c->n_vertices > MAX_VERTICES)
         return error_set(error, ERROR_REQUEST,
                          "camera: the view would take more than %llu grid vertices: move it away "
@@ -413,69 +413,69 @@ static bool choose_all(struct chooser *c, const struct clusters *clusters, struc
     return true;
 }
 
-bool pieces_choose(struct pieces *pieces, const struct limit_tables *tables,
-                   const struct clusters *clusters, const struct view *view,
-                   const struct tile *tile, struct error *error)
+bool patch_grids_choose(struct patch_grids *grids, const struct limit_tables *tables,
+                        const struct clusters *clusters, const struct view *view,
+                        const struct tile *tile, struct error *error)
 {
-    struct chooser c = {.out = pieces, .tables = tables, .view = view, .tile = tile};
+    struct chooser c = {.out = grids, .tables = tables, .view = view, .tile = tile};
     if (!reserve_blocks(&c, error) || !choose_all(&c, clusters, error))
         return false;
-    sort_by_grid(&c);
+    sort_by_shape(&c);
     list_blocks(&c);
     return true;
 }
 
-bool pieces_guess(struct pieces *pieces, const struct limit_tables *tables,
-                  const struct clusters *clusters, const struct view *view, const struct tile *tile,
-                  struct error *error)
+bool patch_grids_guess(struct patch_grids *grids, const struct limit_tables *tables,
+                       const struct clusters *clusters, const struct view *view,
+                       const struct tile *tile, struct error *error)
 {
-    struct chooser c = {.out = pieces,
+    struct chooser c = {.out = grids,
                         .tables = tables,
                         .view = view,
                         .tile = tile,
                         .guesses = true,
-                        .first_guess = pieces->n_guesses};
+                        .first_guess = grids->n_guesses};
     if (!choose_all(&c, clusters, error))
         return false;
-    if (pieces->n_guesses - c.first_guess > MAX_GUESSES)
-        pieces->n_guesses = c.first_guess;
+    if (grids->n_guesses - c.first_guess > MAX_GUESSES)
+        grids->n_guesses = c.first_guess;
     return true;
 }
 
-void pieces_move_blocks(struct pieces *pieces, uint32_t x, uint32_t y)
+void patch_grids_move_blocks(struct patch_grids *grids, uint32_t x, uint32_t y)
 {
-    for (size_t i = 0; i < pieces->n_blocks; i++)
-        pieces->block[i] += x | y << 16;
+    for (size_t i = 0; i < grids->n_blocks; i++)
+        grids->block[i] += x | y << 16;
 }
 
-void pieces_cut_blocks(struct pieces *pieces, const struct tile *part)
+void patch_grids_cut_blocks(struct patch_grids *grids, const struct tile *part)
 {
     size_t n = 0;
-    for (size_t i = 0; i < pieces->n_blocks; i++) {
-        uint32_t block = pieces->block[i];
+    for (size_t i = 0; i < grids->n_blocks; i++) {
+        uint32_t block = grids->block[i];
         uint32_t x = (block & 0xffff) * COVER_BLOCK_PX, y = (block >> 16) * COVER_BLOCK_PX;
         if (x >= part->x && x < part->x + part->width && y >= part->y && y < part->y + part->height)
-            pieces->block[n++] = block;
+            grids->block[n++] = block;
     }
-    pieces->n_blocks = n;
+    grids->n_blocks = n;
 }
 
-bool pieces_cover_all(struct pieces *pieces, const struct tile *tile, struct error *error)
+bool patch_grids_cover_all(struct patch_grids *grids, const struct tile *tile, struct error *error)
 {
-    struct chooser c = {.out = pieces, .tile = tile};
+    struct chooser c = {.out = grids, .tile = tile};
     if (!reserve_blocks(&c, error))
         return false;
-    memset(pieces->is_covered, 1, (size_t)c.blocks[0] * c.blocks[1]);
+    memset(grids->is_covered, 1, (size_t)c.blocks[0] * c.blocks[1]);
     list_blocks(&c);
     return true;
 }
 
-void pieces_finish(struct pieces *pieces)
+void patch_grids_finish(struct patch_grids *grids)
 {
-    free(pieces->piece);
-    free(pieces->chosen);
-    free(pieces->block);
-    free(pieces->is_covered);
-    free(pieces->guess);
-    *pieces = (struct pieces){0};
+    free(grids->grid);
+    free(grids->chosen);
+    free(grids->block);
+    free(grids->is_covered);
+    free(grids->guess);
+    *grids = (struct patch_grids){0};
 }

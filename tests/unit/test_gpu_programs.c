@@ -225,7 +225,7 @@ static void test_no_powers_of_two(void **state)
     const struct gl_model *model = gl_model_of(scene.model);
     const GLuint buffers[] = {model->points.buffer[0], model->nodes.buffer[0],
                               model->adjacency.buffer[0],
-                              gl_renderer_of(scene.renderer)->visibility.piece_buffer};
+                              gl_renderer_of(scene.renderer)->visibility.grid_buffer};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) {
         GLint64 bytes;
         glGetNamedBufferParameteri64v(buffers[i], GL_BUFFER_SIZE, &bytes);

@@ -1,5 +1,5 @@
-/* The pieces that stage 1 draws: no triangle strays further from the surface than is allowed, no
- * grid is finer than its piece bends in either direction, and clusters of nodes leave out nothing.
+/* The grids that stage 1 draws: no triangle strays further from the surface than is allowed, no
+ * grid is finer than its part of the surface bends in either direction, and clusters of nodes leave out nothing.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -24,7 +24,7 @@ struct scene {
     struct limit_tables tables;
     struct clusters clusters;
     struct view view;
-    struct pieces pieces;
+    struct patch_grids grids;
 };
 
 /* The tables are there already. */
@@ -37,7 +37,7 @@ static void scene_ready(struct scene *scene)
 
 static void scene_finish(struct scene *scene)
 {
-    pieces_finish(&scene->pieces);
+    patch_grids_finish(&scene->grids);
     clusters_finish(&scene->clusters);
     limit_tables_finish(&scene->tables);
 }
@@ -62,25 +62,25 @@ static void look(struct scene *scene, bool orthographic, double closer)
 }
 
 static void choose(const struct scene *scene, const struct clusters *clusters,
-                   const struct tile *tile, struct pieces *pieces)
+                   const struct tile *tile, struct patch_grids *grids)
 {
     struct error error = {0};
-    if (!pieces_choose(pieces, &scene->tables, clusters, &scene->view, tile, &error))
+    if (!patch_grids_choose(grids, &scene->tables, clusters, &scene->view, tile, &error))
         fail_msg("%s", error.text);
 }
 
 /* --- */
 
-static struct limit_point surface_at(const struct scene *scene, const struct piece *piece, double x,
-                                     double y)
+static struct limit_point surface_at(const struct scene *scene, const struct patch_grid *grid,
+                                     double x, double y)
 {
-    const struct limit_node *node = &scene->tables.nodes[piece->node];
-    unsigned square = piece->where >> 6 & 3;
-    int level = piece->where & 63;
-    double size = ldexp(1, -(int)(piece->where >> 8 & 0xff));
-    double s = (square == 1 || square == 2) + (piece->x + x) * size;
-    double t = (square >= 2) + (piece->y + y) * size;
-    const struct limit_place place = {piece->node, node->rotation,
+    const struct limit_node *node = &scene->tables.nodes[grid->node];
+    unsigned square = grid->where >> 6 & 3;
+    int level = grid->where & 63;
+    double size = ldexp(1, -(int)(grid->where >> 8 & 0xff));
+    double s = (square == 1 || square == 2) + (grid->x + x) * size;
+    double t = (square >= 2) + (grid->y + y) * size;
+    const struct limit_place place = {grid->node, node->rotation,
                                       ldexp(s, node->kind == LIMIT_STRIP ? 0 : -level),
                                       ldexp(t, -level)};
     struct limit_point point;
@@ -103,7 +103,7 @@ static double shown_px(const struct view *view, const struct limit_point *p, str
 
 /* How far the surface is from a cell's triangles, by the middles of their sides and of themselves.
  */
-static double stray_px(const struct scene *scene, const struct piece *piece, double x, double y,
+static double stray_px(const struct scene *scene, const struct patch_grid *grid, double x, double y,
                        double width, double height)
 {
     static const double weights[4][3] = {
@@ -114,7 +114,7 @@ static double stray_px(const struct scene *scene, const struct piece *piece, dou
             {x + half * width, y + half * height}, {x + width, y}, {x, y + height}};
         struct vec corner[3];
         for (int k = 0; k < 3; k++)
-            corner[k] = surface_at(scene, piece, at[k][0], at[k][1]).s;
+            corner[k] = surface_at(scene, grid, at[k][0], at[k][1]).s;
         for (int w = 0; w < 4; w++) {
             double place[2] = {0, 0};
             struct vec flat = {0, 0, 0};
@@ -123,24 +123,24 @@ static double stray_px(const struct scene *scene, const struct piece *piece, dou
                 place[1] += weights[w][k] * at[k][1];
                 flat = vec_mad(flat, weights[w][k], corner[k]);
             }
-            struct limit_point p = surface_at(scene, piece, place[0], place[1]);
+            struct limit_point p = surface_at(scene, grid, place[0], place[1]);
             most = fmax(most, shown_px(&scene->view, &p, vec_sub(flat, p.s)));
         }
     }
     return most;
 }
 
-/* Every seventh cell of all pieces. */
+/* Every seventh cell of all grids. */
 static double largest_stray_px(const struct scene *scene)
 {
-    const struct pieces *pieces = &scene->pieces;
+    const struct patch_grids *grids = &scene->grids;
     double most = 0;
-    for (int g = 0; g < PIECE_GRIDS; g++) {
-        unsigned m = piece_cells[g / PIECE_SIDES], n = piece_cells[g % PIECE_SIDES];
-        for (size_t i = pieces->first[g]; i < pieces->first[g + 1]; i++) {
-            assert_int_equal(pieces->piece[i].where >> 16, g);
+    for (int g = 0; g < GRID_SHAPES; g++) {
+        unsigned m = grid_cells[g / GRID_SIDES], n = grid_cells[g % GRID_SIDES];
+        for (size_t i = grids->first[g]; i < grids->first[g + 1]; i++) {
+            assert_int_equal(grids->grid[i].where >> 16, g);
             for (unsigned k = (unsigned)i % 7; k < m * n; k += 7)
-                most = fmax(most, stray_px(scene, &pieces->piece[i], k % m / (double)m,
+                most = fmax(most, stray_px(scene, &grids->grid[i], k % m / (double)m,
                                            k / m / (double)n, 1.0 / m, 1.0 / n));
         }
     }
@@ -159,7 +159,7 @@ static void test_no_triangle_strays(void **state)
         scene_ready(&scene);
         for (int view = 0; view < 4; view++) {
             look(&scene, view & 1, view & 2 ? 20 : 1);
-            choose(&scene, &scene.clusters, &WHOLE, &scene.pieces);
+            choose(&scene, &scene.clusters, &WHOLE, &scene.grids);
             double most = largest_stray_px(&scene);
             if (!(most <= 0.5 && most >= 0.1))
                 fail_msg("%s, view %d: %.3f px", paths[i], view, most);
@@ -189,13 +189,13 @@ static void test_one_way(void **state)
     build(text, used, &scene.tables);
     scene_ready(&scene);
     look(&scene, true, 1);
-    choose(&scene, &scene.clusters, &WHOLE, &scene.pieces);
-    assert_int_equal(scene.pieces.first[PIECE_GRIDS], 64);
-    for (int g = 0; g < PIECE_GRIDS; g++) {
-        if (scene.pieces.first[g] == scene.pieces.first[g + 1])
+    choose(&scene, &scene.clusters, &WHOLE, &scene.grids);
+    assert_int_equal(scene.grids.first[GRID_SHAPES], 64);
+    for (int g = 0; g < GRID_SHAPES; g++) {
+        if (scene.grids.first[g] == scene.grids.first[g + 1])
             continue;
-        assert_int_equal(piece_cells[g % PIECE_SIDES], 1);
-        assert_in_range(piece_cells[g / PIECE_SIDES], 3, 4);
+        assert_int_equal(grid_cells[g % GRID_SIDES], 1);
+        assert_in_range(grid_cells[g / GRID_SIDES], 3, 4);
     }
     scene_finish(&scene);
 }
@@ -216,15 +216,15 @@ static size_t n_outside(const struct scene *scene, const struct tile *tile)
     return n;
 }
 
-static void assert_same_pieces(const struct pieces *a, const struct pieces *b)
+static void assert_same_grids(const struct patch_grids *a, const struct patch_grids *b)
 {
     assert_memory_equal(a->first, b->first, sizeof a->first);
-    assert_memory_equal(a->piece, b->piece, a->first[PIECE_GRIDS] * sizeof *a->piece);
+    assert_memory_equal(a->grid, b->grid, a->first[GRID_SHAPES] * sizeof *a->grid);
     assert_int_equal(a->n_blocks, b->n_blocks);
     assert_memory_equal(a->block, b->block, a->n_blocks * sizeof *a->block);
 }
 
-/* In every tile those that it cannot show are passed over, and nothing else is missed: the pieces
+/* In every tile those that it cannot show are passed over, and nothing else is missed: the grids
  * are those of clusters that reach everywhere. */
 static void test_clusters_leave_out_nothing(void **state)
 {
@@ -235,7 +235,7 @@ static void test_clusters_leave_out_nothing(void **state)
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         struct scene scene = {0};
         struct clusters all = {0};
-        struct pieces expected = {0};
+        struct patch_grids expected = {0};
         struct error error = {0};
         size_t n_passed_over = 0;
         if (paths[i])
@@ -251,14 +251,14 @@ static void test_clusters_leave_out_nothing(void **state)
             for (uint32_t k = 0; k < N * N; k++) {
                 const struct tile tile = {k % N * WIDTH / N, k / N * HEIGHT / N, WIDTH / N,
                                           HEIGHT / N};
-                choose(&scene, &scene.clusters, &tile, &scene.pieces);
+                choose(&scene, &scene.clusters, &tile, &scene.grids);
                 choose(&scene, &all, &tile, &expected);
-                assert_same_pieces(&scene.pieces, &expected);
+                assert_same_grids(&scene.grids, &expected);
                 n_passed_over += n_outside(&scene, &tile);
             }
         }
         assert_true(n_passed_over > N * N); /* of 4 N N n */
-        pieces_finish(&expected);
+        patch_grids_finish(&expected);
         clusters_finish(&all);
         scene_finish(&scene);
     }
@@ -286,12 +286,12 @@ static void test_guesses_are_limited(void **state)
         build(text, used, &scene.tables);
         scene_ready(&scene);
         look(&scene, true, 1);
-        assert_true(pieces_guess(&scene.pieces, &scene.tables, &scene.clusters, &scene.view,
-                                 &middle, &error));
+        assert_true(patch_grids_guess(&scene.grids, &scene.tables, &scene.clusters, &scene.view,
+                                      &middle, &error));
         if (i == 0)
-            assert_in_range(scene.pieces.n_guesses, n_sheets[i], MAX_GUESSES);
+            assert_in_range(scene.grids.n_guesses, n_sheets[i], MAX_GUESSES);
         else
-            assert_int_equal(scene.pieces.n_guesses, 0);
+            assert_int_equal(scene.grids.n_guesses, 0);
         scene_finish(&scene);
         free(text);
     }

@@ -52,7 +52,7 @@ static void destroy(struct renderer *renderer)
     struct gl_renderer *r = gl_renderer_of(renderer);
     /* GL objects go with their context. */
     egl_finish(&r->context.egl);
-    pieces_finish(&r->pieces);
+    patch_grids_finish(&r->grids);
     polygons_lose(&r->meshes);
     paused_tiles_release(r->paused_tiles);
     free(r);
@@ -97,7 +97,7 @@ bool gl_ready(struct gl_renderer *r, struct error *error)
     const struct gl_renderer old = *r;
     *r = (struct gl_renderer){.base = old.base,
                               .context = old.context,
-                              .pieces = old.pieces,
+                              .grids = old.grids,
                               .paused_tiles = old.paused_tiles,
                               .next_serial = old.next_serial};
     memcpy(r->device, old.device, sizeof r->device);

@@ -40,7 +40,7 @@ struct gl_renderer {
     struct tile inside;                   /* of the tile being drawn: without its margin */
     struct frame_watch watch;             /* of the frame being drawn */
     const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
-    struct pieces pieces;
+    struct patch_grids grids;
     struct polygon_meshes meshes;
     struct paused_tiles *paused_tiles; /* they stay where they are when the device is lost */
     struct program_sets programs;

@@ -106,13 +106,14 @@ static bool guess_gaps(struct gl_renderer *r, const struct gl_model *model, cons
                        const uint32_t *at, size_t n, uint32_t *end, struct error *error)
 {
     const struct tile *place = &r->drawing.place;
-    r->pieces.n_guesses = 0;
+    r->grids.n_guesses = 0;
     for (size_t i = 0; i < n; i++) {
         const struct tile pixel = {place->x + (at[i] & 0xffff), place->y + (at[i] >> 16), 1, 1};
         if (!frame_watch_check(&r->watch, error) ||
-            !pieces_guess(&r->pieces, model->base.tables, &model->clusters, view, &pixel, error))
+            !patch_grids_guess(&r->grids, model->base.tables, &model->clusters, view, &pixel,
+                               error))
             return false;
-        end[i] = (uint32_t)r->pieces.n_guesses;
+        end[i] = (uint32_t)r->grids.n_guesses;
     }
     return true;
 }
@@ -130,7 +131,7 @@ bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
         return false;
     glNamedBufferData(r->evaluate.gap_ends, (GLsizeiptr)(n * sizeof *end), end, GL_STREAM_DRAW);
     glNamedBufferData(r->evaluate.gap_guesses,
-                      (GLsizeiptr)(r->pieces.n_guesses * sizeof(struct guess)), r->pieces.guess,
+                      (GLsizeiptr)(r->grids.n_guesses * sizeof(struct guess)), r->grids.guess,
                       GL_STREAM_DRAW);
     bind_planes(r, model);
     glUseProgram(programs->unsolved);

@@ -27,7 +27,7 @@ bool stage_evaluate_init(struct evaluate_stage *stage, struct error *error);
 void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
                     const struct table_programs *programs);
 /* After it: the pixels of which stage 1 has seen nothing but triangles beyond silhouettes. Waits
- * for the device. Errors as pieces_choose(). */
+ * for the device. Errors as patch_grids_choose(). */
 bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
                 const struct table_programs *programs, const struct view *view,
                 struct error *error);

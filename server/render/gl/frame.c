@@ -17,9 +17,9 @@ static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
     const struct tile cut = tile_within(shaded, &r->drawing.place);
     if (is_kept(&r->kept, model, request))
         return true;
-    if (!pieces_choose(&r->pieces, model->base.tables, &model->clusters, view, drawn, error))
+    if (!patch_grids_choose(&r->grids, model->base.tables, &model->clusters, view, drawn, error))
         return false;
-    pieces_move_blocks(&r->pieces, at.x / COVER_BLOCK_PX, at.y / COVER_BLOCK_PX);
+    patch_grids_move_blocks(&r->grids, at.x / COVER_BLOCK_PX, at.y / COVER_BLOCK_PX);
     const struct table_programs *programs =
         programs_for(r, model, request->planes & PLANE_PTEX, error);
     if (!programs)
@@ -40,7 +40,7 @@ static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
         stage_rounded(r, model, programs);
     }
     if (!tile_is_same(drawn, shaded)) {
-        pieces_cut_blocks(&r->pieces, &cut);
+        patch_grids_cut_blocks(&r->grids, &cut);
         stage_gather(r);
     }
     return stage_clock_end(r, &frame->times.evaluate_us);

@@ -14,13 +14,13 @@ void stage_gather(struct gl_renderer *r)
 {
     enum { BLOCKS_PER_GROUP = 8 };
     static const GLuint no_work[4] = {0, 1, 1, 0};
-    size_t n = r->pieces.n_blocks, groups = (n + BLOCKS_PER_GROUP - 1) / BLOCKS_PER_GROUP;
+    size_t n = r->grids.n_blocks, groups = (n + BLOCKS_PER_GROUP - 1) / BLOCKS_PER_GROUP;
     glNamedBufferSubData(r->target.groups, 0, sizeof no_work, no_work);
     glNamedBufferSubData(r->target.restless, 0, sizeof no_work, no_work);
     if (!n)
         return;
-    glNamedBufferData(r->gather.block_buffer, (GLsizeiptr)(n * sizeof *r->pieces.block),
-                      r->pieces.block, GL_STREAM_DRAW);
+    glNamedBufferData(r->gather.block_buffer, (GLsizeiptr)(n * sizeof *r->grids.block),
+                      r->grids.block, GL_STREAM_DRAW);
     glUseProgram(r->gather.program);
     glUniform1ui(glGetUniformLocation(r->gather.program, "n_blocks"), (GLuint)n);
     glBindTextureUnit(1, r->target.seen_depth);

@@ -137,7 +137,7 @@ static bool fill(struct gl_renderer *r, struct gl_frame *own, struct slice *slic
     if (own->part < slice->mesh->n_parts)
         return true;
     own->stage = TILE_SHADE;
-    if (!pieces_cover_all(&r->pieces, slice->tile, error))
+    if (!patch_grids_cover_all(&r->grids, slice->tile, error))
         return false;
     stage_gather(r);
     return true;

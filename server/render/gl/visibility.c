@@ -8,27 +8,27 @@
 #include "server/render/gl/quirks.h"
 
 /* A grid's cells along u and v. */
-static uint32_t cells_along(int grid, int side)
+static uint32_t cells_along(int shape, int side)
 {
-    return piece_cells[side ? grid % PIECE_SIDES : grid / PIECE_SIDES];
+    return grid_cells[side ? shape % GRID_SIDES : shape / GRID_SIDES];
 }
 
-/* Pieces drawn by one instance: about as many cells in each. */
-static uint32_t pieces_per_instance(int grid)
+/* How many grids one instance draws: about as many cells for each shape. */
+static uint32_t grids_per_instance(int shape)
 {
-    uint32_t cells = cells_along(grid, 0) * cells_along(grid, 1);
+    uint32_t cells = cells_along(shape, 0) * cells_along(shape, 1);
     return cells < 256 ? 256 / cells : 1;
 }
 
-static uint32_t indices_per_instance(int grid)
+static uint32_t indices_per_instance(int shape)
 {
-    return 6 * cells_along(grid, 0) * cells_along(grid, 1) * pieces_per_instance(grid);
+    return 6 * cells_along(shape, 0) * cells_along(shape, 1) * grids_per_instance(shape);
 }
 
-/* Two triangles for each cell of a piece's vertices, which start at `first`. */
-static uint32_t *fill_indices(uint32_t *index, int grid, uint32_t first)
+/* Two triangles for each cell of a grid, whose vertices start at `first`. */
+static uint32_t *fill_indices(uint32_t *index, int shape, uint32_t first)
 {
-    uint32_t across = cells_along(grid, 0), down = cells_along(grid, 1);
+    uint32_t across = cells_along(shape, 0), down = cells_along(shape, 1);
     for (uint32_t y = 0; y < down; y++) {
         for (uint32_t x = 0; x < across; x++) {
             uint32_t a = first + y * (across + 1) + x, b = a + across + 1;
@@ -43,38 +43,38 @@ static uint32_t *fill_indices(uint32_t *index, int grid, uint32_t first)
 bool stage_visibility_init(struct visibility_stage *stage, struct error *error)
 {
     size_t n = 0;
-    for (int g = 0; g < PIECE_GRIDS; g++) {
-        stage->grid_first[g] = n;
+    for (int g = 0; g < GRID_SHAPES; g++) {
+        stage->index_first[g] = n;
         n += indices_per_instance(g);
     }
     uint32_t *index = malloc(n * sizeof *index), *at = index;
     if (!index)
         return error_set(error, ERROR_SERVER, "out of memory");
-    for (int g = 0; g < PIECE_GRIDS; g++)
-        for (uint32_t k = 0; k < pieces_per_instance(g); k++)
+    for (int g = 0; g < GRID_SHAPES; g++)
+        for (uint32_t k = 0; k < grids_per_instance(g); k++)
             at = fill_indices(at, g, k * (cells_along(g, 0) + 1) * (cells_along(g, 1) + 1));
-    glCreateBuffers(1, &stage->grid_buffer);
-    glNamedBufferStorage(stage->grid_buffer, (GLsizeiptr)(n * sizeof *index), index, 0);
+    glCreateBuffers(1, &stage->index_buffer);
+    glNamedBufferStorage(stage->index_buffer, (GLsizeiptr)(n * sizeof *index), index, 0);
     free(index);
     glCreateVertexArrays(1, &stage->vertex_array);
-    glVertexArrayElementBuffer(stage->vertex_array, stage->grid_buffer);
-    glCreateBuffers(1, &stage->piece_buffer);
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &stage->piece_texture);
+    glVertexArrayElementBuffer(stage->vertex_array, stage->index_buffer);
+    glCreateBuffers(1, &stage->grid_buffer);
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &stage->grid_texture);
     return gpu_check("the grids", error);
 }
 
-/* Pieces [first, first + n) of those on the device, all of one grid. */
-static void draw_pieces(const struct gl_renderer *r, GLuint program, int grid, size_t first,
-                        size_t n)
+/* Grids [first, first + n) of those on the device, all of one shape. */
+static void draw_grids(const struct gl_renderer *r, GLuint program, int shape, size_t first,
+                       size_t n)
 {
-    uint32_t per_instance = pieces_per_instance(grid);
-    glUniform2i(glGetUniformLocation(program, "grid"), (GLint)cells_along(grid, 0),
-                (GLint)cells_along(grid, 1));
+    uint32_t per_instance = grids_per_instance(shape);
+    glUniform2i(glGetUniformLocation(program, "grid"), (GLint)cells_along(shape, 0),
+                (GLint)cells_along(shape, 1));
     glUniform1i(glGetUniformLocation(program, "first_piece"), (GLint)first);
     glUniform1i(glGetUniformLocation(program, "n_pieces"), (GLint)n);
     glUniform1i(glGetUniformLocation(program, "pieces_per_instance"), (GLint)per_instance);
-    glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)indices_per_instance(grid), GL_UNSIGNED_INT,
-                            (const void *)(r->visibility.grid_first[grid] * sizeof(uint32_t)),
+    glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)indices_per_instance(shape), GL_UNSIGNED_INT,
+                            (const void *)(r->visibility.index_first[shape] * sizeof(uint32_t)),
                             (GLsizei)((n + per_instance - 1) / per_instance));
 }
 
@@ -83,23 +83,23 @@ static size_t cut(size_t i, size_t low, size_t high)
     return i < low ? low : i < high ? i : high;
 }
 
-/* Pieces [begin, end), at most as many as a buffer texture holds. */
+/* Grids [begin, end), at most as many as a buffer texture holds. */
 static void draw_range(struct gl_renderer *r, GLuint program, size_t begin, size_t end)
 {
-    const struct pieces *pieces = &r->pieces;
-    size_t cells = 0, piece_bytes = sizeof *pieces->piece; /* a power of two */
-    glNamedBufferData(r->visibility.piece_buffer,
-                      (GLsizeiptr)(no_power_of_two(end - begin) * piece_bytes), NULL,
+    const struct patch_grids *grids = &r->grids;
+    size_t cells = 0, grid_bytes = sizeof *grids->grid; /* a power of two */
+    glNamedBufferData(r->visibility.grid_buffer,
+                      (GLsizeiptr)(no_power_of_two(end - begin) * grid_bytes), NULL,
                       GL_STREAM_DRAW);
-    glNamedBufferSubData(r->visibility.piece_buffer, 0, (GLsizeiptr)((end - begin) * piece_bytes),
-                         pieces->piece + begin);
-    glTextureBuffer(r->visibility.piece_texture, GL_RGBA32UI, r->visibility.piece_buffer);
-    for (int g = 0; g < PIECE_GRIDS; g++) {
-        size_t first = cut(pieces->first[g], begin, end);
-        size_t n = cut(pieces->first[g + 1], begin, end) - first;
+    glNamedBufferSubData(r->visibility.grid_buffer, 0, (GLsizeiptr)((end - begin) * grid_bytes),
+                         grids->grid + begin);
+    glTextureBuffer(r->visibility.grid_texture, GL_RGBA32UI, r->visibility.grid_buffer);
+    for (int g = 0; g < GRID_SHAPES; g++) {
+        size_t first = cut(grids->first[g], begin, end);
+        size_t n = cut(grids->first[g + 1], begin, end) - first;
         if (!n)
             continue;
-        draw_pieces(r, program, g, first - begin, n);
+        draw_grids(r, program, g, first - begin, n);
         cells += n * cells_along(g, 0) * cells_along(g, 1);
         if (cells > FLUSH_CELLS) {
             glFlush();
@@ -149,9 +149,9 @@ void stage_visibility(struct gl_renderer *r, const struct gl_model *model,
     glUseProgram(program);
     buffer_textures_bind(&model->nodes, buffer_textures_bind(&model->points, 0));
     glBindTextureUnit((GLuint)(model->points.n + model->nodes.n + model->adjacency.n),
-                      r->visibility.piece_texture);
+                      r->visibility.grid_texture);
     glBindVertexArray(r->visibility.vertex_array);
-    size_t n = r->pieces.first[PIECE_GRIDS], most = r->base.info.max_texels;
+    size_t n = r->grids.first[GRID_SHAPES], most = r->base.info.max_texels;
     for (size_t begin = 0; begin < n; begin += most)
         draw_range(r, program, begin, n - begin < most ? n : begin + most);
 }

@@ -13,13 +13,13 @@ struct table_programs;
 
 struct visibility_stage {
     GLuint vertex_array;
-    GLuint grid_buffer; /* element indices of an instance of each grid */
-    size_t grid_first[PIECE_GRIDS];
-    GLuint piece_buffer, piece_texture; /* the pieces that are drawn, and a texture of them */
+    GLuint index_buffer; /* element indices of an instance of each shape of grid */
+    size_t index_first[GRID_SHAPES];
+    GLuint grid_buffer, grid_texture; /* the grids that are drawn, and a texture of them */
 };
 
 bool stage_visibility_init(struct visibility_stage *stage, struct error *error);
-/* Draws r->pieces on the tile that the view block in r->view_buffer describes. */
+/* Draws r->grids on the tile that the view block in r->view_buffer describes. */
 void stage_visibility(struct gl_renderer *r, const struct gl_model *model,
                       const struct table_programs *programs);
 
