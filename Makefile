@@ -70,7 +70,9 @@ PROTOCOL_SRC := $(wildcard protocol/*.c)
 CAGE_SRC := $(wildcard server/cage/*.c)
 CAGE_READ_SRC := $(wildcard server/cage/read/*.c server/cage/read/*.cpp)
 SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/surface/subdivision/*.c)
-SCENE_SRC := $(wildcard server/scene/*.c)
+# Between messages and scenes: for those who speak to clients.
+CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
+SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))
 RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c)
 IMAGE_SRC := $(wildcard server/image/*.c)
 IMAGE_LIBRARY_SRC := $(wildcard server/image/*.cpp)
@@ -88,7 +90,7 @@ SHADERS := $(sort $(wildcard shaders/*.glsl))
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(SURFACE_SRC) server/base/error.c)
 RENDER_OBJ := $(call obj,$(SCENE_SRC) $(RENDER_SRC) protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
-SERVER_OBJ := $(call obj,$(filter-out server/base/error.c,$(wildcard server/base/*.c)) $(SERVICE_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
+SERVER_OBJ := $(call obj,$(filter-out server/base/error.c,$(wildcard server/base/*.c)) $(SERVICE_SRC) $(CONVERT_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
 KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))

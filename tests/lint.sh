@@ -49,19 +49,19 @@ room server/surface/topology "$common|server/cage|server/surface/subdivision" 'c
 room server/surface/subdivision "$common|server/cage|server/surface|server/surface/topology" 'builders of one kind of surface'
 room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
-room server/scene "$common|protocol|server/surface" 'a request is data'
+room server/scene "$common|protocol|server/cage|server/frame|server/surface" 'a request is data'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl "$common|protocol|server/scene|server/surface|server/render" 'a device draws, it serves nobody'
-room server/net "$common|protocol|server/frame" 'connections do not know what is said over them'
+room server/net "$common|protocol|server/frame|server/scene" 'connections do not know what is said over them'
 room server/threads "$common|server/cage|server/image|server/net|server/ops|server/render|server/sandbox" \
     'threads run what others give them'
 room server/output "$common|protocol|server/image|server/frame|server/render|server/scene|server/threads" \
     'an encoder knows pictures, no client'
-room server/assets "$common|protocol|server/cage|server/frame|server/ops|server/render|server/surface|server/threads" \
+room server/assets "$common|protocol|server/cage|server/frame|server/scene|server/ops|server/render|server/surface|server/threads" \
     'models and images are everybody'"'"'s'
 room server/frame "$common|protocol|server/assets|server/output|server/render|server/scene|server/session|server/surface" \
     'a frame tells its session by events'
-room server/session "$common|protocol|server/assets|server/frame|server/net|server/ops|server/output|server/threads" \
+room server/session "$common|protocol|server/assets|server/frame|server/net|server/ops|server/output|server/scene|server/threads" \
     'a session is one client'"'"'s messages'
 room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/render/gl|server/session|server/threads" \
     'the daemon as a whole'

@@ -8,7 +8,7 @@
 #include "server/cage/survey.h"
 #include "server/render/renderer.h"
 #include "server/assets/build.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 
 struct model {
     struct limit_tables tables; /* stay as long as `gpu` */

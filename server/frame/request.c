@@ -6,7 +6,7 @@
 
 #include "server/assets/model_file.h"
 #include "server/frame/request_internal.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 
 static struct request *request_create(struct session *session, struct answer *answer, uint32_t seq)
 {

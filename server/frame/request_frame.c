@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "server/frame/request_internal.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 
 /* Stills and batches are drawn in tiles of so many pixels, so that others wait for one at most. The
  * size depends on the device and the request alone: equal requests give equal bytes. A tile of a

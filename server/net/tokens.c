@@ -9,7 +9,7 @@
 #include <time.h>
 
 #include "server/base/plain_file.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 
 _Static_assert(TOKEN_HASH_BYTES == SHA256_DIGEST_LENGTH, "a hash is a SHA-256");
 #define LINE_BYTES 256

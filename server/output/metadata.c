@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "server/output/false_colour.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 
 enum { VERSION, DEVICE, DRIVER, SOFTWARE, MODEL, CAMERA, LINES, LIGHT, COLOURS, SURFACE, SHOW };
 

@@ -1,7 +1,7 @@
 /* The room for messages that are longer than most: none before it is their turn, and none that
  * --peer-memory and --memory-budget do not know of. */
 #include "server/session/session_internal.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 
 const char *session_find_disorder(const struct session *session,
                                   const struct message_header *header)

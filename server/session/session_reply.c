@@ -2,7 +2,7 @@
 
 #include "server/base/log.h"
 #include "server/session/session_internal.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 
 static void after_fill(struct session *session, bool ok)
 {

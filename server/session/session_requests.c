@@ -2,7 +2,7 @@
 
 #include "server/frame/request.h"
 #include "server/session/session_internal.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 
 static void reply_upload_state(struct session *session, uint32_t seq, bool complete,
                                uint64_t received_bytes)

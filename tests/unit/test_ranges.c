@@ -13,7 +13,7 @@
 #include "protocol/message.h"
 #include "protocol/ranges.h"
 #include "server/scene/request_check.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 #include "tests/unit/good_render.h"
 
 #define RENDER "m.obj -o a.png "

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "server/output/metadata.h"
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 #include "server/scene/defaults.h"
 
 static const struct limit_tables TABLES = {.box_max = {4, 2, 1}};

@@ -1,7 +1,7 @@
 /* Line families, lights and patterns between messages and the renderer. */
 #include <string.h>
 
-#include "server/frame/scene_convert.h"
+#include "server/scene/scene_convert.h"
 #include "server/scene/defaults.h"
 
 #define SAME(a, b) ((int)(a) == (int)(b))

@@ -1,8 +1,9 @@
-#include "server/frame/scene_convert.h"
-#include "server/scene/defaults.h"
+#include "server/scene/scene_convert.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "server/scene/defaults.h"
 
 _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
                    (int)PLANE_POSITION == (int)sheen_Plane_PLANE_POSITION &&

@@ -1,7 +1,7 @@
 /* Between what stands in messages and what the renderer takes: cameras, lights, patterns, colours,
  * planes, errors. Pure, any thread. */
-#ifndef SHEEN_FRAME_SCENE_CONVERT_H
-#define SHEEN_FRAME_SCENE_CONVERT_H
+#ifndef SHEEN_SCENE_SCENE_CONVERT_H
+#define SHEEN_SCENE_SCENE_CONVERT_H
 
 #include "protocol/message.h"
 #include "server/base/error.h"
