@@ -70,4 +70,9 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
  * newlines pass if `lines`. */
 bool message_is_text(const char *text, bool lines);
 
+/* Makes a text pass message_is_text(), in place: where it does not, every byte that is no printable
+ * ASCII character (nor a newline, if `lines`) becomes '?'. Names and lines out of files may hold
+ * any bytes, and cutting a text may split a character. */
+void message_make_text(char *text, bool lines);
+
 #endif

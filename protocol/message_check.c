@@ -33,6 +33,15 @@ bool message_is_text(const char *text, bool lines)
     return true;
 }
 
+void message_make_text(char *text, bool lines)
+{
+    if (message_is_text(text, lines))
+        return;
+    for (char *c = text; *c; c++)
+        if ((*c < 0x20 && !(lines && *c == '\n')) || *c > 0x7e)
+            *c = '?';
+}
+
 static bool check_text(const char *value, const char *field, char *text)
 {
     return message_is_text(value, false) ||

@@ -52,7 +52,7 @@ room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the wor
 room server/scene "$common|protocol|server/cage|server/frame|server/surface" 'a request is data'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl "$common|protocol|server/scene|server/surface|server/render" 'a device draws, it serves nobody'
-room server/net "$common|protocol|server/frame|server/scene" 'connections do not know what is said over them'
+room server/net "$common|protocol" 'connections do not know what is said over them'
 room server/threads "$common|server/cage|server/image|server/net|server/ops|server/render|server/sandbox" \
     'threads run what others give them'
 room server/output "$common|protocol|server/image|server/frame|server/render|server/scene|server/threads" \

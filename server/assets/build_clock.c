@@ -2,6 +2,8 @@
 
 #include <time.h>
 
+#include "server/base/clock.h"
+
 #define LOOK_US 5000u /* asking for a thread's time is a system call */
 
 static uint64_t thread_cpu_us(void)
@@ -14,14 +16,14 @@ static uint64_t thread_cpu_us(void)
 void build_clock_start(struct build_clock *clock, const struct build_order *order,
                        atomic_ullong *spent_us)
 {
-    *clock = (struct build_clock){order, spent_us, loop_now_us(), thread_cpu_us()};
+    *clock = (struct build_clock){order, spent_us, clock_now_us(), thread_cpu_us()};
 }
 
 bool build_clock_goes_on(void *owner, struct error *error)
 {
     struct build_clock *clock = owner;
     const struct build_order *order = clock->order;
-    uint64_t now_us = loop_now_us();
+    uint64_t now_us = clock_now_us();
     if (now_us - clock->looked_us < LOOK_US)
         return true;
     uint64_t cpu_us = thread_cpu_us(), more_us = cpu_us - clock->cpu_us;

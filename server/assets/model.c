@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/base/clock.h"
 #include "server/base/fault.h"
 #include "server/surface/support.h"
 #include "server/assets/build_clock.h"
@@ -68,7 +69,7 @@ static void end_build(struct model_build *build, bool ok)
         model_free(model);
         model = NULL;
     } else {
-        model->build_us = loop_now_us() - build->start_us;
+        model->build_us = clock_now_us() - build->start_us;
     }
     build->order.finished(build->order.owner, model, ok ? NULL : &build->error);
     free(build->ranges);
@@ -238,7 +239,7 @@ bool model_build_start(const struct build_order *order, struct error *error)
     build->order = *order;
     atomic_init(&build->cpu_us, 0);
     build->model = model;
-    build->start_us = loop_now_us();
+    build->start_us = clock_now_us();
     order->progress->stage = "reading";
     build->task = (struct task){read_run, read_done, build, NULL};
     pool_submit(order->readers, &build->task, POOL_LATER);

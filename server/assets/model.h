@@ -24,9 +24,9 @@ struct model {
     struct task destroy_task;
 };
 
-static inline struct wire_subject model_subject(const struct model *model)
+static inline struct scene_subject model_subject(const struct model *model)
 {
-    return (struct wire_subject){&model->tables, model->up};
+    return (struct scene_subject){&model->tables, model->up};
 }
 
 /* Starts a build; finished() gets a `struct model *`. False, without finished(), when memory is

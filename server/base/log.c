@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "protocol/text.h"
-#include "server/net/loop.h"
+#include "server/base/clock.h"
 
 #define LINE_BYTES 16384 /* room for five values of nothing but escapes */
 
@@ -126,7 +126,7 @@ static bool write_line(enum log_level level, const char *message, const struct l
 
 static bool is_too_much(enum log_level level)
 {
-    uint64_t now = loop_now_us();
+    uint64_t now = clock_now_us();
     if (now - state.second_us >= 1000000) {
         state.second_us = now;
         memset(state.lines, 0, sizeof state.lines);

@@ -5,8 +5,18 @@
 #include <string.h>
 
 #include "server/assets/model_file.h"
+#include "server/base/clock.h"
+#include "server/base/hex.h"
+#include "server/frame/error_code.h"
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"
+
+enum request_class request_class_of(sheen_RequestClass request_class)
+{
+    return request_class == sheen_RequestClass_CLASS_INTERACTIVE ? CLASS_INTERACTIVE
+           : request_class == sheen_RequestClass_CLASS_BATCH     ? CLASS_BATCH
+                                                                 : CLASS_STILL;
+}
 
 static struct request *request_create(struct session *session, struct answer *answer, uint32_t seq)
 {
@@ -22,7 +32,7 @@ static struct request *request_create(struct session *session, struct answer *an
     request->seq = seq;
     memcpy(request->owner, session_owner(session), sizeof request->owner);
     memcpy(request->asker, session->client.identity.owner, sizeof request->asker);
-    request->start_us = loop_now_us();
+    request->start_us = clock_now_us();
     atomic_init(&request->abandoned, false);
     request->next = session->requests;
     if (request->next)
@@ -69,7 +79,7 @@ void request_end(struct request *request)
 void request_fail(struct request *request, const struct error *error)
 {
     if (request->session)
-        session_answer_error(request->session, request->answer, wire_error_code(error->kind),
+        session_answer_error(request->session, request->answer, error_code_of(error->kind),
                              error->text);
     request_end(request);
 }
@@ -213,7 +223,7 @@ static bool is_known(struct request *request, enum asset_kind kind, const uint8_
     if (store_find(request->host->store, request->owner, kind, sha256))
         return true;
     char hex[2 * MODEL_ID_BYTES + 1], text[160];
-    wire_hex(sha256, hex);
+    hex_write(sha256, MODEL_ID_BYTES, hex);
     snprintf(text, sizeof text, "no %s with SHA-256 %s here: upload it first",
              kind == ASSET_MODEL ? "model" : "image", hex);
     session_answer_error(request->session, request->answer, sheen_ErrorCode_ERROR_UNKNOWN_MODEL,
@@ -286,13 +296,13 @@ static void answer_query(struct request *request)
         .regular_bytes = node_bytes + LIMIT_PATCH_TEXELS * sizeof *tables->texels,
         .corner_bytes = node_bytes + LIMIT_CORNER_TEXELS(LIMIT_MAX_LEVELS) * sizeof *tables->texels,
         .tables_us = model->build_us,
-        .box_min = wire_from_vec3(tables->box_min),
-        .box_max = wire_from_vec3(tables->box_max),
+        .box_min = scene_write_vec3(tables->box_min),
+        .box_max = scene_write_vec3(tables->box_max),
     };
     memcpy(info.sha256, asset->sha256, sizeof info.sha256);
     snprintf(info.name, sizeof info.name, "%s", asset->name);
     snprintf(info.warnings, sizeof info.warnings, "%s", model->warnings ? model->warnings : "");
-    wire_make_text(info.warnings, true);
+    message_make_text(info.warnings, true);
     fill_survey(&info, &model->survey);
     fill_findings(&info, model);
     session_answer(request->session, request->answer, MESSAGE_MODEL_INFO, &info);
@@ -356,7 +366,7 @@ static void enter_queue(struct request *request)
     struct schedule_entry *entry = &request->entry;
     const sheen_Render *render = &request->render;
     entry->owner = request;
-    entry->request_class = wire_request_class(render->request_class);
+    entry->request_class = request_class_of(render->request_class);
     entry->has_view = render->has_view || entry->request_class == CLASS_INTERACTIVE;
     entry->view = render->view;
     struct schedule_entry *replaced =

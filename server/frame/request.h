@@ -12,6 +12,9 @@
 
 struct request;
 
+/* The class of a message's number. */
+enum request_class request_class_of(sheen_RequestClass request_class);
+
 /* What the device keeps for a frame that is drawn in parts, while others are drawn: 0 but for
  * polygons. `render` has passed message_check_render(). */
 uint64_t request_paused_bytes(const struct session_host *host, const sheen_Render *render);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/base/clock.h"
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"
 
@@ -35,8 +36,7 @@ static bool is_kept_whole(const struct session_host *host, const sheen_Render *r
 static uint64_t tile_px(const struct session_host *host, const sheen_Render *render)
 {
     uint64_t px = device_tile_px(host);
-    if (wire_request_class(render->request_class) == CLASS_INTERACTIVE &&
-        is_kept_whole(host, render))
+    if (request_class_of(render->request_class) == CLASS_INTERACTIVE && is_kept_whole(host, render))
         return 0;
     return render->lights_count > LIGHTS_OF_A_TILE ? px * LIGHTS_OF_A_TILE / render->lights_count
                                                    : px;
@@ -157,10 +157,10 @@ void request_queue_frame(struct request *request)
 {
     struct frame_request *asked = &request->frame_request;
     const sheen_Render *render = &request->render;
-    const struct wire_subject subject = model_subject(request->model.asset->model);
-    wire_to_frame_request(render, &subject, asked);
+    const struct scene_subject subject = model_subject(request->model.asset->model);
+    scene_read_request(render, &subject, asked);
     asked->count_light = shows_lines(render);
-    request->up_source = wire_model_up(render, &subject, request->up);
+    request->up_source = scene_model_up(render, &subject, request->up);
     for (int i = 0; i < MAX_LIGHTS; i++)
         if (request->images[i].asset)
             asked->lights[i].pattern.image = request->images[i].asset->image->gpu;
@@ -203,9 +203,9 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .encoding = request->render.encoding,
         .data_bytes = encoded->size,
         .times = request->times,
-        .camera = wire_from_camera(&asked->camera),
+        .camera = scene_write_camera(&asked->camera),
         .lights_count = (pb_size_t)asked->n_lights,
-        .lines = wire_from_lines(&asked->lines),
+        .lines = scene_write_lines(&asked->lines),
         .software = info->software,
         .has_show_range = request->render.show.has_range,
         .show_range = request->render.show.range,
@@ -214,15 +214,15 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .has_light_share = request->has_light_share,
         .light_share = request->light_share,
         .has_up = true,
-        .up = wire_from_vec3(request->up),
+        .up = scene_write_vec3(request->up),
         .has_up_source = true,
         .up_source = request->up_source,
         .has_miss = true,
-        .miss = wire_from_colour(asked->miss),
+        .miss = scene_write_colour(asked->miss),
         .has_empty = true,
-        .empty = wire_from_colour(asked->empty),
+        .empty = scene_write_colour(asked->empty),
         .has_base = true,
-        .base = wire_from_colour(asked->base),
+        .base = scene_write_colour(asked->base),
         .has_show_least = request->extremes.has_values,
         .show_least = request->extremes.least,
         .has_show_greatest = request->extremes.has_values,
@@ -230,8 +230,8 @@ static void fill_frame(const struct request *request, const struct encoded *enco
     };
     for (uint32_t i = 0; i < asked->n_lights; i++)
         frame->lights[i] =
-            wire_from_light(&asked->lights[i],
-                            i < request->render.lights_count ? &request->render.lights[i] : NULL);
+            scene_write_light(&asked->lights[i],
+                              i < request->render.lights_count ? &request->render.lights[i] : NULL);
     snprintf(frame->device, sizeof frame->device, "%s", info->device);
     snprintf(frame->driver, sizeof frame->driver, "%s", info->driver);
     snprintf(frame->server, sizeof frame->server, "%s", SHEEN_VERSION);
@@ -239,7 +239,7 @@ static void fill_frame(const struct request *request, const struct encoded *enco
 
 static void answer_frame(struct request *request, struct encoded *encoded)
 {
-    uint64_t now = loop_now_us();
+    uint64_t now = clock_now_us();
     request->times.tables_us = request->model.asset->unreported_us;
     request->times.total_us = now - request->start_us;
     request->model.asset->unreported_us = 0;
@@ -286,7 +286,7 @@ static void encode_finished(void *owner, struct encoded *encoded, const struct e
 {
     struct request *request = owner;
     request->is_busy = false;
-    request->times.encode_us = loop_now_us() - request->encode_start_us;
+    request->times.encode_us = clock_now_us() - request->encode_start_us;
     if (error) {
         request_fail(request, error);
         return;
@@ -362,7 +362,7 @@ static void frame_drawn(struct request *request)
     request->has_light_share = request->frame.seen_px > 0;
     if (request->has_light_share)
         request->light_share = (double)request->frame.met_px / (double)request->frame.seen_px;
-    request->encode_start_us = loop_now_us();
+    request->encode_start_us = clock_now_us();
     request->is_busy = true;
     if (request->render.show.kind == sheen_ShowKind_SHOW_LINES) {
         start_encoding(request);
@@ -375,13 +375,13 @@ static void frame_drawn(struct request *request)
 static void step_run(struct task *task, void *worker)
 {
     struct request *request = task->owner;
-    uint64_t start_us = loop_now_us();
+    uint64_t start_us = clock_now_us();
     request->step = FRAME_FAILED;
     if (has_begun(request) ||
         renderer_begin(worker, &request->frame_work, &request->frame, &request->failure))
         request->step = renderer_step(worker, request->model.asset->model->gpu,
                                       &request->frame_work, &request->frame, &request->failure);
-    request->step_us = loop_now_us() - start_us;
+    request->step_us = clock_now_us() - start_us;
 }
 
 /* The device has the polygons that the frame shows. */
@@ -463,7 +463,7 @@ void request_start_next(struct session_host *host)
     wake_parked(host);
     for (struct schedule_entry *entry; (entry = scheduler_next(&host->scheduler));) {
         struct request *request = entry->owner;
-        if (request_is_late(request, loop_now_us())) {
+        if (request_is_late(request, clock_now_us())) {
             scheduler_put_back(&host->scheduler, entry);
             request_answer_late(request);
         } else if (take_memory(request)) {

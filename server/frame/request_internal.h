@@ -25,7 +25,7 @@ struct request {
     uint8_t asker[STORE_OWNER_BYTES]; /* the client's identity, also where all is shared */
     bool is_query, is_parked;
     bool is_busy;                   /* another thread works for it */
-    uint64_t start_us, deadline_us; /* loop_now_us(); deadline 0: none */
+    uint64_t start_us, deadline_us; /* clock_now_us(); deadline 0: none */
 
     struct needed model, images[MAX_LIGHTS];
     unsigned n_awaited;

@@ -8,6 +8,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "server/base/clock.h"
 #include "server/base/fault.h"
 
 #define MAX_PIECES 64 /* blocks per sendmsg() */
@@ -95,7 +96,7 @@ void conn_finish(struct conn *conn)
 static void linger(struct conn *conn)
 {
     conn->state = CONN_LINGERING;
-    conn->last_in_us = loop_now_us();
+    conn->last_in_us = clock_now_us();
     conn->transport->end(conn);
     shutdown(conn->source.fd, SHUT_WR);
     if (conn->peer_ended)
@@ -130,7 +131,7 @@ static struct conn_block *append(struct conn *conn, size_t size, size_t copied)
         conn->out_head = block;
     conn->out_tail = block;
     if (conn->unsent_bytes == 0) /* the clock starts with the first byte to send */
-        conn->last_out_us = loop_now_us();
+        conn->last_out_us = clock_now_us();
     conn->unsent_bytes += size;
     return block;
 }
@@ -181,7 +182,7 @@ static ssize_t write_some(struct conn *conn)
 static void count_sent(struct conn *conn, size_t n)
 {
     *conn->sent_bytes += n;
-    conn->last_out_us = loop_now_us();
+    conn->last_out_us = clock_now_us();
     while (conn->out_head && n >= conn->out_head->size - conn->out_head->sent) {
         n -= conn->out_head->size - conn->out_head->sent;
         drop_block(conn);
@@ -219,7 +220,7 @@ void conn_hold(struct conn *conn, bool held)
     if (conn->held == held || conn->state == CONN_CLOSED)
         return;
     conn->held = held;
-    conn->message_since_us = loop_now_us();
+    conn->message_since_us = clock_now_us();
     update_events(conn);
 }
 
@@ -267,7 +268,7 @@ static void skip(struct conn *conn)
     conn->in_used -= n;
     memmove(conn->in, conn->in + n, conn->in_used);
     if (conn->skipped == 0)
-        conn->message_since_us = loop_now_us(); /* the next one's */
+        conn->message_since_us = clock_now_us(); /* the next one's */
 }
 
 /* The whole messages that are there. */
@@ -300,7 +301,7 @@ static void deliver(struct conn *conn)
     conn->in_used -= used;
     if (used > 0) {
         memmove(conn->in, conn->in + used, conn->in_used);
-        conn->message_since_us = loop_now_us();
+        conn->message_since_us = clock_now_us();
     }
     if (wanted > 0)
         expect(conn, &header, wanted);
@@ -342,7 +343,7 @@ static bool read_more(struct conn *conn)
         return false;
     }
     if (open) {
-        conn->last_in_us = loop_now_us();
+        conn->last_in_us = clock_now_us();
         if (conn->in_used == 0 && conn->skipped == 0)
             conn->message_since_us = conn->last_in_us;
         conn->in_used += (size_t)n;
@@ -373,8 +374,8 @@ bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_h
         .owner = owner,
         .transport = &PLAIN,
         .sent_bytes = sent_bytes,
-        .last_in_us = loop_now_us(),
-        .last_out_us = loop_now_us(),
+        .last_in_us = clock_now_us(),
+        .last_out_us = clock_now_us(),
         .in = malloc(CONN_IN_BYTES),
         .in_capacity = CONN_IN_BYTES,
     };

@@ -79,7 +79,7 @@ struct conn {
     size_t unsent_bytes;
     uint64_t *sent_bytes; /* everybody's; counted up here */
 
-    uint64_t last_in_us, last_out_us; /* when bytes last moved; loop_now_us() */
+    uint64_t last_in_us, last_out_us; /* when bytes last moved; clock_now_us() */
     uint64_t message_since_us; /* when the oldest byte in the buffer came, or input resumed */
 };
 

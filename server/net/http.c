@@ -7,6 +7,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "server/base/clock.h"
+
 #define HEAD_BYTES 256
 
 struct http_connection {
@@ -61,7 +63,7 @@ static const char *reason_of(int status)
  * connection, and what it has not read is lost. */
 static void linger(struct http_connection *connection)
 {
-    uint64_t end_us = loop_now_us() + HTTP_LINGER_US;
+    uint64_t end_us = clock_now_us() + HTTP_LINGER_US;
     connection->state = HTTP_LINGERING;
     if (end_us < connection->end_us)
         connection->end_us = end_us;
@@ -230,7 +232,7 @@ void http_accept(struct http *http, int fd)
 {
     struct http_connection *connection = find_place(http);
     connection->source = (struct loop_source){fd, connection_ready, connection};
-    connection->end_us = loop_now_us() + HTTP_TIMEOUT_US;
+    connection->end_us = clock_now_us() + HTTP_TIMEOUT_US;
     connection->received = connection->sent = connection->head_length = 0;
     connection->state = HTTP_READING;
     text_buffer_init(&connection->body, HTTP_MAX_ANSWER_BYTES);

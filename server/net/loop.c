@@ -3,8 +3,9 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "server/base/clock.h"
 
 #define BATCH 64
 
@@ -16,13 +17,6 @@ struct loop {
     bool ticking, stopped;
     uint64_t next_tick_us;
 };
-
-uint64_t loop_now_us(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
-}
 
 struct loop *loop_create(const struct loop_hooks *hooks, struct error *error)
 {
@@ -79,7 +73,7 @@ void loop_unwatch(struct loop *loop, struct loop_source *source)
 void loop_set_ticking(struct loop *loop, bool on)
 {
     if (on && !loop->ticking)
-        loop->next_tick_us = loop_now_us() + LOOP_TICK_US;
+        loop->next_tick_us = clock_now_us() + LOOP_TICK_US;
     loop->ticking = on;
 }
 
@@ -87,7 +81,7 @@ static int wait_ms(const struct loop *loop)
 {
     if (!loop->ticking)
         return -1;
-    uint64_t now = loop_now_us();
+    uint64_t now = clock_now_us();
     return loop->next_tick_us <= now ? 0 : (int)((loop->next_tick_us - now + 999) / 1000);
 }
 
@@ -101,8 +95,8 @@ void loop_run(struct loop *loop)
                 source->ready(source, loop->events[i].events);
         }
         loop->n_events = 0;
-        if (loop->ticking && loop_now_us() >= loop->next_tick_us) {
-            loop->next_tick_us = loop_now_us() + LOOP_TICK_US;
+        if (loop->ticking && clock_now_us() >= loop->next_tick_us) {
+            loop->next_tick_us = clock_now_us() + LOOP_TICK_US;
             loop->hooks.tick(loop->hooks.owner);
         }
         loop->hooks.after(loop->hooks.owner);

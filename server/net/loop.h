@@ -4,7 +4,7 @@
  * Sources are embedded in their owners and not owned here. A source may unwatch itself or others
  * in its callback, but its memory must stay until the next call of `after`: events of the same
  * batch may still name it (they are not delivered once it is unwatched).
- * Thread: everything but loop_now_us() belongs to the thread that runs the loop. */
+ * Thread: the one that runs the loop. */
 #ifndef SHEEN_NET_LOOP_H
 #define SHEEN_NET_LOOP_H
 
@@ -44,8 +44,5 @@ void loop_set_ticking(struct loop *loop, bool on);
 
 void loop_run(struct loop *loop); /* returns after loop_stop() */
 void loop_stop(struct loop *loop);
-
-/* Monotonic clock in microseconds. Any thread. */
-uint64_t loop_now_us(void);
 
 #endif

@@ -8,8 +8,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "server/base/hex.h"
 #include "server/base/plain_file.h"
-#include "server/scene/scene_convert.h"
 
 _Static_assert(TOKEN_HASH_BYTES == SHA256_DIGEST_LENGTH, "a hash is a SHA-256");
 #define LINE_BYTES 256
@@ -39,24 +39,6 @@ static bool parse_day(const char *text, int64_t *end_s)
     return day.tm_mday == month_day; /* the 31st of April has become the 1st of May */
 }
 
-static int digit(char c)
-{
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
-static bool parse_hash(const char *text, uint8_t hash[static TOKEN_HASH_BYTES])
-{
-    if (strlen(text) != 2 * TOKEN_HASH_BYTES)
-        return false;
-    for (int i = 0; i < TOKEN_HASH_BYTES; i++) {
-        int high = digit(text[2 * i]), low = digit(text[2 * i + 1]);
-        if (high < 0 || low < 0)
-            return false;
-        hash[i] = (uint8_t)(high << 4 | low);
-    }
-    return true;
-}
-
 /* --- reading */
 
 /* NULL, or what is wrong. A line of nothing but a comment adds no row. */
@@ -77,7 +59,7 @@ static const char *add_line(struct tokens *tokens, char *line)
         return "a name is 1 to 64 of the characters A-Z a-z 0-9 . _ -";
     if (tokens_find_name(tokens, name))
         return "this name stands above already";
-    if (!parse_hash(hash, row->hash))
+    if (!hex_read(hash, row->hash, sizeof row->hash))
         return "the hash is not 64 digits of lower-case hex";
     if (!parse_day(day, &row->expires_s))
         return "the last part is no day, written YYYY-MM-DD";
@@ -177,7 +159,7 @@ bool tokens_print_line(const char *spec, struct error *error)
         return false;
     SHA256((const unsigned char *)token, strlen(token), hash);
     OPENSSL_cleanse(token, sizeof token);
-    wire_hex(hash, hex);
+    hex_write(hash, sizeof hash, hex);
     printf("%s %s %s\n", name, hex, spec + length + 1);
     return true;
 }

@@ -11,7 +11,7 @@
 
 /* Zero it before use. */
 struct gpu_loss_log {
-    uint64_t at_us[GPU_LOSSES_MAX]; /* loop_now_us(), of the last ones */
+    uint64_t at_us[GPU_LOSSES_MAX]; /* clock_now_us(), of the last ones */
     uint32_t n;                     /* ever */
 };
 

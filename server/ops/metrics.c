@@ -7,6 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "server/base/clock.h"
 #include "server/base/log.h"
 #include "server/threads/pool.h"
 
@@ -179,7 +180,7 @@ static uint64_t count_descriptors(void)
 
 static void write_process(const struct session_host *host, struct text_buffer *text)
 {
-    uint64_t now = loop_now_us();
+    uint64_t now = clock_now_us();
     struct timespec cpu = {0};
     struct rlimit files = {0};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);

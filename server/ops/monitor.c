@@ -6,6 +6,7 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
+#include "server/base/clock.h"
 #include "server/net/http.h"
 #include "server/base/log.h"
 #include "server/ops/metrics.h"
@@ -27,7 +28,7 @@ struct monitor {
 /* NULL, or who has been at one piece of work for too long. */
 static const char *who_is_stuck(const struct monitor *monitor)
 {
-    uint64_t now = loop_now_us();
+    uint64_t now = clock_now_us();
     if (render_thread_busy_us(monitor->host->render_thread, now) > monitor->stuck_us)
         return "the GL thread";
     if (pool_busy_us(monitor->host->pool, now) > monitor->stuck_us)
@@ -93,7 +94,7 @@ static void timer_ready(struct loop_source *source, uint32_t events)
         return;
     feed_watchdog(monitor);
     if (monitor->http)
-        http_tick(monitor->http, loop_now_us());
+        http_tick(monitor->http, clock_now_us());
     if (monitor->listener && listener_is_paused(monitor->listener))
         listener_resume(monitor->listener);
 }

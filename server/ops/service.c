@@ -10,6 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "server/base/clock.h"
 #include "server/output/jpeg.h"
 #include "server/render/gl/device.h"
 #include "server/net/listen.h"
@@ -142,7 +143,8 @@ static void count_losses(struct service *service)
 {
     struct session_host *host = &service->host;
     while (service->gpu_losses.n < render_thread_losses(host->render_thread)) {
-        bool often = gpu_loss_log_add(&service->gpu_losses, loop_now_us(), host->limits.gpu_losses);
+        bool often =
+            gpu_loss_log_add(&service->gpu_losses, clock_now_us(), host->limits.gpu_losses);
         host->gpu_generation++;
         log_event(LOG_ERROR, "the GPU was lost", log_number("generation", host->gpu_generation));
         if (!often || host->draining)
@@ -181,7 +183,7 @@ static void after_batch(void *owner)
     if (!store_is_building(service->host.store) && scheduler_is_idle(&service->host.scheduler) &&
         service->host.n_file_loads == 0)
         loop_stop(service->host.loop);
-    else if (service->single || session_host_overdue_us(&service->host, loop_now_us()) >
+    else if (service->single || session_host_overdue_us(&service->host, clock_now_us()) >
                                     SESSION_LAST_WORDS_US + SERVICE_LAST_WORK_US)
         leave_now(service); /* a tile or a table may take long yet: nobody wants them */
 }
@@ -189,7 +191,7 @@ static void after_batch(void *owner)
 static void tick(void *owner)
 {
     struct service *service = owner;
-    uint64_t now = loop_now_us();
+    uint64_t now = clock_now_us();
     if (!service->overdue && session_host_overdue_us(&service->host, now) > 0) {
         service->overdue = true;
         log_event(LOG_WARN, "drain-timeout is over: what is not done is refused",
@@ -219,7 +221,7 @@ static void drain(struct service *service)
     if (service->host.draining)
         leave_now(service); /* asked twice */
     service->host.draining = true;
-    service->host.drain_start_us = loop_now_us();
+    service->host.drain_start_us = clock_now_us();
     close_listeners(service);
     if (!service->single) /* the manager of a private daemon's client is not its own */
         notify_send("STOPPING=1\nSTATUS=finishing what is in flight");

@@ -1,10 +1,11 @@
 #include "server/ops/stats.h"
 
+#include "server/base/clock.h"
 #include "server/net/loop.h"
 
 void stats_init(struct stats *stats)
 {
-    *stats = (struct stats){.start_us = loop_now_us()};
+    *stats = (struct stats){.start_us = clock_now_us()};
 }
 
 /* The slice of this moment, emptied when it held one that has become too old. */

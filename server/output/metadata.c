@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "server/output/false_colour.h"
-#include "server/scene/scene_convert.h"
+#include "server/base/hex.h"
 
 enum { VERSION, DEVICE, DRIVER, SOFTWARE, MODEL, CAMERA, LINES, LIGHT, COLOURS, SURFACE, SHOW };
 
@@ -93,7 +93,7 @@ static void describe_pattern(char *value, const struct pattern *pattern, const s
         COLOUR_OF(pattern->background));
     if (asked && asked->pattern.has_image_sha256) {
         char hex[2 * MODEL_ID_BYTES + 1];
-        wire_hex(asked->pattern.image_sha256, hex);
+        hex_write(asked->pattern.image_sha256, MODEL_ID_BYTES, hex);
         add(value, " image=%s", hex);
     }
 }
@@ -115,7 +115,7 @@ void label_init(struct label *label, const struct frame_request *request, const 
         label->attributes[i] = (struct image_attribute){NAMES[i], label->values[i]};
         label->values[i][0] = 0;
     }
-    wire_hex(asked->model_sha256, hex);
+    hex_write(asked->model_sha256, MODEL_ID_BYTES, hex);
     add(label->values[VERSION], "%s", SHEEN_VERSION);
     add(label->values[DEVICE], "%s", info->device);
     add(label->values[DRIVER], "%s", info->driver);

@@ -27,19 +27,19 @@ static const sheen_Colour DEFAULT_MISS = {0.16f, 0.19f, 0.23f, 1};
 static const sheen_Colour DEFAULT_EMPTY = {0.5f, 0.5f, 0.5f, 1};
 static const sheen_Colour DEFAULT_BASE = {0.7f, 0.72f, 0.75f, 1};
 
-void wire_to_vec3(const sheen_Vec3 *from, double to[3])
+void scene_read_vec3(const sheen_Vec3 *from, double to[3])
 {
     to[0] = from->x;
     to[1] = from->y;
     to[2] = from->z;
 }
 
-sheen_Vec3 wire_from_vec3(const double v[3])
+sheen_Vec3 scene_write_vec3(const double v[3])
 {
     return (sheen_Vec3){v[0], v[1], v[2]};
 }
 
-void wire_to_colour(const sheen_Colour *from, float to[4])
+void scene_read_colour(const sheen_Colour *from, float to[4])
 {
     to[0] = from->r;
     to[1] = from->g;
@@ -47,19 +47,19 @@ void wire_to_colour(const sheen_Colour *from, float to[4])
     to[3] = from->a;
 }
 
-sheen_Colour wire_from_colour(const float c[4])
+sheen_Colour scene_write_colour(const float c[4])
 {
     return (sheen_Colour){c[0], c[1], c[2], c[3]};
 }
 
 /* Puts what a request says of the camera over the one that frames the model. */
-static void to_camera(const sheen_Camera *from, const struct wire_subject *subject,
+static void to_camera(const sheen_Camera *from, const struct scene_subject *subject,
                       const double up[3], struct camera *to)
 {
     if (from->has_eye)
-        wire_to_vec3(&from->eye, to->eye);
+        scene_read_vec3(&from->eye, to->eye);
     if (from->has_target)
-        wire_to_vec3(&from->target, to->target);
+        scene_read_vec3(&from->target, to->target);
     if (from->has_target && !(from->has_eye && from->has_up))
         scene_default_roll(up, to);
     if (from->has_fov_deg)
@@ -80,16 +80,16 @@ static void to_camera(const sheen_Camera *from, const struct wire_subject *subje
         to->eye[i] += (to->eye[i] - to->target[i]) * (diagonal / distance);
 }
 
-sheen_Camera wire_from_camera(const struct camera *camera)
+sheen_Camera scene_write_camera(const struct camera *camera)
 {
     bool ortho = camera->kind == CAMERA_ORTHOGRAPHIC;
     return (sheen_Camera){
         .has_eye = true,
-        .eye = wire_from_vec3(camera->eye),
+        .eye = scene_write_vec3(camera->eye),
         .has_target = true,
-        .target = wire_from_vec3(camera->target),
+        .target = scene_write_vec3(camera->target),
         .has_up = true,
-        .up = wire_from_vec3(camera->up),
+        .up = scene_write_vec3(camera->up),
         .has_fov_deg = !ortho,
         .fov_deg = camera->fov_deg,
         .has_ortho_height = ortho,
@@ -97,11 +97,11 @@ sheen_Camera wire_from_camera(const struct camera *camera)
     };
 }
 
-sheen_UpSource wire_model_up(const sheen_Render *render, const struct wire_subject *subject,
-                             double up[3])
+sheen_UpSource scene_model_up(const sheen_Render *render, const struct scene_subject *subject,
+                              double up[3])
 {
     if (render->has_camera && render->camera.has_up) {
-        wire_to_vec3(&render->camera.up, up);
+        scene_read_vec3(&render->camera.up, up);
         return sheen_UpSource_UP_GIVEN;
     }
     if (subject->up == CAGE_UP_UNSAID) {
@@ -114,8 +114,8 @@ sheen_UpSource wire_model_up(const sheen_Render *render, const struct wire_subje
     return sheen_UpSource_UP_FILE;
 }
 
-void wire_to_frame_request(const sheen_Render *render, const struct wire_subject *subject,
-                           struct frame_request *request)
+void scene_read_request(const sheen_Render *render, const struct scene_subject *subject,
+                        struct frame_request *request)
 {
     static const sheen_Light default_light = sheen_Light_init_default;
     static const sheen_Camera default_camera = sheen_Camera_init_default;
@@ -129,63 +129,18 @@ void wire_to_frame_request(const sheen_Render *render, const struct wire_subject
         .surface = {(enum surface_kind)render->surface, render->surface_level},
     };
     double up[3];
-    wire_model_up(render, subject, up);
+    scene_model_up(render, subject, up);
     scene_default_camera(subject->tables, up, (enum default_view)asked->view, render->width_px,
                          render->height_px, &request->camera);
     to_camera(asked, subject, up, &request->camera);
     if (asked->has_zoom)
         scene_zoom(&request->camera, render->width_px, render->height_px, asked->zoom,
                    asked->zoom_x, asked->zoom_y);
-    wire_to_lines(&render->lines, up, &request->lines);
+    scene_read_lines(&render->lines, up, &request->lines);
     for (uint32_t i = 0; i < request->n_lights; i++)
-        wire_to_light(render->lights_count ? &render->lights[i] : &default_light, subject, up,
-                      &request->lights[i]);
-    wire_to_colour(render->has_miss ? &render->miss : &DEFAULT_MISS, request->miss);
-    wire_to_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
-    wire_to_colour(render->has_base ? &render->base : &DEFAULT_BASE, request->base);
-}
-
-enum request_class wire_request_class(sheen_RequestClass request_class)
-{
-    return request_class == sheen_RequestClass_CLASS_INTERACTIVE ? CLASS_INTERACTIVE
-           : request_class == sheen_RequestClass_CLASS_BATCH     ? CLASS_BATCH
-                                                                 : CLASS_STILL;
-}
-
-sheen_ErrorCode wire_error_code(enum error_kind kind)
-{
-    switch (kind) {
-    case ERROR_REQUEST:
-        return sheen_ErrorCode_ERROR_REQUEST;
-    case ERROR_MODEL:
-        return sheen_ErrorCode_ERROR_MODEL;
-    case ERROR_IMAGE:
-        return sheen_ErrorCode_ERROR_IMAGE;
-    case ERROR_DEVICE:
-        return sheen_ErrorCode_ERROR_DEVICE;
-    case ERROR_GPU_LOST:
-        return sheen_ErrorCode_ERROR_GPU_LOST;
-    case ERROR_NONE:
-    case ERROR_SERVER:
-        break;
-    }
-    return sheen_ErrorCode_ERROR_OVERLOADED;
-}
-
-void wire_make_text(char *text, bool lines)
-{
-    if (message_is_text(text, lines))
-        return;
-    for (char *c = text; *c; c++)
-        if ((*c < 0x20 && !(lines && *c == '\n')) || *c > 0x7e)
-            *c = '?';
-}
-
-void wire_hex(const uint8_t sha256[static MODEL_ID_BYTES], char hex[static 2 * MODEL_ID_BYTES + 1])
-{
-    for (size_t i = 0; i < MODEL_ID_BYTES; i++) {
-        hex[2 * i] = "0123456789abcdef"[sha256[i] >> 4];
-        hex[2 * i + 1] = "0123456789abcdef"[sha256[i] & 15];
-    }
-    hex[2 * MODEL_ID_BYTES] = 0;
+        scene_read_light(render->lights_count ? &render->lights[i] : &default_light, subject, up,
+                         &request->lights[i]);
+    scene_read_colour(render->has_miss ? &render->miss : &DEFAULT_MISS, request->miss);
+    scene_read_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
+    scene_read_colour(render->has_base ? &render->base : &DEFAULT_BASE, request->base);
 }

@@ -33,8 +33,10 @@ static void to_pattern(const sheen_Pattern *from, struct pattern *to)
     };
     for (uint32_t i = 0; i < to->n_at; i++)
         to->at[i] = from->at[i];
-    wire_to_colour(from->has_foreground ? &from->foreground : &DEFAULT_FOREGROUND, to->foreground);
-    wire_to_colour(from->has_background ? &from->background : &DEFAULT_BACKGROUND, to->background);
+    scene_read_colour(from->has_foreground ? &from->foreground : &DEFAULT_FOREGROUND,
+                      to->foreground);
+    scene_read_colour(from->has_background ? &from->background : &DEFAULT_BACKGROUND,
+                      to->background);
 }
 
 static sheen_Pattern from_pattern(const struct pattern *pattern, const sheen_Pattern *asked)
@@ -59,9 +61,9 @@ static sheen_Pattern from_pattern(const struct pattern *pattern, const sheen_Pat
         .has_width = true,
         .width = pattern->width,
         .has_foreground = true,
-        .foreground = wire_from_colour(pattern->foreground),
+        .foreground = scene_write_colour(pattern->foreground),
         .has_background = true,
-        .background = wire_from_colour(pattern->background),
+        .background = scene_write_colour(pattern->background),
     };
     for (uint32_t i = 0; i < pattern->n_at; i++)
         wire.at[i] = pattern->at[i];
@@ -78,30 +80,30 @@ static enum light_kind kind_of(const sheen_Light *light)
     return light->has_kind || light->has_centre ? (enum light_kind)light->kind : LIGHT_TUNNEL;
 }
 
-void wire_to_light(const sheen_Light *from, const struct wire_subject *subject, const double up[3],
-                   struct light *to)
+void scene_read_light(const sheen_Light *from, const struct scene_subject *subject,
+                      const double up[3], struct light *to)
 {
     static const sheen_Pattern default_pattern = sheen_Pattern_init_default;
     *to = (struct light){.kind = kind_of(from), .one_sided = from->one_sided};
     if (from->has_centre) {
-        wire_to_vec3(&from->centre, to->centre);
-        wire_to_vec3(&from->u, to->u);
-        wire_to_vec3(&from->v, to->v);
+        scene_read_vec3(&from->centre, to->centre);
+        scene_read_vec3(&from->u, to->u);
+        scene_read_vec3(&from->v, to->v);
     } else {
         scene_default_light(subject->tables->box_min, subject->tables->box_max, up, to);
     }
     to_pattern(from->has_pattern ? &from->pattern : &default_pattern, &to->pattern);
 }
 
-sheen_Light wire_from_light(const struct light *light, const sheen_Light *asked)
+sheen_Light scene_write_light(const struct light *light, const sheen_Light *asked)
 {
     return (sheen_Light){
         .has_centre = true,
-        .centre = wire_from_vec3(light->centre),
+        .centre = scene_write_vec3(light->centre),
         .has_u = true,
-        .u = wire_from_vec3(light->u),
+        .u = scene_write_vec3(light->u),
         .has_v = true,
-        .v = wire_from_vec3(light->v),
+        .v = scene_write_vec3(light->v),
         .has_kind = true,
         .kind = (sheen_LightKind)light->kind,
         .has_one_sided = true,
@@ -111,30 +113,30 @@ sheen_Light wire_from_light(const struct light *light, const sheen_Light *asked)
     };
 }
 
-void wire_to_lines(const sheen_Lines *from, const double up[3], struct lines *to)
+void scene_read_lines(const sheen_Lines *from, const double up[3], struct lines *to)
 {
     *to = (struct lines){.family = (enum line_family)from->family};
     bool needs_axis = to->family == LINES_ZEBRA || to->family == LINES_ENVIRONMENT;
     to->has_direction = from->has_direction || needs_axis;
     if (from->has_direction)
-        wire_to_vec3(&from->direction, to->direction);
+        scene_read_vec3(&from->direction, to->direction);
     else if (needs_axis)
         memcpy(to->direction, up, sizeof to->direction);
     if (from->has_eye || from->has_eye_direction) {
         to->eye_kind = from->has_eye ? LINE_EYE_POINT : LINE_EYE_DIRECTION;
-        wire_to_vec3(from->has_eye ? &from->eye : &from->eye_direction, to->eye);
+        scene_read_vec3(from->has_eye ? &from->eye : &from->eye_direction, to->eye);
     }
 }
 
-sheen_Lines wire_from_lines(const struct lines *lines)
+sheen_Lines scene_write_lines(const struct lines *lines)
 {
     return (sheen_Lines){
         .family = (sheen_LineFamily)lines->family,
         .has_direction = lines->has_direction,
-        .direction = wire_from_vec3(lines->direction),
+        .direction = scene_write_vec3(lines->direction),
         .has_eye = lines->eye_kind == LINE_EYE_POINT,
-        .eye = wire_from_vec3(lines->eye),
+        .eye = scene_write_vec3(lines->eye),
         .has_eye_direction = lines->eye_kind == LINE_EYE_DIRECTION,
-        .eye_direction = wire_from_vec3(lines->eye),
+        .eye_direction = scene_write_vec3(lines->eye),
     };
 }

@@ -1,3 +1,4 @@
+#include "server/base/clock.h"
 #include "server/session/session_internal.h"
 
 #include <stdarg.h>
@@ -203,7 +204,7 @@ struct session *session_create(struct session_host *host, int fd,
     session->admitted = client->kind != CLIENT_TLS;
     host->n_strangers += !session->admitted;
     session->output_class = CLASS_STILL;
-    session->start_us = loop_now_us();
+    session->start_us = clock_now_us();
     scheduler_add_queue(&session->queue);
     peer->n_connections++;
     host->n_sessions++;
@@ -226,7 +227,7 @@ void session_destroy(struct session *session)
     log_event(LOG_INFO, "session closed", log_number("session", session->id),
               log_text("reason", stats_end_name(session->end)),
               log_number("answers", session->n_answers),
-              log_number("duration_us", loop_now_us() - session->start_us));
+              log_number("duration_us", clock_now_us() - session->start_us));
     request_abandon_all(session);
     answer_list_finish(&session->answers);
     upload_destroy(session->upload);

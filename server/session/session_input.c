@@ -1,7 +1,7 @@
 /* The room for messages that are longer than most: none before it is their turn, and none that
  * --peer-memory and --memory-budget do not know of. */
 #include "server/session/session_internal.h"
-#include "server/scene/scene_convert.h"
+#include "server/frame/error_code.h"
 
 const char *session_find_disorder(const struct session *session,
                                   const struct message_header *header)
@@ -50,7 +50,7 @@ bool session_make_room(void *owner, const struct message_header *header, size_t 
         upload_destroy(session->upload);
         session->upload = NULL;
     }
-    session_reply_error(session, header->seq, wire_error_code(error.kind), error.text);
+    session_reply_error(session, header->seq, error_code_of(error.kind), error.text);
     return false;
 }
 

@@ -1,8 +1,8 @@
 #include <stdio.h>
 
+#include "server/base/clock.h"
 #include "server/base/log.h"
 #include "server/session/session_internal.h"
-#include "server/scene/scene_convert.h"
 
 static void after_fill(struct session *session, bool ok)
 {
@@ -16,7 +16,7 @@ static void count_answer(struct session *session, const struct answer *answer, u
                          sheen_ErrorCode code)
 {
     session->n_answers++;
-    stats_answer(&session->host->stats, type, code, loop_now_us());
+    stats_answer(&session->host->stats, type, code, clock_now_us());
     if (type != MESSAGE_ERROR)
         log_event(LOG_DEBUG, "request answered", log_number("session", session->id),
                   log_number("request", answer_seq(answer)),
@@ -34,7 +34,7 @@ void session_answer_error(struct session *session, struct answer *answer, sheen_
 {
     sheen_Error error = {.code = code};
     snprintf(error.text, sizeof error.text, "%s", text);
-    wire_make_text(error.text, false);
+    message_make_text(error.text, false);
     count_answer(session, answer, MESSAGE_ERROR, code);
     log_event(LOG_INFO, "request refused", log_number("session", session->id),
               log_number("request", answer_seq(answer)), log_text("code", stats_error_name(code)),

@@ -2,7 +2,7 @@
 
 #include "server/frame/request.h"
 #include "server/session/session_internal.h"
-#include "server/scene/scene_convert.h"
+#include "server/frame/error_code.h"
 
 static void reply_upload_state(struct session *session, uint32_t seq, bool complete,
                                uint64_t received_bytes)
@@ -43,7 +43,7 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
     if (session->upload)
         reply_upload_state(session, seq, false, 0);
     else
-        session_reply_error(session, seq, wire_error_code(error.kind), error.text);
+        session_reply_error(session, seq, error_code_of(error.kind), error.text);
 }
 
 void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
@@ -69,7 +69,7 @@ void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *
     } else if (state == UPLOAD_TOO_MUCH) {
         session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
     } else {
-        session_reply_error(session, seq, wire_error_code(error.kind), error.text);
+        session_reply_error(session, seq, error_code_of(error.kind), error.text);
     }
 }
 
@@ -144,7 +144,7 @@ void session_render(struct session *session, uint32_t seq, sheen_Render *render)
     if (!frame_fits(session, seq, render))
         return;
     struct answer *answer =
-        session_expect_answer(session, seq, wire_request_class(render->request_class));
+        session_expect_answer(session, seq, request_class_of(render->request_class));
     if (answer)
         request_render(session, answer, seq, render, frame_bytes(session, render));
 }

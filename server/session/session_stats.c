@@ -1,12 +1,13 @@
 #include <stdio.h>
 
+#include "server/base/clock.h"
 #include "server/session/session_internal.h"
 
 /* The last minute: rates, and percentiles of each stage and of each class. */
 static void add_recent(sheen_Stats *body, const struct stats *stats)
 {
     struct stats_recent recent;
-    stats_recent(stats, loop_now_us(), &recent);
+    stats_recent(stats, clock_now_us(), &recent);
     body->has_window_us = body->has_window_requests = body->has_window_frames = true;
     body->window_us = recent.window_us;
     body->window_requests = recent.requests;
@@ -29,7 +30,7 @@ void session_reply_stats(struct session *session, uint32_t seq)
     const struct renderer_info *info = render_thread_info(host->render_thread);
     struct store_counts counts = store_count(host->store);
     sheen_Stats stats = {
-        .uptime_us = loop_now_us() - host->stats.start_us,
+        .uptime_us = clock_now_us() - host->stats.start_us,
         .sessions = host->n_sessions,
         .frames = host->stats.frames,
         .errors = host->stats.errors,

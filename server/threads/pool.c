@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/base/clock.h"
+
 struct pool_thread {
     struct pool *pool;
     pthread_t thread;
@@ -68,7 +70,7 @@ static void *thread_main(void *argument)
     if (!start_worker(pool, &worker, &least_urgent))
         return NULL;
     for (struct task *task; (task = next_task(pool, least_urgent));) {
-        atomic_store(&self->busy_since_us, loop_now_us());
+        atomic_store(&self->busy_since_us, clock_now_us());
         task->run(task, worker);
         atomic_store(&self->busy_since_us, 0);
         completions_post(pool->completions, task);
@@ -151,7 +153,7 @@ uint64_t pool_busy_us(const struct pool *pool, uint64_t now_us)
 void pool_beat(void)
 {
     if (this_thread)
-        atomic_store(&this_thread->busy_since_us, loop_now_us());
+        atomic_store(&this_thread->busy_since_us, clock_now_us());
 }
 
 void pool_submit(struct pool *pool, struct task *task, enum pool_urgency urgency)

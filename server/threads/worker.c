@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "server/base/clock.h"
 #include "server/base/log.h"
 #include "server/threads/pool.h"
 #include "server/sandbox/zygote.h"
@@ -275,12 +276,13 @@ static bool await(int end_fd, const struct job *job, struct job_end *job_end)
 {
     struct pollfd end = {end_fd, POLLIN, 0};
     uint8_t message[JOB_END_BYTES];
-    const uint64_t deadline_us = loop_now_us() + ((uint64_t)job->limits.wall_s + GRACE_S) * 1000000;
+    const uint64_t deadline_us =
+        clock_now_us() + ((uint64_t)job->limits.wall_s + GRACE_S) * 1000000;
     int n;
     do {
         pool_beat();
         n = poll(&end, 1, BEAT_MS);
-    } while ((n == 0 && loop_now_us() < deadline_us) || (n < 0 && errno == EINTR));
+    } while ((n == 0 && clock_now_us() < deadline_us) || (n < 0 && errno == EINTR));
     ssize_t size = n > 0 ? read(end_fd, message, sizeof message) : -1;
     return size > 0 && job_end_decode(job_end, message, (size_t)size);
 }

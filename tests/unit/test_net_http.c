@@ -16,6 +16,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "server/base/clock.h"
+
 #include "server/net/http.h"
 
 #define LINES 25000 /* of 10 bytes: just under HTTP_MAX_ANSWER_BYTES */
@@ -46,7 +48,7 @@ static void after(void *owner)
 static void tick(void *owner)
 {
     struct fixture *f = owner;
-    http_tick(f->http, loop_now_us());
+    http_tick(f->http, clock_now_us());
 }
 
 static void *serve(void *loop)

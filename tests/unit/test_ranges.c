@@ -270,13 +270,13 @@ static bool message_takes(const struct field *field, double value)
 
 /* What a request leaves out is of this model. */
 static const struct limit_tables TABLES = {.box_min = {-1, -1, -1}, .box_max = {1, 1, 1}};
-static const struct wire_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
+static const struct scene_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
 
 static bool renderer_takes(const struct field *field, double value)
 {
     struct frame_request frame;
     struct error error = {0};
-    wire_to_frame_request(&GOOD, &SUBJECT, &frame);
+    scene_read_request(&GOOD, &SUBJECT, &frame);
     assert_true(request_check(&frame, PROTOCOL_MAX_SIZE_PX, PROTOCOL_MAX_SIZE_PX, &error));
     field->frame(&frame, value);
     return request_check(&frame, PROTOCOL_MAX_SIZE_PX, PROTOCOL_MAX_SIZE_PX, &error);
@@ -368,8 +368,8 @@ static void directions_agree(void **state)
         }
         struct frame_request frame;
         struct error error = {0};
-        wire_to_frame_request(&render, &SUBJECT, &frame);
-        wire_to_vec3(&render.camera.up, frame.camera.up); /* where it is parallel, too */
+        scene_read_request(&render, &SUBJECT, &frame);
+        scene_read_vec3(&render.camera.up, frame.camera.up); /* where it is parallel, too */
         bool is_taken = message_check_render(&render, 16384, 16384, text);
         if (request_check(&frame, 16384, 16384, &error) != is_taken)
             fail_msg("case %d: message %d '%s', renderer '%s'", i, is_taken, text, error.text);

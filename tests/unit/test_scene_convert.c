@@ -14,7 +14,7 @@
 #include "server/scene/defaults.h"
 
 static const struct limit_tables TABLES = {.box_max = {4, 2, 1}};
-static const struct wire_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
+static const struct scene_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
 
 static void test_defaults_are_valid(void **state)
 {
@@ -24,7 +24,7 @@ static void test_defaults_are_valid(void **state)
     render.height_px = 480;
     render.planes = sheen_Plane_PLANE_COLOUR;
     struct frame_request request;
-    wire_to_frame_request(&render, &SUBJECT, &request);
+    scene_read_request(&render, &SUBJECT, &request);
     const sheen_Pattern pattern = sheen_Pattern_init_default;
     assert_true(request.lights[0].pattern.count == pattern.count);
     assert_true(request.lights[0].pattern.duty == pattern.duty);
@@ -37,13 +37,13 @@ static void test_defaults_are_valid(void **state)
     /* Sent back as a request it is the same frame. */
     render.has_camera = true;
     render.lights_count = 1;
-    render.camera = wire_from_camera(&request.camera);
-    render.lights[0] = wire_from_light(&request.lights[0], NULL);
+    render.camera = scene_write_camera(&request.camera);
+    render.lights[0] = scene_write_light(&request.lights[0], NULL);
     char text[MESSAGE_TEXT_BYTES] = "";
     if (!message_check_render(&render, 1000, 1000, text))
         fail_msg("%s", text);
     struct frame_request again;
-    wire_to_frame_request(&render, &SUBJECT, &again);
+    scene_read_request(&render, &SUBJECT, &again);
     assert_memory_equal(&again.camera.eye, &request.camera.eye, sizeof again.camera.eye);
     assert_memory_equal(&again.lights[0], &request.lights[0], sizeof again.lights[0]);
 }
@@ -70,14 +70,14 @@ static void test_what_is_given_is_kept(void **state)
     render.has_miss = true;
     render.miss = (sheen_Colour){0.25f, 0.5f, 0.75f, 1};
     struct frame_request request;
-    wire_to_frame_request(&render, &SUBJECT, &request);
+    scene_read_request(&render, &SUBJECT, &request);
     assert_int_equal(request.camera.kind, CAMERA_ORTHOGRAPHIC);
     assert_true(request.camera.ortho_height == 7 && request.camera.target[2] == 6);
     assert_true(request.camera.eye[0] == 1 && request.camera.up[1] == 1);
     assert_int_equal(request.lights[0].pattern.kind, PATTERN_CIRCLES);
     assert_true(request.lights[0].pattern.count == 3 && request.lights[0].pattern.duty == 0.5);
     assert_true(request.miss[2] == 0.75f);
-    sheen_Camera back = wire_from_camera(&request.camera);
+    sheen_Camera back = scene_write_camera(&request.camera);
     assert_true(back.has_ortho_height && !back.has_fov_deg && back.eye.y == 2);
 }
 
@@ -90,7 +90,7 @@ static struct camera camera_for(const sheen_Camera *asked)
     if (asked)
         render.camera = *asked;
     struct frame_request request;
-    wire_to_frame_request(&render, &SUBJECT, &request);
+    scene_read_request(&render, &SUBJECT, &request);
     return request.camera;
 }
 
@@ -176,7 +176,7 @@ static void test_lights_stay(void **state)
     render.width_px = 640;
     render.height_px = 480;
     light_every_kind(&render);
-    wire_to_frame_request(&render, &SUBJECT, &first);
+    scene_read_request(&render, &SUBJECT, &first);
     assert_int_equal(first.lights[UNPLACED - 1].kind, LIGHT_TUNNEL);
     for (int i = 0; i < 50; i++) {
         render.width_px = 1 + (uint32_t)(2000 * fabs(noise(&random)));
@@ -190,13 +190,13 @@ static void test_lights_stay(void **state)
         render.camera.ortho_height = 2 + noise(&random);
         render.camera.has_fov_deg = !render.camera.has_ortho_height;
         render.camera.fov_deg = 90 + 89 * noise(&random);
-        wire_to_frame_request(&render, &SUBJECT, &other);
+        scene_read_request(&render, &SUBJECT, &other);
         for (int k = 0; k < UNPLACED; k++)
             assert_memory_equal(&other.lights[k], &first.lights[k], sizeof first.lights[k]);
     }
     render.camera.has_up = true;
     render.camera.up = (sheen_Vec3){1, 0, 0};
-    wire_to_frame_request(&render, &SUBJECT, &other);
+    scene_read_request(&render, &SUBJECT, &other);
     for (int k = 0; k < UNPLACED; k++)
         assert_memory_not_equal(other.lights[k].u, first.lights[k].u, sizeof first.lights[k].u);
 }
@@ -207,32 +207,32 @@ static void test_up(void **state)
 {
     (void)state;
     struct frame_request request;
-    struct wire_subject subject = SUBJECT;
+    struct scene_subject subject = SUBJECT;
     sheen_Render render = sheen_Render_init_default;
     double up[3];
     render.width_px = render.height_px = 100;
-    assert_int_equal(wire_model_up(&render, &subject, up), sheen_UpSource_UP_GUESSED);
+    assert_int_equal(scene_model_up(&render, &subject, up), sheen_UpSource_UP_GUESSED);
     assert_true(up[0] == 0 && up[1] == 0 && up[2] == 1);
     for (enum cage_up axis = CAGE_UP_X; axis <= CAGE_UP_Z; axis++) {
         subject.up = axis;
-        assert_int_equal(wire_model_up(&render, &subject, up), sheen_UpSource_UP_FILE);
+        assert_int_equal(scene_model_up(&render, &subject, up), sheen_UpSource_UP_FILE);
         for (int i = 0; i < 3; i++)
             assert_true(up[i] == ((int)axis - CAGE_UP_X == i));
-        wire_to_frame_request(&render, &subject, &request);
+        scene_read_request(&render, &subject, &request);
         assert_memory_equal(request.camera.up, up, sizeof up);
     }
     render.has_camera = true;
     render.camera = (sheen_Camera){.has_eye = true, .eye = {2, 1, 9}, .has_target = true};
     render.camera.target = (sheen_Vec3){2, 1, 0};
-    wire_to_frame_request(&render, &subject, &request);
+    scene_read_request(&render, &subject, &request);
     assert_true(request.camera.up[1] == 1 && request.camera.up[2] == 0);
     render.camera.eye.z = -9;
-    wire_to_frame_request(&render, &subject, &request);
+    scene_read_request(&render, &subject, &request);
     assert_true(request.camera.up[1] == -1 && request.camera.up[2] == 0);
     render.camera.has_up = true;
     render.camera.up = (sheen_Vec3){0, 3, 0};
-    assert_int_equal(wire_model_up(&render, &subject, up), sheen_UpSource_UP_GIVEN);
-    wire_to_frame_request(&render, &subject, &request);
+    assert_int_equal(scene_model_up(&render, &subject, up), sheen_UpSource_UP_GIVEN);
+    scene_read_request(&render, &subject, &request);
     assert_true(request.camera.up[1] == 3);
 }
 
@@ -244,12 +244,12 @@ static void test_axes(void **state)
     const double up[3] = {0, 2, 0};
     for (int family = 0; family <= sheen_LineFamily_LINES_ENVIRONMENT; family++) {
         sheen_Lines asked = {.family = (sheen_LineFamily)family};
-        wire_to_lines(&asked, up, &lines);
+        scene_read_lines(&asked, up, &lines);
         assert_true(lines.has_direction == (family >= sheen_LineFamily_LINES_ZEBRA));
         assert_true(lines.direction[1] == (lines.has_direction ? 2 : 0));
         asked.has_direction = family >= sheen_LineFamily_LINES_ISOPHOTE;
         asked.direction = (sheen_Vec3){1, 0, 0};
-        wire_to_lines(&asked, up, &lines);
+        scene_read_lines(&asked, up, &lines);
         assert_true(!lines.has_direction || (lines.direction[0] == 1 && lines.direction[1] == 0));
     }
 }
@@ -288,13 +288,13 @@ static void test_texts(void **state)
 {
     (void)state;
     char good[] = "Kotfl\xc3\xbcgel", cut[] = "Kotfl\xc3", lines[] = "a\nb\x1b[2J";
-    wire_make_text(good, false);
+    message_make_text(good, false);
     assert_string_equal(good, "Kotfl\xc3\xbcgel");
-    wire_make_text(cut, false);
+    message_make_text(cut, false);
     assert_string_equal(cut, "Kotfl?");
-    wire_make_text(lines, true);
+    message_make_text(lines, true);
     assert_string_equal(lines, "a\nb?[2J");
-    wire_make_text(lines, false);
+    message_make_text(lines, false);
     assert_string_equal(lines, "a?b?[2J");
 }
 
