@@ -4,7 +4,6 @@
 #ifndef SHEEN_ASSETS_MEMORY_H
 #define SHEEN_ASSETS_MEMORY_H
 
-#include "server/ops/limits.h"
 #include "server/assets/client_quota.h"
 #include "server/frame/scheduler.h"
 #include "server/assets/store.h"
@@ -12,7 +11,7 @@
 
 struct memory {
     struct store *store;
-    const struct limits *limits;
+    const struct asset_limits *limits;
     struct block_cache *block_cache; /* where charges lie, or NULL */
     struct peers peers;
     uint64_t frame_bytes;   /* of all frames */

@@ -11,7 +11,7 @@ struct store {
     struct pool *pool, *readers;
     struct render_thread *render_thread;
     struct workers *workers;
-    const struct limits *limits;
+    const struct asset_limits *limits;
     bool is_private; /* the daemon is */
     size_t budget_bytes, used_bytes;
     uint32_t max_image_px;
@@ -36,7 +36,7 @@ static struct asset **bucket_of(struct store *store, const uint8_t *sha256)
 
 struct store *store_create(struct pool *pool, struct pool *readers,
                            struct render_thread *render_thread, struct workers *workers,
-                           const struct limits *limits, bool is_private, struct error *error)
+                           const struct asset_limits *limits, bool is_private, struct error *error)
 {
     struct store *store = calloc(1, sizeof *store);
     if (!store) {

@@ -33,6 +33,16 @@ enum asset_state {
     ASSET_FAILED,   /* the file is bad and gone; `failure` says why */
 };
 
+/* What models, images and everything beside them may take. */
+struct asset_limits {
+    uint64_t memory_budget; /* bytes: files, tables, polygons, texels, frames, all together, in main
+                               memory and on the device */
+    uint64_t peer_memory;   /* bytes: uploads, long messages under way and frames of one user or
+                               address */
+    uint64_t max_image_side; /* px of a light image, either way */
+    uint64_t tables_cpu_s;   /* of processors, for one model's tables */
+};
+
 struct asset_waiter;
 struct store;
 
@@ -87,7 +97,7 @@ struct store_counts {
  * the budget himself, and errors about it tell him so. */
 struct store *store_create(struct pool *pool, struct pool *readers,
                            struct render_thread *render_thread, struct workers *workers,
-                           const struct limits *limits, bool is_private, struct error *error);
+                           const struct asset_limits *limits, bool is_private, struct error *error);
 /* No build may be running. The GL thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */
 

@@ -1,6 +1,7 @@
 /* Every number that a client or an administrator can run into, in one table: the options of the
- * command line, --help, the configuration file and the daemon all read it. What the protocol fixes
- * for both sides is in protocol/limits.h.
+ * command line, --help and the configuration file read it. Each room declares the numbers that it
+ * needs; here they are put together. What the protocol fixes for both sides is in
+ * protocol/limits.h.
  *
  * Plain data. Thread: any; a reload changes times, on the loop's thread, and nothing else. */
 #ifndef SHEEN_OPS_LIMITS_H
@@ -10,39 +11,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "server/assets/store.h"
 #include "server/base/error.h"
+#include "server/session/session.h"
+#include "server/threads/workers.h"
 
 struct limits {
-    /* Memory, in bytes. */
-    uint64_t memory_budget; /* files, tables, polygons, texels, frames: all together,
-                               in main memory and on the device */
-    uint64_t peer_memory;   /* uploads, long messages under way and frames of one user or address */
-    uint64_t
-        spare_memory; /* of frames that have gone, kept for the next (server/base/block_cache.h) */
-    uint64_t max_upload;     /* one file */
-    uint64_t max_frame;      /* one frame's planes */
-    uint64_t max_image_side; /* px of a light image, either way */
-
-    /* Connections. */
+    struct asset_limits assets;
+    struct workers_limits workers;
+    struct session_limits session;
+    uint64_t spare_memory; /* bytes: of frames that have gone, kept for the next
+                              (server/base/block_cache.h) */
     uint64_t max_connections, max_peer_connections;
-    uint64_t credits; /* unanswered requests of one connection */
-
-    /* What may wait to be sent: over `hard` when another answer comes, or over `soft` for so many
-     * seconds, ends the connection. */
-    uint64_t interactive_hard, interactive_soft, interactive_s;
-    uint64_t output_hard, output_soft, output_s; /* stills and batches */
-
-    /* Times, in seconds. */
-    uint64_t handshake_s; /* from accepting to HELLO */
-    uint64_t message_s;   /* from a message's first byte to its last */
-    uint64_t stall_s;     /* without a byte sent or of an upload received */
-    uint64_t idle_s;      /* without a request; 0: for ever */
-    uint64_t drain_s;     /* to finish and send what is asked when the daemon ends */
-
-    /* What a process that reads or writes one file may take (workers.h). */
-    uint64_t worker_memory, worker_output, worker_cpu_s, worker_s;
-    uint64_t tables_cpu_s; /* for one model's tables, by all threads together */
-
     uint64_t gpu_losses; /* in ten minutes (gpu_loss_log.h) end the daemon; 0: none do */
 };
 
@@ -53,7 +33,7 @@ struct limits_row {
     enum limits_unit unit;
     const char *help; /* what it limits; '\n' begins a new line */
     uint64_t low, high, fallback;
-    size_t offset; /* in struct limits */
+    size_t offset; /* in struct limits, of a uint64_t */
 };
 
 extern const struct limits_row LIMITS[];

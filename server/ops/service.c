@@ -63,15 +63,17 @@ static void turn_away(int fd, const char *text)
 }
 
 /* The peer of a connection that there is room for, with another reference; else NULL. */
-static struct peer *find_peer(struct session_host *host, int fd, struct error *error)
+static struct peer *find_peer(struct service *service, int fd, struct error *error)
 {
+    struct session_host *host = &service->host;
+    const struct limits *limits = &service->options.limits;
     struct peer *peer = NULL;
-    if (host->n_sessions >= host->limits.max_connections)
+    if (host->n_sessions >= limits->max_connections)
         error_set(error, ERROR_SERVER,
                   "the daemon has as many clients as it takes: try again later");
     else if (!(peer = peer_get(&host->memory.peers, fd)))
         error_set(error, ERROR_SERVER, "no memory for another client: try again later");
-    else if (peer->n_connections >= host->limits.max_peer_connections)
+    else if (peer->n_connections >= limits->max_peer_connections)
         error_set(error, ERROR_SERVER,
                   "this user or address has as many connections as it may: close one");
     else
@@ -99,7 +101,7 @@ static void accepted(void *owner, const struct listener *listener, int fd)
             error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
         close(fd); /* a stranger is told nothing */
     } else {
-        struct peer *peer = find_peer(host, fd, &error);
+        struct peer *peer = find_peer(service, fd, &error);
         if (peer)
             session = session_create(host, fd, &client, peer, &error);
         else
@@ -143,15 +145,15 @@ static void count_losses(struct service *service)
 {
     struct session_host *host = &service->host;
     while (service->gpu_losses.n < render_thread_losses(host->render_thread)) {
-        bool often =
-            gpu_loss_log_add(&service->gpu_losses, clock_now_us(), host->limits.gpu_losses);
+        bool often = gpu_loss_log_add(&service->gpu_losses, clock_now_us(),
+                                      service->options.limits.gpu_losses);
         host->gpu_generation++;
         log_event(LOG_ERROR, "the GPU was lost", log_number("generation", host->gpu_generation));
         if (!often || host->draining)
             continue;
         service->end = SERVICE_GPU_LOST;
         log_event(LOG_ERROR, "the GPU was lost too often: ending with exit code 75",
-                  log_number("gpu_losses", host->limits.gpu_losses));
+                  log_number("gpu_losses", service->options.limits.gpu_losses));
         drain(service);
     }
 }
@@ -239,8 +241,9 @@ static void apply(struct service *service, const struct service_options *options
         listener_open_to_all(service->listeners[i], access_has_list(access));
     for (struct session *session = service->sessions; session; session = session->next)
         session_check_access(session, true);
-    service->host.limits = options->limits;
-    workers_set_times(&service->host.workers, &options->limits);
+    service->host.limits = options->limits.session;
+    service->host.asset_limits = options->limits.assets;
+    workers_set_times(&service->host.workers, &options->limits.workers);
     /* The client of a private daemon shows its last line when it dies. */
     log_set(service->single ? LOG_ERROR : options->log_level, options->log_format);
     if (service->monitor)
@@ -421,7 +424,8 @@ static bool start(struct service *service, struct error *error)
                                               .block_cache = host->block_cache};
     /* The reader of cages starts while the device opens. */
     if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
-        !workers_init(&host->workers, NULL, &options->limits, error) ||
+        !workers_init(&host->workers, NULL, &options->limits.workers,
+                      options->limits.assets.memory_budget, error) ||
         !(service->completions = completions_create(host->loop, error)) ||
         !(host->render_thread =
               render_thread_create(&gl_device, &renderer, service->completions, error)) ||
@@ -430,17 +434,18 @@ static bool start(struct service *service, struct error *error)
         !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_worker){0},
                                       service->completions, error)) ||
         !(host->store = store_create(host->pool, host->readers, host->render_thread, &host->workers,
-                                     &host->limits, host->is_private, error)))
+                                     &host->asset_limits, host->is_private, error)))
         return false;
     const struct limits *limits = &options->limits;
     host->share_models = options->share_models;
     if (*options->models && (host->models_fd = model_folder_open(options->models, error)) < 0)
         return false;
     host->gpu_generation = 1;
-    host->max_upload_bytes =
-        limits->memory_budget < limits->max_upload ? limits->memory_budget : limits->max_upload;
+    host->max_upload_bytes = limits->assets.memory_budget < limits->session.max_upload
+                                 ? limits->assets.memory_budget
+                                 : limits->session.max_upload;
     host->memory = (struct memory){
-        .store = host->store, .limits = &host->limits, .block_cache = host->block_cache};
+        .store = host->store, .limits = &host->asset_limits, .block_cache = host->block_cache};
     allow_descriptors(limits->max_connections + SERVICE_OWN_DESCRIPTORS);
     stats_init(&host->stats);
     if (service->single)

@@ -27,6 +27,25 @@
 /* Without input for so long, a connection keeps no memory for long messages. */
 #define SESSION_TRIM_US 1000000u
 
+/* What one client may do, and for how long. */
+struct session_limits {
+    uint64_t max_upload; /* bytes of one file */
+    uint64_t max_frame;  /* bytes of one frame's planes */
+    uint64_t credits;    /* unanswered requests of one connection */
+
+    /* What may wait to be sent, in bytes: more than `hard` when another answer comes, or more than
+     * `soft` for so many seconds, ends the connection. */
+    uint64_t interactive_hard, interactive_soft, interactive_s;
+    uint64_t output_hard, output_soft, output_s; /* stills and batches */
+
+    /* Times, in seconds. */
+    uint64_t handshake_s; /* from accepting to HELLO */
+    uint64_t message_s;   /* from a message's first byte to its last */
+    uint64_t stall_s;     /* without a byte sent or of an upload received */
+    uint64_t idle_s;      /* without a request; 0: for ever */
+    uint64_t drain_s;     /* to finish and send what is asked when the daemon ends */
+};
+
 /* What all sessions share; outlives them. */
 struct session_host {
     struct loop *loop;
@@ -39,7 +58,8 @@ struct session_host {
     bool share_models;     /* whatever is uploaded is everybody's */
     int models_fd;         /* the folder of --models; -1: none */
     unsigned n_file_loads; /* files being read from there */
-    struct limits limits;
+    struct session_limits limits;
+    struct asset_limits asset_limits;
     struct memory memory;
     struct scheduler scheduler;
     struct costs costs;

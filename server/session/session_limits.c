@@ -27,7 +27,7 @@ disconnect(struct session *session, const char *format, ...)
 
 static uint64_t hard_limit(const struct session *session)
 {
-    const struct limits *limits = &session->host->limits;
+    const struct session_limits *limits = &session->host->limits;
     return session->output_class == CLASS_INTERACTIVE ? limits->interactive_hard
                                                       : limits->output_hard;
 }
@@ -54,7 +54,7 @@ uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_u
 /* What the client has not read for too long, or too much of it; NULL: nothing. */
 static const char *output_limit(struct session *session, uint64_t now)
 {
-    const struct limits *limits = &session->host->limits;
+    const struct session_limits *limits = &session->host->limits;
     bool interactive = session->output_class == CLASS_INTERACTIVE;
     uint64_t unsent = conn_unsent_bytes(&session->conn);
     if (unsent <= (interactive ? limits->interactive_soft : limits->output_soft)) {
@@ -90,7 +90,7 @@ static void refuse_late(struct session *session, enum stats_end end, const char 
 static void check_input(struct session *session, uint64_t now)
 {
     struct conn *conn = &session->conn;
-    const struct limits *limits = &session->host->limits;
+    const struct session_limits *limits = &session->host->limits;
     uint64_t since_in = now - conn->last_in_us, since_out = now - conn->last_out_us;
     bool is_idle = conn_unsent_bytes(conn) == 0 && session->answers.n == 0;
     uint64_t idle_us = limits->idle_s * 1000000;

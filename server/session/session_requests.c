@@ -89,7 +89,8 @@ static uint64_t frame_bytes(const struct session *session, const sheen_Render *r
  * says what is wrong with the budget: by then it is known what the model takes beside the frame. */
 static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render *render)
 {
-    const struct limits *limits = &session->host->limits;
+    const struct session_limits *limits = &session->host->limits;
+    const struct asset_limits *memory = &session->host->asset_limits;
     struct codec_layout all;
     codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
     uint64_t bytes = frame_bytes(session, render);
@@ -101,8 +102,8 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
         uint64_t needed, limit;
     } checks[] = {
         {"planes", "max-frame", all.raw_bytes, limits->max_frame},
-        {all_of_it, "memory-budget", bytes, limits->memory_budget},
-        {all_of_it, "peer-memory", bytes, limits->peer_memory},
+        {all_of_it, "memory-budget", bytes, memory->memory_budget},
+        {all_of_it, "peer-memory", bytes, memory->peer_memory},
     };
     size_t n_checks = session->host->is_private ? 1 : sizeof checks / sizeof *checks;
     for (size_t i = 0; i < n_checks; i++) {

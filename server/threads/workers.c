@@ -49,21 +49,20 @@ static struct worker *create(const char *folder, const char *name, struct error 
     return find_program(folder, name, path, error) ? worker_create(path, error) : NULL;
 }
 
-void workers_set_times(struct workers *workers, const struct limits *limits)
+void workers_set_times(struct workers *workers, const struct workers_limits *limits)
 {
-    __atomic_store_n(&workers->cpu_s, (unsigned)limits->worker_cpu_s, __ATOMIC_RELAXED);
-    __atomic_store_n(&workers->wall_s, (unsigned)limits->worker_s, __ATOMIC_RELAXED);
+    __atomic_store_n(&workers->cpu_s, (unsigned)limits->cpu_s, __ATOMIC_RELAXED);
+    __atomic_store_n(&workers->wall_s, (unsigned)limits->wall_s, __ATOMIC_RELAXED);
 }
 
-bool workers_init(struct workers *workers, const char *folder, const struct limits *limits,
-                  struct error *error)
+bool workers_init(struct workers *workers, const char *folder, const struct workers_limits *limits,
+                  uint64_t budget_bytes, struct error *error)
 {
     workers->images = NULL;
-    workers->budget_bytes = limits->memory_budget > WORKERS_LEAST_MEMORY_BYTES
-                                ? limits->memory_budget
-                                : WORKERS_LEAST_MEMORY_BYTES;
-    workers->memory_bytes = limits->worker_memory;
-    workers->output_bytes = limits->worker_output;
+    workers->budget_bytes =
+        budget_bytes > WORKERS_LEAST_MEMORY_BYTES ? budget_bytes : WORKERS_LEAST_MEMORY_BYTES;
+    workers->memory_bytes = limits->memory_bytes;
+    workers->output_bytes = limits->output_bytes;
     workers_set_times(workers, limits);
     return (workers->cages = create(folder, "sheend-cage", error)) &&
            (workers->images = create(folder, "sheend-image", error)) &&

@@ -8,16 +8,21 @@
 
 #include "server/cage/cage.h"
 #include "server/image/image.h"
-#include "server/ops/limits.h"
 #include "server/threads/worker.h"
 #include "server/base/block_cache.h"
 #include "server/sandbox/image_code.h"
 
 /* What a process may take of memory, beyond what it starts with; as much it may answer. Within the
- * memory budget, which counts for no less than the least, and within the rows of limits.h. */
+ * memory budget, which counts for no less than the least, and within struct workers_limits. */
 #define WORKERS_LEAST_MEMORY_BYTES (256ull << 20)
 #define WORKERS_CAGE_MEMORY_PER_BYTE 24 /* of the file */
 #define WORKERS_IMAGE_MEMORY_BYTES (IMAGE_MAX_BYTES + (512ull << 20))
+
+/* What one process may take and how long; all of these are at least 1. */
+struct workers_limits {
+    uint64_t memory_bytes, output_bytes;
+    uint64_t cpu_s, wall_s; /* of processors, and by the clock on the wall */
+};
 
 struct workers {
     struct worker *cages, *images;
@@ -26,12 +31,12 @@ struct workers {
 };
 
 /* Finds sheend-cage and sheend-image in `folder`; NULL: in the folder of the running program, or in
- * ../libexec/sheen beside it; and starts the first. ERROR_SERVER on failure; workers_finish() is
- * due in both cases. */
-bool workers_init(struct workers *workers, const char *folder, const struct limits *limits,
-                  struct error *error);
+ * ../libexec/sheen beside it; and starts the first. budget_bytes: of memory, for all that the
+ * daemon holds. ERROR_SERVER on failure; workers_finish() is due in both cases. */
+bool workers_init(struct workers *workers, const char *folder, const struct workers_limits *limits,
+                  uint64_t budget_bytes, struct error *error);
 /* Takes new times over, for jobs that begin from now on. */
-void workers_set_times(struct workers *workers, const struct limits *limits);
+void workers_set_times(struct workers *workers, const struct workers_limits *limits);
 void workers_finish(struct workers *workers);
 /* An image or a text will come. Loading its libraries keeps a processor busy for 0.2 s, so that a
  * daemon which is about to make its first frame does it only then. */

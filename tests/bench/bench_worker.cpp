@@ -123,12 +123,11 @@ void ask(report *report)
 {
     workers workers;
     error error = {};
-    limits limits;
-    limits_init(&limits);
+    const workers_limits limits{uint64_t{1} << 33, uint64_t{1} << 33, 60, 120};
     image_use_one_thread();
-    check(
-        workers_init(&workers, report->given().other("workers", "build").c_str(), &limits, &error),
-        error);
+    check(workers_init(&workers, report->given().other("workers", "build").c_str(), &limits,
+                       uint64_t{1} << 32, &error),
+          error);
     measure_least(report, &workers);
     measure_pictures(report, &workers);
     workers_finish(&workers);

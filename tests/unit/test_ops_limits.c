@@ -36,10 +36,10 @@ static void test_rows(void **state)
             assert_int_not_equal(row->offset, LIMITS[k].offset);
         }
     }
-    assert_int_equal(limits.idle_s, 900);
-    assert_int_equal(limits.max_upload, PROTOCOL_MAX_UPLOAD_BYTES);
-    assert_true(limits.interactive_soft < limits.interactive_hard);
-    assert_true(limits.output_soft < limits.output_hard);
+    assert_int_equal(limits.session.idle_s, 900);
+    assert_int_equal(limits.session.max_upload, PROTOCOL_MAX_UPLOAD_BYTES);
+    assert_true(limits.session.interactive_soft < limits.session.interactive_hard);
+    assert_true(limits.session.output_soft < limits.session.output_hard);
 }
 
 static void test_values(void **state)
@@ -57,7 +57,7 @@ static void test_values(void **state)
                 {"4G", (uint64_t)4 << 30}, {"2T", (uint64_t)2 << 40}};
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
         assert_true(limits_set(&limits, budget, good[i].text, &error));
-        assert_int_equal(limits.memory_budget, good[i].bytes);
+        assert_int_equal(limits.assets.memory_budget, good[i].bytes);
     }
     static const char *const bad[] = {"",
                                       "-1",
@@ -81,13 +81,13 @@ static void test_values(void **state)
         assert_int_equal(error.kind, ERROR_REQUEST);
         assert_non_null(strstr(error.text, "memory-budget is '"));
         assert_non_null(strstr(error.text, bad[i]));
-        assert_int_equal(limits.memory_budget, (uint64_t)2 << 40);
+        assert_int_equal(limits.assets.memory_budget, (uint64_t)2 << 40);
     }
     assert_true(limits_set(&limits, credits, "64", &error));
     assert_false(limits_set(&limits, credits, "65", &error));
     assert_non_null(strstr(error.text, "credits is '65'; it must be a whole number from 1 to 64"));
     assert_false(limits_set(&limits, credits, "1K", &error)); /* no bytes */
-    assert_int_equal(limits.credits, 64);
+    assert_int_equal(limits.session.credits, 64);
 }
 
 /* What would serve nobody is refused by name, and the least that is not is taken. */

@@ -441,9 +441,8 @@ static int start_workers(void **state)
 {
     (void)state;
     struct error error = {0};
-    struct limits limits;
-    limits_init(&limits);
-    if (!workers_init(&workers, build_folder(), &limits, &error))
+    const struct workers_limits limits = {(uint64_t)1 << 33, (uint64_t)1 << 33, 60, 120};
+    if (!workers_init(&workers, build_folder(), &limits, (uint64_t)1 << 32, &error))
         fail_msg("%s", error.text);
     return 0;
 }

@@ -44,15 +44,14 @@ static int setup(void **state)
     const struct loop_hooks hooks = {nothing, nothing, NULL};
     int ends[2];
     struct error error = {0};
-    struct limits limits;
-    limits_init(&limits);
+    const struct workers_limits limits = {(uint64_t)1 << 33, (uint64_t)1 << 33, 60, 120};
     assert_non_null(f);
     assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
     f->loop = loop_create(&hooks, &error);
     f->completions = completions_create(f->loop, &error);
     f->pool = pool_create("test", 3, 1, &encode_worker, f->completions, &error);
     assert_non_null(f->pool);
-    assert_true(workers_init(&f->workers, build_folder(), &limits, &error));
+    assert_true(workers_init(&f->workers, build_folder(), &limits, (uint64_t)1 << 32, &error));
     assert_true(conn_init(&f->conn, f->loop, ends[0], &handler, NULL, &f->sent_bytes, &error));
     f->peer = ends[1];
     f->answers.is_ordered = true;

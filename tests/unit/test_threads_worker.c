@@ -374,9 +374,8 @@ static void test_no_program(void **state)
     (void)state;
     struct error error = {0};
     struct workers workers;
-    struct limits limits;
-    limits_init(&limits);
-    assert_false(workers_init(&workers, "/nonexistent", &limits, &error));
+    const struct workers_limits limits = {(uint64_t)1 << 33, (uint64_t)1 << 33, 60, 120};
+    assert_false(workers_init(&workers, "/nonexistent", &limits, (uint64_t)1 << 32, &error));
     workers_finish(&workers);
     assert_int_equal(error.kind, ERROR_SERVER);
     assert_non_null(strstr(error.text, "sheend-cage"));
