@@ -10,10 +10,10 @@
 #include "server/net/access.h"
 #include "server/session/reply.h"
 #include "server/net/conn.h"
-#include "server/session/costs.h"
+#include "server/frame/costs.h"
 #include "server/assets/memory.h"
 #include "server/frame/scheduler.h"
-#include "server/ops/stats.h"
+#include "server/session/stats.h"
 #include "server/assets/upload.h"
 #include "server/threads/workers.h"
 

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "server/session/costs.h"
+#include "server/frame/costs.h"
 #include "server/frame/scheduler.h"
 
 static struct schedule_entry entry_of(enum request_class request_class, uint64_t estimate_us)

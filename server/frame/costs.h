@@ -1,7 +1,7 @@
 /* What tiles cost the device, learned from those that have been drawn: microseconds a pixel by what
  * makes frames alike (model, planes, lights). Pure. Thread: one at a time. */
-#ifndef SHEEN_SESSION_COSTS_H
-#define SHEEN_SESSION_COSTS_H
+#ifndef SHEEN_FRAME_COSTS_H
+#define SHEEN_FRAME_COSTS_H
 
 #include <stdint.h>
 

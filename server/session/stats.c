@@ -1,4 +1,4 @@
-#include "server/ops/stats.h"
+#include "server/session/stats.h"
 
 #include "server/base/clock.h"
 #include "server/net/loop.h"

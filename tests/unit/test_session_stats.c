@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "server/ops/stats.h"
+#include "server/session/stats.h"
 
 #define N 5000
 

@@ -1,4 +1,4 @@
-#include "server/session/costs.h"
+#include "server/frame/costs.h"
 
 #include <stdbool.h>
 

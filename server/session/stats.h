@@ -1,7 +1,7 @@
 /* What the daemon counts about itself: sums since its start, and the last minute. All memory is
  * fixed. Thread: the loop's. */
-#ifndef SHEEN_OPS_STATS_H
-#define SHEEN_OPS_STATS_H
+#ifndef SHEEN_SESSION_STATS_H
+#define SHEEN_SESSION_STATS_H
 
 #include "protocol/message.h"
 #include "server/base/histogram.h"
