@@ -25,10 +25,10 @@ static void end_build(struct image_build *build, bool ok)
     free(build);
 }
 
-static void upload_run(struct task *task, void *worker)
+static void upload_run(struct task *task, void *context)
 {
     struct image_build *build = task->owner;
-    build->image->gpu = renderer_image_create(worker, &build->image->pixels, &build->error);
+    build->image->gpu = renderer_image_create(context, &build->image->pixels, &build->error);
 }
 
 static void upload_done(struct task *task)
@@ -37,9 +37,9 @@ static void upload_done(struct task *task)
     end_build(build, build->image->gpu != NULL);
 }
 
-static void decode_run(struct task *task, void *worker)
+static void decode_run(struct task *task, void *context)
 {
-    (void)worker;
+    (void)context;
     struct image_build *build = task->owner;
     const struct build_order *order = &build->order;
     build->ok = workers_read_image(order->workers, &build->image->pixels, order->file,
@@ -88,10 +88,10 @@ bool light_image_build_start(const struct build_order *order, struct error *erro
     return true;
 }
 
-static void destroy_run(struct task *task, void *worker)
+static void destroy_run(struct task *task, void *context)
 {
     struct light_image *image = task->owner;
-    renderer_image_destroy(worker, image->gpu);
+    renderer_image_destroy(context, image->gpu);
 }
 
 static void destroy_done(struct task *task)

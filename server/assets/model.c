@@ -78,10 +78,10 @@ static void end_build(struct model_build *build, bool ok)
 
 /* --- the GL thread's part */
 
-static void upload_run(struct task *task, void *worker)
+static void upload_run(struct task *task, void *context)
 {
     struct model_build *build = task->owner;
-    build->model->gpu = renderer_model_create(worker, &build->model->tables, &build->error);
+    build->model->gpu = renderer_model_create(context, &build->model->tables, &build->error);
 }
 
 static void upload_done(struct task *task)
@@ -107,9 +107,9 @@ static bool check_not_cancelled(const struct build_order *order, struct error *e
            error_set(error, ERROR_SERVER, "the daemon is shutting down");
 }
 
-static void range_run(struct task *task, void *worker)
+static void range_run(struct task *task, void *context)
 {
-    (void)worker;
+    (void)context;
     struct range *range = task->owner;
     struct model_build *build = range->build;
     struct build_clock clock;
@@ -121,9 +121,9 @@ static void range_run(struct task *task, void *worker)
     atomic_fetch_add(&build->order.progress->done, range->last - range->first);
 }
 
-static void support_run(struct task *task, void *worker)
+static void support_run(struct task *task, void *context)
 {
-    (void)worker;
+    (void)context;
     struct model_build *build = task->owner;
     struct build_clock clock;
     const struct limit_watch watch = {build_clock_goes_on, &clock};
@@ -204,9 +204,9 @@ static bool read_cage(struct model_build *build)
     return fail_named(build, &error);
 }
 
-static void read_run(struct task *task, void *worker)
+static void read_run(struct task *task, void *context)
 {
-    (void)worker;
+    (void)context;
     struct model_build *build = task->owner;
     build->ok = read_cage(build);
 }
@@ -246,10 +246,10 @@ bool model_build_start(const struct build_order *order, struct error *error)
     return true;
 }
 
-static void destroy_run(struct task *task, void *worker)
+static void destroy_run(struct task *task, void *context)
 {
     struct model *model = task->owner;
-    renderer_model_destroy(worker, model->gpu);
+    renderer_model_destroy(context, model->gpu);
 }
 
 static void destroy_done(struct task *task)

@@ -63,9 +63,9 @@ static const char *open_file(struct load *load, const char *name)
 
 /* --- on the pool */
 
-static void load_run(struct task *task, void *worker)
+static void load_run(struct task *task, void *context)
 {
-    (void)worker;
+    (void)context;
     struct load *load = task->owner;
     size_t used = 0;
     load->bytes = malloc(load->size);

@@ -87,9 +87,9 @@ static bool has_begun(const struct request *request)
     return request->frame.width_px > 0;
 }
 
-static void polygons_run(struct task *task, void *worker)
+static void polygons_run(struct task *task, void *context)
 {
-    (void)worker;
+    (void)context;
     struct request *request = task->owner;
     const struct frame_watch watch = {is_abandoned, request};
     request->polygons =
@@ -320,9 +320,9 @@ static void start_encoding(struct request *request)
                  encode_finished, request);
 }
 
-static void paint_run(struct task *task, void *worker)
+static void paint_run(struct task *task, void *context)
 {
-    (void)worker;
+    (void)context;
     struct request *request = task->owner;
     struct frame *frame = &request->frame;
     const struct limit_tables *tables = &request->model.asset->model->tables;
@@ -372,14 +372,14 @@ static void frame_drawn(struct request *request)
     pool_submit(request->host->pool, &request->task, urgency(request));
 }
 
-static void step_run(struct task *task, void *worker)
+static void step_run(struct task *task, void *context)
 {
     struct request *request = task->owner;
     uint64_t start_us = clock_now_us();
     request->step = FRAME_FAILED;
     if (has_begun(request) ||
-        renderer_begin(worker, &request->frame_work, &request->frame, &request->failure))
-        request->step = renderer_step(worker, request->model.asset->model->gpu,
+        renderer_begin(context, &request->frame_work, &request->frame, &request->failure))
+        request->step = renderer_step(context, request->model.asset->model->gpu,
                                       &request->frame_work, &request->frame, &request->failure);
     request->step_us = clock_now_us() - start_us;
 }

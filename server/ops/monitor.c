@@ -32,7 +32,7 @@ static const char *who_is_stuck(const struct monitor *monitor)
     if (render_thread_busy_us(monitor->host->render_thread, now) > monitor->stuck_us)
         return "the GL thread";
     if (pool_busy_us(monitor->host->pool, now) > monitor->stuck_us)
-        return "a worker thread";
+        return "a pool thread";
     return pool_busy_us(monitor->host->readers, now) > monitor->stuck_us ? "a reader thread" : NULL;
 }
 

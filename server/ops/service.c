@@ -429,9 +429,9 @@ static bool start(struct service *service, struct error *error)
         !(service->completions = completions_create(host->loop, error)) ||
         !(host->render_thread =
               render_thread_create(&gl_device, &renderer, service->completions, error)) ||
-        !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1, &encode_worker,
+        !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1, &encode_context,
                                    service->completions, error)) ||
-        !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_worker){0},
+        !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_context){0},
                                       service->completions, error)) ||
         !(host->store = store_create(host->pool, host->readers, host->render_thread, &host->workers,
                                      &host->asset_limits, host->is_private, error)))

@@ -52,30 +52,30 @@ struct encoders {
     struct png_encoder *png;
 };
 
-static void stop_worker(void *worker)
+static void stop_context(void *context)
 {
-    struct encoders *encoders = worker;
+    struct encoders *encoders = context;
     codec_encoder_destroy(encoders->zstd);
     jpeg_encoder_destroy(encoders->jpeg);
     png_encoder_destroy(encoders->png);
     free(encoders);
 }
 
-static bool start_worker(void *owner, void **worker, struct error *error)
+static bool start_context(void *owner, void **context, struct error *error)
 {
     (void)owner;
     struct encoders *encoders = calloc(1, sizeof *encoders);
     if (encoders && (encoders->zstd = codec_encoder_create(ZSTD_LEVEL)) &&
         (encoders->jpeg = jpeg_encoder_create()) && (encoders->png = png_encoder_create())) {
-        *worker = encoders;
+        *context = encoders;
         return true;
     }
     if (encoders)
-        stop_worker(encoders);
+        stop_context(encoders);
     return error_set(error, ERROR_SERVER, "no memory for the encoders of a thread");
 }
 
-const struct pool_worker encode_worker = {start_worker, stop_worker, NULL};
+const struct pool_context encode_context = {start_context, stop_context, NULL};
 
 void encoded_destroy(struct encoded *encoded)
 {
@@ -205,7 +205,7 @@ static void strip_done(struct task *task)
 }
 
 static void start_strips(struct encode_job *job, size_t n,
-                         void (*run)(struct task *task, void *worker),
+                         void (*run)(struct task *task, void *context),
                          bool (*join)(struct encode_job *job))
 {
     job->strips = block_cache_take(job->encoded->block_cache, n * sizeof *job->strips);
@@ -225,11 +225,11 @@ static void start_strips(struct encode_job *job, size_t n,
 
 /* --- ZSTD: a table and the strips */
 
-static void zstd_run(struct task *task, void *worker)
+static void zstd_run(struct task *task, void *context)
 {
     struct strip_task *strip = task->owner;
     struct encode_job *job = strip->job;
-    struct encoders *encoders = worker;
+    struct encoders *encoders = context;
     struct codec_strip place = codec_strip_at(&job->layout, strip->index);
     size_t bound = codec_strip_bound(&place);
     uint8_t *bytes = take_strip(strip, bound);
@@ -261,11 +261,11 @@ static bool zstd_join(struct encode_job *job)
 
 /* --- JPEG: a head and the strips */
 
-static void jpeg_run(struct task *task, void *worker)
+static void jpeg_run(struct task *task, void *context)
 {
     struct strip_task *strip = task->owner;
     struct encode_job *job = strip->job;
-    struct encoders *encoders = worker;
+    struct encoders *encoders = context;
     uint8_t *bytes = take_strip(strip, job->jpeg.strips.bound);
     if (bytes)
         jpeg_strip_encode(encoders->jpeg, &job->jpeg, strip->index, job->encoded->frame.plane[0],
@@ -296,11 +296,11 @@ static void start_jpeg(struct encode_job *job)
 
 /* --- PNG: a head and the strips, of which the last holds the tail */
 
-static void png_run(struct task *task, void *worker)
+static void png_run(struct task *task, void *context)
 {
     struct strip_task *strip = task->owner;
     struct encode_job *job = strip->job;
-    struct encoders *encoders = worker;
+    struct encoders *encoders = context;
     const uint8_t *rgba = job->encoded->frame.plane[0];
     struct png_strip written = {0};
     uint8_t *bytes = take_strip(strip, job->png.bound);
@@ -386,9 +386,9 @@ static void add_channels(const struct encode_job *job, struct picture *picture)
     }
 }
 
-static void file_run(struct task *task, void *worker)
+static void file_run(struct task *task, void *context)
 {
-    (void)worker;
+    (void)context;
     struct encode_job *job = task->owner;
     struct picture picture = {.format = file_format(job->format.encoding),
                               .width_px = job->layout.width_px,

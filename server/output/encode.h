@@ -40,8 +40,8 @@ struct encoded {
     void *memory_of;
 };
 
-/* Worker of the pool's threads: what encoding needs of its own in each. */
-extern const struct pool_worker encode_worker;
+/* The context of a pool's threads: the encoders that each needs for itself. */
+extern const struct pool_context encode_context;
 
 /* What encoding a frame takes at most, beside its planes. */
 uint64_t encode_bytes(const struct codec_layout *layout, const struct encode_format *format);

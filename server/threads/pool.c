@@ -18,7 +18,7 @@ static _Thread_local struct pool_thread *this_thread; /* NULL outside of a pool 
 
 struct pool {
     char name[13];
-    struct pool_worker worker;
+    struct pool_context context;
     struct completions *completions;
     pthread_mutex_t lock;
     pthread_cond_t changed; /* tasks, a start, the end */
@@ -45,11 +45,11 @@ static struct task *next_task(struct pool *pool, int least_urgent)
     return task;
 }
 
-/* Starts the calling thread's worker; *least_urgent says which tasks it takes. */
-static bool start_worker(struct pool *pool, void **worker, int *least_urgent)
+/* Makes the calling thread's context; *least_urgent says which tasks the thread takes. */
+static bool start_context(struct pool *pool, void **context, int *least_urgent)
 {
     struct error error = {0};
-    bool ok = !pool->worker.start || pool->worker.start(pool->worker.owner, worker, &error);
+    bool ok = !pool->context.start || pool->context.start(pool->context.owner, context, &error);
     pthread_mutex_lock(&pool->lock);
     *least_urgent = pool->n_started++ < pool->n_urgent_threads ? POOL_URGENT : POOL_LATER;
     if (!ok && pool->n_failed++ == 0)
@@ -65,18 +65,18 @@ static void *thread_main(void *argument)
     struct pool *pool = self->pool;
     this_thread = self;
     pthread_setname_np(pthread_self(), pool->name);
-    void *worker = NULL;
+    void *context = NULL;
     int least_urgent;
-    if (!start_worker(pool, &worker, &least_urgent))
+    if (!start_context(pool, &context, &least_urgent))
         return NULL;
     for (struct task *task; (task = next_task(pool, least_urgent));) {
         atomic_store(&self->busy_since_us, clock_now_us());
-        task->run(task, worker);
+        task->run(task, context);
         atomic_store(&self->busy_since_us, 0);
         completions_post(pool->completions, task);
     }
-    if (pool->worker.stop)
-        pool->worker.stop(worker);
+    if (pool->context.stop)
+        pool->context.stop(context);
     return NULL;
 }
 
@@ -102,7 +102,7 @@ static bool start_threads(struct pool *pool, unsigned n_threads, struct error *e
 }
 
 struct pool *pool_create(const char *name, unsigned n_threads, unsigned n_urgent_threads,
-                         const struct pool_worker *worker, struct completions *completions,
+                         const struct pool_context *context, struct completions *completions,
                          struct error *error)
 {
     n_threads += n_urgent_threads;
@@ -112,7 +112,7 @@ struct pool *pool_create(const char *name, unsigned n_threads, unsigned n_urgent
         return NULL;
     }
     snprintf(pool->name, sizeof pool->name, "%s", name);
-    pool->worker = *worker;
+    pool->context = *context;
     pool->n_urgent_threads = n_urgent_threads;
     pool->completions = completions;
     pthread_mutex_init(&pool->lock, NULL);

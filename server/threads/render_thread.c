@@ -23,7 +23,7 @@ static void device_lost(void *owner)
     atomic_fetch_add(&thread->losses, 1);
 }
 
-static bool open_device(void *owner, void **worker, struct error *error)
+static bool open_device(void *owner, void **context, struct error *error)
 {
     struct render_thread *thread = owner;
     struct renderer *renderer = renderer_create(thread->kind, &thread->options, error);
@@ -34,13 +34,13 @@ static bool open_device(void *owner, void **worker, struct error *error)
     snprintf(thread->driver, sizeof thread->driver, "%s", thread->info.driver);
     thread->info.device = thread->device;
     thread->info.driver = thread->driver;
-    *worker = renderer;
+    *context = renderer;
     return true;
 }
 
-static void close_device(void *worker)
+static void close_device(void *context)
 {
-    renderer_destroy(worker);
+    renderer_destroy(context);
 }
 
 struct render_thread *render_thread_create(const struct renderer_device *device,
@@ -57,8 +57,8 @@ struct render_thread *render_thread_create(const struct renderer_device *device,
     thread->options.lost = device_lost;
     thread->options.owner = thread;
     atomic_init(&thread->losses, 0);
-    const struct pool_worker worker = {open_device, close_device, thread};
-    thread->pool = pool_create("sheend-gl", 1, 0, &worker, completions, error);
+    const struct pool_context context = {open_device, close_device, thread};
+    thread->pool = pool_create("sheend-gl", 1, 0, &context, completions, error);
     if (!thread->pool) {
         free(thread);
         return NULL;

@@ -1,7 +1,7 @@
 /* The one thread that owns the renderer, and with it the GL context, for the daemon's life.
- * Works submitted here see their `worker` as `struct renderer *` and run in order; nobody else
- * calls renderer_*() with a renderer. A device that is lost is opened again there (renderer.h); the
- * loop's thread is told of it by the task that fails. Thread: the functions here are for the loop's
+ * Tasks submitted here get the `struct renderer *` as their context and run in order; nobody else
+ * calls renderer_*() with a renderer. The thread opens a lost device again (renderer.h); the task
+ * that fails tells the loop's thread of the loss. Thread: the functions here are for the loop's
  * thread. */
 #ifndef SHEEN_THREADS_RENDER_THREAD_H
 #define SHEEN_THREADS_RENDER_THREAD_H

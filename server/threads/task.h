@@ -11,8 +11,8 @@
 #include "server/net/loop.h"
 
 struct task {
-    void (*run)(struct task *task, void *worker); /* on a worker thread; `worker` is its own */
-    void (*done)(struct task *task);              /* on the loop's thread; may free the task */
+    void (*run)(struct task *task, void *context); /* on another thread, with its context */
+    void (*done)(struct task *task);               /* on the loop's thread; may free the task */
     void *owner;
     struct task *next; /* of the queue that holds it */
 };
@@ -25,16 +25,15 @@ struct task_list {
 void task_list_push(struct task_list *list, struct task *task);
 struct task *task_list_pop(struct task_list *list); /* NULL when empty */
 
-/* Finished tasks on their way to the loop's thread: a locked list and an eventfd. It can hold no
- * more than was submitted, and what is submitted is bounded where it is admitted (scheduler.h,
- * store.h). */
+/* Finished tasks on their way to the loop's thread: a locked list and an eventfd. The list holds no
+ * more tasks than were submitted, and scheduler.h and store.h bound how many are. */
 struct completions;
 
 struct completions *completions_create(struct loop *loop, struct error *error);
 void completions_destroy(struct completions *completions);                 /* NULL is safe */
 void completions_post(struct completions *completions, struct task *task); /* any thread */
-/* Calls done() of all finished tasks. The loop does this itself; at the end of the daemon, when
- * the loop has stopped, somebody must. */
+/* Calls done() of all finished tasks. The loop does this by itself; once the loop has stopped, the
+ * daemon calls it a last time. */
 void completions_deliver(struct completions *completions);
 
 #endif

@@ -49,7 +49,7 @@ static int setup(void **state)
     assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
     f->loop = loop_create(&hooks, &error);
     f->completions = completions_create(f->loop, &error);
-    f->pool = pool_create("test", 3, 1, &encode_worker, f->completions, &error);
+    f->pool = pool_create("test", 3, 1, &encode_context, f->completions, &error);
     assert_non_null(f->pool);
     assert_true(workers_init(&f->workers, build_folder(), &limits, (uint64_t)1 << 32, &error));
     assert_true(conn_init(&f->conn, f->loop, ends[0], &handler, NULL, &f->sent_bytes, &error));
