@@ -18,17 +18,17 @@ enum request_class request_class_of(sheen_RequestClass request_class)
                                                                  : CLASS_STILL;
 }
 
-static struct request *request_create(struct session *session, struct answer *answer, uint32_t seq)
+static struct request *request_create(struct session *session, struct reply *reply, uint32_t seq)
 {
     struct request *request = block_cache_take(session->host->block_cache, sizeof *request);
     if (!request) {
-        session_answer_error(session, answer, sheen_ErrorCode_ERROR_OVERLOADED,
-                             "no memory for another request: try again later");
+        session_reply_error(session, reply, sheen_ErrorCode_ERROR_OVERLOADED,
+                            "no memory for another request: try again later");
         return NULL;
     }
     *request = (struct request){.host = session->host};
     request->session = session;
-    request->answer = answer;
+    request->reply = reply;
     request->seq = seq;
     memcpy(request->owner, session_owner(session), sizeof request->owner);
     memcpy(request->asker, session->client.identity.owner, sizeof request->asker);
@@ -79,8 +79,8 @@ void request_end(struct request *request)
 void request_fail(struct request *request, const struct error *error)
 {
     if (request->session)
-        session_answer_error(request->session, request->answer, error_code_of(error->kind),
-                             error->text);
+        session_reply_error(request->session, request->reply, error_code_of(error->kind),
+                            error->text);
     request_end(request);
 }
 
@@ -108,24 +108,24 @@ static void let_go_of_session(struct request *request)
 
 /* --- answers before their time */
 
-void request_answer_superseded(struct request *request, uint32_t by_seq)
+void request_reply_superseded(struct request *request, uint32_t by_seq)
 {
     const sheen_Superseded superseded = {.by = by_seq};
     request->host->stats.superseded++;
-    session_answer(request->session, request->answer, MESSAGE_SUPERSEDED, &superseded);
+    session_reply(request->session, request->reply, MESSAGE_SUPERSEDED, &superseded);
     let_go_of_session(request);
 }
 
-static void answer_error_early(struct request *request, sheen_ErrorCode code, const char *text)
+static void reply_error_early(struct request *request, sheen_ErrorCode code, const char *text)
 {
-    session_answer_error(request->session, request->answer, code, text);
+    session_reply_error(request->session, request->reply, code, text);
     let_go_of_session(request);
 }
 
 static void cancel(struct request *request, const char *why)
 {
     request->host->stats.cancelled++;
-    answer_error_early(request, sheen_ErrorCode_ERROR_CANCELLED, why);
+    reply_error_early(request, sheen_ErrorCode_ERROR_CANCELLED, why);
 }
 
 void request_cancel(struct session *session, uint32_t seq)
@@ -151,7 +151,7 @@ void request_shut_down_all(struct session *session)
              "another or the next",
              (unsigned long long)session->host->limits.drain_s);
     while (session->requests)
-        answer_error_early(session->requests, sheen_ErrorCode_ERROR_SHUTTING_DOWN, text);
+        reply_error_early(session->requests, sheen_ErrorCode_ERROR_SHUTTING_DOWN, text);
 }
 
 bool request_is_late(const struct request *request, uint64_t now_us)
@@ -159,13 +159,13 @@ bool request_is_late(const struct request *request, uint64_t now_us)
     return request->deadline_us > 0 && now_us > request->deadline_us;
 }
 
-void request_answer_late(struct request *request)
+void request_reply_late(struct request *request)
 {
     char text[MESSAGE_TEXT_BYTES];
     snprintf(text, sizeof text, "not drawn within its deadline_ms of %u",
              request->render.deadline_ms);
     request->host->stats.late++;
-    answer_error_early(request, sheen_ErrorCode_ERROR_DEADLINE, text);
+    reply_error_early(request, sheen_ErrorCode_ERROR_DEADLINE, text);
 }
 
 /* Frames that are drawn already are sent all the same. */
@@ -174,7 +174,7 @@ void request_end_late(struct session *session, uint64_t now_us)
     for (struct request *request = session->requests, *next; request; request = next) {
         next = request->next;
         if (request->entry.state < SCHEDULE_DRAWING && request_is_late(request, now_us))
-            request_answer_late(request);
+            request_reply_late(request);
     }
 }
 
@@ -226,8 +226,8 @@ static bool is_known(struct request *request, enum asset_kind kind, const uint8_
     hex_write(sha256, MODEL_ID_BYTES, hex);
     snprintf(text, sizeof text, "no %s with SHA-256 %s here: upload it first",
              kind == ASSET_MODEL ? "model" : "image", hex);
-    session_answer_error(request->session, request->answer, sheen_ErrorCode_ERROR_UNKNOWN_MODEL,
-                         text);
+    session_reply_error(request->session, request->reply, sheen_ErrorCode_ERROR_UNKNOWN_MODEL,
+                        text);
     request_end(request);
     return false;
 }
@@ -276,7 +276,7 @@ static void fill_findings(sheen_ModelInfo *info, const struct model *model)
     }
 }
 
-static void answer_query(struct request *request)
+static void reply_query(struct request *request)
 {
     const struct asset *asset = request->model.asset;
     const struct model *model = asset->model;
@@ -305,7 +305,7 @@ static void answer_query(struct request *request)
     message_make_text(info.warnings, true);
     fill_survey(&info, &model->survey);
     fill_findings(&info, model);
-    session_answer(request->session, request->answer, MESSAGE_MODEL_INFO, &info);
+    session_reply(request->session, request->reply, MESSAGE_MODEL_INFO, &info);
     request_end(request);
 }
 
@@ -343,10 +343,10 @@ static void load_file(struct request *request, const char *name)
     }
 }
 
-void request_query(struct session *session, struct answer *answer, uint32_t seq,
+void request_query(struct session *session, struct reply *reply, uint32_t seq,
                    const sheen_ModelQuery *query)
 {
-    struct request *request = request_create(session, answer, seq);
+    struct request *request = request_create(session, reply, seq);
     if (!request || (!query->has_file && !is_known(request, ASSET_MODEL, query->sha256)))
         return;
     request->is_query = true;
@@ -372,7 +372,7 @@ static void enter_queue(struct request *request)
     struct schedule_entry *replaced =
         scheduler_enter(&request->host->scheduler, &request->session->queue, entry);
     if (replaced)
-        request_answer_superseded(replaced->owner, request->seq);
+        request_reply_superseded(replaced->owner, request->seq);
 }
 
 /* Does a worker process write it, or has it a legend? */
@@ -380,13 +380,14 @@ static bool takes_images(const sheen_Render *render)
 {
     return render->encoding == sheen_Encoding_ENCODING_EXR ||
            render->encoding == sheen_Encoding_ENCODING_TIFF ||
-           (render->show.kind != sheen_ShowKind_SHOW_LINES && show_has_legend(&render->show));
+           (render->show.kind != sheen_ShowKind_SHOW_LINES &&
+            false_colour_has_legend(&render->show));
 }
 
-void request_render(struct session *session, struct answer *answer, uint32_t seq,
+void request_render(struct session *session, struct reply *reply, uint32_t seq,
                     const sheen_Render *render, uint64_t frame_bytes)
 {
-    struct request *request = request_create(session, answer, seq);
+    struct request *request = request_create(session, reply, seq);
     if (!request)
         return;
     if (!is_known(request, ASSET_MODEL, render->model_sha256))
@@ -422,7 +423,7 @@ static void assets_ready(struct request *request)
         return;
     }
     if (request->is_query) {
-        answer_query(request);
+        reply_query(request);
         return;
     }
     request_queue_frame(request);
@@ -445,6 +446,6 @@ void request_report_progress(struct session *session)
         sheen_Progress progress = {.done = atomic_load(&asset->progress.done),
                                    .total = asset->progress.total};
         snprintf(progress.stage, sizeof progress.stage, "%s", asset->progress.stage);
-        session_report_progress(session, request->answer, request->seq, &progress);
+        session_report_progress(session, request->reply, request->seq, &progress);
     }
 }

@@ -2,7 +2,7 @@
  * store, for memory, for its turn, for the GL thread and for the encoder, and then answers its
  * session.
  *
- * A request owns itself: it ends after its answer, or, when it is answered before (replaced,
+ * A request owns itself: it ends after its reply, or, when it is answered before (replaced,
  * cancelled, late) or its session has gone, as soon as no other thread works for it. Thread: the
  * loop's. */
 #ifndef SHEEN_FRAME_REQUEST_H
@@ -20,11 +20,11 @@ enum request_class request_class_of(sheen_RequestClass request_class);
 uint64_t request_paused_bytes(const struct session_host *host, const sheen_Render *render);
 
 /* Both fill `answer` in the end, unless the session goes; they may have ended when they return. */
-void request_query(struct session *session, struct answer *answer, uint32_t seq,
+void request_query(struct session *session, struct reply *reply, uint32_t seq,
                    const sheen_ModelQuery *query);
 /* `render` has passed message_check_render(); its frame takes so many bytes of the budget, which
  * allows them. */
-void request_render(struct session *session, struct answer *answer, uint32_t seq,
+void request_render(struct session *session, struct reply *reply, uint32_t seq,
                     const sheen_Render *render, uint64_t frame_bytes);
 
 /* Answers the request of this number ERROR_CANCELLED, if it has not been answered. */

@@ -237,7 +237,7 @@ static void fill_frame(const struct request *request, const struct encoded *enco
     snprintf(frame->server, sizeof frame->server, "%s", SHEEN_VERSION);
 }
 
-static void answer_frame(struct request *request, struct encoded *encoded)
+static void reply_frame(struct request *request, struct encoded *encoded)
 {
     uint64_t now = clock_now_us();
     request->times.tables_us = request->model.asset->unreported_us;
@@ -246,8 +246,8 @@ static void answer_frame(struct request *request, struct encoded *encoded)
     stats_frame(&request->host->stats, request->entry.request_class, &request->times, now);
     sheen_Frame frame;
     fill_frame(request, encoded, &frame);
-    session_answer_frame(request->session, request->answer, request->entry.request_class, &frame,
-                         encoded);
+    session_reply_frame(request->session, request->reply, request->entry.request_class, &frame,
+                        encoded);
     request_end(request);
 }
 
@@ -266,7 +266,7 @@ static void hold(struct request *request, struct encoded *encoded)
     request->held = encoded;
     const struct schedule_entry *newer = scheduler_hold(&request->entry);
     if (newer)
-        request_answer_superseded(request, ((const struct request *)newer->owner)->seq);
+        request_reply_superseded(request, ((const struct request *)newer->owner)->seq);
 }
 
 void request_send_held(struct session *session)
@@ -277,7 +277,7 @@ void request_send_held(struct session *session)
             continue;
         struct encoded *encoded = request->held;
         request->held = NULL;
-        answer_frame(request, encoded);
+        reply_frame(request, encoded);
         return;
     }
 }
@@ -299,7 +299,7 @@ static void encode_finished(void *owner, struct encoded *encoded, const struct e
     } else if (interactive && session_is_sending_interactive(request->session)) {
         hold(request, encoded);
     } else {
-        answer_frame(request, encoded);
+        reply_frame(request, encoded);
     }
 }
 
@@ -312,11 +312,11 @@ static enum pool_urgency urgency(const struct request *request)
 
 static void start_encoding(struct request *request)
 {
-    label_init(&request->label, &request->frame_request, &request->render,
-               render_thread_info(request->host->render_thread));
+    metadata_init(&request->metadata, &request->frame_request, &request->render,
+                  render_thread_info(request->host->render_thread));
     const struct encode_format format = encode_format_of(&request->render);
     encode_start(request->host->pool, &request->host->workers, &request->frame, &request->layout,
-                 &format, urgency(request), request->label.attributes, LABEL_ATTRIBUTES,
+                 &format, urgency(request), request->metadata.attributes, METADATA_ATTRIBUTES,
                  encode_finished, request);
 }
 
@@ -331,8 +331,9 @@ static void paint_run(struct task *task, void *context)
     double size = 0;
     for (int i = 0; i < 3; i++)
         size = hypot(size, tables->box_max[i] - tables->box_min[i]);
-    show_paint(frame, &request->host->workers, &request->render.show, size,
-               request->frame_request.miss, request->frame_request.empty, &request->extremes);
+    false_colour_paint(frame, &request->host->workers, &request->render.show, size,
+                       request->frame_request.miss, request->frame_request.empty,
+                       &request->extremes);
     for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
         if (!(request->layout.planes & 1u << plane)) {
             block_cache_give(frame->block_cache, frame->plane[plane]);
@@ -465,7 +466,7 @@ void request_start_next(struct session_host *host)
         struct request *request = entry->owner;
         if (request_is_late(request, clock_now_us())) {
             scheduler_put_back(&host->scheduler, entry);
-            request_answer_late(request);
+            request_reply_late(request);
         } else if (take_memory(request)) {
             request->is_busy = true;
             request->task = (struct task){step_run, step_done, request, NULL};

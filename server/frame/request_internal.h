@@ -19,7 +19,7 @@ struct request {
     struct session *session;         /* NULL once it is answered, or the session has gone */
     struct request *next, *previous; /* of the session */
     struct request *next_parked;     /* of the host, while is_parked */
-    struct answer *answer;           /* valid while there is a session */
+    struct reply *reply;             /* valid while there is a session */
     uint32_t seq;
     uint8_t owner[STORE_OWNER_BYTES]; /* the session's */
     uint8_t asker[STORE_OWNER_BYTES]; /* the client's identity, also where all is shared */
@@ -49,11 +49,11 @@ struct request {
     struct frame frame;
     sheen_Times times;
     bool is_blank; /* no pixel shows any of the model */
-    struct show_extremes extremes;
+    struct false_colour_extremes extremes;
     bool has_light_share;
     double light_share; /* of what is seen: where a light is met */
     uint64_t encode_start_us;
-    struct label label;
+    struct metadata metadata;
     struct renderer_polygons *polygons; /* until the device has them */
     size_t polygon_bytes;               /* that they are charged with here */
     struct encoded *held;               /* encoded, until the socket can take it */
@@ -64,10 +64,10 @@ struct request {
 /* The request's work is over. */
 void request_end(struct request *request);
 void request_fail(struct request *request, const struct error *error);
-/* Gives the answer, and goes on without a session until nobody works for the request. */
-void request_answer_superseded(struct request *request, uint32_t by_seq);
+/* Gives the reply, and goes on without a session until nobody works for the request. */
+void request_reply_superseded(struct request *request, uint32_t by_seq);
 bool request_is_late(const struct request *request, uint64_t now_us);
-void request_answer_late(struct request *request);
+void request_reply_late(struct request *request);
 
 /* --- request_frame.c */
 

@@ -71,8 +71,8 @@ struct access *access_create(const struct access_options *options, struct error 
         return NULL;
     }
     access->options = *options;
-    access->users = user_namespace_read(ID_MAP_USERS);
-    access->groups = user_namespace_read(ID_MAP_GROUPS);
+    access->users = user_namespace_read(USER_NAMESPACE_USERS);
+    access->groups = user_namespace_read(USER_NAMESPACE_GROUPS);
     bool ok = read_tls(access, error);
     if (ok && *options->tokens)
         ok = (access->tokens = tokens_read(options->tokens, error)) != NULL;

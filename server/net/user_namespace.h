@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define ID_MAP_USERS "/proc/self/uid_map", "/proc/sys/kernel/overflowuid"
-#define ID_MAP_GROUPS "/proc/self/gid_map", "/proc/sys/kernel/overflowgid"
+#define USER_NAMESPACE_USERS "/proc/self/uid_map", "/proc/sys/kernel/overflowuid"
+#define USER_NAMESPACE_GROUPS "/proc/self/gid_map", "/proc/sys/kernel/overflowgid"
 
 struct user_namespace {
     bool is_whole;     /* every id is mapped */
@@ -21,9 +21,9 @@ struct user_namespace {
 struct user_namespace user_namespace_read(const char *map_path, const char *overflow_path);
 
 /* May this be any of several ids? */
-static inline bool user_namespace_hides(const struct user_namespace *map, uint32_t id)
+static inline bool user_namespace_hides(const struct user_namespace *names, uint32_t id)
 {
-    return !map->is_whole && id == map->overflow;
+    return !names->is_whole && id == names->overflow;
 }
 
 #endif

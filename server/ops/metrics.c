@@ -102,7 +102,7 @@ static void write_requests(const struct session_host *host, struct text_buffer *
     head(text, "answers_total", "counter", "Answers, by what they are.");
     for (size_t i = 0; i < sizeof ANSWERS / sizeof *ANSWERS; i++)
         text_buffer_add(text, "sheen_answers_total{answer=\"%s\"} %" PRIu64 "\n", ANSWERS[i].name,
-                        stats->answers[ANSWERS[i].type]);
+                        stats->replies[ANSWERS[i].type]);
     head(text, "errors_total", "counter", "Error answers, by their code.");
     for (unsigned i = sheen_ErrorCode_ERROR_PROTOCOL; i < _sheen_ErrorCode_ARRAYSIZE; i++)
         text_buffer_add(text, "sheen_errors_total{code=\"%s\"} %" PRIu64 "\n", stats_error_name(i),

@@ -327,9 +327,9 @@ static sheen_Extreme extreme_at(const struct painting *painting, double value, s
 }
 
 static void fill_extremes(const struct painting *painting, const struct found *found, double size,
-                          struct show_extremes *extremes)
+                          struct false_colour_extremes *extremes)
 {
-    *extremes = (struct show_extremes){.has_values = found->n > 0};
+    *extremes = (struct false_colour_extremes){.has_values = found->n > 0};
     if (!extremes->has_values)
         return;
     bool has_place = found->greatest - found->least > least_difference(painting, size);
@@ -417,13 +417,14 @@ static void add_legend(const struct painting *painting, const struct frame *fram
         log_event(LOG_WARN, "legends lack their numbers", log_text("text", error.text));
 }
 
-bool show_has_legend(const sheen_Show *show)
+bool false_colour_has_legend(const sheen_Show *show)
 {
     return !show->has_legend || show->legend;
 }
 
-void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *show, double size,
-                const float miss[4], const float empty[4], struct show_extremes *extremes)
+void false_colour_paint(const struct frame *frame, struct workers *workers, sheen_Show *show,
+                        double size, const float miss[4], const float empty[4],
+                        struct false_colour_extremes *extremes)
 {
     struct found found = {0};
     struct painting painting = {
@@ -449,6 +450,6 @@ void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *
     painting.range = show->range;
     paint_pixels(&painting, frame->plane[0], miss, empty, &found);
     fill_extremes(&painting, &found, size, extremes);
-    if (show_has_legend(show))
+    if (false_colour_has_legend(show))
         add_legend(&painting, frame, workers);
 }

@@ -18,7 +18,7 @@
 #include "server/threads/workers.h"
 
 /* The least and the greatest value of a scale, of all pixels whose centre has one. */
-struct show_extremes {
+struct false_colour_extremes {
     bool has_values; /* false: no pixel has a value, or the kind has no scale */
     /* They name a place (pixel, position; face, u and v where the frame has the Ptex plane) unless
      * the two differ by no more than rounding may: of DRAFT 1e-5 rad, else the curvature of a
@@ -27,7 +27,7 @@ struct show_extremes {
 };
 
 /* Is the legend wanted? */
-bool show_has_legend(const sheen_Show *show);
+bool false_colour_has_legend(const sheen_Show *show);
 
 /* Paints frame->plane[0]; the frame has the planes of message_render_planes(). `empty` is the
  * colour where no surface covers the pixel, `miss` where the surface has no such value; both RGBA,
@@ -37,7 +37,8 @@ bool show_has_legend(const sheen_Show *show);
  * show->range: of DRAFT 3 degrees, else the magnitude that 98 of 100 values do not exceed, rounded
  * up to two digits, and no less than the curvature of a surface whose normal turns by 1e-5 rad over
  * `size`, so that the rounding of a flat model is not magnified. */
-void show_paint(const struct frame *frame, struct workers *workers, sheen_Show *show, double size,
-                const float miss[4], const float empty[4], struct show_extremes *extremes);
+void false_colour_paint(const struct frame *frame, struct workers *workers, sheen_Show *show,
+                        double size, const float miss[4], const float empty[4],
+                        struct false_colour_extremes *extremes);
 
 #endif

@@ -1,10 +1,10 @@
-/* A frame's colour as a JPEG file of three channels; alpha is left out. The label is the file's
+/* A frame's colour as a JPEG file of three channels; alpha is left out. The metadata are the file's
  * comment.
  *
  * The picture is cut into horizontal strips, so that threads can share the work: each becomes a
  * file of its own, and without its head it is one restart interval of the whole file, which is the
  *
- *   head                with the label and the whole picture's height
+ *   head                with the metadata and the whole picture's height
  *   the strips' scans   back to back; the first seven end with a restart marker, and so on
  *
  * sheend does this itself: it reads its own pixels only, and a process of its own would cost more

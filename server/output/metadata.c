@@ -9,7 +9,7 @@
 
 enum { VERSION, DEVICE, DRIVER, SOFTWARE, MODEL, CAMERA, LINES, LIGHT, COLOURS, SURFACE, SHOW };
 
-static const char *const NAMES[LABEL_ATTRIBUTES] = {
+static const char *const NAMES[METADATA_ATTRIBUTES] = {
     [VERSION] = "sheen:version",   [DEVICE] = "sheen:device", [DRIVER] = "sheen:driver",
     [SOFTWARE] = "sheen:software", [MODEL] = "sheen:model",   [CAMERA] = "sheen:camera",
     [LINES] = "sheen:lines",       [LIGHT] = "sheen:light",   [COLOURS] = "sheen:colours",
@@ -27,7 +27,7 @@ static void __attribute__((format(printf, 2, 3))) add(char *value, const char *f
     size_t used = strlen(value);
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(value + used, LABEL_VALUE_BYTES - used, format, arguments);
+    vsnprintf(value + used, METADATA_VALUE_BYTES - used, format, arguments);
     va_end(arguments);
 }
 
@@ -72,7 +72,7 @@ static void describe_show(char *value, const sheen_Show *show)
             show->direction.z);
     if (show->has_range)
         add(value, " range=%.17g", show->range);
-    if (show->kind != sheen_ShowKind_SHOW_LINES && !show_has_legend(show))
+    if (show->kind != sheen_ShowKind_SHOW_LINES && !false_colour_has_legend(show))
         add(value, " legend=off");
 }
 
@@ -107,27 +107,27 @@ static void describe_light(char *value, const struct light *light, const sheen_L
     describe_pattern(value, &light->pattern, asked);
 }
 
-void label_init(struct label *label, const struct frame_request *request, const sheen_Render *asked,
-                const struct renderer_info *info)
+void metadata_init(struct metadata *metadata, const struct frame_request *request,
+                   const sheen_Render *asked, const struct renderer_info *info)
 {
     char hex[2 * MODEL_ID_BYTES + 1];
-    for (int i = 0; i < LABEL_ATTRIBUTES; i++) {
-        label->attributes[i] = (struct image_attribute){NAMES[i], label->values[i]};
-        label->values[i][0] = 0;
+    for (int i = 0; i < METADATA_ATTRIBUTES; i++) {
+        metadata->attributes[i] = (struct image_attribute){NAMES[i], metadata->values[i]};
+        metadata->values[i][0] = 0;
     }
     hex_write(asked->model_sha256, MODEL_ID_BYTES, hex);
-    add(label->values[VERSION], "%s", SHEEN_VERSION);
-    add(label->values[DEVICE], "%s", info->device);
-    add(label->values[DRIVER], "%s", info->driver);
-    add(label->values[SOFTWARE], "%s", info->software ? "yes" : "no");
-    add(label->values[MODEL], "%s", hex);
-    describe_camera(label->values[CAMERA], &request->camera);
-    describe_lines(label->values[LINES], request);
+    add(metadata->values[VERSION], "%s", SHEEN_VERSION);
+    add(metadata->values[DEVICE], "%s", info->device);
+    add(metadata->values[DRIVER], "%s", info->driver);
+    add(metadata->values[SOFTWARE], "%s", info->software ? "yes" : "no");
+    add(metadata->values[MODEL], "%s", hex);
+    describe_camera(metadata->values[CAMERA], &request->camera);
+    describe_lines(metadata->values[LINES], request);
     for (uint32_t i = 0; i < request->n_lights; i++)
-        describe_light(label->values[LIGHT], &request->lights[i],
+        describe_light(metadata->values[LIGHT], &request->lights[i],
                        i < asked->lights_count ? &asked->lights[i] : NULL);
-    add(label->values[COLOURS], "miss=" COLOUR " empty=" COLOUR " base=" COLOUR,
+    add(metadata->values[COLOURS], "miss=" COLOUR " empty=" COLOUR " base=" COLOUR,
         COLOUR_OF(request->miss), COLOUR_OF(request->empty), COLOUR_OF(request->base));
-    describe_surface(label->values[SURFACE], &request->surface);
-    describe_show(label->values[SHOW], &asked->show);
+    describe_surface(metadata->values[SURFACE], &request->surface);
+    describe_show(metadata->values[SHOW], &asked->show);
 }

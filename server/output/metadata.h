@@ -7,17 +7,17 @@
 #include "server/render/renderer.h"
 #include "server/image/image.h"
 
-#define LABEL_ATTRIBUTES 11 /* at most PICTURE_MAX_ATTRIBUTES */
-#define LABEL_VALUE_BYTES 8192
+#define METADATA_ATTRIBUTES 11 /* at most PICTURE_MAX_ATTRIBUTES */
+#define METADATA_VALUE_BYTES 8192
 
 /* Attributes point into the struct itself: it must not be moved once filled in. */
-struct label {
-    struct image_attribute attributes[LABEL_ATTRIBUTES];
-    char values[LABEL_ATTRIBUTES][LABEL_VALUE_BYTES];
+struct metadata {
+    struct image_attribute attributes[METADATA_ATTRIBUTES];
+    char values[METADATA_ATTRIBUTES][METADATA_VALUE_BYTES];
 };
 
 /* `asked` is the message that the request was made from; its show.range is as used. */
-void label_init(struct label *label, const struct frame_request *request, const sheen_Render *asked,
-                const struct renderer_info *info);
+void metadata_init(struct metadata *metadata, const struct frame_request *request,
+                   const sheen_Render *asked, const struct renderer_info *info);
 
 #endif

@@ -1,5 +1,5 @@
 /* A frame's colour as a PNG file of 8 bits: R, G and B, and alpha where any pixel is not opaque.
- * The label becomes text chunks.
+ * The metadata become text chunks.
  *
  * The picture is cut into horizontal strips, so that threads can share the work. Each is deflated
  * by itself to whole bytes, so that all of them are one zlib stream back to back:

@@ -26,8 +26,8 @@ uint32_t strip_rows(const struct strip_layout *layout, size_t index);
 const uint8_t *strip_pixels(const struct strip_layout *layout, size_t index, const uint8_t *rgba);
 
 /* What to allocate for a file's head of so many bytes: that, rounded up to 4 KiB. Heads hold the
- * label, whose length changes with the digits of the camera's numbers; rounded, a camera that turns
- * takes the same spare block (server/base/block_cache.h) again and again. */
+ * metadata, whose length changes with the digits of the camera's numbers; rounded, a camera that
+ * turns takes the same spare block (server/base/block_cache.h) again and again. */
 size_t strip_head_bound(size_t bytes);
 
 #endif

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-struct answer {
-    struct answer *next;
+struct reply {
+    struct reply *next;
     struct block_cache *block_cache;
     uint32_t seq;
     enum request_class request_class;
@@ -13,69 +13,68 @@ struct answer {
     struct encoded *encoded; /* of a frame, or NULL */
 };
 
-struct answer *answer_expect(struct answer_list *list, uint32_t seq,
-                             enum request_class request_class)
+struct reply *reply_expect(struct reply_list *list, uint32_t seq, enum request_class request_class)
 {
-    struct answer *answer = block_cache_take(list->block_cache, sizeof *answer);
-    if (!answer)
+    struct reply *reply = block_cache_take(list->block_cache, sizeof *reply);
+    if (!reply)
         return NULL;
-    *answer = (struct answer){
+    *reply = (struct reply){
         .block_cache = list->block_cache, .seq = seq, .request_class = request_class};
     if (list->tail)
-        list->tail->next = answer;
+        list->tail->next = reply;
     else
-        list->head = answer;
-    list->tail = answer;
+        list->head = reply;
+    list->tail = reply;
     list->n++;
-    return answer;
+    return reply;
 }
 
-uint32_t answer_seq(const struct answer *answer)
+uint32_t reply_seq(const struct reply *reply)
 {
-    return answer->seq;
+    return reply->seq;
 }
 
 /* Takes out the answer behind `before` (NULL: the first). */
-static void drop(struct answer_list *list, struct answer *before)
+static void drop(struct reply_list *list, struct reply *before)
 {
-    struct answer **link = before ? &before->next : &list->head, *answer = *link;
-    *link = answer->next;
-    if (list->tail == answer)
+    struct reply **link = before ? &before->next : &list->head, *reply = *link;
+    *link = reply->next;
+    if (list->tail == reply)
         list->tail = before;
     list->n--;
-    encoded_destroy(answer->encoded);
-    block_cache_give(list->block_cache, answer->message);
-    block_cache_give(list->block_cache, answer);
+    encoded_destroy(reply->encoded);
+    block_cache_give(list->block_cache, reply->message);
+    block_cache_give(list->block_cache, reply);
 }
 
-void answer_list_finish(struct answer_list *list)
+void reply_list_finish(struct reply_list *list)
 {
     while (list->head)
         drop(list, NULL);
 }
 
-bool answer_fill(struct answer *answer, uint8_t type, const void *body)
+bool reply_fill(struct reply *reply, uint8_t type, const void *body)
 {
     uint8_t buffer[MESSAGE_BUFFER_BYTES];
-    answer->ready = true;
-    if (!message_encode(type, answer->seq, body, buffer, sizeof buffer, &answer->length))
+    reply->ready = true;
+    if (!message_encode(type, reply->seq, body, buffer, sizeof buffer, &reply->length))
         return false;
-    answer->message = block_cache_take(answer->block_cache, answer->length);
-    if (!answer->message)
+    reply->message = block_cache_take(reply->block_cache, reply->length);
+    if (!reply->message)
         return false;
-    memcpy(answer->message, buffer, answer->length);
+    memcpy(reply->message, buffer, reply->length);
     return true;
 }
 
-bool answer_fill_frame(struct answer *answer, const sheen_Frame *frame, struct encoded *encoded)
+bool reply_fill_frame(struct reply *reply, const sheen_Frame *frame, struct encoded *encoded)
 {
-    answer->encoded = encoded;
-    return answer_fill(answer, MESSAGE_FRAME, frame);
+    reply->encoded = encoded;
+    return reply_fill(reply, MESSAGE_FRAME, frame);
 }
 
-void answer_mark_last(struct answer *answer)
+void reply_mark_last(struct reply *reply)
 {
-    answer->last = true;
+    reply->last = true;
 }
 
 static void release_encoded(void *owner)
@@ -120,48 +119,48 @@ static void send_data(struct conn *conn, uint32_t seq, struct encoded *encoded)
     }
 }
 
-static void send_answer(struct answer_list *list, struct answer *answer, struct conn *conn)
+static void send_reply(struct reply_list *list, struct reply *reply, struct conn *conn)
 {
-    conn_send(conn, answer->message, answer->length);
-    if (!answer->encoded)
+    conn_send(conn, reply->message, reply->length);
+    if (!reply->encoded)
         return;
-    if (answer->request_class == CLASS_INTERACTIVE) {
-        answer->encoded->unsent = &list->unsent;
+    if (reply->request_class == CLASS_INTERACTIVE) {
+        reply->encoded->unsent = &list->unsent;
         list->unsent++;
     }
-    send_data(conn, answer->seq, answer->encoded);
-    answer->encoded = NULL; /* the connection's now */
+    send_data(conn, reply->seq, reply->encoded);
+    reply->encoded = NULL; /* the connection's now */
 }
 
 /* Whether an answer may go out when those before it, of the classes in `owed`, have not. */
-static bool is_due(const struct answer_list *list, const struct answer *answer,
+static bool is_due(const struct reply_list *list, const struct reply *reply,
                    const bool owed[static N_CLASSES])
 {
-    if (!answer->ready)
+    if (!reply->ready)
         return false;
-    if (list->is_ordered || answer->last)
-        return answer == list->head;
-    if (!answer->encoded)
+    if (list->is_ordered || reply->last)
+        return reply == list->head;
+    if (!reply->encoded)
         return true;
-    bool is_clear = answer->request_class != CLASS_INTERACTIVE || list->unsent == 0;
-    return is_clear && !owed[answer->request_class];
+    bool is_clear = reply->request_class != CLASS_INTERACTIVE || list->unsent == 0;
+    return is_clear && !owed[reply->request_class];
 }
 
-void answer_send_due(struct answer_list *list, struct conn *conn)
+void reply_send_due(struct reply_list *list, struct conn *conn)
 {
     bool owed[N_CLASSES] = {false}, sent = false, closes = false, is_over = false;
-    struct answer *before = NULL;
-    for (struct answer *answer = list->head, *next; answer && !is_over; answer = next) {
-        next = answer->next;
-        is_over = answer->last; /* nothing after it */
-        if (is_due(list, answer, owed)) {
-            closes = answer->last;
-            send_answer(list, answer, conn);
+    struct reply *before = NULL;
+    for (struct reply *reply = list->head, *next; reply && !is_over; reply = next) {
+        next = reply->next;
+        is_over = reply->last; /* nothing after it */
+        if (is_due(list, reply, owed)) {
+            closes = reply->last;
+            send_reply(list, reply, conn);
             drop(list, before);
             sent = true;
         } else {
-            owed[answer->request_class] = true;
-            before = answer;
+            owed[reply->request_class] = true;
+            before = reply;
             is_over |= list->is_ordered; /* nothing overtakes */
         }
     }

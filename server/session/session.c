@@ -25,16 +25,15 @@ void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code,
     }
     if (session->end == END_CLIENT)
         session->end = code == sheen_ErrorCode_ERROR_SHUTTING_DOWN ? END_DRAIN : END_PROTOCOL;
-    struct answer *answer =
-        session->refused ? NULL : session_expect_answer(session, seq, CLASS_STILL);
+    struct reply *reply = session->refused ? NULL : session_expect_reply(session, seq, CLASS_STILL);
     if (!session->refused && code != sheen_ErrorCode_ERROR_SHUTTING_DOWN)
         session_log_disconnect(session, text);
     session->refused = true;
     conn_hold(&session->conn, true);
-    if (!answer)
+    if (!reply)
         return;
-    answer_mark_last(answer);
-    session_answer_error(session, answer, code, text);
+    reply_mark_last(reply);
+    session_reply_error(session, reply, code, text);
 }
 
 /* --- messages */
@@ -57,7 +56,7 @@ static void handle_hello(struct session *session, uint32_t seq, const uint8_t *b
         return;
     const struct renderer_info *info = render_thread_info(session->host->render_thread);
     session->minor = hello.minor < PROTOCOL_MINOR ? hello.minor : PROTOCOL_MINOR;
-    session->answers.is_ordered = session->minor == 0;
+    session->replies.is_ordered = session->minor == 0;
     session->credits = (uint32_t)session->host->limits.credits;
     sheen_HelloOk ok = {
         .minor = PROTOCOL_MINOR,
@@ -72,7 +71,7 @@ static void handle_hello(struct session *session, uint32_t seq, const uint8_t *b
     snprintf(ok.device, sizeof ok.device, "%s", info->device);
     snprintf(ok.driver, sizeof ok.driver, "%s", info->driver);
     session->greeted = true;
-    session_reply(session, seq, MESSAGE_HELLO_OK, &ok);
+    session_reply_now(session, seq, MESSAGE_HELLO_OK, &ok);
 }
 
 static void handle_body(struct session *session, const struct message_header *header,
@@ -106,7 +105,7 @@ static void handle_body(struct session *session, const struct message_header *he
 static void update_hold(struct session *session)
 {
     bool clogged = conn_unsent_bytes(&session->conn) > SESSION_MAX_UNSENT_BYTES;
-    bool full = session->minor == 0 && session->answers.n >= PROTOCOL_MAX_IN_FLIGHT;
+    bool full = session->minor == 0 && session->replies.n >= PROTOCOL_MAX_IN_FLIGHT;
     struct schedule_flow *flow = session->queue.flow;
     flow[CLASS_INTERACTIVE].held = session_is_sending_interactive(session);
     flow[CLASS_STILL].held = flow[CLASS_BATCH].held = clogged;
@@ -117,7 +116,7 @@ static bool is_over_credit(const struct session *session, const struct message_h
 {
     bool asks = header->type != MESSAGE_HELLO && header->type != MESSAGE_CANCEL &&
                 header->type != MESSAGE_UPLOAD_CHUNK;
-    return asks && session->minor > 0 && session->answers.n >= session->credits;
+    return asks && session->minor > 0 && session->replies.n >= session->credits;
 }
 
 static void on_message(void *owner, const struct message_header *header, const uint8_t *body)
@@ -198,7 +197,7 @@ struct session *session_create(struct session_host *host, int fd,
         return NULL;
     }
     session->host = host;
-    session->conn.block_cache = session->answers.block_cache = host->block_cache;
+    session->conn.block_cache = session->replies.block_cache = host->block_cache;
     session->peer = peer;
     session->client = *client;
     session->admitted = client->kind != CLIENT_TLS;
@@ -226,10 +225,10 @@ void session_destroy(struct session *session)
     host->stats.ended[session->end]++;
     log_event(LOG_INFO, "session closed", log_number("session", session->id),
               log_text("reason", stats_end_name(session->end)),
-              log_number("answers", session->n_answers),
+              log_number("answers", session->n_replies),
               log_number("duration_us", clock_now_us() - session->start_us));
     request_abandon_all(session);
-    answer_list_finish(&session->answers);
+    reply_list_finish(&session->replies);
     upload_destroy(session->upload);
     conn_finish(&session->conn);
     session_release_input(session);
@@ -245,12 +244,12 @@ bool session_settle(struct session *session)
     struct conn *conn = &session->conn;
     if (conn->state == CONN_OPEN && !session_is_sending_interactive(session)) {
         request_send_held(session);
-        answer_send_due(&session->answers, conn);
+        reply_send_due(&session->replies, conn);
     }
     update_hold(session);
     if (conn->state == CONN_OPEN && !conn->held)
         conn_deliver(conn);
-    if (conn->state == CONN_OPEN && session->answers.n == 0 && conn_unsent_bytes(conn) == 0) {
+    if (conn->state == CONN_OPEN && session->replies.n == 0 && conn_unsent_bytes(conn) == 0) {
         if (conn->peer_ended)
             conn_close_after_flush(conn);
         else if (session->host->draining)

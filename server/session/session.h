@@ -92,10 +92,10 @@ struct session {
     struct peer *peer;
     struct conn conn;
     struct schedule_queue queue;
-    struct answer_list answers;
+    struct reply_list replies;
     uint64_t id; /* in the log */
     uint64_t start_us;
-    uint64_t n_answers;
+    uint64_t n_replies;
     enum stats_end end; /* why it ends, once the daemon has decided that it does */
     struct session_client client;
     bool admitted;  /* the client is who it says; till then it is told nothing */
@@ -132,20 +132,20 @@ void session_check_access(struct session *session, bool changed);
 
 /* --- for requests: `answer` is the one they owe */
 
-void session_answer(struct session *session, struct answer *answer, uint8_t type, const void *body);
-void session_answer_error(struct session *session, struct answer *answer, sheen_ErrorCode code,
-                          const char *text);
+void session_reply(struct session *session, struct reply *reply, uint8_t type, const void *body);
+void session_reply_error(struct session *session, struct reply *reply, sheen_ErrorCode code,
+                         const char *text);
 /* FRAME and its DATA. Takes `encoded` over. */
-void session_answer_frame(struct session *session, struct answer *answer,
-                          enum request_class request_class, const sheen_Frame *frame,
-                          struct encoded *encoded);
+void session_reply_frame(struct session *session, struct reply *reply,
+                         enum request_class request_class, const sheen_Frame *frame,
+                         struct encoded *encoded);
 /* An interactive frame of the session is on its way to the socket: the next has to wait. */
 static inline bool session_is_sending_interactive(const struct session *session)
 {
-    return session->answers.unsent > 0;
+    return session->replies.unsent > 0;
 }
-/* Before its answer, unless another is due first or the client does not read. */
-void session_report_progress(struct session *session, const struct answer *answer, uint32_t seq,
+/* Before its reply, unless another is due first or the client does not read. */
+void session_report_progress(struct session *session, const struct reply *reply, uint32_t seq,
                              const sheen_Progress *progress);
 
 #endif

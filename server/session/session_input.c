@@ -50,7 +50,7 @@ bool session_make_room(void *owner, const struct message_header *header, size_t 
         upload_destroy(session->upload);
         session->upload = NULL;
     }
-    session_reply_error(session, header->seq, error_code_of(error.kind), error.text);
+    session_reply_error_now(session, header->seq, error_code_of(error.kind), error.text);
     return false;
 }
 

@@ -1,8 +1,8 @@
 /* What the files of sessions share: session.c has a session's life and its messages,
  * session_input.c their order and the room for long ones,
- * session_reply.c how answers leave, session_requests.c what each request asks for, session_stats.c
- * the answer to STATS_QUERY, session_access.c who the client is, session_limits.c what clients may
- * not do too long or too much of. Private to them. Thread: the loop's. */
+ * session_reply_now.c how answers leave, session_requests.c what each request asks for,
+ * session_stats.c the answer to STATS_QUERY, session_access.c who the client is, session_limits.c
+ * what clients may not do too long or too much of. Private to them. Thread: the loop's. */
 #ifndef SHEEN_SESSION_SESSION_INTERNAL_H
 #define SHEEN_SESSION_SESSION_INTERNAL_H
 
@@ -27,15 +27,15 @@ bool session_make_room(void *owner, const struct message_header *header, size_t 
 void session_trim_input(struct session *session);
 void session_release_input(struct session *session);
 
-/* --- session_answer.c */
+/* --- session_reply.c */
 
 /* Owes the request an answer. NULL without memory; the connection is closed then. */
-struct answer *session_expect_answer(struct session *session, uint32_t seq,
-                                     enum request_class request_class);
+struct reply *session_expect_reply(struct session *session, uint32_t seq,
+                                   enum request_class request_class);
 /* Answers at once what takes no time. */
-void session_reply(struct session *session, uint32_t seq, uint8_t type, const void *body);
-void session_reply_error(struct session *session, uint32_t seq, sheen_ErrorCode code,
-                         const char *text);
+void session_reply_now(struct session *session, uint32_t seq, uint8_t type, const void *body);
+void session_reply_error_now(struct session *session, uint32_t seq, sheen_ErrorCode code,
+                             const char *text);
 
 /* --- session_requests.c: one message each, decoded, in its turn; each is answered */
 

@@ -92,7 +92,7 @@ static void check_input(struct session *session, uint64_t now)
     struct conn *conn = &session->conn;
     const struct session_limits *limits = &session->host->limits;
     uint64_t since_in = now - conn->last_in_us, since_out = now - conn->last_out_us;
-    bool is_idle = conn_unsent_bytes(conn) == 0 && session->answers.n == 0;
+    bool is_idle = conn_unsent_bytes(conn) == 0 && session->replies.n == 0;
     uint64_t idle_us = limits->idle_s * 1000000;
     if (session->refused)
         return;

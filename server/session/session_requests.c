@@ -8,7 +8,7 @@ static void reply_upload_state(struct session *session, uint32_t seq, bool compl
                                uint64_t received_bytes)
 {
     const sheen_UploadState state = {.complete = complete, .received_bytes = received_bytes};
-    session_reply(session, seq, MESSAGE_UPLOAD_STATE, &state);
+    session_reply_now(session, seq, MESSAGE_UPLOAD_STATE, &state);
 }
 
 void session_upload_begin(struct session *session, uint32_t seq, const sheen_UploadBegin *begin)
@@ -20,11 +20,11 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
     if (begin->size_bytes > host->max_upload_bytes) {
         snprintf(text, sizeof text, "a file of %llu bytes; this daemon takes at most %llu",
                  (unsigned long long)begin->size_bytes, (unsigned long long)host->max_upload_bytes);
-        session_reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
+        session_reply_error_now(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
         return;
     }
     if (!message_check_upload_begin(begin, text)) {
-        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        session_reply_error_now(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
         return;
     }
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
@@ -43,7 +43,7 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
     if (session->upload)
         reply_upload_state(session, seq, false, 0);
     else
-        session_reply_error(session, seq, error_code_of(error.kind), error.text);
+        session_reply_error_now(session, seq, error_code_of(error.kind), error.text);
 }
 
 void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
@@ -69,7 +69,7 @@ void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *
     } else if (state == UPLOAD_TOO_MUCH) {
         session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "%s", error.text);
     } else {
-        session_reply_error(session, seq, error_code_of(error.kind), error.text);
+        session_reply_error_now(session, seq, error_code_of(error.kind), error.text);
     }
 }
 
@@ -116,7 +116,7 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
                  render->width_px, render->height_px, checks[i].what,
                  (unsigned long long)checks[i].needed, checks[i].name,
                  (unsigned long long)checks[i].limit);
-        session_reply_error(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
+        session_reply_error_now(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
         return false;
     }
     return true;
@@ -139,25 +139,25 @@ void session_render(struct session *session, uint32_t seq, sheen_Render *render)
     const struct renderer_info *info = render_thread_info(session->host->render_thread);
     drop_newer_fields(session, render);
     if (!message_check_render(render, info->max_width_px, info->max_height_px, text)) {
-        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        session_reply_error_now(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
         return;
     }
     if (!frame_fits(session, seq, render))
         return;
-    struct answer *answer =
-        session_expect_answer(session, seq, request_class_of(render->request_class));
-    if (answer)
-        request_render(session, answer, seq, render, frame_bytes(session, render));
+    struct reply *reply =
+        session_expect_reply(session, seq, request_class_of(render->request_class));
+    if (reply)
+        request_render(session, reply, seq, render, frame_bytes(session, render));
 }
 
 void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query)
 {
     char text[MESSAGE_TEXT_BYTES];
     if (!message_check_model_query(query, text)) {
-        session_reply_error(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        session_reply_error_now(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
         return;
     }
-    struct answer *answer = session_expect_answer(session, seq, CLASS_STILL);
-    if (answer)
-        request_query(session, answer, seq, query);
+    struct reply *reply = session_expect_reply(session, seq, CLASS_STILL);
+    if (reply)
+        request_query(session, reply, seq, query);
 }

@@ -63,5 +63,5 @@ void session_reply_stats(struct session *session, uint32_t seq)
     snprintf(stats.device, sizeof stats.device, "%s", info->device);
     snprintf(stats.driver, sizeof stats.driver, "%s", info->driver);
     snprintf(stats.server, sizeof stats.server, "%s", SHEEN_VERSION);
-    session_reply(session, seq, MESSAGE_STATS, &stats);
+    session_reply_now(session, seq, MESSAGE_STATS, &stats);
 }

@@ -27,9 +27,9 @@ static const uint64_t *time_of(const sheen_Times *times, enum stats_stage stage)
     return member[stage];
 }
 
-void stats_answer(struct stats *stats, uint8_t type, sheen_ErrorCode code, uint64_t now_us)
+void stats_reply(struct stats *stats, uint8_t type, sheen_ErrorCode code, uint64_t now_us)
 {
-    stats->answers[type]++;
+    stats->replies[type]++;
     stats->frames += type == MESSAGE_FRAME;
     stats->errors += type == MESSAGE_ERROR;
     if (type == MESSAGE_ERROR)

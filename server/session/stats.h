@@ -54,7 +54,7 @@ struct stats {
     uint64_t sent_bytes;                  /* all that went out */
     uint64_t sessions, refused;           /* ever opened; turned away before they were */
     uint64_t ended[END_COUNT];
-    uint64_t answers[UINT8_MAX + 1]; /* by message type */
+    uint64_t replies[UINT8_MAX + 1]; /* by message type */
     uint64_t error_codes[_sheen_ErrorCode_ARRAYSIZE];
     struct histogram stage[STAGE_COUNT]; /* of all frames; a stage that was not needed has none */
     struct stats_slice slices[STATS_SLICES];
@@ -72,8 +72,8 @@ struct stats_recent {
 
 void stats_init(struct stats *stats);
 /* An answer of this type is ready; `code` is that of an ERROR. */
-void stats_answer(struct stats *stats, uint8_t type, sheen_ErrorCode code, uint64_t now_us);
-/* The times of a FRAME, which stats_answer() counts. */
+void stats_reply(struct stats *stats, uint8_t type, sheen_ErrorCode code, uint64_t now_us);
+/* The times of a FRAME, which stats_reply() counts. */
 void stats_frame(struct stats *stats, enum request_class request_class, const sheen_Times *times,
                  uint64_t now_us);
 /* Mean over the last frames, at most STATS_FRAMES; zeros before the first. */

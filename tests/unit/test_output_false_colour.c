@@ -17,7 +17,7 @@ enum { MAX_PIXELS = 320 * 240 };
 
 static struct workers workers; /* draw the legend */
 
-static struct show_extremes extremes; /* of the picture painted last */
+static struct false_colour_extremes extremes; /* of the picture painted last */
 
 static const float MISS[4] = {0, 0.2f, 0.4f, 1}, EMPTY[4] = {1, 0, 1, 0};
 
@@ -70,7 +70,7 @@ static void paint_curvatures(sheen_ShowKind kind, double range, const float (*k)
     struct frame frame = frame_of(kind, (uint32_t)n, 1);
     memcpy(planes.curvature, k, n * sizeof *k);
     sheen_Show show = {.kind = kind, .has_range = true, .range = range};
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_true(show.range == range);
 }
 
@@ -114,7 +114,7 @@ static void test_no_surface(void **state)
         for (int k = 0; k < 2; k++)
             planes.curvature[0][k] = planes.curvature[1][k] = NAN;
         sheen_Show show = {.kind = kinds[i], .has_direction = true, .direction = {0, 0, 1}};
-        show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+        false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
         assert_colour(0, EMPTIED);
         assert_colour(1, MISSED);
     }
@@ -137,7 +137,7 @@ static void test_outline(void **state)
         planes.normal[i][0] = colour_of_x[i];
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
     const float black[4] = {0, 0, 0, 1};
-    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     assert_colour(0, 255, 128, 128, 255);
     assert_colour(1, 0, 112, 112, 255); /* 3/4 of the light */
     assert_colour(2, 0, 92, 92, 255);   /* from the left */
@@ -146,10 +146,10 @@ static void test_outline(void **state)
     assert_colour(5, 0, 0, 0, 255);
     assert_colour(6, 0, 92, 92, 255); /* from the corner */
     assert_colour(7, 0, 0, 0, 255);   /* nobody knows */
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_colour(1, 0, 128, 128, 191); /* through to what has no colour */
     planes.normal[1][0] = NAN;
-    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     assert_colour(1, 0, 44, 89, 255); /* 3/4 of MISS */
 }
 
@@ -160,7 +160,7 @@ static void test_normals(void **state)
     planes.normal[0][2] = 1;
     planes.normal[1][0] = -1;
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_NORMAL};
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_colour(0, 128, 128, 255, 255);
     assert_colour(1, 0, 128, 128, 255);
     assert_false(show.has_range);
@@ -174,7 +174,7 @@ static void paint_drafts(sheen_Show *show, const double *deg, size_t n)
         planes.normal[i][0] = (float)cos(deg[i] * M_PI / 180);
         planes.normal[i][1] = -(float)sin(deg[i] * M_PI / 180);
     }
-    show_paint(&frame, &workers, show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &workers, show, 1, MISS, EMPTY, &extremes);
 }
 
 #define YELLOW 255, 224, 64, 255
@@ -224,7 +224,7 @@ static void test_ptex(void **state)
         planes.ptex[N + i] = (struct ptex){5, i & 1 ? 1 : 0, i & 2 ? 1 : 0};
     planes.ptex[N + 4] = (struct ptex){UINT32_MAX, 0, 0};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_PTEX};
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     for (int i = 0; i < N; i++) /* neighbours in number differ widely, all differ */
         for (int j = 0; j < i; j++) {
             int apart = 0;
@@ -247,7 +247,7 @@ static double range_of(sheen_ShowKind kind, double size, double scale, size_t n)
         planes.curvature[2 * i + 1][0] = NAN;
     }
     sheen_Show show = {.kind = kind};
-    show_paint(&frame, &workers, &show, size, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &workers, &show, size, MISS, EMPTY, &extremes);
     assert_true(show.has_range);
     return show.range;
 }
@@ -327,7 +327,7 @@ static void test_extremes(void **state)
             greatest = greatest == N || values[i] > values[greatest] ? i : greatest;
         }
         sheen_Show show = {.kind = kind};
-        show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+        false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
         assert_true(extremes.has_values && least < N);
         assert_extreme(&extremes.least, values[least], least);
         assert_extreme(&extremes.greatest, values[greatest], greatest);
@@ -348,7 +348,7 @@ static void test_extremes_in_range(void **state)
         planes.ptex[i] = (struct ptex){0, i ? 1.00007f : -0.0004f, 0.5f};
     }
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_MEAN};
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_true(extremes.least.u == 0 && extremes.greatest.u == 1);
     assert_true(extremes.least.position.x >= -1e30 && extremes.greatest.position.x <= 1e30);
 }
@@ -380,7 +380,7 @@ static void test_no_extremes(void **state)
     assert_int_equal(extremes.greatest.x_px, 2);
     struct frame frame = frame_of(sheen_ShowKind_SHOW_NORMAL, 2, 1);
     show = (sheen_Show){.kind = sheen_ShowKind_SHOW_NORMAL};
-    show_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
     assert_false(extremes.has_values);
 }
 
@@ -398,7 +398,7 @@ static void test_legend(void **state)
         planes.position[i][0] = NAN;
     const float black[4] = {0, 0, 0, 1};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_MEAN, .has_range = true, .range = 0.25};
-    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     size_t n_white = 0, blue = 0, red = 0, outside = 0;
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
@@ -418,7 +418,7 @@ static void test_legend(void **state)
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
     show.has_legend = true; /* a word about it, and it is "no" */
-    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
     show.legend = true;
@@ -426,13 +426,13 @@ static void test_legend(void **state)
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, width, LEGEND_MIN_HEIGHT_PX - 1);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, 100, 240);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    show_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
+    false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));
 }

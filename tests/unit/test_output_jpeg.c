@@ -1,4 +1,4 @@
-/* JPEG files of frames: what comes back, the label, and what the library refuses. */
+/* JPEG files of frames: what comes back, the metadata, and what the library refuses. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +11,7 @@
 #include "tests/unit/encoders_at_once.h"
 #include "tests/unit/jpeg_file.h"
 
-static const struct image_attribute LABEL[] = {
+static const struct image_attribute METADATA[] = {
     {"sheen:version", "1.2.3"},
     {"sheen:camera", "eye=1,2,3 fov=35"},
 };
@@ -125,7 +125,7 @@ static void test_what_comes_back(void **state)
             const uint32_t width = sizes[s][0], height = sizes[s][1];
             uint8_t *rgba = make_picture(paints[p].paint, width, height);
             size_t size;
-            uint8_t *file = jpeg_file(encoder, rgba, width, height, LABEL, 2, &size);
+            uint8_t *file = jpeg_file(encoder, rgba, width, height, METADATA, 2, &size);
             struct difference by = compare(rgba, file, size, width, height);
             if (by.worst > paints[p].worst || by.psnr_db < paints[p].psnr_db)
                 fail_msg("paint %zu, %u x %u: %d, %f dB", p, width, height, by.worst, by.psnr_db);
@@ -165,7 +165,8 @@ static void test_options(void **state)
             unsigned long want_size = 0;
             struct image want;
             struct error error = {0};
-            uint8_t *file = jpeg_file_of(encoder, &options, rgba, width, height, LABEL, 2, &size);
+            uint8_t *file =
+                jpeg_file_of(encoder, &options, rgba, width, height, METADATA, 2, &size);
             uint8_t *want_file = library_file(rgba, width, height, &options, &want_size);
             if (!image_decode(&want, want_file, want_size, "want.jpg", 65536, &error))
                 fail_msg("%s", error.text);
@@ -249,13 +250,13 @@ static char *read_comments(const uint8_t *file, size_t size, int *n_comments)
     return text;
 }
 
-static void test_label(void **state)
+static void test_metadata(void **state)
 {
     (void)state;
     static const uint8_t rgba[4] = {0};
     size_t size;
     int n;
-    uint8_t *file = jpeg_file(encoder, rgba, 1, 1, LABEL, 2, &size);
+    uint8_t *file = jpeg_file(encoder, rgba, 1, 1, METADATA, 2, &size);
     char *text = read_comments(file, size, &n);
     assert_string_equal(text, "sheen:version=1.2.3\nsheen:camera=eye=1,2,3 fov=35\n");
     assert_int_equal(n, 1);
@@ -269,7 +270,7 @@ static void test_label(void **state)
 }
 
 /* A segment holds 65533 bytes. */
-static void test_long_labels(void **state)
+static void test_long_metadata(void **state)
 {
     (void)state;
     static const uint8_t rgba[4] = {10, 20, 30, 40};
@@ -282,10 +283,10 @@ static void test_long_labels(void **state)
         assert_non_null(value);
         for (size_t k = 0; k < cases[i].value_bytes; k++)
             value[k] = (char)('a' + k % 26);
-        const struct image_attribute label = {"n", value};
+        const struct image_attribute metadata = {"n", value};
         size_t size;
         int n;
-        uint8_t *file = jpeg_file(encoder, rgba, 1, 1, &label, 1, &size);
+        uint8_t *file = jpeg_file(encoder, rgba, 1, 1, &metadata, 1, &size);
         char *text = read_comments(file, size, &n);
         assert_int_equal(n, cases[i].n_comments);
         assert_int_equal(strlen(text), cases[i].value_bytes + 3);
@@ -298,12 +299,12 @@ static void test_long_labels(void **state)
     }
 }
 
-/* A label that differs in a digit or two takes the same spare. */
-static void test_labels_of_about_one_length(void **state)
+/* Metadata that differ in a digit or two take the same spare. */
+static void test_metadata_of_about_one_length(void **state)
 {
     (void)state;
-    const struct image_attribute longer = {LABEL[1].name, "eye=1.25,2,3.0625 fov=35"};
-    assert_int_equal(jpeg_head_bound(623, &LABEL[1], 1), jpeg_head_bound(623, &longer, 1));
+    const struct image_attribute longer = {METADATA[1].name, "eye=1.25,2,3.0625 fov=35"};
+    assert_int_equal(jpeg_head_bound(623, &METADATA[1], 1), jpeg_head_bound(623, &longer, 1));
 }
 
 /* One side too many, which a request is refused for before. */
@@ -337,7 +338,7 @@ static uint8_t *encode_jpeg(const uint8_t *rgba, int n, size_t *size)
     assert_non_null(own);
     for (int i = 0; i < n; i++) {
         free(file);
-        file = jpeg_file(own, rgba, AT_ONCE_WIDTH, AT_ONCE_HEIGHT, LABEL, 2, size);
+        file = jpeg_file(own, rgba, AT_ONCE_WIDTH, AT_ONCE_HEIGHT, METADATA, 2, size);
     }
     jpeg_encoder_destroy(own);
     return file;
@@ -362,11 +363,11 @@ static void test_environment(void **state)
     uint8_t *rgba = make_picture(paint_colours, 100, 100);
     size_t sizes[2];
     uint8_t *files[2];
-    files[0] = jpeg_file(encoder, rgba, 100, 100, LABEL, 2, &sizes[0]);
+    files[0] = jpeg_file(encoder, rgba, 100, 100, METADATA, 2, &sizes[0]);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         setenv(names[i], "1", 1);
     jpeg_keep_defaults();
-    files[1] = jpeg_file(encoder, rgba, 100, 100, LABEL, 2, &sizes[1]);
+    files[1] = jpeg_file(encoder, rgba, 100, 100, METADATA, 2, &sizes[1]);
     assert_int_equal(sizes[0], sizes[1]);
     assert_memory_equal(files[0], files[1], sizes[0]);
     free(files[0]);
@@ -381,9 +382,9 @@ int main(void)
         cmocka_unit_test(test_options),
         cmocka_unit_test(test_noise_keeps_to_the_bound),
         cmocka_unit_test(test_strips_are_restart_intervals),
-        cmocka_unit_test(test_label),
-        cmocka_unit_test(test_long_labels),
-        cmocka_unit_test(test_labels_of_about_one_length),
+        cmocka_unit_test(test_metadata),
+        cmocka_unit_test(test_long_metadata),
+        cmocka_unit_test(test_metadata_of_about_one_length),
         cmocka_unit_test(test_what_the_library_refuses),
         cmocka_unit_test(test_two_encoders_at_once),
         cmocka_unit_test(test_environment),

@@ -12,12 +12,12 @@
 #include "tests/unit/encoders_at_once.h"
 #include "tests/unit/png_file.h"
 
-static const struct image_attribute LABEL[] = {
+static const struct image_attribute METADATA[] = {
     {"sheen:version", "1.2.3"},
     {"sheen:camera", "eye=1,2,3 fov=35"},
     {"sheen:show", ""},
 };
-#define N_LABEL (sizeof LABEL / sizeof *LABEL)
+#define N_METADATA (sizeof METADATA / sizeof *METADATA)
 
 static struct png_encoder *encoder;
 
@@ -204,7 +204,7 @@ static uint8_t *stored_rows(const uint8_t *file, size_t size, size_t n_bytes)
 static void check_file(const uint8_t *rgba, uint32_t width, uint32_t height, bool is_opaque)
 {
     size_t size;
-    uint8_t *file = png_file(encoder, rgba, width, height, LABEL, N_LABEL, &size);
+    uint8_t *file = png_file(encoder, rgba, width, height, METADATA, N_METADATA, &size);
     check_pixels(file, size, rgba, width, height, is_opaque);
     free(stored_rows(file, size, height * (1 + (is_opaque ? 3 : 4) * (size_t)width)));
     free(file);
@@ -327,12 +327,12 @@ static void test_texts(void **state)
     assert_non_null(value);
     memset(value, 'v', 100000);
     value[100000] = 0;
-    const struct image_attribute long_label[] = {LABEL[0], {"n", value}, LABEL[1]};
-    const struct image_attribute *const labels[] = {LABEL, long_label, NULL};
+    const struct image_attribute long_metadata[] = {METADATA[0], {"n", value}, METADATA[1]};
+    const struct image_attribute *const metadata[] = {METADATA, long_metadata, NULL};
     for (int i = 0; i < 3; i++) {
-        const size_t n = labels[i] ? N_LABEL : 0;
+        const size_t n = metadata[i] ? N_METADATA : 0;
         size_t size;
-        uint8_t *file = png_file(encoder, rgba, 1, 1, labels[i], n, &size);
+        uint8_t *file = png_file(encoder, rgba, 1, 1, metadata[i], n, &size);
         struct reader reader;
         png_textp texts = NULL;
         int n_texts = 0, intent = -1;
@@ -340,8 +340,8 @@ static void test_texts(void **state)
         png_get_text(reader.png, reader.info, &texts, &n_texts);
         assert_int_equal(n_texts, n);
         for (size_t t = 0; t < n; t++) {
-            assert_string_equal(texts[t].key, labels[i][t].name);
-            assert_string_equal(texts[t].text, labels[i][t].value);
+            assert_string_equal(texts[t].key, metadata[i][t].name);
+            assert_string_equal(texts[t].text, metadata[i][t].value);
         }
         assert_true(png_get_sRGB(reader.png, reader.info, &intent));
         assert_int_equal(intent, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -354,12 +354,12 @@ static void test_texts(void **state)
     free(value);
 }
 
-/* A label that differs in a digit or two takes the same spare. */
-static void test_labels_of_about_one_length(void **state)
+/* Metadata that differ in a digit or two take the same spare. */
+static void test_metadata_of_about_one_length(void **state)
 {
     (void)state;
-    const struct image_attribute longer = {LABEL[1].name, "eye=1.25,2,3.0625 fov=35"};
-    assert_int_equal(png_head_bound(&LABEL[1], 1), png_head_bound(&longer, 1));
+    const struct image_attribute longer = {METADATA[1].name, "eye=1.25,2,3.0625 fov=35"};
+    assert_int_equal(png_head_bound(&METADATA[1], 1), png_head_bound(&longer, 1));
 }
 
 static uint8_t *encode_png(const uint8_t *rgba, int n, size_t *size)
@@ -369,7 +369,7 @@ static uint8_t *encode_png(const uint8_t *rgba, int n, size_t *size)
     assert_non_null(own);
     for (int i = 0; i < n; i++) {
         free(file);
-        file = png_file(own, rgba, AT_ONCE_WIDTH, AT_ONCE_HEIGHT, LABEL, N_LABEL, size);
+        file = png_file(own, rgba, AT_ONCE_WIDTH, AT_ONCE_HEIGHT, METADATA, N_METADATA, size);
     }
     png_encoder_destroy(own);
     return file;
@@ -394,7 +394,7 @@ int main(void)
         cmocka_unit_test(test_no_room),
         cmocka_unit_test(test_filters),
         cmocka_unit_test(test_texts),
-        cmocka_unit_test(test_labels_of_about_one_length),
+        cmocka_unit_test(test_metadata_of_about_one_length),
         cmocka_unit_test(test_two_encoders_at_once),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

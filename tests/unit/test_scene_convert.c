@@ -254,7 +254,7 @@ static void test_axes(void **state)
     }
 }
 
-static void test_label_holds_every_digit(void **state)
+static void test_metadata_hold_every_digit(void **state)
 {
     (void)state;
     struct frame_request request = {0};
@@ -264,24 +264,24 @@ static void test_label_holds_every_digit(void **state)
         request.lights[0].u[i] = -1.7976931348623157e308; /* the longest numbers fit */
     request.lights[0].pattern.kind = PATTERN_IMAGE;
     const struct renderer_info info = {.device = "a device", .driver = "4.5", .software = true};
-    struct label label;
+    struct metadata metadata;
     sheen_Render asked = sheen_Render_init_default;
     asked.lights_count = request.n_lights = 1;
     asked.lights[0].pattern.has_image_sha256 = true;
     asked.lights[0].pattern.image_sha256[0] = 0xab;
-    label_init(&label, &request, &asked, &info);
+    metadata_init(&metadata, &request, &asked, &info);
     const char *all = "";
-    for (int i = 0; i < LABEL_ATTRIBUTES; i++) {
-        const struct image_attribute *attribute = &label.attributes[i];
+    for (int i = 0; i < METADATA_ATTRIBUTES; i++) {
+        const struct image_attribute *attribute = &metadata.attributes[i];
         assert_ptr_equal(strstr(attribute->name, "sheen:"), attribute->name);
-        assert_true(strlen(attribute->value) < LABEL_VALUE_BYTES - 1);
+        assert_true(strlen(attribute->value) < METADATA_VALUE_BYTES - 1);
         if (strcmp(attribute->name, "sheen:camera") == 0)
             all = attribute->value;
     }
     assert_non_null(strstr(all, "eye=0.10000000000000001,0,0"));
     assert_non_null(strstr(all, "fov_deg=0.33333333333333331"));
-    assert_non_null(strstr(label.values[7], "u=-1.7976931348623157e+308,"));
-    assert_non_null(strstr(label.values[7], "image=ab00"));
+    assert_non_null(strstr(metadata.values[7], "u=-1.7976931348623157e+308,"));
+    assert_non_null(strstr(metadata.values[7], "image=ab00"));
 }
 
 static void test_texts(void **state)
@@ -307,7 +307,7 @@ int main(void)
         cmocka_unit_test(test_lights_stay),
         cmocka_unit_test(test_up),
         cmocka_unit_test(test_axes),
-        cmocka_unit_test(test_label_holds_every_digit),
+        cmocka_unit_test(test_metadata_hold_every_digit),
         cmocka_unit_test(test_texts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

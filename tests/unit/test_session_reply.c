@@ -17,7 +17,7 @@
 
 enum { WIDTH = 811, HEIGHT = 523 }; /* odd, several strips a plane, several DATA a frame */
 
-static const struct image_attribute LABEL[] = {{"sheen:version", "1.2.3"}};
+static const struct image_attribute METADATA[] = {{"sheen:version", "1.2.3"}};
 
 struct fixture {
     struct loop *loop;
@@ -25,7 +25,7 @@ struct fixture {
     struct pool *pool;
     struct workers workers;
     struct conn conn;
-    struct answer_list answers;
+    struct reply_list replies;
     int peer; /* the client's end */
     uint64_t sent_bytes;
     struct encoded *encoded[2]; /* since the last encode() */
@@ -54,7 +54,7 @@ static int setup(void **state)
     assert_true(workers_init(&f->workers, build_folder(), &limits, (uint64_t)1 << 32, &error));
     assert_true(conn_init(&f->conn, f->loop, ends[0], &handler, NULL, &f->sent_bytes, &error));
     f->peer = ends[1];
-    f->answers.is_ordered = true;
+    f->replies.is_ordered = true;
     *state = f;
     return 0;
 }
@@ -62,7 +62,7 @@ static int setup(void **state)
 static int teardown(void **state)
 {
     struct fixture *f = *state;
-    answer_list_finish(&f->answers);
+    reply_list_finish(&f->replies);
     conn_finish(&f->conn);
     close(f->peer);
     pool_destroy(f->pool);
@@ -106,7 +106,7 @@ static void start_frame(struct fixture *f, struct frame frame, uint32_t planes,
     struct codec_layout layout;
     assert_true(codec_layout_init(&layout, WIDTH, HEIGHT, planes));
     const struct encode_format format = {encoding, JPEG_DEFAULTS};
-    encode_start(f->pool, &f->workers, &frame, &layout, &format, POOL_SOON, LABEL, 1,
+    encode_start(f->pool, &f->workers, &frame, &layout, &format, POOL_SOON, METADATA, 1,
                  encode_finished, f);
     assert_null(frame.plane[0]);
 }
@@ -166,7 +166,7 @@ static void test_two_jpeg_files_at_once(void **state)
     struct frame frame = make_frame(1);
     struct jpeg_encoder *encoder = jpeg_encoder_create();
     size_t size;
-    uint8_t *want = jpeg_file(encoder, frame.plane[0], WIDTH, HEIGHT, LABEL, 1, &size);
+    uint8_t *want = jpeg_file(encoder, frame.plane[0], WIDTH, HEIGHT, METADATA, 1, &size);
     for (int i = 0; i < 2; i++)
         start_encoding(f, 1, sheen_Encoding_ENCODING_JPEG);
     while (f->n_encoded < 2)
@@ -203,7 +203,7 @@ static void test_png_files(void **state)
     for (int i = 0; i < 24; i++) {
         struct frame frame = make_picture(cases[i % 4]);
         size_t size;
-        uint8_t *want = png_file(encoder, frame.plane[0], WIDTH, HEIGHT, LABEL, 1, &size);
+        uint8_t *want = png_file(encoder, frame.plane[0], WIDTH, HEIGHT, METADATA, 1, &size);
         f->n_encoded = 0;
         start_frame(f, frame, 1, sheen_Encoding_ENCODING_PNG);
         while (f->n_encoded == 0)
@@ -265,10 +265,10 @@ static void test_frame_is_cut_into_data(void **state)
     struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_RAW);
     uint64_t size = encoded->size, seen = 0;
     assert_true(size > 5ull * PROTOCOL_MAX_DATA_BYTES);
-    struct answer *answer = answer_expect(&f->answers, 7, CLASS_STILL);
+    struct reply *reply = reply_expect(&f->replies, 7, CLASS_STILL);
     sheen_Frame message = frame_message(encoded);
-    assert_true(answer_fill_frame(answer, &message, encoded));
-    answer_send_due(&f->answers, &f->conn);
+    assert_true(reply_fill_frame(reply, &message, encoded));
+    reply_send_due(&f->replies, &f->conn);
 
     uint8_t *data = malloc(size + PROTOCOL_MAX_DATA_BYTES);
     assert_non_null(data);
@@ -298,21 +298,21 @@ static void test_order_of_requests(void **state)
 {
     struct fixture *f = *state;
     uint8_t body[PROTOCOL_MAX_SMALL_BODY_BYTES];
-    struct answer *a[3];
+    struct reply *a[3];
     const sheen_UploadState done = {true, 1};
     for (uint32_t i = 0; i < 3; i++)
-        a[i] = answer_expect(&f->answers, 10 + i, CLASS_STILL);
-    assert_int_equal(f->answers.n, 3);
+        a[i] = reply_expect(&f->replies, 10 + i, CLASS_STILL);
+    assert_int_equal(f->replies.n, 3);
     for (int i = 2; i > 0; i--) {
-        assert_true(answer_fill(a[i], MESSAGE_UPLOAD_STATE, &done));
-        answer_send_due(&f->answers, &f->conn);
+        assert_true(reply_fill(a[i], MESSAGE_UPLOAD_STATE, &done));
+        reply_send_due(&f->replies, &f->conn);
         expect_silence(f);
     }
-    assert_true(answer_fill(a[0], MESSAGE_UPLOAD_STATE, &done));
-    answer_send_due(&f->answers, &f->conn);
+    assert_true(reply_fill(a[0], MESSAGE_UPLOAD_STATE, &done));
+    reply_send_due(&f->replies, &f->conn);
     for (uint32_t i = 0; i < 3; i++)
         assert_int_equal(read_header(f, body, sizeof body).seq, 10 + i);
-    assert_int_equal(f->answers.n, 0);
+    assert_int_equal(f->replies.n, 0);
 }
 
 static void test_nothing_after_the_last(void **state)
@@ -320,17 +320,17 @@ static void test_nothing_after_the_last(void **state)
     struct fixture *f = *state;
     uint8_t body[PROTOCOL_MAX_SMALL_BODY_BYTES];
     const sheen_UploadState done = {true, 1};
-    struct answer *first = answer_expect(&f->answers, 1, CLASS_STILL),
-                  *last = answer_expect(&f->answers, 2, CLASS_STILL),
-                  *late = answer_expect(&f->answers, 3, CLASS_STILL);
-    answer_mark_last(last);
-    assert_true(answer_fill(last, MESSAGE_UPLOAD_STATE, &done));
-    assert_true(answer_fill(late, MESSAGE_UPLOAD_STATE, &done));
-    answer_send_due(&f->answers, &f->conn);
+    struct reply *first = reply_expect(&f->replies, 1, CLASS_STILL),
+                 *last = reply_expect(&f->replies, 2, CLASS_STILL),
+                 *late = reply_expect(&f->replies, 3, CLASS_STILL);
+    reply_mark_last(last);
+    assert_true(reply_fill(last, MESSAGE_UPLOAD_STATE, &done));
+    assert_true(reply_fill(late, MESSAGE_UPLOAD_STATE, &done));
+    reply_send_due(&f->replies, &f->conn);
     expect_silence(f);
     assert_int_equal(f->conn.state, CONN_OPEN);
-    assert_true(answer_fill(first, MESSAGE_UPLOAD_STATE, &done));
-    answer_send_due(&f->answers, &f->conn);
+    assert_true(reply_fill(first, MESSAGE_UPLOAD_STATE, &done));
+    reply_send_due(&f->replies, &f->conn);
     assert_int_equal(read_header(f, body, sizeof body).seq, 1);
     assert_int_equal(read_header(f, body, sizeof body).seq, 2);
     assert_int_equal(recv(f->peer, body, 1, 0), 0);
@@ -343,15 +343,15 @@ static void test_closed_with_a_frame_unsent(void **state)
     struct fixture *f = *state;
     struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_RAW);
     sheen_Frame message = frame_message(encoded);
-    assert_true(answer_fill_frame(answer_expect(&f->answers, 1, CLASS_STILL), &message, encoded));
-    answer_send_due(&f->answers, &f->conn);
+    assert_true(reply_fill_frame(reply_expect(&f->replies, 1, CLASS_STILL), &message, encoded));
+    reply_send_due(&f->replies, &f->conn);
     assert_true(conn_unsent_bytes(&f->conn) > 0);
     conn_close(&f->conn);
     assert_int_equal(conn_unsent_bytes(&f->conn), 0);
     encoded = encode(f, 1, sheen_Encoding_ENCODING_PNG);
     message = frame_message(encoded);
-    assert_true(answer_fill_frame(answer_expect(&f->answers, 2, CLASS_STILL), &message, encoded));
-    answer_send_due(&f->answers, &f->conn);
+    assert_true(reply_fill_frame(reply_expect(&f->replies, 2, CLASS_STILL), &message, encoded));
+    reply_send_due(&f->replies, &f->conn);
 }
 
 int main(void)

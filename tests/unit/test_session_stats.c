@@ -98,17 +98,17 @@ static void test_mean_of_the_last(void **test_state)
     assert_int_equal(stats.stage[STAGE_TABLES].n, 0);
 }
 
-static void answer_of(struct stats *stats, enum request_class request_class, uint64_t total_us,
-                      uint64_t now_us)
+static void answered_class(struct stats *stats, enum request_class request_class, uint64_t total_us,
+                           uint64_t now_us)
 {
     const sheen_Times times = {.total_us = total_us};
-    stats_answer(stats, MESSAGE_FRAME, sheen_ErrorCode_ERROR_NONE, now_us);
+    stats_reply(stats, MESSAGE_FRAME, sheen_ErrorCode_ERROR_NONE, now_us);
     stats_frame(stats, request_class, &times, now_us);
 }
 
-static void answer(struct stats *stats, uint64_t total_us, uint64_t now_us)
+static void answered(struct stats *stats, uint64_t total_us, uint64_t now_us)
 {
-    answer_of(stats, CLASS_STILL, total_us, now_us);
+    answered_class(stats, CLASS_STILL, total_us, now_us);
 }
 
 static void test_the_last_minute(void **test_state)
@@ -122,8 +122,8 @@ static void test_the_last_minute(void **test_state)
     assert_int_equal(recent.window_us + recent.frames + recent.p50.total_us, 0);
 
     for (unsigned i = 0; i < 100; i++)
-        answer(&stats, 8, start + i * second / 10);
-    stats_answer(&stats, MESSAGE_ERROR, sheen_ErrorCode_ERROR_MODEL, start + 11 * second);
+        answered(&stats, 8, start + i * second / 10);
+    stats_reply(&stats, MESSAGE_ERROR, sheen_ErrorCode_ERROR_MODEL, start + 11 * second);
     stats_recent(&stats, start + 20 * second, &recent);
     assert_int_equal(recent.window_us, 20 * second);
     assert_int_equal(recent.frames, 100);
@@ -132,7 +132,7 @@ static void test_the_last_minute(void **test_state)
     assert_int_equal(stats.error_codes[sheen_ErrorCode_ERROR_MODEL], 1);
 
     /* At 60 s the first slice goes; its frames are in no percentile any more. */
-    answer(&stats, 2, start + 59 * second);
+    answered(&stats, 2, start + 59 * second);
     stats_recent(&stats, start + 59 * second, &recent);
     assert_int_equal(recent.frames, 101);
     stats_recent(&stats, start + 60 * second, &recent);
@@ -146,7 +146,7 @@ static void test_the_last_minute(void **test_state)
     /* After a long rest old slices are not taken for new ones. */
     stats_recent(&stats, start + 3600 * second, &recent);
     assert_int_equal(recent.frames + recent.requests, 0);
-    answer(&stats, 4, start + 3600 * second);
+    answered(&stats, 4, start + 3600 * second);
     stats_recent(&stats, start + 3600 * second, &recent);
     assert_int_equal(recent.frames, 1);
 }
@@ -159,8 +159,8 @@ static void test_latency_by_class(void **test_state)
     stats_init(&stats);
     const uint64_t start = stats.start_us, second = 1000000;
     for (uint64_t i = 1; i <= 100; i++)
-        answer_of(&stats, CLASS_INTERACTIVE, i <= 50 ? 8 : i <= 95 ? 10 : 12, start);
-    answer_of(&stats, CLASS_BATCH, 15, start + 30 * second);
+        answered_class(&stats, CLASS_INTERACTIVE, i <= 50 ? 8 : i <= 95 ? 10 : 12, start);
+    answered_class(&stats, CLASS_BATCH, 15, start + 30 * second);
     stats_recent(&stats, start + 30 * second, &recent);
     const sheen_Latency *interactive = &recent.latency[CLASS_INTERACTIVE];
     assert_int_equal(interactive->frames, 100);
@@ -184,13 +184,13 @@ static void test_sent_bytes(void **test_state)
     struct stats_recent recent;
     stats_init(&stats);
     const uint64_t start = stats.start_us, second = 1000000;
-    answer_of(&stats, CLASS_STILL, 8, start);
+    answered_class(&stats, CLASS_STILL, 8, start);
     stats.sent_bytes += 1000; /* as a connection counts them */
     stats_recent(&stats, start + second, &recent);
     assert_int_equal(recent.sent_bytes, 1000);
-    answer_of(&stats, CLASS_STILL, 8, start + 35 * second);
+    answered_class(&stats, CLASS_STILL, 8, start + 35 * second);
     stats.sent_bytes += 70;
-    answer_of(&stats, CLASS_STILL, 8, start + 45 * second);
+    answered_class(&stats, CLASS_STILL, 8, start + 45 * second);
     stats.sent_bytes += 5;
     stats_recent(&stats, start + 50 * second, &recent);
     assert_int_equal(recent.sent_bytes, 1075);
