@@ -1,113 +1,48 @@
 #include "server/assets/client_quota.h"
 
-#include <arpa/inet.h>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/socket.h>
 
-static void identify_v6(struct peer *peer, const struct in6_addr *address)
+void client_quotas_init(struct client_quotas *quotas, struct account *daemon, uint64_t limit)
 {
-    struct in6_addr network = *address;
-    bool is_v4 = IN6_IS_ADDR_V4MAPPED(address);
-    if (!is_v4)
-        memset(network.s6_addr + 8, 0, 8);
-    memcpy(peer->key, network.s6_addr, sizeof peer->key);
-    char text[INET6_ADDRSTRLEN] = "?";
-    inet_ntop(AF_INET6, &network, text, sizeof text);
-    snprintf(peer->name, sizeof peer->name, is_v4 ? "%s" : "%s/64", text);
+    quotas->daemon = daemon;
+    quotas->limit = limit;
+    for (int i = 0; i < CLIENT_QUOTA_BUCKETS; i++)
+        LIST_INIT(&quotas->bucket[i]);
 }
 
-/* Fills in name and key. Unknown ones are all the same peer. */
-static void identify(struct peer *peer, int fd)
+static struct client_quota_list *bucket_of(struct client_quotas *quotas, const struct peer *peer)
 {
-    struct sockaddr_storage name = {0};
-    socklen_t size = sizeof name;
-    struct ucred user;
-    socklen_t user_size = sizeof user;
-    snprintf(peer->name, sizeof peer->name, "unknown");
-    if (getpeername(fd, (struct sockaddr *)&name, &size) < 0)
-        return;
-    if (name.ss_family == AF_UNIX) {
-        if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &user, &user_size) < 0)
-            return;
-        snprintf(peer->name, sizeof peer->name, "user %lu", (unsigned long)user.uid);
-        peer->key[0] = 1;
-        peer->key[1] = user.uid;
-    } else if (name.ss_family == AF_INET6) {
-        struct sockaddr_in6 v6;
-        memcpy(&v6, &name, sizeof v6);
-        identify_v6(peer, &v6.sin6_addr);
-    } else if (name.ss_family == AF_INET) {
-        struct sockaddr_in v4;
-        memcpy(&v4, &name, sizeof v4);
-        inet_ntop(AF_INET, &v4.sin_addr, peer->name, sizeof peer->name);
-        peer->key[0] = 2;
-        peer->key[1] = v4.sin_addr.s_addr;
-    }
+    uint64_t mixed = (peer->key[0] * 31 + peer->key[1]) * 0x9e3779b97f4a7c15u;
+    return &quotas->bucket[mixed >> 56];
 }
 
-static struct peer **bucket_of(struct peers *peers, const uint64_t key[2])
+struct client_quota *client_quota_get(struct client_quotas *quotas, int fd)
 {
-    uint64_t mixed = (key[0] * 31 + key[1]) * 0x9e3779b97f4a7c15u;
-    return &peers->bucket[mixed >> 56];
-}
-
-struct peer *peer_get(struct peers *peers, int fd)
-{
-    struct peer found = {0};
-    identify(&found, fd);
-    struct peer **bucket = bucket_of(peers, found.key);
-    for (struct peer *peer = *bucket; peer; peer = peer->next)
-        if (peer->key[0] == found.key[0] && peer->key[1] == found.key[1])
-            return peer_reference(peer);
-    struct peer *peer = malloc(sizeof *peer);
-    if (!peer)
+    const struct peer peer = peer_identify(fd);
+    struct client_quota_list *bucket = bucket_of(quotas, &peer);
+    struct client_quota *quota;
+    LIST_FOREACH (quota, bucket, link)
+        if (quota->peer.key[0] == peer.key[0] && quota->peer.key[1] == peer.key[1])
+            return client_quota_reference(quota);
+    quota = malloc(sizeof *quota);
+    if (!quota)
         return NULL;
-    *peer = found;
-    peer->references = 1;
-    peer->next = *bucket;
-    *bucket = peer;
-    return peer;
+    *quota = (struct client_quota){.peer = peer, .references = 1};
+    account_init(&quota->account, quotas->daemon, quotas->limit);
+    LIST_INSERT_HEAD(bucket, quota, link);
+    return quota;
 }
 
-struct peer *peer_reference(struct peer *peer)
+struct client_quota *client_quota_reference(struct client_quota *quota)
 {
-    peer->references++;
-    return peer;
+    quota->references++;
+    return quota;
 }
 
-void peer_put(struct peers *peers, struct peer *peer)
+void client_quota_put(struct client_quota *quota)
 {
-    if (!peer || --peer->references > 0)
+    if (!quota || --quota->references > 0)
         return;
-    struct peer **link = bucket_of(peers, peer->key);
-    while (*link != peer)
-        link = &(*link)->next;
-    *link = peer->next;
-    free(peer);
-}
-
-void peer_describe(int fd, char text[static PEER_TEXT_BYTES])
-{
-    struct ucred credentials;
-    struct sockaddr_storage name;
-    socklen_t size = sizeof name, credentials_size = sizeof credentials;
-    char host[INET6_ADDRSTRLEN + 16], port[8];
-    snprintf(text, PEER_TEXT_BYTES, "unknown");
-    if (getpeername(fd, (struct sockaddr *)&name, &size) < 0)
-        return;
-    if (name.ss_family == AF_UNIX) {
-        if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &credentials, &credentials_size) == 0)
-            snprintf(text, PEER_TEXT_BYTES, "unix uid=%lu gid=%lu pid=%ld",
-                     (unsigned long)credentials.uid, (unsigned long)credentials.gid,
-                     (long)credentials.pid);
-    } else if (getnameinfo((const struct sockaddr *)&name, size, host, sizeof host, port,
-                           sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) == 0) {
-        bool v6 = strchr(host, ':') != NULL;
-        snprintf(text, PEER_TEXT_BYTES, v6 ? "[%s]:%s" : "%s:%s", host, port);
-    }
+    LIST_REMOVE(quota, link);
+    free(quota);
 }

@@ -1,36 +1,37 @@
-/* Who connects: users of the Unix socket by their uid, others by their address (IPv6 by its /64,
- * which one machine has to itself). What one peer's connections take together is bounded by what
- * is counted here. Thread: the loop's. */
+/* What all connections of one peer (peer.h) take together: how many they are, and how much memory
+ * their uploads, long messages and frames take. Models and images that are stored count elsewhere
+ * (store_shares.h). Thread: the loop's. */
 #ifndef SHEEN_ASSETS_CLIENT_QUOTA_H
 #define SHEEN_ASSETS_CLIENT_QUOTA_H
 
 #include <stdint.h>
+#include <sys/queue.h>
 
-#define PEER_NAME_BYTES 64
-#define PEER_TEXT_BYTES 80
+#include "server/assets/account.h"
+#include "server/net/peer.h"
 
-struct peer {
-    char name[PEER_NAME_BYTES]; /* "user 1000", "127.0.0.1" */
+struct client_quota {
+    struct peer peer;
     uint32_t n_connections;
-    uint64_t memory_bytes;  /* uploads and long messages under way, frames not yet sent */
-    uint64_t patient_bytes; /* of these, stills and batches */
-    uint64_t key[2];        /* the module's own */
-    unsigned references;
-    struct peer *next;
+    struct account account;
+    unsigned references; /* the module's own, as what follows */
+    LIST_ENTRY(client_quota) link;
+};
+LIST_HEAD(client_quota_list, client_quota);
+
+#define CLIENT_QUOTA_BUCKETS 256
+/* The quotas of all that are connected, or whose frames are still being sent. */
+struct client_quotas {
+    struct account *daemon; /* the accounts' parent */
+    uint64_t limit;         /* bytes of one peer, or ACCOUNT_NO_LIMIT */
+    struct client_quota_list bucket[CLIENT_QUOTA_BUCKETS];
 };
 
-#define PEER_BUCKETS 256
-struct peers {
-    struct peer *bucket[PEER_BUCKETS];
-};
+void client_quotas_init(struct client_quotas *quotas, struct account *daemon, uint64_t limit);
 
-/* The peer of a connected socket, with another reference. NULL when memory is short. */
-struct peer *peer_get(struct peers *peers, int fd);
-struct peer *peer_reference(struct peer *peer);
-void peer_put(struct peers *peers, struct peer *peer); /* NULL is safe */
-
-/* Who it is just now, for the log: "unix uid=1000 gid=1000 pid=42", or "192.0.2.1:4711"; "unknown"
- * when the peer has gone. */
-void peer_describe(int fd, char text[static PEER_TEXT_BYTES]);
+/* The quota of a connected socket's peer, with another reference. NULL when memory is short. */
+struct client_quota *client_quota_get(struct client_quotas *quotas, int fd);
+struct client_quota *client_quota_reference(struct client_quota *quota);
+void client_quota_put(struct client_quota *quota); /* NULL is safe */
 
 #endif

@@ -3,68 +3,69 @@
 #include <inttypes.h>
 
 struct memory_charge {
-    struct memory *memory;
-    struct peer *peer;
+    struct block_cache *block_cache;
+    struct client_quota *quota;
+    enum account_class class;
     uint64_t bytes;
-    bool is_patient;
 };
 
-/* In a private daemon all of the budget is its only client's. */
-static bool fits_peer(const struct memory *memory, const struct peer *peer, uint64_t bytes)
+void memory_init(struct memory *memory, struct store *store, const struct asset_limits *limits,
+                 bool is_private, struct block_cache *block_cache)
 {
-    uint64_t limit = memory->limits->peer_memory;
-    return store_is_private(memory->store) ||
-           (peer->memory_bytes <= limit && bytes <= limit - peer->memory_bytes);
+    memory->store = store;
+    memory->block_cache = block_cache;
+    client_quotas_init(&memory->quotas, store_account(store),
+                       is_private ? ACCOUNT_NO_LIMIT : limits->peer_memory);
 }
 
-static bool refuse_peer(const struct memory *memory, const struct peer *peer, const char *what,
-                        uint64_t bytes, struct error *error)
+static bool refuse_peer(const struct client_quota *quota, const char *what, uint64_t bytes,
+                        struct error *error)
 {
     return error_set(error, ERROR_SERVER,
                      "%s needs %" PRIu64 " bytes; of the %" PRIu64 " that uploads and frames of %s "
                      "may take (--peer-memory), %" PRIu64 " are in use now: try again later",
-                     what, bytes, memory->limits->peer_memory, peer->name, peer->memory_bytes);
+                     what, bytes, quota->account.limit, quota->peer.name,
+                     account_used(&quota->account));
 }
 
-/* Stills and batches leave room for interactive frames, and those of one peer for others': he may
- * read them as slowly as stall-timeout lets him. */
-static bool fits_patient(const struct memory *memory, const struct peer *peer, uint64_t bytes)
+/* Stills and batches leave room for interactive frames, and those of one peer for others': the peer
+ * may read them as slowly as stall-timeout lets it. */
+static bool fits_patient(const struct memory *memory, const struct client_quota *quota,
+                         uint64_t bytes)
 {
-    uint64_t most = memory->limits->memory_budget / 2;
-    return memory->patient_bytes == 0 ||
-           (memory->patient_bytes + bytes <= most && peer->patient_bytes <= most / 2);
+    const struct account *daemon = store_account(memory->store);
+    uint64_t most = daemon->limit / 2, used = daemon->used[ACCOUNT_PATIENT];
+    return used == 0 || (used + bytes <= most && quota->account.used[ACCOUNT_PATIENT] <= most / 2);
 }
 
-static bool take(struct memory *memory, struct peer *peer, const uint8_t *asker, bool is_patient,
-                 uint64_t bytes, struct error *error)
+static bool take(struct memory *memory, struct client_quota *quota, const uint8_t *asker,
+                 enum account_class class, uint64_t bytes, struct error *error)
 {
-    if (is_patient && !fits_patient(memory, peer, bytes))
+    if (class == ACCOUNT_PATIENT && !fits_patient(memory, quota, bytes))
         return false; /* there are others: later */
-    if (!fits_peer(memory, peer, bytes))
-        return refuse_peer(memory, peer, "a frame", bytes, error);
-    return store_reserve(memory->store, asker, bytes, "a frame", ERROR_REQUEST, error);
+    if (bytes > account_room(&quota->account))
+        return refuse_peer(quota, "a frame", bytes, error);
+    return store_reserve(memory->store, asker, &quota->account, class, bytes, "a frame",
+                         ERROR_REQUEST, error);
 }
 
-enum memory_result memory_charge_frame(struct memory *memory, struct peer *peer,
+enum memory_result memory_charge_frame(struct memory *memory, struct client_quota *quota,
                                        const uint8_t asker[static STORE_OWNER_BYTES],
-                                       enum request_class request_class, uint64_t bytes,
+                                       enum account_class class, uint64_t bytes,
                                        struct memory_charge **charge, struct error *error)
 {
-    bool is_patient = request_class != CLASS_INTERACTIVE;
+    const uint64_t *used = store_account(memory->store)->used;
     struct memory_charge *made = block_cache_take(memory->block_cache, sizeof *made);
     if (!made) {
         error_set(error, ERROR_SERVER, "no memory for a frame: try again later");
         return MEMORY_FAILED;
     }
-    if (!take(memory, peer, asker, is_patient, bytes, error)) {
+    if (!take(memory, quota, asker, class, bytes, error)) {
         block_cache_give(memory->block_cache, made);
-        return memory->frame_bytes > 0 ? MEMORY_LATER : MEMORY_FAILED;
+        return used[ACCOUNT_INTERACTIVE] + used[ACCOUNT_PATIENT] > 0 ? MEMORY_LATER : MEMORY_FAILED;
     }
-    *made = (struct memory_charge){memory, peer_reference(peer), bytes, is_patient};
-    peer->memory_bytes += bytes;
-    memory->frame_bytes += bytes;
-    memory->patient_bytes += is_patient ? bytes : 0;
-    peer->patient_bytes += is_patient ? bytes : 0;
+    *made =
+        (struct memory_charge){memory->block_cache, client_quota_reference(quota), class, bytes};
     *charge = made;
     return MEMORY_CHARGED;
 }
@@ -73,14 +74,8 @@ void memory_charge_shrink(struct memory_charge *charge, uint64_t bytes)
 {
     if (bytes >= charge->bytes)
         return;
-    struct memory *memory = charge->memory;
-    uint64_t less = charge->bytes - bytes;
+    account_refund(&charge->quota->account, charge->class, charge->bytes - bytes);
     charge->bytes = bytes;
-    charge->peer->memory_bytes -= less;
-    memory->frame_bytes -= less;
-    memory->patient_bytes -= charge->is_patient ? less : 0;
-    charge->peer->patient_bytes -= charge->is_patient ? less : 0;
-    store_release(memory->store, less);
 }
 
 void memory_charge_release(void *owner)
@@ -89,25 +84,21 @@ void memory_charge_release(void *owner)
     if (!charge)
         return;
     memory_charge_shrink(charge, 0);
-    peer_put(&charge->memory->peers, charge->peer);
-    block_cache_give(charge->memory->block_cache, charge);
+    client_quota_put(charge->quota);
+    block_cache_give(charge->block_cache, charge);
 }
 
-bool memory_charge_input(struct memory *memory, struct peer *peer,
+bool memory_charge_input(struct memory *memory, struct client_quota *quota,
                          const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
                          const char *name, enum error_kind permanent, struct error *error)
 {
-    if (!fits_peer(memory, peer, bytes))
-        return refuse_peer(memory, peer, name, bytes, error);
-    if (!store_reserve(memory->store, asker, bytes, name, permanent, error))
-        return false;
-    peer->memory_bytes += bytes;
-    return true;
+    if (bytes > account_room(&quota->account))
+        return refuse_peer(quota, name, bytes, error);
+    return store_reserve(memory->store, asker, &quota->account, ACCOUNT_INPUT, bytes, name,
+                         permanent, error);
 }
 
-void memory_release_input(struct memory *memory, struct peer *peer, uint64_t bytes, bool stored)
+void memory_refund_input(struct client_quota *quota, uint64_t bytes)
 {
-    peer->memory_bytes -= bytes;
-    if (!stored)
-        store_release(memory->store, bytes);
+    account_refund(&quota->account, ACCOUNT_INPUT, bytes);
 }

@@ -17,7 +17,7 @@ struct load {
     struct task task;
     struct model_file_order order;
     char name[STORE_NAME_BYTES]; /* without folders */
-    uint8_t holder[HOLDER_ID_BYTES];
+    uint8_t holder[STORE_OWNER_BYTES];
     int fd;
     uint8_t *bytes;
     size_t size;
@@ -93,12 +93,12 @@ static void load_done(struct task *task)
     struct error error = {0};
     bool ok = load->read;
     if (!ok) {
-        store_release(order->store, load->size);
+        account_refund(store_account(order->store), ACCOUNT_INPUT, load->size);
         error_set(&error, ERROR_SERVER, "%s: it could not be read to its end: try again",
                   load->name);
     } else {
         ok = store_add(order->store, STORE_SHARED, load->holder, ASSET_MODEL, load->sha256,
-                       load->name, load->bytes, load->size, &error);
+                       load->name, load->bytes, load->size, store_account(order->store), &error);
         load->bytes = NULL; /* the store's */
     }
     order->loaded(order->owner, ok ? load->sha256 : NULL, &error);
@@ -119,8 +119,8 @@ bool model_file_load(const struct model_file_order *order, struct error *error)
         log_event(LOG_INFO, "model file refused", log_text("file", order->name),
                   log_text("text", wrong));
         error_set(error, ERROR_MODEL, "no model file '%.200s' at this daemon", order->name);
-    } else if (store_reserve(order->store, load->holder, load->size, load->name, ERROR_MODEL,
-                             error)) {
+    } else if (store_reserve(order->store, load->holder, store_account(order->store), ACCOUNT_INPUT,
+                             load->size, load->name, ERROR_MODEL, error)) {
         load->task = (struct task){load_run, load_done, load, NULL};
         pool_submit(order->pool, &load->task, POOL_LATER);
         return true;

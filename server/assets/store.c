@@ -7,29 +7,31 @@
 
 #define N_BUCKETS 1024
 
+LIST_HEAD(bucket, asset);
+
 struct store {
     struct pool *pool, *readers;
     struct render_thread *render_thread;
     struct workers *workers;
     const struct asset_limits *limits;
-    bool is_private; /* the daemon is */
-    size_t budget_bytes, used_bytes;
+    bool is_private;        /* the daemon is */
+    struct account account; /* of all that the daemon holds */
     uint32_t max_image_px;
     size_t n_assets;
-    struct holders holders;
+    struct store_shares shares;
     uint64_t n_hits, n_misses, n_evictions;
     unsigned n_building;
     const struct asset *building[STORE_MAX_BUILDS];
     atomic_bool cancelled;
-    struct asset *build_head, *build_tail; /* wait for a turn */
-    struct asset *newest, *oldest;
-    struct asset *buckets[N_BUCKETS];
+    TAILQ_HEAD(asset_builds, asset) builds; /* wait for a turn */
+    TAILQ_HEAD(asset_uses, asset) by_use;   /* the newest use first */
+    struct bucket buckets[N_BUCKETS];
 };
 
 const uint8_t STORE_SHARED[STORE_OWNER_BYTES] = {0};
 
 /* SHA-256 is its own hash. */
-static struct asset **bucket_of(struct store *store, const uint8_t *sha256)
+static struct bucket *bucket_of(struct store *store, const uint8_t *sha256)
 {
     return &store->buckets[(sha256[0] | (size_t)sha256[1] << 8) % N_BUCKETS];
 }
@@ -50,37 +52,19 @@ struct store *store_create(struct pool *pool, struct pool *readers,
     store->workers = workers;
     store->limits = limits;
     store->is_private = is_private;
-    store->budget_bytes = limits->memory_budget;
+    account_init(&store->account, NULL, limits->memory_budget);
+    store_shares_init(&store->shares, &store->account);
+    TAILQ_INIT(&store->builds);
+    TAILQ_INIT(&store->by_use);
+    for (int i = 0; i < N_BUCKETS; i++)
+        LIST_INIT(&store->buckets[i]);
     store->max_image_px = (uint32_t)limits->max_image_side;
     return store;
 }
 
-static void unlink_by_use(struct store *store, struct asset *asset)
+struct account *store_account(struct store *store)
 {
-    *(asset->newer ? &asset->newer->older : &store->newest) = asset->older;
-    *(asset->older ? &asset->older->newer : &store->oldest) = asset->newer;
-}
-
-static void link_newest(struct store *store, struct asset *asset)
-{
-    asset->newer = NULL;
-    asset->older = store->newest;
-    *(store->newest ? &store->newest->newer : &store->oldest) = asset;
-    store->newest = asset;
-}
-
-/* Bytes that have been reserved are the asset's now. */
-static void charge(struct asset *asset, size_t bytes)
-{
-    asset->charged_bytes += bytes;
-    asset->holder->held[HOLDING_BYTES] += bytes;
-}
-
-static void uncharge(struct asset *asset, size_t bytes)
-{
-    asset->charged_bytes -= bytes;
-    asset->holder->held[HOLDING_BYTES] -= bytes;
-    store_release(asset->store, bytes);
+    return &store->account;
 }
 
 static void drop_file(struct asset *asset)
@@ -89,22 +73,19 @@ static void drop_file(struct asset *asset)
         return;
     free(asset->file);
     asset->file = NULL;
-    uncharge(asset, asset->file_bytes);
+    account_refund(&asset->account, ACCOUNT_ASSETS, asset->file_bytes);
 }
 
 static void asset_destroy(struct asset *asset)
 {
     struct store *store = asset->store;
-    struct asset **link = bucket_of(store, asset->sha256);
-    while (*link != asset)
-        link = &(*link)->bucket_next;
-    *link = asset->bucket_next;
-    unlink_by_use(store, asset);
+    LIST_REMOVE(asset, bucket_link);
+    TAILQ_REMOVE(&store->by_use, asset, use_link);
     store->n_assets--;
     drop_file(asset);
-    uncharge(asset, asset->charged_bytes);
-    asset->holder->held[HOLDING_ASSETS]--;
-    holder_put(&store->holders, asset->holder);
+    account_refund(&asset->account, ACCOUNT_ASSETS, account_used(&asset->account));
+    asset->share->n_entries--;
+    store_share_put(&store->shares, asset->share);
     if (asset->model)
         model_destroy(asset->model, store->render_thread);
     if (asset->image)
@@ -116,8 +97,8 @@ void store_destroy(struct store *store)
 {
     if (!store)
         return;
-    while (store->newest)
-        asset_destroy(store->newest);
+    while (!TAILQ_EMPTY(&store->by_use))
+        asset_destroy(TAILQ_FIRST(&store->by_use));
     free(store);
 }
 
@@ -130,68 +111,77 @@ static bool is_evictable(const struct asset *asset)
 
 /* What is wanted: `needed` bytes, or entries. */
 struct want {
-    enum holding what;
-    size_t needed;
+    enum share_kind kind;
+    uint64_t needed;
 };
 
-static size_t all_of(const struct store *store, enum holding what)
+static uint64_t all_of(const struct store *store, enum share_kind kind)
 {
-    return what == HOLDING_BYTES ? store->budget_bytes : STORE_MAX_ASSETS;
+    return kind == SHARE_BYTES ? store->account.limit : STORE_MAX_ASSETS;
 }
 
-static bool is_there(const struct store *store, const struct want *want)
+static uint64_t free_of(const struct store *store, enum share_kind kind)
 {
-    size_t used = want->what == HOLDING_BYTES ? store->used_bytes : store->n_assets;
-    return want->needed <= all_of(store, want->what) - used;
+    return kind == SHARE_BYTES ? account_room(&store->account) : STORE_MAX_ASSETS - store->n_assets;
 }
 
-static bool could_be_there(const struct store *store, const struct want *want)
+static bool has_room(const struct store *store, const struct want *want)
 {
-    size_t used = want->what == HOLDING_BYTES ? store->used_bytes : store->n_assets;
-    size_t room = all_of(store, want->what) - used;
-    for (const struct asset *asset = store->oldest; asset && room < want->needed;
-         asset = asset->newer)
+    return want->needed <= free_of(store, want->kind);
+}
+
+/* Is there room, or would there be if all were evicted that nobody uses? */
+static bool could_have_room(const struct store *store, const struct want *want)
+{
+    uint64_t room = free_of(store, want->kind);
+    const struct asset *asset;
+    TAILQ_FOREACH (asset, &store->by_use, use_link) {
+        if (room >= want->needed)
+            break;
         if (is_evictable(asset))
-            room += want->what == HOLDING_BYTES ? asset->charged_bytes : 1;
+            room += want->kind == SHARE_BYTES ? account_used(&asset->account) : 1;
+    }
     return room >= want->needed;
 }
 
-/* Of the holder's, or of all for NULL, what has not been used for longest, until there is room or
- * he has no more than `keep` of it. */
-static void evict(struct store *store, const struct want *want, const struct holder *holder,
-                  size_t keep)
+/* Evicts what has not been used for longest, of one share or of all (NULL), until there is room or
+ * the share holds no more than `keep`. */
+static void evict(struct store *store, const struct want *want, const struct store_share *share,
+                  uint64_t keep)
 {
-    for (struct asset *asset = store->oldest, *newer; asset && !is_there(store, want);
-         asset = newer) {
-        newer = asset->newer;
-        if (holder && holder->held[want->what] <= keep)
+    struct asset *asset = TAILQ_LAST(&store->by_use, asset_uses);
+    while (asset && !has_room(store, want)) {
+        struct asset *newer = TAILQ_PREV(asset, asset_uses, use_link);
+        if (share && store_share_held(share, want->kind) <= keep)
             return;
-        if (!is_evictable(asset) || (holder && asset->holder != holder))
-            continue;
-        asset_destroy(asset);
-        store->n_evictions++;
+        if (is_evictable(asset) && (!share || asset->share == share)) {
+            asset_destroy(asset);
+            store->n_evictions++;
+        }
+        asset = newer;
     }
 }
 
-/* Who wants more than an equal share makes room by what is his own; then those do who hold more
- * than a share, the largest first; then whatever has not been used for longest goes. Evicts only if
- * that is enough. */
+/* A client that wants more than an equal share makes room by what is its own; then those do who
+ * hold more than a share, the largest first; then whatever has not been used for longest goes.
+ * Evicts only if that is enough. */
 static bool make_room(struct store *store, const uint8_t *asker, const struct want *want)
 {
-    if (is_there(store, want))
+    if (has_room(store, want))
         return true;
-    if (!could_be_there(store, want))
+    if (!could_have_room(store, want))
         return false;
-    struct holder *own = holder_find(&store->holders, asker), *other;
-    size_t share = all_of(store, want->what) / (store->holders.n + !own);
-    if (own && own->held[want->what] + want->needed > share)
+    struct store_share *own = store_share_find(&store->shares, asker), *other;
+    uint64_t equal = all_of(store, want->kind) / (store->shares.n + !own);
+    if (own && store_share_held(own, want->kind) + want->needed > equal)
         evict(store, want, own, 0);
-    holder_put(&store->holders, own);
-    holders_begin(&store->holders);
-    while (!is_there(store, want) && (other = holders_next(&store->holders, want->what, share))) {
-        other->references++; /* his last asset may go */
-        evict(store, want, other, share);
-        holder_put(&store->holders, other);
+    store_share_put(&store->shares, own);
+    store_shares_begin(&store->shares);
+    while (!has_room(store, want) &&
+           (other = store_shares_next(&store->shares, want->kind, equal))) {
+        other->references++; /* its last asset may go */
+        evict(store, want, other, equal);
+        store_share_put(&store->shares, other);
     }
     evict(store, want, NULL, 0);
     return true;
@@ -201,11 +191,12 @@ static bool make_room(struct store *store, const uint8_t *asker, const struct wa
 static struct asset *find_owned(struct store *store, const uint8_t *owner, enum asset_kind kind,
                                 const uint8_t *sha256)
 {
-    struct asset *asset = *bucket_of(store, sha256);
-    while (asset && (asset->kind != kind || memcmp(asset->sha256, sha256, MODEL_ID_BYTES) != 0 ||
-                     memcmp(asset->owner, owner, STORE_OWNER_BYTES) != 0))
-        asset = asset->bucket_next;
-    return asset;
+    struct asset *asset;
+    LIST_FOREACH (asset, bucket_of(store, sha256), bucket_link)
+        if (asset->kind == kind && memcmp(asset->sha256, sha256, MODEL_ID_BYTES) == 0 &&
+            memcmp(asset->owner, owner, STORE_OWNER_BYTES) == 0)
+            return asset;
+    return NULL;
 }
 
 struct asset *store_find(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
@@ -230,104 +221,98 @@ void store_share(struct asset *asset)
 }
 
 /* All memory is this one client's: nobody else will give any back. */
-static bool refuse_private(const struct store *store, size_t bytes, const char *what,
+static bool refuse_private(const struct store *store, uint64_t bytes, const char *what,
                            enum error_kind permanent, struct error *error)
 {
-    const uint64_t mib = 1 << 20;
-    uint64_t enough = ((uint64_t)store->used_bytes + bytes) / 8 * 9 / mib + 1;
+    const uint64_t mib = 1 << 20, used = account_used(&store->account);
     return error_set(error, permanent,
-                     "%s needs %zu bytes beside %zu in use, and this command's daemon has a memory "
-                     "budget of %zu: give more, as --memory-budget %" PRIu64
-                     "M, if the machine has "
-                     "it",
-                     what, bytes, store->used_bytes, store->budget_bytes, enough);
+                     "%s needs %" PRIu64 " bytes beside %" PRIu64
+                     " in use, and this command's daemon has a memory budget of %" PRIu64
+                     ": give more, as --memory-budget %" PRIu64 "M, if the machine has it",
+                     what, bytes, used, store->account.limit, (used + bytes) / 8 * 9 / mib + 1);
 }
 
-bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES], size_t bytes,
+bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES],
+                   struct account *account, enum account_class class, uint64_t bytes,
                    const char *what, enum error_kind permanent, struct error *error)
 {
-    const struct want want = {HOLDING_BYTES, bytes};
-    if (bytes > store->budget_bytes && !store->is_private)
+    const struct want want = {SHARE_BYTES, bytes};
+    const uint64_t budget = store->account.limit;
+    if (bytes > budget && !store->is_private)
         return error_set(error, permanent,
-                         "%s needs %zu bytes and the daemon's memory budget is %zu: ask its "
-                         "operator for more (sheend --memory-budget)",
-                         what, bytes, store->budget_bytes);
-    bool has_room = bytes <= store->budget_bytes && make_room(store, asker, &want);
-    if (!has_room && store->is_private)
+                         "%s needs %" PRIu64 " bytes and the daemon's memory budget is %" PRIu64
+                         ": ask its operator for more (sheend --memory-budget)",
+                         what, bytes, budget);
+    if (bytes <= budget && make_room(store, asker, &want)) {
+        account_charge(account, class, bytes);
+        return true;
+    }
+    if (store->is_private)
         return refuse_private(store, bytes, what, permanent, error);
-    if (!has_room)
-        return error_set(error, ERROR_SERVER,
-                         "%s needs %zu bytes; of the daemon's memory budget of %zu, %zu are in use "
-                         "now: try again later",
-                         what, bytes, store->budget_bytes, store->used_bytes);
-    store->used_bytes += bytes;
-    return true;
+    return error_set(error, ERROR_SERVER,
+                     "%s needs %" PRIu64 " bytes; of the daemon's memory budget of %" PRIu64
+                     ", %" PRIu64 " are in use now: try again later",
+                     what, bytes, budget, account_used(&store->account));
 }
 
-bool store_is_private(const struct store *store)
-{
-    return store->is_private;
-}
-
-void store_release(struct store *store, size_t bytes)
-{
-    store->used_bytes -= bytes;
-}
-
-/* Takes a file, whose bytes have been reserved, in the place of another or of none. */
-static void take_file(struct asset *asset, const char *name, uint8_t *file, size_t file_bytes)
+/* Takes a file in the place of another or of none, and its charge over from another account. */
+static void take_file(struct asset *asset, const char *name, uint8_t *file, size_t file_bytes,
+                      struct account *charged)
 {
     drop_file(asset);
     snprintf(asset->name, sizeof asset->name, "%s", name);
     asset->state = ASSET_STORED;
     asset->file = file;
     asset->file_bytes = file_bytes;
-    charge(asset, file_bytes);
+    account_refund(charged, ACCOUNT_INPUT, file_bytes);
+    account_charge(&asset->account, ACCOUNT_ASSETS, file_bytes);
 }
 
 /* An entry without a file. NULL when there is no room for another, or no memory. */
 static struct asset *add_entry(struct store *store, const uint8_t *holder)
 {
-    static const struct want one = {HOLDING_ASSETS, 1};
+    static const struct want one = {SHARE_ENTRIES, 1};
     if (!make_room(store, holder, &one))
         return NULL;
     struct asset *asset = calloc(1, sizeof *asset);
-    if (asset && !(asset->holder = holder_get(&store->holders, holder))) {
+    if (!asset)
+        return NULL;
+    asset->store = store;
+    asset->share = store_share_get(&store->shares, holder);
+    if (!asset->share) {
         free(asset);
         return NULL;
     }
-    if (asset) {
-        asset->store = store;
-        asset->holder->held[HOLDING_ASSETS]++;
-    }
+    asset->share->n_entries++;
+    account_init(&asset->account, &asset->share->account, ACCOUNT_NO_LIMIT);
+    LIST_INIT(&asset->waiters);
     return asset;
 }
 
 bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
-               const uint8_t holder[static HOLDER_ID_BYTES], enum asset_kind kind,
+               const uint8_t holder[static STORE_OWNER_BYTES], enum asset_kind kind,
                const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
-               size_t file_bytes, struct error *error)
+               size_t file_bytes, struct account *charged, struct error *error)
 {
     struct asset *asset = NULL, *known = find_owned(store, owner, kind, sha256);
     if (known && known->state != ASSET_BUILDING && !store_is_known_as(known, name)) {
-        take_file(known, name, file, file_bytes);
+        take_file(known, name, file, file_bytes, charged);
         return true;
     }
     if (!known)
         asset = add_entry(store, holder);
     if (!asset) {
         free(file);
-        store_release(store, file_bytes);
+        account_refund(charged, ACCOUNT_INPUT, file_bytes);
         return known || error_set(error, ERROR_SERVER,
                                   "%s: no room for another model or image: try again later", name);
     }
     asset->kind = kind;
     memcpy(asset->sha256, sha256, MODEL_ID_BYTES);
     memcpy(asset->owner, owner, sizeof asset->owner);
-    take_file(asset, name, file, file_bytes);
-    asset->bucket_next = *bucket_of(store, sha256);
-    *bucket_of(store, sha256) = asset;
-    link_newest(store, asset);
+    take_file(asset, name, file, file_bytes, charged);
+    LIST_INSERT_HEAD(bucket_of(store, sha256), asset, bucket_link);
+    TAILQ_INSERT_HEAD(&store->by_use, asset, use_link);
     store->n_assets++;
     return true;
 }
@@ -338,9 +323,7 @@ static void start_builds(struct store *store);
 
 static void unlink_waiter(struct asset_waiter *waiter)
 {
-    *(waiter->previous ? &waiter->previous->next : &waiter->asset->waiters) = waiter->next;
-    if (waiter->next)
-        waiter->next->previous = waiter->previous;
+    LIST_REMOVE(waiter, link);
     waiter->asset = NULL;
 }
 
@@ -348,7 +331,7 @@ static void unlink_waiter(struct asset_waiter *waiter)
 static void wake_waiters(struct asset *asset, const struct error *failure)
 {
     asset->users++;
-    for (struct asset_waiter *waiter; (waiter = asset->waiters);) {
+    for (struct asset_waiter *waiter; (waiter = LIST_FIRST(&asset->waiters));) {
         unlink_waiter(waiter);
         if (failure)
             asset->users--;
@@ -365,7 +348,8 @@ static void build_ended(struct asset *asset, const struct error *failure)
     } else {
         /* What the file causes stays so; what the moment causes may pass. */
         bool bad_file = failure->kind == ERROR_MODEL || failure->kind == ERROR_IMAGE;
-        uncharge(asset, asset->charged_bytes - asset->file_bytes);
+        account_refund(&asset->account, ACCOUNT_ASSETS,
+                       account_used(&asset->account) - asset->file_bytes);
         asset->state = bad_file ? ASSET_FAILED : ASSET_STORED;
         asset->failure = *failure;
         if (bad_file)
@@ -398,10 +382,8 @@ static bool build_reserve(void *owner, size_t bytes, struct error *error)
 {
     struct asset *asset = owner;
     enum error_kind permanent = asset->kind == ASSET_MODEL ? ERROR_MODEL : ERROR_IMAGE;
-    if (!store_reserve(asset->store, asset->holder->id, bytes, asset->name, permanent, error))
-        return false;
-    charge(asset, bytes);
-    return true;
+    return store_reserve(asset->store, asset->share->id, &asset->account, ACCOUNT_ASSETS, bytes,
+                         asset->name, permanent, error);
 }
 
 /* Does whoever asked for it have another build running? */
@@ -417,24 +399,19 @@ static bool is_served(const struct store *store, const struct asset *asset)
  * hundred models that take a minute each must not hold up who asks for one. Some wait. */
 static struct asset *take_next(struct store *store)
 {
-    struct asset *before = NULL, *asset = store->build_head;
-    while (asset && is_served(store, asset)) {
-        before = asset;
-        asset = asset->next_build;
-    }
-    if (!asset) {
-        before = NULL;
-        asset = store->build_head;
-    }
-    *(before ? &before->next_build : &store->build_head) = asset->next_build;
-    if (store->build_tail == asset)
-        store->build_tail = before;
+    struct asset *asset;
+    TAILQ_FOREACH (asset, &store->builds, build_link)
+        if (!is_served(store, asset))
+            break;
+    if (!asset)
+        asset = TAILQ_FIRST(&store->builds);
+    TAILQ_REMOVE(&store->builds, asset, build_link);
     return asset;
 }
 
 static void start_builds(struct store *store)
 {
-    while (store->n_building < STORE_MAX_BUILDS && store->build_head) {
+    while (store->n_building < STORE_MAX_BUILDS && !TAILQ_EMPTY(&store->builds)) {
         struct asset *asset = take_next(store);
         const struct build_order order = {
             .pool = store->pool,
@@ -468,41 +445,33 @@ static void queue_build(struct asset *asset, const uint8_t asker[static STORE_OW
     asset->progress.stage = "waiting";
     asset->progress.total = 0;
     atomic_store(&asset->progress.done, 0);
-    asset->next_build = NULL;
-    if (store->build_head)
-        store->build_tail->next_build = asset;
-    else
-        store->build_head = asset;
-    store->build_tail = asset;
+    TAILQ_INSERT_TAIL(&store->builds, asset, build_link);
     start_builds(store);
 }
 
 static void add_waiter(struct asset *asset, struct asset_waiter *waiter)
 {
     waiter->asset = asset;
-    waiter->previous = NULL;
-    waiter->next = asset->waiters;
-    if (waiter->next)
-        waiter->next->previous = waiter;
-    asset->waiters = waiter;
+    LIST_INSERT_HEAD(&asset->waiters, waiter, link);
 }
 
 enum acquire_result store_acquire(struct asset *asset,
                                   const uint8_t asker[static STORE_OWNER_BYTES],
                                   struct asset_waiter *waiter, struct error *error)
 {
-    unlink_by_use(asset->store, asset);
-    link_newest(asset->store, asset);
+    struct store *store = asset->store;
+    TAILQ_REMOVE(&store->by_use, asset, use_link);
+    TAILQ_INSERT_HEAD(&store->by_use, asset, use_link);
     if (asset->state == ASSET_FAILED) {
         *error = asset->failure;
         return ACQUIRE_FAILED;
     }
     asset->users++;
     if (asset->state == ASSET_READY) {
-        asset->store->n_hits++;
+        store->n_hits++;
         return ACQUIRE_READY;
     }
-    asset->store->n_misses++;
+    store->n_misses++;
     add_waiter(asset, waiter);
     if (asset->state == ASSET_STORED)
         queue_build(asset, asker);
@@ -514,9 +483,9 @@ bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *er
     if (asset->polygon_levels & 1u << level)
         return true;
     size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
-    if (!store_reserve(asset->store, asset->holder->id, bytes, asset->name, ERROR_REQUEST, error))
+    if (!store_reserve(asset->store, asset->share->id, &asset->account, ACCOUNT_ASSETS, bytes,
+                       asset->name, ERROR_REQUEST, error))
         return false;
-    charge(asset, bytes);
     asset->polygon_levels |= 1u << level;
     return true;
 }
@@ -543,22 +512,18 @@ void store_cancel_builds(struct store *store)
 
 bool store_is_building(const struct store *store)
 {
-    return store->n_building > 0 || store->build_head;
-}
-
-size_t store_used_bytes(const struct store *store)
-{
-    return store->used_bytes;
+    return store->n_building > 0 || !TAILQ_EMPTY(&store->builds);
 }
 
 struct store_counts store_count(const struct store *store)
 {
-    struct store_counts counts = {.used_bytes = store->used_bytes,
-                                  .budget_bytes = store->budget_bytes,
+    struct store_counts counts = {.used_bytes = account_used(&store->account),
+                                  .budget_bytes = store->account.limit,
                                   .hits = store->n_hits,
                                   .misses = store->n_misses,
                                   .evictions = store->n_evictions};
-    for (const struct asset *asset = store->newest; asset; asset = asset->older) {
+    const struct asset *asset;
+    TAILQ_FOREACH (asset, &store->by_use, use_link) {
         if (asset->state != ASSET_READY)
             continue;
         counts.models += asset->kind == ASSET_MODEL;

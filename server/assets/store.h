@@ -10,6 +10,8 @@
 #ifndef SHEEN_ASSETS_STORE_H
 #define SHEEN_ASSETS_STORE_H
 
+#include <sys/queue.h>
+
 #include "protocol/frame.h"
 #include "server/assets/build.h"
 #include "server/assets/store_shares.h"
@@ -19,7 +21,6 @@
 #define STORE_MAX_ASSETS 4096
 #define STORE_MAX_BUILDS 2 /* at once; bounds the queues of the pool and the GL thread */
 #define STORE_NAME_BYTES 256
-#define STORE_OWNER_BYTES 32
 
 /* The owner of what everybody may use. */
 extern const uint8_t STORE_SHARED[STORE_OWNER_BYTES];
@@ -63,16 +64,16 @@ struct asset {
 
     /* The store's own. */
     struct store *store;
-    struct holder *holder;
-    unsigned users; /* requests that wait for it or use it */
-    size_t charged_bytes;
-    unsigned polygon_levels; /* bits: levels whose polygons are charged */
-    unsigned drawn_levels;   /* bits: levels that the device has had polygons of */
-    uint32_t drawn_on;       /* the generation of the device that drawn_levels is of */
-    struct asset_waiter *waiters;
-    struct asset *next_build;    /* in the queue for a turn */
-    struct asset *newer, *older; /* by last use */
-    struct asset *bucket_next;
+    struct store_share *share; /* that it counts for */
+    unsigned users;            /* requests that wait for it or use it */
+    struct account account;    /* what it is charged with, all of it ACCOUNT_ASSETS */
+    unsigned polygon_levels;   /* bits: levels whose polygons are charged */
+    unsigned drawn_levels;     /* bits: levels that the device has had polygons of */
+    uint32_t drawn_on;         /* the generation of the device that drawn_levels is of */
+    LIST_HEAD(asset_waiters, asset_waiter) waiters;
+    TAILQ_ENTRY(asset) build_link; /* in the queue for a turn */
+    TAILQ_ENTRY(asset) use_link;   /* by last use */
+    LIST_ENTRY(asset) bucket_link;
 };
 
 /* A request that waits for a build. ready() is called once, with why it failed or NULL. */
@@ -82,7 +83,7 @@ struct asset_waiter {
 
     /* The store's own. */
     struct asset *asset; /* that it waits for, or NULL */
-    struct asset_waiter *next, *previous;
+    LIST_ENTRY(asset_waiter) link;
 };
 
 struct store_counts {
@@ -111,22 +112,28 @@ bool store_is_known_as(const struct asset *asset, const char *name);
 /* From now on everybody may use it. */
 void store_share(struct asset *asset);
 
-/* Charges bytes that are about to be allocated for `what` (a file's name), evicting if need be: the
- * asker's own, if he would hold more than an equal share of the budget, then of those who do.
- * The error names the need and the budget, and what its reader can do: `permanent` kind if it can
- * never fit, else ERROR_SERVER. */
-bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES], size_t bytes,
-                   const char *what, enum error_kind permanent, struct error *error);
-void store_release(struct store *store, size_t bytes);
+/* The root of all accounts, whose limit is the memory budget. */
+struct account *store_account(struct store *store);
 
-/* Takes over a malloc'd file whose bytes have been charged, and whose hash has been checked. It
- * counts for `holder`, the identity of whoever brought it, also where all may use it. A file that
- * is here already, and known as this, is freed. ERROR_SERVER when there is no room for another
- * entry; the file is freed then too. */
+/* Charges bytes that are about to be allocated for `what` (a file's name) to `account`, which is
+ * the store's or below it, as `class`. Where the budget has no room, assets that nobody uses are
+ * evicted first: the asker's own, if it would hold more than an equal share of the budget, then
+ * those of clients that do. The caller has checked the limits of accounts below the store's. The
+ * error names the need and the budget, and what its reader can do: `permanent` kind if the bytes
+ * can never fit, else ERROR_SERVER. */
+bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES],
+                   struct account *account, enum account_class class, uint64_t bytes,
+                   const char *what, enum error_kind permanent, struct error *error);
+
+/* Takes over a malloc'd file whose hash has been checked, and whose bytes have been charged to
+ * `charged` as ACCOUNT_INPUT, from where the charge moves to the asset. The asset counts for
+ * `holder`, the identity of the client that brought it, also where everybody may use it. A file
+ * that is here already, and known as this, is freed and its charge refunded; so it is when there is
+ * no room for another entry: ERROR_SERVER. */
 bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
-               const uint8_t holder[static HOLDER_ID_BYTES], enum asset_kind kind,
+               const uint8_t holder[static STORE_OWNER_BYTES], enum asset_kind kind,
                const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
-               size_t file_bytes, struct error *error);
+               size_t file_bytes, struct account *charged, struct error *error);
 
 enum acquire_result { ACQUIRE_READY, ACQUIRE_WAIT, ACQUIRE_FAILED };
 
@@ -148,8 +155,6 @@ bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *er
 /* From now on every build fails soon: nobody waits for it any more. */
 void store_cancel_builds(struct store *store);
 bool store_is_building(const struct store *store);
-bool store_is_private(const struct store *store);   /* of one client alone */
-size_t store_used_bytes(const struct store *store); /* of the budget */
 struct store_counts store_count(const struct store *store);
 
 #endif

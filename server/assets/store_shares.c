@@ -3,54 +3,69 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct holder *holder_find(struct holders *holders, const uint8_t id[static HOLDER_ID_BYTES])
+void store_shares_init(struct store_shares *shares, struct account *daemon)
 {
-    struct holder *holder = holders->first;
-    while (holder && memcmp(holder->id, id, HOLDER_ID_BYTES) != 0)
-        holder = holder->next;
-    if (holder)
-        holder->references++;
-    return holder;
+    *shares = (struct store_shares){.daemon = daemon};
+    LIST_INIT(&shares->list);
 }
 
-struct holder *holder_get(struct holders *holders, const uint8_t id[static HOLDER_ID_BYTES])
+struct store_share *store_share_find(struct store_shares *shares,
+                                     const uint8_t id[static STORE_OWNER_BYTES])
 {
-    struct holder *holder = holder_find(holders, id);
-    if (holder || !(holder = calloc(1, sizeof *holder)))
-        return holder;
-    memcpy(holder->id, id, sizeof holder->id);
-    holder->references = 1;
-    holder->next = holders->first;
-    holders->first = holder;
-    holders->n++;
-    return holder;
+    struct store_share *share;
+    LIST_FOREACH (share, &shares->list, link) {
+        if (memcmp(share->id, id, STORE_OWNER_BYTES) != 0)
+            continue;
+        share->references++;
+        return share;
+    }
+    return NULL;
 }
 
-void holder_put(struct holders *holders, struct holder *holder)
+struct store_share *store_share_get(struct store_shares *shares,
+                                    const uint8_t id[static STORE_OWNER_BYTES])
 {
-    if (!holder || --holder->references > 0)
+    struct store_share *share = store_share_find(shares, id);
+    if (share || !(share = calloc(1, sizeof *share)))
+        return share;
+    memcpy(share->id, id, sizeof share->id);
+    account_init(&share->account, shares->daemon, ACCOUNT_NO_LIMIT);
+    share->references = 1;
+    LIST_INSERT_HEAD(&shares->list, share, link);
+    shares->n++;
+    return share;
+}
+
+void store_share_put(struct store_shares *shares, struct store_share *share)
+{
+    if (!share || --share->references > 0)
         return;
-    struct holder **link = &holders->first;
-    while (*link != holder)
-        link = &(*link)->next;
-    *link = holder->next;
-    holders->n--;
-    free(holder);
+    LIST_REMOVE(share, link);
+    shares->n--;
+    free(share);
 }
 
-void holders_begin(struct holders *holders)
+uint64_t store_share_held(const struct store_share *share, enum share_kind kind)
 {
-    holders->round++;
+    return kind == SHARE_BYTES ? account_used(&share->account) : share->n_entries;
 }
 
-struct holder *holders_next(struct holders *holders, enum holding what, size_t share)
+void store_shares_begin(struct store_shares *shares)
 {
-    struct holder *most = NULL;
-    for (struct holder *holder = holders->first; holder; holder = holder->next)
-        if (holder->round != holders->round && holder->held[what] > share &&
-            (!most || holder->held[what] > most->held[what]))
-            most = holder;
-    if (most)
-        most->round = holders->round;
-    return most;
+    shares->round++;
+}
+
+struct store_share *store_shares_next(struct store_shares *shares, enum share_kind kind,
+                                      uint64_t least)
+{
+    struct store_share *largest = NULL, *share;
+    LIST_FOREACH (share, &shares->list, link) {
+        uint64_t held = store_share_held(share, kind);
+        if (share->round != shares->round && held > least &&
+            (!largest || held > store_share_held(largest, kind)))
+            largest = share;
+    }
+    if (largest)
+        largest->round = shares->round;
+    return largest;
 }

@@ -1,41 +1,55 @@
-/* Who holds how much of the store: each model and image counts for whoever brought it, whether it
- * is his alone or everybody's. So that nobody pushes out what others use, room is made by shares.
- * Thread: the loop's. */
+/* Who holds how much of the store: each model and image counts for the client that brought it,
+ * whether the client alone may use it or everybody. The store makes room by these shares, so that
+ * no client pushes out what others use. Thread: the loop's. */
 #ifndef SHEEN_ASSETS_STORE_SHARES_H
 #define SHEEN_ASSETS_STORE_SHARES_H
 
-#include <stddef.h>
 #include <stdint.h>
+#include <sys/queue.h>
 
-#define HOLDER_ID_BYTES 32 /* an identity's: access.h */
+#include "server/assets/account.h"
 
-/* Of what there is so much and no more. */
-enum holding { HOLDING_BYTES, HOLDING_ASSETS, N_HOLDINGS };
+#define STORE_OWNER_BYTES 32 /* an identity's: access.h */
 
-struct holder {
-    uint8_t id[HOLDER_ID_BYTES];
-    size_t held[N_HOLDINGS]; /* bytes: what his assets are charged with */
-    unsigned references;     /* one for each asset, and for who works with it */
-    uint64_t round;          /* the module's own, as all of: */
-    struct holder *next;
+/* The two things that the store has a limited amount of: bytes of the memory budget, and entries.
+ */
+enum share_kind { SHARE_BYTES, SHARE_ENTRIES };
+
+/* What one client holds. */
+struct store_share {
+    uint8_t id[STORE_OWNER_BYTES];
+    struct account account; /* what the client's assets are charged with */
+    uint64_t n_entries;
+    unsigned references; /* one for each asset, and for each function that works with the share */
+    uint64_t round;      /* the module's own, as what follows */
+    LIST_ENTRY(store_share) link;
 };
 
-/* Those that hold something. All zero before the first use. */
-struct holders {
-    struct holder *first;
-    size_t n;
+/* The shares of all clients that hold something. */
+struct store_shares {
+    struct account *daemon; /* the accounts' parent */
+    uint64_t n;
     uint64_t round;
+    LIST_HEAD(store_share_list, store_share) list;
 };
 
-/* With another reference. NULL when memory is short. */
-struct holder *holder_get(struct holders *holders, const uint8_t id[static HOLDER_ID_BYTES]);
-void holder_put(struct holders *holders, struct holder *holder); /* NULL is safe */
-/* With another reference. NULL: he holds nothing. */
-struct holder *holder_find(struct holders *holders, const uint8_t id[static HOLDER_ID_BYTES]);
+void store_shares_init(struct store_shares *shares, struct account *daemon);
 
-/* Each holder once, those with most first: begin, then next until it is NULL. It leaves out who
- * holds no more than `share` by then. */
-void holders_begin(struct holders *holders);
-struct holder *holders_next(struct holders *holders, enum holding what, size_t share);
+/* The client's share, with another reference. NULL when memory is short. */
+struct store_share *store_share_get(struct store_shares *shares,
+                                    const uint8_t id[static STORE_OWNER_BYTES]);
+/* The same, but NULL when the client holds nothing. */
+struct store_share *store_share_find(struct store_shares *shares,
+                                     const uint8_t id[static STORE_OWNER_BYTES]);
+void store_share_put(struct store_shares *shares, struct store_share *share); /* NULL is safe */
+
+/* Bytes or entries. */
+uint64_t store_share_held(const struct store_share *share, enum share_kind kind);
+
+/* Visits each share once, the largest first: store_shares_begin(), then store_shares_next() until
+ * it returns NULL. It leaves out shares that are no larger than `least` at that moment. */
+void store_shares_begin(struct store_shares *shares);
+struct store_share *store_shares_next(struct store_shares *shares, enum share_kind kind,
+                                      uint64_t least);
 
 #endif

@@ -8,9 +8,9 @@
 
 struct upload {
     struct memory *memory;
-    struct peer *peer;
+    struct client_quota *quota;
     sheen_UploadBegin begin;
-    uint8_t owner[STORE_OWNER_BYTES], holder[HOLDER_ID_BYTES];
+    uint8_t owner[STORE_OWNER_BYTES], holder[STORE_OWNER_BYTES];
     uint8_t *file; /* grows, and is charged, as bytes come: announcing costs nothing */
     size_t received, capacity;
     EVP_MD_CTX *hash;
@@ -21,9 +21,9 @@ static enum error_kind kind_of_error(const sheen_UploadBegin *begin)
     return begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ERROR_MODEL : ERROR_IMAGE;
 }
 
-struct upload *upload_create(struct memory *memory, struct peer *peer,
+struct upload *upload_create(struct memory *memory, struct client_quota *quota,
                              const uint8_t owner[static STORE_OWNER_BYTES],
-                             const uint8_t holder[static HOLDER_ID_BYTES],
+                             const uint8_t holder[static STORE_OWNER_BYTES],
                              const sheen_UploadBegin *begin, struct error *error)
 {
     struct upload *upload = calloc(1, sizeof *upload);
@@ -35,7 +35,7 @@ struct upload *upload_create(struct memory *memory, struct peer *peer,
         return NULL;
     }
     upload->memory = memory;
-    upload->peer = peer;
+    upload->quota = quota;
     upload->begin = *begin;
     memcpy(upload->owner, begin->share ? STORE_SHARED : owner, sizeof upload->owner);
     memcpy(upload->holder, holder, sizeof upload->holder);
@@ -47,7 +47,7 @@ void upload_destroy(struct upload *upload)
 {
     if (!upload)
         return;
-    memory_release_input(upload->memory, upload->peer, upload->capacity, false);
+    memory_refund_input(upload->quota, upload->capacity);
     EVP_MD_CTX_free(upload->hash);
     free(upload->file);
     free(upload);
@@ -64,12 +64,12 @@ static bool grow(struct upload *upload, size_t needed, struct error *error)
     if (capacity > begin->size_bytes)
         capacity = begin->size_bytes;
     size_t more = capacity - upload->capacity;
-    if (!memory_charge_input(upload->memory, upload->peer, upload->holder, more, begin->name,
+    if (!memory_charge_input(upload->memory, upload->quota, upload->holder, more, begin->name,
                              kind_of_error(begin), error))
         return false;
     uint8_t *file = realloc(upload->file, capacity);
     if (!file) {
-        memory_release_input(upload->memory, upload->peer, more, false);
+        memory_refund_input(upload->quota, more);
         return error_set(error, ERROR_SERVER, "%s: no memory for its %llu bytes", begin->name,
                          (unsigned long long)begin->size_bytes);
     }
@@ -91,12 +91,11 @@ static enum upload_state finish(struct upload *upload, struct error *error)
         return UPLOAD_BAD;
     }
     uint8_t *file = upload->file;
-    memory_release_input(upload->memory, upload->peer, upload->capacity, true);
-    upload->capacity = 0;
+    upload->capacity = 0; /* as many as received: the store's charge from here on */
     upload->file = NULL;
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
     bool ok = store_add(upload->memory->store, upload->owner, upload->holder, kind, sha256,
-                        begin->name, file, upload->received, error);
+                        begin->name, file, upload->received, &upload->quota->account, error);
     return ok ? UPLOAD_STORED : UPLOAD_NO_ROOM;
 }
 

@@ -17,10 +17,10 @@ enum upload_state {
 
 /* Nothing is charged yet: what has come counts, not what is announced. In the end the file is the
  * owner's, or everybody's if begin->share; it counts for `holder` (store_add). `begin` has passed
- * message_check_upload_begin(); `peer` stays as long as the upload. */
-struct upload *upload_create(struct memory *memory, struct peer *peer,
+ * message_check_upload_begin(); `quota` stays as long as the upload. */
+struct upload *upload_create(struct memory *memory, struct client_quota *quota,
                              const uint8_t owner[static STORE_OWNER_BYTES],
-                             const uint8_t holder[static HOLDER_ID_BYTES],
+                             const uint8_t holder[static STORE_OWNER_BYTES],
                              const sheen_UploadBegin *begin, struct error *error);
 /* Gives the bytes back, unless the store has them. NULL is safe. */
 void upload_destroy(struct upload *upload);

@@ -119,8 +119,8 @@ static void start_polygons(struct request *request)
     uint32_t level = request->frame_request.surface.level;
     size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
     if (!store_charge_polygons(asset, level, &request->failure) ||
-        !store_reserve(request->host->store, request->asker, bytes, asset->name, ERROR_REQUEST,
-                       &request->failure)) {
+        !store_reserve(request->host->store, request->asker, store_account(request->host->store),
+                       ACCOUNT_POLYGONS, bytes, asset->name, ERROR_REQUEST, &request->failure)) {
         request_fail(request, &request->failure);
         return;
     }
@@ -142,7 +142,7 @@ static bool needs_polygons(const struct request *request)
 static void drop_polygons(struct request *request)
 {
     renderer_polygons_destroy(request->polygons);
-    store_release(request->host->store, request->polygon_bytes);
+    account_refund(store_account(request->host->store), ACCOUNT_POLYGONS, request->polygon_bytes);
     request->polygons = NULL;
     request->polygon_bytes = 0;
 }
@@ -423,15 +423,21 @@ static void step_done(struct task *task)
 
 /* --- starting */
 
+static enum account_class account_class(const struct request *request)
+{
+    return request->entry.request_class == CLASS_INTERACTIVE ? ACCOUNT_INTERACTIVE
+                                                             : ACCOUNT_PATIENT;
+}
+
 /* Takes the memory of a frame that is about to begin. False when it has to wait or has failed. */
 static bool take_memory(struct request *request)
 {
     struct session_host *host = request->host;
     if (request->charge)
         return true;
-    switch (memory_charge_frame(&host->memory, request->session->peer, request->asker,
-                                request->entry.request_class, request->frame_bytes,
-                                &request->charge, &request->failure)) {
+    switch (memory_charge_frame(&host->memory, request->session->quota, request->asker,
+                                account_class(request), request->frame_bytes, &request->charge,
+                                &request->failure)) {
     case MEMORY_CHARGED:
         return true;
     case MEMORY_LATER:

@@ -62,24 +62,24 @@ static void turn_away(int fd, const char *text)
     close(fd);
 }
 
-/* The peer of a connection that there is room for, with another reference; else NULL. */
-static struct peer *find_peer(struct service *service, int fd, struct error *error)
+/* The quota of a connection that there is room for, with another reference; else NULL. */
+static struct client_quota *find_quota(struct service *service, int fd, struct error *error)
 {
     struct session_host *host = &service->host;
     const struct limits *limits = &service->options.limits;
-    struct peer *peer = NULL;
+    struct client_quota *quota = NULL;
     if (host->n_sessions >= limits->max_connections)
         error_set(error, ERROR_SERVER,
                   "the daemon has as many clients as it takes: try again later");
-    else if (!(peer = peer_get(&host->memory.peers, fd)))
+    else if (!(quota = client_quota_get(&host->memory.quotas, fd)))
         error_set(error, ERROR_SERVER, "no memory for another client: try again later");
-    else if (peer->n_connections >= limits->max_peer_connections)
+    else if (quota->n_connections >= limits->max_peer_connections)
         error_set(error, ERROR_SERVER,
                   "this user or address has as many connections as it may: close one");
     else
-        return peer;
+        return quota;
     host->stats.errors++;
-    peer_put(&host->memory.peers, peer);
+    client_quota_put(quota);
     return NULL;
 }
 
@@ -101,9 +101,9 @@ static void accepted(void *owner, const struct listener *listener, int fd)
             error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
         close(fd); /* a stranger is told nothing */
     } else {
-        struct peer *peer = find_peer(service, fd, &error);
-        if (peer)
-            session = session_create(host, fd, &client, peer, &error);
+        struct client_quota *quota = find_quota(service, fd, &error);
+        if (quota)
+            session = session_create(host, fd, &client, quota, &error);
         else
             turn_away(fd, stranger ? NULL : error.text);
     }
@@ -394,11 +394,11 @@ static bool open_session(struct service *service, int fd, struct error *error)
 {
     struct session_client client = {.kind = CLIENT_PRIVATE, .peer = "private"};
     access_admit_private(&client.identity);
-    struct peer *peer = peer_get(&service->host.memory.peers, fd);
+    struct client_quota *quota = client_quota_get(&service->host.memory.quotas, fd);
     struct session *session =
-        peer ? session_create(&service->host, fd, &client, peer, error) : NULL;
+        quota ? session_create(&service->host, fd, &client, quota, error) : NULL;
     service->sessions = session;
-    return session || (peer ? false : error_set(error, ERROR_SERVER, "no memory for a client"));
+    return session || (quota ? false : error_set(error, ERROR_SERVER, "no memory for a client"));
 }
 
 /* A descriptor for every client, as far as the system lets us. */
@@ -444,8 +444,8 @@ static bool start(struct service *service, struct error *error)
     host->max_upload_bytes = limits->assets.memory_budget < limits->session.max_upload
                                  ? limits->assets.memory_budget
                                  : limits->session.max_upload;
-    host->memory = (struct memory){
-        .store = host->store, .limits = &host->asset_limits, .block_cache = host->block_cache};
+    memory_init(&host->memory, host->store, &host->asset_limits, host->is_private,
+                host->block_cache);
     allow_descriptors(limits->max_connections + SERVICE_OWN_DESCRIPTORS);
     stats_init(&host->stats);
     if (service->single)

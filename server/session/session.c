@@ -177,14 +177,14 @@ static void on_malformed(void *owner, const struct message_header *header, enum 
 /* --- its life */
 
 struct session *session_create(struct session_host *host, int fd,
-                               const struct session_client *client, struct peer *peer,
+                               const struct session_client *client, struct client_quota *quota,
                                struct error *error)
 {
     static const struct conn_handler handler = {on_message, on_malformed, session_make_room};
     struct session *session = calloc(1, sizeof *session);
     if (!session) {
         close(fd);
-        peer_put(&host->memory.peers, peer);
+        client_quota_put(quota);
         error_set(error, ERROR_SERVER, "no memory for another session");
         return NULL;
     }
@@ -192,20 +192,20 @@ struct session *session_create(struct session_host *host, int fd,
                    error) ||
         (client->kind == CLIENT_TLS && !access_start_tls(host->access, &session->conn, error))) {
         conn_finish(&session->conn);
-        peer_put(&host->memory.peers, peer);
+        client_quota_put(quota);
         free(session);
         return NULL;
     }
     session->host = host;
     session->conn.block_cache = session->replies.block_cache = host->block_cache;
-    session->peer = peer;
+    session->quota = quota;
     session->client = *client;
     session->admitted = client->kind != CLIENT_TLS;
     host->n_strangers += !session->admitted;
     session->output_class = CLASS_STILL;
     session->start_us = clock_now_us();
     scheduler_add_queue(&session->queue);
-    peer->n_connections++;
+    quota->n_connections++;
     host->n_sessions++;
     host->stats.sessions++;
     session->id = ++host->last_session_id;
@@ -233,8 +233,8 @@ void session_destroy(struct session *session)
     conn_finish(&session->conn);
     session_release_input(session);
     host->n_strangers -= !session->admitted;
-    session->peer->n_connections--;
-    peer_put(&host->memory.peers, session->peer);
+    session->quota->n_connections--;
+    client_quota_put(session->quota);
     host->n_sessions--;
     free(session);
 }

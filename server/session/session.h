@@ -8,6 +8,7 @@
 
 #include "protocol/message.h"
 #include "server/net/access.h"
+#include "server/net/peer.h"
 #include "server/session/reply.h"
 #include "server/net/conn.h"
 #include "server/frame/costs.h"
@@ -89,7 +90,7 @@ struct session_client {
 
 struct session {
     struct session_host *host;
-    struct peer *peer;
+    struct client_quota *quota;
     struct conn conn;
     struct schedule_queue queue;
     struct reply_list replies;
@@ -115,9 +116,9 @@ struct session {
 /* Whose the session's uploads are. */
 const uint8_t *session_owner(const struct session *session);
 
-/* Takes the socket over (closes it on failure), and the reference to its peer. */
+/* Takes the socket over (closes it on failure), and the reference to its quota. */
 struct session *session_create(struct session_host *host, int fd,
-                               const struct session_client *client, struct peer *peer,
+                               const struct session_client *client, struct client_quota *quota,
                                struct error *error);
 /* Closes at once; requests in flight end unseen. */
 void session_destroy(struct session *session);

@@ -38,7 +38,7 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
     }
     if (kind == ASSET_IMAGE)
         workers_expect_images(&host->workers);
-    session->upload = upload_create(&host->memory, session->peer, session_owner(session),
+    session->upload = upload_create(&host->memory, session->quota, session_owner(session),
                                     session->client.identity.owner, begin, &error);
     if (session->upload)
         reply_upload_state(session, seq, false, 0);

@@ -57,7 +57,7 @@ void session_reply_stats(struct session *session, uint32_t seq)
         .has_batch_us = true,
         .batch_us = host->scheduler.classes[CLASS_BATCH].spent_us,
         .has_memory_bytes = true,
-        .memory_bytes = store_used_bytes(host->store),
+        .memory_bytes = counts.used_bytes,
     };
     add_recent(&stats, &host->stats);
     snprintf(stats.device, sizeof stats.device, "%s", info->device);
