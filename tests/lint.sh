@@ -41,7 +41,7 @@ room protocol '' 'both sides speak by it'
 room client/lib 'protocol' 'a client needs nothing of the daemon'
 room client/cli 'client/lib|protocol' 'the command is libsheen'"'"'s first user'
 room deploy/manual 'client/cli|client/lib|server/ops' 'manual pages are written from the tables of options'
-room server/base 'protocol|server/net' 'everybody knows it'
+room server/base 'protocol' 'everybody knows it'
 room server/cage "$common" 'a cage is data: no format, no surface'
 room server/cage/read "$common|server/cage|protocol" 'readers run in the worker program'
 room server/surface "$common|server/cage|server/surface/topology|server/surface/subdivision" 'no GL, no socket, no thread'
@@ -49,15 +49,15 @@ room server/surface/topology "$common|server/cage|server/surface/subdivision" 'c
 room server/surface/subdivision "$common|server/cage|server/surface|server/surface/topology" 'builders of one kind of surface'
 room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
-room server/scene "$common|protocol|server/cage|server/frame|server/surface" 'a request is data'
+room server/scene "$common|protocol|server/surface" 'a request is data'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl "$common|protocol|server/scene|server/surface|server/render" 'a device draws, it serves nobody'
 room server/net "$common|protocol" 'connections do not know what is said over them'
 room server/threads "$common|server/cage|server/image|server/net|server/render|server/sandbox" \
     'threads run what others give them'
-room server/output "$common|protocol|server/image|server/frame|server/render|server/scene|server/threads" \
+room server/output "$common|protocol|server/image|server/render|server/scene|server/threads" \
     'an encoder knows pictures, no client'
-room server/assets "$common|protocol|server/cage|server/net|server/scene|server/render|server/surface|server/threads" \
+room server/assets "$common|protocol|server/cage|server/net|server/render|server/scene|server/surface|server/threads" \
     'models and images are everybody'"'"'s'
 room server/frame "$common|protocol|server/assets|server/output|server/render|server/scene|server/session|server/surface" \
     'a frame tells its session by events'
