@@ -51,7 +51,7 @@ room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
 room server/scene "$common|protocol|server/surface" 'a request is data'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
-room server/render/gl "$common|protocol|server/scene|server/surface|server/render" 'a device draws, it serves nobody'
+room server/render/gl "$common|server/image|server/scene|server/render" 'a device draws, it serves nobody'
 room server/net "$common|protocol" 'connections do not know what is said over them'
 room server/threads "$common|server/cage|server/image|server/net|server/render|server/sandbox" \
     'threads run what others give them'
@@ -74,6 +74,8 @@ $found"
 no_include server/cage/read 'protocol/([^m]|m[^o])' 'of the protocol a reader knows model_format.h alone'
 no_include server/image 'protocol/([^s]|s[^r])' 'of the protocol pictures know srgb.h alone'
 no_include server/render 'protocol/([^s]|s[^r])' 'of the protocol a device knows srgb.h alone'
+no_include server/scene 'server/surface/([^tv]|t[^a]|v[^e])' 'of a surface a request knows tables.h and vec.h alone'
+no_include server/ops 'server/render/([^g]|g[^l]|gl/[^d]|gl/device_)' 'a device is chosen by its device.h alone'
 no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
 no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows sheen.h alone'
 no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the protocol the command knows no byte: libsheen says it'
@@ -90,6 +92,11 @@ only_in '#include <jansson' 'jansson code' 'server client protocol' client/cli/g
 only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32)(_combine)?\(' 'zlib code' \
     'server client protocol' server/output/png.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf
+
+# The frame's way, file by file.
+for file in $(grep -oE '`(server|client|protocol)/[a-z0-9/_]+\.[a-z]+`' CONTRIBUTING.md | tr -d '`'); do
+    [ -e "$file" ] || fail "CONTRIBUTING.md names $file, which is not there"
+done
 
 # cppcheck reads no system header; without the macros of lists it takes their loops' variables for unset.
 queue=$(echo '#include <sys/queue.h>' | cc -E - | sed -n 's/^# 1 "\(.*queue\.h\)".*/\1/p' | head -n 1)
