@@ -57,10 +57,16 @@ served() { # command...
         [ -S "${address#unix:}" ] && break
         sleep 0.1
     done
-    SHEEN_SERVER=$address "$@"
+    SHEEN_SERVER=$address oracle_program "$@"
     code=$?
     kill "$daemon" && wait "$daemon" || echo "the daemon ended with $?"
     return "$code"
+}
+
+# Oracles take and leave hundreds of megabytes for each frame. They keep them, since a page that the system gives
+# anew costs more than what is written into it.
+oracle_program() { # command...
+    MALLOC_MMAP_THRESHOLD_=1073741824 MALLOC_TRIM_THRESHOLD_=2147483647 "$@"
 }
 
 # The Catmull-Clark cages there; and all, since any cage is one.

@@ -6,7 +6,6 @@
 namespace
 {
 
-const int width_px = 640, height_px = 480;
 const int exit_bad_model = 3;
 
 } // namespace
@@ -50,7 +49,7 @@ void for_each_frame(const std::string &sheen, const std::vector<std::string> &mo
             verdict->check(false, failure.what());
             continue;
         }
-        for (view &view : views(model, width_px, height_px)) {
+        for (view &view : views(model)) {
             planes planes;
             int exit_code;
             std::string wrong =

@@ -21,9 +21,9 @@ std::string render_view(const std::string &sheen, const std::string &model_path,
                         const std::string &aov, const std::vector<std::string> &more_options,
                         planes *planes, int *exit_code);
 
-using view_list = std::function<std::vector<view>(const model &, int width_px, int height_px)>;
+using view_list = std::function<std::vector<view>(const model &)>;
 
-/* For every model and each of its views at 640 x 480. Every failure counts. */
+/* For every model and each of its views. Every failure counts. */
 void for_each_frame(const std::string &sheen, const std::vector<std::string> &models,
                     const view_list &views, verdict *verdict, const frame_judge &judge);
 

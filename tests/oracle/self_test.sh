@@ -41,6 +41,7 @@ verdict() { # name, whether it holds
 run() {
     case $1 in
     test_limit | test_twin | test_refine) FAKE_FAULTS=$3 "$folder/$1" "$2" >"$work/log" 2>&1 ;;
+    test_frames) FAKE_FAULTS=$3 "$folder/$1" --small "$fake" "$2" >"$work/log" 2>&1 ;;
     test_numbers) FAKE_FAULTS=$3 "$folder/$1" tests/models/plane.obj "$2" >"$work/log" 2>&1 ;;
     *) FAKE_FAULTS=$3 "$folder/$1" "$fake" ${2:+"$2"} >"$work/log" 2>&1 ;;
     esac

@@ -1,6 +1,8 @@
-/* test_frames SHEEN MODEL...: frames of every model from several views, judged pixel by pixel:
- * exactness.h says by what for P and N, coverage.h for what is seen where. */
+/* test_frames [--small] SHEEN MODEL...: frames of every model from several views, judged pixel by
+ * pixel: exactness.h says by what for P and N, coverage.h for what is seen where. --small: frames
+ * of a quarter of the pixels. */
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,17 +27,21 @@ std::vector<view> views_of(const model &model, int width_px, int height_px)
 
 int main(int argc, char **argv)
 {
-    if (argc < 3) {
-        std::fprintf(stderr, "usage: test_frames SHEEN MODEL...\n");
+    int first = argc > 1 && std::strcmp(argv[1], "--small") == 0 ? 2 : 1;
+    if (argc < first + 2) {
+        std::fprintf(stderr, "usage: test_frames [--small] SHEEN MODEL...\n");
         return 2;
     }
+    int width_px = first == 2 ? 320 : 640, height_px = first == 2 ? 240 : 480;
     verdict verdict;
     print_exactness_header();
     print_coverage_header();
     std::string path;
     std::unique_ptr<table_evaluator> tables;
-    for_each_frame(argv[1], list_models(std::vector<std::string>(argv + 2, argv + argc)), views_of,
-                   &verdict, [&](const model &model, const view &view, const planes &planes) {
+    std::vector<std::string> models(argv + first + 1, argv + argc);
+    auto views = [&](const model &model) { return views_of(model, width_px, height_px); };
+    for_each_frame(argv[first], list_models(models), views, &verdict,
+                   [&](const model &model, const view &view, const planes &planes) {
                        if (path != model.path)
                            tables.reset(new table_evaluator(*model.cage));
                        path = model.path;
