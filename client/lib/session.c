@@ -158,9 +158,7 @@ static enum sheen_status last_words(struct sheen_session *session, enum sheen_st
 {
     struct message_header header;
     struct sheen_error words;
-    bool is_inside =
-        session->input.has_header || session->input.n_got > 0 || session->answer.is_open;
-    if (status != SHEEN_LOST_SERVER || is_inside)
+    if (status != SHEEN_LOST_SERVER)
         return session_fail(session, status, error);
     session->broken = true;
     session->connection.timeout_ms = LAST_WORDS_MS;

@@ -1,5 +1,5 @@
-/* Frames as they come, without waiting: answers that arrive byte by byte, that end in the middle, and
- * that stay undecoded. */
+/* Frames as they come, without waiting: answers that arrive byte by byte, that end in the middle,
+ * and that stay undecoded. */
 #include <fcntl.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -51,7 +51,8 @@ static void add_file(struct script *script, uint32_t seq)
     add_data(script, seq, "789", 3, MESSAGE_END);
 }
 
-/* A session with three requests in flight (1, 2: PNG, 3: raw planes), and the daemon's end of it. */
+/* A session with three requests in flight (1, 2: PNG, 3: raw planes), and the daemon's end of its
+ * connection. */
 static struct sheen_session *script_session(int *peer)
 {
     int ends[2];
@@ -77,7 +78,8 @@ static struct sheen_session *script_session(int *peer)
     return session;
 }
 
-/* Sends the script byte by byte and asks after each; *n_again counts how often nothing was whole. */
+/* Sends the script byte by byte and asks after each, with one frame after the other, until an answer
+ * is whole; *got is the frame that was given then. */
 static enum sheen_status drip(struct sheen_session *session, int peer, const struct script *script,
                               size_t *sent, struct sheen_frame *frames, size_t n_frames,
                               struct sheen_frame **got)
