@@ -171,12 +171,12 @@ static bool check_period(const sheen_Pattern *pattern, char *text)
         enum range_name range;
     } numbers[] = {
         {pattern->has_count, pattern->count, RANGE_PATTERN_COUNT},
-        {pattern->has_period, pattern->period, RANGE_PERIOD},
-        {pattern->has_duty, pattern->duty, RANGE_DUTY},
-        {pattern->has_rotation_deg, pattern->rotation_deg, RANGE_ROTATION},
+        {pattern->has_period, pattern->period, RANGE_PATTERN_PERIOD},
+        {pattern->has_duty, pattern->duty, RANGE_PATTERN_DUTY},
+        {pattern->has_rotation_deg, pattern->rotation_deg, RANGE_PATTERN_ROTATION},
         {pattern->has_offset, pattern->offset, RANGE_PATTERN_OFFSET},
-        {pattern->has_soft, pattern->soft, RANGE_SOFT},
-        {pattern->has_opacity, pattern->opacity, RANGE_OPACITY},
+        {pattern->has_soft, pattern->soft, RANGE_PATTERN_SOFT},
+        {pattern->has_opacity, pattern->opacity, RANGE_PATTERN_OPACITY},
         {pattern->has_width, pattern->width, RANGE_PATTERN_WIDTH},
     };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)

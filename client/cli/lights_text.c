@@ -66,12 +66,12 @@ static const struct number_key {
     unsigned kinds; /* of the patterns that it means something to */
 } NUMBERS[] = {
     {"count", offsetof(struct sheen_pattern, count), RANGE_PATTERN_COUNT, PERIODIC},
-    {"period", offsetof(struct sheen_pattern, period), RANGE_PERIOD, PERIODIC},
-    {"duty", offsetof(struct sheen_pattern, duty), RANGE_DUTY, WAVES},
-    {"rotation", offsetof(struct sheen_pattern, rotation_deg), RANGE_ROTATION, ALL_KINDS},
+    {"period", offsetof(struct sheen_pattern, period), RANGE_PATTERN_PERIOD, PERIODIC},
+    {"duty", offsetof(struct sheen_pattern, duty), RANGE_PATTERN_DUTY, WAVES},
+    {"rotation", offsetof(struct sheen_pattern, rotation_deg), RANGE_PATTERN_ROTATION, ALL_KINDS},
     {"offset", offsetof(struct sheen_pattern, offset), RANGE_PATTERN_OFFSET, PERIODIC},
-    {"soft", offsetof(struct sheen_pattern, soft), RANGE_SOFT, TWO_COLOURS},
-    {"opacity", offsetof(struct sheen_pattern, opacity), RANGE_OPACITY, ALL_KINDS},
+    {"soft", offsetof(struct sheen_pattern, soft), RANGE_PATTERN_SOFT, TWO_COLOURS},
+    {"opacity", offsetof(struct sheen_pattern, opacity), RANGE_PATTERN_OPACITY, ALL_KINDS},
     {"width", offsetof(struct sheen_pattern, width), RANGE_PATTERN_WIDTH,
      KIND(SHEEN_PATTERN_LINES)},
 };

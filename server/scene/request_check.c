@@ -83,12 +83,12 @@ static bool check_pattern(const struct pattern *pattern, struct error *error)
 {
     if (!check_number(pattern->count, RANGE_PATTERN_COUNT, "pattern: count", error) ||
         (pattern->period != 0 &&
-         !check_number(pattern->period, RANGE_PERIOD, "pattern: period", error)) ||
-        !check_number(pattern->duty, RANGE_DUTY, "pattern: duty", error) ||
-        !check_number(pattern->rotation_deg, RANGE_ROTATION, "pattern: rotation", error) ||
+         !check_number(pattern->period, RANGE_PATTERN_PERIOD, "pattern: period", error)) ||
+        !check_number(pattern->duty, RANGE_PATTERN_DUTY, "pattern: duty", error) ||
+        !check_number(pattern->rotation_deg, RANGE_PATTERN_ROTATION, "pattern: rotation", error) ||
         !check_number(pattern->offset, RANGE_PATTERN_OFFSET, "pattern: offset", error) ||
-        !check_number(pattern->soft, RANGE_SOFT, "pattern: soft", error) ||
-        !check_number(pattern->opacity, RANGE_OPACITY, "pattern: opacity", error) ||
+        !check_number(pattern->soft, RANGE_PATTERN_SOFT, "pattern: soft", error) ||
+        !check_number(pattern->opacity, RANGE_PATTERN_OPACITY, "pattern: opacity", error) ||
         !check_colour(pattern->foreground, "pattern: foreground", error) ||
         !check_colour(pattern->background, "pattern: background", error))
         return false;
