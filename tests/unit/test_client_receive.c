@@ -1,11 +1,14 @@
 /* Frames as they come, without waiting: answers that arrive byte by byte, that end in the middle,
  * and that stay undecoded. */
+#include <arpa/inet.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "client/lib/session.h"
+#include "tests/unit/certificates.h"
 #include "tests/unit/fake_server.h"
 
 /* The messages of a daemon, written before anybody reads them. */
@@ -264,6 +267,123 @@ static void an_event_loop_waits_on_the_descriptor(void **state)
     fake_finish(&fake);
 }
 
+/* ---- TLS: records hold more than one answer, and less ---- */
+
+static struct certificates certificates;
+
+static ssize_t plain_read(void *owner, void *bytes, size_t size)
+{
+    return recv(*(const int *)owner, bytes, size, 0);
+}
+
+static ssize_t plain_write(void *owner, const void *bytes, size_t size)
+{
+    return send(*(const int *)owner, bytes, size, MSG_NOSIGNAL);
+}
+
+/* Reads one message and drops it; its number, or 0 at the end. */
+static uint32_t tls_read_message(struct tls_channel *channel)
+{
+    uint8_t bytes[MESSAGE_BUFFER_BYTES];
+    struct message_header header = {.length = 0};
+    size_t n_got = 0, moved;
+    for (size_t wanted = MESSAGE_HEADER_BYTES; n_got < wanted; n_got += moved) {
+        if (tls_read(channel, bytes + n_got, wanted - n_got, &moved) != TLS_MOVED)
+            return 0;
+        if (n_got + moved == MESSAGE_HEADER_BYTES &&
+            message_header_decode(&header, bytes) == HEADER_OK &&
+            header.length < sizeof(bytes) - 16)
+            wanted += header.length;
+    }
+    return header.seq;
+}
+
+static void tls_send(struct tls_channel *channel, const uint8_t *bytes, size_t size)
+{
+    size_t moved = 0;
+    for (size_t sent = 0; sent < size; sent += moved)
+        if (tls_write(channel, bytes + sent, size - sent, &moved) != TLS_MOVED)
+            return;
+}
+
+/* Two answers in one record, then one in a record for each byte. */
+static void *serve_records(void *listener)
+{
+    char text[TLS_TEXT_BYTES];
+    const struct tls_files files = {.cert = certificates.cert, .key = certificates.key};
+    struct tls_context *context = tls_context_create(TLS_SERVER, &files, text);
+    int fd = accept(*(const int *)listener, NULL, NULL);
+    const struct tls_io io = {plain_read, plain_write, &fd};
+    struct tls_channel *channel = tls_channel_create(context, &io, NULL);
+    struct script script = {.size = 0};
+    add_message(&script, MESSAGE_HELLO_OK, tls_read_message(channel), &HELLO_OK);
+    tls_send(channel, script.bytes, script.size);
+    script.size = 0;
+    add_file(&script, tls_read_message(channel));
+    add_file(&script, tls_read_message(channel));
+    tls_send(channel, script.bytes, script.size);
+    script.size = 0;
+    add_file(&script, tls_read_message(channel));
+    for (size_t i = 0; i < script.size; i++)
+        tls_send(channel, script.bytes + i, 1);
+    tls_read_message(channel); /* until the client has closed */
+    tls_channel_destroy(channel);
+    tls_context_destroy(context);
+    close(fd);
+    return NULL;
+}
+
+/* Waits as sheen.h says: only when nothing is whole. Counts how often. */
+static int receive_by_poll(struct sheen_session *session, struct sheen_frame *frame)
+{
+    int n_waits = 0;
+    enum sheen_status status;
+    while ((status = sheen_try_receive(session, NULL, frame, NULL)) == SHEEN_AGAIN) {
+        struct pollfd entry = {.fd = sheen_descriptor(session, &entry.events)};
+        assert_int_equal(poll(&entry, 1, 2000), 1);
+        n_waits++;
+    }
+    assert_int_equal(status, SHEEN_OK);
+    assert_memory_equal(frame->data, "0123456789", 10);
+    return n_waits;
+}
+
+static void tls_reads_ahead_of_poll(void **state)
+{
+    (void)state;
+    struct sockaddr_in name = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    socklen_t name_bytes = sizeof(name);
+    char address[40];
+    pthread_t thread;
+    assert_int_equal(certificates_init(&certificates), 0);
+    int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    assert_int_equal(bind(listener, (const struct sockaddr *)&name, sizeof(name)), 0);
+    assert_int_equal(listen(listener, 1), 0);
+    assert_int_equal(getsockname(listener, (struct sockaddr *)&name, &name_bytes), 0);
+    snprintf(address, sizeof(address), "tls:127.0.0.1:%d", ntohs(name.sin_port));
+    assert_int_equal(pthread_create(&thread, NULL, serve_records, &listener), 0);
+
+    struct sheen_session *session;
+    struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
+    struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS;
+    struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
+    options.address = address;
+    options.ca = certificates.ca;
+    assert_int_equal(sheen_connect(&session, &options, NULL), SHEEN_OK);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(sheen_send(session, &request, NULL), SHEEN_OK);
+    receive_by_poll(session, &frame);
+    assert_int_equal(receive_by_poll(session, &frame), 0); /* it came with the first */
+    assert_int_equal(sheen_send(session, &request, NULL), SHEEN_OK);
+    receive_by_poll(session, &frame);
+    assert_int_equal(frame.number, sheen_last_number(session));
+    sheen_frame_finish(&frame);
+    sheen_close(session);
+    pthread_join(thread, NULL);
+    close(listener);
+    certificates_finish(&certificates);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -272,6 +392,7 @@ int main(void)
         cmocka_unit_test(an_end_in_the_middle_is_a_loss),
         cmocka_unit_test(planes_stay_as_they_came),
         cmocka_unit_test(an_event_loop_waits_on_the_descriptor),
+        cmocka_unit_test(tls_reads_ahead_of_poll),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
