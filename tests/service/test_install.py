@@ -118,6 +118,23 @@ class Files(Installed):
             self.assertNotIn(self.root.encode(), text)
             self.assertNotIn(ROOT.encode() + b"/", text)
 
+    def test_two_folders_give_equal_objects(self):
+        """Programs hold the paths that their objects hold, above all for the debugger."""
+        made = []
+        env = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
+        for folder in ("one", "another_folder"):
+            top = os.path.join(self.work, folder)
+            os.mkdir(top)
+            for name in ("Makefile", "client", "protocol", "shaders"):
+                os.symlink(os.path.join(ROOT, name), os.path.join(top, name))
+            objects = ["build/obj/client/lib/status.c.o", "build/obj/protocol/ranges.c.o"]
+            subprocess.run(["make", *objects], cwd=top, check=True, capture_output=True, env=env,
+                           timeout=120)
+            for name in objects:
+                with open(os.path.join(top, name), "rb") as file:
+                    made.append(file.read())
+        self.assertEqual(made[:2], made[2:])
+
     def test_the_unit_starts_what_was_installed(self):
         with open(self.path("lib/systemd/system/sheend.service"), encoding="utf-8") as file:
             started = re.findall(r"^Exec(?:Start|Reload)=(\S*sheend) ", file.read(), re.M)

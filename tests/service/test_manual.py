@@ -153,7 +153,7 @@ class Terminal:
                                              "HOME": "/nonexistent", "INPUTRC": "/dev/null"})
         self.seen = ""
 
-    def type(self, text, until, timeout=20):
+    def type(self, text, until, timeout=60):
         """Types, and reads until what came since matches."""
         os.write(self.fd, text.encode())
         seen, end = "", time.monotonic() + timeout
