@@ -404,7 +404,7 @@ const struct option_row OPTIONS_RECONNECT[] = {
 
 const struct option_row OPTIONS_OUTPUT[] = {
     {"json", 0, NULL, "one JSON object on standard output", apply_json, NULL},
-    {"help", 'h', NULL, "this text", NULL, NULL},
+    {"help", 'h', NULL, "shows the options with their ranges and defaults", NULL, NULL},
     {0},
 };
 

@@ -393,7 +393,9 @@ enum sheen_line_eye { SHEEN_LINE_EYE_CAMERA, SHEEN_LINE_EYE_POINT, SHEEN_LINE_EY
 
 struct sheen_lines {
     enum sheen_line_family family;
-    bool has_direction; /* ISOPHOTE: compared with N, else the view; ZEBRA, ENVIRONMENT: the axis */
+    /* Isophotes: what the normal is compared with, left out: the view. Zebra and environment: the
+     * axis. */
+    bool has_direction;
     double direction[3];          /* not zero */
     enum sheen_line_eye eye_kind; /* whose view the lines are computed for */
     double eye[3];                /* a place, or a direction of view that is not zero */
@@ -416,8 +418,10 @@ enum sheen_show_kind {
 
 struct sheen_show {
     enum sheen_show_kind kind;
-    double direction[3]; /* DRAFT: the pull direction, not zero */
-    double range;        /* the colours' ends, > 0, DRAFT <= 90; 0: from the frame, DRAFT 3 */
+    double direction[3]; /* draft: the pull direction, not zero */
+    /* Where the colours end, > 0, of draft at most 90; 0: as the frame's values want it, of draft
+     * 3. */
+    double range;
     bool without_legend;
 };
 
@@ -468,7 +472,8 @@ struct sheen_request {
     enum sheen_surface surface;
     uint32_t surface_level; /* 0 to 6; exact: 0 */
     enum sheen_class request_class;
-    bool has_view;        /* STILL: may be replaced too; INTERACTIVE without: view 0 */
+    bool has_view;        /* a still request may then be replaced by a newer one of its view, as an
+                             interactive one always may, which without a view is of view 0 */
     uint32_t view;        /* which of the program's pictures this is */
     uint32_t deadline_ms; /* from when the daemon has read it, at most 3600000; 0: none */
     bool undecoded;       /* SHEEN_FORMAT_RAW and _ZSTD: the frame's planes stay as they came, in
