@@ -83,7 +83,7 @@ ZYGOTE_SRC := server/sandbox/zygote.c server/sandbox/sandbox.c server/sandbox/th
 # The rooms of the daemon alone.
 SERVICE_SRC := $(foreach room,net session frame assets output threads ops,$(wildcard server/$(room)/*.c))
 CLIENT_LIB_SRC := $(wildcard client/lib/*.c)
-CLIENT_CLI_SRC := $(wildcard client/cli/*.c)
+CLIENT_CLI_SRC := $(wildcard client/cli/*.c client/cli/*/*.c)
 CLIENT_SRC := $(CLIENT_LIB_SRC) $(CLIENT_CLI_SRC)
 SHADERS := $(sort $(wildcard shaders/*.glsl))
 

@@ -39,8 +39,13 @@ $found"
 common='server/base'
 room protocol '' 'both sides speak by it'
 room client/lib 'protocol' 'a client needs nothing of the daemon'
-room client/cli 'client/lib|protocol' 'the command is libsheen'"'"'s first user'
-room deploy/manual 'client/cli|client/lib|server/ops' 'manual pages are written from the tables of options'
+room client/cli/base 'client/lib|protocol' 'every part of the command knows it'
+room client/cli/files 'client/lib|client/cli/base|protocol' 'files as they are sent, without options and sessions'
+room client/cli/options 'client/lib|protocol' 'the command line is data'
+cli='client/cli/base|client/cli/files|client/cli/options'
+room client/cli/output "client/lib|$cli|protocol" 'what an answer looks like, wherever it comes from'
+room client/cli "client/lib|$cli|client/cli/output|protocol" 'the command is libsheen'"'"'s first user'
+room deploy/manual 'client/cli|client/cli/options|client/lib|server/ops' 'manual pages are written from the tables of options'
 room server/base 'protocol' 'everybody knows it'
 room server/cage "$common" 'a cage is data: no format, no surface'
 room server/cage/read "$common|server/cage|protocol" 'readers run in the worker program'
@@ -88,7 +93,7 @@ only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned fun
     'server client protocol'
 only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp
 only_in '#include <turbojpeg|\btj[A-Z][A-Za-z0-9]*\(' 'libjpeg-turbo code' 'server client protocol' server/output/jpeg.c
-only_in '#include <jansson' 'jansson code' 'server client protocol' client/cli/gltf_pack.c
+only_in '#include <jansson' 'jansson code' 'server client protocol' client/cli/files/gltf_pack.c
 only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32)(_combine)?\(' 'zlib code' \
     'server client protocol' server/output/png.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf

@@ -4,7 +4,7 @@
 
 #include "client/cli/commands.h"
 #include "client/cli/job.h"
-#include "client/cli/values.h"
+#include "client/cli/options/values.h"
 
 static void print_findings(struct json *json, const struct sheen_model_info *info)
 {

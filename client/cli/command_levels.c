@@ -4,13 +4,13 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "client/cli/canvas.h"
+#include "client/cli/output/canvas.h"
 #include "client/cli/commands.h"
-#include "client/cli/file.h"
-#include "client/cli/glyphs.h"
+#include "client/cli/files/file.h"
+#include "client/cli/output/glyphs.h"
 #include "client/cli/job.h"
-#include "client/cli/failure.h"
-#include "client/cli/values.h"
+#include "client/cli/base/failure.h"
+#include "client/cli/options/values.h"
 
 enum { FIRST_LEVEL = 1, LAST_LEVEL = 3, N_LEVELS = LAST_LEVEL - FIRST_LEVEL + 1 };
 enum { WIREFRAME, POLYGON, EXACT, N_COLUMNS };

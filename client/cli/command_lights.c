@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "client/cli/commands.h"
-#include "client/cli/json.h"
-#include "client/cli/lights_text.h"
+#include "client/cli/output/json.h"
+#include "client/cli/options/lights_text.h"
 
 /* Name, meaning (which may have several lines) and, indented below, the example. */
 static void print_rows(const char *title, const struct text_row *rows, const char *prefix)

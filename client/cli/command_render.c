@@ -3,10 +3,10 @@
 #include <stdio.h>
 
 #include "client/cli/commands.h"
-#include "client/cli/file.h"
+#include "client/cli/files/file.h"
 #include "client/cli/job.h"
-#include "client/cli/scene_json.h"
-#include "client/cli/values.h"
+#include "client/cli/output/scene_json.h"
+#include "client/cli/options/values.h"
 
 static bool apply_output(struct options *options, const char *value, char *why)
 {

@@ -6,14 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/cli/clock.h"
+#include "client/cli/base/clock.h"
 #include "client/cli/commands.h"
-#include "client/cli/file.h"
+#include "client/cli/files/file.h"
 #include "client/cli/job.h"
-#include "client/cli/lights_text.h"
-#include "client/cli/failure.h"
+#include "client/cli/options/lights_text.h"
+#include "client/cli/base/failure.h"
 #include "client/cli/turntable.h"
-#include "client/cli/values.h"
+#include "client/cli/options/values.h"
 
 #define PROBE_PX 64     /* the longer side of the frame that only tells the camera */
 #define IN_FLIGHT 2u    /* the next request waits at the daemon while a frame travels */

@@ -2,7 +2,7 @@
 #ifndef SHEEN_CLIENT_COMMANDS_H
 #define SHEEN_CLIENT_COMMANDS_H
 
-#include "client/cli/options.h"
+#include "client/cli/options/options.h"
 
 extern const struct command COMMAND_RENDER;
 extern const struct command COMMAND_STREAM;

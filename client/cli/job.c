@@ -6,12 +6,12 @@
 #include <string.h>
 #include <time.h>
 
-#include "client/cli/clock.h"
-#include "client/cli/file.h"
-#include "client/cli/gltf_pack.h"
-#include "client/cli/failure.h"
-#include "client/cli/values.h"
-#include "client/cli/weld_tag.h"
+#include "client/cli/base/clock.h"
+#include "client/cli/files/file.h"
+#include "client/cli/files/gltf_pack.h"
+#include "client/cli/base/failure.h"
+#include "client/cli/options/values.h"
+#include "client/cli/files/weld_tag.h"
 
 #define TOKEN_BYTES 256
 #define AT_SERVER "server:" /* a MODEL that is a file below the daemon's --models */

@@ -4,9 +4,9 @@
 #ifndef SHEEN_CLIENT_JOB_H
 #define SHEEN_CLIENT_JOB_H
 
-#include "client/cli/json.h"
-#include "client/cli/options.h"
-#include "client/cli/progress.h"
+#include "client/cli/output/json.h"
+#include "client/cli/options/options.h"
+#include "client/cli/output/progress.h"
 #include "client/cli/resume.h"
 #include "client/lib/sheen.h"
 

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "client/cli/file.h"
+#include "client/cli/files/file.h"
 
 static char folder[64];
 

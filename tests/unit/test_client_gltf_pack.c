@@ -1,6 +1,6 @@
 /* One file out of a .gltf and what lies beside it, and nothing that lies elsewhere. */
-#include "client/cli/file.h"
-#include "client/cli/gltf_pack.h"
+#include "client/cli/files/file.h"
+#include "client/cli/files/gltf_pack.h"
 #include "protocol/limits.h"
 #include "tests/unit/gltf_sample.h"
 

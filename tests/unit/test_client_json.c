@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "client/cli/json.h"
+#include "client/cli/output/json.h"
 
 static void json_is_json(void **state)
 {

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/cli/frame_names.h"
-#include "client/cli/lights_text.h"
-#include "client/cli/values.h"
+#include "client/cli/options/frame_names.h"
+#include "client/cli/options/lights_text.h"
+#include "client/cli/options/values.h"
 
 static void numbers_are_strict(void **state)
 {

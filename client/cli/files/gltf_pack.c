@@ -1,12 +1,12 @@
-#include "client/cli/gltf_pack.h"
+#include "client/cli/files/gltf_pack.h"
 
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/cli/relative_file.h"
-#include "client/cli/failure.h"
+#include "client/cli/files/relative_file.h"
+#include "client/cli/base/failure.h"
 #include "protocol/limits.h"
 
 #define GLB_HEADER_BYTES 12u

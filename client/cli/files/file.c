@@ -1,4 +1,4 @@
-#include "client/cli/file.h"
+#include "client/cli/files/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -10,7 +10,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "client/cli/failure.h"
+#include "client/cli/base/failure.h"
 #include "protocol/limits.h"
 
 #define TEMPORARY_TRIES 100

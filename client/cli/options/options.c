@@ -1,12 +1,12 @@
-#include "client/cli/options.h"
+#include "client/cli/options/options.h"
 
 #include <getopt.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/cli/lights_text.h"
-#include "client/cli/values.h"
+#include "client/cli/options/lights_text.h"
+#include "client/cli/options/values.h"
 
 #define FIRST_LONG 256 /* getopt's number of row 0; letters are below */
 #define DEFAULT_RECONNECT_S 30

@@ -1,10 +1,10 @@
-#include "client/cli/scene_json.h"
+#include "client/cli/output/scene_json.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#include "client/cli/lights_text.h"
-#include "client/cli/values.h"
+#include "client/cli/options/lights_text.h"
+#include "client/cli/options/values.h"
 
 /* As options take it. */
 static void json_colour(struct json *json, const char *key, const float colour[4])

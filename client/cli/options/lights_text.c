@@ -1,11 +1,11 @@
-#include "client/cli/lights_text.h"
+#include "client/cli/options/lights_text.h"
 
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "client/cli/values.h"
+#include "client/cli/options/values.h"
 
 const struct text_row TEXT_FAMILIES[] = {
     {"reflection", "the view ray mirrored at the surface meets the light", "--lines reflection"},

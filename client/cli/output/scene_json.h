@@ -4,7 +4,7 @@
 #ifndef SHEEN_CLIENT_SCENE_JSON_H
 #define SHEEN_CLIENT_SCENE_JSON_H
 
-#include "client/cli/json.h"
+#include "client/cli/output/json.h"
 #include "client/lib/sheen.h"
 
 /* Keys into the object that is open: camera, lines, line_eye, light (the first), lights, colours,

@@ -1,4 +1,4 @@
-#include "client/cli/json.h"
+#include "client/cli/output/json.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "client/cli/frame_names.h"
+#include "client/cli/options/frame_names.h"
 #include "client/lib/sheen.h"
 #include "protocol/ranges.h"
 

@@ -1,4 +1,4 @@
-#include "client/cli/values.h"
+#include "client/cli/options/values.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "client/cli/frame_names.h"
+#include "client/cli/options/frame_names.h"
 
 #include <ctype.h>
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-#include "client/cli/glyphs.h"
+#include "client/cli/output/glyphs.h"
 
 #include <stddef.h>
 

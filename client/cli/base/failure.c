@@ -1,4 +1,4 @@
-#include "client/cli/failure.h"
+#include "client/cli/base/failure.h"
 
 #include "protocol/text.h"
 

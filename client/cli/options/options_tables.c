@@ -1,9 +1,9 @@
 /* The options that several commands share. */
 #include <string.h>
 
-#include "client/cli/lights_text.h"
-#include "client/cli/options.h"
-#include "client/cli/values.h"
+#include "client/cli/options/lights_text.h"
+#include "client/cli/options/options.h"
+#include "client/cli/options/values.h"
 #include "protocol/limits.h"
 #include "protocol/number.h"
 

@@ -1,4 +1,4 @@
-#include "client/cli/relative_file.h"
+#include "client/cli/files/relative_file.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -8,8 +8,8 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#include "client/cli/file.h"
-#include "client/cli/failure.h"
+#include "client/cli/files/file.h"
+#include "client/cli/base/failure.h"
 
 #define SHOWN_URI "%.120s"
 

@@ -1,13 +1,13 @@
-#include "client/cli/canvas.h"
+#include "client/cli/output/canvas.h"
 
 #include <math.h>
 #include <png.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/cli/file.h"
-#include "client/cli/glyphs.h"
-#include "client/cli/failure.h"
+#include "client/cli/files/file.h"
+#include "client/cli/output/glyphs.h"
+#include "client/cli/base/failure.h"
 #include "protocol/srgb.h"
 
 bool canvas_init(struct canvas *canvas, uint32_t width_px, uint32_t height_px)

@@ -1,7 +1,7 @@
 /* --help of a command, and what of it the manual pages and completions say too. */
 #include <string.h>
 
-#include "client/cli/options.h"
+#include "client/cli/options/options.h"
 
 #define HELP_COLUMN 30
 

@@ -1,4 +1,4 @@
-#include "client/cli/progress.h"
+#include "client/cli/output/progress.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "client/cli/clock.h"
+#include "client/cli/base/clock.h"
 
 #define BAR_CELLS 30
 #define INTERVAL_MS 100

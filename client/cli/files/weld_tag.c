@@ -1,9 +1,9 @@
-#include "client/cli/weld_tag.h"
+#include "client/cli/files/weld_tag.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/cli/failure.h"
+#include "client/cli/base/failure.h"
 #include "protocol/model_format.h"
 
 /* Two line ends: a file may end in a backslash, which continues its line. */
