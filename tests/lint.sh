@@ -57,19 +57,20 @@ room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the wor
 room server/scene "$common|protocol|server/surface" 'a request is data'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl "$common|server/image|server/scene|server/render" 'a device draws, it serves nobody'
+# The rooms of the daemon itself, each above those that stand before it.
 room server/net "$common|protocol" 'connections do not know what is said over them'
 room server/threads "$common|server/cage|server/image|server/net|server/render|server/sandbox" \
     'threads run what others give them'
 room server/output "$common|protocol|server/image|server/render|server/scene|server/threads" \
     'an encoder knows pictures, no client'
 room server/assets "$common|protocol|server/cage|server/net|server/render|server/scene|server/surface|server/threads" \
-    'models and images are everybody'"'"'s'
-room server/frame "$common|protocol|server/assets|server/output|server/render|server/scene|server/session|server/surface" \
-    'a frame tells its session by events'
-room server/session "$common|protocol|server/assets|server/frame|server/net|server/ops|server/output|server/scene|server/threads" \
-    'a session is one client'"'"'s messages'
+    'models and images serve every frame, and know none'
+room server/frame "$common|protocol|server/assets|server/output|server/scene" \
+    'a frame tells its session by events (request.h), so it includes none'
+room server/session "$common|protocol|server/assets|server/frame|server/net|server/output|server/threads" \
+    'a session is one client'"'"'s messages; the main service hands it what it needs'
 room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/render/gl|server/session|server/threads" \
-    'the daemon as a whole'
+    'the daemon as a whole: nobody includes it'
 
 no_include() { # folder, pattern of what it must not include, why
     found=$(grep -rnE "#include \"($2)" "$1")
@@ -86,7 +87,7 @@ no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows s
 no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the protocol the command knows no byte: libsheen says it'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/render/gl/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
-    'socket calls' 'server client protocol' server/net/ server/ops/ server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c
+    'socket calls' 'server client protocol' server/net/ server/ops/notify.c server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
 only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol'
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \

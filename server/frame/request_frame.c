@@ -23,17 +23,17 @@
  * than the drag's frames have. Beyond, others would wait too long, and the planes be too large. */
 #define WHOLE_TILES 32
 
-static uint64_t device_tile_px(const struct session_host *host)
+static uint64_t device_tile_px(const struct request_host *host)
 {
     return render_thread_info(host->render_thread)->software ? SOFTWARE_TILE_PX : HARDWARE_TILE_PX;
 }
 
-static bool is_kept_whole(const struct session_host *host, const sheen_Render *render)
+static bool is_kept_whole(const struct request_host *host, const sheen_Render *render)
 {
     return (uint64_t)render->width_px * render->height_px <= WHOLE_TILES * device_tile_px(host);
 }
 
-static uint64_t tile_px(const struct session_host *host, const sheen_Render *render)
+static uint64_t tile_px(const struct request_host *host, const sheen_Render *render)
 {
     uint64_t px = device_tile_px(host);
     if (request_class_of(render->request_class) == CLASS_INTERACTIVE && is_kept_whole(host, render))
@@ -42,7 +42,7 @@ static uint64_t tile_px(const struct session_host *host, const sheen_Render *ren
                                                    : px;
 }
 
-uint64_t request_paused_bytes(const struct session_host *host, const sheen_Render *render)
+uint64_t request_paused_bytes(const struct request_host *host, const sheen_Render *render)
 {
     return render->surface == sheen_SurfaceKind_SURFACE_EXACT
                ? 0
@@ -80,7 +80,7 @@ static uint64_t cost_key(const struct request *request)
     return costs_key(key, next_tile_px(request) >> 16); /* small tiles cost more by the pixel */
 }
 
-/* --- polygons, which are made on the pool: the GL thread would be away for seconds */
+/* --- polygons, which are made on the pool: the render thread would be away for seconds */
 
 static bool has_begun(const struct request *request)
 {
@@ -100,16 +100,18 @@ static void polygons_run(struct task *task, void *context)
 static void polygons_done(struct task *task)
 {
     struct request *request = task->owner;
-    request->is_busy = false;
     request->frame_work.polygons = request->polygons;
-    if (!request->session)
+    if (request->state == REQUEST_ABANDONED) {
         request_end(request);
-    else if (!request->polygons)
+    } else if (!request->polygons) {
         request_fail(request, &request->failure);
-    else if (has_begun(request))
-        scheduler_resume(&request->entry);
-    else
-        scheduler_ready(&request->entry);
+    } else {
+        request_state_move(&request->state, REQUEST_QUEUED);
+        if (has_begun(request))
+            scheduler_resume(&request->entry);
+        else
+            scheduler_ready(&request->entry);
+    }
 }
 
 /* Makes them where the device has never had them, or has none any more. */
@@ -125,7 +127,7 @@ static void start_polygons(struct request *request)
         return;
     }
     request->polygon_bytes = bytes;
-    request->is_busy = true;
+    request_state_move(&request->state, REQUEST_POLYGONS);
     request->task = (struct task){polygons_run, polygons_done, request, NULL};
     pool_submit(request->host->pool, &request->task, POOL_LATER);
 }
@@ -172,10 +174,12 @@ void request_queue_frame(struct request *request)
     request->cost_key = cost_key(request);
     request->entry.estimate_us =
         costs_estimate(&request->host->costs, request->cost_key, next_tile_px(request));
-    if (!needs_polygons(request))
-        scheduler_ready(&request->entry);
-    else
+    if (needs_polygons(request)) {
         start_polygons(request);
+        return;
+    }
+    request_state_move(&request->state, REQUEST_QUEUED);
+    scheduler_ready(&request->entry);
 }
 
 void request_drop_frame(struct request *request)
@@ -189,136 +193,7 @@ void request_drop_frame(struct request *request)
     request->charge = NULL;
 }
 
-/* --- answering */
-
-static void fill_frame(const struct request *request, const struct encoded *encoded,
-                       sheen_Frame *frame)
-{
-    const struct frame_request *asked = &request->frame_request;
-    const struct renderer_info *info = render_thread_info(request->host->render_thread);
-    *frame = (sheen_Frame){
-        .width_px = asked->width_px,
-        .height_px = asked->height_px,
-        .planes = request->render.planes,
-        .encoding = request->render.encoding,
-        .data_bytes = encoded->size,
-        .times = request->times,
-        .camera = scene_write_camera(&asked->camera),
-        .lights_count = (pb_size_t)asked->n_lights,
-        .lines = scene_write_lines(&asked->lines),
-        .software = info->software,
-        .has_show_range = request->render.show.has_range,
-        .show_range = request->render.show.range,
-        .has_blank = request->is_blank,
-        .blank = request->is_blank,
-        .has_light_share = request->has_light_share,
-        .light_share = request->light_share,
-        .has_up = true,
-        .up = scene_write_vec3(request->up),
-        .has_up_source = true,
-        .up_source = request->up_source,
-        .has_miss = true,
-        .miss = scene_write_colour(asked->miss),
-        .has_empty = true,
-        .empty = scene_write_colour(asked->empty),
-        .has_base = true,
-        .base = scene_write_colour(asked->base),
-        .has_show_least = request->extremes.has_values,
-        .show_least = request->extremes.least,
-        .has_show_greatest = request->extremes.has_values,
-        .show_greatest = request->extremes.greatest,
-    };
-    for (uint32_t i = 0; i < asked->n_lights; i++)
-        frame->lights[i] =
-            scene_write_light(&asked->lights[i],
-                              i < request->render.lights_count ? &request->render.lights[i] : NULL);
-    snprintf(frame->device, sizeof frame->device, "%s", info->device);
-    snprintf(frame->driver, sizeof frame->driver, "%s", info->driver);
-    snprintf(frame->server, sizeof frame->server, "%s", SHEEN_VERSION);
-}
-
-static void reply_frame(struct request *request, struct encoded *encoded)
-{
-    uint64_t now = clock_now_us();
-    request->times.tables_us = request->model.asset->unreported_us;
-    request->times.total_us = now - request->start_us;
-    request->model.asset->unreported_us = 0;
-    stats_frame(&request->host->stats, request->entry.request_class, &request->times, now);
-    sheen_Frame frame;
-    fill_frame(request, encoded, &frame);
-    session_reply_frame(request->session, request->reply, request->entry.request_class, &frame,
-                        encoded);
-    request_end(request);
-}
-
-/* Its memory goes with the encoded frame from here on. */
-static void hand_over_charge(struct request *request, struct encoded *encoded)
-{
-    memory_charge_shrink(request->charge, encoded->size);
-    encoded->released = memory_charge_release;
-    encoded->memory_of = request->charge;
-    request->charge = NULL;
-}
-
-/* An interactive frame is still on its way to the socket: this one waits, if it is the newest. */
-static void hold(struct request *request, struct encoded *encoded)
-{
-    request->held = encoded;
-    const struct schedule_entry *newer = scheduler_hold(&request->entry);
-    if (newer)
-        request_reply_superseded(request, ((const struct request *)newer->owner)->seq);
-}
-
-void request_send_held(struct session *session)
-{
-    for (struct schedule_entry *entry = session->queue.head; entry; entry = entry->next) {
-        struct request *request = entry->owner;
-        if (entry->state != SCHEDULE_HELD)
-            continue;
-        struct encoded *encoded = request->held;
-        request->held = NULL;
-        reply_frame(request, encoded);
-        return;
-    }
-}
-
-static void encode_finished(void *owner, struct encoded *encoded, const struct error *error)
-{
-    struct request *request = owner;
-    request->is_busy = false;
-    request->times.encode_us = clock_now_us() - request->encode_start_us;
-    if (error) {
-        request_fail(request, error);
-        return;
-    }
-    hand_over_charge(request, encoded);
-    bool interactive = request->entry.request_class == CLASS_INTERACTIVE;
-    if (!request->session) {
-        encoded_destroy(encoded);
-        request_end(request);
-    } else if (interactive && session_is_sending_interactive(request->session)) {
-        hold(request, encoded);
-    } else {
-        reply_frame(request, encoded);
-    }
-}
-
 /* --- drawing and painting */
-
-static enum pool_urgency urgency(const struct request *request)
-{
-    return request->entry.request_class == CLASS_INTERACTIVE ? POOL_URGENT : POOL_SOON;
-}
-
-static void start_encoding(struct request *request)
-{
-    metadata_init(&request->metadata, &request->frame_request, &request->render,
-                  render_thread_info(request->host->render_thread));
-    const struct encode_format format = encode_format_of(&request->render);
-    encode_start(request->host->pool, &request->host->workers, &request->frame, &request->layout,
-                 &format, urgency(request), request->metadata.attributes, METADATA_ATTRIBUTES,
-                 encode_finished, request);
-}
 
 static void paint_run(struct task *task, void *context)
 {
@@ -331,7 +206,7 @@ static void paint_run(struct task *task, void *context)
     double size = 0;
     for (int i = 0; i < 3; i++)
         size = hypot(size, tables->box_max[i] - tables->box_min[i]);
-    false_colour_paint(frame, &request->host->workers, &request->render.show, size,
+    false_colour_paint(frame, request->host->workers, &request->render.show, size,
                        request->frame_request.miss, request->frame_request.empty,
                        &request->extremes);
     for (unsigned plane = 0; plane < PLANE_COUNT; plane++)
@@ -344,12 +219,10 @@ static void paint_run(struct task *task, void *context)
 static void paint_done(struct task *task)
 {
     struct request *request = task->owner;
-    if (request->session) {
-        start_encoding(request);
-        return;
-    }
-    request->is_busy = false;
-    request_end(request);
+    if (request->state == REQUEST_ABANDONED)
+        request_end(request);
+    else
+        request_start_encoding(request);
 }
 
 static void frame_drawn(struct request *request)
@@ -364,13 +237,13 @@ static void frame_drawn(struct request *request)
     if (request->has_light_share)
         request->light_share = (double)request->frame.met_px / (double)request->frame.seen_px;
     request->encode_start_us = clock_now_us();
-    request->is_busy = true;
     if (request->render.show.kind == sheen_ShowKind_SHOW_LINES) {
-        start_encoding(request);
+        request_start_encoding(request);
         return;
     }
+    request_state_move(&request->state, REQUEST_PAINTING);
     request->task = (struct task){paint_run, paint_done, request, NULL};
-    pool_submit(request->host->pool, &request->task, urgency(request));
+    pool_submit(request->host->pool, &request->task, request_urgency(request));
 }
 
 static void step_run(struct task *task, void *context)
@@ -401,8 +274,7 @@ static void note_polygons(const struct request *request)
 static void step_done(struct task *task)
 {
     struct request *request = task->owner;
-    struct session_host *host = request->host;
-    request->is_busy = false;
+    struct request_host *host = request->host;
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
                       request->step == FRAME_MORE);
     if (request->frame_work.has_drawn && request->step != FRAME_FAILED) {
@@ -411,7 +283,7 @@ static void step_done(struct task *task)
         request->entry.estimate_us =
             costs_estimate(&host->costs, request->cost_key, next_tile_px(request));
     }
-    if (!request->session)
+    if (request->state == REQUEST_ABANDONED)
         request_end(request);
     else if (request->step == FRAME_FAILED)
         request_fail(request, &request->failure);
@@ -419,6 +291,8 @@ static void step_done(struct task *task)
         start_polygons(request);
     else if (request->step == FRAME_DONE)
         frame_drawn(request);
+    else
+        request_state_move(&request->state, REQUEST_QUEUED);
 }
 
 /* --- starting */
@@ -432,19 +306,18 @@ static enum account_class account_class(const struct request *request)
 /* Takes the memory of a frame that is about to begin. False when it has to wait or has failed. */
 static bool take_memory(struct request *request)
 {
-    struct session_host *host = request->host;
+    struct request_host *host = request->host;
     if (request->charge)
         return true;
-    switch (memory_charge_frame(&host->memory, request->session->quota, request->asker,
+    switch (memory_charge_frame(host->memory, request->client->quota, request->asker,
                                 account_class(request), request->frame_bytes, &request->charge,
                                 &request->failure)) {
     case MEMORY_CHARGED:
         return true;
     case MEMORY_LATER:
         scheduler_put_back(&host->scheduler, &request->entry);
-        request->is_parked = true;
-        request->next_parked = host->parked;
-        host->parked = request;
+        request_state_move(&request->state, REQUEST_PARKED);
+        LIST_INSERT_HEAD(&host->parked, request, parked_link);
         break;
     case MEMORY_FAILED:
         scheduler_put_back(&host->scheduler, &request->entry);
@@ -454,18 +327,18 @@ static bool take_memory(struct request *request)
     return false;
 }
 
-static void wake_parked(struct session_host *host)
+static void wake_parked(struct request_host *host)
 {
-    while (host->parked) {
-        struct request *request = host->parked;
-        host->parked = request->next_parked;
-        request->is_parked = false;
+    while (!LIST_EMPTY(&host->parked)) {
+        struct request *request = LIST_FIRST(&host->parked);
+        LIST_REMOVE(request, parked_link);
+        request_state_move(&request->state, REQUEST_QUEUED);
         request->failure = (struct error){0};
         scheduler_ready(&request->entry);
     }
 }
 
-void request_start_next(struct session_host *host)
+void request_start_next(struct request_host *host)
 {
     wake_parked(host);
     for (struct schedule_entry *entry; (entry = scheduler_next(&host->scheduler));) {
@@ -474,7 +347,7 @@ void request_start_next(struct session_host *host)
             scheduler_put_back(&host->scheduler, entry);
             request_reply_late(request);
         } else if (take_memory(request)) {
-            request->is_busy = true;
+            request_state_move(&request->state, REQUEST_DRAWING);
             request->task = (struct task){step_run, step_done, request, NULL};
             render_thread_submit(host->render_thread, &request->task);
         }

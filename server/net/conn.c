@@ -393,3 +393,10 @@ bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_h
     conn->in = NULL;
     return false;
 }
+
+void conn_turn_away(int fd, const void *bytes, size_t size)
+{
+    if (size > 0 && send(fd, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT) > 0)
+        shutdown(fd, SHUT_WR);
+    close(fd);
+}

@@ -90,6 +90,10 @@ bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_h
 /* Closes at once and gives all unsent blocks back. */
 void conn_finish(struct conn *conn);
 
+/* Closes a socket that gets no conn, after up to `size` bytes: what the socket does not take at once
+ * is lost. */
+void conn_turn_away(int fd, const void *bytes, size_t size);
+
 /* Queue output; it is written by conn_flush() and then as the socket takes it. On a closed conn,
  * or without memory (which closes it), the bytes are dropped. */
 void conn_send(struct conn *conn, const void *bytes, size_t size); /* copies */

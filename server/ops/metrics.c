@@ -42,9 +42,9 @@ static void label(struct text_buffer *text, const char *name, const char *value)
     text_buffer_add(text, "\"");
 }
 
-static void write_build(const struct session_host *host, struct text_buffer *text)
+static void write_build(const struct daemon *daemon, struct text_buffer *text)
 {
-    const struct renderer_info *info = render_thread_info(host->render_thread);
+    const struct renderer_info *info = render_thread_info(daemon->render_thread);
     head(text, "build_info", "gauge", "Always 1; its labels say what runs.");
     text_buffer_add(text, "sheen_build_info{");
     label(text, "version", SHEEN_VERSION);
@@ -53,14 +53,14 @@ static void write_build(const struct session_host *host, struct text_buffer *tex
     text_buffer_add(text, ",");
     label(text, "driver", info->driver);
     text_buffer_add(text, ",software=\"%s\"} 1\n", info->software ? "true" : "false");
-    put(text, "gpu_generation", "gauge", host->gpu_generation,
+    put(text, "gpu_generation", "gauge", daemon->requests.gpu_generation,
         "1, and one more for each time that the GPU was lost.");
 }
 
-static void write_sessions(const struct session_host *host, struct text_buffer *text)
+static void write_sessions(const struct daemon *daemon, struct text_buffer *text)
 {
-    const struct stats *stats = &host->stats;
-    put(text, "sessions", "gauge", host->n_sessions, "Clients connected.");
+    const struct stats *stats = &daemon->sessions.stats;
+    put(text, "sessions", "gauge", daemon->sessions.n_sessions, "Clients connected.");
     put(text, "sessions_opened_total", "counter", stats->sessions, "Sessions ever opened.");
     put(text, "sessions_refused_total", "counter", stats->refused,
         "Connections turned away before they were sessions.");
@@ -86,7 +86,7 @@ static void write_classes(const struct scheduler *scheduler, struct text_buffer 
     }
 }
 
-static void write_requests(const struct session_host *host, struct text_buffer *text)
+static void write_requests(const struct daemon *daemon, struct text_buffer *text)
 {
     static const struct {
         uint8_t type;
@@ -98,7 +98,7 @@ static void write_requests(const struct session_host *host, struct text_buffer *
                    {MESSAGE_SUPERSEDED, "superseded"},
                    {MESSAGE_STATS, "stats"},
                    {MESSAGE_ERROR, "error"}};
-    const struct stats *stats = &host->stats;
+    const struct stats *stats = &daemon->sessions.stats;
     head(text, "answers_total", "counter", "Answers, by what they are.");
     for (size_t i = 0; i < sizeof ANSWERS / sizeof *ANSWERS; i++)
         text_buffer_add(text, "sheen_answers_total{answer=\"%s\"} %" PRIu64 "\n", ANSWERS[i].name,
@@ -107,8 +107,9 @@ static void write_requests(const struct session_host *host, struct text_buffer *
     for (unsigned i = sheen_ErrorCode_ERROR_PROTOCOL; i < _sheen_ErrorCode_ARRAYSIZE; i++)
         text_buffer_add(text, "sheen_errors_total{code=\"%s\"} %" PRIu64 "\n", stats_error_name(i),
                         stats->error_codes[i]);
-    put(text, "queue_depth", "gauge", host->scheduler.waiting, "Frames that wait for their turn.");
-    write_classes(&host->scheduler, text);
+    put(text, "queue_depth", "gauge", daemon->requests.scheduler.waiting,
+        "Frames that wait for their turn.");
+    write_classes(&daemon->requests.scheduler, text);
     put(text, "upload_bytes_total", "counter", stats->upload_bytes, "Bytes of files received.");
     put(text, "sent_bytes_total", "counter", stats->sent_bytes, "Bytes sent to clients.");
 }
@@ -129,17 +130,17 @@ static void write_stage(const struct histogram *stage, const char *name, struct 
     text_buffer_add(text, "\n");
 }
 
-static void write_stages(const struct session_host *host, struct text_buffer *text)
+static void write_stages(const struct daemon *daemon, struct text_buffer *text)
 {
     head(text, "frame_stage_seconds", "histogram",
          "Time of each stage of a frame; a stage that a frame did without is not counted.");
     for (unsigned i = 0; i < STAGE_COUNT; i++)
-        write_stage(&host->stats.stage[i], stats_stage_name(i), text);
+        write_stage(&daemon->sessions.stats.stage[i], stats_stage_name(i), text);
 }
 
-static void write_store(const struct session_host *host, struct text_buffer *text)
+static void write_store(const struct daemon *daemon, struct text_buffer *text)
 {
-    struct store_counts counts = store_count(host->store);
+    struct store_counts counts = store_count(daemon->store);
     put(text, "models", "gauge", counts.models, "Models ready to be rendered.");
     put(text, "images", "gauge", counts.images, "Light images ready to be used.");
     put(text, "model_cache_bytes", "gauge", counts.used_bytes,
@@ -178,7 +179,7 @@ static uint64_t count_descriptors(void)
     return n - 1; /* the one it is read through */
 }
 
-static void write_process(const struct session_host *host, struct text_buffer *text)
+static void write_process(const struct daemon *daemon, struct text_buffer *text)
 {
     uint64_t now = clock_now_us();
     struct timespec cpu = {0};
@@ -188,11 +189,11 @@ static void write_process(const struct session_host *host, struct text_buffer *t
     head(text, "thread_busy_seconds", "gauge",
          "How long the GL thread, or the longest at work of the pool, has been at one piece.");
     text_buffer_add(text, "sheen_thread_busy_seconds{thread=\"gl\"} ");
-    seconds(text, render_thread_busy_us(host->render_thread, now));
+    seconds(text, render_thread_busy_us(daemon->render_thread, now));
     text_buffer_add(text, "\nsheen_thread_busy_seconds{thread=\"pool\"} ");
-    seconds(text, pool_busy_us(host->pool, now));
+    seconds(text, pool_busy_us(daemon->pool, now));
     text_buffer_add(text, "\nsheen_thread_busy_seconds{thread=\"read\"} ");
-    seconds(text, pool_busy_us(host->readers, now));
+    seconds(text, pool_busy_us(daemon->readers, now));
     text_buffer_add(text, "\n");
     put(text, "log_lines_left_out_total", "counter", log_left_out(),
         "Log lines above the most a second.");
@@ -209,17 +210,17 @@ static void write_process(const struct session_host *host, struct text_buffer *t
         "# TYPE process_open_fds gauge\nprocess_open_fds %" PRIu64
         "\n# HELP process_max_fds The most there may be.\n"
         "# TYPE process_max_fds gauge\nprocess_max_fds %llu\n",
-        (long long)time(NULL) - (long long)((now - host->stats.start_us) / 1000000),
+        (long long)time(NULL) - (long long)((now - daemon->sessions.stats.start_us) / 1000000),
         (long long)cpu.tv_sec, cpu.tv_nsec / 1000, resident_bytes(), count_descriptors(),
         (unsigned long long)files.rlim_cur);
 }
 
-void metrics_write(const struct session_host *host, struct text_buffer *text)
+void metrics_write(const struct daemon *daemon, struct text_buffer *text)
 {
-    write_build(host, text);
-    write_sessions(host, text);
-    write_requests(host, text);
-    write_stages(host, text);
-    write_store(host, text);
-    write_process(host, text);
+    write_build(daemon, text);
+    write_sessions(daemon, text);
+    write_requests(daemon, text);
+    write_stages(daemon, text);
+    write_store(daemon, text);
+    write_process(daemon, text);
 }

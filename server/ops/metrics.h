@@ -4,9 +4,9 @@
 #ifndef SHEEN_OPS_METRICS_H
 #define SHEEN_OPS_METRICS_H
 
-#include "server/session/session.h"
+#include "server/ops/daemon.h"
 #include "server/base/text_buffer.h"
 
-void metrics_write(const struct session_host *host, struct text_buffer *text);
+void metrics_write(const struct daemon *daemon, struct text_buffer *text);
 
 #endif

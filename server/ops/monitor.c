@@ -16,7 +16,7 @@
 #define TICK_US 1000000u
 
 struct monitor {
-    const struct session_host *host;
+    const struct daemon *daemon;
     uint64_t stuck_us, watchdog_us; /* watchdog_us 0: nobody watches */
     bool was_stuck;
     int timer_fd;
@@ -29,11 +29,12 @@ struct monitor {
 static const char *who_is_stuck(const struct monitor *monitor)
 {
     uint64_t now = clock_now_us();
-    if (render_thread_busy_us(monitor->host->render_thread, now) > monitor->stuck_us)
+    if (render_thread_busy_us(monitor->daemon->render_thread, now) > monitor->stuck_us)
         return "the GL thread";
-    if (pool_busy_us(monitor->host->pool, now) > monitor->stuck_us)
+    if (pool_busy_us(monitor->daemon->pool, now) > monitor->stuck_us)
         return "a pool thread";
-    return pool_busy_us(monitor->host->readers, now) > monitor->stuck_us ? "a reader thread" : NULL;
+    return pool_busy_us(monitor->daemon->readers, now) > monitor->stuck_us ? "a reader thread"
+                                                                           : NULL;
 }
 
 /* --- HTTP */
@@ -43,7 +44,7 @@ static int get(void *owner, const char *path, struct text_buffer *body)
     const struct monitor *monitor = owner;
     const char *stuck = who_is_stuck(monitor);
     if (strcmp(path, "/metrics") == 0) {
-        metrics_write(monitor->host, body);
+        metrics_write(monitor->daemon, body);
         return 200;
     }
     bool ready = strcmp(path, "/readyz") == 0;
@@ -54,7 +55,7 @@ static int get(void *owner, const char *path, struct text_buffer *body)
                         (unsigned long long)(monitor->stuck_us / 1000000));
         return 503;
     }
-    if (ready && monitor->host->draining) {
+    if (ready && monitor->daemon->sessions.draining) {
         text_buffer_add(body, "shutting down\n");
         return 503;
     }
@@ -110,20 +111,19 @@ static bool start_timer(struct monitor *monitor, struct error *error)
     if (monitor->timer_fd < 0 || timerfd_settime(monitor->timer_fd, 0, &times, NULL) < 0)
         return error_set(error, ERROR_SERVER, "timerfd: %s", strerror(errno));
     monitor->timer = (struct loop_source){monitor->timer_fd, timer_ready, monitor};
-    return loop_watch(monitor->host->loop, &monitor->timer, EPOLLIN, error);
+    return loop_watch(monitor->daemon->loop, &monitor->timer, EPOLLIN, error);
 }
 
 /* --- its life */
 
-struct monitor *monitor_create(const struct session_host *host, uint64_t stuck_us,
-                               struct error *error)
+struct monitor *monitor_create(const struct daemon *daemon, uint64_t stuck_us, struct error *error)
 {
     struct monitor *monitor = calloc(1, sizeof *monitor);
     if (!monitor) {
         error_set(error, ERROR_SERVER, "no memory for the watchdog");
         return NULL;
     }
-    monitor->host = host;
+    monitor->daemon = daemon;
     monitor->stuck_us = stuck_us;
     monitor->watchdog_us = notify_watchdog_us();
     monitor->timer_fd = monitor->timer.fd = -1;
@@ -140,7 +140,7 @@ void monitor_destroy(struct monitor *monitor)
         return;
     listener_close(monitor->listener);
     http_destroy(monitor->http);
-    loop_unwatch(monitor->host->loop, &monitor->timer);
+    loop_unwatch(monitor->daemon->loop, &monitor->timer);
     if (monitor->timer_fd >= 0)
         close(monitor->timer_fd);
     free(monitor);
@@ -151,7 +151,7 @@ static bool open_http(struct monitor *monitor, struct error *error)
     const struct http_handler handler = {get, monitor};
     if (monitor->listener)
         return error_set(error, ERROR_SERVER, "metrics have one address, not two");
-    monitor->http = http_create(monitor->host->loop, &handler, error);
+    monitor->http = http_create(monitor->daemon->loop, &handler, error);
     return monitor->http != NULL;
 }
 
@@ -161,7 +161,7 @@ bool monitor_listen(struct monitor *monitor, const struct address *address,
     const struct listener_handler handler = {accepted, monitor};
     if (!open_http(monitor, error))
         return false;
-    monitor->listener = listener_open(monitor->host->loop, address, reach, &handler, error);
+    monitor->listener = listener_open(monitor->daemon->loop, address, reach, &handler, error);
     return monitor->listener != NULL;
 }
 
@@ -172,7 +172,7 @@ bool monitor_adopt(struct monitor *monitor, int fd, enum listener_reach reach, s
         close(fd);
         return false;
     }
-    monitor->listener = listener_adopt(monitor->host->loop, fd, false, reach, &handler, error);
+    monitor->listener = listener_adopt(monitor->daemon->loop, fd, false, reach, &handler, error);
     if (!monitor->listener || listener_kind(monitor->listener) != ADDRESS_TLS)
         return monitor->listener != NULL;
     return error_set(error, ERROR_REQUEST,

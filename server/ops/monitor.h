@@ -6,14 +6,13 @@
 
 #include "protocol/address.h"
 #include "server/net/listen.h"
-#include "server/session/session.h"
+#include "server/ops/daemon.h"
 
 struct monitor;
 
-/* stuck_us: a thread that is at one piece of work for longer is taken for stuck. *host and what it
+/* stuck_us: a thread that is at one piece of work for longer is taken for stuck. *daemon and what it
  * names stay until monitor_destroy(). */
-struct monitor *monitor_create(const struct session_host *host, uint64_t stuck_us,
-                               struct error *error);
+struct monitor *monitor_create(const struct daemon *daemon, uint64_t stuck_us, struct error *error);
 void monitor_destroy(struct monitor *monitor); /* NULL is safe */
 
 /* Serves GET /metrics, /healthz and /readyz at this address, or on a listening socket of the

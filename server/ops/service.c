@@ -7,7 +7,6 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/signalfd.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include "server/base/clock.h"
@@ -16,6 +15,7 @@
 #include "server/net/listen.h"
 #include "server/ops/gpu_loss_log.h"
 #include "server/assets/model_file.h"
+#include "server/ops/daemon.h"
 #include "server/ops/monitor.h"
 #include "server/ops/notify.h"
 #include "server/threads/pool.h"
@@ -31,14 +31,13 @@
 struct service {
     struct service_options options; /* those in force */
     struct service_reloader reloader;
-    struct session_host host;
+    struct daemon daemon;
     struct monitor *monitor; /* NULL with a single session */
-    struct completions *completions;
     struct listener *listeners[SERVICE_MAX_LISTENERS];
     size_t n_listeners;
     struct loop_source signals;
     int signal_fd;
-    struct session *sessions;
+    LIST_HEAD(session_list, session) sessions;
     struct gpu_loss_log gpu_losses; /* of the GPU */
     uint64_t trimmed_us;            /* when the block_cache were last */
     enum service_end end;
@@ -48,37 +47,33 @@ struct service {
 
 /* --- sessions */
 
-/* One message and the end, for a client that cannot have a session. It has no buffers: what the
- * socket does not take at once is lost. Only the end when text is NULL. */
+/* Tells a client that cannot have a session why, unless text is NULL, and closes. */
 static void turn_away(int fd, const char *text)
 {
     sheen_Error error = {.code = sheen_ErrorCode_ERROR_OVERLOADED};
     uint8_t buffer[MESSAGE_BUFFER_BYTES];
-    size_t length;
+    size_t length = 0;
     snprintf(error.text, sizeof error.text, "%s", text ? text : "");
-    if (text && message_encode(MESSAGE_ERROR, 0, &error, buffer, sizeof buffer, &length) &&
-        send(fd, buffer, length, MSG_NOSIGNAL | MSG_DONTWAIT) > 0)
-        shutdown(fd, SHUT_WR);
-    close(fd);
+    if (text && !message_encode(MESSAGE_ERROR, 0, &error, buffer, sizeof buffer, &length))
+        length = 0;
+    conn_turn_away(fd, buffer, length);
 }
 
 /* The quota of a connection that there is room for, with another reference; else NULL. */
-static struct client_quota *find_quota(struct service *service, int fd, struct error *error)
+static struct client_quota *find_quota(struct daemon *daemon, int fd, struct error *error)
 {
-    struct session_host *host = &service->host;
-    const struct limits *limits = &service->options.limits;
     struct client_quota *quota = NULL;
-    if (host->n_sessions >= limits->max_connections)
+    if (daemon->sessions.n_sessions >= daemon->limits.max_connections)
         error_set(error, ERROR_SERVER,
                   "the daemon has as many clients as it takes: try again later");
-    else if (!(quota = client_quota_get(&host->memory.quotas, fd)))
+    else if (!(quota = client_quota_get(&daemon->memory.quotas, fd)))
         error_set(error, ERROR_SERVER, "no memory for another client: try again later");
-    else if (quota->n_connections >= limits->max_peer_connections)
+    else if (quota->n_connections >= daemon->limits.max_peer_connections)
         error_set(error, ERROR_SERVER,
                   "this user or address has as many connections as it may: close one");
     else
         return quota;
-    host->stats.errors++;
+    daemon->sessions.stats.errors++;
     client_quota_put(quota);
     return NULL;
 }
@@ -86,7 +81,7 @@ static struct client_quota *find_quota(struct service *service, int fd, struct e
 static void accepted(void *owner, const struct listener *listener, int fd)
 {
     struct service *service = owner;
-    struct session_host *host = &service->host;
+    struct daemon *daemon = &service->daemon;
     struct session *session = NULL;
     struct error error = {0};
     const enum address_kind kind = listener_kind(listener);
@@ -95,38 +90,38 @@ static void accepted(void *owner, const struct listener *listener, int fd)
                                                                   : CLIENT_TLS};
     peer_describe(fd, client.peer);
     bool stranger = kind == ADDRESS_TLS ||
-                    !access_admit_local(host->access, fd, kind, &client.identity, &error);
-    if (stranger && (kind != ADDRESS_TLS || host->n_strangers >= SERVICE_MAX_STRANGERS)) {
+                    !access_admit_local(daemon->access, fd, kind, &client.identity, &error);
+    if (stranger &&
+        (kind != ADDRESS_TLS || daemon->sessions.n_strangers >= SERVICE_MAX_STRANGERS)) {
         if (kind == ADDRESS_TLS)
             error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
-        close(fd); /* a stranger is told nothing */
+        conn_turn_away(fd, NULL, 0); /* a stranger is told nothing */
     } else {
-        struct client_quota *quota = find_quota(service, fd, &error);
+        struct client_quota *quota = find_quota(daemon, fd, &error);
         if (quota)
-            session = session_create(host, fd, &client, quota, &error);
+            session = session_create(&daemon->sessions, fd, &client, quota, &error);
         else
             turn_away(fd, stranger ? NULL : error.text);
     }
     if (!session) {
-        service->host.stats.refused++;
+        daemon->sessions.stats.refused++;
         log_event(LOG_WARN, "client turned away", log_text("peer", client.peer),
                   log_text("listener", listener_text(listener)), log_text("text", error.text));
         return;
     }
-    session->next = service->sessions;
-    service->sessions = session;
+    LIST_INSERT_HEAD(&service->sessions, session, link);
 }
 
 static void settle_sessions(struct service *service)
 {
-    for (struct session **link = &service->sessions; *link;) {
-        struct session *session = *link;
-        if (session_settle(session)) {
-            link = &session->next;
-            continue;
+    struct session *session = LIST_FIRST(&service->sessions);
+    while (session) {
+        struct session *next = LIST_NEXT(session, link);
+        if (!session_settle(session)) {
+            LIST_REMOVE(session, link);
+            session_destroy(session);
         }
-        *link = session->next;
-        session_destroy(session);
+        session = next;
     }
 }
 
@@ -143,17 +138,18 @@ static void drain(struct service *service);
 /* The frames that it took with it have been answered. */
 static void count_losses(struct service *service)
 {
-    struct session_host *host = &service->host;
-    while (service->gpu_losses.n < render_thread_losses(host->render_thread)) {
-        bool often = gpu_loss_log_add(&service->gpu_losses, clock_now_us(),
-                                      service->options.limits.gpu_losses);
-        host->gpu_generation++;
-        log_event(LOG_ERROR, "the GPU was lost", log_number("generation", host->gpu_generation));
-        if (!often || host->draining)
+    struct daemon *daemon = &service->daemon;
+    while (service->gpu_losses.n < render_thread_losses(daemon->render_thread)) {
+        bool often =
+            gpu_loss_log_add(&service->gpu_losses, clock_now_us(), daemon->limits.gpu_losses);
+        daemon->requests.gpu_generation++;
+        log_event(LOG_ERROR, "the GPU was lost",
+                  log_number("generation", daemon->requests.gpu_generation));
+        if (!often || daemon->sessions.draining)
             continue;
         service->end = SERVICE_GPU_LOST;
         log_event(LOG_ERROR, "the GPU was lost too often: ending with exit code 75",
-                  log_number("gpu_losses", service->options.limits.gpu_losses));
+                  log_number("gpu_losses", daemon->limits.gpu_losses));
         drain(service);
     }
 }
@@ -161,7 +157,7 @@ static void count_losses(struct service *service)
 /* With threads at work, so that nothing can be taken down in order. */
 static void leave_now(struct service *service)
 {
-    workers_stop(&service->host.workers);
+    workers_stop(&service->daemon.workers);
     monitor_destroy(service->monitor); /* removes its socket; the others have gone */
     if (!service->single)
         log_event(LOG_WARN, "ended while a thread was at work", log_number("code", service->end));
@@ -171,21 +167,23 @@ static void leave_now(struct service *service)
 static void after_batch(void *owner)
 {
     struct service *service = owner;
+    struct daemon *daemon = &service->daemon;
+    bool draining = daemon->sessions.draining;
     count_losses(service);
     settle_sessions(service);
-    request_start_next(&service->host);
-    loop_set_ticking(service->host.loop, service->sessions || any_paused(service) ||
-                                             service->host.draining ||
-                                             block_cache_bytes(service->host.block_cache) > 0);
-    if (service->sessions || !(service->single || service->host.draining))
+    request_start_next(&daemon->requests);
+    bool has_sessions = !LIST_EMPTY(&service->sessions);
+    loop_set_ticking(daemon->loop, has_sessions || any_paused(service) || draining ||
+                                       block_cache_bytes(daemon->block_cache) > 0);
+    if (has_sessions || !(service->single || draining))
         return;
     /* Nobody is left to answer; other threads may still be at work. */
-    store_cancel_builds(service->host.store);
-    workers_stop(&service->host.workers);
-    if (!store_is_building(service->host.store) && scheduler_is_idle(&service->host.scheduler) &&
-        service->host.n_file_loads == 0)
-        loop_stop(service->host.loop);
-    else if (service->single || session_host_overdue_us(&service->host, clock_now_us()) >
+    store_cancel_builds(daemon->store);
+    workers_stop(&daemon->workers);
+    if (!store_is_building(daemon->store) && scheduler_is_idle(&daemon->requests.scheduler) &&
+        daemon->requests.n_file_loads == 0)
+        loop_stop(daemon->loop);
+    else if (service->single || session_host_overdue_us(&daemon->sessions, clock_now_us()) >
                                     SESSION_LAST_WORDS_US + SERVICE_LAST_WORK_US)
         leave_now(service); /* a tile or a table may take long yet: nobody wants them */
 }
@@ -193,17 +191,19 @@ static void after_batch(void *owner)
 static void tick(void *owner)
 {
     struct service *service = owner;
+    struct daemon *daemon = &service->daemon;
     uint64_t now = clock_now_us();
-    if (!service->overdue && session_host_overdue_us(&service->host, now) > 0) {
+    if (!service->overdue && session_host_overdue_us(&daemon->sessions, now) > 0) {
         service->overdue = true;
         log_event(LOG_WARN, "drain-timeout is over: what is not done is refused",
-                  log_number("sessions", service->host.n_sessions));
+                  log_number("sessions", daemon->sessions.n_sessions));
     }
-    for (struct session *session = service->sessions; session; session = session->next)
+    struct session *session;
+    LIST_FOREACH (session, &service->sessions, link)
         session_tick(session, now);
     if (now - service->trimmed_us > SERVICE_TRIM_US) {
         service->trimmed_us = now;
-        block_cache_trim(service->host.block_cache);
+        block_cache_trim(daemon->block_cache);
     }
     for (size_t i = 0; i < service->n_listeners; i++)
         if (listener_is_paused(service->listeners[i]))
@@ -220,30 +220,33 @@ static void close_listeners(struct service *service)
 
 static void drain(struct service *service)
 {
-    if (service->host.draining)
+    struct session_host *sessions = &service->daemon.sessions;
+    if (sessions->draining)
         leave_now(service); /* asked twice */
-    service->host.draining = true;
-    service->host.drain_start_us = clock_now_us();
+    sessions->draining = true;
+    sessions->drain_start_us = clock_now_us();
     close_listeners(service);
     if (!service->single) /* the manager of a private daemon's client is not its own */
         notify_send("STOPPING=1\nSTATUS=finishing what is in flight");
-    log_event(LOG_INFO, "shutting down", log_number("sessions", service->host.n_sessions));
+    log_event(LOG_INFO, "shutting down", log_number("sessions", sessions->n_sessions));
 }
 
 /* What may change while the daemon serves. Takes `access` over. */
 static void apply(struct service *service, const struct service_options *options,
                   struct access *access)
 {
-    access_destroy(service->host.access);
-    service->host.access = access;
+    struct daemon *daemon = &service->daemon;
+    access_destroy(daemon->access);
+    daemon->access = daemon->sessions.access = access;
     service->options = *options;
     for (size_t i = 0; i < service->n_listeners; i++)
         listener_open_to_all(service->listeners[i], access_has_list(access));
-    for (struct session *session = service->sessions; session; session = session->next)
+    struct session *session;
+    LIST_FOREACH (session, &service->sessions, link)
         session_check_access(session, true);
-    service->host.limits = options->limits.session;
-    service->host.asset_limits = options->limits.assets;
-    workers_set_times(&service->host.workers, &options->limits.workers);
+    daemon->limits = options->limits;
+    daemon->sessions.limits = options->limits.session;
+    workers_set_times(&daemon->workers, &options->limits.workers);
     /* The client of a private daemon shows its last line when it dies. */
     log_set(service->single ? LOG_ERROR : options->log_level, options->log_format);
     if (service->monitor)
@@ -297,7 +300,7 @@ static void signal_ready(struct loop_source *source, uint32_t events)
         return;
     if (signal.ssi_signo != SIGHUP)
         drain(service);
-    else if (service->reloader.read && !service->host.draining)
+    else if (service->reloader.read && !service->daemon.sessions.draining)
         reload(service);
 }
 
@@ -316,7 +319,7 @@ static bool watch_signals(struct service *service, struct error *error)
     if (service->signal_fd < 0)
         return error_set(error, ERROR_SERVER, "signalfd: %s", strerror(errno));
     service->signals = (struct loop_source){service->signal_fd, signal_ready, service};
-    return loop_watch(service->host.loop, &service->signals, EPOLLIN, error);
+    return loop_watch(service->daemon.loop, &service->signals, EPOLLIN, error);
 }
 
 /* --- start and stop */
@@ -327,8 +330,8 @@ static bool keep_listener(struct service *service, struct listener *listener, st
     if (!listener)
         return false;
     service->listeners[service->n_listeners++] = listener;
-    listener_open_to_all(listener, access_has_list(service->host.access));
-    return listener_kind(listener) != ADDRESS_TLS || access_can_tls(service->host.access, error);
+    listener_open_to_all(listener, access_has_list(service->daemon.access));
+    return listener_kind(listener) != ADDRESS_TLS || access_can_tls(service->daemon.access, error);
 }
 
 static enum listener_reach metrics_reach(const struct service_options *options)
@@ -353,7 +356,7 @@ static bool adopt_listeners(struct service *service, struct error *error)
                 monitor_adopt(service->monitor, fds.fd[i], metrics_reach(&service->options), error);
         else if (service->n_listeners < SERVICE_MAX_LISTENERS)
             ok = keep_listener(service,
-                               listener_adopt(service->host.loop, fds.fd[i],
+                               listener_adopt(service->daemon.loop, fds.fd[i],
                                               strcmp(fds.name[i], "tls") == 0, LISTENER_LOOPBACK,
                                               &handler, error),
                                error);
@@ -380,8 +383,8 @@ static bool open_listeners(struct service *service, struct error *error)
             return error_set(error, ERROR_SERVER, "at most %d addresses to listen on",
                              SERVICE_MAX_LISTENERS);
         if (!keep_listener(service,
-                           listener_open(service->host.loop, &listen.address[i], LISTENER_LOOPBACK,
-                                         &handler, error),
+                           listener_open(service->daemon.loop, &listen.address[i],
+                                         LISTENER_LOOPBACK, &handler, error),
                            error))
             return false;
     }
@@ -392,13 +395,16 @@ static bool open_listeners(struct service *service, struct error *error)
 
 static bool open_session(struct service *service, int fd, struct error *error)
 {
+    struct daemon *daemon = &service->daemon;
     struct session_client client = {.kind = CLIENT_PRIVATE, .peer = "private"};
     access_admit_private(&client.identity);
-    struct client_quota *quota = client_quota_get(&service->host.memory.quotas, fd);
-    struct session *session =
-        quota ? session_create(&service->host, fd, &client, quota, error) : NULL;
-    service->sessions = session;
-    return session || (quota ? false : error_set(error, ERROR_SERVER, "no memory for a client"));
+    struct client_quota *quota = client_quota_get(&daemon->memory.quotas, fd);
+    if (!quota)
+        return error_set(error, ERROR_SERVER, "no memory for a client");
+    struct session *session = session_create(&daemon->sessions, fd, &client, quota, error);
+    if (session)
+        LIST_INSERT_HEAD(&service->sessions, session, link);
+    return session != NULL;
 }
 
 /* A descriptor for every client, as far as the system lets us. */
@@ -411,47 +417,85 @@ static void allow_descriptors(uint64_t n)
     setrlimit(RLIMIT_NOFILE, &files); /* with fewer, accepting rests when they are used up */
 }
 
-static bool start(struct service *service, struct error *error)
+/* Threads, worker programs and what they work for. The reader of cages starts while the device
+ * opens. */
+static bool start_threads(struct service *service, struct error *error)
 {
-    struct session_host *host = &service->host;
+    struct daemon *daemon = &service->daemon;
     const struct service_options *options = &service->options;
+    const struct limits *limits = &daemon->limits;
     const struct loop_hooks hooks = {after_batch, tick, service};
-    jpeg_keep_defaults();
-    host->is_private = service->single;
-    if (!(host->block_cache = block_cache_create((size_t)options->limits.spare_memory)))
+    if (!(daemon->block_cache = block_cache_create((size_t)limits->spare_memory)))
         return error_set(error, ERROR_SERVER, "no memory for the daemon");
     const struct renderer_options renderer = {.device = options->device,
-                                              .block_cache = host->block_cache};
-    /* The reader of cages starts while the device opens. */
-    if (!(host->loop = loop_create(&hooks, error)) || !watch_signals(service, error) ||
-        !workers_init(&host->workers, NULL, &options->limits.workers,
-                      options->limits.assets.memory_budget, error) ||
-        !(service->completions = completions_create(host->loop, error)) ||
-        !(host->render_thread =
-              render_thread_create(&gl_device, &renderer, service->completions, error)) ||
-        !(host->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1, &encode_context,
-                                   service->completions, error)) ||
-        !(host->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0, &(struct pool_context){0},
-                                      service->completions, error)) ||
-        !(host->store = store_create(host->pool, host->readers, host->render_thread, &host->workers,
-                                     &host->asset_limits, host->is_private, error)))
+                                              .block_cache = daemon->block_cache};
+    return (daemon->loop = loop_create(&hooks, error)) && watch_signals(service, error) &&
+           workers_init(&daemon->workers, NULL, &limits->workers, limits->assets.memory_budget,
+                        error) &&
+           (daemon->completions = completions_create(daemon->loop, error)) &&
+           (daemon->render_thread =
+                render_thread_create(&gl_device, &renderer, daemon->completions, error)) &&
+           (daemon->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1,
+                                       &encode_context, daemon->completions, error)) &&
+           (daemon->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0,
+                                          &(struct pool_context){0}, daemon->completions, error)) &&
+           (daemon->store =
+                store_create(daemon->pool, daemon->readers, daemon->render_thread, &daemon->workers,
+                             &daemon->limits.assets, service->single, error));
+}
+
+/* Gives each room what it needs of the others. */
+static void connect_rooms(struct service *service)
+{
+    struct daemon *daemon = &service->daemon;
+    const struct limits *limits = &daemon->limits;
+    uint64_t max_upload_bytes = limits->assets.memory_budget < limits->session.max_upload
+                                    ? limits->assets.memory_budget
+                                    : limits->session.max_upload;
+    memory_init(&daemon->memory, daemon->store, &limits->assets, service->single,
+                daemon->block_cache);
+    daemon->requests = (struct request_host){
+        .pool = daemon->pool,
+        .render_thread = daemon->render_thread,
+        .workers = &daemon->workers,
+        .block_cache = daemon->block_cache,
+        .memory = &daemon->memory,
+        .store = daemon->store,
+        .models_fd = daemon->requests.models_fd,
+        .max_file_bytes = max_upload_bytes,
+        .gpu_generation = 1,
+    };
+    struct session_host *sessions = &daemon->sessions;
+    sessions->loop = daemon->loop;
+    sessions->render_thread = daemon->render_thread;
+    sessions->workers = &daemon->workers;
+    sessions->block_cache = daemon->block_cache;
+    sessions->store = daemon->store;
+    sessions->memory = &daemon->memory;
+    sessions->requests = &daemon->requests;
+    sessions->asset_limits = &limits->assets;
+    sessions->max_upload_bytes = max_upload_bytes;
+    sessions->share_models = service->options.share_models;
+    sessions->is_private = service->single;
+    stats_init(&sessions->stats);
+}
+
+static bool start(struct service *service, struct error *error)
+{
+    struct daemon *daemon = &service->daemon;
+    const struct service_options *options = &service->options;
+    jpeg_keep_defaults();
+    if (!start_threads(service, error))
         return false;
-    const struct limits *limits = &options->limits;
-    host->share_models = options->share_models;
-    if (*options->models && (host->models_fd = model_folder_open(options->models, error)) < 0)
+    connect_rooms(service);
+    if (*options->models &&
+        (daemon->requests.models_fd = model_folder_open(options->models, error)) < 0)
         return false;
-    host->gpu_generation = 1;
-    host->max_upload_bytes = limits->assets.memory_budget < limits->session.max_upload
-                                 ? limits->assets.memory_budget
-                                 : limits->session.max_upload;
-    memory_init(&host->memory, host->store, &host->asset_limits, host->is_private,
-                host->block_cache);
-    allow_descriptors(limits->max_connections + SERVICE_OWN_DESCRIPTORS);
-    stats_init(&host->stats);
+    allow_descriptors(daemon->limits.max_connections + SERVICE_OWN_DESCRIPTORS);
     if (service->single)
         return open_session(service, options->session_fd, error);
-    workers_expect_images(&host->workers);
-    service->monitor = monitor_create(host, options->stuck_s * 1000000, error);
+    workers_expect_images(&daemon->workers);
+    service->monitor = monitor_create(daemon, options->stuck_s * 1000000, error);
     return service->monitor && open_listeners(service, error);
 }
 
@@ -468,7 +512,7 @@ static void list_addresses(const struct service *service, char *text, size_t cap
 static void tell_ready(const struct service *service)
 {
     char addresses[SERVICE_MAX_LISTENERS * LISTENER_TEXT_BYTES];
-    const char *device = render_thread_info(service->host.render_thread)->device;
+    const char *device = render_thread_info(service->daemon.render_thread)->device;
     list_addresses(service, addresses, sizeof addresses);
     log_event(LOG_INFO, "listening", log_text("version", SHEEN_VERSION), log_text("device", device),
               log_text("addresses", addresses),
@@ -528,7 +572,8 @@ struct service *service_create(const struct service_options *options,
         error_set(error, ERROR_SERVER, "no memory for the daemon");
         return NULL;
     }
-    service->signal_fd = service->host.models_fd = -1;
+    service->signal_fd = service->daemon.requests.models_fd = -1;
+    LIST_INIT(&service->sessions);
     service->reloader = *reloader;
     service->single = options->session_fd >= 0;
     struct access *access = access_create(&options->access, error);
@@ -539,7 +584,7 @@ struct service *service_create(const struct service_options *options,
         return NULL;
     }
     if (service->single)
-        service->host.limits.idle_s = 0;
+        service->daemon.sessions.limits.idle_s = 0;
     else
         tell_ready(service);
     return service;
@@ -547,7 +592,7 @@ struct service *service_create(const struct service_options *options,
 
 enum service_end service_run(struct service *service)
 {
-    loop_run(service->host.loop);
+    loop_run(service->daemon.loop);
     return service->end;
 }
 
@@ -557,28 +602,28 @@ void service_destroy(struct service *service)
 {
     if (!service)
         return;
-    struct session_host *host = &service->host;
+    struct daemon *daemon = &service->daemon;
     close_listeners(service);
     monitor_destroy(service->monitor);
-    while (service->sessions) {
-        struct session *session = service->sessions;
-        service->sessions = session->next;
+    while (!LIST_EMPTY(&service->sessions)) {
+        struct session *session = LIST_FIRST(&service->sessions);
+        LIST_REMOVE(session, link);
         session_destroy(session);
     }
-    store_destroy(host->store);
-    render_thread_destroy(host->render_thread);
-    pool_destroy(host->pool);
-    pool_destroy(host->readers);
-    workers_finish(&host->workers);
-    if (service->completions)
-        completions_deliver(service->completions);
-    completions_destroy(service->completions);
+    store_destroy(daemon->store);
+    render_thread_destroy(daemon->render_thread);
+    pool_destroy(daemon->pool);
+    pool_destroy(daemon->readers);
+    workers_finish(&daemon->workers);
+    if (daemon->completions)
+        completions_deliver(daemon->completions);
+    completions_destroy(daemon->completions);
     if (service->signal_fd >= 0)
         close(service->signal_fd);
-    loop_destroy(host->loop);
-    access_destroy(host->access);
-    block_cache_destroy(host->block_cache);
-    if (host->models_fd >= 0)
-        close(host->models_fd);
+    loop_destroy(daemon->loop);
+    access_destroy(daemon->access);
+    block_cache_destroy(daemon->block_cache);
+    if (daemon->requests.models_fd >= 0)
+        close(daemon->requests.models_fd);
     free(service);
 }

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "server/base/log.h"
-#include "server/frame/request.h"
 
 #define SHUTTING_DOWN "the daemon is shutting down: connect to another or try later"
 
@@ -106,8 +105,8 @@ static void update_hold(struct session *session)
 {
     bool clogged = conn_unsent_bytes(&session->conn) > SESSION_MAX_UNSENT_BYTES;
     bool full = session->minor == 0 && session->replies.n >= PROTOCOL_MAX_IN_FLIGHT;
-    struct schedule_flow *flow = session->queue.flow;
-    flow[CLASS_INTERACTIVE].held = session_is_sending_interactive(session);
+    struct schedule_flow *flow = session->requests.queue.flow;
+    flow[CLASS_INTERACTIVE].held = session_is_sending(session);
     flow[CLASS_STILL].held = flow[CLASS_BATCH].held = clogged;
     conn_hold(&session->conn, clogged || full || session->refused);
 }
@@ -131,7 +130,7 @@ static void on_message(void *owner, const struct message_header *header, const u
         session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
                        "%s: more requests unanswered than HELLO_OK's credits allow",
                        message_type_name(header->type));
-        request_cancel_all(session); /* who floods is not served first */
+        request_cancel_all(&session->requests); /* who floods is not served first */
         return;
     }
     switch (header->type) {
@@ -145,7 +144,7 @@ static void on_message(void *owner, const struct message_header *header, const u
         session_reply_stats(session, header->seq);
         break;
     case MESSAGE_CANCEL:
-        request_cancel(session, header->seq);
+        request_cancel(&session->requests, header->seq);
         break;
     case MESSAGE_UPLOAD_BEGIN:
     case MESSAGE_MODEL_QUERY:
@@ -198,13 +197,20 @@ struct session *session_create(struct session_host *host, int fd,
     }
     session->host = host;
     session->conn.block_cache = session->replies.block_cache = host->block_cache;
-    session->quota = quota;
     session->client = *client;
+    session->requests = (struct request_client){
+        .host = host->requests,
+        .events = &session_request_events,
+        .owner = session,
+        .quota = quota,
+        .identity = session->client.identity.owner,
+        .assets_of = host->share_models ? STORE_SHARED : session->client.identity.owner,
+    };
+    request_client_init(&session->requests);
     session->admitted = client->kind != CLIENT_TLS;
     host->n_strangers += !session->admitted;
     session->output_class = CLASS_STILL;
     session->start_us = clock_now_us();
-    scheduler_add_queue(&session->queue);
     quota->n_connections++;
     host->n_sessions++;
     host->stats.sessions++;
@@ -227,14 +233,14 @@ void session_destroy(struct session *session)
               log_text("reason", stats_end_name(session->end)),
               log_number("answers", session->n_replies),
               log_number("duration_us", clock_now_us() - session->start_us));
-    request_abandon_all(session);
+    request_client_finish(&session->requests);
     reply_list_finish(&session->replies);
     upload_destroy(session->upload);
     conn_finish(&session->conn);
     session_release_input(session);
     host->n_strangers -= !session->admitted;
-    session->quota->n_connections--;
-    client_quota_put(session->quota);
+    session->requests.quota->n_connections--;
+    client_quota_put(session->requests.quota);
     host->n_sessions--;
     free(session);
 }
@@ -242,8 +248,8 @@ void session_destroy(struct session *session)
 bool session_settle(struct session *session)
 {
     struct conn *conn = &session->conn;
-    if (conn->state == CONN_OPEN && !session_is_sending_interactive(session)) {
-        request_send_held(session);
+    if (conn->state == CONN_OPEN && !session_is_sending(session)) {
+        request_send_held(&session->requests);
         reply_send_due(&session->replies, conn);
     }
     update_hold(session);
@@ -268,7 +274,7 @@ void session_tick(struct session *session, uint64_t now_us)
     if (now_us - session->conn.last_in_us > SESSION_TRIM_US)
         session_trim_input(session);
     if (session_host_overdue_us(session->host, now_us) > 0)
-        request_shut_down_all(session);
-    request_end_late(session, now_us);
-    request_report_progress(session);
+        request_shut_down_all(&session->requests, session->host->limits.drain_s);
+    request_end_late(&session->requests, now_us);
+    request_report_progress(&session->requests);
 }

@@ -7,15 +7,13 @@
 #define SHEEN_SESSION_SESSION_H
 
 #include "protocol/message.h"
+#include "server/assets/upload.h"
+#include "server/frame/request.h"
 #include "server/net/access.h"
+#include "server/net/conn.h"
 #include "server/net/peer.h"
 #include "server/session/reply.h"
-#include "server/net/conn.h"
-#include "server/frame/costs.h"
-#include "server/assets/memory.h"
-#include "server/frame/scheduler.h"
 #include "server/session/stats.h"
-#include "server/assets/upload.h"
 #include "server/threads/workers.h"
 
 /* While more than this is unsent, nothing is read from the client and no still or batch is begun
@@ -50,36 +48,29 @@ struct session_limits {
 /* What all sessions share; outlives them. */
 struct session_host {
     struct loop *loop;
-    struct pool *pool, *readers;
-    struct render_thread *render_thread;
-    struct block_cache *block_cache; /* the memory of frames and of their requests and answers */
-    struct workers workers;
-    struct store *store;
     struct access *access; /* another one after a reload */
-    bool share_models;     /* whatever is uploaded is everybody's */
-    int models_fd;         /* the folder of --models; -1: none */
-    unsigned n_file_loads; /* files being read from there */
+    struct render_thread *render_thread;
+    struct workers *workers;
+    struct block_cache *block_cache; /* the memory of replies */
+    struct store *store;
+    struct memory *memory;
+    struct request_host *requests;
     struct session_limits limits;
-    struct asset_limits asset_limits;
-    struct memory memory;
-    struct scheduler scheduler;
-    struct costs costs;
-    struct request *parked; /* they wait for memory that other frames have */
+    const struct asset_limits *asset_limits;
+    uint64_t max_upload_bytes;
+    bool share_models; /* whatever is uploaded is everybody's */
+    bool is_private;   /* a command's own daemon: the budget of memory is its client's choice */
+
     struct stats stats;
     uint32_t n_sessions;
     uint32_t n_strangers;     /* of them, not yet admitted */
-    uint32_t gpu_generation;  /* 1, and one more for each time that the GPU was lost */
     uint64_t last_session_id; /* sessions are numbered in the log */
-    uint64_t max_upload_bytes;
-    bool is_private; /* a command's own daemon: the budget of memory is its client's choice */
-    bool draining;   /* no new request is taken, and answers must be read soon */
+    bool draining;            /* no new request is taken, and answers must be read soon */
     uint64_t drain_start_us;
 };
 
 /* How long the drain has gone on beyond drain-timeout, in microseconds; 0: it has not. */
 uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us);
-
-struct request;
 
 /* A client as it comes in. */
 struct session_client {
@@ -90,10 +81,9 @@ struct session_client {
 
 struct session {
     struct session_host *host;
-    struct client_quota *quota;
     struct conn conn;
-    struct schedule_queue queue;
     struct reply_list replies;
+    struct request_client requests;
     uint64_t id; /* in the log */
     uint64_t start_us;
     uint64_t n_replies;
@@ -109,12 +99,8 @@ struct session {
     struct upload *upload;           /* NULL: none under way */
     uint32_t upload_seq;             /* of the upload, or of the last one that failed; else 0 */
     size_t input_bytes;              /* charged for conn.in where it is larger than most are */
-    struct request *requests;
-    struct session *next; /* the service's list */
+    LIST_ENTRY(session) link;        /* the main service's */
 };
-
-/* Whose the session's uploads are. */
-const uint8_t *session_owner(const struct session *session);
 
 /* Takes the socket over (closes it on failure), and the reference to its quota. */
 struct session *session_create(struct session_host *host, int fd,
@@ -130,23 +116,5 @@ bool session_settle(struct session *session);
 void session_tick(struct session *session, uint64_t now_us);
 /* Closes when the client may not be here any more, by rules of access that may have changed. */
 void session_check_access(struct session *session, bool changed);
-
-/* --- for requests: `answer` is the one they owe */
-
-void session_reply(struct session *session, struct reply *reply, uint8_t type, const void *body);
-void session_reply_error(struct session *session, struct reply *reply, sheen_ErrorCode code,
-                         const char *text);
-/* FRAME and its DATA. Takes `encoded` over. */
-void session_reply_frame(struct session *session, struct reply *reply,
-                         enum request_class request_class, const sheen_Frame *frame,
-                         struct encoded *encoded);
-/* An interactive frame of the session is on its way to the socket: the next has to wait. */
-static inline bool session_is_sending_interactive(const struct session *session)
-{
-    return session->replies.unsent > 0;
-}
-/* Before its reply, unless another is due first or the client does not read. */
-void session_report_progress(struct session *session, const struct reply *reply, uint32_t seq,
-                             const sheen_Progress *progress);
 
 #endif

@@ -1,11 +1,6 @@
 #include "server/base/log.h"
 #include "server/session/session_internal.h"
 
-const uint8_t *session_owner(const struct session *session)
-{
-    return session->host->share_models ? STORE_SHARED : session->client.identity.owner;
-}
-
 void session_turn_away(struct session *session, const char *why)
 {
     log_event(LOG_WARN, "client turned away", log_number("session", session->id),

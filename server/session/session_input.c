@@ -41,8 +41,9 @@ bool session_make_room(void *owner, const struct message_header *header, size_t 
     if (is_chunk && !session->upload)
         return false; /* it has failed */
     size_t more = bytes - CONN_IN_BYTES - session->input_bytes;
-    if (memory_charge_input(&session->host->memory, session->quota, session->client.identity.owner,
-                            more, "a message", ERROR_REQUEST, &error)) {
+    if (memory_charge_input(session->host->memory, session->requests.quota,
+                            session->client.identity.owner, more, "a message", ERROR_REQUEST,
+                            &error)) {
         session->input_bytes += more;
         return true;
     }
@@ -63,6 +64,6 @@ void session_trim_input(struct session *session)
 
 void session_release_input(struct session *session)
 {
-    memory_refund_input(session->quota, session->input_bytes);
+    memory_refund_input(session->requests.quota, session->input_bytes);
     session->input_bytes = 0;
 }

@@ -29,6 +29,16 @@ void session_release_input(struct session *session);
 
 /* --- session_reply.c */
 
+/* How requests tell what becomes of them; their owner is the session. */
+extern const struct request_events session_request_events;
+
+/* The reply is ready. */
+void session_reply(struct session *session, struct reply *reply, uint8_t type, const void *body);
+void session_reply_error(struct session *session, struct reply *reply, sheen_ErrorCode code,
+                         const char *text);
+/* An interactive frame of the session is on its way to the socket: the next has to wait. */
+bool session_is_sending(const struct session *session);
+
 /* Owes the request an answer. NULL without memory; the connection is closed then. */
 struct reply *session_expect_reply(struct session *session, uint32_t seq,
                                    enum request_class request_class);

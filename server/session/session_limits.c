@@ -8,7 +8,7 @@ void session_log_disconnect(struct session *session, const char *reason)
 {
     session->host->stats.disconnected++;
     log_event(LOG_WARN, "client disconnected", log_number("session", session->id),
-              log_text("peer", session->quota->peer.name), log_text("text", reason));
+              log_text("peer", session->requests.quota->peer.name), log_text("text", reason));
 }
 
 /* The client cannot be told, or not in time: why is for the log. */

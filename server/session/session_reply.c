@@ -42,10 +42,21 @@ void session_reply_error(struct session *session, struct reply *reply, sheen_Err
     after_fill(session, reply_fill(reply, MESSAGE_ERROR, &error));
 }
 
-void session_reply_frame(struct session *session, struct reply *reply,
-                         enum request_class request_class, const sheen_Frame *frame,
-                         struct encoded *encoded)
+static void on_answered(void *owner, struct reply *reply, uint8_t type, const void *body)
 {
+    session_reply(owner, reply, type, body);
+}
+
+static void on_refused(void *owner, struct reply *reply, sheen_ErrorCode code, const char *text)
+{
+    session_reply_error(owner, reply, code, text);
+}
+
+static void on_drawn(void *owner, struct reply *reply, enum request_class request_class,
+                     const sheen_Frame *frame, struct encoded *encoded)
+{
+    struct session *session = owner;
+    stats_frame(&session->host->stats, request_class, &frame->times, clock_now_us());
     session->output_class = request_class;
     count_reply(session, reply, MESSAGE_FRAME, sheen_ErrorCode_ERROR_NONE);
     bool filled = reply_fill_frame(reply, frame, encoded);
@@ -53,18 +64,32 @@ void session_reply_frame(struct session *session, struct reply *reply,
         after_fill(session, filled);
 }
 
-void session_report_progress(struct session *session, const struct reply *reply, uint32_t seq,
-                             const sheen_Progress *progress)
+static void on_progressed(void *owner, const struct reply *reply, const sheen_Progress *progress)
 {
+    struct session *session = owner;
     uint8_t buffer[MESSAGE_HEADER_BYTES + PROTOCOL_MAX_LARGE_BODY_BYTES];
     size_t length;
     bool in_turn = reply == session->replies.head || !session->replies.is_ordered;
     if (!in_turn || conn_unsent_bytes(&session->conn) > 0 ||
-        !message_encode(MESSAGE_PROGRESS, seq, progress, buffer, sizeof buffer, &length))
+        !message_encode(MESSAGE_PROGRESS, reply_seq(reply), progress, buffer, sizeof buffer,
+                        &length))
         return;
     conn_send(&session->conn, buffer, length);
     conn_flush(&session->conn);
 }
+
+bool session_is_sending(const struct session *session)
+{
+    return session->replies.unsent > 0;
+}
+
+static bool on_is_sending(void *owner)
+{
+    return session_is_sending(owner);
+}
+
+const struct request_events session_request_events = {on_answered, on_refused, on_drawn,
+                                                      on_progressed, on_is_sending};
 
 struct reply *session_expect_reply(struct session *session, uint32_t seq,
                                    enum request_class request_class)

@@ -1,6 +1,5 @@
 #include <stdio.h>
 
-#include "server/frame/request.h"
 #include "server/session/session_internal.h"
 #include "server/frame/error_code.h"
 
@@ -28,7 +27,7 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
         return;
     }
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
-    struct asset *known = store_find(host->store, session_owner(session), kind, begin->sha256);
+    struct asset *known = store_find(host->store, session->requests.assets_of, kind, begin->sha256);
     if (known && store_is_known_as(known, begin->name)) {
         if (begin->share)
             store_share(known);
@@ -37,9 +36,10 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
         return;
     }
     if (kind == ASSET_IMAGE)
-        workers_expect_images(&host->workers);
-    session->upload = upload_create(&host->memory, session->quota, session_owner(session),
-                                    session->client.identity.owner, begin, &error);
+        workers_expect_images(host->workers);
+    session->upload =
+        upload_create(host->memory, session->requests.quota, session->requests.assets_of,
+                      session->client.identity.owner, begin, &error);
     if (session->upload)
         reply_upload_state(session, seq, false, 0);
     else
@@ -82,7 +82,7 @@ static uint64_t frame_bytes(const struct session *session, const sheen_Render *r
     codec_layout_init(&sent, render->width_px, render->height_px, render->planes);
     const struct encode_format format = encode_format_of(render);
     return all.raw_bytes + encode_bytes(&sent, &format) +
-           request_paused_bytes(session->host, render);
+           request_paused_bytes(session->host->requests, render);
 }
 
 /* Answers and returns false when the frame could never be made here. In a private daemon the charge
@@ -90,7 +90,7 @@ static uint64_t frame_bytes(const struct session *session, const sheen_Render *r
 static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render *render)
 {
     const struct session_limits *limits = &session->host->limits;
-    const struct asset_limits *memory = &session->host->asset_limits;
+    const struct asset_limits *memory = session->host->asset_limits;
     struct codec_layout all;
     codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
     uint64_t bytes = frame_bytes(session, render);
@@ -147,7 +147,7 @@ void session_render(struct session *session, uint32_t seq, sheen_Render *render)
     struct reply *reply =
         session_expect_reply(session, seq, request_class_of(render->request_class));
     if (reply)
-        request_render(session, reply, seq, render, frame_bytes(session, render));
+        request_render(&session->requests, reply, seq, render, frame_bytes(session, render));
 }
 
 void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query)
@@ -159,5 +159,5 @@ void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery
     }
     struct reply *reply = session_expect_reply(session, seq, CLASS_STILL);
     if (reply)
-        request_query(session, reply, seq, query);
+        request_query(&session->requests, reply, seq, query);
 }

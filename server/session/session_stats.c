@@ -28,6 +28,7 @@ void session_reply_stats(struct session *session, uint32_t seq)
 {
     const struct session_host *host = session->host;
     const struct renderer_info *info = render_thread_info(host->render_thread);
+    const struct scheduler *scheduler = &host->requests->scheduler;
     struct store_counts counts = store_count(host->store);
     sheen_Stats stats = {
         .uptime_us = clock_now_us() - host->stats.start_us,
@@ -41,21 +42,21 @@ void session_reply_stats(struct session *session, uint32_t seq)
         .sent_bytes = host->stats.sent_bytes,
         .software = info->software,
         .mean = stats_mean(&host->stats),
-        .queued = host->scheduler.waiting,
+        .queued = scheduler->waiting,
         .has_superseded = true,
-        .superseded = host->stats.superseded,
+        .superseded = host->stats.replies[MESSAGE_SUPERSEDED],
         .has_cancelled = true,
-        .cancelled = host->stats.cancelled,
+        .cancelled = host->stats.error_codes[sheen_ErrorCode_ERROR_CANCELLED],
         .has_late = true,
-        .late = host->stats.late,
+        .late = host->stats.error_codes[sheen_ErrorCode_ERROR_DEADLINE],
         .has_disconnected = true,
         .disconnected = host->stats.disconnected,
         .has_interactive_us = true,
-        .interactive_us = host->scheduler.classes[CLASS_INTERACTIVE].spent_us,
+        .interactive_us = scheduler->classes[CLASS_INTERACTIVE].spent_us,
         .has_still_us = true,
-        .still_us = host->scheduler.classes[CLASS_STILL].spent_us,
+        .still_us = scheduler->classes[CLASS_STILL].spent_us,
         .has_batch_us = true,
-        .batch_us = host->scheduler.classes[CLASS_BATCH].spent_us,
+        .batch_us = scheduler->classes[CLASS_BATCH].spent_us,
         .has_memory_bytes = true,
         .memory_bytes = counts.used_bytes,
     };

@@ -47,12 +47,11 @@ struct stats_slice {
 
 struct stats {
     uint64_t start_us;
-    uint64_t frames, errors;              /* answered with FRAME, with ERROR */
-    uint64_t superseded, cancelled, late; /* answered so: ERRORs but for the first */
-    uint64_t disconnected;                /* clients: over a limit, or broke the protocol */
-    uint64_t upload_bytes;                /* of chunks */
-    uint64_t sent_bytes;                  /* all that went out */
-    uint64_t sessions, refused;           /* ever opened; turned away before they were */
+    uint64_t frames, errors;    /* answered with FRAME, with ERROR */
+    uint64_t disconnected;      /* clients: over a limit, or broke the protocol */
+    uint64_t upload_bytes;      /* of chunks */
+    uint64_t sent_bytes;        /* all that went out */
+    uint64_t sessions, refused; /* ever opened; turned away before they were */
     uint64_t ended[END_COUNT];
     uint64_t replies[UINT8_MAX + 1]; /* by message type */
     uint64_t error_codes[_sheen_ErrorCode_ARRAYSIZE];

@@ -1,0 +1,116 @@
+/* What a model is: the reply to MODEL_QUERY. */
+#include <stdio.h>
+#include <string.h>
+
+#include "server/assets/model_file.h"
+#include "server/frame/request_internal.h"
+#include "server/scene/scene_convert.h"
+
+static void fill_survey(sheen_ModelInfo *info, const struct cage_survey *survey)
+{
+    _Static_assert(SURVEY_MAX_VALENCES == sizeof info->extraordinary / sizeof *info->extraordinary,
+                   "a survey fits the message");
+    info->triangles = survey->n_triangles;
+    info->quads = survey->n_quads;
+    info->ngons = survey->n_ngons;
+    info->boundary_edges = survey->n_boundary_edges;
+    info->boundary_extraordinary = survey->n_boundary_extraordinary;
+    info->sharp_edges = survey->n_sharp_edges;
+    info->semisharp_edges = survey->n_semisharp_edges;
+    info->sharp_vertices = survey->n_sharp_vertices;
+    info->holes = survey->n_holes;
+    info->nonmanifold_edges = survey->n_nonmanifold_edges;
+    info->nonmanifold_vertices = survey->n_nonmanifold_vertices;
+    info->extraordinary_count = (pb_size_t)survey->n_valences;
+    for (uint32_t i = 0; i < survey->n_valences; i++)
+        info->extraordinary[i] =
+            (sheen_ValenceCount){survey->extraordinary[i].valence, survey->extraordinary[i].count};
+}
+
+/* The wire numbers the kinds as the cage does. */
+static void fill_findings(sheen_ModelInfo *info, const struct model *model)
+{
+    _Static_assert(N_CAGE_FINDINGS <= sizeof info->findings / sizeof *info->findings,
+                   "all kinds fit the message");
+    _Static_assert((int)CAGE_FOUND_INSIDE_OUT == (int)sheen_FindingKind_FINDING_INSIDE_OUT,
+                   "the last kind here and there");
+    info->findings_count = (pb_size_t)model->n_findings;
+    for (size_t i = 0; i < model->n_findings; i++) {
+        const struct cage_finding *finding = &model->finding[i];
+        info->findings[i] = (sheen_Finding){
+            .kind = (sheen_FindingKind)finding->kind,
+            .count = finding->count,
+            .has_line = finding->line != 0,
+            .line = finding->line,
+            .has_face = finding->face != CAGE_NO_FACE,
+            .face = finding->face,
+        };
+    }
+}
+
+void request_reply_query(struct request *request)
+{
+    const struct asset *asset = request->model.asset;
+    const struct model *model = asset->model;
+    const struct limit_tables *tables = &model->tables;
+    const uint64_t node_bytes = sizeof *tables->nodes + sizeof *tables->adjacency;
+    sheen_ModelInfo info = {
+        .file_bytes = asset->file_bytes,
+        .vertices = (uint32_t)model->n_vertices,
+        .faces = (uint32_t)model->n_faces,
+        .ptex_faces = (uint32_t)tables->n_faces,
+        .regular_patches = (uint32_t)tables->n_regular,
+        .corner_patches = (uint32_t)tables->n_corner,
+        .strip_patches = (uint32_t)tables->n_strip,
+        .split_nodes = (uint32_t)tables->n_split,
+        .hole_nodes = (uint32_t)tables->n_hole,
+        .table_bytes = model->device_bytes,
+        .regular_bytes = node_bytes + LIMIT_PATCH_TEXELS * sizeof *tables->texels,
+        .corner_bytes = node_bytes + LIMIT_CORNER_TEXELS(LIMIT_MAX_LEVELS) * sizeof *tables->texels,
+        .tables_us = model->build_us,
+        .box_min = scene_write_vec3(tables->box_min),
+        .box_max = scene_write_vec3(tables->box_max),
+    };
+    memcpy(info.sha256, asset->sha256, sizeof info.sha256);
+    snprintf(info.name, sizeof info.name, "%s", asset->name);
+    snprintf(info.warnings, sizeof info.warnings, "%s", model->warnings ? model->warnings : "");
+    message_make_text(info.warnings, true);
+    fill_survey(&info, &model->survey);
+    fill_findings(&info, model);
+    request->client->events->answered(request->client->owner, request->reply, MESSAGE_MODEL_INFO,
+                                      &info);
+    request_end(request);
+}
+
+static void file_loaded(void *owner, const uint8_t *sha256, const struct error *error)
+{
+    struct request *request = owner;
+    request->host->n_file_loads--;
+    if (sha256)
+        request_acquire(request, &request->model, ASSET_MODEL, sha256);
+    else
+        request->failure = *error;
+    request_stop_awaiting(request);
+}
+
+void request_load_file(struct request *request, const char *name)
+{
+    struct request_host *host = request->host;
+    const struct model_file_order order = {
+        .folder_fd = host->models_fd,
+        .name = name,
+        .max_bytes = host->max_file_bytes,
+        .holder = request->asker,
+        .pool = host->pool,
+        .store = host->store,
+        .loaded = file_loaded,
+        .owner = request,
+    };
+    if (host->models_fd < 0)
+        error_set(&request->failure, ERROR_REQUEST,
+                  "this daemon has no model files of its own; sheend --models gives it some");
+    else if (model_file_load(&order, &request->failure)) {
+        request->n_awaited++;
+        host->n_file_loads++;
+    }
+}
