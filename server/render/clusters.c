@@ -5,7 +5,7 @@
 
 #include "server/surface/vec.h"
 
-/* More than rounding takes from distances. */
+/* More than rounding changes distances by. */
 static const double SLACK = 1 + 1e-6;
 
 static bool has_surface(const struct limit_node *node)

@@ -1,5 +1,5 @@
-/* Spheres around runs of nodes, so that what a tile cannot show is passed over many nodes at a
- * time: a tile of a few of a million faces must not ask each of them. Pure: no GL here. */
+/* Spheres around runs of nodes. A tile that shows a few of a million faces skips whole runs that
+ * lie outside, instead of asking every node. Pure: no GL here. */
 #ifndef SHEEN_RENDER_CLUSTERS_H
 #define SHEEN_RENDER_CLUSTERS_H
 
@@ -14,7 +14,7 @@ enum { CLUSTER_NODES = 64 };
 /* Holds all the surface of nodes [CLUSTER_NODES k, CLUSTER_NODES (k + 1)). World, units. */
 struct cluster {
     double centre[3];
-    double radius; /* below 0 where they have none */
+    double radius; /* below 0: these nodes have no surface */
 };
 
 struct clusters {

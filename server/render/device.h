@@ -13,13 +13,13 @@
 
 #include "server/render/renderer.h"
 
-/* What the device keeps of a frame between two steps. A device's own struct begins with it. */
+/* What the device keeps of a frame between two steps. The first member of a device's own struct. */
 struct frame_state {
     /* Frees it. Any thread, also when the renderer has gone. */
     void (*destroy)(struct frame_state *state);
 };
 
-/* A device's own struct begins with it, as its models and images do with the two below. */
+/* The first member of a device's own struct; the same holds for models and images below. */
 struct renderer {
     const struct renderer_device *device;
     struct renderer_info info;
@@ -33,9 +33,9 @@ struct renderer_image {
 };
 
 struct renderer_device {
-    /* Fills in the head, too. NULL on failure. */
+    /* Fills in struct renderer, too. NULL on failure. */
     struct renderer *(*create)(const struct renderer_options *options, struct error *error);
-    void (*destroy)(struct renderer *renderer); /* never of NULL, as the others */
+    void (*destroy)(struct renderer *renderer); /* not NULL, as in the functions below */
 
     struct renderer_model *(*model_create)(struct renderer *renderer,
                                            const struct limit_tables *tables, struct error *error);

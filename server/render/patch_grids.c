@@ -9,7 +9,7 @@
 #include "server/surface/evaluate.h"
 #include "server/surface/vec.h"
 
-/* How far a triangle may be from the surface, px. Stage 2 mends the rest. */
+/* How far a triangle may be from the surface, px. Stage 2 solves for the exact place. */
 static const double TOLERANCE_PX = 0.5;
 /* Squares are cut in four at most this often: 2^20 squares across a face. */
 enum { MAX_DEPTH = 20 };
@@ -21,7 +21,7 @@ enum { GUESS_STEPS = 8191 };
 
 const uint8_t grid_cells[GRID_SIDES] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 
-/* What choosing needs at every turn. */
+/* What all steps of choosing share. */
 struct chooser {
     struct patch_grids *out;
     const struct limit_tables *tables;

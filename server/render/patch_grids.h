@@ -1,9 +1,9 @@
-/* Which parts of the surface are drawn, and by how fine a grid each, so that no triangle strays more
- * than half a pixel from the surface (limit-surface 3.2). Pure: no GL here.
+/* Which parts of the surface are drawn, and by how fine a grid each, so that no triangle strays
+ * more than half a pixel from the surface (limit-surface 3.2). Pure: no GL here.
  *
- * A patch grid covers a square of a node's local coordinates: a part of a REGULAR node, of one patch
- * of a STRIP, of one unit square of a CORNER's level ring, or all that is left of a CORNER below one
- * level. Its cells are drawn as two triangles each. */
+ * A patch grid covers a square of a node's local coordinates: a part of a REGULAR node, of one
+ * patch of a STRIP, of one unit square of a CORNER's level ring, or all that is left of a CORNER
+ * below one level. Its cells are drawn as two triangles each. */
 #ifndef SHEEN_RENDER_PATCH_GRIDS_H
 #define SHEEN_RENDER_PATCH_GRIDS_H
 
@@ -63,10 +63,10 @@ bool patch_grids_choose(struct patch_grids *grids, const struct limit_tables *ta
                         const struct tile *tile, struct error *error);
 /* Cuts what a tile of a few pixels may show so finely that grids of one cell would draw it as well
  * as patch_grids_choose() asks, and adds a guess in the middle of each part: one that leads to
- * whatever surface a ray of the tile meets. The grids and blocks chosen before stay. Adds none where
- * there would be more than MAX_GUESSES: one invocation of a shader tries them one by one, and a file
- * of many sheets behind each other could keep the device for seconds. Fails when memory is short,
- * and for no other reason. */
+ * whatever surface a ray of the tile meets. The grids and blocks chosen before stay. Adds none
+ * where there would be more than MAX_GUESSES: one invocation of a shader tries them one by one, and
+ * a file of many sheets behind each other could keep the device for seconds. Fails when memory is
+ * short, and for no other reason. */
 bool patch_grids_guess(struct patch_grids *grids, const struct limit_tables *tables,
                        const struct clusters *clusters, const struct view *view,
                        const struct tile *tile, struct error *error);

@@ -12,7 +12,7 @@ struct tile {
     uint32_t x, y, width, height;
 };
 
-/* Pixels are also looked at in squares of so many by so many. */
+/* Pixels are listed in squares of so many by so many. */
 enum { COVER_BLOCK_PX = 8 };
 /* Drawn around a tile and not kept: stages look at a pixel's neighbours, and at theirs. */
 enum { TILE_MARGIN_PX = COVER_BLOCK_PX };

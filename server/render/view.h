@@ -37,7 +37,7 @@ void view_block_fill(struct view_block *block, const struct view *view, const st
 /* World to camera space. */
 void view_transform(const struct view *view, const double world[3], double camera[3]);
 
-/* What a tile may show: the camera space between four planes, from the nearest depth on. */
+/* The part of camera space that a tile may show: between four planes, from the nearest depth on. */
 struct view_sides {
     double side[4][3]; /* unit inward normals */
     double offset[4];  /* signed distance = side . p + offset */

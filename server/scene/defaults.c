@@ -22,8 +22,8 @@ static double box_radius(const double box_min[3], const double box_max[3])
     return radius > 0 ? radius : 1;
 }
 
-/* Without -0, which JSON readers make 0 of: what was chosen, asked for again, is the same request.
- */
+/* Turns -0 into 0, as JSON readers do, so that a request made from the chosen numbers is the same
+ * request. */
 static void put(struct vec v, double out[3])
 {
     out[0] = v.x + 0.0;
@@ -36,15 +36,15 @@ static struct vec get(const double a[3])
     return (struct vec){a[0], a[1], a[2]};
 }
 
-/* Where the eye must be for all of the model to lie inside a picture, as near as can be: from the
+/* Where the eye must be for all of the model to lie inside a picture, as near as possible: from the
  * box's middle by `distance` back along the view and `side` across it. */
 struct framing {
     double distance, side;
 };
 
 /* Along one axis of the picture, `across`, of whose half angle this is the tangent. A point is
- * inside when |x - side| <= tangent (distance + depth): each edge of the picture is met by the
- * point that asks most of it. */
+ * inside when |x - side| <= tangent (distance + depth): for each edge of the picture one point
+ * decides. */
 static struct framing frame_axis(const float (*points)[3], size_t n, struct vec forward,
                                  struct vec across, double tangent)
 {

@@ -120,7 +120,8 @@ static bool check_lines(const struct lines *lines, struct error *error)
     return true;
 }
 
-/* Seen from its own plane a flat light is a line, and so is its picture in a flat mirror. */
+/* An eye in the plane of a flat light sees it as a line, and so does a flat mirror: such a request
+ * would show nothing. */
 static bool check_eye_off_light(const struct frame_request *request, const struct light *light,
                                 struct error *error)
 {

@@ -3,10 +3,10 @@
 #include "server/render/gl/check.h"
 #include "server/render/gl/quirks.h"
 
-/* Read only, and what pads it is never read. */
+/* The buffer is never written again, and its padding is never read. */
 static void store(GLuint buffer, const void *texels, size_t n, size_t texel_bytes)
 {
-    size_t room = no_power_of_two(n); /* a texel's bytes are one */
+    size_t room = no_power_of_two(n); /* the bytes of a texel are a power of two */
     if (room == n) {
         glNamedBufferStorage(buffer, (GLsizeiptr)(n * texel_bytes), texels, 0);
         return;

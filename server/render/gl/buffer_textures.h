@@ -27,8 +27,9 @@ struct texels {
     const char *what; /* for errors: "points" */
 };
 
-/* Puts texels into at most `max_textures` of `max_texels` each. ERROR_DEVICE when they do not fit or
- * the device has no memory; what has come there is in the set. */
+/* Puts texels into at most `max_textures` of `max_texels` each. ERROR_DEVICE when they do not fit
+ * or the device has no memory; the set then holds what was made before, for
+ * buffer_textures_finish(). */
 bool buffer_textures_init(struct buffer_textures *set, const struct texels *texels,
                           int max_textures, size_t max_texels, struct error *error);
 void buffer_textures_finish(struct buffer_textures *set);

@@ -7,7 +7,7 @@ bool gpu_check(const char *doing, struct error *error)
     GLenum code = glGetError();
     if (code == GL_NO_ERROR)
         return true;
-    /* A lost context may say so for ever. */
+    /* A lost context may return GL_CONTEXT_LOST for ever. */
     for (GLenum next = code; next != GL_NO_ERROR && next != GL_CONTEXT_LOST;)
         next = glGetError();
     if (code == GL_OUT_OF_MEMORY)

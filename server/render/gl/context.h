@@ -14,17 +14,17 @@ typedef uint32_t context_number; /* from 1; 0: of none, the object is not on the
 struct context {
     struct egl egl;
     context_number number;
-    bool is_lost;              /* nothing but opening another one makes a GL call */
+    bool is_lost;              /* no GL call is allowed then but for opening another context */
     void (*lost)(void *owner); /* as renderer_options.lost */
     void *owner;
 };
 
-/* Has it been lost? Once so, always, until another is opened. */
+/* Has the context been lost? Stays true until another is opened. */
 bool context_check_lost(struct context *context);
-/* Says so. */
+/* Marks the context as lost and tells its owner. */
 void context_lose(struct context *context);
-/* Waits for the device. False when it is lost, as one is that does not come back in 2 s; a software
- * device has all time. */
+/* Waits for the device. False when the context is lost. A device that does not finish in 2 s counts
+ * as lost; a software device may take any time. */
 bool context_wait(struct context *context);
 /* Are names of this number of the context that there is? */
 static inline bool context_is_current(const struct context *context, context_number number)

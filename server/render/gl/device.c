@@ -33,7 +33,7 @@ static void query_info(struct gl_renderer *r)
         r->base.info.max_texels = max_texels;
 }
 
-/* What every context begins with. */
+/* The objects that every context needs. */
 static bool begin_context(struct gl_renderer *r, struct error *error)
 {
     r->context.number++;

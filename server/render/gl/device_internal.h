@@ -29,7 +29,7 @@ struct gl_renderer {
     struct renderer base;
     char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES]; /* of base.info */
     struct context context;
-    /* In use: as struct planes. */
+    /* The planes in use, as in struct planes. */
     struct target target;
     struct kept kept;
     enum planes_of in_use;
@@ -37,8 +37,8 @@ struct gl_renderer {
     struct collecting collecting;        /* into PLANES_TILED */
     struct drawing drawing;
     struct stage_clock clock;
-    struct tile inside;                   /* of the tile being drawn: without its margin */
-    struct frame_watch watch;             /* of the frame being drawn */
+    struct tile inside;       /* the tile being drawn, without its margin, px of the target */
+    struct frame_watch watch; /* of the frame being drawn */
     const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
     struct patch_grids grids;
     struct polygon_meshes meshes;
@@ -60,8 +60,8 @@ static inline struct gl_renderer *gl_renderer_of(struct renderer *renderer)
     return (struct gl_renderer *)(void *)renderer;
 }
 
-/* Makes sure that there is a context: opens another one in place of one that is lost, as the first
- * was. ERROR_GPU_LOST when the device gives none yet. */
+/* Makes sure that there is a context: opens another one in place of one that is lost.
+ * ERROR_GPU_LOST when the device gives none yet. */
 bool gl_ready(struct gl_renderer *r, struct error *error);
 
 #endif

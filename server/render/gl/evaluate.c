@@ -19,7 +19,7 @@ static void bind_seen(const struct target *target, GLuint unit)
     glBindTextureUnit(unit + 1, target->seen_depth);
 }
 
-/* The tables, and what stage 1 left. */
+/* Binds the tables and the planes of stage 1. */
 static void bind_tables(const struct gl_renderer *r, const struct gl_model *model)
 {
     int unit = buffer_textures_bind(&model->points, 0);
@@ -38,7 +38,7 @@ static void bind_planes(const struct gl_renderer *r, const struct gl_model *mode
     glBindImageTexture(4, r->target.border, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
 }
 
-/* The pixels of a list, once it is complete, with the program in use. */
+/* Runs the program in use over the pixels of a list, once the list is complete. */
 static void solve_listed(GLuint list)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
@@ -47,7 +47,7 @@ static void solve_listed(GLuint list)
     glDispatchComputeIndirect(0);
 }
 
-/* Adds to the unsolved ones what only the depths beside it give away. */
+/* Adds the pixels to the unsolved ones whose depth does not agree with the depths beside it. */
 static void doubt(const struct gl_renderer *r)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
@@ -81,8 +81,8 @@ void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
 
 /* --- gaps */
 
-/* Lists the pixels in gaps, in place of those that strayed. Returns how many there are; waits for
- * the device. */
+/* Lists the pixels in gaps; the list of strayed pixels, which is no longer needed, takes them.
+ * Returns how many there are; waits for the device. */
 static GLuint find_gaps(const struct gl_renderer *r)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};

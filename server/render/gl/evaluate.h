@@ -15,7 +15,7 @@ struct table_programs;
 struct evaluate_stage {
     GLuint doubt, gaps;           /* programs */
     GLuint gap_ends, gap_guesses; /* buffers: shaders/unsolved.comp.glsl */
-    bool too_many_gaps; /* the last tile drawn has more than MAX_GAPS, so all of them stay empty */
+    bool too_many_gaps; /* the last tile drawn has more than MAX_GAPS: its gaps all stay empty */
 };
 
 /* Pixels whose ray passes between two silhouettes (shaders/gaps.comp.glsl), of one tile: each takes
@@ -26,16 +26,16 @@ bool stage_evaluate_init(struct evaluate_stage *stage, struct error *error);
 /* On the tile that the view block in r->view_buffer describes. */
 void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
                     const struct table_programs *programs);
-/* After it: the pixels of which stage 1 has seen nothing but triangles beyond silhouettes. Waits
- * for the device. Errors as patch_grids_choose(). */
+/* After stage_evaluate(): solves the pixels in gaps, where stage 1 has seen triangles beyond
+ * silhouettes only. Waits for the device. Errors as patch_grids_choose(). */
 bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
                 const struct table_programs *programs, const struct view *view,
                 struct error *error);
-/* After stage_edges(): where the surface that its pixels show ends at silhouettes. */
+/* After stage_edges(): finds where the surface that the listed pixels show ends at a silhouette. */
 void stage_silhouette(struct gl_renderer *r, const struct gl_model *model,
                       const struct table_programs *programs);
-/* After stage_edges_doubt(): the rays of the pixels that show the rounding of a crease, against the
- * surface. */
+/* After stage_edges_doubt(): intersects 16 rays of each pixel that shows the rounding of a crease
+ * with the surface. */
 void stage_rounded(struct gl_renderer *r, const struct gl_model *model,
                    const struct table_programs *programs);
 

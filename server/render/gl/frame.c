@@ -6,8 +6,8 @@
 #include "server/render/gl/model.h"
 #include "server/render/gl/readback.h"
 
-/* Stages 1 and 2, unless the target holds their planes already. Margins are evaluated, and then no
- * more is asked of them where they are not shaded. */
+/* Stages 1 and 2, unless the target holds their planes already. Margins are evaluated; where they
+ * are not shaded, later stages leave them out. */
 static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
                          const struct frame_request *request, const struct view *view,
                          struct frame *frame, struct error *error)
@@ -63,7 +63,7 @@ static bool is_of_polygons(const struct frame_request *request)
     return request->surface.kind != SURFACE_EXACT;
 }
 
-/* *is_whole: the frame has it. */
+/* *is_whole: the tile stands in the frame. */
 static bool render_tile(struct gl_renderer *r, const struct gl_model *model, struct gl_frame *own,
                         const struct view *view, const struct tile *tile, struct frame *frame,
                         bool *is_whole, struct error *error)
@@ -111,8 +111,8 @@ static bool is_single(const struct gl_frame *own)
 }
 
 /* The next tile, in planes that have been chosen, and what must be drawn for it. Where the tiles
- * before stand in the same planes they are its margin; what they have evaluated of it as their
- * margin is done anew. */
+ * before stand in the same planes they are its margin; the part of it that they evaluated as their
+ * own margin is evaluated anew. */
 static struct tile place_tile(struct gl_renderer *r, const struct gl_frame *own)
 {
     const struct frame_request *request = own->work->request;
@@ -124,7 +124,7 @@ static struct tile place_tile(struct gl_renderer *r, const struct gl_frame *own)
     return tile;
 }
 
-/* Memory for the tile. */
+/* Makes sure that the device has memory for the tile. */
 static bool reserve(struct gl_renderer *r, const struct gl_frame *own, struct error *error)
 {
     const struct tile *place = &r->drawing.place, *drawn = &r->drawing.drawn;
@@ -142,7 +142,7 @@ static bool reserve(struct gl_renderer *r, const struct gl_frame *own, struct er
              target_reserve_rounded(lists, error)));
 }
 
-/* A tile of several that stand in the target together, with lists of its own. */
+/* Draws one of several tiles that share the target. Its lists of pixels are its own. */
 static bool render_in_place(struct gl_renderer *r, const struct gl_model *model,
                             struct gl_frame *own, const struct view *view, const struct tile *tile,
                             struct frame *frame, struct error *error)
@@ -184,7 +184,8 @@ bool gl_frame_begin(struct renderer *renderer, struct frame_work *work, struct e
     return true;
 }
 
-/* All that the frame shows, where it is not on the device: new, or the device was lost. */
+/* Puts the model and the images on the device where they are not: because they are new, or the
+ * device was lost. */
 static bool upload_all(struct gl_renderer *r, struct gl_model *model,
                        const struct frame_request *request, struct error *error)
 {
@@ -196,8 +197,9 @@ static bool upload_all(struct gl_renderer *r, struct gl_model *model,
     return ok;
 }
 
-/* Makes one of the programs that the next tile takes, where one is not there. Frames that take
- * turns may take each other's away: one that has made as many as it can need gets all at once. */
+/* Makes one of the programs that the next tile needs and that is missing. Frames that are drawn in
+ * turn may push each other's programs out; so a frame that has made as many as one frame can need
+ * gets all the missing ones in one step. */
 static bool prepare(struct gl_renderer *r, struct gl_frame *own, bool *is_ready,
                     struct error *error)
 {
@@ -263,7 +265,7 @@ enum frame_step gl_frame_step(struct renderer *renderer, struct renderer_model *
         return FRAME_POLYGONS;
     bool is_whole = false;
     if (!ready || !step(r, shown, own, frame, &work->has_drawn, &is_whole, error)) {
-        /* Whatever failed then, this is why. */
+        /* The loss is the reason, whatever else failed. */
         if (context_check_lost(&r->context))
             error_set(error, ERROR_GPU_LOST,
                       "the GPU was lost while it drew this frame: ask again");

@@ -7,17 +7,17 @@
 #include "server/render/gl/polygon_slices.h"
 #include "server/render/tiles.h"
 
-/* What a frame does between two steps. */
+/* How far a frame has come, between two steps. */
 struct gl_frame {
     struct frame_state base;
-    struct block_cache *block_cache; /* where it lies */
+    struct block_cache *block_cache; /* where this struct comes from */
     const struct frame_work *work;   /* during a step */
     uint64_t serial;                 /* of all frames begun */
     struct tile_size tile;
     uint32_t x, y;              /* of the next tile */
-    enum tile_stage stage;      /* of polygons: what comes next of it */
-    size_t part;                /* and from where */
-    unsigned n_programs;        /* made for it so far */
+    enum tile_stage stage;      /* of polygons: the next stage of the tile */
+    size_t part;                /* of polygons: the next part of the mesh in that stage */
+    unsigned n_programs;        /* made for this frame so far */
     struct paused_tile *paused; /* what is drawn of its tile; NULL: nothing */
 };
 

@@ -20,7 +20,7 @@ bool stage_gather_init(struct gather_stage *stage, struct error *error);
  * dispatch_groups() runs a program; and those that may have to ask their neighbours,
  * target.restless. Planes that it writes must be cleared before: it leaves gaps. */
 void stage_gather(struct gl_renderer *r);
-/* Has it found any, for the tile that was drawn last? Waits for the device. */
+/* Has stage_gather() found a pixel in the tile that was drawn last? Waits for the device. */
 bool gather_found_any(const struct gl_renderer *r);
 void dispatch_groups(GLuint program, GLuint groups);
 

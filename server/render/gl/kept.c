@@ -45,8 +45,8 @@ static void use(struct gl_renderer *r, enum planes_of which)
     r->in_use = which;
 }
 
-/* The planes that hold the frame's view, bit by bit as drawing it anew would; PLANES_KINDS: none.
- */
+/* The planes that hold the frame's view, equal bit by bit to planes drawn anew; PLANES_KINDS: there
+ * are none. */
 static enum planes_of find_kept(const struct gl_renderer *r, const struct gl_model *model,
                                 const struct gl_frame *own, bool is_single)
 {
@@ -119,7 +119,7 @@ static GLuint list_length(GLuint list)
     return head[3];
 }
 
-/* As list.glsl would have it. */
+/* Writes a list's head in the form of list.glsl. */
 static void write_head(GLuint list, GLuint n, GLuint per_group)
 {
     GLuint groups = (n + per_group - 1) / per_group;

@@ -16,7 +16,8 @@ struct kept {
     struct camera camera;
     struct surface surface;
     bool ptex, edges;
-    bool any_cut; /* the planes are bit-equal however the frame is tiled: they serve any tiling */
+    bool any_cut; /* the planes are the same, bit by bit, for any cut into tiles, so they serve
+                    frames of any cut */
 };
 
 /* A target, and which view its planes hold. */
@@ -25,12 +26,12 @@ struct planes {
     struct kept kept;
 };
 
-/* Which planes a frame is drawn into: there are several, so that frames of other kinds leave those
- * that are kept alone (kept.c). */
+/* Which planes a frame is drawn into: there are several, so that a frame of one kind does not
+ * overwrite planes that are kept for another. */
 enum planes_of {
     PLANES_WHOLE, /* hold the last frame that was one tile; kept */
-    PLANES_SMALL, /* the last such frame of few pixels, which would otherwise cost a larger view its
-                     planes; kept */
+    PLANES_SMALL, /* the last such frame of few pixels, which must not overwrite the planes of a
+                     larger view; kept */
     PLANES_TILED, /* the last frame of several tiles in_place: the target stands for the whole
                      picture, and each tile fills its part; kept if no other such frame came in
                      between */

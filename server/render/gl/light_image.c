@@ -46,7 +46,7 @@ struct renderer_image *gl_image_create(struct renderer *renderer, const struct i
         return NULL;
     }
     out->base.pixels = image;
-    /* On a device that is lost meanwhile it comes with its first frame. */
+    /* Where the device has been lost meanwhile, the image's first frame puts it there. */
     if (!gl_ready(r, error) || gl_image_upload(r, out, error) || context_check_lost(&r->context))
         return &out->base;
     free(out);

@@ -4,7 +4,7 @@
 
 #include "server/render/gl/device_internal.h"
 
-/* What has come to the device. */
+/* Drops the tables that have come to the device. */
 static void take_down(struct gl_model *model)
 {
     buffer_textures_finish(&model->points);
@@ -48,7 +48,7 @@ struct renderer_model *gl_model_create(struct renderer *renderer, const struct l
     }
     model->base.tables = tables;
     model->serial = ++r->next_serial;
-    /* On a device that is lost meanwhile it comes with its first frame. */
+    /* Where the device has been lost meanwhile, the first frame of the model puts it there. */
     if (clusters_init(&model->clusters, tables, error) &&
         (!gl_ready(r, error) || gl_model_upload(r, model, error) ||
          context_check_lost(&r->context)))

@@ -42,7 +42,7 @@ static bool is_outside(const struct slice *slice, const struct mesh_part *part,
     }
     view_transform(view, world, camera);
     double px = view->units_per_px * (view->perspective ? fabs(camera[2]) + radius : 1);
-    /* What single precision makes of places relative to the mesh's centre and to the eye. */
+    /* The error of single precision in positions relative to the mesh's centre and to the eye. */
     double rounding = 1e-6 * radius;
     for (int k = 0; k < 3; k++)
         rounding += 1e-6 * (fabs(camera[k]) + fabs(mesh->centre[k] - view->eye[k]));

@@ -39,8 +39,8 @@ void polygons_lose(struct polygon_meshes *p)
     *p = (struct polygon_meshes){0};
 }
 
-/* A free place for a mesh of so many bytes: the meshes not used for longest make room, but for
- * those that frames are being drawn of, which their models' owners are charged with. */
+/* A free place for a mesh of so many bytes: the meshes not used for longest make room, except those
+ * that frames under way are drawn of (their memory is charged to the models' owners). */
 static struct polygon_mesh *make_room(struct gl_renderer *r, size_t bytes)
 {
     /* No frame is being drawn of one of them at least. */

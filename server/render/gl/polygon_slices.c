@@ -78,7 +78,8 @@ static struct paused_tile *take(struct gl_renderer *r)
     }
     if (!taken)
         return NULL;
-    taken->planes.kept.model_serial = 0; /* others may have been drawn in tiles, or not */
+    /* The frame before may have been one tile, or several. */
+    taken->planes.kept.model_serial = 0;
     atomic_fetch_add(&taken->set->holders, 1);
     atomic_store(&taken->is_taken, true);
     return taken;
@@ -101,7 +102,7 @@ void tile_resume(struct gl_renderer *r, struct gl_frame *own)
         planes_swap(r, &own->paused->planes);
         return;
     }
-    /* A new tile, or one that was lost with the device. */
+    /* The tile is new, or what was drawn of it was lost with the device. */
     tile_give_back(own);
     own->stage = TILE_FILL;
     own->part = 0;
@@ -195,7 +196,7 @@ bool draw_polygons(struct gl_renderer *r, const struct gl_model *model, struct g
         .left = 3 * triangles_a_step(r),
         .at_once = r->base.info.software ? 3 * SOFTWARE_TRIANGLES_AT_ONCE : SIZE_MAX,
     };
-    /* All at once where that is little; else each stage has its steps. */
+    /* A small mesh is drawn in one step; else each stage takes its own steps. */
     do {
         if (!draw_stage(r, own, &slice, frame, error))
             return false;

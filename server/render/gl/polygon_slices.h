@@ -43,7 +43,7 @@ void tile_resume(struct gl_renderer *r, struct gl_frame *own);
 /* Keeps what is drawn until the frame's next step: others may use the planes meanwhile. */
 bool tile_pause(struct gl_renderer *r, const struct gl_model *model, struct gl_frame *own,
                 struct error *error);
-/* The frame needs what it has drawn no more. Any thread. */
+/* Gives the planes back: the frame needs what it has drawn no longer. Any thread. */
 void tile_give_back(struct gl_frame *own);
 /* Is a frame under way that is drawn of this mesh? */
 bool mesh_is_needed(const struct gl_renderer *r, const struct polygon_mesh *mesh);

@@ -10,8 +10,9 @@
 #include "server/base/error.h"
 #include "server/scene/frame_request.h"
 
-/* What a program of stage 3 makes: the colours of all pixels, of all by one sample each, of those
- * listed; the planes that go with them; or the share of what is seen that the light is met on. */
+/* What a program of stage 3 makes: the colours of all pixels (filtered, or by one sample each), the
+ * colours of listed pixels, the planes of light and curvature, or the share of the seen pixels that
+ * meet the light. */
 enum shaded {
     SHADED_ALL,
     SHADED_UNFILTERED,
@@ -24,7 +25,7 @@ enum shaded {
 };
 
 enum {
-    /* The most that one frame takes: five for each light, and one for its planes. */
+    /* One frame needs so many at most: five for each light, and one for its planes. */
     MAX_FRAME_PROGRAMS = 5 * MAX_LIGHTS + 1,
     /* On Mesa's software device a program takes 3.5 MB of main memory: 170 MB for all. */
     MAX_SHADE_PROGRAMS = 48

@@ -18,7 +18,7 @@ struct stage_clock {
     uint64_t since_us;                   /* when the clock was last read */
 };
 
-/* Has the device timer queries that tell the truth? */
+/* Has the device timer queries that hold all of its work? */
 bool stage_clock_by_device(const struct gl_renderer *renderer);
 void stage_clock_init(struct gl_renderer *renderer);
 /* A tile begins: what the processor does from here on belongs to its first stage by the clock. */

@@ -29,7 +29,7 @@ static const struct {
 /* What lights behind others show, where there are such. */
 enum { LIGHTS_BYTES = 2 * (8 + 2) };
 
-/* And its lists of pixels. */
+/* The lists of pixels of a target. */
 enum { N_LISTS = 7 };
 
 /* One in so many pixels may be rounded and have all its 16 rays, of 32 bytes

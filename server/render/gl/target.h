@@ -37,7 +37,7 @@ struct target {
     GLuint edges, turns;     /* buffers: shaders/edges_find.comp.glsl */
     GLuint rounded;          /* another; and what its pixels' rays meet: shaders/rounded.glsl */
     GLuint rounded_hits;
-    GLuint lights[2];   /* what lights behind others show: RGBA16F, shaders/shown.glsl; or 0 */
+    GLuint lights[2];   /* colours of the lights behind the one being drawn: RGBA16F; 0: none */
     GLuint missed[2];   /* R16F */
     GLuint max_rounded; /* pixels of which rounded_hits has room for all rays; 0: there is none */
 };

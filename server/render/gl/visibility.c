@@ -121,8 +121,8 @@ void raster_begin(GLuint framebuffer, const struct tile *place, const struct til
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
 }
 
-/* What stage 1 draws on; and what stage 2 leaves alone where nothing is seen, since a framebuffer
- * is cleared by all of a software device's threads. */
+/* Clears what stage 1 draws into, and the planes that stage 2 does not write where nothing is seen.
+ * A framebuffer clear is used for both, since a software device does it on all its threads. */
 static void clear(const struct gl_renderer *r, bool want_ptex)
 {
     static const GLenum planes[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
