@@ -111,6 +111,7 @@ bool renderer_render(struct renderer *renderer, struct renderer_model *model,
     do {
         next = renderer_step(renderer, model, &work, frame, error);
         if (next == FRAME_POLYGONS) {
+            renderer_polygons_destroy(polygons); /* those of a device that was lost since */
             work.polygons = polygons =
                 renderer_polygons_create(model->tables, request->surface.level, &work.watch, error);
             next = polygons ? FRAME_MORE : FRAME_FAILED;

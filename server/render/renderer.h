@@ -44,7 +44,6 @@ struct renderer_info {
     bool software;        /* it computes on the machine's processors */
     bool timed_by_device; /* frame_times are its own, not the clock's */
     uint32_t max_width_px, max_height_px;
-    size_t max_texels; /* of one table, where the device has such a limit */
 };
 
 /* Opens a device. NULL with ERROR_DEVICE when there is none, saying what was found.
@@ -98,10 +97,6 @@ struct frame_work {
     struct frame_state *state; /* the device's, from begin to the last step; NULL: none */
 };
 
-/* So many frames of polygons may be under way, begun and neither whole nor given up; one more fails
- * with ERROR_SERVER if it takes several steps a tile. */
-enum { RENDERER_MAX_SLICED = 24 };
-
 enum frame_step {
     FRAME_MORE, /* steps are left */
     /* The device has no polygons for the request's surface, or no longer: set frame_work.polygons
@@ -113,7 +108,8 @@ enum frame_step {
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and
  * makes its planes. A frame that is given up between two steps needs frame_work_finish() and
- * frame_finish(). */
+ * frame_finish(). A device may fail a step of a frame of polygons with ERROR_SERVER where too many
+ * other such frames are under way: begun, and neither whole nor given up. */
 bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct frame *frame,
                     struct error *error);
 /* Draws the next tile, or the next part of one, or makes ready for it.

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "server/render/gl/polygon_slices.h"
 #include "server/render/mesh.h"
 
 enum { ONE_STROKE = 1 << 28 };
@@ -159,14 +160,14 @@ static void test_frames_in_between(void **state)
 static void test_given_up(void **state)
 {
     (void)state;
-    struct drawn drawn[RENDERER_MAX_SLICED], late;
+    struct drawn drawn[MAX_PAUSED_TILES], late;
     struct scene scene;
     build_torus(12, &scene.tables);
     open_scene(&scene, 2000);
     struct frame_request request = polygons_of(&scene, SURFACE_POLYGON, 3);
     request.width_px = request.height_px = 32;
     for (int k = 0; k < 3; k++) {
-        for (int i = 0; i < RENDERER_MAX_SLICED; i++) {
+        for (int i = 0; i < MAX_PAUSED_TILES; i++) {
             begin(&scene, &drawn[i], &request, 0);
             assert_int_equal(step(&scene, &drawn[i]), FRAME_MORE);
             if (drawn[i].polygons)
@@ -180,7 +181,7 @@ static void test_given_up(void **state)
         assert_int_equal(late.error.kind, ERROR_SERVER);
         assert_non_null(strstr(late.error.text, "24 other frames of polygons"));
         finish(&late);
-        for (int i = 0; i < RENDERER_MAX_SLICED; i++)
+        for (int i = 0; i < MAX_PAUSED_TILES; i++)
             finish(&drawn[i]);
     }
     draw(&scene, &late, &request, 0);

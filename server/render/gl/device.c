@@ -25,12 +25,10 @@ static void query_info(struct gl_renderer *r)
         .software = r->context.egl.software,
         .max_width_px = (uint32_t)width,
         .max_height_px = (uint32_t)height,
-        .max_texels = (size_t)texels,
     };
     r->base.info.timed_by_device = stage_clock_by_device(r);
-    size_t max_texels = r->base.options.max_texels;
-    if (max_texels && max_texels < r->base.info.max_texels)
-        r->base.info.max_texels = max_texels;
+    size_t most = r->base.options.max_texels;
+    r->max_texels = most && most < (size_t)texels ? most : (size_t)texels;
 }
 
 /* The objects that every context needs. */
@@ -97,9 +95,11 @@ bool gl_ready(struct gl_renderer *r, struct error *error)
     const struct gl_renderer old = *r;
     *r = (struct gl_renderer){.base = old.base,
                               .context = old.context,
+                              .max_texels = old.max_texels,
                               .grids = old.grids,
                               .paused_tiles = old.paused_tiles,
                               .next_serial = old.next_serial};
+    r->context.is_lost = false;
     memcpy(r->device, old.device, sizeof r->device);
     memcpy(r->driver, old.driver, sizeof r->driver);
     struct error why;

@@ -29,6 +29,7 @@ struct gl_renderer {
     struct renderer base;
     char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES]; /* of base.info */
     struct context context;
+    size_t max_texels; /* of a buffer texture */
     /* The planes in use, as in struct planes. */
     struct target target;
     struct kept kept;

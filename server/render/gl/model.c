@@ -22,7 +22,7 @@ bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error
     const struct texels nodes = {tables->nodes, 3 * tables->n_nodes, 16, GL_RGBA32UI, "nodes"};
     const struct texels adjacency = {tables->adjacency, tables->n_faces, 16, GL_RGBA32UI,
                                      "adjacency"};
-    size_t max = r->base.info.max_texels;
+    size_t max = r->max_texels;
     /* A node's three texels stay in one buffer texture. */
     size_t node_max = max / 3 * 3;
     model->points = model->nodes = model->adjacency = (struct buffer_textures){0};

@@ -19,7 +19,7 @@ enum tile_stage { TILE_FILL, TILE_SHADE, TILE_EDGES, TILE_WHOLE };
 
 /* What a frame of polygons has drawn of its tile, while others are drawn between its steps
  * (slices.c). */
-enum { MAX_PAUSED_TILES = RENDERER_MAX_SLICED };
+enum { MAX_PAUSED_TILES = 24 };
 struct paused_tile {
     struct planes planes;
     context_number context; /* of the planes */

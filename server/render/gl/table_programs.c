@@ -46,8 +46,7 @@ const struct table_programs *programs_for(struct gl_renderer *r, const struct gl
             return p;
         }
     }
-    const struct table_layout layout = {n_points, n_nodes, n_adjacency, r->base.info.max_texels,
-                                        ptex};
+    const struct table_layout layout = {n_points, n_nodes, n_adjacency, r->max_texels, ptex};
     struct table_programs made = {.n_points = n_points,
                                   .n_nodes = n_nodes,
                                   .n_adjacency = n_adjacency,

@@ -151,7 +151,7 @@ void stage_visibility(struct gl_renderer *r, const struct gl_model *model,
     glBindTextureUnit((GLuint)(model->points.n + model->nodes.n + model->adjacency.n),
                       r->visibility.grid_texture);
     glBindVertexArray(r->visibility.vertex_array);
-    size_t n = r->grids.first[GRID_SHAPES], most = r->base.info.max_texels;
+    size_t n = r->grids.first[GRID_SHAPES], most = r->max_texels;
     for (size_t begin = 0; begin < n; begin += most)
         draw_range(r, program, begin, n - begin < most ? n : begin + most);
 }
