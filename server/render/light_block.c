@@ -8,7 +8,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* What is larger than single precision holds is as good as its largest number. */
+/* A number beyond the range of single precision becomes its largest. */
 static float single(double value)
 {
     return (float)fmax(-(double)FLT_MAX, fmin(value, (double)FLT_MAX));
@@ -42,7 +42,7 @@ static void fill_eye(struct light_block *block, const struct frame_request *requ
     switch (request->lines.eye_kind) {
     case LINE_EYE_CAMERA:
         if (camera->kind == CAMERA_PERSPECTIVE)
-            block->line_eye[3] = 1; /* and no distance from the camera's */
+            block->line_eye[3] = 1; /* at no distance from the camera's eye */
         else
             put(vec_unit(view), block->line_eye);
         break;
@@ -69,7 +69,7 @@ static void fill_plane(struct light_block *block, struct vec u, struct vec v, st
     put(dual_v, block->axis_v);
     block->size[0] = (float)vec_length(u);
     block->size[1] = (float)vec_length(v);
-    /* By the sizes as they are rounded, since the shaders divide by those. */
+    /* Uses the sizes after rounding, since the shaders divide by those. */
     double s = (double)block->size[0] * vec_dot(dual_u, eye);
     double t = (double)block->size[1] * vec_dot(dual_v, eye);
     put((struct vec){s, t, vec_dot(n, eye)}, block->origin);

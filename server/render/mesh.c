@@ -220,7 +220,7 @@ static void add_fan(struct mesh *mesh, const struct limit_tables *tables, uint32
 static bool reserve(struct mesh *mesh, const struct mesh_size *size)
 {
     size_t most_chunks = mesh_bytes(size->vertices, 6 * size->quads) / MESH_CHUNK_BYTES + 1;
-    /* Two parts of a chunk that follow each other have more than one's room. */
+    /* Any two parts in a row have more indices together than one part may have. */
     size_t most_parts = 2 * (size_t)(6 * size->quads / MESH_PART_INDICES) + 2 * most_chunks;
     mesh->vertex = malloc((size->vertices + 1) * sizeof *mesh->vertex);
     mesh->index = malloc((6 * size->quads + 1) * sizeof *mesh->index);

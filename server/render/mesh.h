@@ -17,7 +17,8 @@
 #include "server/render/frame_watch.h"
 #include "server/surface/tables.h"
 
-#define MESH_MAX_VERTICES ((uint64_t)8 << 20) /* of one mesh: 256 MiB, and 192 MiB of indices */
+/* Of one mesh: 256 MiB of vertices, and 192 MiB of indices. */
+#define MESH_MAX_VERTICES ((uint64_t)8 << 20)
 #define MESH_IS_FAN 0x80000000u
 
 /* 32 bytes, as shaders/polygon.vert.glsl reads it. */
@@ -33,7 +34,7 @@ struct mesh_vertex {
 #define MESH_PART_INDICES 6144u /* at most: a block of 32 x 32 cells */
 struct mesh_part {
     uint32_t first, n;            /* indices */
-    uint32_t chunk;               /* which it is of */
+    uint32_t chunk;               /* the chunk that it is in */
     float box_min[3], box_max[3]; /* relative to the mesh's centre */
 };
 

@@ -28,7 +28,7 @@ struct chooser {
     const struct view *view;
     struct view_sides sides; /* the tile's */
     const struct tile *tile;
-    bool guesses;       /* are asked for, not grids */
+    bool guesses;       /* guesses are asked for, not grids */
     size_t first_guess; /* of these */
     uint32_t blocks[2]; /* of the tile: across and down */
     size_t n_chosen;

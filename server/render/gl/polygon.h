@@ -21,14 +21,14 @@ struct slice {
     const struct tile *tile;
     size_t part;      /* the next one to draw */
     size_t left;      /* indices that may be drawn yet; the last part may exceed them */
-    size_t at_once;   /* indices after which the device shall begin with them */
-    size_t not_begun; /* indices that it has been given since */
+    size_t at_once;   /* after so many indices a flush makes the device begin with them */
+    size_t not_begun; /* indices given since the last flush */
 };
 
-/* The planes without a polygon; then the polygons of a mesh that is whole, slice by slice. */
+/* Clears the planes; then draws the polygons of a mesh that is whole, slice by slice. */
 bool stage_polygons_begin(struct gl_renderer *r, const struct tile *tile, struct error *error);
 bool stage_polygons(struct gl_renderer *r, struct slice *slice, struct error *error);
-/* After stage_shade(): the polygons' edges in place of the colour, by the depths of
+/* After stage_shade(): draws the polygons' edges over the colour, by the depths of
  * stage_polygons(), slice by slice. */
 bool stage_wireframe(struct gl_renderer *r, struct slice *slice, struct error *error);
 

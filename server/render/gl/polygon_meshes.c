@@ -8,7 +8,7 @@
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/model.h"
 
-/* What all meshes together may keep on the device beside those in use. */
+/* All meshes that are not in use may take so much memory of the device. */
 static const size_t MAX_CACHED_BYTES = (size_t)512 << 20;
 
 static void drop(struct polygon_meshes *p, struct polygon_mesh *mesh)
@@ -43,7 +43,7 @@ void polygons_lose(struct polygon_meshes *p)
  * that frames under way are drawn of (their memory is charged to the models' owners). */
 static struct polygon_mesh *make_room(struct gl_renderer *r, size_t bytes)
 {
-    /* No frame is being drawn of one of them at least. */
+    /* At least one mesh is of no frame under way. */
     _Static_assert((int)MAX_PAUSED_TILES < (int)MAX_POLYGON_MESHES, "there is one to drop");
     struct polygon_meshes *p = &r->meshes;
     for (;;) {

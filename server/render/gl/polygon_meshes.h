@@ -10,8 +10,8 @@
 struct gl_model;
 struct gl_renderer;
 
-/* One chunk of a mesh: a driver that clears a buffer when it makes one takes long for a large one.
- */
+/* One chunk of a mesh. Meshes are cut into chunks because some drivers clear a new buffer, which
+ * takes long for a large one. */
 struct polygon_chunk {
     GLuint array, buffer[2]; /* vertices, indices */
     struct mesh_chunk of;
@@ -25,7 +25,7 @@ struct polygon_mesh {
     struct polygon_chunk *chunk;
     size_t n_parts, n_chunks;
     size_t n_put;  /* chunks that the device has */
-    size_t bytes;  /* on the device, in the end */
+    size_t bytes;  /* on the device, once all chunks are there */
     uint64_t used; /* by the cache's clock */
     double centre[3];
 };

@@ -7,9 +7,9 @@
 #include "server/render/gl/model.h"
 #include "server/render/gl/quirks.h"
 
-/* What a step draws, and puts on the device: on a software device it takes no longer than a tile
- * does (server/frame/request_frame.c). On hardware the aim is the same; that has not been
- * measured. */
+/* How much a step draws, and how much it puts on the device. On a software device a step takes no
+ * longer than a tile of the exact surface (server/frame/request_frame.c). On hardware the aim is
+ * the same; that has not been measured. */
 static const size_t SOFTWARE_TRIANGLES = 65536, HARDWARE_TRIANGLES = (size_t)1 << 21;
 static const size_t SOFTWARE_BYTES = (size_t)4 << 20, HARDWARE_BYTES = (size_t)32 << 20;
 
@@ -28,7 +28,7 @@ static size_t bytes_a_step(const struct gl_renderer *r)
                                    : HARDWARE_BYTES;
 }
 
-/* --- paused_tiles */
+/* --- paused tiles */
 
 struct paused_tiles *paused_tiles_create(void)
 {
@@ -58,7 +58,7 @@ bool mesh_is_needed(const struct gl_renderer *r, const struct polygon_mesh *mesh
     return false;
 }
 
-/* The largest that is free; the planes of the others that are free go. */
+/* Takes the largest that is free, and frees the planes of the other free ones. */
 static struct paused_tile *take(struct gl_renderer *r)
 {
     struct paused_tile *taken = NULL;
@@ -91,7 +91,7 @@ void tile_give_back(struct gl_frame *own)
     own->paused = NULL;
     if (!paused)
         return;
-    struct paused_tiles *set = paused->set; /* the paused is the next frame's at once */
+    struct paused_tiles *set = paused->set; /* another frame may take it at once */
     atomic_store(&paused->is_taken, false);
     paused_tiles_release(set);
 }

@@ -17,21 +17,21 @@ struct polygon_mesh;
 /* What a tile of polygons goes through. */
 enum tile_stage { TILE_FILL, TILE_SHADE, TILE_EDGES, TILE_WHOLE };
 
-/* What a frame of polygons has drawn of its tile, while others are drawn between its steps
- * (slices.c). */
+/* What a frame of polygons has drawn of its tile, while others are drawn between its steps. */
 enum { MAX_PAUSED_TILES = 24 };
 struct paused_tile {
     struct planes planes;
     context_number context; /* of the planes */
-    uint64_t model_serial;  /* whose mesh of this level the device must keep meanwhile */
+    uint64_t model_serial;  /* the device must keep this model's mesh of this level meanwhile */
     uint32_t level;
     atomic_bool is_taken; /* by a frame, which gives it back on any thread */
     struct paused_tiles *set;
 };
 
-/* On the heap: frames may give theirs back when the renderer has gone. */
+/* On the heap, since a frame may give its tile back when the renderer has gone. */
 struct paused_tiles {
-    atomic_uint holders; /* the renderer, and the frames with a paused; the last one frees it */
+    atomic_uint holders; /* the renderer, and the frames with a paused tile; the last one frees the
+                            set */
     struct paused_tile paused[MAX_PAUSED_TILES];
 };
 

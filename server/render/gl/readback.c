@@ -43,7 +43,8 @@ static void read_four(GLuint texture, GLenum format, GLenum type, const struct t
     read_part(texture, format, type, part, (size_t)part->width * part->height * 16, texels);
 }
 
-/* Where the ray of a pixel's centre is at a depth: world coordinates, in double. */
+/* The place on the ray of each pixel's centre at its depth: world coordinates, computed in double.
+ */
 static void pack_position(const float *depth, const struct view *view, const struct rows *rows,
                           const struct tile *tile)
 {

@@ -137,8 +137,9 @@ static void bind_planes(const struct target *target, enum shaded which)
     }
 }
 
-/* Runs a program over nothing, with all that it will find when it runs over pixels: a software
- * device makes its code then, which takes most of a compilation. */
+/* Runs a program over no pixel, with the same textures and images bound as when it runs over
+ * pixels: a software device generates code at the first run, which takes most of the time of a
+ * compilation. */
 static void run_over_nothing(const struct gl_renderer *r, const struct frame_request *request,
                              const struct light *light, struct shade_program *program)
 {
@@ -159,7 +160,8 @@ bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *requ
     enum shaded kinds[SHADED_KINDS];
     int n_kinds = kinds_of(request, kinds);
     shade_programs_begin(&r->shade.programs);
-    /* The last one is the planes', of the foremost light. All are looked for, so that they stay. */
+    /* The last one is the planes', of the foremost light. Every program is looked for, so that none
+     * of them makes room for another. */
     for (uint32_t i = 0; i < request->n_lights * (uint32_t)n_kinds + planes_wanted(request); i++) {
         uint32_t of = i / (uint32_t)n_kinds;
         bool is_planes = of == request->n_lights;
@@ -183,7 +185,8 @@ bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *requ
     return program;
 }
 
-/* After all covered pixels, those that stage_edges listed: their colours anew. */
+/* After the colours of all covered pixels: runs a program that writes the listed pixels' colours
+ * anew. */
 static void dispatch_listed(GLuint program, GLuint list)
 {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
@@ -221,11 +224,11 @@ static void shade_listed(struct gl_renderer *r, const struct frame_request *requ
     dispatch_listed(rounded, r->target.rounded);
 }
 
-/* Beginning with as many, every pixel of a tile is one too many to look at. */
+/* In tiles of so many pixels or more, only one pixel in SHARE_STRIDE is counted. */
 #define SHARE_ALL_PX (1u << 18)
 enum { SHARE_STRIDE = 8 };
 
-/* Counts in a list that stage 2 is done with. */
+/* Counts into the list `unsolved`, which stage 2 no longer needs. */
 static void share_light(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
 {
     static const GLuint nothing[2] = {0, 0};

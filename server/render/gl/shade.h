@@ -14,12 +14,12 @@ struct shade_stage {
     struct shade_programs programs;
     GLuint light_buffer;
     GLuint blank_texture; /* stands in where a pattern has no image */
-    GLuint no_groups;     /* a buffer: the dispatch of nothing */
+    GLuint no_groups;     /* a buffer: an indirect dispatch of no group */
 };
 
 bool stage_shade_init(struct shade_stage *stage, struct error *error);
-/* Makes one of the programs that the frame takes and that are not there yet, or says that they are
- * all there, for the target as it is: until the next call. */
+/* Makes one of the programs that the frame needs and that are missing. *is_ready: none was missing,
+ * and all stay until the next call, for the target as it is. */
 bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *request, bool *is_ready,
                          struct error *error);
 bool stage_shade(struct gl_renderer *r, const struct frame_request *request, struct error *error);

@@ -35,15 +35,16 @@ enum {
 struct shade_key {
     uint8_t family, light; /* enum line_family; enum light_kind, 0 where it plays no part */
     uint8_t pattern, soft; /* enum pattern_kind; with soft edges */
-    uint8_t picture;       /* of PATTERN_IMAGE: what drivers make it anew for, shade.c; else 0 */
+    uint8_t picture;       /* of PATTERN_IMAGE: image_quirks(); else 0 */
     uint8_t which;         /* enum shaded */
-    uint8_t has_several;   /* lights: what lies behind comes from textures, others than none */
+    uint8_t has_several;   /* lights: the colours behind come from textures, for which drivers have
+                              code of their own */
 };
 
 struct shade_program {
     struct shade_key key;
     GLuint name;
-    bool is_made;  /* it has run: drivers make code of a program not before then */
+    bool is_made;  /* it has run once: drivers generate its code then */
     uint64_t used; /* by the clock */
 };
 

@@ -21,11 +21,12 @@ struct stage_clock {
 /* Has the device timer queries that hold all of its work? */
 bool stage_clock_by_device(const struct gl_renderer *renderer);
 void stage_clock_init(struct gl_renderer *renderer);
-/* A tile begins: what the processor does from here on belongs to its first stage by the clock. */
+/* A tile begins: by the clock, the processor's time from here on counts for the tile's first stage.
+ */
 void stage_clock_begin(struct gl_renderer *renderer);
-/* The device is about to get the commands of a stage, and has got them all. The stage's time is
- * added to *stage, by the clock after waiting for the device, or by stage_clock_read(), until which
- * the pointer stays. False when the device is lost. */
+/* To be called before and after the commands of a stage. The stage's time is added to *stage: at
+ * once, by the clock, after waiting for the device; or by device queries in stage_clock_read(), and
+ * then the pointer must stay until that. False when the device is lost. */
 void stage_clock_start(struct gl_renderer *renderer);
 bool stage_clock_end(struct gl_renderer *renderer, uint64_t *stage);
 /* Waits for the stages that have ended, where that has not been done, and adds their times. False

@@ -26,7 +26,7 @@ static const struct {
     {offsetof(struct target, light_change), GL_RGBA32F, 16},
 };
 
-/* What lights behind others show, where there are such. */
+/* The bytes of a pixel in the planes of the lights behind others. */
 enum { LIGHTS_BYTES = 2 * (8 + 2) };
 
 /* The lists of pixels of a target. */
@@ -54,9 +54,10 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* A size that holds what is asked for and, where that wastes little, all that has been: no column
- * of pixels after a row of them may make a square. Measured by what was asked for, not by what was
- * held: else thin frames, each a little longer than the last, would double it for ever. */
+/* Makes the size hold what is asked for and, where that wastes little, all that was asked for
+ * before. A high picture after a wide one must not make a square of both. The waste is measured by
+ * what was asked for, not by what is held: else thin pictures, each a little longer than the last,
+ * would double the target for ever. */
 static void choose_size(const struct target *target, uint32_t *width, uint32_t *height)
 {
     uint32_t both[2] = {larger(*width, target->width), larger(*height, target->height)};
