@@ -2,13 +2,13 @@
 //
 // Around each pixel's hit the surface is known to second order: a paraboloid from position, normal
 // and shape operator. Where its own piece ends is known too: `border`, and `silhouette`.
-//   edges_find   lists the pixels whose neighbours their own paraboloid does not explain, and apart
-//                from them those over which the normal turns so far that one footprint cannot tell;
-//   silhouette   finds where the pieces that pixels at edges show end;
-//   edges_doubt  sorts out the pixels at edges where the pieces around contradict each other;
-//   edges_shade  for each of the others at edges, shades the share of each of the pieces around;
-//   turns_shade  for each pixel that turns, shades nine parts of it.
-// Pixels that show the rounding of a crease, half a pixel to some pixels wide, and the doubtful ones ask
+//   edges_find            lists the pixels whose neighbours their own paraboloid does not explain, and apart
+//                         from them those over which the normal turns so far that one footprint cannot tell;
+//   silhouette            finds where the pieces that pixels at edges show end;
+//   edges_recheck         sorts out the pixels at edges where the pieces around contradict each other;
+//   edges_shade           for each of the others at edges, shades the share of each of the pieces around;
+//   high_curvature_shade  for each of those of high curvature, shades nine parts of it.
+// Pixels that show the rounding of a crease, half a pixel to some pixels wide, and those to recheck ask
 // the surface again: rounded.glsl.
 // At the rim of a tile the pixels beyond are not known: an edge there is seen from one side only.
 

@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
 
 LIST(0, Edges, edges);
-LIST(2, Turns, turns);
+LIST(2, HighCurvature, high_curvature);
 LIST(3, Rounded, rounded);
 LIST(4, Rims, rims);
 
@@ -73,5 +73,5 @@ void main()
     else if (at_edge)
         LIST_ADD(edges, p, EDGES_PER_GROUP)
     else if (is_hit && turn_over_pixel(p, own) > MOST_TURN)
-        LIST_ADD(turns, p, 64u)
+        LIST_ADD(high_curvature, p, 64u)
 }

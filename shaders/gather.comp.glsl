@@ -1,6 +1,6 @@
-// After stage 1: lists the groups of 4 x 2 pixels of which one is seen, or has a pixel beside it that is;
-// and apart from them those among these that are not calm (seen.glsl).
-// An invocation for each group of the blocks of 8 x 8 pixels that the pieces may cover, x | y << 16 in
+// After stage 1: lists the groups of 4 x 2 pixels that show surface, or have a pixel beside them that does;
+// and in a second list those of these groups whose depths are discontinuous: not calm (seen.glsl).
+// An invocation for each group of the blocks of 8 x 8 pixels that the grids may cover, x | y << 16 in
 // blocks (server/render/patch_grids.h).
 
 layout(local_size_x = 64) in;
@@ -9,7 +9,7 @@ layout(std430, binding = 2) readonly buffer Blocks {
     uint blocks[];
 };
 
-LIST(3, Restless, restless);
+LIST(3, Discontinuous, discontinuous);
 
 uniform uint n_blocks;
 
@@ -40,5 +40,5 @@ void main()
         return;
     LIST_ADD(groups, group, 8u)
     if (!calm)
-        LIST_ADD(restless, group, 8u)
+        LIST_ADD(discontinuous, group, 8u)
 }

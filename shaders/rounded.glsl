@@ -1,7 +1,7 @@
 // Pixels that show the rounding of a semi-sharp crease, from half a pixel to some pixels wide, and those that
-// edges_doubt.comp.glsl calls doubtful: one footprint or one paraboloid does not tell what they show. Rays spread over
-// the pixel meet the limit surface itself (rounded_solve), and each is shaded with the footprint of its
-// own part of the pixel (rounded_shade).
+// edges_recheck.comp.glsl lists to be rechecked: one footprint or one paraboloid does not tell what they show. Rays
+// spread over the pixel meet the limit surface itself (rounded_solve), and each is shaded with the footprint of its own
+// part of the pixel (rounded_shade).
 //
 // There is memory for 16 rays of max_rounded pixels. Where more are listed each has fewer, so that what
 // a pixel shows does not depend on the order in which they were.

@@ -30,7 +30,7 @@ void main()
         Solution other = solve(guess_of(q), r);
         if (other.found && (!best.found || other.hit.surface.s.z < best.hit.surface.s.z))
             best = other;
-        if (best.found && !is_doubtful(front, best.hit.surface.s.z))
+        if (best.found && !needs_recheck(front, best.hit.surface.s.z))
             break;
     }
     RoundedHit hit = RoundedHit(vec4(0.0), vec4(0.0));

@@ -40,12 +40,13 @@ float nearest_around(ivec2 p)
 
 // In front by more than a slope of four pixels of depth a pixel: another sheet, or a crack that shows
 // what lies behind.
-bool is_doubtful(float front, float z)
+bool needs_recheck(float front, float z)
 {
     return front < z - 4.0 * pixel_units(z);
 }
 
-// Behind what lies on both sides of it by a pixel's depth: a crack may show a sheet too near for doubt.
+// Behind what lies on both sides of it by a pixel's depth: a crack may show a sheet that is nearer than needs_recheck()
+// asks for.
 bool is_between(ivec2 p, float z)
 {
     float behind = z - pixel_units(z);
@@ -55,6 +56,6 @@ bool is_between(ivec2 p, float z)
     return false;
 }
 
-// Where depths slope less than CALM by what stage 1 saw, nothing is doubtful that lies within STRAY of
+// Where depths slope less than CALM by what stage 1 saw, nothing needs a recheck that lies within STRAY of
 // what it saw: so the pixels of whole groups (gather.comp.glsl) need not ask their neighbours.
 const float CALM = 1.0, STRAY = 2.0;

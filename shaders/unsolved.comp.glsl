@@ -1,4 +1,4 @@
-// Stage 2, evaluate, three passes over listed pixels: those of evaluate.comp.glsl, those of doubt.comp.glsl,
+// Stage 2, evaluate, three passes over listed pixels: those of evaluate.comp.glsl, those of recheck.comp.glsl,
 // those of gaps.comp.glsl.
 //
 // First those whose guess may lead to another sub-patch: they ask their own. Then what is left, where
@@ -50,7 +50,7 @@ void main()
             best = other;
     }
     float z = best.found ? best.hit.surface.s.z : 0.0;
-    bool is_settled = best.found && !is_doubtful(nearest_around(p), z) && !is_between(p, z);
+    bool is_settled = best.found && !needs_recheck(nearest_around(p), z) && !is_between(p, z);
     if (n_asked == 1 && !is_settled)
         LIST_ADD(unsolved, p, 64u)
     else if (best.found)

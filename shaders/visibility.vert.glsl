@@ -1,12 +1,12 @@
-// Stage 1, visibility: grids over the pieces of the surface that the CPU chose
+// Stage 1, visibility: grids over the parts of the surface that the CPU chose
 // (server/render/patch_grids.h), each of as many cells along u and v as `grid` says. One instance draws several
-// pieces, since some devices take longer to start an instance than to draw a small grid.
+// grids, since some devices take longer to start an instance than to draw a small grid.
 
-layout(binding = TEXTURES_FREE) uniform usamplerBuffer pieces;  // node, level | k << 6 | depth << 8, x, y
+layout(binding = TEXTURES_FREE) uniform usamplerBuffer patch_grids;  // node, level | k << 6 | depth << 8, x, y
 
 uniform ivec2 grid;
-uniform int first_piece, n_pieces;
-uniform int pieces_per_instance;
+uniform int first_grid, n_grids;
+uniform int grids_per_instance;
 
 flat out uvec2 where;  // node, level
 out vec2 st;           // in [0,2]: local coordinates times 2^level
@@ -25,23 +25,23 @@ vec3 position_at(Node node, vec2 xy)
 void main()
 {
     int vertices = (grid.x + 1) * (grid.y + 1);
-    int index = gl_InstanceID * pieces_per_instance + gl_VertexID / vertices;
+    int index = gl_InstanceID * grids_per_instance + gl_VertexID / vertices;
     int vertex = gl_VertexID % vertices;
-    uvec4 piece = texelFetch(pieces, first_piece + min(index, n_pieces - 1));
-    int level = int(piece.y & 63u);
-    uint k = (piece.y >> 6) & 3u;
-    float size = ldexp(1.0, -int(piece.y >> 8 & 0xffu));
+    uvec4 own = texelFetch(patch_grids, first_grid + min(index, n_grids - 1));
+    int level = int(own.y & 63u);
+    uint k = (own.y >> 6) & 3u;
+    float size = ldexp(1.0, -int(own.y >> 8 & 0xffu));
     vec2 cell = vec2(vertex % (grid.x + 1), vertex / (grid.x + 1)) / vec2(grid);
     // k = 1,2,3: the three unit squares of a level's ring (a strip has only the third); 0: the
     // square at the origin.
     vec2 square = vec2(k == 1u || k == 2u, k >= 2u);
-    st = square + (vec2(piece.zw) + cell) * size;
+    st = square + (vec2(own.zw) + cell) * size;
 
-    Node node = node_load(piece.x);
+    Node node = node_load(own.x);
     vec3 s = position_at(node, ldexp(st, -level_scale(node, level)));
-    where = uvec2(piece.x, uint(level));
+    where = uvec2(own.x, uint(level));
     float w = is_perspective() ? s.z : 1.0;
     float z = is_perspective() ? depth.x : depth.y + s.z * depth.z;
-    // The last instance may have pieces too many: all their vertices fall in one point.
-    gl_Position = index < n_pieces ? vec4(s.xy * clip.xy + w * clip.zw, z, w) : vec4(0, 0, 0, 1);
+    // The last instance may have grids too many: all their vertices fall in one point.
+    gl_Position = index < n_grids ? vec4(s.xy * clip.xy + w * clip.zw, z, w) : vec4(0, 0, 0, 1);
 }

@@ -6,8 +6,8 @@
 bool stage_edges_init(struct edges_stage *stage, struct error *error)
 {
     stage->find = program_create_single(PROGRAM_EDGES_FIND, error);
-    stage->doubt = stage->find ? program_create_single(PROGRAM_EDGES_DOUBT, error) : 0;
-    return stage->doubt;
+    stage->recheck = stage->find ? program_create_single(PROGRAM_EDGES_RECHECK, error) : 0;
+    return stage->recheck;
 }
 
 void stage_edges(struct gl_renderer *r, const struct tile *shaded)
@@ -18,13 +18,13 @@ void stage_edges(struct gl_renderer *r, const struct tile *shaded)
     clear_shaded(r, target->coverage, GL_RED, nothing);
     glNamedBufferSubData(target->unsolved, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->edges, 0, sizeof no_work, no_work);
-    glNamedBufferSubData(target->turns, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->high_curvature, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->rounded, 0, sizeof no_work, no_work);
-    glNamedBufferSubData(target->strays, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->retry_pixels, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->unsolved);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->turns);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->high_curvature);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->rounded);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, target->strays);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, target->retry_pixels);
     glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
@@ -38,7 +38,7 @@ void stage_edges(struct gl_renderer *r, const struct tile *shaded)
     dispatch_groups(r->edges.find, target->groups);
 }
 
-void stage_edges_doubt(struct gl_renderer *r)
+void stage_edges_recheck(struct gl_renderer *r)
 {
     const struct target *target = &r->target;
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
@@ -51,6 +51,6 @@ void stage_edges_doubt(struct gl_renderer *r)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->edges);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->rounded);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, target->unsolved);
-    glUseProgram(r->edges.doubt);
+    glUseProgram(r->edges.recheck);
     glDispatchComputeIndirect(0);
 }

@@ -6,8 +6,8 @@
 
 bool stage_evaluate_init(struct evaluate_stage *stage, struct error *error)
 {
-    stage->doubt = program_create_single(PROGRAM_DOUBT, error);
-    stage->gaps = stage->doubt ? program_create_single(PROGRAM_GAPS, error) : 0;
+    stage->recheck = program_create_single(PROGRAM_RECHECK, error);
+    stage->gaps = stage->recheck ? program_create_single(PROGRAM_GAPS, error) : 0;
     glCreateBuffers(1, &stage->gap_ends);
     glCreateBuffers(1, &stage->gap_guesses);
     return stage->gaps;
@@ -48,12 +48,12 @@ static void solve_listed(GLuint list)
 }
 
 /* Adds the pixels to the unsolved ones whose depth does not agree with the depths beside it. */
-static void doubt(const struct gl_renderer *r)
+static void recheck(const struct gl_renderer *r)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     bind_seen(&r->target, 0);
     glBindImageTexture(0, r->target.hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
-    dispatch_groups(r->evaluate.doubt, r->target.restless);
+    dispatch_groups(r->evaluate.recheck, r->target.discontinuous);
 }
 
 void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
@@ -62,17 +62,17 @@ void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
     static const GLuint no_work[4] = {0, 1, 1, 0};
     const struct target *target = &r->target;
     GLint n_asked = glGetUniformLocation(programs->unsolved, "n_asked");
-    glNamedBufferSubData(target->strays, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->retry_pixels, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->unsolved, 0, sizeof no_work, no_work);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->strays);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->retry_pixels);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->unsolved);
     bind_planes(r, model);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     dispatch_groups(programs->evaluate, target->groups);
     glUseProgram(programs->unsolved);
     glUniform1i(n_asked, 1);
-    solve_listed(target->strays);
-    doubt(r);
+    solve_listed(target->retry_pixels);
+    recheck(r);
     bind_planes(r, model);
     glUseProgram(programs->unsolved);
     glUniform1i(n_asked, 5);
@@ -81,23 +81,23 @@ void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
 
 /* --- gaps */
 
-/* Lists the pixels in gaps; the list of strayed pixels, which is no longer needed, takes them.
+/* Lists the pixels in gaps; the list retry_pixels, which is no longer needed, takes them.
  * Returns how many there are; waits for the device. */
 static GLuint find_gaps(const struct gl_renderer *r)
 {
     static const GLuint no_work[4] = {0, 1, 1, 0};
     const struct target *target = &r->target;
     GLuint head[4] = {0};
-    glNamedBufferSubData(target->strays, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(target->retry_pixels, 0, sizeof no_work, no_work);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     bind_seen(target, 0);
     glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
     glBindImageTexture(1, target->seen, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG32UI);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->strays);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->retry_pixels);
     glUseProgram(r->evaluate.gaps);
     solve_listed(target->unsolved);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    glGetNamedBufferSubData(target->strays, 0, sizeof head, head);
+    glGetNamedBufferSubData(target->retry_pixels, 0, sizeof head, head);
     return head[3];
 }
 
@@ -126,7 +126,8 @@ bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
     r->evaluate.too_many_gaps = n > MAX_GAPS;
     if (n == 0 || n > MAX_GAPS)
         return true;
-    glGetNamedBufferSubData(r->target.strays, LIST_HEAD_BYTES, (GLsizeiptr)(n * sizeof *at), at);
+    glGetNamedBufferSubData(r->target.retry_pixels, LIST_HEAD_BYTES, (GLsizeiptr)(n * sizeof *at),
+                            at);
     if (!guess_gaps(r, model, view, at, n, end, error))
         return false;
     glNamedBufferData(r->evaluate.gap_ends, (GLsizeiptr)(n * sizeof *end), end, GL_STREAM_DRAW);
@@ -138,7 +139,7 @@ bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
     glUniform1i(glGetUniformLocation(programs->unsolved, "n_asked"), 0);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->evaluate.gap_ends);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->evaluate.gap_guesses);
-    solve_listed(r->target.strays);
+    solve_listed(r->target.retry_pixels);
     return true;
 }
 
@@ -148,7 +149,7 @@ void stage_silhouette(struct gl_renderer *r, const struct gl_model *model,
     bind_tables(r, model);
     glBindImageTexture(5, r->target.silhouette, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     glUseProgram(programs->silhouette);
-    solve_listed(r->target.strays);
+    solve_listed(r->target.retry_pixels);
 }
 
 void stage_rounded(struct gl_renderer *r, const struct gl_model *model,

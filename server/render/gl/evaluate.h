@@ -13,7 +13,7 @@ struct gl_renderer;
 struct table_programs;
 
 struct evaluate_stage {
-    GLuint doubt, gaps;           /* programs */
+    GLuint recheck, gaps;         /* programs */
     GLuint gap_ends, gap_guesses; /* buffers: shaders/unsolved.comp.glsl */
     bool too_many_gaps; /* the last tile drawn has more than MAX_GAPS: its gaps all stay empty */
 };
@@ -34,7 +34,7 @@ bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
 /* After stage_edges(): finds where the surface that the listed pixels show ends at a silhouette. */
 void stage_silhouette(struct gl_renderer *r, const struct gl_model *model,
                       const struct table_programs *programs);
-/* After stage_edges_doubt(): intersects 16 rays of each pixel that shows the rounding of a crease
+/* After stage_edges_recheck(): intersects 16 rays of each pixel that shows the rounding of a crease
  * with the surface. */
 void stage_rounded(struct gl_renderer *r, const struct gl_model *model,
                    const struct table_programs *programs);

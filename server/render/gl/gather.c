@@ -16,7 +16,7 @@ void stage_gather(struct gl_renderer *r)
     static const GLuint no_work[4] = {0, 1, 1, 0};
     size_t n = r->grids.n_blocks, groups = (n + BLOCKS_PER_GROUP - 1) / BLOCKS_PER_GROUP;
     glNamedBufferSubData(r->target.groups, 0, sizeof no_work, no_work);
-    glNamedBufferSubData(r->target.restless, 0, sizeof no_work, no_work);
+    glNamedBufferSubData(r->target.discontinuous, 0, sizeof no_work, no_work);
     if (!n)
         return;
     glNamedBufferData(r->gather.block_buffer, (GLsizeiptr)(n * sizeof *r->grids.block),
@@ -26,7 +26,7 @@ void stage_gather(struct gl_renderer *r)
     glBindTextureUnit(1, r->target.seen_depth);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, r->target.groups);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->gather.block_buffer);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.restless);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.discontinuous);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     glDispatchCompute((GLuint)(groups < GROUP_ROW ? groups : GROUP_ROW),
                       (GLuint)((groups + GROUP_ROW - 1) / GROUP_ROW), 1);

@@ -18,7 +18,7 @@ struct gather_stage {
 bool stage_gather_init(struct gather_stage *stage, struct error *error);
 /* After stage 1 or polygons: lists the pixels near what is seen, target.groups, over which
  * dispatch_groups() runs a program; and those that may have to ask their neighbours,
- * target.restless. Planes that it writes must be cleared before: it leaves gaps. */
+ * target.discontinuous. Planes that it writes must be cleared before: it leaves gaps. */
 void stage_gather(struct gl_renderer *r);
 /* Has stage_gather() found a pixel in the tile that was drawn last? Waits for the device. */
 bool gather_found_any(const struct gl_renderer *r);

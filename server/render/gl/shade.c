@@ -30,7 +30,7 @@ static struct shade_key key_of(const struct frame_request *request, const struct
 /* What each of the frame's lights takes, in the order of use. */
 static int kinds_of(const struct frame_request *request, enum shaded kinds[SHADED_KINDS])
 {
-    static const enum shaded closer[] = {SHADED_EDGES, SHADED_TURNS, SHADED_ROUNDED};
+    static const enum shaded closer[] = {SHADED_EDGES, SHADED_HIGH_CURVATURE, SHADED_ROUNDED};
     int n = 0;
     kinds[n++] = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
     for (size_t i = 0; request_has_coverage(request) && i < sizeof closer / sizeof closer[0]; i++)
@@ -217,7 +217,7 @@ static void shade_listed(struct gl_renderer *r, const struct frame_request *requ
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_COMMAND_BARRIER_BIT);
     dispatch_listed(program_of(r, request, light, SHADED_EDGES), r->target.edges);
-    dispatch_listed(program_of(r, request, light, SHADED_TURNS), r->target.turns);
+    dispatch_listed(program_of(r, request, light, SHADED_HIGH_CURVATURE), r->target.high_curvature);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
     glProgramUniform1ui(rounded, glGetUniformLocation(rounded, "max_rounded"),
                         target_max_rounded(&r->drawing.drawn));

@@ -36,8 +36,8 @@ struct program_source source_of_single(enum single_program program)
 {
     static const char *const gather[] = {"view.glsl",   "list.glsl",        "seen.glsl",
                                          "groups.glsl", "gather.comp.glsl", NULL};
-    static const char *const doubt[] = {"view.glsl",   "list.glsl",       "seen.glsl",
-                                        "groups.glsl", "doubt.comp.glsl", NULL};
+    static const char *const recheck[] = {"view.glsl",   "list.glsl",         "seen.glsl",
+                                          "groups.glsl", "recheck.comp.glsl", NULL};
     static const char *const gaps[] = {"view.glsl", "list.glsl", "seen.glsl", "gaps.comp.glsl",
                                        NULL};
     static const char *const edges_find[] = {"view.glsl",
@@ -50,9 +50,9 @@ struct program_source source_of_single(enum single_program program)
                                              "groups.glsl",
                                              "edges_find.comp.glsl",
                                              NULL};
-    static const char *const edges_doubt[] = {
+    static const char *const edges_recheck[] = {
         "view.glsl",   "list.glsl",  "basis.glsl",   "hit.glsl",    "coverage.glsl",
-        "border.glsl", "edges.glsl", "rounded.glsl", "pieces.glsl", "edges_doubt.comp.glsl",
+        "border.glsl", "edges.glsl", "rounded.glsl", "pieces.glsl", "edges_recheck.comp.glsl",
         NULL};
     static const char *const vertex[] = {"view.glsl", "polygon.vert.glsl", NULL};
     static const char *const polygons[] = {"view.glsl", "basis.glsl", "polygon.frag.glsl", NULL};
@@ -60,10 +60,10 @@ struct program_source source_of_single(enum single_program program)
 #define NO_TABLES "#define TEXTURES_FREE 0\n"
     static const struct program_source sources[SINGLE_PROGRAMS] = {
         [PROGRAM_GATHER] = {NO_TABLES, {gather, NULL}},
-        [PROGRAM_DOUBT] = {NO_TABLES, {doubt, NULL}},
+        [PROGRAM_RECHECK] = {NO_TABLES, {recheck, NULL}},
         [PROGRAM_GAPS] = {NO_TABLES, {gaps, NULL}},
         [PROGRAM_EDGES_FIND] = {"", {edges_find, NULL}},
-        [PROGRAM_EDGES_DOUBT] = {"", {edges_doubt, NULL}},
+        [PROGRAM_EDGES_RECHECK] = {"", {edges_recheck, NULL}},
         [PROGRAM_POLYGONS] = {"", {vertex, polygons}},
         [PROGRAM_WIREFRAME] = {"", {vertex, wireframe}},
     };
@@ -110,9 +110,10 @@ struct program_source source_of_shading(struct shade_key key)
     static const char *const edges[] = {
         COMMON,          "border.glsl",           "edges.glsl", "pieces.glsl", "piece_shade.glsl",
         "rounding.glsl", "edges_shade.comp.glsl", NULL};
-    static const char *const turns[] = {COMMON,        "border.glsl",      "edges.glsl",
-                                        "pieces.glsl", "piece_shade.glsl", "turns_shade.comp.glsl",
-                                        NULL};
+    static const char *const high_curvature[] = {
+        COMMON,        "border.glsl",      "edges.glsl",
+        "pieces.glsl", "piece_shade.glsl", "high_curvature_shade.comp.glsl",
+        NULL};
     static const char *const rounded[] = {COMMON,        "border.glsl",  "edges.glsl",
                                           "pieces.glsl", "rounded.glsl", "rounded_shade.comp.glsl",
                                           NULL};
@@ -120,7 +121,7 @@ struct program_source source_of_shading(struct shade_key key)
     static const char *const share[] = {LINES, "groups.glsl", "share.comp.glsl", NULL};
 #undef COMMON
 #undef LINES
-    static const char *const *const files[SHADED_KINDS] = {all,     all,    edges, turns,
+    static const char *const *const files[SHADED_KINDS] = {all,     all,    edges, high_curvature,
                                                            rounded, planes, share};
     struct program_source source = {.files = {files[key.which], NULL}};
     snprintf(source.defines, sizeof source.defines,

@@ -31,10 +31,10 @@ bool shader_text_init(struct shader_text *text, const struct program_source *sou
 /* The programs of which there is one for all models and frames. */
 enum single_program {
     PROGRAM_GATHER,
-    PROGRAM_DOUBT,
+    PROGRAM_RECHECK,
     PROGRAM_GAPS,
     PROGRAM_EDGES_FIND,
-    PROGRAM_EDGES_DOUBT,
+    PROGRAM_EDGES_RECHECK,
     PROGRAM_POLYGONS,
     PROGRAM_WIREFRAME,
     SINGLE_PROGRAMS

@@ -22,20 +22,20 @@ struct target {
     uint32_t width, height;
     uint64_t most_asked_px; /* pixels of the largest tile asked for */
     GLuint framebuffer;
-    GLuint seen, seen_depth; /* visibility: RG32UI, DEPTH32F */
-    GLuint hit_depth;        /* evaluate: R32F */
-    GLuint normal, shape;    /* RGBA32F, RG32F */
-    GLuint ptex;             /* RGBA32UI */
-    GLuint border;           /* R32UI: two halves, shaders/planes.glsl */
-    GLuint silhouette;       /* R32UI: shaders/silhouette.comp.glsl */
-    GLuint colour;           /* RGBA8 */
-    GLuint light, curvature; /* RG32F */
-    GLuint light_change;     /* RGBA32F */
-    GLuint coverage;         /* R32F: share of the pixel that shows surface */
-    GLuint groups, restless; /* buffers: shaders/gather.comp.glsl */
-    GLuint strays, unsolved; /* buffers: shaders/unsolved.comp.glsl */
-    GLuint edges, turns;     /* buffers: shaders/edges_find.comp.glsl */
-    GLuint rounded;          /* another; and what its pixels' rays meet: shaders/rounded.glsl */
+    GLuint seen, seen_depth;       /* visibility: RG32UI, DEPTH32F */
+    GLuint hit_depth;              /* evaluate: R32F */
+    GLuint normal, shape;          /* RGBA32F, RG32F */
+    GLuint ptex;                   /* RGBA32UI */
+    GLuint border;                 /* R32UI: two halves, shaders/planes.glsl */
+    GLuint silhouette;             /* R32UI: shaders/silhouette.comp.glsl */
+    GLuint colour;                 /* RGBA8 */
+    GLuint light, curvature;       /* RG32F */
+    GLuint light_change;           /* RGBA32F */
+    GLuint coverage;               /* R32F: share of the pixel that shows surface */
+    GLuint groups, discontinuous;  /* buffers: shaders/gather.comp.glsl */
+    GLuint retry_pixels, unsolved; /* buffers: shaders/unsolved.comp.glsl */
+    GLuint edges, high_curvature;  /* buffers: shaders/edges_find.comp.glsl */
+    GLuint rounded; /* another; and what its pixels' rays meet: shaders/rounded.glsl */
     GLuint rounded_hits;
     GLuint lights[2];   /* colours of the lights behind the one being drawn: RGBA16F; 0: none */
     GLuint missed[2];   /* R16F */

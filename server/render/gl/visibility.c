@@ -70,9 +70,9 @@ static void draw_grids(const struct gl_renderer *r, GLuint program, int shape, s
     uint32_t per_instance = grids_per_instance(shape);
     glUniform2i(glGetUniformLocation(program, "grid"), (GLint)cells_along(shape, 0),
                 (GLint)cells_along(shape, 1));
-    glUniform1i(glGetUniformLocation(program, "first_piece"), (GLint)first);
-    glUniform1i(glGetUniformLocation(program, "n_pieces"), (GLint)n);
-    glUniform1i(glGetUniformLocation(program, "pieces_per_instance"), (GLint)per_instance);
+    glUniform1i(glGetUniformLocation(program, "first_grid"), (GLint)first);
+    glUniform1i(glGetUniformLocation(program, "n_grids"), (GLint)n);
+    glUniform1i(glGetUniformLocation(program, "grids_per_instance"), (GLint)per_instance);
     glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)indices_per_instance(shape), GL_UNSIGNED_INT,
                             (const void *)(r->visibility.index_first[shape] * sizeof(uint32_t)),
                             (GLsizei)((n + per_instance - 1) / per_instance));

@@ -1,8 +1,8 @@
-// Sorts the pixels at edges into two lists. A pixel is doubtful where a piece of surface around it contradicts what a
-// pixel's centre shows: the piece reaches a centre that does not show it, or ends before a centre that does, by more
-// than OFF. A pixel is also doubtful where three pieces are around it, or two pieces and a pixel that shows nothing:
-// each piece tells its own end only, and between the ends there may be anything. Doubtful pixels join the list of
-// rounded ones, so that rays meet the surface itself there; all others are shaded from the pieces.
+// Sorts the pixels at edges into two lists. A pixel must be rechecked where a piece of surface around it contradicts
+// what a pixel's centre shows: the piece reaches a centre that does not show it, or ends before a centre that does, by
+// more than OFF. A pixel must also be rechecked where three pieces are around it, or two pieces and a pixel that shows
+// nothing: each piece tells its own end only, and between the ends there may be anything. Pixels to recheck join the
+// list of rounded ones, so that rays meet the surface itself there; all others are shaded from the pieces.
 
 layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 
@@ -35,23 +35,23 @@ void main()
     second.depth = 0.0;
     if (mirrors(own))
         piece = piece_of(own, p, ivec2(0));
-    bool is_doubtful = false, beside_empty = own.depth == 0.0;
-    for (int k = 0; k < 8 && !is_doubtful; k++) {
+    bool needs_recheck = false, beside_empty = own.depth == 0.0;
+    for (int k = 0; k < 8 && !needs_recheck; k++) {
         Hit hit = hit_at(p + AROUND[k]);
         beside_empty = beside_empty || hit.depth == 0.0;
         if (mirrors(own) && hit.depth >= 0.0)
-            is_doubtful = disagrees(piece, vec2(AROUND[k]), hit);
+            needs_recheck = disagrees(piece, vec2(AROUND[k]), hit);
         if (!mirrors(hit))
             continue;
-        is_doubtful = is_doubtful || disagrees(piece_of(hit, p, AROUND[k]), vec2(0.0), own);
+        needs_recheck = needs_recheck || disagrees(piece_of(hit, p, AROUND[k]), vec2(0.0), own);
         if (!(first.depth > 0.0))
             first = hit;
         else if (!same_surface(first, hit)) {
-            is_doubtful = is_doubtful || (second.depth > 0.0 && !same_surface(second, hit));
+            needs_recheck = needs_recheck || (second.depth > 0.0 && !same_surface(second, hit));
             second = hit;
         }
     }
-    if (is_doubtful || (beside_empty && second.depth > 0.0))
+    if (needs_recheck || (beside_empty && second.depth > 0.0))
         LIST_ADD(rounded, p, ROUNDED_PER_GROUP)
     else
         LIST_ADD(edges, p, EDGES_PER_GROUP)

@@ -1,4 +1,4 @@
-// Stage 2, evaluate, third pass, over the groups that are not calm: lists the pixels that must ask those
+// Stage 2, evaluate, third pass, over the groups whose depths are discontinuous: lists the pixels that must ask those
 // around them, since they are empty beside some that are not, or lie behind one by more than a slope, or
 // behind two opposite ones.
 // (Those that are seen and still unsolved are listed already, by the pass before.)
@@ -16,6 +16,6 @@ void main()
         return;
     float z = imageLoad(hit_depth, p).x, front = nearest_around(p);
     bool is_empty = ndc_at(p) == 0.0;
-    if (z > 0.0 ? is_doubtful(front, z) || is_between(p, z) : is_empty && front < FARTHEST)
+    if (z > 0.0 ? needs_recheck(front, z) || is_between(p, z) : is_empty && front < FARTHEST)
         LIST_ADD(unsolved, p, 64u)
 }
