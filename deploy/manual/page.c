@@ -33,7 +33,7 @@ static const char *put_paragraph(FILE *out, const char *text, size_t column)
     while (*text && strncmp(text, "\n\n", 2) != 0) {
         size_t length = strcspn(text, " \n");
         if (length > 0 && !is_first) {
-            bool is_end = column + 1 + length > LINE_BYTES || (text[-1] == ' ' && text[-2] == '.');
+            bool is_end = column + 1 + length > LINE_BYTES || text[-2] == '.';
             fputc(is_end ? '\n' : ' ', out);
             column = is_end ? 0 : column + 1;
         }

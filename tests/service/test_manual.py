@@ -177,7 +177,7 @@ class Bash(unittest.TestCase):
                   f"COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); cd {MANUAL}; _{program}; "
                   "printf '%s\\n' \"${COMPREPLY[@]}\"")
         done = subprocess.run(["bash", "--norc", "-u", "-c", script], capture_output=True, text=True,
-                              timeout=20)
+                              timeout=60)
         self.assertEqual((done.stderr, done.returncode), ("", 0))
         return done.stdout.split()
 
@@ -243,7 +243,7 @@ class Fish(unittest.TestCase):
             done = subprocess.run(["fish", "--no-config", "-c",
                                    f"source {MANUAL}/sheen.fish; source {MANUAL}/sheend.fish; "
                                    f"complete -C '{line}'"], capture_output=True, text=True,
-                                  timeout=20, cwd=MANUAL, env={**os.environ, "HOME": home})
+                                  timeout=60, cwd=MANUAL, env={**os.environ, "HOME": home})
         self.assertEqual((done.stderr, done.returncode), ("", 0))
         return [row.split("\t")[0] for row in done.stdout.splitlines()]
 
