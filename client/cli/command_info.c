@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "client/cli/commands.h"
-#include "client/cli/job.h"
+#include "client/cli/client.h"
 #include "client/cli/options/values.h"
 
 static void print_findings(struct json *json, const struct sheen_model_info *info)
@@ -154,31 +154,32 @@ static void print_table(const struct sheen_model_info *info)
     printf("%-16s %.1f ms\n", "built in", (double)info->tables_us / 1e3);
 }
 
-static enum sheen_status ask(struct job *job, struct sheen_model_info *info)
+static enum sheen_status ask(struct client *client, struct sheen_model_info *info)
 {
-    return sheen_query_model(job->session, job->model_id, &job->report, info, &job->error);
+    return sheen_query_model(client->session, client->model_id, &client->report, info,
+                             &client->error);
 }
 
 static int run(const struct options *options)
 {
-    struct job job;
+    struct client client;
     struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
-    enum sheen_status status = job_init(&job, options);
+    enum sheen_status status = client_init(&client, options);
     if (!status)
-        status = ask(&job, &info);
-    while (status && job_resume(&job, options, &status))
-        status = ask(&job, &info);
-    progress_clear(&job.progress);
+        status = ask(&client, &info);
+    while (status && client_resume(&client, options, &status))
+        status = ask(&client, &info);
+    progress_clear(&client.progress);
     if (!status && !options->quiet)
-        job_print_warnings(&job, info.warnings);
+        client_print_warnings(&client, info.warnings);
     if (!status && options->json) {
         struct json json = {.out = stdout};
         print_json(&json, &info);
-        status = job_finish_json(&job, &json);
+        status = client_finish_json(&client, &json);
     } else if (!status) {
         print_table(&info);
     }
-    return job_finish(&job, status);
+    return client_finish(&client, status);
 }
 
 static const struct option_row *const TABLES[] = {OPTIONS_MODEL, OPTIONS_COMMON, OPTIONS_RECONNECT,

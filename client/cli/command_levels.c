@@ -8,7 +8,7 @@
 #include "client/cli/commands.h"
 #include "client/cli/files/file.h"
 #include "client/cli/output/glyphs.h"
-#include "client/cli/job.h"
+#include "client/cli/client.h"
 #include "client/cli/base/failure.h"
 #include "client/cli/options/values.h"
 
@@ -123,28 +123,29 @@ static void describe(const struct normal_error *error, char largest[CAPTION_BYTE
     }
 }
 
-static enum sheen_status render(struct job *job, const struct options *options,
+static enum sheen_status render(struct client *client, const struct options *options,
                                 struct sheen_request *request, enum sheen_surface surface,
                                 int level, struct sheen_frame *frame)
 {
     request->surface = surface;
     request->surface_level = (uint32_t)level;
-    return job_render(job, options, request, frame);
+    return client_render(client, options, request, frame);
 }
 
-static enum sheen_status draw_row(struct job *job, const struct options *options,
+static enum sheen_status draw_row(struct client *client, const struct options *options,
                                   struct sheen_request *request, int row,
                                   const struct sheen_frame *exact, struct sheen_frame *frame,
                                   struct figure *figure)
 {
     char title[CAPTION_BYTES], largest[CAPTION_BYTES], mean[CAPTION_BYTES];
     int level = FIRST_LEVEL + row;
-    enum sheen_status status = render(job, options, request, SHEEN_SURFACE_WIREFRAME, level, frame);
+    enum sheen_status status =
+        render(client, options, request, SHEEN_SURFACE_WIREFRAME, level, frame);
     if (status)
         return status;
     snprintf(title, sizeof(title), "wireframe, level %d", level);
     place(figure, WIREFRAME, row, frame, (const char *[]){title, "", ""});
-    status = render(job, options, request, SHEEN_SURFACE_POLYGON, level, frame);
+    status = render(client, options, request, SHEEN_SURFACE_POLYGON, level, frame);
     if (status)
         return status;
     figure->errors[row] = compare(frame, exact);
@@ -155,19 +156,19 @@ static enum sheen_status draw_row(struct job *job, const struct options *options
     return SHEEN_OK;
 }
 
-static enum sheen_status draw(struct job *job, const struct options *options,
+static enum sheen_status draw(struct client *client, const struct options *options,
                               struct sheen_frame *exact, struct figure *figure)
 {
     struct sheen_request request = options->request;
     struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
-    enum sheen_status status = render(job, options, &request, SHEEN_SURFACE_EXACT, 0, exact);
+    enum sheen_status status = render(client, options, &request, SHEEN_SURFACE_EXACT, 0, exact);
     if (!status && !figure_init(figure, &request))
         status =
-            failure_set(&job->error, SHEEN_NO_MEMORY, "no memory for nine panels of that size");
+            failure_set(&client->error, SHEEN_NO_MEMORY, "no memory for nine panels of that size");
     for (int row = 0; row < N_LEVELS && !status; row++)
-        status = draw_row(job, options, &request, row, exact, &frame, figure);
+        status = draw_row(client, options, &request, row, exact, &frame, figure);
     sheen_frame_finish(&frame);
-    return status ? status : canvas_write_png(&figure->canvas, options->output, &job->error);
+    return status ? status : canvas_write_png(&figure->canvas, options->output, &client->error);
 }
 
 static void print_text(const struct figure *figure)
@@ -181,14 +182,15 @@ static void print_text(const struct figure *figure)
     }
 }
 
-static void print_json(struct json *json, const struct options *options, const struct job *job,
-                       const struct sheen_frame *exact, const struct figure *figure)
+static void print_json(struct json *json, const struct options *options,
+                       const struct client *client, const struct sheen_frame *exact,
+                       const struct figure *figure)
 {
     json_object_begin(json, NULL);
     json_string(json, "file", options->output);
     json_uint(json, "width", figure->canvas.width_px);
     json_uint(json, "height", figure->canvas.height_px);
-    job_json_origin(json, job, options, exact);
+    client_json_origin(json, client, options, exact);
     json_string(json, "model", options->model);
     json_array_begin(json, "levels");
     for (int row = 0; row < N_LEVELS; row++) {
@@ -205,26 +207,26 @@ static void print_json(struct json *json, const struct options *options, const s
 
 static int run(const struct options *options)
 {
-    struct job job = {0};
+    struct client client = {0};
     struct sheen_frame exact = SHEEN_FRAME_DEFAULTS;
     struct figure figure = {0};
-    enum sheen_status status = file_check_writable(options->output, &job.error);
+    enum sheen_status status = file_check_writable(options->output, &client.error);
     if (status)
-        return job_finish(&job, status);
-    status = job_init(&job, options);
+        return client_finish(&client, status);
+    status = client_init(&client, options);
     if (!status)
-        status = draw(&job, options, &exact, &figure);
-    progress_clear(&job.progress);
+        status = draw(&client, options, &exact, &figure);
+    progress_clear(&client.progress);
     if (!status && options->json) {
         struct json json = {.out = stdout};
-        print_json(&json, options, &job, &exact, &figure);
-        status = job_finish_json(&job, &json);
+        print_json(&json, options, &client, &exact, &figure);
+        status = client_finish_json(&client, &json);
     } else if (!status) {
         print_text(&figure);
     }
     canvas_finish(&figure.canvas);
     sheen_frame_finish(&exact);
-    return job_finish(&job, status);
+    return client_finish(&client, status);
 }
 
 static const struct option_row ROWS[] = {

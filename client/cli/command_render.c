@@ -4,7 +4,7 @@
 
 #include "client/cli/commands.h"
 #include "client/cli/files/file.h"
-#include "client/cli/job.h"
+#include "client/cli/client.h"
 #include "client/cli/output/scene_json.h"
 #include "client/cli/options/values.h"
 
@@ -31,15 +31,16 @@ static bool check(struct options *options, char *why)
     return options_check_jpeg(options, why) && options_check_scene(options, why);
 }
 
-static void print_json(struct json *json, const struct options *options, const struct job *job,
-                       const struct sheen_frame *frame, const struct sheen_model_info *info)
+static void print_json(struct json *json, const struct options *options,
+                       const struct client *client, const struct sheen_frame *frame,
+                       const struct sheen_model_info *info)
 {
     json_object_begin(json, NULL);
     json_string(json, "file", options->output);
     json_uint(json, "file_bytes", frame->data_bytes);
     json_uint(json, "width", frame->width_px);
     json_uint(json, "height", frame->height_px);
-    job_json_origin(json, job, options, frame);
+    client_json_origin(json, client, options, frame);
     json_string(json, "address", options->server ? options->server : "private");
     json_string(json, "model", options->model);
     if (info->faces)
@@ -50,8 +51,8 @@ static void print_json(struct json *json, const struct options *options, const s
         json_string(json, "jpeg_subsampling",
                     value_subsampling_name(options->request.jpeg_subsampling));
     json_bool(json, "blank", frame->blank);
-    job_json_times(json, &frame->times);
-    job_json_schedule(json, &options->request);
+    client_json_times(json, &frame->times);
+    client_json_schedule(json, &options->request);
     scene_json(json, &options->request, frame);
     json_lines(json, "warnings", info->warnings);
     json_object_end(json);
@@ -69,14 +70,14 @@ static const char *light_advice(const struct sheen_request *request)
                        "--light-center, --light-u and --light-v";
 }
 
-static void print_summary(struct job *job, const struct options *options,
+static void print_summary(struct client *client, const struct options *options,
                           const struct sheen_frame *frame, const struct sheen_model_info *info)
 {
-    progress_clear(&job->progress);
-    job_print_warnings(job, info->warnings);
+    progress_clear(&client->progress);
+    client_print_warnings(client, info->warnings);
     if (frame->up_source == SHEEN_UP_GUESSED)
         progress_note(
-            &job->progress,
+            &client->progress,
             "up: %s, guessed from the model's box; where it is wrong, --up %s, or another",
             frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "y" : "z");
     if (frame->blank)
@@ -84,7 +85,7 @@ static void print_summary(struct job *job, const struct options *options,
                 "sheen: warning: no pixel shows the surface: see --eye, --target, --fov and "
                 "--ortho; without them a camera frames the model\n");
     if (frame->light_share < 0.5)
-        progress_note(&job->progress, "the light is met on %.2g %% of what is seen: %s",
+        progress_note(&client->progress, "the light is met on %.2g %% of what is seen: %s",
                       100 * frame->light_share, light_advice(&options->request));
     fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", ", options->output, frame->width_px,
             frame->height_px);
@@ -95,10 +96,11 @@ static void print_summary(struct job *job, const struct options *options,
 
 /* What there is to say about the model. The frame is here by then and outlives a daemon that is
  * not: the info says that the rest is unknown, its counts are 0. */
-static void ask_about_model(struct job *job, const char *model, struct sheen_model_info *info)
+static void ask_about_model(struct client *client, const char *model, struct sheen_model_info *info)
 {
     struct sheen_error error;
-    if (sheen_query_model(job->session, job->model_id, &job->report, info, &error) == SHEEN_OK)
+    if (sheen_query_model(client->session, client->model_id, &client->report, info, &error) ==
+        SHEEN_OK)
         return;
     *info = (struct sheen_model_info){0};
     snprintf(info->warnings, sizeof(info->warnings), "%.1000s: its warnings are unknown: %s", model,
@@ -107,30 +109,30 @@ static void ask_about_model(struct job *job, const char *model, struct sheen_mod
 
 static int run(const struct options *options)
 {
-    struct job job = {0};
+    struct client client = {0};
     struct sheen_request request = options->request;
     struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
-    enum sheen_status status = file_check_writable(options->output, &job.error);
+    enum sheen_status status = file_check_writable(options->output, &client.error);
     if (status)
-        return job_finish(&job, status);
-    status = job_init(&job, options);
+        return client_finish(&client, status);
+    status = client_init(&client, options);
     if (!status)
-        status = job_render(&job, options, &request, &frame);
+        status = client_render(&client, options, &request, &frame);
     if (!status)
-        status = file_write(options->output, frame.data, frame.data_bytes, &job.error);
+        status = file_write(options->output, frame.data, frame.data_bytes, &client.error);
     /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
     if (!status)
-        ask_about_model(&job, options->model, &info);
+        ask_about_model(&client, options->model, &info);
     if (!status && !options->quiet)
-        print_summary(&job, options, &frame, &info);
+        print_summary(&client, options, &frame, &info);
     if (!status && options->json) {
         struct json json = {.out = stdout};
-        print_json(&json, options, &job, &frame, &info);
-        status = job_finish_json(&job, &json);
+        print_json(&json, options, &client, &frame, &info);
+        status = client_finish_json(&client, &json);
     }
     sheen_frame_finish(&frame);
-    return job_finish(&job, status);
+    return client_finish(&client, status);
 }
 
 static const struct option_row ROWS[] = {

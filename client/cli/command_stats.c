@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "client/cli/commands.h"
-#include "client/cli/job.h"
+#include "client/cli/client.h"
 
 /* What rates are counted over: of a daemon that has just started, whose one request would look like
  * a thousand a second, a second. */
@@ -20,7 +20,7 @@ static double per_second(const struct sheen_stats *stats, uint64_t n)
 static void json_times(struct json *json, const char *key, const struct sheen_times *times)
 {
     json_object_begin(json, key);
-    job_json_times(json, times);
+    client_json_times(json, times);
     json_object_end(json);
 }
 
@@ -138,19 +138,19 @@ static bool check(struct options *options, char *why)
 
 static int run(const struct options *options)
 {
-    struct job job;
+    struct client client;
     struct sheen_stats stats = SHEEN_STATS_DEFAULTS;
-    enum sheen_status status = job_init(&job, options);
+    enum sheen_status status = client_init(&client, options);
     if (!status)
-        status = sheen_query_stats(job.session, &stats, &job.error);
+        status = sheen_query_stats(client.session, &stats, &client.error);
     if (!status && options->json) {
         struct json json = {.out = stdout};
         print_json(&json, &stats);
-        status = job_finish_json(&job, &json);
+        status = client_finish_json(&client, &json);
     } else if (!status) {
         print_table(&stats);
     }
-    return job_finish(&job, status);
+    return client_finish(&client, status);
 }
 
 static const struct option_row *const TABLES[] = {OPTIONS_COMMON, OPTIONS_OUTPUT, NULL};

@@ -9,7 +9,7 @@
 #include "client/cli/base/clock.h"
 #include "client/cli/commands.h"
 #include "client/cli/files/file.h"
-#include "client/cli/job.h"
+#include "client/cli/client.h"
 #include "client/cli/options/lights_text.h"
 #include "client/cli/base/failure.h"
 #include "client/cli/turntable.h"
@@ -70,26 +70,26 @@ static void move(struct stream *stream, const struct options *options, uint32_t 
         stream->request.lights[0].centre[i] += LIGHT_SWING * sin(angle) * stream->light.u[i];
 }
 
-static enum sheen_status send_one(struct job *job, struct stream *stream, uint32_t number)
+static enum sheen_status send_one(struct client *client, struct stream *stream, uint32_t number)
 {
     struct sent sent = {.frame = number, .us = clock_now_us()};
-    enum sheen_status status = sheen_send(job->session, &stream->request, &job->error);
-    stream->sent[sheen_last_number(job->session) % SHEEN_MAX_IN_FLIGHT] = sent;
+    enum sheen_status status = sheen_send(client->session, &stream->request, &client->error);
+    stream->sent[sheen_last_number(client->session) % SHEEN_MAX_IN_FLIGHT] = sent;
     return status;
 }
 
 /* A frame's file. It counts as drawn when it is there: after a loss of the server what has no file
  * is asked for again, and nothing else. */
-static enum sheen_status write_one(struct job *job, struct stream *stream,
+static enum sheen_status write_one(struct client *client, struct stream *stream,
                                    const struct options *options, uint32_t number)
 {
     if (!options->output)
         return SHEEN_OK;
     char *path = frame_names_path(&options->frame_names, number);
     if (!path)
-        return failure_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
+        return failure_set(&client->error, SHEEN_NO_MEMORY, "no memory for a file's name");
     enum sheen_status status =
-        file_write(path, stream->frame.data, stream->frame.data_bytes, &job->error);
+        file_write(path, stream->frame.data, stream->frame.data_bytes, &client->error);
     free(path);
     if (!status)
         stream->written_bytes += stream->frame.data_bytes;
@@ -104,16 +104,16 @@ static void keep_range(struct stream *stream)
         show->range = stream->frame.show_range;
 }
 
-static enum sheen_status receive_one(struct job *job, struct stream *stream,
+static enum sheen_status receive_one(struct client *client, struct stream *stream,
                                      const struct options *options)
 {
     enum sheen_status status =
-        sheen_receive(job->session, &job->report, &stream->frame, &job->error);
+        sheen_receive(client->session, &client->report, &stream->frame, &client->error);
     const struct sent *sent = &stream->sent[stream->frame.number % SHEEN_MAX_IN_FLIGHT];
     bool is_late = status == SHEEN_LATE && stream->request.deadline_ms;
     if (status && !is_late)
         return status;
-    job_answered(job);
+    client_answered(client);
     if (is_late) {
         stream->records[sent->frame].state = LATE;
         stream->n_late++;
@@ -122,7 +122,7 @@ static enum sheen_status receive_one(struct job *job, struct stream *stream,
     keep_range(stream);
     const struct sheen_times *times = &stream->frame.times;
     uint64_t round_trip_us = (uint64_t)(clock_now_us() - sent->us);
-    status = write_one(job, stream, options, sent->frame);
+    status = write_one(client, stream, options, sent->frame);
     if (status)
         return status;
     stream->n_drawn++;
@@ -168,13 +168,13 @@ static void place_camera(struct stream *stream, const struct options *options,
 
 /* Where no eye is given: a small frame by the daemon's own camera tells from which side it looks
  * and which way is up, the model's info where its middle is. */
-static enum sheen_status find_camera(struct job *job, struct stream *stream,
+static enum sheen_status find_camera(struct client *client, struct stream *stream,
                                      const struct options *options)
 {
     struct sheen_request probe = options->request;
     struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
-    memcpy(probe.model_id, job->model_id, SHEEN_ID_BYTES);
+    memcpy(probe.model_id, client->model_id, SHEEN_ID_BYTES);
     uint32_t longer = probe.width_px > probe.height_px ? probe.width_px : probe.height_px;
     double scale = fmin(1, (double)PROBE_PX / longer);
     probe.width_px = (uint32_t)fmax(1, round(scale * probe.width_px));
@@ -191,11 +191,12 @@ static enum sheen_status find_camera(struct job *job, struct stream *stream,
     probe.request_class = stream->request.request_class;
     probe.deadline_ms = 0;
     enum sheen_status status =
-        sheen_render(job->session, &probe, &job->report, &frame, &job->error);
+        sheen_render(client->session, &probe, &client->report, &frame, &client->error);
     if (!status)
-        status = sheen_query_model(job->session, job->model_id, &job->report, &info, &job->error);
+        status = sheen_query_model(client->session, client->model_id, &client->report, &info,
+                                   &client->error);
     if (!status) {
-        job_answered(job);
+        client_answered(client);
         place_camera(stream, options, &frame, &info);
     }
     sheen_frame_finish(&frame);
@@ -203,17 +204,17 @@ static enum sheen_status find_camera(struct job *job, struct stream *stream,
 }
 
 /* It goes alone, and has time: its answer tells the camera and the light that move. */
-static enum sheen_status first_frame(struct job *job, struct stream *stream,
+static enum sheen_status first_frame(struct client *client, struct stream *stream,
                                      const struct options *options)
 {
     stream->request.deadline_ms = 0;
-    enum sheen_status status = send_one(job, stream, 0);
+    enum sheen_status status = send_one(client, stream, 0);
     if (!status)
-        status = receive_one(job, stream, options);
+        status = receive_one(client, stream, options);
     if (status)
         return status;
     stream->request.deadline_ms = options->request.deadline_ms;
-    progress_clear(&job->progress);
+    progress_clear(&client->progress);
     if (!stream->has_camera) {
         stream->camera = stream->frame.camera;
         keep_axis(stream, &stream->frame);
@@ -230,17 +231,17 @@ static uint32_t n_answered(const struct stream *stream)
 }
 
 /* All that have no answer yet. */
-static enum sheen_status run_frames(struct job *job, struct stream *stream,
+static enum sheen_status run_frames(struct client *client, struct stream *stream,
                                     const struct options *options)
 {
-    enum sheen_status status = job_upload_images(job, options, &stream->request);
+    enum sheen_status status = client_upload_images(client, options, &stream->request);
     if (!status && !stream->has_camera && options->request.camera.auto_view && !options->light_only)
-        status = find_camera(job, stream, options);
+        status = find_camera(client, stream, options);
     if (!status && n_answered(stream) == 0)
-        status = first_frame(job, stream, options);
+        status = first_frame(client, stream, options);
     struct sheen_server server = SHEEN_SERVER_DEFAULTS;
     if (!status)
-        status = sheen_get_server(job->session, &server, &job->error);
+        status = sheen_get_server(client->session, &server, &client->error);
     uint32_t next = 0, n_in_flight = 0;
     uint32_t most = server.max_in_flight < IN_FLIGHT ? server.max_in_flight : IN_FLIGHT;
     while (!status && n_answered(stream) < options->frames) {
@@ -248,12 +249,13 @@ static enum sheen_status run_frames(struct job *job, struct stream *stream,
             next++;
         if (next < options->frames && n_in_flight < most) {
             move(stream, options, next);
-            status = send_one(job, stream, next++);
+            status = send_one(client, stream, next++);
             n_in_flight++;
         } else {
-            status = receive_one(job, stream, options);
+            status = receive_one(client, stream, options);
             n_in_flight--;
-            job->report.report(job->report.context, "frames", n_answered(stream), options->frames);
+            client->report.report(client->report.context, "frames", n_answered(stream),
+                                  options->frames);
         }
     }
     stream->elapsed_us = clock_now_us() - stream->start_us;
@@ -319,13 +321,13 @@ static void json_file(struct json *json, const struct options *options, uint32_t
 }
 
 static void print_json(struct json *json, const struct stream *stream, uint32_t n_frames,
-                       const struct job *job, const struct options *options)
+                       const struct client *client, const struct options *options)
 {
     const struct sheen_frame *frame = &stream->frame;
     json_object_begin(json, NULL);
     json_uint(json, "width", frame->width_px);
     json_uint(json, "height", frame->height_px);
-    job_json_origin(json, job, options, frame);
+    client_json_origin(json, client, options, frame);
     json_double(json, "frames_per_second", frames_per_second(stream, n_frames));
     json_uint(json, "late", stream->n_late);
     if (options->output) {
@@ -333,7 +335,7 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
         json_uint(json, "written", n_frames);
         json_uint(json, "written_bytes", stream->written_bytes);
     }
-    job_json_schedule(json, &stream->request);
+    client_json_schedule(json, &stream->request);
     if (stream->request.show.kind != SHEEN_SHOW_LINES)
         json_string(json, "show", text_show_kind(stream->request.show.kind));
     if (stream->request.show.range > 0)
@@ -356,30 +358,30 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
 }
 
 /* Before the work, by the first file's name. */
-static enum sheen_status check_writable(struct job *job, const struct options *options)
+static enum sheen_status check_writable(struct client *client, const struct options *options)
 {
     if (!options->output)
         return SHEEN_OK;
     char *path = frame_names_path(&options->frame_names, 0);
     enum sheen_status status =
-        path ? file_check_writable(path, &job->error)
-             : failure_set(&job->error, SHEEN_NO_MEMORY, "no memory for a file's name");
+        path ? file_check_writable(path, &client->error)
+             : failure_set(&client->error, SHEEN_NO_MEMORY, "no memory for a file's name");
     free(path);
     return status;
 }
 
-static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_t *sorted,
-                                 const struct options *options)
+static enum sheen_status run_command(struct client *client, struct stream *stream, uint64_t *sorted,
+                                     const struct options *options)
 {
-    enum sheen_status status = check_writable(job, options);
+    enum sheen_status status = check_writable(client, options);
     if (status)
         return status;
-    status = job_init(job, options);
+    status = client_init(client, options);
     if (!status)
-        status = run_frames(job, stream, options);
-    while (status && job_resume(job, options, &status))
-        status = run_frames(job, stream, options);
-    progress_clear(&job->progress);
+        status = run_frames(client, stream, options);
+    while (status && client_resume(client, options, &status))
+        status = run_frames(client, stream, options);
+    progress_clear(&client->progress);
     if (status)
         return status;
     keep_drawn(stream, options->frames);
@@ -388,13 +390,13 @@ static enum sheen_status run_job(struct job *job, struct stream *stream, uint64_
         return SHEEN_OK;
     }
     struct json json = {.out = stdout};
-    print_json(&json, stream, stream->n_drawn, job, options);
-    return job_finish_json(job, &json);
+    print_json(&json, stream, stream->n_drawn, client, options);
+    return client_finish_json(client, &json);
 }
 
 static int run(const struct options *options)
 {
-    struct job job = {0};
+    struct client client = {0};
     struct stream stream = {.request = options->request, .frame = SHEEN_FRAME_DEFAULTS};
     if (!options->output)
         stream.request.format = SHEEN_FORMAT_ZSTD;
@@ -403,13 +405,13 @@ static int run(const struct options *options)
     stream.records = calloc(options->frames, sizeof(*stream.records));
     uint64_t *sorted = calloc(options->frames, sizeof(*sorted));
     enum sheen_status status = stream.records && sorted
-                                   ? run_job(&job, &stream, sorted, options)
-                                   : failure_set(&job.error, SHEEN_NO_MEMORY,
+                                   ? run_command(&client, &stream, sorted, options)
+                                   : failure_set(&client.error, SHEEN_NO_MEMORY,
                                                  "no memory for %u frames' times", options->frames);
     sheen_frame_finish(&stream.frame);
     free(sorted);
     free(stream.records);
-    return job_finish(&job, status);
+    return client_finish(&client, status);
 }
 
 static bool apply_frames(struct options *options, const char *value, char *why)

@@ -100,7 +100,7 @@ enum options_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_WRONG };
 
 extern const struct option_row OPTIONS_MODEL[];     /* weld: of commands that take a model */
 extern const struct option_row OPTIONS_COMMON[];    /* server, device, quiet */
-extern const struct option_row OPTIONS_RECONNECT[]; /* of commands that call job_resume() */
+extern const struct option_row OPTIONS_RECONNECT[]; /* of commands that call client_resume() */
 extern const struct option_row OPTIONS_OUTPUT[];    /* json, help: of every command */
 extern const struct option_row OPTIONS_SIZE[];      /* of commands with no default of their own */
 extern const struct option_row OPTIONS_SCENE[];     /* camera, light, pattern, colours */
