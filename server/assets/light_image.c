@@ -62,7 +62,7 @@ static void decode_done(struct task *task)
         return;
     }
     order->progress->stage = "upload";
-    build->task = (struct task){upload_run, upload_done, build, NULL};
+    build->task = (struct task){upload_run, upload_done, build, {NULL}};
     render_thread_submit(order->render_thread, &build->task);
 }
 
@@ -83,7 +83,7 @@ bool light_image_build_start(const struct build_order *order, struct error *erro
     if (build->max_px > order->max_image_px)
         build->max_px = order->max_image_px;
     order->progress->stage = "reading";
-    build->task = (struct task){decode_run, decode_done, build, NULL};
+    build->task = (struct task){decode_run, decode_done, build, {NULL}};
     pool_submit(order->readers, &build->task, POOL_LATER);
     return true;
 }
@@ -101,6 +101,6 @@ static void destroy_done(struct task *task)
 
 void light_image_destroy(struct light_image *image, struct render_thread *render_thread)
 {
-    image->destroy_task = (struct task){destroy_run, destroy_done, image, NULL};
+    image->destroy_task = (struct task){destroy_run, destroy_done, image, {NULL}};
     render_thread_submit(render_thread, &image->destroy_task);
 }

@@ -95,7 +95,7 @@ static void start_upload(struct model_build *build)
     drop_cage(build);
     build->order.progress->stage = "upload";
     build->order.progress->total = 0;
-    build->task = (struct task){upload_run, upload_done, build, NULL};
+    build->task = (struct task){upload_run, upload_done, build, {NULL}};
     render_thread_submit(build->order.render_thread, &build->task);
 }
 
@@ -152,7 +152,7 @@ static void range_done(struct task *task)
         end_build(build, fail_named(build, &build->ranges[i].error));
         return;
     }
-    build->task = (struct task){support_run, support_done, build, NULL};
+    build->task = (struct task){support_run, support_done, build, {NULL}};
     pool_submit(build->order.pool, &build->task, POOL_LATER);
 }
 
@@ -173,7 +173,7 @@ static bool start_ranges(struct model_build *build)
         range->first = (size_t)((unsigned __int128)n_faces * i / n);
         range->last = (size_t)((unsigned __int128)n_faces * (i + 1) / n);
         range->build = build;
-        range->task = (struct task){range_run, range_done, range, NULL};
+        range->task = (struct task){range_run, range_done, range, {NULL}};
         pool_submit(build->order.pool, &range->task, POOL_LATER);
     }
     return true;
@@ -241,7 +241,7 @@ bool model_build_start(const struct build_order *order, struct error *error)
     build->model = model;
     build->start_us = clock_now_us();
     order->progress->stage = "reading";
-    build->task = (struct task){read_run, read_done, build, NULL};
+    build->task = (struct task){read_run, read_done, build, {NULL}};
     pool_submit(order->readers, &build->task, POOL_LATER);
     return true;
 }
@@ -259,6 +259,6 @@ static void destroy_done(struct task *task)
 
 void model_destroy(struct model *model, struct render_thread *render_thread)
 {
-    model->destroy_task = (struct task){destroy_run, destroy_done, model, NULL};
+    model->destroy_task = (struct task){destroy_run, destroy_done, model, {NULL}};
     render_thread_submit(render_thread, &model->destroy_task);
 }

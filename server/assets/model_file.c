@@ -121,7 +121,7 @@ bool model_file_load(const struct model_file_order *order, struct error *error)
         error_set(error, ERROR_MODEL, "no model file '%.200s' at this daemon", order->name);
     } else if (store_reserve(order->store, load->holder, store_account(order->store), ACCOUNT_INPUT,
                              load->size, load->name, ERROR_MODEL, error)) {
-        load->task = (struct task){load_run, load_done, load, NULL};
+        load->task = (struct task){load_run, load_done, load, {NULL}};
         pool_submit(order->pool, &load->task, POOL_LATER);
         return true;
     }

@@ -128,7 +128,7 @@ static void start_polygons(struct request *request)
     }
     request->polygon_bytes = bytes;
     request_state_move(&request->state, REQUEST_POLYGONS);
-    request->task = (struct task){polygons_run, polygons_done, request, NULL};
+    request->task = (struct task){polygons_run, polygons_done, request, {NULL}};
     pool_submit(request->host->pool, &request->task, POOL_LATER);
 }
 
@@ -242,7 +242,7 @@ static void frame_drawn(struct request *request)
         return;
     }
     request_state_move(&request->state, REQUEST_PAINTING);
-    request->task = (struct task){paint_run, paint_done, request, NULL};
+    request->task = (struct task){paint_run, paint_done, request, {NULL}};
     pool_submit(request->host->pool, &request->task, request_urgency(request));
 }
 
@@ -348,7 +348,7 @@ void request_start_next(struct request_host *host)
             request_reply_late(request);
         } else if (take_memory(request)) {
             request_state_move(&request->state, REQUEST_DRAWING);
-            request->task = (struct task){step_run, step_done, request, NULL};
+            request->task = (struct task){step_run, step_done, request, {NULL}};
             render_thread_submit(host->render_thread, &request->task);
         }
     }

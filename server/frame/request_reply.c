@@ -85,7 +85,8 @@ static void hold(struct request *request, struct encoded *encoded)
 
 void request_send_held(struct request_client *client)
 {
-    for (struct schedule_entry *entry = client->queue.head; entry; entry = entry->next) {
+    const struct schedule_entry *entry;
+    TAILQ_FOREACH (entry, &client->queue.entries, link) {
         struct request *request = entry->owner;
         if (entry->state != SCHEDULE_HELD)
             continue;

@@ -5,6 +5,7 @@
 void scheduler_add_queue(struct schedule_queue *queue)
 {
     *queue = (struct schedule_queue){0};
+    TAILQ_INIT(&queue->entries);
     for (int c = 0; c < N_CLASSES; c++)
         queue->flow[c].queue = queue;
 }
@@ -65,7 +66,8 @@ static bool is_replaceable(const struct schedule_entry *entry)
 static struct schedule_entry *find_replaced(const struct schedule_queue *queue,
                                             const struct schedule_entry *by)
 {
-    for (struct schedule_entry *entry = queue->head; entry; entry = entry->next)
+    struct schedule_entry *entry;
+    TAILQ_FOREACH (entry, &queue->entries, link)
         if (is_replaceable(entry) && entry->view == by->view)
             return entry;
     return NULL;
@@ -79,12 +81,7 @@ struct schedule_entry *scheduler_enter(struct scheduler *scheduler, struct sched
     if (is_replaceable(entry) && (replaced = find_replaced(queue, entry)))
         scheduler_leave(scheduler, replaced);
     entry->queue = queue;
-    entry->next = NULL;
-    if (queue->head)
-        queue->tail->next = entry;
-    else
-        queue->head = entry;
-    queue->tail = entry;
+    TAILQ_INSERT_TAIL(&queue->entries, entry, link);
     struct schedule_flow *flow = flow_of(entry);
     if (flow->n++ == 0)
         link_flow(&scheduler->classes[entry->request_class], flow);
@@ -97,24 +94,13 @@ void scheduler_ready(struct schedule_entry *entry)
     entry->state = SCHEDULE_READY;
 }
 
-static void unlink_entry(struct schedule_entry *entry)
-{
-    struct schedule_queue *queue = entry->queue;
-    struct schedule_entry *before = NULL;
-    for (struct schedule_entry *e = queue->head; e != entry; e = e->next)
-        before = e;
-    *(before ? &before->next : &queue->head) = entry->next;
-    if (queue->tail == entry)
-        queue->tail = before;
-}
-
 void scheduler_leave(struct scheduler *scheduler, struct schedule_entry *entry)
 {
     if (!entry->queue)
         return;
     struct schedule_class *class = &scheduler->classes[entry->request_class];
     struct schedule_flow *flow = flow_of(entry);
-    unlink_entry(entry);
+    TAILQ_REMOVE(&entry->queue->entries, entry, link);
     if (--flow->n == 0)
         unlink_flow(class, flow);
     entry->queue = NULL;
@@ -158,7 +144,8 @@ static struct schedule_entry *drawable(const struct scheduler *scheduler,
                      scheduler->classes[request_class].begun < SCHEDULER_PER_CLASS;
     struct schedule_entry *first_ready = NULL;
     bool one_waits = false;
-    for (struct schedule_entry *entry = flow->queue->head; entry; entry = entry->next) {
+    struct schedule_entry *entry;
+    TAILQ_FOREACH (entry, &flow->queue->entries, link) {
         if (entry->request_class != request_class)
             continue;
         if (entry->state == SCHEDULE_DRAWING)

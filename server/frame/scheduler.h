@@ -12,6 +12,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <sys/queue.h>
 
 enum request_class { CLASS_INTERACTIVE, CLASS_STILL, CLASS_BATCH };
 enum { N_CLASSES = 3 };
@@ -43,7 +44,7 @@ struct schedule_entry {
 
     enum schedule_state state;
     struct schedule_queue *queue; /* NULL once it has left, or its session has */
-    struct schedule_entry *next;
+    TAILQ_ENTRY(schedule_entry) link;
     uint64_t charged_us; /* for the tile on the device */
     bool has_drawn;      /* a tile */
 };
@@ -58,8 +59,8 @@ struct schedule_flow {
     struct schedule_flow *next, *previous; /* ring of those with entries */
 };
 
-struct schedule_queue { /* one per session */
-    struct schedule_entry *head, *tail;
+struct schedule_queue {                                   /* one per session */
+    TAILQ_HEAD(schedule_entries, schedule_entry) entries; /* in the order in which they entered */
     struct schedule_flow flow[N_CLASSES];
 };
 

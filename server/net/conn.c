@@ -14,7 +14,7 @@
 #define MAX_PIECES 64 /* blocks per sendmsg() */
 
 struct conn_block {
-    struct conn_block *next;
+    STAILQ_ENTRY(conn_block) link;
     const uint8_t *bytes;
     size_t size, sent;
     void (*release)(void *);
@@ -54,16 +54,14 @@ static const struct conn_transport PLAIN = {plain_read, plain_write, plain_pendi
 static void update_events(struct conn *conn)
 {
     bool reads = !conn->peer_ended && (conn->state != CONN_OPEN || !conn->held);
-    bool writes = conn->out_head || conn->read_wants_write;
+    bool writes = !STAILQ_EMPTY(&conn->unsent) || conn->read_wants_write;
     loop_change(conn->loop, &conn->source, (reads ? EPOLLIN : 0u) | (writes ? EPOLLOUT : 0u));
 }
 
 static void drop_block(struct conn *conn)
 {
-    struct conn_block *block = conn->out_head;
-    conn->out_head = block->next;
-    if (!conn->out_head)
-        conn->out_tail = NULL;
+    struct conn_block *block = STAILQ_FIRST(&conn->unsent);
+    STAILQ_REMOVE_HEAD(&conn->unsent, link);
     conn->unsent_bytes -= block->size - block->sent;
     if (block->release)
         block->release(block->owner);
@@ -79,7 +77,7 @@ void conn_close(struct conn *conn)
     loop_unwatch(conn->loop, &conn->source);
     conn->transport->finish(conn);
     close(fd);
-    while (conn->out_head)
+    while (!STAILQ_EMPTY(&conn->unsent))
         drop_block(conn);
     conn->in_used = 0;
 }
@@ -125,11 +123,7 @@ static struct conn_block *append(struct conn *conn, size_t size, size_t copied)
         return NULL;
     }
     *block = (struct conn_block){.bytes = block->copy, .size = size};
-    if (conn->out_tail)
-        conn->out_tail->next = block;
-    else
-        conn->out_head = block;
-    conn->out_tail = block;
+    STAILQ_INSERT_TAIL(&conn->unsent, block, link);
     if (conn->unsent_bytes == 0) /* the clock starts with the first byte to send */
         conn->last_out_us = clock_now_us();
     conn->unsent_bytes += size;
@@ -167,7 +161,10 @@ static ssize_t write_some(struct conn *conn)
 {
     struct iovec pieces[MAX_PIECES];
     size_t n = 0;
-    for (struct conn_block *b = conn->out_head; b && n < MAX_PIECES; b = b->next) {
+    const struct conn_block *b;
+    STAILQ_FOREACH (b, &conn->unsent, link) {
+        if (n == MAX_PIECES)
+            break;
         struct iovec *piece = &pieces[n++];
         memcpy(&piece->iov_base, &(const void *){b->bytes + b->sent}, sizeof(void *));
         piece->iov_len = b->size - b->sent;
@@ -183,12 +180,13 @@ static void count_sent(struct conn *conn, size_t n)
 {
     *conn->sent_bytes += n;
     conn->last_out_us = clock_now_us();
-    while (conn->out_head && n >= conn->out_head->size - conn->out_head->sent) {
-        n -= conn->out_head->size - conn->out_head->sent;
+    struct conn_block *first;
+    while ((first = STAILQ_FIRST(&conn->unsent)) && n >= first->size - first->sent) {
+        n -= first->size - first->sent;
         drop_block(conn);
     }
     if (n > 0) {
-        conn->out_head->sent += n;
+        first->sent += n;
         conn->unsent_bytes -= n;
     }
 }
@@ -197,7 +195,7 @@ void conn_flush(struct conn *conn)
 {
     if (conn->state == CONN_CLOSED)
         return;
-    while (conn->out_head) {
+    while (!STAILQ_EMPTY(&conn->unsent)) {
         ssize_t n = write_some(conn);
         if (n < 0 && errno == EINTR)
             continue;
@@ -209,7 +207,7 @@ void conn_flush(struct conn *conn)
             break;
         count_sent(conn, (size_t)n);
     }
-    if (!conn->out_head && conn->state == CONN_FLUSHING)
+    if (STAILQ_EMPTY(&conn->unsent) && conn->state == CONN_FLUSHING)
         linger(conn);
     if (conn->state != CONN_CLOSED)
         update_events(conn);
@@ -379,6 +377,7 @@ bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_h
         .in = malloc(CONN_IN_BYTES),
         .in_capacity = CONN_IN_BYTES,
     };
+    STAILQ_INIT(&conn->unsent);
     int flags = fcntl(fd, F_GETFL);
     if (!conn->in)
         error_set(error, ERROR_SERVER, "no memory for another connection");

@@ -11,6 +11,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/queue.h>
 #include <sys/types.h>
 
 #include "protocol/frame.h"
@@ -74,7 +75,7 @@ struct conn {
     bool held;       /* no message is delivered and nothing read */
     bool peer_ended; /* the peer will send no more */
 
-    struct conn_block *out_head, *out_tail;
+    STAILQ_HEAD(conn_blocks, conn_block) unsent;
     struct block_cache *block_cache; /* where their memory comes from; NULL until the owner says */
     size_t unsent_bytes;
     uint64_t *sent_bytes; /* everybody's; counted up here */

@@ -218,7 +218,7 @@ static void start_strips(struct encode_job *job, size_t n,
     for (size_t i = 0; i < n; i++) {
         struct strip_task *strip = &job->strips[i];
         *strip = (struct strip_task){.job = job, .index = i};
-        strip->task = (struct task){run, strip_done, strip, NULL};
+        strip->task = (struct task){run, strip_done, strip, {NULL}};
         pool_submit(job->pool, &strip->task, job->urgency);
     }
 }
@@ -425,7 +425,7 @@ static void start_file(struct encode_job *job)
         end_job_no_memory(job);
         return;
     }
-    job->file_task = (struct task){file_run, file_done, job, NULL};
+    job->file_task = (struct task){file_run, file_done, job, {NULL}};
     pool_submit(job->pool, &job->file_task, job->urgency);
 }
 

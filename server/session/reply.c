@@ -3,7 +3,7 @@
 #include <string.h>
 
 struct reply {
-    struct reply *next;
+    TAILQ_ENTRY(reply) link;
     struct block_cache *block_cache;
     uint32_t seq;
     enum request_class request_class;
@@ -13,6 +13,12 @@ struct reply {
     struct encoded *encoded; /* of a frame, or NULL */
 };
 
+void reply_list_init(struct reply_list *list, struct block_cache *block_cache)
+{
+    *list = (struct reply_list){.block_cache = block_cache};
+    TAILQ_INIT(&list->replies);
+}
+
 struct reply *reply_expect(struct reply_list *list, uint32_t seq, enum request_class request_class)
 {
     struct reply *reply = block_cache_take(list->block_cache, sizeof *reply);
@@ -20,11 +26,7 @@ struct reply *reply_expect(struct reply_list *list, uint32_t seq, enum request_c
         return NULL;
     *reply = (struct reply){
         .block_cache = list->block_cache, .seq = seq, .request_class = request_class};
-    if (list->tail)
-        list->tail->next = reply;
-    else
-        list->head = reply;
-    list->tail = reply;
+    TAILQ_INSERT_TAIL(&list->replies, reply, link);
     list->n++;
     return reply;
 }
@@ -34,13 +36,9 @@ uint32_t reply_seq(const struct reply *reply)
     return reply->seq;
 }
 
-/* Takes out the answer behind `before` (NULL: the first). */
-static void drop(struct reply_list *list, struct reply *before)
+static void drop(struct reply_list *list, struct reply *reply)
 {
-    struct reply **link = before ? &before->next : &list->head, *reply = *link;
-    *link = reply->next;
-    if (list->tail == reply)
-        list->tail = before;
+    TAILQ_REMOVE(&list->replies, reply, link);
     list->n--;
     encoded_destroy(reply->encoded);
     block_cache_give(list->block_cache, reply->message);
@@ -49,8 +47,8 @@ static void drop(struct reply_list *list, struct reply *before)
 
 void reply_list_finish(struct reply_list *list)
 {
-    while (list->head)
-        drop(list, NULL);
+    while (!TAILQ_EMPTY(&list->replies))
+        drop(list, TAILQ_FIRST(&list->replies));
 }
 
 bool reply_fill(struct reply *reply, uint8_t type, const void *body)
@@ -139,7 +137,7 @@ static bool is_due(const struct reply_list *list, const struct reply *reply,
     if (!reply->ready)
         return false;
     if (list->is_ordered || reply->last)
-        return reply == list->head;
+        return reply == TAILQ_FIRST(&list->replies);
     if (!reply->encoded)
         return true;
     bool is_clear = reply->request_class != CLASS_INTERACTIVE || list->unsent == 0;
@@ -149,20 +147,20 @@ static bool is_due(const struct reply_list *list, const struct reply *reply,
 void reply_send_due(struct reply_list *list, struct conn *conn)
 {
     bool owed[N_CLASSES] = {false}, sent = false, closes = false, is_over = false;
-    struct reply *before = NULL;
-    for (struct reply *reply = list->head, *next; reply && !is_over; reply = next) {
-        next = reply->next;
+    struct reply *reply = TAILQ_FIRST(&list->replies);
+    while (reply && !is_over) {
+        struct reply *next = TAILQ_NEXT(reply, link);
         is_over = reply->last; /* nothing after it */
         if (is_due(list, reply, owed)) {
             closes = reply->last;
             send_reply(list, reply, conn);
-            drop(list, before);
+            drop(list, reply);
             sent = true;
         } else {
             owed[reply->request_class] = true;
-            before = reply;
             is_over |= list->is_ordered; /* nothing overtakes */
         }
+        reply = next;
     }
     if (sent)
         conn_flush(conn);

@@ -4,6 +4,8 @@
 #ifndef SHEEN_SESSION_REPLY_H
 #define SHEEN_SESSION_REPLY_H
 
+#include <sys/queue.h>
+
 #include "protocol/message.h"
 #include "server/net/conn.h"
 #include "server/output/encode.h"
@@ -12,12 +14,15 @@
 struct reply; /* one that is owed; lives in its list until it is sent */
 
 struct reply_list {
-    struct reply *head, *tail;       /* in the order of their requests */
-    unsigned n;                      /* owed */
-    bool is_ordered;                 /* as minor version 0 has it */
-    unsigned unsent;                 /* interactive frames handed to the connection: at most 1 */
-    struct block_cache *block_cache; /* where the replies' memory comes from, or NULL */
+    TAILQ_HEAD(replies, reply) replies; /* in the order of their requests */
+    unsigned n;                         /* owed */
+    bool is_ordered;                    /* as minor version 0 has it */
+    unsigned unsent;                    /* interactive frames handed to the connection: at most 1 */
+    struct block_cache *block_cache;    /* where the replies' memory comes from, or NULL */
 };
+
+/* None is owed. `block_cache`: as in the struct. */
+void reply_list_init(struct reply_list *list, struct block_cache *block_cache);
 
 /* A request has come; `request_class` is that of its frame, CLASS_STILL for what has none. NULL
  * when memory is short: the connection cannot go on then. */

@@ -196,7 +196,8 @@ struct session *session_create(struct session_host *host, int fd,
         return NULL;
     }
     session->host = host;
-    session->conn.block_cache = session->replies.block_cache = host->block_cache;
+    session->conn.block_cache = host->block_cache;
+    reply_list_init(&session->replies, host->block_cache);
     session->client = *client;
     session->requests = (struct request_client){
         .host = host->requests,

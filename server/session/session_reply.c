@@ -69,7 +69,7 @@ static void on_progressed(void *owner, const struct reply *reply, const sheen_Pr
     struct session *session = owner;
     uint8_t buffer[MESSAGE_HEADER_BYTES + PROTOCOL_MAX_LARGE_BODY_BYTES];
     size_t length;
-    bool in_turn = reply == session->replies.head || !session->replies.is_ordered;
+    bool in_turn = reply == TAILQ_FIRST(&session->replies.replies) || !session->replies.is_ordered;
     if (!in_turn || conn_unsent_bytes(&session->conn) > 0 ||
         !message_encode(MESSAGE_PROGRESS, reply_seq(reply), progress, buffer, sizeof buffer,
                         &length))

@@ -30,13 +30,22 @@ struct pool {
     struct pool_thread threads[];
 };
 
+/* NULL when there is none. */
+static struct task *take_first(struct task_list *list)
+{
+    struct task *task = STAILQ_FIRST(list);
+    if (task)
+        STAILQ_REMOVE_HEAD(list, link);
+    return task;
+}
+
 static struct task *next_task(struct pool *pool, int least_urgent)
 {
     struct task *task = NULL;
     pthread_mutex_lock(&pool->lock);
     for (;;) {
         for (int urgency = POOL_URGENT; urgency <= least_urgent && !task; urgency++)
-            task = task_list_pop(&pool->lists[urgency]);
+            task = take_first(&pool->lists[urgency]);
         if (task || pool->ending)
             break;
         pthread_cond_wait(&pool->changed, &pool->lock);
@@ -117,6 +126,8 @@ struct pool *pool_create(const char *name, unsigned n_threads, unsigned n_urgent
     pool->completions = completions;
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->changed, NULL);
+    for (int i = 0; i < POOL_URGENCIES; i++)
+        STAILQ_INIT(&pool->lists[i]);
     if (!start_threads(pool, n_threads, error)) {
         pool_destroy(pool);
         return NULL;
@@ -159,7 +170,7 @@ void pool_beat(void)
 void pool_submit(struct pool *pool, struct task *task, enum pool_urgency urgency)
 {
     pthread_mutex_lock(&pool->lock);
-    task_list_push(&pool->lists[urgency], task);
+    STAILQ_INSERT_TAIL(&pool->lists[urgency], task, link);
     /* One that is woken may not take this task. */
     pool->n_urgent_threads ? pthread_cond_broadcast(&pool->changed)
                            : pthread_cond_signal(&pool->changed);

@@ -15,27 +15,6 @@ struct completions {
     struct task_list list;
 };
 
-void task_list_push(struct task_list *list, struct task *task)
-{
-    task->next = NULL;
-    if (list->tail)
-        list->tail->next = task;
-    else
-        list->head = task;
-    list->tail = task;
-}
-
-struct task *task_list_pop(struct task_list *list)
-{
-    struct task *task = list->head;
-    if (!task)
-        return NULL;
-    list->head = task->next;
-    if (!list->head)
-        list->tail = NULL;
-    return task;
-}
-
 static void wake_ready(struct loop_source *source, uint32_t events)
 {
     (void)events;
@@ -62,6 +41,7 @@ struct completions *completions_create(struct loop *loop, struct error *error)
         return NULL;
     }
     pthread_mutex_init(&completions->lock, NULL);
+    STAILQ_INIT(&completions->list);
     completions->source = (struct loop_source){completions->event_fd, wake_ready, completions};
     if (!loop_watch(loop, &completions->source, EPOLLIN, error)) {
         completions_destroy(completions);
@@ -83,8 +63,8 @@ void completions_destroy(struct completions *completions)
 void completions_post(struct completions *completions, struct task *task)
 {
     pthread_mutex_lock(&completions->lock);
-    bool was_empty = !completions->list.head;
-    task_list_push(&completions->list, task);
+    bool was_empty = STAILQ_EMPTY(&completions->list);
+    STAILQ_INSERT_TAIL(&completions->list, task, link);
     pthread_mutex_unlock(&completions->lock);
     const uint64_t one = 1;
     if (was_empty && write(completions->event_fd, &one, sizeof one) < 0 && errno != EAGAIN)
@@ -93,10 +73,13 @@ void completions_post(struct completions *completions, struct task *task)
 
 void completions_deliver(struct completions *completions)
 {
+    struct task_list list = STAILQ_HEAD_INITIALIZER(list);
     pthread_mutex_lock(&completions->lock);
-    struct task_list list = completions->list;
-    completions->list = (struct task_list){NULL, NULL};
+    STAILQ_CONCAT(&list, &completions->list);
     pthread_mutex_unlock(&completions->lock);
-    for (struct task *task; (task = task_list_pop(&list));)
+    while (!STAILQ_EMPTY(&list)) {
+        struct task *task = STAILQ_FIRST(&list);
+        STAILQ_REMOVE_HEAD(&list, link);
         task->done(task);
+    }
 }

@@ -6,6 +6,7 @@
 #define SHEEN_THREADS_TASK_H
 
 #include <stdbool.h>
+#include <sys/queue.h>
 
 #include "server/base/error.h"
 #include "server/net/loop.h"
@@ -14,16 +15,10 @@ struct task {
     void (*run)(struct task *task, void *context); /* on another thread, with its context */
     void (*done)(struct task *task);               /* on the loop's thread; may free the task */
     void *owner;
-    struct task *next; /* of the queue that holds it */
+    STAILQ_ENTRY(task) link; /* of the queue that holds it */
 };
 
-/* First in, first out. Not safe for threads: its owner locks. */
-struct task_list {
-    struct task *head, *tail;
-};
-
-void task_list_push(struct task_list *list, struct task *task);
-struct task *task_list_pop(struct task_list *list); /* NULL when empty */
+STAILQ_HEAD(task_list, task);
 
 /* Finished tasks on their way to the loop's thread: a locked list and an eventfd. The list holds no
  * more tasks than were submitted, and scheduler.h and store.h bound how many are. */

@@ -54,6 +54,7 @@ static int setup(void **state)
     assert_true(workers_init(&f->workers, build_folder(), &limits, (uint64_t)1 << 32, &error));
     assert_true(conn_init(&f->conn, f->loop, ends[0], &handler, NULL, &f->sent_bytes, &error));
     f->peer = ends[1];
+    reply_list_init(&f->replies, NULL);
     f->replies.is_ordered = true;
     *state = f;
     return 0;
