@@ -8,8 +8,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "protocol/text.h"
 #include "server/base/clock.h"
+#include "server/base/quote.h"
 
 #define LINE_BYTES 16384 /* room for five values of nothing but escapes */
 
@@ -40,21 +40,14 @@ static void put_text(struct line *line, const char *text)
     put(line, text, strlen(text));
 }
 
-/* In quotes, as JSON has them; logfmt reads the same escapes. What is not UTF-8 becomes '?'. */
+/* Between quotation marks, as JSON has them; logfmt reads the same escapes. */
 static void put_quoted(struct line *line, const char *text)
 {
     put_text(line, "\"");
     for (const char *c = text; *c && c - text < LOG_VALUE_BYTES;) {
-        size_t n = text_utf8_length(c);
-        char escape[8];
-        if (*c == '"' || *c == '\\')
-            snprintf(escape, sizeof escape, "\\%c", *c);
-        else if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            snprintf(escape, sizeof escape, "\\u%04x", (unsigned)*c);
-        else
-            snprintf(escape, sizeof escape, "%.*s", n ? (int)n : 1, n ? c : "?");
-        put_text(line, escape);
-        c += n ? n : 1;
+        char escaped[QUOTE_CHARACTER_BYTES];
+        c += quote_character(QUOTE_JSON, c, escaped);
+        put_text(line, escaped);
     }
     put_text(line, "\"");
 }

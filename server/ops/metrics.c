@@ -9,6 +9,7 @@
 
 #include "server/base/clock.h"
 #include "server/base/log.h"
+#include "server/base/quote.h"
 #include "server/threads/pool.h"
 
 /* Bounds of the exported buckets: powers of two of a microsecond, 64 us to 67 s. */
@@ -32,13 +33,14 @@ static void seconds(struct text_buffer *text, uint64_t us)
     text_buffer_add(text, "%" PRIu64 ".%06" PRIu64, us / 1000000, us % 1000000);
 }
 
-/* A label's value: '"', '\' and newlines are escaped. */
 static void label(struct text_buffer *text, const char *name, const char *value)
 {
     text_buffer_add(text, "%s=\"", name);
-    for (const char *c = value; *c; c++)
-        text_buffer_add(text, "%s%c", *c == '"' || *c == '\\' || *c == '\n' ? "\\" : "",
-                        *c == '\n' ? 'n' : *c);
+    while (*value) {
+        char escaped[QUOTE_CHARACTER_BYTES];
+        value += quote_character(QUOTE_METRICS, value, escaped);
+        text_buffer_add(text, "%s", escaped);
+    }
     text_buffer_add(text, "\"");
 }
 
