@@ -1,5 +1,5 @@
 /* Turning an uploaded file into something on the GPU: what the builders of models and of light
- * images have in common. A build runs as works on the pool and on the GL thread; it starts and
+ * images have in common. A build is tasks on the pool and on the render thread; it starts and
  * ends on the loop's thread. */
 #ifndef SHEEN_ASSETS_BUILD_H
 #define SHEEN_ASSETS_BUILD_H

@@ -76,7 +76,7 @@ static void end_build(struct model_build *build, bool ok)
     free(build);
 }
 
-/* --- the GL thread's part */
+/* --- the render thread's part */
 
 static void upload_run(struct task *task, void *context)
 {

@@ -1,7 +1,7 @@
-/* A model: a cage's limit tables in memory and on the GPU, and what `sheen info` says about it.
+/* A model: a cage's limit tables in memory and on the device, and what `sheen info` says about it.
  *
- * Built once: the cage is read by a worker process and measured in one work, the tables are filled
- * in many works over the whole pool, and the GL thread uploads them. Thread: the loop's. */
+ * It is built once: a worker process reads the cage, which one task then measures, many tasks on the
+ * pool fill the tables, and the render thread uploads them. Thread: the loop's. */
 #ifndef SHEEN_ASSETS_MODEL_H
 #define SHEEN_ASSETS_MODEL_H
 
@@ -12,7 +12,7 @@
 
 struct model {
     struct limit_tables tables; /* stay as long as `gpu` */
-    struct renderer_model *gpu; /* for the GL thread only */
+    struct renderer_model *gpu; /* for the render thread only */
     struct cage_survey survey;
     size_t n_vertices, n_faces; /* of the cage */
     enum cage_up up;            /* as its file says */
@@ -33,7 +33,7 @@ static inline struct scene_subject model_subject(const struct model *model)
  * short. */
 bool model_build_start(const struct build_order *order, struct error *error);
 
-/* Frees the model once the GL thread has let go of it, after all work submitted before. */
+/* Frees the model once the render thread has let go of it, after all work submitted before. */
 void model_destroy(struct model *model, struct render_thread *render_thread);
 
 #endif

@@ -19,7 +19,7 @@
 #include "server/assets/model.h"
 
 #define STORE_MAX_ASSETS 4096
-#define STORE_MAX_BUILDS 2 /* at once; bounds the queues of the pool and the GL thread */
+#define STORE_MAX_BUILDS 2 /* at once; bounds the queues of the pool and the render thread */
 #define STORE_NAME_BYTES 256
 
 /* The owner of what everybody may use. */
@@ -99,7 +99,7 @@ struct store_counts {
 struct store *store_create(struct pool *pool, struct pool *readers,
                            struct render_thread *render_thread, struct workers *workers,
                            const struct asset_limits *limits, bool is_private, struct error *error);
-/* No build may be running. The GL thread must run on until it has freed what it holds. */
+/* No build may be running. The render thread must run on until it has freed what it holds. */
 void store_destroy(struct store *store); /* NULL is safe */
 
 /* The owner's own, else the shared one, else NULL; the shared one, too, where his own cannot be

@@ -596,8 +596,8 @@ enum service_end service_run(struct service *service)
     return service->end;
 }
 
-/* The store frees its models through the GL thread, so that ends last; what both threads finish is
- * delivered in between. */
+/* The store frees its models through the render thread, which therefore ends after it. What the pools
+ * and the render thread finish at the end is delivered before the completions go. */
 void service_destroy(struct service *service)
 {
     if (!service)

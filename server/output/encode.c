@@ -10,11 +10,11 @@
 #define MAX_CHANNELS 22 /* of all planes together */
 _Static_assert(MAX_CHANNELS <= PICTURE_MAX_CHANNELS, "a picture holds all channels");
 
-struct encode_job;
+struct encoding;
 
 struct strip_task {
     struct task task;
-    struct encode_job *job;
+    struct encoding *encoding;
     size_t index;
     size_t start, size; /* of what was written, from where to where it is the frame's */
     bool has_alpha;     /* PNG: encoded so */
@@ -22,7 +22,7 @@ struct strip_task {
     struct error error; /* why it failed */
 };
 
-struct encode_job {
+struct encoding {
     struct encoded *encoded;
     struct codec_layout layout;
     struct encode_format format;
@@ -42,7 +42,7 @@ struct encode_job {
     atomic_bool has_alpha; /* PNG: a strip has been found not to be opaque */
     struct strip_task *strips;
     size_t n_strips, n_strips_left;
-    bool (*join)(struct encode_job *job); /* the strips; false: no memory */
+    bool (*join)(struct encoding *encoding); /* the strips; false: no memory */
 };
 
 /* A thread's own. */
@@ -94,29 +94,29 @@ void encoded_destroy(struct encoded *encoded)
     block_cache_give(block_cache, encoded);
 }
 
-static void end_job(struct encode_job *job, const struct error *error)
+static void end_encoding(struct encoding *encoding, const struct error *error)
 {
-    struct encoded *encoded = job->encoded;
+    struct encoded *encoded = encoding->encoded;
     struct block_cache *block_cache = encoded->block_cache;
     if (error) {
         encoded_destroy(encoded);
         encoded = NULL;
     }
-    job->finished(job->owner, encoded, error);
-    block_cache_give(block_cache, job->strips);
-    block_cache_give(block_cache, job);
+    encoding->finished(encoding->owner, encoded, error);
+    block_cache_give(block_cache, encoding->strips);
+    block_cache_give(block_cache, encoding);
 }
 
-static void set_no_memory(const struct encode_job *job, struct error *error)
+static void set_no_memory(const struct encoding *encoding, struct error *error)
 {
     error_set(error, ERROR_SERVER, "no memory to encode %u x %u pixels: try again later",
-              job->layout.width_px, job->layout.height_px);
+              encoding->layout.width_px, encoding->layout.height_px);
 }
 
-static void end_job_no_memory(struct encode_job *job)
+static void end_without_memory(struct encoding *encoding)
 {
-    set_no_memory(job, &job->error);
-    end_job(job, &job->error);
+    set_no_memory(encoding, &encoding->error);
+    end_encoding(encoding, &encoding->error);
 }
 
 static void add_piece(struct encoded *encoded, const uint8_t *bytes, size_t size)
@@ -138,17 +138,18 @@ static bool allocate(struct encoded *encoded, size_t n)
 
 /* --- RAW: the planes are the bytes */
 
-static void start_raw(struct encode_job *job)
+static void start_raw(struct encoding *encoding)
 {
-    struct encoded *encoded = job->encoded;
+    struct encoded *encoded = encoding->encoded;
     if (!allocate(encoded, CODEC_PLANES)) {
-        end_job_no_memory(job);
+        end_without_memory(encoding);
         return;
     }
     for (unsigned plane = 0; plane < CODEC_PLANES; plane++)
-        if (job->layout.planes & (1u << plane))
-            add_piece(encoded, encoded->frame.plane[plane], codec_plane_bytes(&job->layout, plane));
-    end_job(job, NULL);
+        if (encoding->layout.planes & (1u << plane))
+            add_piece(encoded, encoded->frame.plane[plane],
+                      codec_plane_bytes(&encoding->layout, plane));
+    end_encoding(encoding, NULL);
 }
 
 /* --- strips: block 1 + i is strip i, block 0 what stands before them */
@@ -156,70 +157,72 @@ static void start_raw(struct encode_job *job)
 /* NULL: the strip has failed. */
 static uint8_t *take_strip(struct strip_task *strip, size_t bound)
 {
-    struct encoded *encoded = strip->job->encoded;
+    struct encoded *encoded = strip->encoding->encoded;
     uint8_t **block = &encoded->blocks[1 + strip->index];
     if (!*block) /* it has none from a first try */
         *block = fault_at("encode") ? NULL : block_cache_take(encoded->block_cache, bound);
     if (!*block)
-        set_no_memory(strip->job, &strip->error);
+        set_no_memory(strip->encoding, &strip->error);
     return *block;
 }
 
-static void add_strips(struct encode_job *job)
+static void add_strips(struct encoding *encoding)
 {
-    for (size_t i = 0; i < job->n_strips; i++) {
-        const struct strip_task *strip = &job->strips[i];
-        add_piece(job->encoded, job->encoded->blocks[1 + i] + strip->start,
+    for (size_t i = 0; i < encoding->n_strips; i++) {
+        const struct strip_task *strip = &encoding->strips[i];
+        add_piece(encoding->encoded, encoding->encoded->blocks[1 + i] + strip->start,
                   strip->size - strip->start);
     }
 }
 
 /* Submits the strips that are not as the whole picture turned out to be. False: all are. */
-static bool repeat_strips(struct encode_job *job)
+static bool repeat_strips(struct encoding *encoding)
 {
-    for (size_t i = 0; i < job->n_strips; i++) {
-        struct strip_task *strip = &job->strips[i];
-        if (strip->has_alpha == atomic_load(&job->has_alpha))
+    for (size_t i = 0; i < encoding->n_strips; i++) {
+        struct strip_task *strip = &encoding->strips[i];
+        if (strip->has_alpha == atomic_load(&encoding->has_alpha))
             continue;
-        job->n_strips_left++;
-        pool_submit(job->pool, &strip->task, job->urgency);
+        encoding->n_strips_left++;
+        pool_submit(encoding->pool, &strip->task, encoding->urgency);
     }
-    return job->n_strips_left > 0;
+    return encoding->n_strips_left > 0;
 }
 
 static void strip_done(struct task *task)
 {
     const struct strip_task *strip = task->owner;
-    struct encode_job *job = strip->job;
+    struct encoding *encoding = strip->encoding;
     if (strip->error.kind != ERROR_NONE)
-        job->error = strip->error;
-    if (--job->n_strips_left > 0 || (job->error.kind == ERROR_NONE && repeat_strips(job)))
+        encoding->error = strip->error;
+    if (--encoding->n_strips_left > 0 ||
+        (encoding->error.kind == ERROR_NONE && repeat_strips(encoding)))
         return;
-    frame_finish(&job->encoded->frame);
-    if (job->error.kind != ERROR_NONE)
-        end_job(job, &job->error);
-    else if (job->join(job))
-        end_job(job, NULL);
+    frame_finish(&encoding->encoded->frame);
+    if (encoding->error.kind != ERROR_NONE)
+        end_encoding(encoding, &encoding->error);
+    else if (encoding->join(encoding))
+        end_encoding(encoding, NULL);
     else
-        end_job_no_memory(job);
+        end_without_memory(encoding);
 }
 
-static void start_strips(struct encode_job *job, size_t n,
+static void start_strips(struct encoding *encoding, size_t n,
                          void (*run)(struct task *task, void *context),
-                         bool (*join)(struct encode_job *job))
+                         bool (*join)(struct encoding *encoding))
 {
-    job->strips = block_cache_take(job->encoded->block_cache, n * sizeof *job->strips);
-    if (!job->strips || !allocate(job->encoded, n + 1)) {
-        end_job_no_memory(job);
+    encoding->strips =
+        block_cache_take(encoding->encoded->block_cache, n * sizeof *encoding->strips);
+    if (!encoding->strips || !allocate(encoding->encoded, n + 1)) {
+        end_without_memory(encoding);
         return;
     }
-    job->n_strips = job->n_strips_left = n;
-    job->join = join;
+    encoding->n_strips = encoding->n_strips_left = n;
+    encoding->join = join;
     for (size_t i = 0; i < n; i++) {
-        struct strip_task *strip = &job->strips[i];
-        *strip = (struct strip_task){.job = job, .index = i};
+        struct strip_task *strip = &encoding->strips[i];
+        *strip = (struct strip_task){.encoding = encoding, .index = i};
         strip->task = (struct task){run, strip_done, strip, {NULL}};
-        pool_submit(job->pool, &strip->task, job->urgency);
+        pool_submit(encoding->pool, &strip->task, encoding->urgency);
     }
 }
 
@@ -228,32 +231,32 @@ static void start_strips(struct encode_job *job, size_t n,
 static void zstd_run(struct task *task, void *context)
 {
     struct strip_task *strip = task->owner;
-    struct encode_job *job = strip->job;
+    struct encoding *encoding = strip->encoding;
     struct encoders *encoders = context;
-    struct codec_strip place = codec_strip_at(&job->layout, strip->index);
+    struct codec_strip place = codec_strip_at(&encoding->layout, strip->index);
     size_t bound = codec_strip_bound(&place);
     uint8_t *bytes = take_strip(strip, bound);
     if (!bytes)
         return;
-    strip->size = codec_strip_encode(encoders->zstd, &place, job->encoded->frame.plane[place.plane],
-                                     bytes, bound);
+    strip->size = codec_strip_encode(encoders->zstd, &place,
+                                     encoding->encoded->frame.plane[place.plane], bytes, bound);
     if (strip->size == 0)
-        set_no_memory(job, &strip->error);
+        set_no_memory(encoding, &strip->error);
 }
 
-static bool zstd_join(struct encode_job *job)
+static bool zstd_join(struct encoding *encoding)
 {
-    struct block_cache *block_cache = job->encoded->block_cache;
-    uint32_t *lengths = block_cache_take(block_cache, job->n_strips * sizeof *lengths);
-    uint8_t *table = block_cache_take(block_cache, job->layout.table_bytes);
-    job->encoded->blocks[0] = table;
+    struct block_cache *block_cache = encoding->encoded->block_cache;
+    uint32_t *lengths = block_cache_take(block_cache, encoding->n_strips * sizeof *lengths);
+    uint8_t *table = block_cache_take(block_cache, encoding->layout.table_bytes);
+    encoding->encoded->blocks[0] = table;
     bool ok = lengths && table;
-    for (size_t i = 0; ok && i < job->n_strips; i++)
-        lengths[i] = (uint32_t)job->strips[i].size;
+    for (size_t i = 0; ok && i < encoding->n_strips; i++)
+        lengths[i] = (uint32_t)encoding->strips[i].size;
     if (ok) {
-        codec_table_encode(&job->layout, lengths, table);
-        add_piece(job->encoded, table, job->layout.table_bytes);
-        add_strips(job);
+        codec_table_encode(&encoding->layout, lengths, table);
+        add_piece(encoding->encoded, table, encoding->layout.table_bytes);
+        add_strips(encoding);
     }
     block_cache_give(block_cache, lengths);
     return ok;
@@ -264,34 +267,36 @@ static bool zstd_join(struct encode_job *job)
 static void jpeg_run(struct task *task, void *context)
 {
     struct strip_task *strip = task->owner;
-    struct encode_job *job = strip->job;
+    struct encoding *encoding = strip->encoding;
     struct encoders *encoders = context;
-    uint8_t *bytes = take_strip(strip, job->jpeg.strips.bound);
+    uint8_t *bytes = take_strip(strip, encoding->jpeg.strips.bound);
     if (bytes)
-        jpeg_strip_encode(encoders->jpeg, &job->jpeg, strip->index, job->encoded->frame.plane[0],
-                          bytes, &strip->start, &strip->size, &strip->error);
+        jpeg_strip_encode(encoders->jpeg, &encoding->jpeg, strip->index,
+                          encoding->encoded->frame.plane[0], bytes, &strip->start, &strip->size,
+                          &strip->error);
 }
 
-static bool jpeg_join(struct encode_job *job)
+static bool jpeg_join(struct encoding *encoding)
 {
-    struct encoded *encoded = job->encoded;
-    const size_t start = job->strips[0].start;
-    const size_t bound = jpeg_head_bound(start, job->attributes, job->n_attributes);
+    struct encoded *encoded = encoding->encoded;
+    const size_t start = encoding->strips[0].start;
+    const size_t bound = jpeg_head_bound(start, encoding->attributes, encoding->n_attributes);
     uint8_t *head = block_cache_take(encoded->block_cache, bound);
     encoded->blocks[0] = head;
     if (!head)
         return false;
     add_piece(encoded, head,
-              jpeg_head_write(&job->jpeg, encoded->blocks[1], start, job->attributes,
-                              job->n_attributes, head));
-    add_strips(job);
+              jpeg_head_write(&encoding->jpeg, encoded->blocks[1], start, encoding->attributes,
+                              encoding->n_attributes, head));
+    add_strips(encoding);
     return true;
 }
 
-static void start_jpeg(struct encode_job *job)
+static void start_jpeg(struct encoding *encoding)
 {
-    jpeg_layout_init(&job->jpeg, job->layout.width_px, job->layout.height_px, &job->format.jpeg);
-    start_strips(job, job->jpeg.strips.n, jpeg_run, jpeg_join);
+    jpeg_layout_init(&encoding->jpeg, encoding->layout.width_px, encoding->layout.height_px,
+                     &encoding->format.jpeg);
+    start_strips(encoding, encoding->jpeg.strips.n, jpeg_run, jpeg_join);
 }
 
 /* --- PNG: a head and the strips, of which the last holds the tail */
@@ -299,51 +304,55 @@ static void start_jpeg(struct encode_job *job)
 static void png_run(struct task *task, void *context)
 {
     struct strip_task *strip = task->owner;
-    struct encode_job *job = strip->job;
+    struct encoding *encoding = strip->encoding;
     struct encoders *encoders = context;
-    const uint8_t *rgba = job->encoded->frame.plane[0];
+    const uint8_t *rgba = encoding->encoded->frame.plane[0];
     struct png_strip written = {0};
-    uint8_t *bytes = take_strip(strip, job->png.bound);
+    uint8_t *bytes = take_strip(strip, encoding->png.bound);
     uint8_t *row =
-        bytes ? block_cache_take(job->encoded->block_cache, png_row_bytes(&job->png)) : NULL;
+        bytes ? block_cache_take(encoding->encoded->block_cache, png_row_bytes(&encoding->png))
+              : NULL;
     /* Most pictures are opaque: none is searched for alpha before its strips are encoded. */
-    if (!atomic_load(&job->has_alpha) && !png_strip_is_opaque(&job->png, strip->index, rgba))
-        atomic_store(&job->has_alpha, true);
-    strip->has_alpha = atomic_load(&job->has_alpha);
+    if (!atomic_load(&encoding->has_alpha) &&
+        !png_strip_is_opaque(&encoding->png, strip->index, rgba))
+        atomic_store(&encoding->has_alpha, true);
+    strip->has_alpha = atomic_load(&encoding->has_alpha);
     if (!row)
-        set_no_memory(job, &strip->error);
+        set_no_memory(encoding, &strip->error);
     else
-        png_strip_encode(encoders->png, &job->png, strip->index, rgba, strip->has_alpha, row, bytes,
-                         &written, &strip->error);
-    block_cache_give(job->encoded->block_cache, row);
+        png_strip_encode(encoders->png, &encoding->png, strip->index, rgba, strip->has_alpha, row,
+                         bytes, &written, &strip->error);
+    block_cache_give(encoding->encoded->block_cache, row);
     strip->size = written.size;
     strip->checksum = written.checksum;
 }
 
-static bool png_join(struct encode_job *job)
+static bool png_join(struct encoding *encoding)
 {
-    struct encoded *encoded = job->encoded;
-    struct strip_task *last = &job->strips[job->n_strips - 1];
-    const bool has_alpha = atomic_load(&job->has_alpha);
-    uint8_t *head =
-        block_cache_take(encoded->block_cache, png_head_bound(job->attributes, job->n_attributes));
+    struct encoded *encoded = encoding->encoded;
+    struct strip_task *last = &encoding->strips[encoding->n_strips - 1];
+    const bool has_alpha = atomic_load(&encoding->has_alpha);
+    uint8_t *head = block_cache_take(encoded->block_cache,
+                                     png_head_bound(encoding->attributes, encoding->n_attributes));
     encoded->blocks[0] = head;
     if (!head)
         return false;
     uint32_t checksum = 1;
-    for (size_t i = 0; i < job->n_strips; i++)
-        checksum = png_checksum(checksum, &job->png, i, has_alpha, job->strips[i].checksum);
-    last->size += png_tail_write(checksum, encoded->blocks[job->n_strips] + last->size);
+    for (size_t i = 0; i < encoding->n_strips; i++)
+        checksum =
+            png_checksum(checksum, &encoding->png, i, has_alpha, encoding->strips[i].checksum);
+    last->size += png_tail_write(checksum, encoded->blocks[encoding->n_strips] + last->size);
     add_piece(encoded, head,
-              png_head_write(&job->png, has_alpha, job->attributes, job->n_attributes, head));
-    add_strips(job);
+              png_head_write(&encoding->png, has_alpha, encoding->attributes,
+                             encoding->n_attributes, head));
+    add_strips(encoding);
     return true;
 }
 
-static void start_png(struct encode_job *job)
+static void start_png(struct encoding *encoding)
 {
-    png_layout_init(&job->png, job->layout.width_px, job->layout.height_px);
-    start_strips(job, job->png.n, png_run, png_join);
+    png_layout_init(&encoding->png, encoding->layout.width_px, encoding->layout.height_px);
+    start_strips(encoding, encoding->png.n, png_run, png_join);
 }
 
 /* --- files, by a worker process */
@@ -373,60 +382,61 @@ static enum image_format file_format(sheen_Encoding encoding)
     return encoding == sheen_Encoding_ENCODING_EXR ? IMAGE_EXR : IMAGE_TIFF;
 }
 
-static void add_channels(const struct encode_job *job, struct picture *picture)
+static void add_channels(const struct encoding *encoding, struct picture *picture)
 {
     for (size_t i = 0; i < MAX_CHANNELS; i++) {
         unsigned plane = CHANNELS[i].plane;
         size_t stride = codec_pixel_bytes(plane);
-        if (job->layout.planes & (1u << plane))
+        if (encoding->layout.planes & (1u << plane))
             picture->channels[picture->n_channels++] = (struct image_channel){
                 CHANNELS[i].name, CHANNELS[i].type,
-                (const uint8_t *)job->encoded->frame.plane[plane] + CHANNELS[i].offset_bytes,
-                stride, stride * job->layout.width_px};
+                (const uint8_t *)encoding->encoded->frame.plane[plane] + CHANNELS[i].offset_bytes,
+                stride, stride * encoding->layout.width_px};
     }
 }
 
 static void file_run(struct task *task, void *context)
 {
     (void)context;
-    struct encode_job *job = task->owner;
-    struct picture picture = {.format = file_format(job->format.encoding),
-                              .width_px = job->layout.width_px,
-                              .height_px = job->layout.height_px,
-                              .n_attributes = job->n_attributes};
-    for (size_t i = 0; i < job->n_attributes; i++)
-        picture.attributes[i] = job->attributes[i];
-    add_channels(job, &picture);
+    struct encoding *encoding = task->owner;
+    struct picture picture = {.format = file_format(encoding->format.encoding),
+                              .width_px = encoding->layout.width_px,
+                              .height_px = encoding->layout.height_px,
+                              .n_attributes = encoding->n_attributes};
+    for (size_t i = 0; i < encoding->n_attributes; i++)
+        picture.attributes[i] = encoding->attributes[i];
+    add_channels(encoding, &picture);
     struct picture_block planes[CODEC_PLANES];
     size_t n_planes = 0;
     for (unsigned plane = 0; plane < CODEC_PLANES; plane++)
-        if (job->layout.planes & (1u << plane))
-            planes[n_planes++] = (struct picture_block){job->encoded->frame.plane[plane],
-                                                        codec_plane_bytes(&job->layout, plane)};
-    workers_write_image(job->workers, &picture, planes, n_planes, job->encoded->block_cache,
-                        &job->encoded->blocks[0], &job->file_size, &job->error);
+        if (encoding->layout.planes & (1u << plane))
+            planes[n_planes++] = (struct picture_block){
+                encoding->encoded->frame.plane[plane], codec_plane_bytes(&encoding->layout, plane)};
+    workers_write_image(encoding->workers, &picture, planes, n_planes,
+                        encoding->encoded->block_cache, &encoding->encoded->blocks[0],
+                        &encoding->file_size, &encoding->error);
 }
 
 static void file_done(struct task *task)
 {
-    struct encode_job *job = task->owner;
-    frame_finish(&job->encoded->frame);
-    if (!job->encoded->blocks[0]) {
-        end_job(job, &job->error);
+    struct encoding *encoding = task->owner;
+    frame_finish(&encoding->encoded->frame);
+    if (!encoding->encoded->blocks[0]) {
+        end_encoding(encoding, &encoding->error);
         return;
     }
-    add_piece(job->encoded, job->encoded->blocks[0], job->file_size);
-    end_job(job, NULL);
+    add_piece(encoding->encoded, encoding->encoded->blocks[0], encoding->file_size);
+    end_encoding(encoding, NULL);
 }
 
-static void start_file(struct encode_job *job)
+static void start_file(struct encoding *encoding)
 {
-    if (!allocate(job->encoded, 1)) {
-        end_job_no_memory(job);
+    if (!allocate(encoding->encoded, 1)) {
+        end_without_memory(encoding);
         return;
     }
-    job->file_task = (struct task){file_run, file_done, job, {NULL}};
-    pool_submit(job->pool, &job->file_task, job->urgency);
+    encoding->file_task = (struct task){file_run, file_done, encoding, {NULL}};
+    pool_submit(encoding->pool, &encoding->file_task, encoding->urgency);
 }
 
 _Static_assert((int)JPEG_420 == (int)sheen_JpegSubsampling_JPEG_420, "same order");
@@ -467,10 +477,10 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
                   void *owner)
 {
     struct block_cache *block_cache = frame->block_cache;
-    struct encode_job *job = block_cache_take(block_cache, sizeof *job);
+    struct encoding *encoding = block_cache_take(block_cache, sizeof *encoding);
     struct encoded *encoded = block_cache_take(block_cache, sizeof *encoded);
-    if (!job || !encoded) {
-        block_cache_give(block_cache, job);
+    if (!encoding || !encoded) {
+        block_cache_give(block_cache, encoding);
         block_cache_give(block_cache, encoded);
         frame_finish(frame);
         struct error error = {0};
@@ -480,7 +490,7 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
     }
     *encoded = (struct encoded){.frame = *frame, .block_cache = block_cache};
     *frame = (struct frame){0};
-    *job = (struct encode_job){
+    *encoding = (struct encoding){
         .encoded = encoded,
         .layout = *layout,
         .format = *format,
@@ -494,19 +504,19 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
     };
     switch (format->encoding) {
     case sheen_Encoding_ENCODING_RAW:
-        start_raw(job);
+        start_raw(encoding);
         break;
     case sheen_Encoding_ENCODING_ZSTD:
-        start_strips(job, layout->n_strips, zstd_run, zstd_join);
+        start_strips(encoding, layout->n_strips, zstd_run, zstd_join);
         break;
     case sheen_Encoding_ENCODING_PNG:
-        start_png(job);
+        start_png(encoding);
         break;
     case sheen_Encoding_ENCODING_JPEG:
-        start_jpeg(job);
+        start_jpeg(encoding);
         break;
     default:
-        start_file(job);
+        start_file(encoding);
         break;
     }
 }

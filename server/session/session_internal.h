@@ -1,6 +1,6 @@
 /* What the files of sessions share: session.c has a session's life and its messages,
  * session_input.c their order and the room for long ones,
- * session_reply_now.c how answers leave, session_requests.c what each request asks for,
+ * session_reply.c how replies leave, session_requests.c what each request asks for,
  * session_stats.c the answer to STATS_QUERY, session_access.c who the client is, session_limits.c
  * what clients may not do too long or too much of. Private to them. Thread: the loop's. */
 #ifndef SHEEN_SESSION_SESSION_INTERNAL_H
