@@ -2,7 +2,7 @@
  * that ends the build when the daemon does, or when all its parts together have taken too much of
  * the processors. A cage of a few megabytes can be made to cost hours.
  *
- * A thread that builds beats (pool.h): long work is none that is stuck.
+ * The clock calls pool_beat(), so that a thread that builds for long is not taken for stuck.
  * Thread: the one that has started the clock. */
 #ifndef SHEEN_ASSETS_BUILD_CLOCK_H
 #define SHEEN_ASSETS_BUILD_CLOCK_H

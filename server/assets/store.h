@@ -2,10 +2,11 @@
  * models and light images that are ready on the GPU; and the memory budget for all that the daemon
  * holds.
  *
- * An asset is built on first use, once, however many requests wait for it, and a few at a time.
- * What no request uses is evicted when room is needed, of those first who hold more than an equal
- * share, and of each the least recently used first; the client is then told that the model is
- * unknown and uploads it again. Nothing in use is ever evicted.
+ * An asset is built once, when it is first used, however many requests wait for it; a few builds run
+ * at a time. When room is needed, assets that no request uses are evicted: first those of clients
+ * that hold more than an equal share, and of each client the least recently used first. A client
+ * that asks for an evicted model is told that the model is unknown, and uploads it again. Nothing in
+ * use is ever evicted.
  * Thread: the loop's. */
 #ifndef SHEEN_ASSETS_STORE_H
 #define SHEEN_ASSETS_STORE_H
@@ -106,8 +107,8 @@ void store_destroy(struct store *store); /* NULL is safe */
  * read. The asset stays at least until the loop's next turn. */
 struct asset *store_find(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
                          enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES]);
-/* Is what comes under this name the same to its readers? The ending of a name tells the format:
- * what could not be read, or has not been yet, may be a good file under another name. */
+/* Would the asset's file be read in the same way under this name? The ending of a name tells the
+ * format. A file that has not been read yet, or could not be, may be good under another name. */
 bool store_is_known_as(const struct asset *asset, const char *name);
 /* From now on everybody may use it. */
 void store_share(struct asset *asset);

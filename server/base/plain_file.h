@@ -1,5 +1,6 @@
-/* Files that an administrator names. What is none, as a pipe, would hold whoever opens it, and on
- * SIGHUP that is the loop; a folder would read as if it were empty. Thread: any. */
+/* Files that an administrator names. To open a pipe could block, and after SIGHUP it would block the
+ * event loop; a folder would read as if it were an empty file. So only plain files are opened.
+ * Thread: any. */
 #ifndef SHEEN_BASE_PLAIN_FILE_H
 #define SHEEN_BASE_PLAIN_FILE_H
 

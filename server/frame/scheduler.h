@@ -86,9 +86,9 @@ struct schedule_entry *scheduler_enter(struct scheduler *scheduler, struct sched
                                        struct schedule_entry *entry);
 void scheduler_ready(struct schedule_entry *entry); /* WAITING to READY */
 
-/* The next entry to draw a tile of, now DRAWING, or NULL when none may. A second tile is given out
- * behind the first only if it is interactive and no share is owed: so that an interactive frame
- * waits for one tile of another class at most, but for what shares are owed. */
+/* The next entry to draw a tile of, now DRAWING, or NULL when none may. While one tile is on the
+ * device, a second is given out only if it is interactive and no class is owed its share. So an
+ * interactive frame waits for at most one tile of another class, and for the shares that are owed. */
 struct schedule_entry *scheduler_next(struct scheduler *scheduler);
 
 /* The tile will not be drawn: all is as before scheduler_next(), but that an entry that has not

@@ -1,9 +1,9 @@
-/* Who may come in, and who he is.
+/* Which clients are admitted, and under which identity.
  *
- * A Unix socket: whoever its file lets in, or with allow-lists whoever they name, if the daemon can
- * tell him from others (user_namespace.h). Loopback TCP: anybody on this machine, all of them one
- * owner. TLS: whoever shows a certificate of --client-ca or a token of --tokens. Thread: the
- * loop's. */
+ * Unix socket: a user that the socket's file lets in; where there are allow-lists, a user on them
+ * that the daemon can tell from others (user_namespace.h). Loopback TCP: every process of this
+ * machine, all with one identity. TLS: a client that shows a certificate of --client-ca or a token
+ * of --tokens. Thread: the loop's. */
 #ifndef SHEEN_NET_ACCESS_H
 #define SHEEN_NET_ACCESS_H
 
@@ -61,16 +61,16 @@ bool access_admit_local(const struct access *access, int fd, enum address_kind k
 void access_admit_private(struct identity *identity);
 /* Puts TLS under a fresh conn. */
 bool access_start_tls(const struct access *access, struct conn *conn, struct error *error);
-/* Its HELLO has come; `token` is the one in it, or NULL. */
+/* A client's HELLO has come over TLS; `token` is the one in it, or NULL. */
 bool access_admit_tls(const struct access *access, const struct conn *conn, const char *token,
                       struct identity *identity, struct error *error);
 
-/* Is somebody who came in still welcome? Not after the expiry, nor when his token has gone from the
- * file or is another one now. Takes over a new expiry. */
+/* May an admitted client stay? Not after the expiry, nor when the client's token is no longer in the
+ * file or has changed there. Takes a new expiry over from the file. */
 bool access_still_admits(const struct access *access, struct identity *identity,
                          struct error *error);
-/* Does the certificate that he showed, if any, hold by these rules too? It takes a signature to
- * check: for new rules, not for every tick. */
+/* Is the certificate that the client showed, if any, good by these rules too? To check it costs a
+ * verification of its signature, so callers ask once after a reload and not at every tick. */
 bool access_still_trusts(const struct access *access, const struct conn *conn, struct error *error);
 
 #endif

@@ -1,9 +1,9 @@
 /* One connected socket: messages in, bytes out, both bounded, neither blocking.
  *
- * Input lies in one buffer, small until a long message comes; whole messages are handed to the
- * owner. Output is a list of blocks, some borrowed (pixels), that is
- * written as the socket takes it. How much may pile up is the owner's business: it asks
- * conn_unsent_bytes() before it produces more.
+ * Input lies in one buffer, which is small until a long message comes; whole messages are handed to
+ * the owner. Output is a list of blocks, some of them borrowed (pixels), which are written as fast as
+ * the socket takes them. The owner decides how much may wait: it asks conn_unsent_bytes() before it
+ * sends more.
  * Thread: the loop's. Callbacks come from the loop or from conn_deliver(); a callback must not
  * finish the conn, only close it. */
 #ifndef SHEEN_NET_CONN_H
@@ -29,12 +29,12 @@ struct tls_channel;
 
 struct conn_handler {
     void (*message)(void *owner, const struct message_header *header, const uint8_t *body);
-    /* The input is no message. It has been thrown away and the conn is held: the owner closes it.
-     * Of *header only what the error leaves known is set. */
+    /* The input is no message. It has been thrown away, and the conn is held until the owner closes
+     * it. Only those members of *header are set that could be read before the error. */
     void (*malformed)(void *owner, const struct message_header *header, enum header_error error);
-    /* A message begins for which the buffer is too small: may it have so many bytes from now on,
-     * until conn_trim() or the end? If not, and the conn goes on, its body is thrown away as it
-     * comes. */
+    /* A message begins for which the buffer is too small. May the buffer have so many bytes from now
+     * on, until conn_trim() or the end? If not, the body of the message is thrown away as it comes,
+     * unless the owner has closed the conn. */
     bool (*make_room)(void *owner, const struct message_header *header, size_t bytes);
 };
 
@@ -43,7 +43,7 @@ struct conn_transport {
     /* As read() and sendmsg(). */
     ssize_t (*read)(struct conn *conn, void *bytes, size_t size);
     ssize_t (*write)(struct conn *conn, struct iovec *pieces, size_t n);
-    /* Has it bytes for read() of which the socket does not tell any more? */
+    /* Does the transport hold bytes for read() that the socket no longer reports? */
     bool (*pending)(const struct conn *conn);
     void (*end)(struct conn *conn);    /* nothing more is written */
     void (*finish)(struct conn *conn); /* the socket goes */

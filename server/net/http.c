@@ -205,8 +205,8 @@ void http_destroy(struct http *http)
     free(http);
 }
 
-/* Whom a newcomer costs less than another: 0 for one that has had its answer and does not close,
- * then who has not asked yet, then who is being answered. */
+/* Which connection is given up for a new one, the lowest value first: 0 for one that has its answer
+ * and does not close, 1 for one that has not asked yet, 2 for one that is being answered. */
 static int value_of(const struct http_connection *connection)
 {
     return connection->state == HTTP_LINGERING ? 0 : connection->state == HTTP_READING ? 1 : 2;

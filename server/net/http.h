@@ -1,7 +1,8 @@
-/* A web server of the least kind, for health and metrics on loopback or a Unix socket: HTTP/1.1,
- * GET only, one request a connection, no body in, no keep-alive. Everything is bounded: a request
- * of HTTP_MAX_REQUEST_BYTES, HTTP_MAX_CONNECTIONS at once, HTTP_TIMEOUT_US from accept to the end,
- * HTTP_LINGER_US of it for the peer to read the answer and close. What goes over a bound is closed.
+/* A minimal web server for health and metrics, on the loopback or a Unix socket: HTTP/1.1, GET only,
+ * one request for each connection, no request body, no keep-alive. Everything is bounded: a request
+ * has HTTP_MAX_REQUEST_BYTES, there are HTTP_MAX_CONNECTIONS at once, a connection takes at most
+ * HTTP_TIMEOUT_US from accept to the end, and HTTP_LINGER_US of it after the answer, for the peer to
+ * read it and close. A connection that goes over a bound is closed.
  * Thread: the loop's. */
 #ifndef SHEEN_NET_HTTP_H
 #define SHEEN_NET_HTTP_H

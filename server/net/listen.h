@@ -11,8 +11,8 @@
 
 struct listener;
 
-/* Which TCP addresses may be listened on without TLS, where everybody on the way could read and
- * change what is sent. */
+/* Which TCP addresses may be listened on without TLS. Beyond the loopback, everybody on the way could
+ * read and change what is sent. */
 enum listener_reach { LISTENER_LOOPBACK, LISTENER_ANYWHERE };
 
 /* May a daemon listen there? ERROR_REQUEST if not; ERROR_SERVER if the name is unknown. */
@@ -23,7 +23,7 @@ bool listener_check(const struct address *address, enum listener_reach reach, st
  * has put something of that name there. */
 bool listener_default(struct address *address, struct error *error);
 
-/* Who gets every new connection's fd, which is then his. */
+/* Gets the descriptor of every new connection, and owns it from then on. */
 struct listener_handler {
     void (*accepted)(void *owner, const struct listener *listener, int fd);
     void *owner;

@@ -1,5 +1,5 @@
-/* The room for messages that are longer than most: none before it is their turn, and none that
- * --peer-memory and --memory-budget do not know of. */
+/* The order of messages, and the room for long ones: a long message gets none before it is its turn,
+ * and all that it gets is charged to --peer-memory and --memory-budget. */
 #include "server/session/session_internal.h"
 #include "server/frame/error_code.h"
 

@@ -11,7 +11,7 @@ void session_log_disconnect(struct session *session, const char *reason)
               log_text("peer", session->requests.quota->peer.name), log_text("text", reason));
 }
 
-/* The client cannot be told, or not in time: why is for the log. */
+/* Closes a client that cannot be told why, or not in time; the log has the reason. */
 static void __attribute__((format(printf, 2, 3)))
 disconnect(struct session *session, const char *format, ...)
 {
@@ -86,7 +86,7 @@ static void refuse_late(struct session *session, enum stats_end end, const char 
                    "%s", text);
 }
 
-/* What a client has not sent for too long, who can still be told. */
+/* Ends a session whose client has not sent something for too long, and tells the client. */
 static void check_input(struct session *session, uint64_t now)
 {
     struct conn *conn = &session->conn;

@@ -17,12 +17,12 @@ struct worker;
 
 /* For the program at `path`, which is not started yet. NULL with ERROR_SERVER. */
 struct worker *worker_create(const char *path, struct error *error);
-/* Starts the program unless it runs: a job will come, and would start it itself, but later. False
- * with ERROR_SERVER. */
+/* Starts the program unless it runs. A job would start it too, but would then wait until the program
+ * has loaded its libraries. False with ERROR_SERVER. */
 bool worker_wake(struct worker *worker, struct error *error);
 /* Ends the program and what it runs. No job may be waited for. NULL is safe. */
 void worker_destroy(struct worker *worker);
-/* From now on jobs fail soon, those under way too: nobody needs them any more. */
+/* From now on all jobs fail soon, also those under way: the daemon ends. */
 void worker_stop(struct worker *worker);
 
 /* A job's two files. The caller writes the parameters to `input`, runs the job, and reads the

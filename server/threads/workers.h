@@ -1,5 +1,5 @@
-/* What sheend has others do, in processes that can harm nobody: reading cages and images, writing
- * images, drawing text. Neither tinygltf nor OpenImageIO is in the daemon itself.
+/* What sheend leaves to worker programs, whose processes are sandboxed: reading cages and images,
+ * writing images, drawing text. Neither tinygltf nor OpenImageIO is in the daemon itself.
  *
  * What comes back has been checked as if a stranger had sent it. Each call blocks until it is done;
  * any thread may make it. */
@@ -38,8 +38,9 @@ bool workers_init(struct workers *workers, const char *folder, const struct work
 /* Takes new times over, for jobs that begin from now on. */
 void workers_set_times(struct workers *workers, const struct workers_limits *limits);
 void workers_finish(struct workers *workers);
-/* An image or a text will come. Loading its libraries keeps a processor busy for 0.2 s, so that a
- * daemon which is about to make its first frame does it only then. */
+/* Starts the program for images and texts, of which one will come. To load its libraries keeps a
+ * processor busy for 0.2 s, so a daemon that may be about to draw its first frame does not start it
+ * before. */
 void workers_expect_images(struct workers *workers);
 /* As worker_stop(), for all. */
 void workers_stop(struct workers *workers);
