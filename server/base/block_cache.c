@@ -4,21 +4,22 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <sys/queue.h>
 
-/* Sixteen sizes to a power of two: blocks are 6 % larger than asked at most, which no budget knows
- * of. */
+/* Sixteen sizes to a power of two: a block is at most 6 % larger than asked for. The memory budget
+ * does not count these 6 %. */
 enum { PART_BITS = 4, PARTS = 1 << PART_BITS, N_SIZES = PARTS * 64, LEAST_BYTES = 64 };
 
 /* Stands before every block. */
 struct spare {
-    struct spare *next;
+    SLIST_ENTRY(spare) link;
     size_t capacity; /* of the block */
 };
 _Static_assert(sizeof(struct spare) % _Alignof(max_align_t) == 0, "blocks are aligned as malloc's");
 
 struct spare_list {
-    struct spare *first;
-    size_t n, least_n; /* now, and since the last trim */
+    SLIST_HEAD(spares, spare) spares; /* the latest first; zeroed: empty */
+    size_t n, least_n;                /* now, and since the last trim */
 };
 
 struct block_cache {
@@ -55,10 +56,10 @@ static struct spare_list *list_of(struct block_cache *block_cache, size_t capaci
 
 static struct spare *pop(struct block_cache *block_cache, struct spare_list *list)
 {
-    struct spare *spare = list->first;
+    struct spare *spare = SLIST_FIRST(&list->spares);
     if (!spare)
         return NULL;
-    list->first = spare->next;
+    SLIST_REMOVE_HEAD(&list->spares, link);
     list->n--;
     if (list->n < list->least_n)
         list->least_n = list->n;
@@ -89,8 +90,7 @@ static bool keep(struct block_cache *block_cache, struct spare *spare)
     bool fits = spare->capacity <= block_cache->most_bytes - block_cache->bytes;
     if (fits) {
         struct spare_list *list = list_of(block_cache, spare->capacity);
-        spare->next = list->first;
-        list->first = spare;
+        SLIST_INSERT_HEAD(&list->spares, spare, link);
         list->n++;
         block_cache->bytes += spare->capacity;
     }
@@ -107,22 +107,21 @@ void block_cache_give(struct block_cache *block_cache, void *block)
 
 void block_cache_trim(struct block_cache *block_cache)
 {
-    struct spare *unused = NULL;
+    struct spares unused = SLIST_HEAD_INITIALIZER(unused);
     pthread_mutex_lock(&block_cache->lock);
     for (size_t i = 0; i < N_SIZES; i++) {
         struct spare_list *list = &block_cache->lists[i];
         for (size_t n = list->least_n; n > 0; n--) {
             struct spare *spare = pop(block_cache, list);
-            spare->next = unused;
-            unused = spare;
+            SLIST_INSERT_HEAD(&unused, spare, link);
         }
         list->least_n = list->n;
     }
     pthread_mutex_unlock(&block_cache->lock);
-    while (unused) {
-        struct spare *next = unused->next;
-        free(unused);
-        unused = next;
+    while (!SLIST_EMPTY(&unused)) {
+        struct spare *spare = SLIST_FIRST(&unused);
+        SLIST_REMOVE_HEAD(&unused, link);
+        free(spare);
     }
 }
 
