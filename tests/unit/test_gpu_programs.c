@@ -122,6 +122,25 @@ static void test_one_a_step(void **state)
     scene_finish(&scene);
 }
 
+/* Soft edges make programs of their own, but not of a rainbow, where they change nothing. */
+static void test_soft(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_init(&scene, tetrahedron);
+    struct frame_request request = scene.request;
+    struct pattern *pattern = &request.lights[0].pattern;
+    pattern->kind = PATTERN_RAINBOW;
+    assert_int_equal(draw_anew(&scene, &request), 4);
+    pattern->soft = 0.5;
+    assert_int_equal(draw_anew(&scene, &request), 0);
+    pattern->kind = PATTERN_DISTANCE;
+    assert_int_equal(draw_anew(&scene, &request), 4);
+    pattern->soft = 0;
+    assert_int_equal(draw_anew(&scene, &request), 4);
+    scene_finish(&scene);
+}
+
 /* Frames that take turns cannot keep each other from being drawn. */
 static void test_ends(void **state)
 {
@@ -237,11 +256,9 @@ static void test_no_powers_of_two(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_one_a_step),
-        cmocka_unit_test(test_ends),
-        cmocka_unit_test(test_room),
-        cmocka_unit_test(test_table_sets),
-        cmocka_unit_test(test_no_powers_of_two),
+        cmocka_unit_test(test_one_a_step), cmocka_unit_test(test_soft),
+        cmocka_unit_test(test_ends),       cmocka_unit_test(test_room),
+        cmocka_unit_test(test_table_sets), cmocka_unit_test(test_no_powers_of_two),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,7 +21,8 @@ static struct shade_key key_of(const struct frame_request *request, const struct
     return (struct shade_key){.family = (uint8_t)family,
                               .light = family_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
                               .pattern = (uint8_t)pattern->kind,
-                              .soft = pattern->soft > 0,
+                              .soft = pattern->soft > 0 && pattern->kind != PATTERN_RAINBOW &&
+                                      pattern->kind != PATTERN_IMAGE,
                               .picture = image ? image_quirks(image->base.pixels) : 0,
                               .has_several = request->n_lights > 1,
                               .which = (uint8_t)which};

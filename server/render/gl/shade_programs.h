@@ -34,7 +34,7 @@ enum {
 /* What tells one program from another. */
 struct shade_key {
     uint8_t family, light; /* enum line_family; enum light_kind, 0 where it plays no part */
-    uint8_t pattern, soft; /* enum pattern_kind; with soft edges */
+    uint8_t pattern, soft; /* enum pattern_kind; with soft edges, where they change something */
     uint8_t picture;       /* of PATTERN_IMAGE: image_quirks(); else 0 */
     uint8_t which;         /* enum shaded */
     uint8_t has_several;   /* lights: the colours behind come from textures, for which drivers have
