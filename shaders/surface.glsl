@@ -176,7 +176,7 @@ Surface patch_at(Node node, mat3 frame, Net p, float scale, vec2 st)
 }
 
 // The extraordinary vertex itself, where all levels end: the origin and axes of its frame. A cone's tip
-// has no tangents, nor has a crease sector of many faces one normal (server/surface/subdivision/ring.h).
+// has no tangents, nor has a crease sector of many faces one normal (server/surface/subdivision/ring_limit.h).
 Surface limit_of(Node node, mat3 frame, float scale)
 {
     return Surface(node.origin, frame[0], frame[1], frame[0], frame[1], vec3(0.0),

@@ -49,12 +49,12 @@ room deploy/manual 'client/cli|client/cli/options|client/lib|server/ops' 'manual
 room server/base 'protocol' 'everybody knows it'
 room server/cage "$common" 'a cage is data: no format, no surface'
 room server/cage/read "$common|server/cage|protocol" 'readers run in the worker program'
-room server/surface "$common|server/cage|server/surface/topology|server/surface/subdivision" 'no GL, no socket, no thread'
-room server/surface/topology "$common|server/cage|server/surface/subdivision" 'connectivity is of the cage, whatever its scheme'
+room server/surface "$common" 'what a surface is to everybody else knows no builder, no cage'
+room server/surface/topology "$common|server/cage" 'connectivity is of the cage, whatever its scheme'
 room server/surface/subdivision "$common|server/cage|server/surface|server/surface/topology" 'builders of one kind of surface'
 room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
-room server/scene "$common|protocol|server/surface" 'a request is data'
+room server/scene "$common|protocol|server/cage|server/surface" 'a request is data'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl "$common|server/image|server/scene|server/render" 'a device draws, it serves nobody'
 # The rooms of the daemon itself, each above those that stand before it.
@@ -63,7 +63,7 @@ room server/threads "$common|server/cage|server/image|server/net|server/render|s
     'threads run what others give them'
 room server/output "$common|protocol|server/image|server/render|server/scene|server/threads" \
     'an encoder knows pictures, no client'
-room server/assets "$common|protocol|server/cage|server/net|server/render|server/scene|server/surface|server/threads" \
+room server/assets "$common|protocol|server/cage|server/net|server/render|server/scene|server/surface|server/surface/subdivision|server/threads" \
     'models and images serve every frame, and know none'
 room server/frame "$common|protocol|server/assets|server/output|server/scene" \
     'a frame tells its session by events (request.h), so it includes none'

@@ -1,4 +1,4 @@
-/* What one thread's part of building a model's tables has cost so far: a limit_watch (tables.h)
+/* What one thread's part of building a model's tables has cost so far: a limit_watch (watch.h)
  * that ends the build when the daemon does, or when all its parts together have taken too much of
  * the processors. A cage of a few megabytes can be made to cost hours.
  *
@@ -7,7 +7,7 @@
 #ifndef SHEEN_ASSETS_BUILD_CLOCK_H
 #define SHEEN_ASSETS_BUILD_CLOCK_H
 
-#include "server/surface/tables.h"
+#include "server/surface/watch.h"
 #include "server/assets/build.h"
 
 struct build_clock {

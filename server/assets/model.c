@@ -5,6 +5,7 @@
 
 #include "server/base/clock.h"
 #include "server/base/fault.h"
+#include "server/surface/subdivision/build.h"
 #include "server/surface/support.h"
 #include "server/assets/build_clock.h"
 
@@ -199,7 +200,7 @@ static bool read_cage(struct model_build *build)
     build_clock_start(&clock, order, &build->cpu_us);
     if (check_not_cancelled(order, &error) && cage_survey(&build->cage, &model->survey, &error) &&
         (build->plan = limit_plan_create(&build->cage, &watch, &error)) &&
-        limit_tables_init(&model->tables, build->plan, &error))
+        limit_tables_init(&model->tables, limit_plan_size(build->plan), &error))
         return true;
     return fail_named(build, &error);
 }

@@ -8,11 +8,6 @@
 /* More than rounding changes distances by. */
 static const double SLACK = 1 + 1e-6;
 
-static bool has_surface(const struct limit_node *node)
-{
-    return node->kind == LIMIT_REGULAR || node->kind == LIMIT_CORNER || node->kind == LIMIT_STRIP;
-}
-
 /* A node's first bound holds all of it. */
 static double radius_of(const struct limit_tables *tables, size_t node)
 {
@@ -26,7 +21,7 @@ static struct cluster enclose(const struct limit_tables *tables, size_t first, s
     struct cluster cluster = {.radius = -1};
     for (size_t i = first; i < end; i++) {
         const struct limit_node *node = &tables->nodes[i];
-        for (int k = 0; k < 3 && has_surface(node); k++) {
+        for (int k = 0; k < 3 && limit_has_points(node); k++) {
             double x = node->origin[k]; /* finite: no fmin(), which costs a call */
             low[k] = x < low[k] ? x : low[k];
             high[k] = x > high[k] ? x : high[k];
@@ -36,7 +31,7 @@ static struct cluster enclose(const struct limit_tables *tables, size_t first, s
         cluster.centre[k] = 0.5 * low[k] + 0.5 * high[k];
     for (size_t i = first; i < end; i++) {
         const struct limit_node *node = &tables->nodes[i];
-        if (!has_surface(node))
+        if (!limit_has_points(node))
             continue;
         struct vec away = {node->origin[0] - cluster.centre[0], node->origin[1] - cluster.centre[1],
                            node->origin[2] - cluster.centre[2]};

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "server/surface/bound.h"
-#include "server/surface/evaluate.h"
+#include "server/surface/patch.h"
 #include "server/surface/vec.h"
 
 /* How far a triangle may be from the surface, px. Stage 2 solves for the exact place. */
@@ -159,30 +159,8 @@ static void sort_by_shape(struct chooser *c)
         out->grid[next[out->chosen[i].where >> 16]++] = out->chosen[i];
 }
 
-/* The B-spline points of [a, b] of a segment on [0, 1]: blossoms at the finer knots. */
-static void restrict_segment(const struct vec *p, int stride, double a, double b, struct vec out[4])
-{
-    double h = b - a;
-    const double knots[4][3] = {
-        {a - 2 * h, a - h, a}, {a - h, a, b}, {a, b, b + h}, {b, b + h, b + 2 * h}};
-    for (int i = 0; i < 4; i++) {
-        double r = knots[i][0], s = knots[i][1], t = knots[i][2];
-        struct vec q[3], e[2];
-        for (int k = 0; k < 3; k++) {
-            double w = (r + 2 - k) / 3;
-            q[k] = vec_mad(vec_scale(p[k * stride], 1 - w), w, p[(k + 1) * stride]);
-        }
-        for (int k = 0; k < 2; k++) {
-            double w = (s + 1 - k) / 2;
-            e[k] = vec_mad(vec_scale(q[k], 1 - w), w, q[k + 1]);
-        }
-        out[i] = vec_mad(vec_scale(e[0], 1 - t), t, e[1]);
-    }
-}
-
-/* The 16 points of the patch that a grid covers a part of, in the node's frame, world units. */
-static void patch_points(const struct limit_tables *tables, const struct patch_grid *grid,
-                         struct vec net[16])
+/* The patch that a grid covers a part of. */
+static struct limit_patch patch_of(const struct limit_tables *tables, const struct patch_grid *grid)
 {
     const struct limit_node *node = &tables->nodes[grid->node];
     int level = grid->where & 63;
@@ -193,45 +171,21 @@ static void patch_points(const struct limit_tables *tables, const struct patch_g
     double x = square == 1 || square == 2 ? 1.5 : 0.5, y = square >= 2 ? 1.5 : 0.5;
     limit_patch_of_level(&patch, tables, node, rest ? level + 1 : level, ldexp(x, -level),
                          ldexp(y, -level));
-    limit_patch_points(&patch, net);
+    return patch;
 }
 
 static struct extent square_extent(const struct chooser *c, const struct patch_grid *grid,
-                                   const struct vec patch[16])
+                                   const struct limit_patch *patch)
 {
-    double size = ldexp(1, -(int)(grid->where >> 8));
-    double x = grid->x * size, y = grid->y * size;
-    struct vec rows[16], net[16], middle = {0, 0, 0};
-    for (int j = 0; j < 4; j++)
-        restrict_segment(patch + 4 * j, 1, x, x + size, rows + 4 * j);
-    for (int i = 0; i < 4; i++) {
-        struct vec column[4];
-        restrict_segment(rows + i, 4, y, y + size, column);
-        for (int j = 0; j < 4; j++)
-            net[4 * j + i] = column[j];
-    }
-    for (int k = 0; k < 16; k++)
-        middle = vec_mad(middle, 1.0 / 16, net[k]);
-    for (int k = 0; k < 16; k++)
-        net[k] = vec_sub(net[k], middle);
-    const struct limit_node *node = &c->tables->nodes[grid->node];
-    struct limit_bound bound = bound_of_grid(net, 4, false, true);
-    if (!c->view->perspective) {
-        /* What runs along the view does not show. */
-        struct vec forward = {c->view->axis[2][0], c->view->axis[2][1], c->view->axis[2][2]};
-        for (int k = 0; k < 16; k++) {
-            struct vec p = limit_frame_to_world(c->tables, node, net[k]);
-            net[k] = vec_mad(p, -vec_dot(p, forward), forward);
-        }
-        struct limit_bound plain = bound_of_grid(net, 4, false, false);
-        if (bound_bend(&plain) < bound_bend(&bound))
-            bound = plain;
-    }
-    struct vec at = limit_frame_to_world(c->tables, node, middle);
-    const double world[3] = {node->origin[0] + at.x, node->origin[1] + at.y,
-                             node->origin[2] + at.z};
-    struct extent extent = {.bound = bound};
-    view_transform(c->view, world, extent.centre);
+    double size = ldexp(1, -(int)(grid->where >> 8)), centre[3];
+    const struct limit_square part = {grid->x * size, grid->y * size, size};
+    /* What runs along the view does not show. */
+    const double *axis = c->view->axis[2];
+    const struct vec forward = {axis[0], axis[1], axis[2]};
+    struct extent extent;
+    extent.bound =
+        limit_patch_bound(c->tables, patch, part, c->view->perspective ? NULL : &forward, centre);
+    view_transform(c->view, centre, extent.centre);
     return extent;
 }
 
@@ -240,12 +194,11 @@ static void choose_square(struct chooser *c, struct patch_grid grid, const struc
 /* Too large for the finest grid: four quarters, each with its own bounds. */
 static void choose_quarters(struct chooser *c, struct patch_grid grid)
 {
-    struct vec patch[16];
-    patch_points(c->tables, &grid, patch);
+    const struct limit_patch patch = patch_of(c->tables, &grid);
     for (uint32_t i = 0; i < 4; i++) {
         struct patch_grid quarter = {grid.node, grid.where + (1u << 8), 2 * grid.x + (i & 1),
                                      2 * grid.y + (i >> 1)};
-        struct extent extent = square_extent(c, &quarter, patch);
+        struct extent extent = square_extent(c, &quarter, &patch);
         choose_square(c, quarter, &extent);
     }
 }
@@ -326,7 +279,7 @@ static void choose_corner(struct chooser *c, uint32_t node)
     const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
     struct extent extent;
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
-    uint32_t level = 0, levels = c->tables->nodes[node].levels & ~LIMIT_NO_NORMAL;
+    uint32_t level = 0, levels = limit_levels(&c->tables->nodes[node]);
     for (; level < levels; level++) {
         extent.bound = bounds[level];
         if (is_outside(c, &extent))

@@ -5,6 +5,7 @@
 #define SHEEN_SCENE_SCENE_CONVERT_H
 
 #include "protocol/message.h"
+#include "server/cage/cage.h"
 #include "server/scene/frame_request.h"
 #include "server/surface/tables.h"
 

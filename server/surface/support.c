@@ -9,18 +9,17 @@
 /* Points of a patch are so dense that it bends away from them by less than this share of the box's
  * diagonal; a patch smaller than that is one point. */
 #define TOLERANCE 1e-3
-#define MAX_STEPS 16 /* along each side of a node */
 
 struct cells {
     double middle[3], half[3]; /* of the box; half is never 0 */
-    double reach2[SUPPORT_MAX_POINTS];
-    float point[SUPPORT_MAX_POINTS][3]; /* where reach2 is not 0 */
+    double reach2[LIMIT_MAX_SUPPORT];
+    float point[LIMIT_MAX_SUPPORT][3]; /* where reach2 is not 0 */
 };
 
 static uint32_t step_of(double x)
 {
-    double step = 0.5 * (x + 1) * SUPPORT_SIDE;
-    return step < 1 ? 0 : step >= SUPPORT_SIDE ? SUPPORT_SIDE - 1 : (uint32_t)step;
+    double step = 0.5 * (x + 1) * LIMIT_SUPPORT_CELLS;
+    return step < 1 ? 0 : step >= LIMIT_SUPPORT_CELLS ? LIMIT_SUPPORT_CELLS - 1 : (uint32_t)step;
 }
 
 /* Of each cell the point that lies farthest from the middle stays, in units of the box's sides, so
@@ -40,7 +39,7 @@ static void add_point(struct cells *cells, struct vec at)
         return;
     uint32_t face = 2 * (uint32_t)side + (p[side] < 0);
     uint32_t x = step_of(p[(side + 1) % 3] / largest), y = step_of(p[(side + 2) % 3] / largest);
-    uint32_t cell = (face * SUPPORT_SIDE + y) * SUPPORT_SIDE + x;
+    uint32_t cell = (face * LIMIT_SUPPORT_CELLS + y) * LIMIT_SUPPORT_CELLS + x;
     if (reach2 <= cells->reach2[cell])
         return;
     cells->reach2[cell] = reach2;
@@ -57,14 +56,13 @@ static int steps_of(const struct limit_tables *tables, uint32_t node, double tol
         return 0;
     double faster = tables->nodes[node].kind == LIMIT_CORNER ? 4 : 1;
     double steps = ceil(sqrt((double)bound_bend(bound) * faster / 8 / tolerance));
-    return steps < 2 ? 2 : steps > MAX_STEPS ? MAX_STEPS : (int)steps;
+    return steps < 2 ? 2 : steps > LIMIT_SUPPORT_STEPS ? LIMIT_SUPPORT_STEPS : (int)steps;
 }
 
 static void add_node(struct cells *cells, const struct limit_tables *tables, uint32_t node,
                      double tolerance)
 {
-    enum limit_kind kind = (enum limit_kind)tables->nodes[node].kind;
-    if (kind == LIMIT_SPLIT || kind == LIMIT_HOLE)
+    if (!limit_has_points(&tables->nodes[node]))
         return;
     const double *origin = tables->nodes[node].origin;
     int steps = steps_of(tables, node, tolerance);
@@ -78,13 +76,6 @@ static void add_node(struct cells *cells, const struct limit_tables *tables, uin
             if (limit_evaluate_at(tables, &place, &point))
                 add_point(cells, point.s);
         }
-}
-
-size_t limit_support_room(const struct limit_tables *tables)
-{
-    const size_t of_node = (MAX_STEPS + 1) * (MAX_STEPS + 1);
-    size_t pieces = tables->n_regular + tables->n_corner + tables->n_strip;
-    return pieces < SUPPORT_MAX_POINTS / of_node ? pieces * of_node : SUPPORT_MAX_POINTS;
 }
 
 bool limit_find_support(struct limit_tables *tables, const struct limit_watch *watch,
@@ -109,7 +100,7 @@ bool limit_find_support(struct limit_tables *tables, const struct limit_watch *w
         ok = i % 256 || limit_goes_on(watch, error);
         add_node(cells, tables, (uint32_t)i, fmax(TOLERANCE * diagonal, 1e-300));
     }
-    for (int i = 0; ok && i < SUPPORT_MAX_POINTS; i++)
+    for (int i = 0; ok && i < LIMIT_MAX_SUPPORT; i++)
         if (cells->reach2[i] > 0) {
             for (int k = 0; k < 3; k++)
                 tables->support[tables->n_support][k] = cells->point[i][k];

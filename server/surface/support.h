@@ -4,19 +4,12 @@
 #define SHEEN_SURFACE_SUPPORT_H
 
 #include "server/surface/tables.h"
+#include "server/surface/watch.h"
 
-/* Over the sides of the box, by direction from its middle: so many cells along each side of each.
- */
-#define SUPPORT_SIDE 16
-#define SUPPORT_MAX_POINTS (6 * SUPPORT_SIDE * SUPPORT_SIDE)
-
-/* How many points tables may have, known before they are built: a model without surface has none.
- */
-size_t limit_support_room(const struct limit_tables *tables);
-
-/* Fills in tables->support once all faces are built: the outermost of many points of the surface in
- * each cell. The surface reaches beyond them by less than 1 % of the box's diagonal. Asks the watch
- * as limit_build_faces() does. */
+/* Fills in tables->support once all faces are built: of many points of the surface the outermost in
+ * each cell of a cube about its middle. The surface reaches beyond them by less than 1 % of the
+ * box's diagonal. One thread. False, and no support points: ERROR_SERVER when memory is short, or
+ * the watch's error. */
 bool limit_find_support(struct limit_tables *tables, const struct limit_watch *watch,
                         struct error *error);
 

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+extern "C" {
+#include "server/cage/cage.h"
+}
 #include "tests/oracle/renderer.h"
 
 struct embree_picture {

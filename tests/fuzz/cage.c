@@ -7,6 +7,7 @@
 
 #include "server/cage/read/read.h"
 #include "server/cage/survey.h"
+#include "server/surface/subdivision/build.h"
 #include "server/surface/tables.h"
 #include "server/sandbox/cage_code.h"
 #include "tests/fuzz/fuzz.h"
@@ -21,7 +22,7 @@ static void build_tables(const struct cage *cage)
     struct limit_plan *plan = NULL;
     bool ok = cage_survey(cage, &survey, &error) &&
               (plan = limit_plan_create(cage, NULL, &error)) &&
-              limit_tables_init(&tables, plan, &error) &&
+              limit_tables_init(&tables, limit_plan_size(plan), &error) &&
               limit_build_faces(&tables, plan, 0, tables.n_faces, NULL, &error);
     MUST(ok || error.kind == ERROR_MODEL || (error.kind == ERROR_SERVER && fuzz_memory_failed()));
     limit_plan_destroy(plan);

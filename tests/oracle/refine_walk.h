@@ -8,6 +8,7 @@
 #include "tests/oracle/vec.h"
 
 extern "C" {
+#include "server/surface/subdivision/build.h"
 #include "server/surface/subdivision/plan.h"
 }
 

@@ -8,6 +8,9 @@
 #include <thread>
 #include <vector>
 
+extern "C" {
+#include "server/surface/subdivision/build.h"
+}
 #include "tests/oracle/vec.h"
 
 namespace
@@ -54,7 +57,7 @@ scene::scene(std::shared_ptr<const struct cage> whose, int n_threads) : cage(std
     std::unique_ptr<limit_plan, void (*)(limit_plan *)> plan(
         limit_plan_create(cage.get(), NULL, &error), limit_plan_destroy);
     check(plan != nullptr, error);
-    check(limit_tables_init(&tables, plan.get(), &error), error);
+    check(limit_tables_init(&tables, limit_plan_size(plan.get()), &error), error);
     build(&tables, plan.get(), n_threads);
 }
 

@@ -92,7 +92,7 @@ table_evaluator::table_evaluator(const cage &cage)
     limit_plan *plan = limit_plan_create(&cage, NULL, &error);
     if (!plan)
         throw std::runtime_error(error.text);
-    bool built = limit_tables_init(&tables, plan, &error) &&
+    bool built = limit_tables_init(&tables, limit_plan_size(plan), &error) &&
                  limit_build_faces(&tables, plan, 0, tables.n_faces, NULL, &error);
     limit_plan_destroy(plan);
     if (!built)

@@ -7,6 +7,8 @@
 
 extern "C" {
 #include "server/surface/evaluate.h"
+#include "server/surface/subdivision/build.h"
+#include "server/surface/texels.h"
 }
 
 /* Derivatives are by the coordinates that the place was given in; those of evaluate_ring() by the

@@ -13,6 +13,7 @@
 
 extern "C" {
 #include "server/surface/topology/nonmanifold.h"
+#include "server/surface/topology/topology.h"
 }
 
 namespace

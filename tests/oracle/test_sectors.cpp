@@ -1,7 +1,7 @@
 /* test_sectors: boundary, crease and corner sectors of 1 to 12 faces, levels 1 to 30, rings rough
  * at random, against repeated local refinement in long double: normal and curvature inside the
  * faces, and the vertex's own normal against what the normals inside the faces come to. No GPU, no
- * libosd, whose across-tangent belongs to another edge rule (server/surface/subdivision/ring.c). */
+ * libosd, whose across-tangent belongs to another edge rule (server/surface/subdivision/ring_limit.c). */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

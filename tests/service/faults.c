@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "server/surface/tables.h"
+#include "server/surface/subdivision/build.h"
 
 enum { MAX_FAULTS = 8 };
 

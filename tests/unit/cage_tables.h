@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "server/cage/read/read.h"
+#include "server/surface/subdivision/build.h"
 #include "server/surface/tables.h"
 #include "server/surface/vec.h"
 
@@ -24,7 +25,7 @@ static inline void build(const char *bytes, size_t size, struct limit_tables *ta
         fail_msg("%s", error.text);
     struct limit_plan *plan = limit_plan_create(&cage, NULL, &error);
     assert_non_null(plan);
-    assert_true(limit_tables_init(tables, plan, &error));
+    assert_true(limit_tables_init(tables, limit_plan_size(plan), &error));
     assert_true(limit_build_faces(tables, plan, 0, tables->n_faces, NULL, &error));
     limit_plan_destroy(plan);
     cage_finish(&cage);

@@ -47,7 +47,7 @@ static void test_node_textures(void **state)
     (void)state;
     struct limit_tables tables;
     build_torus(12, &tables);
-    assert_int_equal(tables.n_regular, 144);
+    assert_int_equal(tables.count[LIMIT_REGULAR], 144);
     assert_cuts_do_not_show(&tables, 307);
     limit_tables_finish(&tables);
 }

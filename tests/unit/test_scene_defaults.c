@@ -191,7 +191,7 @@ static void test_the_surface_fills_the_picture(void **state)
         snprintf(path, sizeof path, "tests/models/%s.obj", names[m]);
         build_file(path, &tables);
         assert_true(limit_find_support(&tables, NULL, &error));
-        assert_true(tables.n_support > 4 && tables.n_support <= SUPPORT_MAX_POINTS);
+        assert_true(tables.n_support > 4 && tables.n_support <= LIMIT_MAX_SUPPORT);
         struct vec *points = calloc(tables.n_faces * SAMPLES * SAMPLES, sizeof *points);
         assert_non_null(points);
         size_t n = 0;

@@ -200,10 +200,10 @@ static bool neighbours(const struct limit_tables *tables, const struct limit_pla
         place.a += h * along[k][0];
         place.b += h * along[k][1];
         if (!limit_patch_find(tables, &place, &patch) || patch.is_vertex ||
-            (k > 0 && (patch.rows != rows || patch.column != column)))
+            (k > 0 && (patch.points.rows != rows || patch.points.column != column)))
             return false;
-        rows = patch.rows;
-        column = patch.column;
+        rows = patch.points.rows;
+        column = patch.points.column;
         limit_patch_evaluate(tables, &patch, &p[k]);
     }
     return true;

@@ -12,6 +12,7 @@
 
 #include "server/surface/evaluate.h"
 #include "server/surface/topology/nonmanifold.h"
+#include "server/surface/topology/topology.h"
 #include "tests/unit/cage_tables.h"
 
 enum { PAGES = 3, SPINE_Z = 3, MAX_CREASES = 4 };

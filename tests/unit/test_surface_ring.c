@@ -10,7 +10,8 @@
 #include <cmocka.h>
 
 #include "server/cage/cage.h"
-#include "server/surface/subdivision/ring.h"
+#include "server/surface/subdivision/refine.h"
+#include "server/surface/subdivision/ring_limit.h"
 
 static double noise(void)
 {

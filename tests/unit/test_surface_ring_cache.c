@@ -12,7 +12,10 @@
 #include <cmocka.h>
 
 #include "server/cage/read/read.h"
+#include "server/surface/subdivision/build.h"
 #include "server/surface/subdivision/crease.h"
+#include "server/surface/subdivision/ring_limit.h"
+#include "server/surface/subdivision/settle.h"
 #include "server/surface/evaluate.h"
 #include "server/surface/subdivision/extract.h"
 #include "server/surface/subdivision/dart_mask_list.h"
@@ -171,7 +174,7 @@ static void test_windows(void **state)
             struct limit_tables tables;
             struct error error = {0};
             fan_init(&fan, closed, tags[i]);
-            assert_true(limit_tables_init(&tables, fan.plan, &error));
+            assert_true(limit_tables_init(&tables, limit_plan_size(fan.plan), &error));
             assert_true(limit_build_faces(&tables, fan.plan, 0, N, NULL, &error));
             for (size_t k = 0; k < sizeof faces / sizeof faces[0]; k++)
                 assert_table_right(&fan, &tables, faces[k]);
@@ -215,12 +218,12 @@ static void test_plan_knows_modes(void **state)
     (void)state;
     struct fan fan;
     fan_init_of(&fan, 20, true, "t crease 2/1/0 0 1 10\n");
-    assert_non_null(fan.plan->modes);
-    assert_int_equal(fan.plan->modes->n_faces, 20);
-    assert_null(fan.plan->modes->older);
+    assert_non_null(fan.plan->darts);
+    assert_int_equal(fan.plan->darts->n_faces, 20);
+    assert_null(fan.plan->darts->older);
     fan_finish(&fan);
     fan_init_of(&fan, 20, true, "t crease 2/1/0 0 1 10\nt corner 1/1/0 0 10\n");
-    assert_null(fan.plan->modes);
+    assert_null(fan.plan->darts);
     fan_finish(&fan);
 }
 

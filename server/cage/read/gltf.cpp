@@ -1,10 +1,11 @@
-#include "server/cage/read/gltf_reader.hpp"
+#include "server/cage/read/gltf.h"
 
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
 
 #include "server/cage/read/gltf_extensions.h"
+#include "server/cage/read/gltf_reader.hpp"
 
 namespace gltf
 {

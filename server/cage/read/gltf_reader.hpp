@@ -7,7 +7,9 @@
 
 #include <tiny_gltf.h>
 
-#include "server/cage/read/gltf.h"
+extern "C" {
+#include "server/cage/read/builder.h"
+}
 #include "server/cage/read/gltf_container.h"
 #include "server/cage/read/transform.h"
 #include "server/cage/read/weld.h"

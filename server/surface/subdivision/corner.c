@@ -5,7 +5,10 @@
 
 #include "server/surface/bound.h"
 #include "server/surface/subdivision/crease.h"
+#include "server/surface/subdivision/refine.h"
 #include "server/surface/subdivision/ring_cache.h"
+#include "server/surface/subdivision/ring_limit.h"
+#include "server/surface/subdivision/settle.h"
 #include "server/surface/texels.h"
 
 /* What a vertex's own rule takes that a window of its ring lacks. */
@@ -91,7 +94,7 @@ static struct vec to_frame(struct vec p, struct vec origin, const struct vec axi
 /* Where the sector ends at the quad's own edges, phantoms continue it. */
 static void phantom_points(const struct ring *ring, struct vec grid[5][5])
 {
-    bool first = crease_ends_at(ring, 0), second = crease_ends_at(ring, 1);
+    bool first = ring_ends_at(ring, 0), second = ring_ends_at(ring, 1);
     for (int k = 1; k < 5; k++) {
         if (second)
             grid[k][0] = vec_sub(vec_scale(grid[k][1], 2), grid[k][2]);

@@ -1,5 +1,5 @@
-/* The modes (dart_masks.h) of a cage's darts of many faces: found while its plan is made, since
- * they take 0.1 s at 64 faces and are the same wherever the ring's points lie. */
+/* The modes (dart_masks.h) of a cage's darts of many faces: found while its plan is made, since they
+ * take 0.1 s at 64 faces and are the same wherever the ring's points lie. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_DART_MASK_LIST_H
 #define SHEEN_SURFACE_SUBDIVISION_DART_MASK_LIST_H
 

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "server/surface/subdivision/refine.h"
+
 enum { MAX_SIZE = 2 * DART_MAX_VALENCE + 2 };
 /* The slowest ratio of eigenvalues at DART_MAX_VALENCE is about 0.99. */
 static const int ITERATIONS = 4000;

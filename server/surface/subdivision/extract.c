@@ -3,7 +3,10 @@
 #include <stdlib.h>
 
 #include "server/surface/subdivision/crease.h"
+#include "server/surface/subdivision/refine.h"
+#include "server/surface/subdivision/settle.h"
 #include "server/surface/topology/nonmanifold.h"
+#include "server/surface/topology/sharpness.h"
 
 static struct vec vertex_position(const struct topology *t, uint32_t vertex)
 {
@@ -62,7 +65,7 @@ static struct ring cage_ring(const struct topology *t, uint32_t c, bool quads,
 /* What the half of half-edge c at its start will have after one step. */
 static float child_sharpness(const struct topology *t, uint32_t c)
 {
-    return t->child_sharpness ? t->child_sharpness[c] : crease_child_vertex(edge_sharpness(t, c));
+    return t->child_sharpness ? t->child_sharpness[c] : sharpness_child(edge_sharpness(t, c));
 }
 
 static void set_far_sharpness(const struct topology *t, const struct sector *sector,
@@ -100,7 +103,7 @@ static struct ring vertex_ring(const struct topology *t, uint32_t c, struct ring
         set_far_sharpness(t, &sector, &ring);
         share(t, rings, CACHED_CAGE, &sector, &ring);
     }
-    return crease_settle(&ring, arena);
+    return ring_settle(&ring, arena);
 }
 
 /* The refined ring of corner c's vertex, by the face points of its faces. */
@@ -165,7 +168,7 @@ static struct ring refined_edge_ring(const struct topology *t, const struct refi
         ring.creases.edge[2] = crease_edge(&start, start.at);
         ring.creases.far[2] = crease_child(&start, start.at);
     }
-    return crease_settle(&ring, arena);
+    return ring_settle(&ring, arena);
 }
 
 /* Around the face point, seen from the quad at cage corner c, from which a small face is listed; a
@@ -225,7 +228,7 @@ struct quad extract_refined_quad(const struct topology *t, const struct refined_
     struct quad quad;
     uint32_t before = corner_prev(t, c);
     struct ring vertex = refined_vertex_ring(t, points, c, rings, arena);
-    quad.corner[0] = crease_settle(&vertex, arena);
+    quad.corner[0] = ring_settle(&vertex, arena);
     quad.corner[1] = refined_edge_ring(t, points, c, 1, rings, arena);
     quad.corner[2] = refined_face_ring(t, points, c, rings, arena);
     quad.corner[3] = refined_edge_ring(t, points, before, 0, rings, arena);
@@ -280,8 +283,8 @@ static bool refine_smooth_triangle_edges(const struct topology *t, struct refine
             continue;
         if (!limit_goes_on(watch, error))
             return false;
-        double crease =
-            crease_weight(edge_sharpness(t, c), child_sharpness(t, c), child_sharpness(t, twin));
+        double crease = sharpness_crease_weight(edge_sharpness(t, c), child_sharpness(t, c),
+                                                child_sharpness(t, twin));
         double face = 0.5 * (smooth_triangle_weight(t, c) + smooth_triangle_weight(t, twin));
         struct vec ends = vec_add(position(t, c), position(t, corner_next(t, c)));
         struct vec faces = vec_add(points->face[t->face[c]], points->face[t->face[twin]]);

@@ -7,8 +7,8 @@
 
 #include "server/surface/subdivision/quad.h"
 #include "server/surface/subdivision/ring_cache.h"
-#include "server/surface/tables.h"
-#include "server/surface/topology/topology.h"
+#include "server/surface/topology/half_edges.h"
+#include "server/surface/watch.h"
 
 struct refined_points {
     struct vec *vertex; /* [vertices] */
@@ -21,12 +21,12 @@ bool refined_points_init(struct refined_points *points, const struct topology *t
                          struct arena *arena, const struct limit_watch *watch, struct error *error);
 void refined_points_finish(struct refined_points *points);
 
-/* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (crease.h). Large
+/* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (settle.h). Large
  * ones are kept in `rings`, where they are looked for first. */
 struct quad extract_quad(const struct topology *topology, uint32_t c, struct ring_cache *rings,
                          struct arena *arena);
 
-/* The 4x4 control points of a plain quad (topology.h), as quad_grid() gives them, without its
+/* The 4x4 control points of a plain quad (half_edges.h), as quad_grid() gives them, without its
  * rings. */
 void extract_plain_grid(const struct topology *topology, uint32_t c, struct vec grid[4][4]);
 

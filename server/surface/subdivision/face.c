@@ -4,6 +4,7 @@
 #include "server/surface/bound.h"
 #include "server/surface/subdivision/corner.h"
 #include "server/surface/subdivision/crease.h"
+#include "server/surface/subdivision/settle.h"
 #include "server/surface/subdivision/dart_masks.h"
 #include "server/surface/subdivision/strip.h"
 #include "server/surface/texels.h"
@@ -28,7 +29,7 @@ static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4
     }
     b->next.texel += LIMIT_PATCH_TEXELS;
     b->next.bound += 1;
-    b->n_regular++;
+    b->count[LIMIT_REGULAR]++;
 }
 
 static void build_regular(struct face_builder *b, uint32_t node, const struct quad *quad)
@@ -48,21 +49,21 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
         b->dart_valence = ring->n_faces;
     } else if (!b->tables) {
         if (ring_is_dart(ring))
-            dart_mask_list_add(b->modes, ring, &b->arena);
+            dart_mask_list_add(b->darts, ring, &b->arena);
     } else {
         struct limit_node *out = &b->tables->nodes[node];
         struct quad turned = quad_rotated(quad, corner);
         out->kind = LIMIT_CORNER;
         out->rotation = (uint8_t)corner;
         out->first = b->next.texel;
-        bool has_normal = corner_table(&turned, levels, b->plan->modes, &b->arena,
+        bool has_normal = corner_table(&turned, levels, b->plan->darts, &b->arena,
                                        b->tables->texels + b->next.texel,
                                        b->tables->bounds + b->next.bound, out->origin);
         out->levels = (uint8_t)(has_normal ? levels : levels | LIMIT_NO_NORMAL);
     }
     b->next.texel += LIMIT_CORNER_TEXELS(levels);
     b->next.bound += levels;
-    b->n_corner++;
+    b->count[LIMIT_CORNER]++;
 }
 
 static void build_strip(struct face_builder *b, uint32_t node, const struct quad *quad,
@@ -80,7 +81,7 @@ static void build_strip(struct face_builder *b, uint32_t node, const struct quad
     }
     b->next.texel += (levels + 1) * LIMIT_PATCH_TEXELS;
     b->next.bound += levels + 2;
-    b->n_strip++;
+    b->count[LIMIT_STRIP]++;
 }
 
 static void build_node(struct face_builder *b, uint32_t node, const struct quad *quad);
@@ -90,7 +91,7 @@ static void build_split(struct face_builder *b, uint32_t node, const struct quad
 {
     uint32_t first = b->next.node;
     b->next.node += 4;
-    b->n_split++;
+    b->count[LIMIT_SPLIT]++;
     if (b->tables) {
         struct limit_node *parent = &b->tables->nodes[node], *nodes = b->tables->nodes;
         parent->kind = LIMIT_SPLIT;
@@ -240,7 +241,7 @@ void face_build(struct face_builder *b, uint32_t ptex)
     if (b->tables)
         start_root(b, ptex);
     if (plan->hole && plan->hole[face]) {
-        b->n_hole++;
+        b->count[LIMIT_HOLE]++;
         return;
     }
     if (face_size(t, face) == 4 && quad_is_plain(t, c)) {

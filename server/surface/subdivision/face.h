@@ -10,9 +10,9 @@ struct face_builder {
     const struct limit_plan *plan;
     struct arena arena;
     struct ring_cache rings;
-    struct dart_mask_list **modes; /* while measuring: the plan's */
+    struct dart_mask_list **darts; /* while measuring: the plan's */
     struct plan_offsets next;
-    size_t n_regular, n_corner, n_strip, n_split, n_hole;
+    size_t count[LIMIT_KINDS];     /* of nodes */
     double box_min[3], box_max[3]; /* of the limit positions met while measuring */
     uint32_t dart_valence;         /* of a dart that is too large to build, else 0 */
 };

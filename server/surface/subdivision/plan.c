@@ -1,11 +1,8 @@
 #include "server/surface/subdivision/plan.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "server/surface/subdivision/dart_masks.h"
-#include "server/surface/subdivision/face.h"
-#include "server/surface/subdivision/dart_mask_list.h"
+#include "server/surface/topology/topology.h"
 
 /* Boundary mode NONE: faces at a boundary are support only, unless all boundary edges at their
  * vertices are sharp by themselves (OpenSubdiv sdc/options.h). */
@@ -30,52 +27,6 @@ static bool mark_holes(struct limit_plan *plan)
     for (uint32_t f = 0; f < cage->n_faces && cage->boundary == CAGE_BOUNDARY_NONE; f++)
         plan->hole[f] |= lacks_boundary(&plan->topology, f);
     return true;
-}
-
-/* Measures every face in turn: where its share begins is what came before. */
-static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, struct error *error)
-{
-    struct face_builder measure = {.plan = plan,
-                                   .modes = &plan->modes,
-                                   .box_min = {INFINITY, INFINITY, INFINITY},
-                                   .box_max = {-INFINITY, -INFINITY, -INFINITY}};
-    if (!arena_init(&measure.arena, plan->arena_bytes))
-        return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
-    ring_cache_init(&measure.rings, plan->cage->face_start[plan->cage->n_faces]);
-    uint64_t node = plan->n_ptex, texel = 0, bound = 0;
-    bool ok = true;
-    for (uint32_t p = 0; p < plan->n_ptex && ok && (ok = limit_goes_on(watch, error)); p++) {
-        plan->offsets[p] = (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
-        measure.next = (struct plan_offsets){0, 0, 0};
-        face_build(&measure, p);
-        node += measure.next.node;
-        texel += measure.next.texel;
-        bound += measure.next.bound;
-        if (measure.dart_valence)
-            ok = error_set(error, ERROR_MODEL,
-                           "a crease ends at a vertex of %u faces, more than the %d that sheen "
-                           "evaluates",
-                           measure.dart_valence, DART_MAX_VALENCE);
-        else if (node > INT32_MAX || texel > UINT32_MAX)
-            ok = error_set(error, ERROR_MODEL,
-                           "the cage needs more than %u table texels: split it in parts",
-                           UINT32_MAX);
-    }
-    plan->offsets[plan->n_ptex] =
-        (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
-    plan->n_regular = measure.n_regular;
-    plan->n_corner = measure.n_corner;
-    plan->n_strip = measure.n_strip;
-    plan->n_split = measure.n_split;
-    plan->n_hole = measure.n_hole;
-    for (int k = 0; k < 3; k++) {
-        /* A cage without any surface still has a place. */
-        plan->box_min[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_min[k] : 0;
-        plan->box_max[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_max[k] : 0;
-    }
-    ring_cache_finish(&measure.rings);
-    arena_finish(&measure.arena);
-    return ok;
 }
 
 static bool number_ptex_faces(struct limit_plan *plan)
@@ -137,43 +88,27 @@ static bool refine_if_needed(struct limit_plan *plan, const struct limit_watch *
     return ok;
 }
 
-struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit_watch *watch,
-                                     struct error *error)
+bool plan_init(struct limit_plan *plan, const struct cage *cage, const struct limit_watch *watch,
+               struct error *error)
 {
-    if (!check_supported(cage, error))
-        return NULL;
-    struct limit_plan *plan = calloc(1, sizeof *plan);
-    if (!plan) {
-        error_set(error, ERROR_SERVER, "out of memory");
-        return NULL;
-    }
-    plan->cage = cage;
-    if (!topology_init(&plan->topology, cage, error) || !check_valence(plan, error))
-        goto fail;
-    if (!number_ptex_faces(plan) || !mark_holes(plan)) {
-        error_set(error, ERROR_SERVER, "out of memory for the Ptex faces of %zu faces",
-                  cage->n_faces);
-        goto fail;
-    }
-    if (!refine_if_needed(plan, watch, error) || !lay_out(plan, watch, error))
-        goto fail;
-    return plan;
-
-fail:
-    limit_plan_destroy(plan);
-    return NULL;
+    *plan = (struct limit_plan){.cage = cage};
+    if (!check_supported(cage, error) || !topology_init(&plan->topology, cage, error) ||
+        !check_valence(plan, error))
+        return false;
+    if (!number_ptex_faces(plan) || !mark_holes(plan))
+        return error_set(error, ERROR_SERVER, "out of memory for the Ptex faces of %zu faces",
+                         cage->n_faces);
+    return refine_if_needed(plan, watch, error);
 }
 
-void limit_plan_destroy(struct limit_plan *plan)
+void plan_finish(struct limit_plan *plan)
 {
-    if (!plan)
-        return;
     topology_finish(&plan->topology);
     refined_points_finish(&plan->refined);
-    dart_mask_list_finish(&plan->modes);
+    dart_mask_list_finish(&plan->darts);
     free(plan->first_ptex);
     free(plan->corner);
     free(plan->hole);
     free(plan->offsets);
-    free(plan);
+    *plan = (struct limit_plan){0};
 }

@@ -1,10 +1,14 @@
-/* What limit_plan_create() finds out about a cage before any table is filled. Private to
- * server/surface. */
+/* What is found out about a cage before any of its tables is filled: connectivity, the numbers of
+ * its faces, the points of its first refinement, and where each face's share of the tables lies. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_PLAN_H
 #define SHEEN_SURFACE_SUBDIVISION_PLAN_H
 
+#include "server/surface/subdivision/dart_mask_list.h"
 #include "server/surface/subdivision/extract.h"
 #include "server/surface/tables.h"
+
+/* The most faces around a vertex, or corners of a face: dozens of such rings are held at once. */
+#define LIMIT_MAX_VALENCE 4096
 
 /* Where one Ptex face's share of the tables begins, apart from its root node. */
 struct plan_offsets {
@@ -14,16 +18,22 @@ struct plan_offsets {
 struct limit_plan {
     const struct cage *cage;
     struct topology topology;
-    struct refined_points refined; /* empty when no face is at level 1 */
+    struct refined_points refined; /* empty where the cage has quads alone */
     uint32_t *first_ptex;          /* [cage faces]: its first Ptex face */
-    uint32_t *corner;              /* [Ptex faces]: the cage corner at its (0,0) */
+    uint32_t *corner;              /* [n_ptex]: the cage corner at its (0,0) */
     uint8_t *hole;                 /* [cage faces]: no surface; NULL when there is none */
-    struct plan_offsets *offsets;  /* [Ptex faces + 1] */
-    struct dart_mask_list *modes;  /* of its darts */
+    struct plan_offsets *offsets;  /* [n_ptex + 1]; build.c fills them in */
+    struct dart_mask_list *darts;  /* masks of its darts; build.c fills them in */
     size_t n_ptex;
-    size_t n_regular, n_corner, n_strip, n_split, n_hole;
-    double box_min[3], box_max[3]; /* of limit positions, all over the surface */
-    size_t arena_bytes;            /* what building any one face takes */
+    struct limit_size size; /* of the tables; build.c fills it in */
+    size_t arena_bytes;     /* what building any one face takes at most */
 };
+
+/* All but what build.c fills in. The cage must outlive the plan. False: ERROR_MODEL for what is not
+ * evaluated, ERROR_SERVER when memory is short, or the watch's error; plan_finish() is called by
+ * the caller in both cases. One thread. */
+bool plan_init(struct limit_plan *plan, const struct cage *cage, const struct limit_watch *watch,
+               struct error *error);
+void plan_finish(struct limit_plan *plan);
 
 #endif

@@ -1,13 +1,15 @@
 #include "server/surface/subdivision/quad.h"
 
 #include "server/surface/subdivision/crease.h"
+#include "server/surface/subdivision/refine.h"
 #include "server/surface/subdivision/ring_cache.h"
+#include "server/surface/subdivision/settle.h"
 
 unsigned quad_extraordinary(const struct quad *quad)
 {
     unsigned bits = 0;
     for (unsigned i = 0; i < 4; i++)
-        bits |= (unsigned)!crease_is_regular(&quad->corner[i]) << i;
+        bits |= (unsigned)!ring_is_regular(&quad->corner[i]) << i;
     return bits;
 }
 
@@ -71,7 +73,7 @@ static struct ring face_ring(const struct ring fine[4], struct arena *arena)
 static struct ring seen_from(struct ring ring, uint32_t at, struct arena *arena)
 {
     ring.at = at;
-    return crease_settle(&ring, arena);
+    return ring_settle(&ring, arena);
 }
 
 static struct ring refined(const struct ring *ring, struct arena *arena)
@@ -96,7 +98,7 @@ void quad_refine(const struct quad *quad, struct arena *arena, struct quad child
     face = face_ring(fine, arena);
     for (unsigned i = 0; i < 4; i++) {
         unsigned before = (i + 3) & 3;
-        child[i].corner[i] = crease_settle(&fine[i], arena);
+        child[i].corner[i] = ring_settle(&fine[i], arena);
         child[i].corner[(i + 1) & 3] = seen_from(edge[i], 1, arena);
         child[i].corner[(i + 2) & 3] = seen_from(face, before, arena);
         child[i].corner[before] = seen_from(edge[before], 0, arena);

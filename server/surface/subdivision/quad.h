@@ -30,7 +30,7 @@ bool quad_is_semisharp(const struct quad *quad);
 struct quad quad_rotated(const struct quad *quad, unsigned by);
 
 /* One Catmull-Clark step: child[i] covers the quarter at corner i, in the parent's orientation, its
- * rings settled (crease.h). */
+ * rings settled (settle.h). */
 void quad_refine(const struct quad *quad, struct arena *arena, struct quad child[4]);
 
 /* The 4x4 B-spline control points grid[j + 1][i + 1], i along u and j along v in -1..2, with

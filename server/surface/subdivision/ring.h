@@ -32,7 +32,7 @@ struct ring_creases {
  */
 struct ring_sheets {
     /* The vertex's sharp edges at the ring's own level of refinement. NULL: the vertex has no other
-     * sheet; after crease_settle() also: the others matter no more, since the vertex is sharp or
+     * sheet; after ring_settle() also: the others matter no more, since the vertex is sharp or
      * the crease through it ends this sheet. */
     const struct vertex_creases *creases;
     struct vec end[2]; /* the far ends of the crease through the vertex, which ends its sheets */
@@ -49,10 +49,9 @@ struct ring {
     struct ring_creases creases; /* edge is NULL: smooth, but for the ends of an open ring */
     struct ring_sheets sheets;
     struct vec centre;
-    struct vec *edge; /* [n_faces + !closed] */
-    struct vec *face; /* [n_faces] */
-    struct cached_ring
-        *cached; /* where it is kept for all its corners (ring_cache.h); NULL: nowhere */
+    struct vec *edge;           /* [n_faces + !closed] */
+    struct vec *face;           /* [n_faces] */
+    struct cached_ring *cached; /* where the ring is kept (ring_cache.h); NULL: nowhere */
 };
 
 /* A smooth ring with room for its points; with_creases: and for sharpness, all zero. */
@@ -65,7 +64,7 @@ static inline uint32_t ring_edges(const struct ring *ring)
     return ring->n_faces + !ring->closed;
 }
 
-/* Whether a settled ring (crease.h) is of a crease that does not end it: a sheet closed by itself,
+/* Whether a settled ring (settle.h) is of a crease that does not end it: a sheet closed by itself,
  * or between two sides of the same edge, at a vertex where other sheets have the crease. */
 static inline bool ring_has_foreign_crease(const struct ring *settled)
 {
@@ -97,45 +96,5 @@ static inline bool ring_has_face(const struct ring *ring, int step)
     int64_t k = (int64_t)ring->at + step;
     return ring->closed || (k >= 0 && k < ring->n_faces);
 }
-
-/* One Catmull-Clark step: `out` was taken for as many faces and with_creases as `in`, and gets the
- * rest of its fields. in and out may not share memory. */
-void ring_refine(const struct ring *in, struct ring *out);
-
-/* The same where the faces around the vertex are no quads: out->face holds their face points
- * already, and in->face is not read. */
-void ring_refine_around(const struct ring *in, struct ring *out);
-
-/* Where the vertex of a settled ring (crease.h) lies on the limit surface. */
-struct vec ring_limit(const struct ring *ring);
-
-/* What a step leaves of a wave cos(angle k) or sin(angle k) over the edges of a ring: its larger
- * eigenvalue (Stam 1998, appendix A). */
-double ring_eigenvalue(double angle);
-
-/* Whether the surface has one normal at the vertex of a settled ring:
- *
- * - closed and smooth, darts too: yes.
- * - Sharp with more than one quad, or with a foreign crease: no, the vertex is a tip.
- * - Crease sector of 2 or 3 quads, and sharp corner of one: yes.
- * - Crease sector of 4 quads: no. Its two slowest directions both shrink by 1/2 and are coupled (a
- *   Jordan block), so that normals near the vertex differ from their limit by an error that falls
- *   as 1/level only: a degree where single precision ends.
- * - Crease sector of 5 quads and more: no. The wave sin(2 pi k / n) shrinks more slowly than the
- *   crease's own direction (ring_eigenvalue() > 1/2): normals inside the sector and beside the
- *   crease have different limits.
- * - Smooth corner of one quad: treated as yes. Its normals converge as 1/level too, but alike from
- *   all directions; from level 30 on the one taken is within 0.1 degrees of them on rough cages. */
-bool ring_has_one_normal(const struct ring *ring);
-
-/* Two tangents at the limit position of a settled ring that is no dart, of any length. Their cross
- * product points along the limit normal, on the side from which the faces run counter-clockwise. In
- * a crease sector the first is the one with the larger eigenvalue. Returns ring_has_one_normal();
- * where that is false the cross product means nothing. */
-bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2);
-
-/* The right-handed orthonormal frame of two tangents: axis[0] along t1, axis[2] along t1 x t2.
- * Where that vanishes, the mean of the quads' normals stands in; false when that vanishes too. */
-bool ring_frame(const struct ring *ring, struct vec t1, struct vec t2, struct vec axis[3]);
 
 #endif

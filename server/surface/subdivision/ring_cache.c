@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/surface/subdivision/ring_limit.h"
+
 void ring_cache_init(struct ring_cache *rings, size_t n_corners)
 {
     *rings = (struct ring_cache){.n_corners = n_corners};

@@ -2,7 +2,9 @@
 
 #include "server/surface/bound.h"
 #include "server/surface/subdivision/crease.h"
+#include "server/surface/subdivision/settle.h"
 #include "server/surface/texels.h"
+#include "server/surface/topology/sharpness.h"
 
 /* Sharpness of the straight crease through a regular vertex along the quad's edge 0 or 1 there, or
  * 0. */
@@ -25,12 +27,12 @@ unsigned strip_levels(const struct quad *quad, unsigned *edge)
         float sharpness = straight_crease(start, 0);
         if (sharpness <= 0 || straight_crease(end, 1) != sharpness)
             continue;
-        if (!crease_is_regular(&quad->corner[(e + 2) & 3]) ||
-            !crease_is_regular(&quad->corner[(e + 3) & 3]))
+        if (!ring_is_regular(&quad->corner[(e + 2) & 3]) ||
+            !ring_is_regular(&quad->corner[(e + 3) & 3]))
             continue;
         *edge = e;
         unsigned levels = 0;
-        for (; sharpness > 0; sharpness = crease_child_vertex(sharpness))
+        for (; sharpness > 0; sharpness = sharpness_child(sharpness))
             levels++;
         return levels;
     }
@@ -73,7 +75,7 @@ void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
     for (unsigned n = 0; n < levels; n++) {
         refine_rows(rows, sharpness < 1 ? (double)sharpness : 1, fine);
         write_patch(&fine[1][0], &texels, &bounds);
-        sharpness = crease_child_vertex(sharpness);
+        sharpness = sharpness_child(sharpness);
         for (int k = 0; k < 16; k++)
             rows[k / 4][k % 4] = fine[k / 4][k % 4];
     }

@@ -98,13 +98,13 @@ static bool add_level(struct topology *t, size_t *capacity, struct vertex_crease
 }
 
 /* One step: those that are left come first. */
-static void wear_off(struct sharp_edges *edges, bool chaikin, const struct crease_sum *sum)
+static void wear_off(struct sharp_edges *edges, bool chaikin, const struct sharpness_sum *sum)
 {
     uint32_t left = 0;
     for (uint32_t k = 0; k < edges->n_semisharp; k++) {
         float sharpness = edges->semisharp[k];
         float child =
-            chaikin ? crease_child_chaikin(sharpness, sum) : crease_child_vertex(sharpness);
+            chaikin ? sharpness_child_chaikin(sharpness, sum) : sharpness_child(sharpness);
         if (child > 0)
             edges->semisharp[left++] = child;
     }
@@ -118,7 +118,7 @@ static bool add_levels(struct topology *t, size_t *capacity, struct sharp_edges 
         struct vertex_creases level = {.n_sharp =
                                            edges->n_ends + edges->n_infinite + edges->n_semisharp};
         for (uint32_t k = 0; k < edges->n_semisharp; k++)
-            crease_add(&level.semisharp, edges->semisharp[k]);
+            sharpness_add(&level.semisharp, edges->semisharp[k]);
         wear_off(edges, t->cage->chaikin, &level.semisharp);
         if (!add_level(t, capacity, level))
             return false;

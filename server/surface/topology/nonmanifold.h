@@ -10,14 +10,14 @@
 #ifndef SHEEN_SURFACE_TOPOLOGY_NONMANIFOLD_H
 #define SHEEN_SURFACE_TOPOLOGY_NONMANIFOLD_H
 
-#include "server/surface/subdivision/crease.h"
-#include "server/surface/topology/topology.h"
+#include "server/surface/topology/half_edges.h"
+#include "server/surface/topology/sharpness.h"
 
 /* The sharp edges of a vertex, of all its sheets together, after one number of steps: the first
  * entry of a vertex is for none, each next one for one step more. */
 struct vertex_creases {
-    uint32_t n_sharp;            /* edges; those that end sheets are counted once each */
-    struct crease_sum semisharp; /* the semi-sharp among them; n = 0: this entry is the last */
+    uint32_t n_sharp;               /* edges; those that end sheets are counted once each */
+    struct sharpness_sum semisharp; /* the semi-sharp among them; n = 0: this entry is the last */
 };
 
 struct nonmanifold_vertex {

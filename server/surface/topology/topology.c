@@ -228,14 +228,14 @@ static bool sharpen_vertices(struct topology *t, struct error *error)
 }
 
 /* The semi-sharp edges around a vertex. */
-static struct crease_sum sum_creases(const struct topology *t, const struct sector *sector)
+static struct sharpness_sum sum_creases(const struct topology *t, const struct sector *sector)
 {
     const struct nonmanifold_vertex *sheets = nonmanifold_at(t, sector->first);
-    struct crease_sum sum = {0, 0};
+    struct sharpness_sum sum = {0, 0};
     if (sheets)
         return t->vertex_creases[sheets->first_step].semisharp;
     for (uint32_t k = 0, at = sector->first; k < sector->n_faces; k++, at = corner_ccw(t, at))
-        crease_add(&sum, edge_sharpness(t, at));
+        sharpness_add(&sum, edge_sharpness(t, at));
     return sum;
 }
 
@@ -254,9 +254,9 @@ static bool find_child_sharpness(struct topology *t)
         if (t->child_sharpness[c] >= 0)
             continue;
         struct sector sector = topology_sector(t, c);
-        struct crease_sum sum = sum_creases(t, &sector);
+        struct sharpness_sum sum = sum_creases(t, &sector);
         for (uint32_t k = 0, at = sector.first; k < sector.n_faces; k++, at = corner_ccw(t, at))
-            t->child_sharpness[at] = crease_child_chaikin(edge_sharpness(t, at), &sum);
+            t->child_sharpness[at] = sharpness_child_chaikin(edge_sharpness(t, at), &sum);
     }
     return true;
 }
@@ -310,24 +310,4 @@ void topology_finish(struct topology *t)
     free(t->sheets);
     free(t->vertex_creases);
     *t = (struct topology){0};
-}
-
-struct sector topology_sector(const struct topology *t, uint32_t corner)
-{
-    struct sector sector = {corner, 1, 0, false};
-    uint32_t lowest = corner, to_lowest = 0;
-    for (uint32_t c = corner_cw(t, corner); c != CORNER_NONE; c = corner_cw(t, c)) {
-        if (c == corner)
-            return (struct sector){lowest, sector.n_faces, to_lowest, true};
-        sector.first = c;
-        sector.at++;
-        sector.n_faces++;
-        if (c < lowest) {
-            lowest = c;
-            to_lowest = sector.at;
-        }
-    }
-    for (uint32_t c = corner_ccw(t, corner); c != CORNER_NONE; c = corner_ccw(t, c))
-        sector.n_faces++;
-    return sector;
 }

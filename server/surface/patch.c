@@ -1,0 +1,118 @@
+#include "server/surface/patch.h"
+
+#include <math.h>
+
+#include "server/surface/bound.h"
+#include "server/surface/texels.h"
+
+/* (a,b) to what they are when seen from `turn` corners on. */
+static void turn_place(unsigned turn, double a, double b, double *x, double *y)
+{
+    const double xs[4] = {a, b, 1 - a, 1 - b}, ys[4] = {b, 1 - a, 1 - b, a};
+    *x = xs[turn & 3];
+    *y = ys[turn & 3];
+}
+
+void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *tables,
+                          const struct limit_node *node, int n, double x, double y)
+{
+    const float(*texels)[4] = (const float(*)[4])tables->texels + node->first;
+    *patch = (struct limit_patch){.node = node, .s = x, .t = y};
+    if (node->kind == LIMIT_CORNER) {
+        int head = LIMIT_CORNER_HEAD((int)limit_levels(node));
+        patch->points.scale = (double)texels[1 + (n - 1) / 4][(n - 1) % 4];
+        patch->level_x = patch->level_y = n;
+        patch->s = ldexp(x, n);
+        patch->t = ldexp(y, n);
+        bool far_x = patch->s >= 1, far_y = patch->t >= 1;
+        patch->s -= far_x;
+        patch->t -= far_y;
+        const float(*level)[4] = texels + head + LIMIT_LEVEL_TEXELS * (n - 1);
+        patch->points.rows = far_y ? level + 3 : level;
+        patch->points.column = far_x ? NULL : level + 15;
+        return;
+    }
+    if (node->kind == LIMIT_STRIP) {
+        /* Patch n = 1..levels covers 2^-n <= y <= 2^(1-n), patch levels + 1 the rest. */
+        bool is_last = n > node->levels;
+        texels += LIMIT_PATCH_TEXELS * (n - 1);
+        patch->level_y = is_last ? n - 1 : n;
+        patch->t = ldexp(y, patch->level_y) - !is_last;
+    }
+    patch->points.scale = (double)texels[0][0];
+    patch->points.rows = texels + 1;
+}
+
+/* Which level of a node holds (x,y); beyond the last one of a CORNER lies its vertex. */
+static int level_at(const struct limit_node *node, double x, double y)
+{
+    if (node->kind == LIMIT_REGULAR)
+        return 0;
+    int exponent, last = (int)limit_levels(node);
+    double nearest = node->kind == LIMIT_STRIP ? y : fmax(x, y);
+    frexp(nearest, &exponent); /* nearest is in [2^(exponent-1), 2^exponent) */
+    int n = nearest > 0 ? 1 - exponent : last + 1;
+    return n < 1 ? 1 : n > last ? last + 1 : n;
+}
+
+bool limit_patch_find(const struct limit_tables *tables, const struct limit_place *place,
+                      struct limit_patch *patch)
+{
+    const struct limit_node *node = &tables->nodes[place->node];
+    double a = place->a, b = place->b, x, y;
+    int depth = 0;
+    for (; node->kind == LIMIT_SPLIT; depth++) {
+        bool far_a = a >= 0.5, far_b = b >= 0.5;
+        unsigned child = far_a ? (far_b ? 2 : 1) : (far_b ? 3 : 0);
+        node = &tables->nodes[node->first + ((place->corner + child) & 3)];
+        a = 2 * a - far_a;
+        b = 2 * b - far_b;
+    }
+    if (node->kind == LIMIT_HOLE)
+        return false;
+    unsigned turn = (node->rotation - place->corner) & 3;
+    turn_place(turn, a, b, &x, &y);
+    int n = level_at(node, x, y);
+    bool is_vertex = node->kind == LIMIT_CORNER && n > (int)limit_levels(node);
+    limit_patch_of_level(patch, tables, node, is_vertex ? n - 1 : n, x, y);
+    patch->turn = turn;
+    patch->depth = depth;
+    patch->is_vertex = is_vertex;
+    return true;
+}
+
+struct vec limit_frame_to_world(const struct limit_tables *tables, const struct limit_node *node,
+                                struct vec v)
+{
+    if (node->kind != LIMIT_CORNER)
+        return v;
+    const float *q = tables->texels[node->first];
+    struct vec axis = {(double)q[0], (double)q[1], (double)q[2]};
+    struct vec twice = vec_scale(vec_cross(axis, v), 2);
+    return vec_add(vec_mad(v, (double)q[3], twice), vec_cross(axis, twice));
+}
+
+struct limit_bound limit_patch_bound(const struct limit_tables *tables,
+                                     const struct limit_patch *patch, struct limit_square part,
+                                     const struct vec *unseen, double centre[3])
+{
+    struct vec whole[16], grid[16], middle = {0, 0, 0};
+    const struct limit_node *node = patch->node;
+    bicubic_read(&patch->points, whole);
+    bicubic_cut(whole, part.s, part.t, part.size, grid);
+    for (int k = 0; k < 16; k++)
+        middle = vec_mad(middle, 1.0 / 16, grid[k]);
+    for (int k = 0; k < 16; k++)
+        grid[k] = vec_sub(grid[k], middle);
+    struct limit_bound bound = bound_of_grid(grid, 4, false, true);
+    for (int k = 0; unseen && k < 16; k++) {
+        struct vec p = limit_frame_to_world(tables, node, grid[k]);
+        grid[k] = vec_mad(p, -vec_dot(p, *unseen), *unseen);
+    }
+    struct limit_bound seen = unseen ? bound_of_grid(grid, 4, false, false) : bound;
+    struct vec at = limit_frame_to_world(tables, node, middle);
+    centre[0] = node->origin[0] + at.x;
+    centre[1] = node->origin[1] + at.y;
+    centre[2] = node->origin[2] + at.z;
+    return bound_bend(&seen) < bound_bend(&bound) ? seen : bound;
+}

@@ -1,0 +1,116 @@
+#include "server/surface/subdivision/build.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/surface/subdivision/dart_masks.h"
+#include "server/surface/subdivision/face.h"
+#include "server/surface/subdivision/plan.h"
+
+static void bounding_box(const struct cage *cage, double box_min[3], double box_max[3])
+{
+    for (int k = 0; k < 3; k++) {
+        box_min[k] = INFINITY;
+        box_max[k] = -INFINITY;
+    }
+    for (size_t c = 0; c < cage->face_start[cage->n_faces]; c++) {
+        const double *p = cage->position[cage->face_vertex[c]];
+        for (int k = 0; k < 3; k++) {
+            box_min[k] = fmin(box_min[k], p[k]);
+            box_max[k] = fmax(box_max[k], p[k]);
+        }
+    }
+}
+
+/* Measures every face in turn: where its share begins is what came before. */
+static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, struct error *error)
+{
+    struct face_builder measure = {.plan = plan,
+                                   .darts = &plan->darts,
+                                   .box_min = {INFINITY, INFINITY, INFINITY},
+                                   .box_max = {-INFINITY, -INFINITY, -INFINITY}};
+    if (!arena_init(&measure.arena, plan->arena_bytes))
+        return error_set(error, ERROR_SERVER, "out of memory while measuring tables");
+    ring_cache_init(&measure.rings, plan->cage->face_start[plan->cage->n_faces]);
+    uint64_t node = plan->n_ptex, texel = 0, bound = 0;
+    bool ok = true;
+    for (uint32_t p = 0; p < plan->n_ptex && ok && (ok = limit_goes_on(watch, error)); p++) {
+        plan->offsets[p] = (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
+        measure.next = (struct plan_offsets){0, 0, 0};
+        face_build(&measure, p);
+        node += measure.next.node;
+        texel += measure.next.texel;
+        bound += measure.next.bound;
+        if (measure.dart_valence)
+            ok = error_set(error, ERROR_MODEL,
+                           "a crease ends at a vertex of %u faces, more than the %d that sheen "
+                           "evaluates",
+                           measure.dart_valence, DART_MAX_VALENCE);
+        else if (node > INT32_MAX || texel > UINT32_MAX)
+            ok = error_set(error, ERROR_MODEL,
+                           "the cage needs more than %u table texels: split it in parts",
+                           UINT32_MAX);
+    }
+    plan->offsets[plan->n_ptex] =
+        (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
+    plan->size = (struct limit_size){
+        .n_faces = plan->n_ptex, .n_nodes = node, .n_texels = texel, .n_bounds = bound};
+    memcpy(plan->size.count, measure.count, sizeof plan->size.count);
+    bounding_box(plan->cage, plan->size.hull_min, plan->size.hull_max);
+    for (int k = 0; k < 3; k++) {
+        /* A cage without any surface still has a place. */
+        plan->size.box_min[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_min[k] : 0;
+        plan->size.box_max[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_max[k] : 0;
+    }
+    ring_cache_finish(&measure.rings);
+    arena_finish(&measure.arena);
+    return ok;
+}
+
+struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit_watch *watch,
+                                     struct error *error)
+{
+    struct limit_plan *plan = malloc(sizeof *plan);
+    if (!plan) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    if (plan_init(plan, cage, watch, error) && lay_out(plan, watch, error))
+        return plan;
+    limit_plan_destroy(plan);
+    return NULL;
+}
+
+void limit_plan_destroy(struct limit_plan *plan)
+{
+    if (!plan)
+        return;
+    plan_finish(plan);
+    free(plan);
+}
+
+const struct limit_size *limit_plan_size(const struct limit_plan *plan)
+{
+    return &plan->size;
+}
+
+bool limit_build_faces(struct limit_tables *tables, const struct limit_plan *plan, size_t first,
+                       size_t last, const struct limit_watch *watch, struct error *error)
+{
+    struct face_builder builder = {.tables = tables, .plan = plan};
+    if (!arena_init(&builder.arena, plan->arena_bytes))
+        return error_set(error, ERROR_SERVER, "out of memory while building tables");
+    ring_cache_init(&builder.rings, plan->cage->face_start[plan->cage->n_faces]);
+    bool ok = true;
+    for (size_t p = first; p < last && (ok = limit_goes_on(watch, error)); p++) {
+        builder.next = plan->offsets[p];
+        face_build(&builder, (uint32_t)p);
+        assert(builder.next.node == plan->offsets[p + 1].node);
+        assert(builder.next.texel == plan->offsets[p + 1].texel);
+    }
+    ring_cache_finish(&builder.rings);
+    arena_finish(&builder.arena);
+    return ok;
+}
