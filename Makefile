@@ -68,7 +68,7 @@ say = $(if $(V),,@echo '  $(1)')
 obj = $(patsubst %,$(BUILD)/obj/%.o,$(1))
 PROTOCOL_SRC := $(wildcard protocol/*.c)
 CAGE_SRC := $(wildcard server/cage/*.c)
-CAGE_READ_SRC := $(wildcard server/cage/read/*.c server/cage/read/*.cpp)
+CAGE_READ_SRC := $(wildcard server/cage/build/*.c server/cage/read/*.c server/cage/read/gltf/*.c server/cage/read/gltf/*.cpp)
 SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/surface/subdivision/*.c)
 # Between messages and scenes: for those who speak to clients.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)

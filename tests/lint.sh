@@ -48,7 +48,9 @@ room client/cli "client/lib|$cli|client/cli/output|protocol" 'the command is lib
 room deploy/manual 'client/cli|client/cli/options|client/lib|server/ops' 'manual pages are written from the tables of options'
 room server/base 'protocol' 'everybody knows it'
 room server/cage "$common" 'a cage is data: no format, no surface'
-room server/cage/read "$common|server/cage|protocol" 'readers run in the worker program'
+room server/cage/build "$common|server/cage" 'a cage is made the same from every format'
+room server/cage/read/gltf "$common|server/cage|server/cage/build" 'tinygltf stays behind one function'
+room server/cage/read "$common|protocol|server/cage|server/cage/build|server/cage/read/gltf" 'the door to all readers'
 room server/surface "$common" 'what a surface is to everybody else knows no builder, no cage'
 room server/surface/topology "$common|server/cage" 'connectivity is of the cage, whatever its scheme'
 room server/surface/subdivision "$common|server/cage|server/surface|server/surface/topology" 'builders of one kind of surface'
@@ -97,7 +99,7 @@ only_in '#include <turbojpeg|\btj[A-Z][A-Za-z0-9]*\(' 'libjpeg-turbo code' 'serv
 only_in '#include <jansson' 'jansson code' 'server client protocol' client/cli/files/gltf_pack.c
 only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32)(_combine)?\(' 'zlib code' \
     'server client protocol' server/output/png.c
-only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf
+only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf/
 
 # The frame's way, file by file.
 for file in $(grep -oE '`(server|client|protocol)/[a-z0-9/_]+\.[a-z]+`' CONTRIBUTING.md | tr -d '`'); do

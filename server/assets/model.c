@@ -198,7 +198,8 @@ static bool read_cage(struct model_build *build)
     struct build_clock clock;
     const struct limit_watch watch = {build_clock_goes_on, &clock};
     build_clock_start(&clock, order, &build->cpu_us);
-    if (check_not_cancelled(order, &error) && cage_survey(&build->cage, &model->survey, &error) &&
+    if (check_not_cancelled(order, &error) &&
+        cage_statistics(&build->cage, &model->statistics, &error) &&
         (build->plan = limit_plan_create(&build->cage, &watch, &error)) &&
         limit_tables_init(&model->tables, limit_plan_size(build->plan), &error))
         return true;

@@ -5,7 +5,7 @@
 #ifndef SHEEN_ASSETS_MODEL_H
 #define SHEEN_ASSETS_MODEL_H
 
-#include "server/cage/survey.h"
+#include "server/cage/statistics.h"
 #include "server/render/renderer.h"
 #include "server/assets/build.h"
 #include "server/scene/scene_convert.h"
@@ -13,7 +13,7 @@
 struct model {
     struct limit_tables tables; /* stay as long as `gpu` */
     struct renderer_model *gpu; /* for the render thread only */
-    struct cage_survey survey;
+    struct cage_statistics statistics;
     size_t n_vertices, n_faces; /* of the cage */
     enum cage_up up;            /* as its file says */
     char *warnings;             /* lines, or NULL */

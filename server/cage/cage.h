@@ -1,6 +1,6 @@
 /* The control cage as data: vertices, faces and subdivision tags as read from a file, with damaged
- * elements taken out (read/mend.h) and equal positions joined where that was asked for or the
- * format has it so (read/weld.h).
+ * elements taken out (build/repair.h) and equal positions joined where that was asked for or the
+ * format has it so (build/weld.h).
  *
  * A cage is plain memory that its owner frees with cage_finish(). Nothing here evaluates anything;
  * the limit surface is built by server/surface. Thread: a cage is read-only once read and may then

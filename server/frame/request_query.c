@@ -6,25 +6,25 @@
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"
 
-static void fill_survey(sheen_ModelInfo *info, const struct cage_survey *survey)
+static void fill_statistics(sheen_ModelInfo *info, const struct cage_statistics *statistics)
 {
-    _Static_assert(SURVEY_MAX_VALENCES == sizeof info->extraordinary / sizeof *info->extraordinary,
-                   "a survey fits the message");
-    info->triangles = survey->n_triangles;
-    info->quads = survey->n_quads;
-    info->ngons = survey->n_ngons;
-    info->boundary_edges = survey->n_boundary_edges;
-    info->boundary_extraordinary = survey->n_boundary_extraordinary;
-    info->sharp_edges = survey->n_sharp_edges;
-    info->semisharp_edges = survey->n_semisharp_edges;
-    info->sharp_vertices = survey->n_sharp_vertices;
-    info->holes = survey->n_holes;
-    info->nonmanifold_edges = survey->n_nonmanifold_edges;
-    info->nonmanifold_vertices = survey->n_nonmanifold_vertices;
-    info->extraordinary_count = (pb_size_t)survey->n_valences;
-    for (uint32_t i = 0; i < survey->n_valences; i++)
-        info->extraordinary[i] =
-            (sheen_ValenceCount){survey->extraordinary[i].valence, survey->extraordinary[i].count};
+    _Static_assert(CAGE_MAX_VALENCES == sizeof info->extraordinary / sizeof *info->extraordinary,
+                   "the numbers fit the message");
+    info->triangles = statistics->n_triangles;
+    info->quads = statistics->n_quads;
+    info->ngons = statistics->n_ngons;
+    info->boundary_edges = statistics->n_boundary_edges;
+    info->boundary_extraordinary = statistics->n_boundary_extraordinary;
+    info->sharp_edges = statistics->n_sharp_edges;
+    info->semisharp_edges = statistics->n_semisharp_edges;
+    info->sharp_vertices = statistics->n_sharp_vertices;
+    info->holes = statistics->n_holes;
+    info->nonmanifold_edges = statistics->n_nonmanifold_edges;
+    info->nonmanifold_vertices = statistics->n_nonmanifold_vertices;
+    info->extraordinary_count = (pb_size_t)statistics->n_valences;
+    for (uint32_t i = 0; i < statistics->n_valences; i++)
+        info->extraordinary[i] = (sheen_ValenceCount){statistics->extraordinary[i].valence,
+                                                      statistics->extraordinary[i].count};
 }
 
 /* The wire numbers the kinds as the cage does. */
@@ -74,7 +74,7 @@ void request_reply_query(struct request *request)
     snprintf(info.name, sizeof info.name, "%s", asset->name);
     snprintf(info.warnings, sizeof info.warnings, "%s", model->warnings ? model->warnings : "");
     message_make_text(info.warnings, true);
-    fill_survey(&info, &model->survey);
+    fill_statistics(&info, &model->statistics);
     fill_findings(&info, model);
     request->client->events->answered(request->client->owner, request->reply, MESSAGE_MODEL_INFO,
                                       &info);

@@ -1,5 +1,5 @@
 /* Stands in for the reader of glTF in a program that shall need nothing of tinygltf. */
-#include "server/cage/read/gltf.h"
+#include "server/cage/read/gltf/gltf.h"
 
 bool gltf_read(struct cage_builder *builder, const void *bytes, size_t size, const char *name,
                struct error *error)

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "server/cage/read/read.h"
-#include "server/cage/survey.h"
+#include "server/cage/statistics.h"
 #include "server/surface/subdivision/build.h"
 #include "server/surface/tables.h"
 #include "server/sandbox/cage_code.h"
@@ -17,10 +17,10 @@
 static void build_tables(const struct cage *cage)
 {
     struct error error = {0};
-    struct cage_survey survey;
+    struct cage_statistics statistics;
     struct limit_tables tables = {0};
     struct limit_plan *plan = NULL;
-    bool ok = cage_survey(cage, &survey, &error) &&
+    bool ok = cage_statistics(cage, &statistics, &error) &&
               (plan = limit_plan_create(cage, NULL, &error)) &&
               limit_tables_init(&tables, limit_plan_size(plan), &error) &&
               limit_build_faces(&tables, plan, 0, tables.n_faces, NULL, &error);

@@ -10,7 +10,7 @@ for name in "$@"; do
 done
 # The protocol, the readers, and what workers hand back.
 for object in "$build"/obj/protocol/*.gcno "$build"/obj/server/cage/*.gcno \
-    "$build"/obj/server/cage/read/*.gcno "$build"/obj/server/sandbox/stream.*.gcno \
+    "$build"/obj/server/cage/build/*.gcno "$build"/obj/server/cage/read/*.gcno "$build"/obj/server/cage/read/gltf/*.gcno "$build"/obj/server/sandbox/stream.*.gcno \
     "$build"/obj/server/sandbox/job.*.gcno "$build"/obj/server/sandbox/*_code.*.gcno; do
     gcov -n -s "$(pwd)" -r "$object" 2>/dev/null
 done | awk -v least=85 '

@@ -5,7 +5,7 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "server/cage/read/weld.h"
+#include "server/cage/build/weld.h"
 
 /* NaN never comes from a reader; were it to, each would be compared with all before it. */
 static void test_places(void **state)

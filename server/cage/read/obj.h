@@ -2,10 +2,10 @@
 #ifndef SHEEN_CAGE_READ_OBJ_H
 #define SHEEN_CAGE_READ_OBJ_H
 
-#include "server/cage/read/builder.h"
+#include "server/cage/build/builder.h"
 
 /* Reads a whole file into an empty builder, in one pass. Indices of faces are in range and
- * coordinates finite on success; the rest is cage_mend()'s. Errors: ERROR_MODEL, saying
+ * coordinates finite on success; the rest is cage_repair()'s. Errors: ERROR_MODEL, saying
  * `name` and the line; ERROR_SERVER when memory is short. Any thread. */
 bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, const char *name,
               struct error *error);

@@ -4,7 +4,7 @@
 
 #include <locale.h>
 
-#include "server/cage/read/builder.h"
+#include "server/cage/build/builder.h"
 #include "server/cage/read/obj_text.h"
 
 struct obj_reader {

@@ -53,7 +53,7 @@ static bool missing(const struct obj_reader *reader, const struct tag *tag, cons
 }
 
 /* A zero-based index: tags count from 0 where faces count from 1. A number that can be none, below
- * 0 or too large, becomes NO_INDEX, which cage_mend() passes over like others without element. */
+ * 0 or too large, becomes NO_INDEX, which cage_repair() passes over like others without element. */
 static bool read_index(struct obj_reader *reader, const struct tag *tag, uint32_t *index)
 {
     struct obj_field field;

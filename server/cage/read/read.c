@@ -3,12 +3,12 @@
 #include <string.h>
 
 #include "protocol/model_format.h"
-#include "server/cage/read/builder.h"
-#include "server/cage/read/doubts.h"
-#include "server/cage/read/gltf.h"
-#include "server/cage/read/mend.h"
+#include "server/cage/build/builder.h"
+#include "server/cage/build/inspect.h"
+#include "server/cage/read/gltf/gltf.h"
+#include "server/cage/build/repair.h"
 #include "server/cage/read/obj.h"
-#include "server/cage/read/weld.h"
+#include "server/cage/build/weld.h"
 
 /* Messages have room for what is wrong only if the name leaves it. */
 #define SHOWN_NAME_BYTES 160
@@ -23,11 +23,11 @@ static const char *shown_name(const char *name)
 }
 
 /* Mending takes away what welding has made of faces and tags, too. */
-static bool weld_and_mend(struct cage_builder *builder, const char *name, struct error *error)
+static bool weld_and_repair(struct cage_builder *builder, const char *name, struct error *error)
 {
     const struct weld_start start = {0};
     return (!builder->weld || cage_weld(builder, &start, name, error)) &&
-           cage_mend(builder, name, error);
+           cage_repair(builder, name, error);
 }
 
 bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *name,
@@ -40,10 +40,10 @@ bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *na
     struct cage_builder builder = {0};
     bool (*read)(struct cage_builder *, const void *, size_t, const char *, struct error *) =
         model_format_is_gltf(name, bytes, size) ? gltf_read : obj_read;
-    bool ok = read(&builder, bytes, size, name, error) && weld_and_mend(&builder, name, error) &&
+    bool ok = read(&builder, bytes, size, name, error) && weld_and_repair(&builder, name, error) &&
               cage_check(&builder.cage, name, error);
     if (ok) {
-        cage_doubt(&builder, name);
+        cage_inspect(&builder, name);
         *cage = builder.cage;
         builder.cage = (struct cage){0};
     }

@@ -1,0 +1,47 @@
+/* A cage under construction: arrays that grow while a reader walks a file, and the line each part
+ * came from, so that warnings made at the end can name it.
+ *
+ * The caller owns the struct: zero it, hand it to a reader, then either take `cage` out (and zero
+ * it) or drop all with cage_builder_finish(), which must be called in both cases. Every function
+ * that returns bool fails with ERROR_SERVER when memory is short and ERROR_MODEL when a count
+ * passes its CAGE_MAX_ limit; the builder stays valid. Thread: one at a time. */
+#ifndef SHEEN_CAGE_BUILD_BUILDER_H
+#define SHEEN_CAGE_BUILD_BUILDER_H
+
+#include "server/cage/cage.h"
+
+struct cage_builder {
+    struct cage cage;
+    /* Line in the file (from 1) of each face, crease, corner tag and hole; 0 where the file has no
+     * lines. As long as the cage's own arrays. */
+    uint32_t *face_line, *crease_line, *corner_line, *hole_line;
+
+    /* The file asks for its equal positions to be joined. */
+    bool weld;
+    /* The file has triangles that nothing says are meant as such. */
+    bool plain_triangles;
+
+    /* Corners so far, finished faces and the face being built: length of cage.face_vertex. */
+    size_t n_face_vertices;
+
+    size_t vertex_capacity, face_capacity, face_vertex_capacity;
+    size_t crease_capacity, corner_capacity, hole_capacity;
+};
+
+void cage_builder_finish(struct cage_builder *builder);
+
+bool cage_builder_vertex(struct cage_builder *builder, const double position[3],
+                         struct error *error);
+/* Adds a corner to the face being built; cage_builder_end_face() ends it. Nothing is checked here
+ * but the counts: cage_repair() and cage_check() see the whole. */
+bool cage_builder_face_vertex(struct cage_builder *builder, uint32_t vertex, struct error *error);
+bool cage_builder_end_face(struct cage_builder *builder, uint32_t line, struct error *error);
+
+bool cage_builder_crease(struct cage_builder *builder, const struct cage_crease *crease,
+                         uint32_t line, struct error *error);
+bool cage_builder_corner(struct cage_builder *builder, const struct cage_corner *corner,
+                         uint32_t line, struct error *error);
+bool cage_builder_hole(struct cage_builder *builder, uint32_t face, uint32_t line,
+                       struct error *error);
+
+#endif

@@ -1,0 +1,23 @@
+/* glTF 2.0 and GLB through tinygltf: the C++ behind server/cage/read. Internal to it. */
+#ifndef SHEEN_CAGE_READ_GLTF_GLTF_H
+#define SHEEN_CAGE_READ_GLTF_GLTF_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#include "server/cage/build/builder.h"
+
+/* Reads the default scene into an empty builder: triangles of all its nodes' meshes, polygons
+ * where FB_ngon_encoding marks them, each mesh of each node a surface of its own with vertices
+ * welded by position, subdivision tags from `extras`.
+ * No file but the given bytes is ever opened. Errors: ERROR_MODEL, saying `name` and the mesh;
+ * ERROR_SERVER when memory is short. No exception leaves it. Any thread. */
+bool gltf_read(struct cage_builder *builder, const void *bytes, size_t size, const char *name,
+               struct error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

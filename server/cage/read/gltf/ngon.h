@@ -1,0 +1,29 @@
+/* Polygons out of triangles: glTF's FB_ngon_encoding. Internal to the glTF reader. */
+#ifndef SHEEN_CAGE_READ_GLTF_NGON_H
+#define SHEEN_CAGE_READ_GLTF_NGON_H
+
+#include "server/cage/build/builder.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct ngon_triangles {
+    const uint32_t *index; /* [3 * n], corner by corner, as the file has them */
+    size_t n;
+    bool encoded;  /* FB_ngon_encoding: consecutive triangles with the same first vertex are one
+                      polygon; else every triangle is a face */
+    bool mirrored; /* wind the faces the other way, first corner kept */
+    uint32_t base; /* added to every index */
+};
+
+/* Adds the faces to the builder. Triangles that share their first vertex but no edge, which the
+ * extension does not allow, become separate faces and are counted in *n_breaks. */
+bool ngon_add_faces(struct cage_builder *builder, const struct ngon_triangles *triangles,
+                    size_t *n_breaks, struct error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
