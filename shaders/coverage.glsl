@@ -1,5 +1,5 @@
 // Box-filtered coverage of a pixel, exact for a phase that is linear over the pixel
-// (limit-surface 5.2). A phase's gradient g is its change per pixel in x and in y; the unit pixel
+// (server/surface/README.md 7.3). A phase's gradient g is its change per pixel in x and in y; the unit pixel
 // square projects to a trapezoid along the phase, whose ramps these functions integrate.
 
 // Share of the pixel where a linear function with value z at its centre and gradient g is positive.

@@ -1,7 +1,7 @@
 // Stage 2, evaluate, first pass: where each pixel's own ray meets the limit surface.
 //
 // The rasterised parameters belong to the triangle and would cost up to 0.2 degrees; Newton's method
-// from there makes them the pixel's (limit-surface 3.4). This pass stays inside the guessed
+// from there makes them the pixel's (server/surface/README.md 7.1). This pass stays inside the guessed
 // sub-patch, which serves nearly all pixels; the others, next to borders of sub-patches, are listed for
 // unsolved.comp.glsl. So no pixel pays for the rare cases, on devices whose lanes all walk through every
 // branch.

@@ -1,5 +1,5 @@
 // From a surface point to the light: the ray of the line family, where it meets the light, and how
-// both change over the pixel (limit-surface 5.1; Igehy 1999).
+// both change over the pixel (server/surface/README.md 7.2; Igehy 1999).
 //
 // Defined before this file: FAMILY, LIGHT.
 
@@ -72,7 +72,7 @@ float eye_noise(vec3 x)
     return ROUNDING * (length(x) + length(line_eye.xyz));
 }
 
-// Steps (1) to (4) of limit-surface 5.1, at depth z on the ray of q (view.glsl), over the parallelogram
+// Steps 1 to 3 of server/surface/README.md 7.2, at depth z on the ray of q (view.glsl), over the parallelogram
 // of the columns of `sides`, px. The shape operator is that at a normal nearby.
 Sample sample_over(vec2 q, mat2 sides, float z, vec3 n, vec3 h, vec3 h_normal)
 {
@@ -101,7 +101,7 @@ Sample sample_at(vec2 q, float size_px, float z, vec3 n, vec3 h, vec3 h_normal)
     return sample_over(q, mat2(size_px), z, n, h, h_normal);
 }
 
-// The family's ray and its change: step (5).
+// The family's ray and its change: step 4.
 void ray_from(Sample at, out vec3 r, out vec3 dr[2])
 {
 #if FAMILY == HIGHLIGHT
@@ -191,7 +191,7 @@ float rectangle_share(Sample at, vec3 r, vec3 dr[2], float ahead, float side)
 
 const Met NOT_MET = Met(vec2(0.0), vec2(0.0), vec2(0.0), 0.0, vec2(0.0), 0.0, false);
 
-// Step (6): where x + tau r meets the light's plane, and its change. No ray meets it that runs along it,
+// Step 5: where x + tau r meets the light's plane, and its change. No ray meets it that runs along it,
 // nor one that starts in it.
 Met meet_plane(Sample at, vec3 r, vec3 dr[2])
 {

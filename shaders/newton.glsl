@@ -1,5 +1,5 @@
 // The pixel's ray as two planes through it, and Newton's method on the distances from them
-// (limit-surface 3.4): f(s,t) = 0 where the surface meets the ray.
+// (server/surface/README.md 7.1): f(s,t) = 0 where the surface meets the ray.
 //
 // Distances are measured in the patch's own frame and scale, so a patch is projected once, to a
 // net of 2-D points, and steps cost little.

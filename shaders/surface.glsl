@@ -52,7 +52,7 @@ ivec2 level_scale(Node node, int level)
     return ivec2(node.kind == STRIP ? 0 : level, level);
 }
 
-// The sub-patch of a node that holds a place (limit-surface 4.3, 4.5).
+// The sub-patch of a node that holds a place (server/surface/README.md 3.2 and 5).
 struct SubPatch {
     ivec2 scale;   // its parameters run 2^scale times faster than the node's x,y
     vec2 origin;   // where it begins, in those parameters

@@ -1,5 +1,5 @@
 /* Which parts of the surface are drawn, and by how fine a grid each, so that no triangle strays
- * more than half a pixel from the surface (limit-surface 3.2). Pure: no GL here.
+ * more than half a pixel from the surface (server/surface/README.md 6.1). Pure: no GL here.
  *
  * A patch grid covers a square of a node's local coordinates: a part of a REGULAR node, of one
  * patch of a STRIP, of one unit square of a CORNER's level ring, or all that is left of a CORNER

@@ -135,7 +135,7 @@ static void first_net(const struct quad *quad, const struct vertex_limit *facts,
     phantom_points(&net->ring, net->grid);
 }
 
-/* Catmull-Clark at grid point (i,j) of the finer net, by the parity of i and j (limit-surface 4.2).
+/* Catmull-Clark at grid point (i,j) of the finer net, by the parity of i and j (server/surface/README.md 3.2).
  * Reads only points with i,j = -1..2, and never (-1,-1) for the points it is asked for. */
 static struct vec refine_point(struct vec grid[5][5], int i, int j)
 {

@@ -4,7 +4,7 @@
  * Level n (from 1) holds the 24 control points of the n times refined net that the L-shaped band of
  * three sub-patches 2^-n <= max(u,v) <= 2^(1-n) needs: the 5x5 grid (i,j) in -1..3 without (-1,-1).
  * Coordinates are in an orthonormal frame, relative to the vertex's limit position, divided by the
- * level's scale (limit-surface 4.4 to 4.6). The limit position is moved back to zero at every
+ * level's scale (server/surface/README.md 3.3). The limit position is moved back to zero at every
  * level, in double: otherwise precision would be lost, since points that differ by 2^-n would be
  * stored at their full distance from it. How the points lie in texels is said in texels.h.
  *

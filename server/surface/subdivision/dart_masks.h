@@ -3,7 +3,7 @@
  *
  * A dart is an interior vertex where one infinitely sharp edge ends. There subdivision has no
  * symmetry and no masks in closed form. The masks are the leading left eigenvectors of the ring's
- * own subdivision matrix (limit-surface 4.5), found by subspace iteration. */
+ * own subdivision matrix (server/surface/README.md 4.5), found by subspace iteration. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_DART_MASKS_H
 #define SHEEN_SURFACE_SUBDIVISION_DART_MASKS_H
 

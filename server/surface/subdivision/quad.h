@@ -34,7 +34,7 @@ struct quad quad_rotated(const struct quad *quad, unsigned by);
 void quad_refine(const struct quad *quad, struct arena *arena, struct quad child[4]);
 
 /* The 4x4 B-spline control points grid[j + 1][i + 1], i along u and j along v in -1..2, with
- * phantom points beyond boundaries (limit-surface 4.5). The point diagonally beyond a corner is
+ * phantom points beyond boundaries (server/surface/README.md 2). The point diagonally beyond a corner is
  * right only where that corner is regular. */
 void quad_grid(const struct quad *quad, struct vec grid[4][4]);
 

@@ -4,7 +4,7 @@
  *   closed: n_faces edges, edge[n_faces] is edge[0]; open (a sector that ends at boundary or
  *   infinitely sharp edges): n_faces + 1 edges.
  *
- * Subdividing a ring needs nothing but itself (Catmull and Clark 1978; limit-surface 4.2, 4.5):
+ * Subdividing a ring needs nothing but itself (Catmull and Clark 1978; server/surface/README.md 3.1):
  * that is what makes every table a local computation.
  *
  * Memory is the caller's arena. No function here fails: arenas are sized before (arena.h).

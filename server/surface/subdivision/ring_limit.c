@@ -31,7 +31,7 @@ double ring_eigenvalue(double angle)
     return (5 + c + sqrt((c + 9) * (c + 1))) / 16;
 }
 
-/* Limit tangents of an interior vertex: the masks of limit-surface 4.6. */
+/* Limit tangents of an interior vertex: README.md 4.2 of server/surface. */
 static void smooth_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
 {
     uint32_t n = ring->n_faces;

@@ -2,7 +2,7 @@
  *
  * Along the crease the surface is the regular B-spline; across it, step n replaces the crease row
  * by w P0 + (1 - w)(P-1 + 6 P0 + P1)/8 with w = min(s_n, 1), s_n = s - n, until sharpness is gone
- * (limit-surface 4.5; Niessner, Loop and Greiner 2012). Patch n = 1..L covers 2^-n <= v <= 2^(1-n),
+ * (server/surface/README.md 5; Niessner, Loop and Greiner 2012). Patch n = 1..L covers 2^-n <= v <= 2^(1-n),
  * patch L + 1 what is left, each with 16 points. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_STRIP_H
 #define SHEEN_SURFACE_SUBDIVISION_STRIP_H
