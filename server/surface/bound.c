@@ -1,7 +1,7 @@
 #include "server/surface/bound.h"
 
-/* How much an offset inside the surface counts: what lies along it moves only the parameters that a
- * pixel starts from, not what is seen, so a quarter of that. A norm, so bounds hold in it. */
+/* How much a difference inside the surface counts (README.md 6.1): the part across the surface
+ * whole, the part along it a quarter. This is a norm, so that bounds hold in it. */
 static double weigh(struct vec offset, struct vec normal)
 {
     const double along = 0.25;
@@ -10,13 +10,13 @@ static double weigh(struct vec offset, struct vec normal)
     return fabs(across) + (rest2 > 0 ? along * sqrt(rest2) : 0);
 }
 
-/* Twice the area of a cell as a vector across it. */
+/* The normal of a cell, with twice its area as length. */
 static struct vec cell_normal(const struct vec *p, int size)
 {
     return vec_cross(vec_sub(p[size + 1], p[0]), vec_sub(p[size], p[1]));
 }
 
-/* The normal of a net. False where it turns by more than 45 degrees. */
+/* The mean normal of a net. False where the normal of a cell is more than 45 degrees from it. */
 static bool find_normal(const struct vec *grid, int size, bool without_first, struct vec *normal)
 {
     enum { MOST_CELLS = 16 };
@@ -36,7 +36,7 @@ static bool find_normal(const struct vec *grid, int size, bool without_first, st
     return true;
 }
 
-/* What bends, in the plain norm or as it is weighed. */
+/* The largest differences, as plain lengths or weighed. */
 struct bends {
     double u, v, mixed;
 };
@@ -46,13 +46,14 @@ static inline struct vec second(struct vec before, struct vec at, struct vec aft
     return vec_add(vec_sub(before, at), vec_sub(after, at));
 }
 
-/* No call, as fmax() would be: nothing here is no number. */
+/* fmax() would be a call; NaN does not occur here. */
 static inline double larger(double a, double b)
 {
     return a > b ? a : b;
 }
 
-/* The largest so far: squared in the plain norm, and as the normal weighs it. */
+/* Keeps the largest difference so far: its squared length, and, with a normal, its weighed
+ * length. */
 static inline void add(double *plain2, double *across, struct vec offset, const struct vec *normal)
 {
     *plain2 = larger(*plain2, vec_dot(offset, offset));
@@ -87,7 +88,7 @@ struct limit_bound bound_of_grid(const struct vec *grid, int size, bool without_
     }
     plain = (struct bends){sqrt(plain.u), sqrt(plain.v), sqrt(plain.mixed)};
     const struct bends *inside = by_normal ? &across : &plain;
-    const double up = 1.000001; /* more than what floats lose */
+    const double up = 1.000001; /* more than rounding to float loses */
     return (struct limit_bound){
         .radius = (float)(sqrt(radius2) * up),
         .u = (float)(inside->u * up),

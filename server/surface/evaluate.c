@@ -16,7 +16,7 @@ static void evaluate_points(const struct limit_patch *patch, struct limit_point 
     out->svv = at.ptt;
 }
 
-/* limit_normal() of shaders/surface.glsl, whose comment says why. */
+/* limit_normal() of shaders/surface.glsl in double: README.md 4.6. */
 static void set_normal(const struct limit_patch *patch, struct limit_point *out)
 {
     struct vec su = out->su, sv = out->sv, n = vec_cross(su, sv);
@@ -37,7 +37,7 @@ static void set_normal(const struct limit_patch *patch, struct limit_point *out)
     out->n = largest > 0 ? vec_unit(vec_scale(n, 1 / largest)) : (struct vec){0, 0, 0};
 }
 
-/* From derivatives by s and t to those by the place's a and b: scaled, then turned. */
+/* Makes derivatives by s and t derivatives by the place's a and b: scales them, then turns them. */
 static void turn_derivatives(const struct limit_patch *patch, struct limit_point *out)
 {
     double x = ldexp(1, patch->level_x + patch->depth), y = ldexp(1, patch->level_y + patch->depth);

@@ -43,7 +43,8 @@ void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *
     patch->points.rows = texels + 1;
 }
 
-/* Which level of a node holds (x,y); beyond the last one of a CORNER lies its vertex. */
+/* Which level of a node holds (x,y). A number beyond the last level of a CORNER stands for its
+ * vertex. */
 static int level_at(const struct limit_node *node, double x, double y)
 {
     if (node->kind == LIMIT_REGULAR)

@@ -6,8 +6,8 @@
 #include "server/surface/bound.h"
 #include "server/surface/evaluate.h"
 
-/* Points of a patch are so dense that it bends away from them by less than this share of the box's
- * diagonal; a patch smaller than that is one point. */
+/* A node is sampled so densely that the surface lies within this share of the box's diagonal of
+ * the samples' triangles. A node smaller than that is one point. */
 #define TOLERANCE 1e-3
 
 struct cells {
@@ -22,8 +22,8 @@ static uint32_t step_of(double x)
     return step < 1 ? 0 : step >= LIMIT_SUPPORT_CELLS ? LIMIT_SUPPORT_CELLS - 1 : (uint32_t)step;
 }
 
-/* Of each cell the point that lies farthest from the middle stays, in units of the box's sides, so
- * that a flat model has as many to each side as a round one. */
+/* Keeps of each cell the point that lies farthest from the middle. Lengths are in units of the
+ * box's sides, so that a flat model has as many points to each side as a round one. */
 static void add_point(struct cells *cells, struct vec at)
 {
     const double world[3] = {at.x, at.y, at.z};
@@ -47,8 +47,8 @@ static void add_point(struct cells *cells, struct vec at)
         cells->point[cell][k] = (float)(world[k] - cells->middle[k]);
 }
 
-/* Cells along each side of a node, of which the largest bound is the first: a corner's outer ring,
- * whose parameters run twice as fast. */
+/* Steps along each side of a node. Its first bound is the largest; that of a CORNER is of its
+ * first level, whose parameters run twice as fast as the node's. */
 static int steps_of(const struct limit_tables *tables, uint32_t node, double tolerance)
 {
     const struct limit_bound *bound = &tables->bounds[tables->bound_first[node]];

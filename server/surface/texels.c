@@ -2,8 +2,7 @@
 
 #include <stddef.h>
 
-/* Powers of two that are normal numbers in single precision, with room for a square root's worth
- * of products. */
+/* Exponents of scales, which stay normal numbers in single precision. */
 enum { EXPONENT_MIN = -120, EXPONENT_MAX = 120 };
 
 static int exponent_of(const struct vec *points, size_t n)

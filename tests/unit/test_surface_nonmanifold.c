@@ -195,7 +195,7 @@ static void test_levels(void **state)
                        "t crease 2/1/0 0 3 1.5\nt crease 2/1/0 0 6 10\nt crease 2/1/0 0 9 0.25\n");
     assert_true(cage_read(&cage, text, size, "book.obj", &error));
     assert_true(topology_init(&t, &cage, &error));
-    assert_int_equal(t.n_sheets, 1); /* the spine's ends are sharp anyway */
+    assert_int_equal(t.n_nonmanifold, 1); /* the spine's ends are sharp anyway */
     const struct vertex_creases *level = levels_of(&t);
     assert_int_equal(level[0].n_sharp, 5);
     assert_float_equal(level[0].semisharp.sum, 1.75, 0);

@@ -186,7 +186,7 @@ static void test_windows(void **state)
 
 /* Modes of darts depend on the number of faces alone: found once, and turned to where the dart's
  * edge is. */
-static void test_modes(void **state)
+static void test_masks(void **state)
 {
     (void)state;
     enum { FACES = 12, POINTS = 2 * FACES + 1 };
@@ -213,7 +213,7 @@ static void test_modes(void **state)
 }
 
 /* The plan of a cage knows them; sharp vertices need none. */
-static void test_plan_knows_modes(void **state)
+static void test_plan_lists_masks(void **state)
 {
     (void)state;
     struct fan fan;
@@ -252,8 +252,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_made_once),        cmocka_unit_test(test_face),
-        cmocka_unit_test(test_windows),          cmocka_unit_test(test_modes),
-        cmocka_unit_test(test_plan_knows_modes), cmocka_unit_test(test_chaikin),
+        cmocka_unit_test(test_windows),          cmocka_unit_test(test_masks),
+        cmocka_unit_test(test_plan_lists_masks), cmocka_unit_test(test_chaikin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,7 +29,7 @@ struct limit_adjacency adjacency_of(const struct limit_plan *plan, uint32_t ptex
     struct limit_adjacency out;
     uint32_t c = plan->corner[ptex];
     if (is_quad(t, c)) {
-        /* Our edge's end is the start of the half-edge the other way. */
+        /* The end of this face's edge is the start of its twin. */
         for (unsigned e = 0; e < 4; e++, c = corner_next(t, c))
             out.across[e] =
                 t->twin[c] == CORNER_NONE ? LIMIT_NO_FACE : edge_at_start(plan, t->twin[c]);

@@ -1,4 +1,5 @@
-/* Which Ptex face lies across each edge of a Ptex face. */
+/* Which Ptex face lies across each edge of a Ptex face (server/surface/node.h). Pure; any
+ * thread. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_ADJACENCY_H
 #define SHEEN_SURFACE_SUBDIVISION_ADJACENCY_H
 

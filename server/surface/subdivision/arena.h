@@ -1,5 +1,5 @@
-/* A bump allocator, reset between faces: what is built for one face lives only while it is built.
- */
+/* Memory for what lives only while one face is built: taken piece by piece, given back all at once or
+ * down to a mark (`used`). One thread. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_ARENA_H
 #define SHEEN_SURFACE_SUBDIVISION_ARENA_H
 
@@ -11,10 +11,11 @@ struct arena {
     size_t used, capacity; /* bytes */
 };
 
+/* False: memory is short. */
 bool arena_init(struct arena *arena, size_t capacity);
 void arena_finish(struct arena *arena);
 
-/* Never fails: plans size the arena beforehand. The memory is not cleared. */
+/* Memory on a multiple of 16 bytes, not cleared. Never fails: plans size the arena beforehand. */
 void *arena_take(struct arena *arena, size_t bytes);
 
 #endif

@@ -24,7 +24,8 @@ static void bounding_box(const struct cage *cage, double box_min[3], double box_
     }
 }
 
-/* Measures every face in turn: where its share begins is what came before. */
+/* Measures every face in turn: each one's share of the tables begins where that of the one
+ * before ends. */
 static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, struct error *error)
 {
     struct face_builder measure = {.plan = plan,
@@ -60,7 +61,7 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
     memcpy(plan->size.count, measure.count, sizeof plan->size.count);
     bounding_box(plan->cage, plan->size.hull_min, plan->size.hull_max);
     for (int k = 0; k < 3; k++) {
-        /* A cage without any surface still has a place. */
+        /* A cage without any surface has its box at the origin. */
         plan->size.box_min[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_min[k] : 0;
         plan->size.box_max[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_max[k] : 0;
     }

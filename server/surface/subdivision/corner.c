@@ -11,15 +11,15 @@
 #include "server/surface/subdivision/settle.h"
 #include "server/surface/texels.h"
 
-/* What a vertex's own rule takes that a window of its ring lacks. */
+/* What the rule of a vertex takes of its ring that a window of the ring lacks. */
 enum window {
     WINDOW_NONE, /* the ring is whole, or its vertex sharp */
     WINDOW_SUMS, /* over all edges and over all faces of a smooth ring */
-    WINDOW_ENDS, /* of a crease: the ring's first edge and its last, or a foreign crease's */
+    WINDOW_ENDS, /* of a crease: the far ends of the ring's first and last edge, or of an outside crease */
 };
 
-/* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the vertex's ring, of a large one
- * only a window. */
+/* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the ring of the vertex, or a
+ * window of a large ring. */
 struct net {
     struct vec grid[5][5];
     struct ring ring;
@@ -28,7 +28,8 @@ struct net {
     struct vec edges, faces, end[2];
 };
 
-/* Each level spoils one more edge at either end of a window; what the grid takes stays whole. */
+/* Each level makes one more edge at either end of a window wrong. A window is so wide that the
+ * edges which the grid takes stay right. */
 enum { WINDOW_SIDE = LIMIT_MAX_LEVELS + 3, WINDOW = 2 * WINDOW_SIDE };
 
 static bool needs_window(const struct ring *ring)
@@ -36,7 +37,7 @@ static bool needs_window(const struct ring *ring)
     return ring->n_faces > WINDOW + 2 && !ring->creases.edge;
 }
 
-/* The first edge of the window, counted round a closed ring. */
+/* The first edge of the window in the ring. */
 static uint32_t window_start(const struct ring *ring)
 {
     if (ring->closed)
@@ -46,7 +47,7 @@ static uint32_t window_start(const struct ring *ring)
     return first < last ? first : last;
 }
 
-/* ring_limit(), by what the window lacks. */
+/* ring_limit() of the whole ring, by what has been kept beside the window. */
 static struct vec window_limit(const struct net *net)
 {
     double n = net->n_faces;
@@ -59,7 +60,7 @@ static struct vec window_limit(const struct net *net)
     return vec_mad(limit, 1 / (n * (n + 5)), net->faces);
 }
 
-/* The rules of ring_refine() for a crease's vertex and its ends. */
+/* ring_refine() for the vertex of a crease and the crease's two ends. */
 static void refine_window_ends(const struct net *in, struct net *out)
 {
     struct vec ends = vec_add(in->end[0], in->end[1]);
@@ -68,7 +69,8 @@ static void refine_window_ends(const struct net *in, struct net *out)
     out->ring.centre = vec_mad(vec_scale(in->ring.centre, 0.75), 0.125, ends);
 }
 
-/* The same for a smooth vertex, and for the sums over all edges and faces. */
+/* ring_refine() for a smooth vertex and for the sums over all edges and faces (README.md eq. 5
+ * of server/surface). */
 static void refine_window_sums(const struct net *in, struct net *out)
 {
     double n = in->n_faces;
@@ -80,9 +82,9 @@ static void refine_window_sums(const struct net *in, struct net *out)
     out->ring.centre = vec_mad(vec_scale(in->ring.centre, (n - 2) / n), 1 / (n * n), sum);
 }
 
-static struct vec limit_position(const struct ring *ring, const struct dart_masks *modes)
+static struct vec limit_position(const struct ring *ring, const struct dart_masks *masks)
 {
-    return ring_is_dart(ring) ? dart_mask_apply(modes->position, ring) : ring_cache_limit(ring);
+    return ring_is_dart(ring) ? dart_mask_apply(masks->position, ring) : ring_cache_limit(ring);
 }
 
 static struct vec to_frame(struct vec p, struct vec origin, const struct vec axis[3])
@@ -91,7 +93,8 @@ static struct vec to_frame(struct vec p, struct vec origin, const struct vec axi
     return (struct vec){vec_dot(d, axis[0]), vec_dot(d, axis[1]), vec_dot(d, axis[2])};
 }
 
-/* Where the sector ends at the quad's own edges, phantoms continue it. */
+/* Sets the phantom points (README.md eq. 3 of server/surface) beyond edges of the quad where
+ * its sector ends. */
 static void phantom_points(const struct ring *ring, struct vec grid[5][5])
 {
     bool first = ring_ends_at(ring, 0), second = ring_ends_at(ring, 1);
@@ -104,10 +107,10 @@ static void phantom_points(const struct ring *ring, struct vec grid[5][5])
 }
 
 /* The net of level 0 in a frame: only i,j <= 2 are set. */
-static void first_net(const struct quad *quad, const struct vertex_limit *facts,
+static void first_net(const struct quad *quad, const struct vertex_limit *vertex,
                       const struct vec axis[3], struct net *net)
 {
-    struct vec grid[4][4], origin = facts->limit;
+    struct vec grid[4][4], origin = vertex->limit;
     quad_grid(quad, grid);
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 4; i++)
@@ -124,14 +127,14 @@ static void first_net(const struct quad *quad, const struct vertex_limit *facts,
     for (uint32_t k = 0; ring->creases.edge && k < n; k++)
         net->ring.creases.edge[k] = net->ring.creases.far[k] = ring->creases.edge[k];
     net->n_faces = ring->n_faces;
-    bool is_foreign = ring_has_foreign_crease(ring);
-    if (is_foreign || (needs_window(ring) && !(ring->sharpness > 0)))
-        net->window = ring->closed && !is_foreign ? WINDOW_SUMS : WINDOW_ENDS;
-    net->edges = facts->edges;
-    net->faces = facts->faces;
+    bool is_outside = ring_has_outside_crease(ring);
+    if (is_outside || (needs_window(ring) && !(ring->sharpness > 0)))
+        net->window = ring->closed && !is_outside ? WINDOW_SUMS : WINDOW_ENDS;
+    net->edges = vertex->edges;
+    net->faces = vertex->faces;
     for (int k = 0; k < 2; k++)
         net->end[k] =
-            to_frame(is_foreign ? ring->sheets.end[k] : ring->edge[k ? n - 1 : 0], origin, axis);
+            to_frame(is_outside ? ring->sheets.end[k] : ring->edge[k ? n - 1 : 0], origin, axis);
     phantom_points(&net->ring, net->grid);
 }
 
@@ -173,8 +176,8 @@ static void ring_points(const struct ring *ring, struct vec grid[5][5])
     }
 }
 
-/* One level further: refine, then move the limit position back to zero. */
-static void next_net(const struct net *in, const struct dart_masks *modes, struct net *out)
+/* The net of the next level: refines, then moves the limit position back to zero. */
+static void next_net(const struct net *in, const struct dart_masks *masks, struct net *out)
 {
     struct vec coarse[5][5];
     for (int j = 0; j < 5; j++)
@@ -194,7 +197,7 @@ static void next_net(const struct net *in, const struct dart_masks *modes, struc
     ring_points(&out->ring, out->grid);
     phantom_points(&out->ring, out->grid);
 
-    struct vec limit = in->window ? window_limit(out) : limit_position(&out->ring, modes);
+    struct vec limit = in->window ? window_limit(out) : limit_position(&out->ring, masks);
     out->edges = vec_mad(out->edges, -in->n_faces, limit);
     out->faces = vec_mad(out->faces, -in->n_faces, limit);
     for (int k = 0; k < 2; k++)
@@ -235,46 +238,49 @@ static void write_frame(const struct vec axis[3], float texel[4])
         texel[n] = (float)(r[n] / length);
 }
 
-/* The frame in which single precision keeps everything: axis[2] is the normal where there is one.
- */
+/* The vertex's frame (README.md 3.3 of server/surface): axis[2] is the normal where there is
+ * one. Returns whether there is. */
 static bool vertex_frame(const struct ring *ring, const struct dart_mask_list *known,
-                         struct dart_masks *modes, struct vec axis[3], struct arena *arena)
+                         struct dart_masks *masks, struct vec axis[3], struct arena *arena)
 {
     struct vec t1, t2;
     bool has_normal = ring_tangents(ring, &t1, &t2);
     if (ring_is_dart(ring)) {
-        dart_mask_list_find(known, ring, arena, modes);
-        t1 = dart_mask_apply(modes->tangent[0], ring);
-        t2 = dart_mask_apply(modes->tangent[1], ring);
+        dart_mask_list_find(known, ring, arena, masks);
+        t1 = dart_mask_apply(masks->tangent[0], ring);
+        t2 = dart_mask_apply(masks->tangent[1], ring);
     }
     return ring_frame(ring, t1, t2, axis) && has_normal;
 }
 
-static void find_facts(struct vertex_limit *facts, const struct ring *ring,
-                       const struct dart_mask_list *known, struct arena *arena)
+static void find_vertex_limit(struct vertex_limit *vertex, const struct ring *ring,
+                              const struct dart_mask_list *known, struct arena *arena)
 {
-    facts->has_normal = vertex_frame(ring, known, &facts->modes, facts->axis, arena);
-    facts->limit = limit_position(ring, &facts->modes);
-    facts->edges = facts->faces = (struct vec){0, 0, 0};
+    vertex->has_normal = vertex_frame(ring, known, &vertex->masks, vertex->axis, arena);
+    vertex->limit = limit_position(ring, &vertex->masks);
+    vertex->edges = vertex->faces = (struct vec){0, 0, 0};
     for (uint32_t k = 0; ring->closed && needs_window(ring) && k < ring->n_faces; k++) {
-        facts->edges = vec_add(facts->edges, to_frame(ring->edge[k], facts->limit, facts->axis));
-        facts->faces = vec_add(facts->faces, to_frame(ring->face[k], facts->limit, facts->axis));
+        vertex->edges =
+            vec_add(vertex->edges, to_frame(ring->edge[k], vertex->limit, vertex->axis));
+        vertex->faces =
+            vec_add(vertex->faces, to_frame(ring->face[k], vertex->limit, vertex->axis));
     }
-    facts->is_known = true;
+    vertex->is_known = true;
 }
 
-/* At a vertex without one normal each quad gets a frame of its own, by what its corner at the
- * vertex has come to at this level: deep enough that levels near it and beyond lose nothing, where
- * single precision has least to spare, and not so deep that those before it do. */
+/* At a vertex without one normal each quad gets a frame of its own, by its corner of the net at
+ * this level. A lower level would cost the last levels digits, where single precision has the
+ * fewest to spare; a higher one would cost those before it digits. */
 enum { FRAME_LEVEL = 28 };
 
-/* axis[2] is the normal of that corner. axis[0] lies along its slowest direction: a cone becomes a
- * needle there, a sector of many quads a fan that one wave stretches, and the digits of what lies
- * across would drown in any other axis. Takes the vertex's frame, in which net[0] is. */
-static void own_frame(struct net net[2], const struct dart_masks *modes, struct vec axis[3])
+/* axis[2] becomes the normal of that corner, axis[0] its slowest direction, the sum of its
+ * edges. Deep levels of a cone or of a sector of many quads are far longer along that direction
+ * than across it. With the long direction along one axis the short ones keep their own digits.
+ * On entry `axis` is the vertex's frame, in which net[0] is given. */
+static void own_frame(struct net net[2], const struct dart_masks *masks, struct vec axis[3])
 {
     for (unsigned n = 0; n < FRAME_LEVEL; n++)
-        next_net(&net[n & 1], modes, &net[(n + 1) & 1]);
+        next_net(&net[n & 1], masks, &net[(n + 1) & 1]);
     const struct ring *ring = &net[FRAME_LEVEL & 1].ring;
     struct vec a = ring_edge(ring, 0), b = ring_edge(ring, 1), turned[3], out[3];
     ring_frame(ring, vec_add(a, b), b, turned);
@@ -288,18 +294,19 @@ static void own_frame(struct net net[2], const struct dart_masks *modes, struct 
 unsigned corner_levels(const struct ring *ring)
 {
     const double pixel = 0x1p-24, pi = 3.14159265358979323846;
-    /* What lies round a dart's crease counts as a sector that is closed by it. */
+    /* A dart's ring counts as a sector that begins and ends at the sharp edge. */
     bool is_whole = ring->closed && !ring->creases.edge;
-    /* Where a whole ring's vertex does not follow it, all its points come nearer alike. */
-    bool is_tip = is_whole && (ring->sharpness > 0 || ring_has_foreign_crease(ring));
+    /* Where the vertex of a whole ring is held by its sharpness or by an outside crease, all
+     * points of the ring approach it alike: a wave of angle 0. */
+    bool is_tip = is_whole && (ring->sharpness > 0 || ring_has_outside_crease(ring));
     double angle = is_tip ? 0 : (is_whole ? 2 : 1) * pi / ring->n_faces;
     double eigenvalue = fmax(ring_eigenvalue(angle), 0.5);
     double levels = ceil(log(pixel) / log(eigenvalue)) + 2;
     return (unsigned)fmin(fmax(levels, LIMIT_MIN_LEVELS), LIMIT_MAX_LEVELS);
 }
 
-/* Weighing bends costs more than the levels themselves, and pays where they are larger than pixels.
- */
+/* Weighed bounds take longer than the levels themselves. They are of use on levels that are
+ * larger than pixels, which are the first ones. */
 enum { WEIGHED_LEVELS = 6 };
 
 bool corner_table(const struct quad *quad, unsigned levels, const struct dart_mask_list *known,
@@ -307,23 +314,23 @@ bool corner_table(const struct quad *quad, unsigned levels, const struct dart_ma
                   double origin[3])
 {
     const struct ring *ring = &quad->corner[0];
-    struct vertex_limit own, *facts = ring_cache_vertex(ring);
-    if (!facts) {
-        facts = &own;
-        facts->is_known = false;
+    struct vertex_limit own, *vertex = ring_cache_vertex(ring);
+    if (!vertex) {
+        vertex = &own;
+        vertex->is_known = false;
     }
-    if (!facts->is_known)
-        find_facts(facts, ring, known, arena);
+    if (!vertex->is_known)
+        find_vertex_limit(vertex, ring, known, arena);
     struct net net[2] = {0};
     for (int k = 0; k < 2; k++)
         net[k].ring = needs_window(ring)
                           ? ring_take(arena, WINDOW, false, false)
                           : ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
-    struct vec axis[3] = {facts->axis[0], facts->axis[1], facts->axis[2]};
-    first_net(quad, facts, axis, &net[0]);
+    struct vec axis[3] = {vertex->axis[0], vertex->axis[1], vertex->axis[2]};
+    first_net(quad, vertex, axis, &net[0]);
     if (!ring_has_one_normal(ring)) {
-        own_frame(net, &facts->modes, axis);
-        first_net(quad, facts, axis, &net[0]);
+        own_frame(net, &vertex->masks, axis);
+        first_net(quad, vertex, axis, &net[0]);
     }
     write_frame(axis, texels[0]);
     float *scales = texels[1];
@@ -331,12 +338,12 @@ bool corner_table(const struct quad *quad, unsigned levels, const struct dart_ma
     texels += LIMIT_CORNER_HEAD(levels);
     for (unsigned n = 0; n < levels; n++) {
         struct net *fine = &net[(n + 1) & 1];
-        next_net(&net[n & 1], &facts->modes, fine);
+        next_net(&net[n & 1], &vertex->masks, fine);
         scales[n] = texels_write_level(fine->grid, texels + n * LIMIT_LEVEL_TEXELS);
         bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true, n < WEIGHED_LEVELS);
     }
-    origin[0] = facts->limit.x;
-    origin[1] = facts->limit.y;
-    origin[2] = facts->limit.z;
-    return facts->has_normal;
+    origin[0] = vertex->limit.x;
+    origin[1] = vertex->limit.y;
+    origin[2] = vertex->limit.z;
+    return vertex->has_normal;
 }

@@ -24,7 +24,7 @@ void dart_mask_list_add(struct dart_mask_list **list, const struct ring *ring, s
     size_t mark = arena->used;
     struct ring like = ring_take(arena, ring->n_faces, true, true);
     like.creases.edge[0] = CAGE_SHARPNESS_INFINITE;
-    dart_masks_find(&made->modes, &like, arena);
+    dart_masks_find(&made->masks, &like, arena);
     arena->used = mark;
     *list = made;
 }
@@ -38,7 +38,7 @@ void dart_mask_list_finish(struct dart_mask_list **list)
     *list = NULL;
 }
 
-/* A mask of the vertex, its edges and its faces for a ring whose edge `by` was edge 0. */
+/* Turns a mask for a ring whose edge `by` corresponds to the mask's edge 0. */
 static void turn(const double *mask, uint32_t n, uint32_t by, double *out)
 {
     out[0] = mask[0];
@@ -50,16 +50,16 @@ static void turn(const double *mask, uint32_t n, uint32_t by, double *out)
 }
 
 void dart_mask_list_find(const struct dart_mask_list *list, const struct ring *ring,
-                         struct arena *arena, struct dart_masks *modes)
+                         struct arena *arena, struct dart_masks *masks)
 {
     const struct dart_mask_list *known = look_up(list, ring);
     if (!known) {
-        dart_masks_find(modes, ring, arena);
+        dart_masks_find(masks, ring, arena);
         return;
     }
     uint32_t edge[2];
     crease_vertex_rule(ring, edge);
-    turn(known->modes.position, ring->n_faces, edge[0], modes->position);
+    turn(known->masks.position, ring->n_faces, edge[0], masks->position);
     for (int k = 0; k < 2; k++)
-        turn(known->modes.tangent[k], ring->n_faces, edge[0], modes->tangent[k]);
+        turn(known->masks.tangent[k], ring->n_faces, edge[0], masks->tangent[k]);
 }

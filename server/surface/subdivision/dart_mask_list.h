@@ -1,27 +1,29 @@
-/* The modes (dart_masks.h) of a cage's darts of many faces: found while its plan is made, since they
- * take 0.1 s at 64 faces and are the same wherever the ring's points lie. */
+/* The masks (dart_masks.h) of a cage's large darts. They depend on the number of quads alone, not on where
+ * the points lie, and take 0.1 s at 64 quads: so they are found once, while the cage's plan is made. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_DART_MASK_LIST_H
 #define SHEEN_SURFACE_SUBDIVISION_DART_MASK_LIST_H
 
 #include "server/surface/subdivision/dart_masks.h"
 
-/* Rings of fewer faces take 0.3 ms. */
+/* Smaller darts are not listed: their masks take 0.3 ms. */
 enum { DART_MASK_LIST_MIN_FACES = 9 };
 
-/* A list, empty: NULL; one for each number of faces. The sharp edge is the ring's first. */
+/* One entry for each number of quads; NULL is the empty list. The masks are of a ring whose first edge
+ * is the sharp one. */
 struct dart_mask_list {
     uint32_t n_faces;
-    struct dart_masks modes;
+    struct dart_masks masks;
     struct dart_mask_list *older;
 };
 
-/* Adds those of a dart's ring of at most DART_MAX_VALENCE faces, unless it has few, or they are
- * there, or memory is short. */
+/* Adds the masks of a dart's ring of at most DART_MAX_VALENCE quads, unless it is small or they are
+ * listed. Where memory is short nothing is added. One thread. */
 void dart_mask_list_add(struct dart_mask_list **list, const struct ring *ring, struct arena *arena);
 void dart_mask_list_finish(struct dart_mask_list **list);
 
-/* dart_masks_find(), but by the list where they are there. */
+/* The masks of a dart's ring: from the list, turned to where its sharp edge is, else by
+ * dart_masks_find(). Any thread, while nothing is added. */
 void dart_mask_list_find(const struct dart_mask_list *list, const struct ring *ring,
-                         struct arena *arena, struct dart_masks *modes);
+                         struct arena *arena, struct dart_masks *masks);
 
 #endif

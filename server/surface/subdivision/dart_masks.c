@@ -6,7 +6,8 @@
 #include "server/surface/subdivision/refine.h"
 
 enum { MAX_SIZE = 2 * DART_MAX_VALENCE + 2 };
-/* The slowest ratio of eigenvalues at DART_MAX_VALENCE is about 0.99. */
+/* The ratio of neighbouring eigenvalues, which decides how fast the iteration converges, is
+ * about 0.99 at DART_MAX_VALENCE. */
 static const int ITERATIONS = 4000;
 
 /* The ring's points as one array: the vertex, its edges, its faces. */
@@ -26,7 +27,7 @@ static struct vec point(const struct ring *ring, uint32_t i)
     return i == 0 ? ring->centre : *ring_point(ring, i);
 }
 
-/* matrix[i][j]: what new point i takes of old point j. */
+/* matrix[i][j] is the weight of old point j in new point i. */
 static void subdivision_matrix(const struct ring *ring, double matrix[MAX_SIZE][MAX_SIZE],
                                struct arena *arena)
 {
@@ -80,17 +81,17 @@ static void flat_ring(struct ring *ring)
 }
 
 /* Exchanges the tangents if they run against the winding. */
-static void orient(struct dart_masks *modes, const struct ring *ring, struct arena *arena)
+static void orient(struct dart_masks *masks, const struct ring *ring, struct arena *arena)
 {
     struct ring flat = ring_take(arena, ring->n_faces, true, false);
     flat_ring(&flat);
-    struct vec t1 = dart_mask_apply(modes->tangent[0], &flat);
-    struct vec t2 = dart_mask_apply(modes->tangent[1], &flat);
+    struct vec t1 = dart_mask_apply(masks->tangent[0], &flat);
+    struct vec t2 = dart_mask_apply(masks->tangent[1], &flat);
     if (vec_cross(t1, t2).z < 0)
-        scale(modes->tangent[1], ring_size(ring), -1);
+        scale(masks->tangent[1], ring_size(ring), -1);
 }
 
-/* The left eigenvector of eigenvalue 1: what the vertex tends to. */
+/* The left eigenvector of eigenvalue 1, which gives the limit position. */
 static void find_position(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int iterations,
                           double *position)
 {
@@ -104,8 +105,8 @@ static void find_position(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int ite
     scale(position, n, 1 / sum);
 }
 
-/* Removes what rounding brings in of the position: its eigenvalue is larger, so it would take over.
- */
+/* Removes the part along `position` that rounding adds. Its eigenvalue is larger than that of
+ * the tangents, so that it would grow until nothing else is left. */
 static void without_position(double *x, uint32_t n, const double *position)
 {
     double sum = 0;
@@ -115,11 +116,11 @@ static void without_position(double *x, uint32_t n, const double *position)
         x[i] -= sum * position[i];
 }
 
-/* The two next left eigenvectors: a the slower one, b orthogonal to it. */
+/* The two next left eigenvectors: a of the larger eigenvalue, b orthogonal to a. */
 static void find_tangents(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int iterations,
                           const double *position, double *a, double *b)
 {
-    for (uint32_t i = 0; i < n; i++) { /* any start will do */
+    for (uint32_t i = 0; i < n; i++) { /* any vectors that are not parallel */
         a[i] = sin(1.0 + 7 * i);
         b[i] = cos(2.0 + 5 * i);
     }
@@ -136,16 +137,16 @@ static void find_tangents(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int ite
     }
 }
 
-void dart_masks_find(struct dart_masks *modes, const struct ring *ring, struct arena *arena)
+void dart_masks_find(struct dart_masks *masks, const struct ring *ring, struct arena *arena)
 {
     uint32_t n = ring_size(ring);
     double matrix[MAX_SIZE][MAX_SIZE];
     size_t mark = arena->used;
     int iterations = ring->n_faces <= 8 ? 400 : ITERATIONS;
     subdivision_matrix(ring, matrix, arena);
-    find_position(matrix, n, iterations, modes->position);
-    find_tangents(matrix, n, iterations, modes->position, modes->tangent[0], modes->tangent[1]);
-    orient(modes, ring, arena);
+    find_position(matrix, n, iterations, masks->position);
+    find_tangents(matrix, n, iterations, masks->position, masks->tangent[0], masks->tangent[1]);
+    orient(masks, ring, arena);
     arena->used = mark;
 }
 

@@ -32,12 +32,12 @@ static struct ring_sheets sheets_beside(const struct topology *t, const struct s
     return (struct ring_sheets){
         .creases = &t->vertex_creases[sheets->first_step],
         .end = {vertex_position(t, sheets->end[0]), vertex_position(t, sheets->end[1])},
-        .ends_outside = !runs_through,
+        .crease_is_outside = !runs_through,
     };
 }
 
-/* The ring of corner c's vertex in the cage. Quads around it or not: ring.face is only set when
- * they all are. */
+/* The ring of corner c's vertex in the cage. quads: all faces around it are quads; only then
+ * ring.face is set. */
 static struct ring cage_ring(const struct topology *t, uint32_t c, bool quads,
                              struct sector *sector, struct arena *arena)
 {
@@ -62,7 +62,7 @@ static struct ring cage_ring(const struct topology *t, uint32_t c, bool quads,
     return ring;
 }
 
-/* What the half of half-edge c at its start will have after one step. */
+/* The sharpness, after one step, of the half of edge c that begins at its vertex. */
 static float child_sharpness(const struct topology *t, uint32_t c)
 {
     return t->child_sharpness ? t->child_sharpness[c] : sharpness_child(edge_sharpness(t, c));
@@ -119,7 +119,8 @@ static struct ring refine_cage_ring(const struct topology *t, const struct vec *
     return out;
 }
 
-/* The same with the points that all share: a smooth triangle's edges are not its ring's. */
+/* The same with edge points of the refined cage in place of the ring's own: beside smooth
+ * triangles they differ. */
 static struct ring refined_vertex_ring(const struct topology *t,
                                        const struct refined_points *points, uint32_t c,
                                        struct ring_cache *rings, struct arena *arena)
@@ -171,9 +172,9 @@ static struct ring refined_edge_ring(const struct topology *t, const struct refi
     return ring_settle(&ring, arena);
 }
 
-/* Around the face point, seen from the quad at cage corner c, from which a small face is listed; a
- * large one, alike for all its corners, from its first. Each quad lies between the edge points
- * before and after its corner. */
+/* The ring of the face point, for the quad at cage corner c. The ring of a small face begins at
+ * c, that of a large face at the face's first corner, so that all its corners share it. Each
+ * quad lies between the edge points before and after its corner. */
 static struct ring refined_face_ring(const struct topology *t, const struct refined_points *points,
                                      uint32_t c, struct ring_cache *rings, struct arena *arena)
 {
@@ -246,8 +247,9 @@ static void refine_face_points(const struct topology *t, struct refined_points *
     }
 }
 
-/* One sector's share, once for all its corners: its vertex, and the edge points of its outgoing
- * half-edges, each written from one end only so that twins hold the same bits. */
+/* Computes the points of one sector, and marks its corners as done: its vertex, and the edge
+ * points of its outgoing half-edges. Each edge point is written from one of its ends only, so
+ * that twins hold the same bits. */
 static void refine_sector(const struct topology *t, struct refined_points *points, uint32_t c,
                           uint8_t *done, struct arena *arena)
 {
@@ -272,7 +274,8 @@ static double smooth_triangle_weight(const struct topology *t, uint32_t corner)
     return face_size(t, t->face[corner]) == 3 ? 0.470 : 0.25;
 }
 
-/* TRI_SUB_SMOOTH: edges beside triangles lean on the face points, in the first step only. */
+/* OpenSubdiv's TRI_SUB_SMOOTH: edge points beside triangles take more of the face points, in
+ * the first step only. */
 static bool refine_smooth_triangle_edges(const struct topology *t, struct refined_points *points,
                                          const struct limit_watch *watch, struct error *error)
 {
@@ -340,7 +343,7 @@ size_t extract_largest_ring(const struct topology *t)
     }
     for (uint32_t f = 0; f < cage->n_faces; f++)
         largest = face_size(t, f) > largest ? face_size(t, f) : largest;
-    /* Without the counts, the one bound that always holds. */
+    /* Without memory for the counts, the number of corners is a bound. */
     largest = valence ? largest : n_corners;
     free(valence);
     return largest;

@@ -1,7 +1,7 @@
-/* Quads with their rings, out of the cage: at level 0 where everything around is a quad, else at
- * level 1, where everything is.
+/* Quads with their rings, from the cage: of the cage itself (level 0) where all faces around a quad are
+ * quads, else of the once refined cage (level 1), where all faces are.
  *
- * The level-1 points of the whole cage are computed once, when it has faces that are no quads. */
+ * The points of level 1 are computed once for the whole cage, if it has a face that is no quad. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_EXTRACT_H
 #define SHEEN_SURFACE_SUBDIVISION_EXTRACT_H
 
@@ -16,7 +16,8 @@ struct refined_points {
     struct vec *face;   /* [faces] */
 };
 
-/* False: ERROR_SERVER when memory is short, or the watch's error; finishing is safe then, too. */
+/* Computes the points of level 1. False: ERROR_SERVER when memory is short, or the watch's error;
+ * refined_points_finish() is safe in both cases. One thread. */
 bool refined_points_init(struct refined_points *points, const struct topology *topology,
                          struct arena *arena, const struct limit_watch *watch, struct error *error);
 void refined_points_finish(struct refined_points *points);

@@ -9,7 +9,7 @@
 #include "server/surface/subdivision/strip.h"
 #include "server/surface/texels.h"
 
-/* A bicubic patch of 16 control points, or room for one. */
+/* A REGULAR node of 16 control points. While measuring, only room for it. */
 static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4][4])
 {
     if (b->tables) {
@@ -118,8 +118,8 @@ static void extend_box(struct face_builder *b, struct vec p)
     }
 }
 
-/* While measuring: the limit positions of a leaf's corners, and its middle as the regular patch has
- * it, which bulges most on coarse cages. */
+/* While measuring, extends the box by the limit positions of a leaf's corners and by the middle
+ * of a regular patch: on a coarse cage that is where the surface bulges most. */
 static void measure_extent(struct face_builder *b, const struct quad *quad)
 {
     if (b->tables)
@@ -137,9 +137,10 @@ static void measure_extent(struct face_builder *b, const struct quad *quad)
     extend_box(b, middle);
 }
 
-/* A quad becomes a table when all its rules have come to rest and at most one corner is
- * extraordinary, or when it lies along a plain crease; else its four quarters do. Sharpness below
- * 10 is gone after 10 steps and one more parts the corners, so the depth is bounded. */
+/* A quad becomes a leaf when its rules change no more and at most one of its corners is
+ * extraordinary, or when it lies along a plain semi-sharp crease; otherwise it is split.
+ * Sharpness below 10 is gone after 10 steps, and one more step separates extraordinary corners,
+ * so the depth is bounded. */
 static void build_node(struct face_builder *b, uint32_t node, const struct quad *quad)
 {
     size_t mark = b->arena.used;
@@ -166,14 +167,14 @@ static void build_node(struct face_builder *b, uint32_t node, const struct quad 
     b->arena.used = mark;
 }
 
-/* Most faces of most cages: no ring is needed. */
+/* A face whose four vertices are interior and regular, as most are: its points need no ring. */
 static void build_plain(struct face_builder *b, uint32_t ptex, uint32_t c)
 {
     struct vec grid[4][4];
     if (b->tables) {
         extract_plain_grid(&b->plan->topology, c, grid);
     } else {
-        /* Only for the extent that a camera frames: the cage's corners are near enough. */
+        /* The box is only what a camera frames: the cage's corners are near enough. */
         const struct cage *cage = b->plan->cage;
         for (unsigned i = 0; i < 4; i++) {
             const double *p = cage->position[cage->face_vertex[c + i]];
@@ -191,7 +192,7 @@ static bool touches_ngon(const struct topology *t, uint32_t c)
     return false;
 }
 
-/* Across half-edge c, of a cage face: LIMIT_BORDER_... */
+/* What stands in limit_node.borders for half-edge c of a cage face. */
 static unsigned border_of(const struct limit_plan *plan, uint32_t c)
 {
     const struct topology *t = &plan->topology;
@@ -201,8 +202,8 @@ static unsigned border_of(const struct limit_plan *plan, uint32_t c)
     return (unsigned)ceilf(fmaxf(sharpness, 0));
 }
 
-/* The borders of the Ptex face at cage corner c: an n-gon's has halves of two edges, where creases
- * are one level less sharp. */
+/* The borders of the Ptex face at cage corner c. A Ptex face of an n-gon is bordered by halves
+ * of two edges of the cage, on which creases take one level less. */
 static uint16_t borders_of(const struct limit_plan *plan, uint32_t c)
 {
     const struct topology *t = &plan->topology;

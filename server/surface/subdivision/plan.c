@@ -69,8 +69,9 @@ static bool check_valence(struct limit_plan *plan, struct error *error)
                          "a vertex or face of the cage has %zu neighbours, more than the %d that "
                          "sheen evaluates",
                          largest, LIMIT_MAX_VALENCE);
-    /* A face's rings, two more of each extraction, and at each of at most 12 depths the refined
-     * rings, the settled ones and the two nets' of a table: only one of a depth is large. */
+    /* Room for a face's rings, two more of each extraction, and at each of at most 12 depths
+     * the refined rings, the settled ones and those of a table's two nets. At each depth only
+     * one ring is large. */
     plan->arena_bytes = 48 * ring_bytes(largest, true) + 12 * 32 * ring_bytes(4, true);
     return true;
 }

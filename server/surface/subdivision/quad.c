@@ -105,12 +105,14 @@ void quad_refine(const struct quad *quad, struct arena *arena, struct quad child
     }
 }
 
-/* Two points of the row beyond an edge: next to the corner looked from, and one further. */
+/* Two points of the row beyond an edge: the one next to the corner in question, and the next
+ * one. */
 struct beyond {
     struct vec near, far;
 };
 
-/* A phantom: what continues the row `edge`, `inner` to the other side of a sector's end. */
+/* The phantom point that lies beyond the end of a sector: `edge` is on the end, `inner` one row
+ * inside. */
 static struct vec mirrored(struct vec edge, struct vec inner)
 {
     return vec_sub(vec_scale(edge, 2), inner);
@@ -148,7 +150,8 @@ void quad_grid(const struct quad *quad, struct vec grid[4][4])
         grid[y - by + ay][x - bx + ax] = first.far;
         grid[y - ay][x - ax] = second.near;
         grid[y - ay + by][x - ax + bx] = second.far;
-        /* Diagonally beyond an open corner: the phantom of the row that is there, or of a row of
+        /* Diagonally beyond an open corner lies a phantom: of the row beyond the second edge
+         * where only that exists, else of the row beyond the first, which may itself be
          * phantoms. */
         bool only_second = !ring_has_face(ring, -1) && ring_has_face(ring, 1);
         struct beyond row = only_second ? second : first;

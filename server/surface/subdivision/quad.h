@@ -1,4 +1,5 @@
-/* A quad with the rings of its four corners: all that its piece of limit surface depends on.
+/* A quad with the rings of its four corners: its part of the limit surface depends on nothing else.
+ * Thread: the arena's, and that of the ring cache which holds its rings. No failure.
  *
  * corner[i].at is this quad in ring i: ring_edge(0) is corner i+1, ring_face(0) corner i+2,
  * ring_edge(1) corner i+3. (u,v) is (0,0) at corner 0, (1,0) at 1, (1,1) at 2, (0,1) at 3. */
@@ -23,14 +24,14 @@ extern const struct quad_corner quad_corners[4];
 /* Bit i set: corner i is extraordinary (its ring is not regular). */
 unsigned quad_extraordinary(const struct quad *quad);
 
-/* Whether a corner has semi-sharp tags, so that its rules will still change. */
+/* Whether a corner has semi-sharp tags: its rules will change in further steps. */
 bool quad_is_semisharp(const struct quad *quad);
 
 /* The same quad with (0,0) at corner `by`. */
 struct quad quad_rotated(const struct quad *quad, unsigned by);
 
-/* One Catmull-Clark step: child[i] covers the quarter at corner i, in the parent's orientation, its
- * rings settled (settle.h). */
+/* One Catmull-Clark step: child[i] is the quarter at corner i, turned as the parent is, its rings
+ * settled (settle.h). */
 void quad_refine(const struct quad *quad, struct arena *arena, struct quad child[4]);
 
 /* The 4x4 B-spline control points grid[j + 1][i + 1], i along u and j along v in -1..2, with

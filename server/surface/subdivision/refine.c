@@ -29,16 +29,16 @@ static void refine_edges(const struct ring *in, struct ring *out)
     }
 }
 
-/* One rule's new vertex. */
+/* The new vertex by one rule. `out` holds the new face points. */
 static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
                                  enum crease_rule rule, const uint32_t end[2])
 {
     if (rule == RULE_CORNER)
         return in->centre;
     if (rule == RULE_CREASE) {
-        const struct vec *foreign = in->sheets.creases ? in->sheets.end : NULL;
+        const struct vec *outside = in->sheets.creases ? in->sheets.end : NULL;
         struct vec ends =
-            foreign ? vec_add(foreign[0], foreign[1]) : vec_add(in->edge[end[0]], in->edge[end[1]]);
+            outside ? vec_add(outside[0], outside[1]) : vec_add(in->edge[end[0]], in->edge[end[1]]);
         return vec_mad(vec_scale(in->centre, 0.75), 0.125, ends);
     }
     double n = in->n_faces;
@@ -48,8 +48,9 @@ static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
     return vec_mad(vec_scale(in->centre, (n - 2) / n), 1 / (n * n), sum);
 }
 
-/* How much of the parent's rule remains as sharpness runs out: the mean of what runs out now, in
- * single precision as sharpness is everywhere. */
+/* The weight of the rule before the step where the rule changes in it: the mean of the
+ * sharpness that runs out in this step, at most 1, in single precision as all sharpness is
+ * (README.md 5 of server/surface). */
 static double rule_weight(const struct ring *in, const struct ring *out)
 {
     const struct vertex_creases *sheets = in->sheets.creases;
@@ -59,7 +60,8 @@ static double rule_weight(const struct ring *in, const struct ring *out)
     for (uint32_t k = 0; !sheets && in->creases.edge && k < ring_edges(in); k++)
         if (crease_edge(out, k) <= 0)
             sharpness_add(&ending, crease_edge(in, k));
-    /* The rule changes where they have all run out, so that none is left over here. */
+    /* Edges of other sheets count, too. The rule changes only in the step in which all have run
+     * out, so that every entry of the list runs out now. */
     if (sheets) {
         ending.sum += sheets->semisharp.sum;
         ending.n += sheets->semisharp.n;

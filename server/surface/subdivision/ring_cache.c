@@ -5,75 +5,75 @@
 
 #include "server/surface/subdivision/ring_limit.h"
 
-void ring_cache_init(struct ring_cache *rings, size_t n_corners)
+void ring_cache_init(struct ring_cache *cache, size_t n_corners)
 {
-    *rings = (struct ring_cache){.n_corners = n_corners};
+    *cache = (struct ring_cache){.n_corners = n_corners};
 }
 
-void ring_cache_finish(struct ring_cache *rings)
+void ring_cache_finish(struct ring_cache *cache)
 {
-    for (struct cached_ring *shared = rings->newest, *older; shared; shared = older) {
-        older = shared->older;
-        arena_finish(&shared->memory);
-        free(shared->facts);
-        free(shared);
+    for (struct cached_ring *cached = cache->newest, *older; cached; cached = older) {
+        older = cached->older;
+        arena_finish(&cached->memory);
+        free(cached->vertex);
+        free(cached);
     }
     for (int kind = 0; kind < CACHED_KINDS; kind++)
-        free(rings->place[kind]);
-    *rings = (struct ring_cache){0};
+        free(cache->place[kind]);
+    *cache = (struct ring_cache){0};
 }
 
-static struct cached_ring *copy(struct ring_cache *rings, const struct ring *ring)
+static struct cached_ring *copy(struct ring_cache *cache, const struct ring *ring)
 {
     bool creased = ring->creases.edge;
     uint32_t n_edges = ring_edges(ring);
-    struct cached_ring *shared = calloc(1, sizeof *shared);
-    if (!shared || !arena_init(&shared->memory, ring_bytes(ring->n_faces, creased))) {
-        free(shared);
+    struct cached_ring *cached = calloc(1, sizeof *cached);
+    if (!cached || !arena_init(&cached->memory, ring_bytes(ring->n_faces, creased))) {
+        free(cached);
         return NULL;
     }
-    struct ring to = ring_take(&shared->memory, ring->n_faces, ring->closed, creased);
+    struct ring to = ring_take(&cached->memory, ring->n_faces, ring->closed, creased);
     memcpy(to.edge, ring->edge, n_edges * sizeof *to.edge);
     memcpy(to.face, ring->face, ring->n_faces * sizeof *to.face);
     if (creased)
         memcpy(to.creases.edge, ring->creases.edge, 2 * n_edges * sizeof *to.creases.edge);
-    shared->ring = *ring;
-    shared->ring.edge = to.edge;
-    shared->ring.face = to.face;
-    shared->ring.creases.edge = to.creases.edge;
-    shared->ring.creases.far = to.creases.far;
-    shared->ring.cached = shared;
-    shared->owner = rings;
-    shared->older = rings->newest;
-    rings->newest = shared;
-    return shared;
+    cached->ring = *ring;
+    cached->ring.edge = to.edge;
+    cached->ring.face = to.face;
+    cached->ring.creases.edge = to.creases.edge;
+    cached->ring.creases.far = to.creases.far;
+    cached->ring.cached = cached;
+    cached->owner = cache;
+    cached->older = cache->newest;
+    cache->newest = cached;
+    return cached;
 }
 
-bool ring_cache_find(const struct ring_cache *rings, enum cached_kind kind, uint32_t corner,
+bool ring_cache_find(const struct ring_cache *cache, enum cached_kind kind, uint32_t corner,
                      struct ring *out)
 {
-    if (!rings->place[kind] || !rings->place[kind][corner].shared)
+    if (!cache->place[kind] || !cache->place[kind][corner].cached)
         return false;
-    *out = rings->place[kind][corner].shared->ring;
-    out->at = rings->place[kind][corner].at;
+    *out = cache->place[kind][corner].cached->ring;
+    out->at = cache->place[kind][corner].at;
     return true;
 }
 
-bool ring_cache_keep(struct ring_cache *rings, enum cached_kind kind, const struct ring *ring,
+bool ring_cache_keep(struct ring_cache *cache, enum cached_kind kind, const struct ring *ring,
                      struct cached_ring **kept)
 {
     if (ring->n_faces < RING_CACHE_MIN_FACES)
         return false;
-    if (!rings->place[kind])
-        rings->place[kind] = calloc(rings->n_corners, sizeof *rings->place[kind]);
-    *kept = rings->place[kind] ? copy(rings, ring) : NULL;
+    if (!cache->place[kind])
+        cache->place[kind] = calloc(cache->n_corners, sizeof *cache->place[kind]);
+    *kept = cache->place[kind] ? copy(cache, ring) : NULL;
     return *kept;
 }
 
-void ring_cache_see_from(struct ring_cache *rings, enum cached_kind kind, uint32_t corner,
-                         struct cached_ring *shared, uint32_t at)
+void ring_cache_see_from(struct ring_cache *cache, enum cached_kind kind, uint32_t corner,
+                         struct cached_ring *cached, uint32_t at)
 {
-    rings->place[kind][corner] = (struct cached_place){shared, at};
+    cache->place[kind][corner] = (struct cached_place){cached, at};
 }
 
 bool ring_cache_find_derived(const struct ring *from, uint32_t key, struct ring *out)
@@ -95,30 +95,30 @@ struct ring ring_cache_keep_derived(const struct ring *from, uint32_t key,
 {
     if (!from->cached || derived->n_faces < RING_CACHE_MIN_FACES)
         return *derived;
-    struct cached_ring *shared = copy(from->cached->owner, derived);
-    if (!shared)
+    struct cached_ring *cached = copy(from->cached->owner, derived);
+    if (!cached)
         return *derived;
-    shared->key = key;
-    shared->next = from->cached->derived;
-    from->cached->derived = shared;
-    return shared->ring;
+    cached->key = key;
+    cached->next = from->cached->derived;
+    from->cached->derived = cached;
+    return cached->ring;
 }
 
 struct vertex_limit *ring_cache_vertex(const struct ring *ring)
 {
-    if (ring->cached && !ring->cached->facts)
-        ring->cached->facts = calloc(1, sizeof *ring->cached->facts);
-    return ring->cached ? ring->cached->facts : NULL;
+    if (ring->cached && !ring->cached->vertex)
+        ring->cached->vertex = calloc(1, sizeof *ring->cached->vertex);
+    return ring->cached ? ring->cached->vertex : NULL;
 }
 
 struct vec ring_cache_limit(const struct ring *ring)
 {
-    struct vertex_limit *facts = ring_cache_vertex(ring);
-    if (!facts)
+    struct vertex_limit *vertex = ring_cache_vertex(ring);
+    if (!vertex)
         return ring_limit(ring);
-    if (!facts->has_limit) {
-        facts->limit = ring_limit(ring);
-        facts->has_limit = true;
+    if (!vertex->has_limit) {
+        vertex->limit = ring_limit(ring);
+        vertex->has_limit = true;
     }
-    return facts->limit;
+    return vertex->limit;
 }

@@ -8,8 +8,8 @@ struct vec ring_limit(const struct ring *ring)
 {
     if (ring->sharpness > 0)
         return ring->centre;
-    if (!ring->closed || ring_has_foreign_crease(ring)) {
-        struct vec ends = ring_has_foreign_crease(ring)
+    if (!ring->closed || ring_has_outside_crease(ring)) {
+        struct vec ends = ring_has_outside_crease(ring)
                               ? vec_add(ring->sheets.end[0], ring->sheets.end[1])
                               : vec_add(ring->edge[0], ring->edge[ring->n_faces]);
         return vec_mad(vec_scale(ring->centre, 2.0 / 3), 1.0 / 6, ends);
@@ -37,7 +37,8 @@ static void smooth_tangents(const struct ring *ring, struct vec *t1, struct vec 
     uint32_t n = ring->n_faces;
     double a = 16 * ring_eigenvalue(2 * PI / n) - 4;
     *t1 = *t2 = (struct vec){0, 0, 0};
-    /* Around the circle by rotation: sines and cosines would be most of a large ring's cost. */
+    /* Sines and cosines follow from a rotation: calling sin() and cos() would take most of a
+     * large ring's time. */
     double step_x = cos(2 * PI / n), step_y = sin(2 * PI / n), x = 1, y = 0;
     for (uint32_t k = 0; k < n; k++) {
         double next_x = x * step_x - y * step_y, next_y = x * step_y + y * step_x;
@@ -84,11 +85,11 @@ static void crease_tangents(const struct ring *ring, struct vec *t1, struct vec 
     *t2 = vec_sub(ring->edge[n], ring->edge[0]);
 }
 
-/* A smooth corner of one quad: both borders run along a, and the normal is the limit of
- * S_u x S_v ~ (u + v) a x (b + c) with S = a (u - v) + b (u^2 + v^2)/2 + c u v. Of a level's net,
- * that is: from level to level b stays and c grows by b/2 (the matrix's eigenvalue 1/4 has a Jordan
- * block), so that the normal turns for ever, ever less. Taken is what it has come to at the last
- * level of a table. */
+/* A smooth corner of one quad. With S = a (u - v) + b (u^2 + v^2)/2 + c u v in a level's net
+ * both borders run along a, and the normal is the limit of S_u x S_v ~ (u + v) a x (b + c).
+ * Relative to b, c grows by b/2 from level to level (the matrix's eigenvalue 1/4 has a Jordan
+ * block), so that the normal turns at every level, by less and less. The normal is taken that
+ * it has at level LIMIT_MIN_LEVELS. */
 static void corner_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
 {
     struct vec ends = vec_add(ring->edge[0], ring->edge[1]);
@@ -98,7 +99,7 @@ static void corner_tangents(const struct ring *ring, struct vec *t1, struct vec 
     *t2 = vec_mad(mixed, 1 + LIMIT_MIN_LEVELS / 2.0, b);
 }
 
-/* The mean of the quads' own normals at the vertex: for vertices without tangent masks. */
+/* The sum of the quads' own normals at the vertex, for where the tangents span no plane. */
 static struct vec mean_normal(const struct ring *ring)
 {
     struct vec sum = {0, 0, 0};
@@ -118,7 +119,8 @@ static struct vec any_perpendicular(struct vec n)
     return vec_unit(vec_cross(n, other));
 }
 
-/* Two quads that share two edges: both edges' and both quads' differences shrink by 1/4. */
+/* Two quads that share two edges: the difference of the edges and that of the quads shrink by
+ * 1/4 each. */
 static void lens_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
 {
     *t1 = vec_sub(ring->edge[0], ring->edge[1]);
@@ -127,7 +129,7 @@ static void lens_tangents(const struct ring *ring, struct vec *t1, struct vec *t
 
 bool ring_has_one_normal(const struct ring *ring)
 {
-    if (ring_has_foreign_crease(ring))
+    if (ring_has_outside_crease(ring))
         return false;
     if (ring->closed)
         return !(ring->sharpness > 0);

@@ -22,7 +22,8 @@ static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t 
     return out;
 }
 
-/* Without other sheets, which matter no more but where they hold the crease. */
+/* The ring without other sheets, unless these hold a crease that does not end this one. A
+ * vertex that is sharp by the edges of all sheets becomes sharp by itself. */
 static struct ring alone(const struct ring *ring)
 {
     struct ring out = *ring;
@@ -31,7 +32,7 @@ static struct ring alone(const struct ring *ring)
         return out;
     if (sheets->n_sharp > 2)
         out.sharpness = CAGE_SHARPNESS_INFINITE;
-    if (out.sharpness > 0 || !ring->sheets.ends_outside)
+    if (out.sharpness > 0 || !ring->sheets.crease_is_outside)
         out.sheets = (struct ring_sheets){0};
     return out;
 }
@@ -69,7 +70,7 @@ struct ring ring_settle(const struct ring *ring, struct arena *arena)
 
 bool ring_is_regular(const struct ring *settled)
 {
-    if (settled->creases.edge || settled->cut_extraordinary || ring_has_foreign_crease(settled))
+    if (settled->creases.edge || settled->cut_extraordinary || ring_has_outside_crease(settled))
         return false;
     bool sharp = settled->sharpness > 0;
     if (settled->closed)

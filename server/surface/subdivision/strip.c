@@ -6,8 +6,8 @@
 #include "server/surface/texels.h"
 #include "server/surface/topology/sharpness.h"
 
-/* Sharpness of the straight crease through a regular vertex along the quad's edge 0 or 1 there, or
- * 0. */
+/* The sharpness of the crease that runs straight through a regular vertex along the quad's edge
+ * 0 or 1 there. 0: there is none. */
 static float straight_crease(const struct ring *ring, int edge)
 {
     if (!ring->closed || ring->n_faces != 4 || !ring->creases.edge || ring->sharpness > 0 ||

@@ -10,16 +10,17 @@
 #include "server/surface/subdivision/quad.h"
 #include "server/surface/tables.h"
 
-/* More steps than this would cost single precision its last digits across the crease: such quads
- * are cut in four first. */
+/* More steps than this would cost single precision its last digits across the crease: quads with more
+ * are split first. */
 enum { STRIP_MAX_LEVELS = 3 };
 
-/* How many steps L the quad's crease takes when it is such a quad, with the crease on edge
- * *edge; 0 when it is none. */
+/* How many steps L the crease of such a quad takes, and which of its edges the crease is. Returns 0 for
+ * any other quad. Pure. */
 unsigned strip_levels(const struct quad *quad, unsigned *edge);
 
-/* Writes (levels + 1) * LIMIT_PATCH_TEXELS texels and as many bounds as patches, for a quad turned
- * so that the crease is its edge 0, and the origin (world). */
+/* Writes the table of a quad that is turned so that the crease is its edge 0, with levels = L:
+ * (levels + 1) * LIMIT_PATCH_TEXELS texels, levels + 2 bounds (of the whole, then of each patch), and the
+ * origin, the mean of the points, world. The caller owns all three. */
 void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
                  struct limit_bound *bounds, double origin[3]);
 

@@ -3,7 +3,8 @@
  * Corner c of face f is also the half-edge from its vertex to the face's next vertex. Edges that
  * two faces share in opposite directions have twins; all others (boundary edges, edges of three
  * and more faces, edges that two faces run along in the same direction) end a sector, as
- * OpenSubdiv makes them infinitely sharp (far/topologyRefinerFactory.cpp). Read-only once built. */
+ * OpenSubdiv makes them infinitely sharp (far/topologyRefinerFactory.cpp). Nothing here is of one
+ * subdivision scheme. Built by topology.h; read only afterwards, by any thread. */
 #ifndef SHEEN_SURFACE_TOPOLOGY_HALF_EDGES_H
 #define SHEEN_SURFACE_TOPOLOGY_HALF_EDGES_H
 
@@ -23,10 +24,10 @@ struct topology {
     float *child_sharpness;  /* [corners]: of the half at the corner after one step, by Chaikin's
                                 rule; NULL: without that, or no creases */
     float *vertex_sharpness; /* [vertices]; NULL: no sharp vertices in the cage */
-    struct nonmanifold_vertex *sheets;     /* [n_sheets], by vertex: nonmanifold.h */
-    struct vertex_creases *vertex_creases; /* [n_vertex_creases] */
-    size_t n_sheets, n_vertex_creases;
-    bool quads_only;
+    struct nonmanifold_vertex *nonmanifold; /* [n_nonmanifold], by vertex: nonmanifold.h */
+    struct vertex_creases *vertex_creases;  /* [n_vertex_creases] */
+    size_t n_nonmanifold, n_vertex_creases;
+    bool quads_only; /* all faces are quads */
 };
 
 enum {
@@ -35,8 +36,9 @@ enum {
     VERTEX_BY_NGON = 4, /* a face that is no quad touches it */
     VERTEX_CREASED = 8, /* an inner edge with sharpness ends here */
     VERTEX_TAGGED = 16, /* it has sharpness of its own */
-    VERTEX_PLAIN = 32,  /* four faces, four edges, all manifold: alone, a regular vertex of quads */
-    VERTEX_NON_MANIFOLD = 64, /* its faces form several sheets, or an edge that is no two faces' */
+    VERTEX_PLAIN = 32,  /* four faces, four edges, manifold. With no other flag: a regular vertex */
+    VERTEX_NON_MANIFOLD =
+        64, /* its faces form several sheets, or an edge of it is not of two faces */
 };
 
 static inline uint32_t corner_vertex(const struct topology *t, uint32_t c)
@@ -100,12 +102,12 @@ static inline bool quad_is_plain(const struct topology *t, uint32_t c)
     return true;
 }
 
-/* The faces around a corner's vertex that its sector holds, in one order from all of its corners:
- * sums over it come out the same to the last bit. */
+/* The faces around a corner's vertex that are in the corner's sector. All corners of a sector get the same
+ * first face, so that sums over the sector are equal to the last bit. */
 struct sector {
     uint32_t first;   /* the clockwise-most corner; when closed, the one of lowest index */
     uint32_t n_faces; /* >= 1 */
-    uint32_t at;      /* how many ccw steps from first to the given corner */
+    uint32_t at;      /* steps counter-clockwise from first to the given corner */
     bool closed;
 };
 struct sector topology_sector(const struct topology *t, uint32_t corner);

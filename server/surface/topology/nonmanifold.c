@@ -12,9 +12,9 @@ struct sheet_list {
     size_t n;
 };
 
-/* The edges of one vertex while they are counted. */
+/* The sharp edges of one vertex while they are counted. */
 struct sharp_edges {
-    float *semisharp; /* room for those of any vertex */
+    float *semisharp; /* [as many as any vertex can have] */
     uint32_t n_semisharp, n_infinite;
     uint32_t end[2], n_ends;
 };
@@ -34,7 +34,8 @@ static int compare_sheets(const void *a, const void *b)
     return p->first < q->first ? -1 : p->first > q->first;
 }
 
-/* Every sheet once, by vertex. Walks each sector once: a vertex may have any number of faces. */
+/* Lists every sheet once, sorted by vertex. Each sector is walked once, since a vertex may have
+ * any number of faces. */
 static bool list_sheets(const struct topology *t, size_t n_wanted, struct sheet_list *list)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
@@ -97,7 +98,7 @@ static bool add_level(struct topology *t, size_t *capacity, struct vertex_crease
     return true;
 }
 
-/* One step: those that are left come first. */
+/* One step of subdivision: edges that stay semi-sharp move to the front. */
 static void wear_off(struct sharp_edges *edges, bool chaikin, const struct sharpness_sum *sum)
 {
     uint32_t left = 0;
@@ -134,7 +135,7 @@ static bool add_vertices(struct topology *t, const struct sheet_list *list, floa
         struct sharp_edges edges = {.semisharp = room, .end = {v, v}};
         for (last = first; last < list->n && list->sheet[last].vertex == v; last++)
             add_sheet(t, list->sheet[last].first, &edges);
-        t->sheets[t->n_sheets++] = (struct nonmanifold_vertex){
+        t->nonmanifold[t->n_nonmanifold++] = (struct nonmanifold_vertex){
             v, {edges.end[0], edges.end[1]}, (uint32_t)t->n_vertex_creases};
         if (!add_levels(t, &capacity, &edges))
             return false;
@@ -154,8 +155,8 @@ bool nonmanifold_find(struct topology *t)
     if (!list_sheets(t, n_wanted, &list))
         return false;
     float *room = malloc(n_wanted * sizeof *room);
-    t->sheets = malloc(list.n * sizeof *t->sheets);
-    bool ok = room && t->sheets && add_vertices(t, &list, room);
+    t->nonmanifold = malloc(list.n * sizeof *t->nonmanifold);
+    bool ok = room && t->nonmanifold && add_vertices(t, &list, room);
     free(room);
     free(list.sheet);
     return ok;
@@ -171,7 +172,8 @@ static int compare_vertex(const void *key, const void *element)
 const struct nonmanifold_vertex *nonmanifold_at(const struct topology *t, uint32_t corner)
 {
     uint32_t vertex = corner_vertex(t, corner);
-    if (!t->n_sheets || !is_wanted(t, corner))
+    if (!t->n_nonmanifold || !is_wanted(t, corner))
         return NULL;
-    return bsearch(&vertex, t->sheets, t->n_sheets, sizeof *t->sheets, compare_vertex);
+    return bsearch(&vertex, t->nonmanifold, t->n_nonmanifold, sizeof *t->nonmanifold,
+                   compare_vertex);
 }

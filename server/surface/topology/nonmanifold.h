@@ -13,8 +13,8 @@
 #include "server/surface/topology/half_edges.h"
 #include "server/surface/topology/sharpness.h"
 
-/* The sharp edges of a vertex, of all its sheets together, after one number of steps: the first
- * entry of a vertex is for none, each next one for one step more. */
+/* The sharp edges of a vertex, of all its sheets together, after some number of subdivision steps. The
+ * first entry of a vertex is for no step, each next one for one step more. */
 struct vertex_creases {
     uint32_t n_sharp;               /* edges; those that end sheets are counted once each */
     struct sharpness_sum semisharp; /* the semi-sharp among them; n = 0: this entry is the last */
@@ -23,12 +23,13 @@ struct vertex_creases {
 struct nonmanifold_vertex {
     uint32_t vertex;
     uint32_t end[2];     /* vertices: the far ends of the first two different edges that end its
-                            sheets. Where the vertex is not sharp these are all, and they are the
-                            crease through it; where fewer end, the vertex itself stands in */
+                            sheets. Where the vertex is not sharp there are no others, and the two
+                            edges are the crease through it. Where fewer than two edges end its
+                            sheets, the vertex itself takes the place of the missing ones */
     uint32_t first_step; /* index in topology.vertex_creases of its first entry */
 };
 
-/* Fills topology.sheets and topology.vertex_creases with the non-manifold vertices that need it:
+/* Fills topology.nonmanifold and topology.vertex_creases with the non-manifold vertices that need it:
  * those that are not sharp anyway, and under Chaikin's rule also those with creases. False: memory
  * is short, and the two arrays are incomplete. The topology owns and frees them in both cases. */
 bool nonmanifold_find(struct topology *topology);

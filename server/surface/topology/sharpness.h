@@ -3,7 +3,7 @@
  *
  * Sharpness is 0 (smooth) to CAGE_SHARPNESS_INFINITE, in single precision as OpenSubdiv has it
  * (sdc/crease.h): "semi-sharp" is above 0 and below infinite. A step of subdivision takes 1 away
- * (DeRose, Kass and Truong 1998, section 5). Pure; any thread. */
+ * (DeRose, Kass and Truong 1998, section 3 and appendix B). Pure; any thread; no failure. */
 #ifndef SHEEN_SURFACE_TOPOLOGY_SHARPNESS_H
 #define SHEEN_SURFACE_TOPOLOGY_SHARPNESS_H
 
@@ -37,8 +37,8 @@ void sharpness_add(struct sharpness_sum *sum, float sharpness);
 
 /* The sharpness of one half of an edge after one step under Chaikin's rule, at the vertex that the
  * half ends at: a semi-sharp edge takes 3/4 of its own sharpness and 1/4 of the mean of the other
- * semi-sharp edges there, less 1 (DeRose, Kass and Truong 1998, section 5; OpenSubdiv
- * sdc/crease.cpp). `sum` is of all semi-sharp edges of the vertex, this one included. */
+ * semi-sharp edges there, less 1 (DeRose, Kass and Truong 1998, appendix B, for two
+ * edges; OpenSubdiv sdc/crease.cpp for any number). `sum` is of all semi-sharp edges of the vertex, this one included. */
 float sharpness_child_chaikin(float sharpness, const struct sharpness_sum *sum);
 
 /* How much of the crease rule the new vertex on an edge takes, 0 for none and 1 for all: `child`

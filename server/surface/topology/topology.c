@@ -78,8 +78,8 @@ static bool pair_half_edges(struct topology *t, struct vertex_count *count)
             else
                 start[low + 2]++;
         }
-        /* After this, start[v + 1] is where v's bucket begins; filling moves it to its end, so
-         * that start[v] .. start[v + 1] is v's bucket then. */
+        /* After this loop start[v + 1] is where v's bucket begins. The second pass moves it to
+         * the bucket's end, so that the bucket of v is start[v] .. start[v + 1]. */
         for (size_t v = 2; !fill && v < cage->n_vertices + 2; v++)
             start[v] += start[v - 1];
     }
@@ -96,7 +96,8 @@ static bool vertex_is_manifold(const struct topology *t, uint32_t corner,
     return count->nonmanifold == 0 && topology_sector(t, corner).n_faces == count->faces;
 }
 
-/* OpenSubdiv's rule for which vertices are interpolated: see topologyRefinerFactory.cpp. */
+/* Which vertices the surface passes through, by OpenSubdiv's rule
+ * (far/topologyRefinerFactory.cpp). */
 static bool vertex_is_sharp(const struct topology *t, bool manifold,
                             const struct vertex_count *count)
 {
@@ -105,7 +106,7 @@ static bool vertex_is_sharp(const struct topology *t, bool manifold,
         return true;
     if (manifold)
         return false;
-    /* A fin: two opposite edges of several faces each, no boundary. The crease rule holds there. */
+    /* A fin, two opposite edges of several faces each and no boundary, follows the crease rule. */
     return !(count->nonmanifold == 2 && count->boundary == 0 && count->faces > count->edges);
 }
 
@@ -121,7 +122,7 @@ static void flag_vertices(struct topology *t, struct vertex_count *count)
         if (face_size(t, t->face[c]) != 4)
             *flags |= VERTEX_BY_NGON;
         if (count[v].faces == 0)
-            continue; /* done already at an earlier corner */
+            continue; /* an earlier corner of this vertex has set its flags */
         bool manifold = vertex_is_manifold(t, c, &count[v]);
         if (!manifold)
             *flags |= VERTEX_NON_MANIFOLD;
@@ -160,7 +161,7 @@ static bool outgoing_init(struct outgoing *out, const struct topology *t)
     return true;
 }
 
-/* Gives the half-edges from a to b the sharpness; how many there are. */
+/* Gives the half-edges from a to b the sharpness. Returns how many there are. */
 static size_t sharpen_from(struct topology *t, const struct outgoing *out, uint32_t a, uint32_t b,
                            float sharpness)
 {
@@ -239,7 +240,7 @@ static struct sharpness_sum sum_creases(const struct topology *t, const struct s
     return sum;
 }
 
-/* All edges around a vertex count for each: summed once. */
+/* The rule of each edge takes all edges around the vertex: their sum is made once for a sector. */
 static bool find_child_sharpness(struct topology *t)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
@@ -307,7 +308,7 @@ void topology_finish(struct topology *t)
     free(t->edge_sharpness);
     free(t->child_sharpness);
     free(t->vertex_sharpness);
-    free(t->sheets);
+    free(t->nonmanifold);
     free(t->vertex_creases);
     *t = (struct topology){0};
 }
