@@ -30,7 +30,7 @@ static const struct cage_finding *find(const struct cage *cage, enum cage_findin
     return NULL;
 }
 
-/* The file has this doubt and no other, and the text is all there is to say. */
+/* Expects this finding and no other, with exactly this text. */
 static void expect_one(const char *text, enum cage_finding_kind kind, uint32_t count, uint32_t line,
                        const char *warnings)
 {
@@ -460,5 +460,5 @@ int main(void)
         cmocka_unit_test(test_wound),      cmocka_unit_test(test_twice),
         cmocka_unit_test(test_inside_out), cmocka_unit_test(test_random),
     };
-    return cmocka_run_group_tests_name("cage/doubts", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("cage/inspect", tests, NULL, NULL);
 }

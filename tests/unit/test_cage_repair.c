@@ -359,5 +359,5 @@ int main(void)
         cmocka_unit_test(test_weld_of_damage),
         cmocka_unit_test(test_random),
     };
-    return cmocka_run_group_tests_name("cage/mend", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("cage/repair", tests, NULL, NULL);
 }
