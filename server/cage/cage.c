@@ -38,11 +38,11 @@ void cage_warn(struct cage *cage, const char *format, ...)
     va_end(args);
     for (char *c = line; *c; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?'; /* parts of it come from files and go to terminals */
+            *c = '?'; /* parts of the text come from files, and it goes to terminals */
     size_t used = strlen(cage->warnings);
     if (used > 0)
         cage->warnings[used++] = '\n';
-    /* Room for the closing line and the newline before it stays free. */
+    /* Keeps room for MORE_WARNINGS and the newline before it. */
     bool fits = used + strlen(line) + 1 + sizeof MORE_WARNINGS <= CAGE_WARNINGS_BYTES;
     snprintf(cage->warnings + used, CAGE_WARNINGS_BYTES - used, "%s", fits ? line : MORE_WARNINGS);
 }

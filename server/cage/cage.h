@@ -23,9 +23,9 @@
 /* Largest absolute coordinate, in file units: squares and cubes of it stay finite in double and
  * differences stay finite in single precision. */
 #define CAGE_MAX_COORDINATE 1e30
-/* Of cage.warnings, with its end. */
+/* The most bytes of cage.warnings, with the final 0. */
 #define CAGE_WARNINGS_BYTES 4096
-/* A finding's place that is no face. */
+/* cage_finding.face where the finding is at no face. */
 #define CAGE_NO_FACE UINT32_MAX
 
 /* Boundary interpolation (OpenSubdiv Sdc::Options::VtxBoundaryInterpolation). */
@@ -54,21 +54,22 @@ struct cage_corner {
     float sharpness; /* as cage_crease.sharpness */
 };
 
-/* What reading found: first kinds of damage, which cost elements, then kinds of doubt, which cost
- * nothing. Each finding has a warning that says the same in words. */
+/* What reading found: first kinds of damage, for which elements are left out, then kinds of
+ * what is probably not meant but drawn as it is. Each finding has a warning that says the same
+ * in words. */
 enum cage_finding_kind {
-    /* Damaged elements, and what they cost. */
+    /* Damage (build/repair.h). */
     CAGE_FOUND_REPEATED_CORNER, /* faces that lost a corner which repeats its neighbour */
     CAGE_FOUND_FEW_CORNERS,     /* faces passed over: fewer than three different corners */
     CAGE_FOUND_KEYHOLE, /* faces passed over: one vertex at corners that are no neighbours */
     CAGE_FOUND_CREASE,  /* creases passed over: on no edge */
     CAGE_FOUND_CORNER,  /* corner tags passed over: on no vertex */
     CAGE_FOUND_HOLE,    /* holes passed over: of no face */
-    /* Doubts about what is drawn as it is. */
+    /* Probably not meant (build/inspect.h). */
     CAGE_FOUND_UNWELDED,   /* corners at the position of another, though no face shares a vertex */
     CAGE_FOUND_TRIANGLES,  /* faces that are plain triangles */
     CAGE_FOUND_WOUND,      /* edges that two faces run along in one direction */
-    CAGE_FOUND_FACE_TWICE, /* faces that are there a second time */
+    CAGE_FOUND_FACE_TWICE, /* faces that repeat an earlier one */
     CAGE_FOUND_INSIDE_OUT, /* closed bodies whose faces turn inwards */
     N_CAGE_FINDINGS,
 };
@@ -101,9 +102,8 @@ struct cage {
     size_t n_holes;
     uint32_t *hole; /* face indices */
 
-    /* What the user should know, which is every finding and what was passed over (unknown tags):
-     * lines joined by '\n', or NULL. At most CAGE_WARNINGS_BYTES with the final 0; owned by the
-     * cage. */
+    /* What the user should know: every finding, and what was passed over (unknown tags). Lines
+     * joined by '\n', or NULL; at most CAGE_WARNINGS_BYTES with the final 0; owned by the cage. */
     char *warnings;
     size_t n_findings;
     struct cage_finding finding[N_CAGE_FINDINGS]; /* at most one of each kind */
@@ -112,17 +112,19 @@ struct cage {
 /* Frees what the cage owns and zeroes it. Safe on a zeroed cage. */
 void cage_finish(struct cage *cage);
 
-/* Every index in range, every face with 3 or more different corners, every coordinate finite and
- * within CAGE_MAX_COORDINATE, at least one face, counts within limits, sharpness finite and >= 0,
- * creases on existing edges, corners and holes in range. Error texts name `name`. */
+/* Whether every index is in range, every face has 3 or more different corners, every coordinate
+ * is finite and within CAGE_MAX_COORDINATE, there is a face, counts are within limits,
+ * sharpness is finite and >= 0, creases lie on edges, corners and holes are in range. False:
+ * ERROR_MODEL, whose text names `name` and the element; ERROR_SERVER when memory is short. */
 bool cage_check(const struct cage *cage, const char *name, struct error *error);
 
-/* Appends one line to cage->warnings (dropped silently once they are full, the last line then says
- * that more followed). */
+/* Appends one line to cage->warnings. Once these are full their last line says that more
+ * warnings followed, and further lines are dropped. */
 void cage_warn(struct cage *cage, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Keeps a finding and warns of it in one line: "NAME:LINE: " or what else its place is called, and
- * the text. It is called at most once for a kind: a further call for it changes nothing. */
+/* Keeps a finding and warns of it in one line: its place ("NAME:LINE: ", or the face, or the
+ * name alone) and the text. A second finding of a kind is dropped: callers count and report
+ * each kind once. */
 void cage_found(struct cage *cage, const struct cage_finding *finding, const char *name,
                 const char *format, ...) __attribute__((format(printf, 4, 5)));
 

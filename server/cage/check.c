@@ -13,7 +13,8 @@ struct check {
     struct error *error;
 };
 
-/* What is being complained about: "part.glb: face 11 (counting from 0)". */
+/* Fails with the place of the fault, such as "part.glb: face 11 (counting from 0)", and the
+ * text. Returns false. */
 __attribute__((format(printf, 4, 5))) static bool fail(const struct check *check, const char *what,
                                                        size_t index, const char *format, ...)
 {
@@ -172,7 +173,7 @@ static bool edge_set_init(struct edge_set *set, const struct cage *cage)
         return false;
     for (size_t i = 0; i < cage->n_creases; i++) {
         uint64_t key = edge_key(cage->crease[i].vertex[0], cage->crease[i].vertex[1]);
-        if (key != 0) /* as of vertex 0 with itself, which no face has */
+        if (key != 0) /* 0 would be vertex 0 with itself, which no face has as an edge */
             set->edge[edge_slot(set, key)] = key;
     }
     return true;
@@ -209,7 +210,7 @@ bool cage_find_creases(const struct cage *cage, uint8_t *is_edge)
     return ok;
 }
 
-/* Every crease lies on an edge of some face. Indices have been checked. */
+/* Whether every crease lies on an edge of some face. Indices have been checked. */
 static bool check_crease_edges(const struct check *check)
 {
     const struct cage *cage = check->cage;

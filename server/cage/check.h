@@ -1,4 +1,5 @@
-/* What cage_check() and the readers' mending both look for. Internal to server/cage. */
+/* What cage_check() and cage_repair() (build/repair.h) both look for. Internal to server/cage;
+ * any thread. */
 #ifndef SHEEN_CAGE_CHECK_H
 #define SHEEN_CAGE_CHECK_H
 

@@ -10,7 +10,8 @@
 static inline uint64_t hash_seed(void)
 {
     uint64_t seed = 0x9e3779b97f4a7c15u;
-    /* Without entropy the constant stays: slower for a hostile file, never wrong. */
+    /* Without entropy the constant is the seed: a hostile file can then make a table slow,
+     * never wrong. */
     if (getrandom(&seed, sizeof seed, GRND_NONBLOCK) != (ssize_t)sizeof seed)
         seed ^= 0xd1b54a32d192ed03u;
     return seed;

@@ -9,8 +9,8 @@ enum { ON_BOUNDARY = 1, NON_MANIFOLD = 2, HAS_FAN = 4 };
 struct edges {
     const struct cage *cage;
     struct cage_statistics *statistics;
-    struct cage_edges sides;
-    float *sharpness;   /* [corners]: of an edge, at its first side; NULL: no creases */
+    struct cage_edges by_vertex;
+    float *sharpness;   /* [corners]: of an edge, at its first half-edge; NULL: no creases */
     uint32_t *valence;  /* [n_vertices]: faces around it */
     uint8_t *flags;     /* [n_vertices] */
     uint32_t *fan_link; /* [corners]: union-find of the corners that edges join around a vertex */
@@ -18,7 +18,7 @@ struct edges {
 
 static void edges_finish(struct edges *edges)
 {
-    cage_edges_finish(&edges->sides);
+    cage_edges_finish(&edges->by_vertex);
     free(edges->sharpness);
     free(edges->valence);
     free(edges->flags);
@@ -38,14 +38,14 @@ static bool edges_init(struct edges *edges, const struct cage *cage,
         .fan_link = calloc(n_corners + 1, sizeof *edges->fan_link),
     };
     if (edges->valence && edges->flags && edges->fan_link &&
-        (edges->sharpness || !cage->n_creases) && cage_edges_init(&edges->sides, cage))
+        (edges->sharpness || !cage->n_creases) && cage_edges_init(&edges->by_vertex, cage))
         return true;
     edges_finish(edges);
     return error_set(error, ERROR_SERVER, "no memory to count the edges of %zu faces",
                      cage->n_faces);
 }
 
-/* --- which faces hang together */
+/* --- which faces are joined */
 
 static uint32_t fan_of(struct edges *edges, uint32_t corner)
 {
@@ -55,7 +55,7 @@ static uint32_t fan_of(struct edges *edges, uint32_t corner)
     return corner;
 }
 
-/* Two faces that run along an edge in opposite directions hang together at both of its ends. */
+/* Two faces that run along an edge in opposite directions are joined at both of its ends. */
 static void join_faces(struct edges *edges, const struct cage_half_edge *a,
                        const struct cage_half_edge *b)
 {
@@ -63,7 +63,8 @@ static void join_faces(struct edges *edges, const struct cage_half_edge *a,
     edges->fan_link[fan_of(edges, a->next)] = fan_of(edges, b->corner);
 }
 
-static void count_edge(void *context, uint32_t low, const struct cage_half_edge *side, size_t n)
+static void count_edge(void *context, uint32_t low, const struct cage_half_edge *half_edge,
+                       size_t n)
 {
     struct edges *edges = context;
     const uint32_t *face_vertex = edges->cage->face_vertex;
@@ -71,14 +72,14 @@ static void count_edge(void *context, uint32_t low, const struct cage_half_edge 
     if (n == 1) {
         edges->statistics->n_boundary_edges++;
         flag = ON_BOUNDARY;
-    } else if (n == 2 && face_vertex[side[0].corner] != face_vertex[side[1].corner]) {
-        join_faces(edges, &side[0], &side[1]);
+    } else if (n == 2 && face_vertex[half_edge[0].corner] != face_vertex[half_edge[1].corner]) {
+        join_faces(edges, &half_edge[0], &half_edge[1]);
     } else {
         edges->statistics->n_nonmanifold_edges++;
         flag = NON_MANIFOLD;
     }
     edges->flags[low] |= flag;
-    edges->flags[side->high] |= flag;
+    edges->flags[half_edge->high] |= flag;
 }
 
 static void count_edges(const struct cage *cage, struct edges *edges,
@@ -87,7 +88,7 @@ static void count_edges(const struct cage *cage, struct edges *edges,
     size_t n_corners = cage->face_start[cage->n_faces];
     for (uint32_t c = 0; c < n_corners; c++)
         edges->fan_link[c] = c;
-    cage_each_edge(&edges->sides, cage->n_vertices, count_edge, edges);
+    cage_each_edge(&edges->by_vertex, cage->n_vertices, count_edge, edges);
     for (uint32_t c = 0; c < n_corners; c++) {
         uint8_t *flags = &edges->flags[cage->face_vertex[c]];
         if (fan_of(edges, c) == c)
@@ -97,16 +98,16 @@ static void count_edges(const struct cage *cage, struct edges *edges,
         statistics->n_nonmanifold_vertices += (edges->flags[v] & NON_MANIFOLD) != 0;
 }
 
-/* --- tags; of two for the same thing the later one holds */
+/* --- tags; where two are for the same element the later one counts */
 
-/* The first side of an edge of the cage. */
+/* The first half-edge of an edge of the cage. */
 static size_t find_edge(const struct edges *edges, uint32_t a, uint32_t b)
 {
     uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    size_t begin = edges->sides.start[low], end = edges->sides.start[low + 1];
+    size_t begin = edges->by_vertex.start[low], end = edges->by_vertex.start[low + 1];
     while (begin < end) {
         size_t middle = begin + (end - begin) / 2;
-        if (edges->sides.side[middle].high < high)
+        if (edges->by_vertex.half_edge[middle].high < high)
             begin = middle + 1;
         else
             end = middle;
@@ -149,7 +150,7 @@ static bool count_tags(const struct cage *cage, struct cage_statistics *statisti
 
 /* --- valences */
 
-/* One count per valence; the table's end takes what does not fit. */
+/* Fills in the table of valences; its last entry counts all that do not fit. */
 static void count_valences(struct cage_statistics *statistics, uint32_t *by_valence,
                            uint32_t max_valence)
 {

@@ -1,5 +1,5 @@
-/* Counts that say what a cage is: for `sheen info` and for people who wonder where the lines bend.
- * Pure. Thread: any; the cage is only read. */
+/* Counts that say what a cage consists of, for `sheen info`: faces by size, edges and vertices
+ * at which lines may bend, tags. The cage is only read; any thread. */
 #ifndef SHEEN_CAGE_STATISTICS_H
 #define SHEEN_CAGE_STATISTICS_H
 
@@ -16,7 +16,7 @@ struct cage_statistics {
 
     uint32_t n_sharp_edges, n_semisharp_edges; /* tagged: infinitely sharp, and other creases */
     uint32_t n_sharp_vertices;                 /* tagged, infinitely sharp or not */
-    uint32_t n_holes;                          /* faces tagged */
+    uint32_t n_holes;                          /* faces tagged as holes */
 
     /* Vertices off the boundary in other than 4 faces, by number of faces, ascending. When there
      * are more numbers than entries the last entry counts the rest under the smallest of them. */

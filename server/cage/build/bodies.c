@@ -2,14 +2,15 @@
 
 #include <stdlib.h>
 
-/* Of the sum of all parts' magnitudes: a volume below this is rounding, or a sheet. */
+/* A body whose volume is below this share of the sum of its parts' magnitudes is flat within
+ * rounding. */
 #define LEAST_VOLUME 1e-6
-/* Bodies that are looked into for hollows. */
+/* How many bodies, the largest ones, may have hollows. */
 #define MOST_OUTER 16
 
 struct body {
     uint32_t first;       /* a face */
-    bool is_open;         /* or left out */
+    bool is_open;         /* the body is not closed, or to be left out */
     double volume, parts; /* six times the signed volume, and the sum of its parts' magnitudes */
     double low[3], high[3];
 };
@@ -21,8 +22,8 @@ static void cross(double out[3], const double a[3], const double b[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Relative to `origin`, so that a body far from the world's keeps its digits. Coordinates of
- * CAGE_MAX_COORDINATE stay finite. */
+/* A corner's position relative to `origin`, so that volumes of bodies far from the world's
+ * origin keep their digits. Volumes stay finite with coordinates of CAGE_MAX_COORDINATE. */
 static void place(const struct cage *cage, uint32_t corner, const double origin[3], double out[3])
 {
     const double *position = cage->position[cage->face_vertex[corner]];
@@ -30,7 +31,7 @@ static void place(const struct cage *cage, uint32_t corner, const double origin[
         out[i] = position[i] - origin[i];
 }
 
-/* The face as a fan from its first corner. */
+/* Adds what a face, as a fan of triangles from its first corner, adds to the volume. */
 static void add_volume(struct body *body, const struct cage *cage, uint32_t face,
                        const double origin[3])
 {
@@ -58,7 +59,7 @@ static void add_box(struct body *body, const struct cage *cage, uint32_t face)
     }
 }
 
-/* Where the bodies' first corner is, which is where their sums and boxes begin. */
+/* The position of the body's first corner: the origin of its volume, and where its box begins. */
 static const double *origin_of(const struct cage *cage, const struct body *body)
 {
     return cage->position[cage->face_vertex[cage->face_start[body->first]]];

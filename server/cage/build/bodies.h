@@ -1,10 +1,10 @@
-/* Closed bodies whose faces turn inwards. Internal to server/cage/read; any thread. */
+/* Finds closed bodies whose faces turn inwards. Internal to server/cage/build; any thread. */
 #ifndef SHEEN_CAGE_BUILD_BODIES_H
 #define SHEEN_CAGE_BUILD_BODIES_H
 
 #include "server/cage/cage.h"
 
-/* The bodies of a cage. */
+/* Which faces of a cage are joined to bodies. */
 struct bodies {
     const struct cage *cage;
     const uint32_t *body;   /* [n_faces]: one face of the body that each belongs to */

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-/* More tags than this cannot be meant: every edge of the largest cage twice over. */
+/* More tags than the largest cage has corners cannot be meant. */
 #define MAX_TAGS CAGE_MAX_CORNERS
 
 /* Returns `array` with room for one more element after `count`, NULL (the array untouched) when

@@ -18,10 +18,10 @@ struct cage_builder {
 
     /* The file asks for its equal positions to be joined. */
     bool weld;
-    /* The file has triangles that nothing says are meant as such. */
+    /* The file has triangles, and nothing in it says that triangles are meant. */
     bool plain_triangles;
 
-    /* Corners so far, finished faces and the face being built: length of cage.face_vertex. */
+    /* Length of cage.face_vertex: corners of finished faces and of the face being built. */
     size_t n_face_vertices;
 
     size_t vertex_capacity, face_capacity, face_vertex_capacity;
@@ -32,8 +32,8 @@ void cage_builder_finish(struct cage_builder *builder);
 
 bool cage_builder_vertex(struct cage_builder *builder, const double position[3],
                          struct error *error);
-/* Adds a corner to the face being built; cage_builder_end_face() ends it. Nothing is checked here
- * but the counts: cage_repair() and cage_check() see the whole. */
+/* Adds a corner to the face being built; cage_builder_end_face() ends the face. Only counts are
+ * checked here: cage_repair() and cage_check() look at the whole cage. */
 bool cage_builder_face_vertex(struct cage_builder *builder, uint32_t vertex, struct error *error);
 bool cage_builder_end_face(struct cage_builder *builder, uint32_t line, struct error *error);
 

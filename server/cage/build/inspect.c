@@ -7,16 +7,16 @@
 #include "server/cage/edges.h"
 
 enum {
-    TANGLED = 1, /* on an edge of more than two faces, or of two that run along it alike */
-    AGAIN = 2,   /* repeats an earlier face */
-    OPEN = 4,    /* on an edge that a closed body has not */
+    TANGLED = 1,  /* on an edge of more than two faces, or of two in the same direction */
+    REPEATED = 2, /* repeats an earlier face */
+    OPEN = 4,     /* on an edge that no closed body has */
 };
 
 struct inspection {
     struct cage *cage;
     const struct cage_builder *builder;
     const char *name;
-    struct cage_edges sides;
+    struct cage_edges edges;
     uint32_t *face_of; /* [corners] */
     uint8_t *flags;    /* [n_faces] */
     uint32_t *against; /* [n_faces]: its edges that a neighbour runs along in the same direction */
@@ -31,7 +31,7 @@ static struct cage_finding at_face(const struct inspection *inspection, enum cag
     return (struct cage_finding){kind, count, line, line ? CAGE_NO_FACE : face};
 }
 
-/* --- faces that stand apart */
+/* --- faces that share no vertex */
 
 static int compare_places(const void *a, const void *b)
 {
@@ -52,7 +52,8 @@ static bool no_vertex_is_shared(const struct cage *cage, uint8_t *is_used)
     return true;
 }
 
-/* How many corners stand where another does that sorts before them. False: no memory. */
+/* Counts the corners whose position equals that of another corner, less one for each such
+ * position. False: no memory. */
 static bool count_repeated_places(const struct cage *cage, uint32_t *count)
 {
     size_t n = cage->face_start[cage->n_faces];
@@ -105,14 +106,15 @@ static void find_triangles(const struct inspection *inspection)
                "export quads as OBJ or with FB_ngon_encoding");
 }
 
-/* --- faces that are there twice */
+/* --- faces that repeat another */
 
-struct ring {
+struct face_key {
     uint64_t hash;
     uint32_t face;
 };
 
-/* A face's vertices from the smallest on, towards its smaller neighbour. */
+/* The vertices of a face in an order that is the same for equal faces, whichever way round they
+ * are given: from the smallest vertex on, towards its smaller neighbour. */
 struct walk {
     const uint32_t *vertex;
     uint32_t n, start;
@@ -155,16 +157,16 @@ static bool is_same(const struct cage *cage, uint32_t face, uint32_t other)
     return true;
 }
 
-static int compare_rings(const void *a, const void *b)
+static int compare_keys(const void *a, const void *b)
 {
-    const struct ring *p = a, *q = b;
+    const struct face_key *p = a, *q = b;
     if (p->hash != q->hash)
         return p->hash < q->hash ? -1 : 1;
     return p->face < q->face ? -1 : p->face > q->face;
 }
 
-static void report_twice(struct inspection *inspection, uint32_t count, uint32_t face,
-                         uint32_t earlier)
+static void report_repeated(struct inspection *inspection, uint32_t count, uint32_t face,
+                            uint32_t earlier)
 {
     const struct cage_finding finding = at_face(inspection, CAGE_FOUND_FACE_TWICE, count, face);
     const char *where = finding.line ? "the one of line" : "face";
@@ -177,9 +179,10 @@ static void report_twice(struct inspection *inspection, uint32_t count, uint32_t
                    other);
 }
 
-/* Those that can be the same as another: its edges are tangled, unless the two are all there is and
- * turned against each other, which is a pillow. Returns how many there are. */
-static size_t fill_rings(const struct inspection *inspection, struct ring *ring)
+/* Lists the faces that can repeat another: those on a TANGLED edge. (Two faces with the same
+ * vertices and opposite winding that are joined to no other face are a pillow, which is a
+ * body.) With NULL it only counts them. Returns how many there are. */
+static size_t list_keys(const struct inspection *inspection, struct face_key *key)
 {
     const struct cage *cage = inspection->cage;
     uint64_t seed = hash_seed();
@@ -187,56 +190,56 @@ static size_t fill_rings(const struct inspection *inspection, struct ring *ring)
     for (uint32_t f = 0; f < cage->n_faces; f++) {
         if (!(inspection->flags[f] & TANGLED))
             continue;
-        if (ring) {
+        if (key) {
             struct walk walk = walk_of(cage, f);
-            ring[n] = (struct ring){walk_hash(&walk, seed), f};
+            key[n] = (struct face_key){walk_hash(&walk, seed), f};
         }
         n++;
     }
     return n;
 }
 
-/* Equal faces have equal hashes and stand together, the earliest first, once they are sorted. */
-static bool find_twice(struct inspection *inspection)
+/* Equal faces have equal hashes, so that after sorting they stand together, the earliest first. */
+static bool find_repeated(struct inspection *inspection)
 {
-    size_t n = fill_rings(inspection, NULL);
+    size_t n = list_keys(inspection, NULL);
     if (n == 0)
         return true;
-    struct ring *ring = malloc(n * sizeof *ring);
-    if (!ring)
+    struct face_key *key = malloc(n * sizeof *key);
+    if (!key)
         return false;
-    fill_rings(inspection, ring);
-    qsort(ring, n, sizeof *ring, compare_rings);
+    list_keys(inspection, key);
+    qsort(key, n, sizeof *key, compare_keys);
     uint32_t count = 0, first = UINT32_MAX, original = 0;
     for (size_t i = 1, same = 0; i < n; i++) {
-        if (ring[i].hash != ring[same].hash)
+        if (key[i].hash != key[same].hash)
             same = i;
-        else if (is_same(inspection->cage, ring[i].face, ring[same].face)) {
-            inspection->flags[ring[i].face] |= AGAIN;
+        else if (is_same(inspection->cage, key[i].face, key[same].face)) {
+            inspection->flags[key[i].face] |= REPEATED;
             count++;
-            if (ring[i].face < first) {
-                first = ring[i].face;
-                original = ring[same].face;
+            if (key[i].face < first) {
+                first = key[i].face;
+                original = key[same].face;
             }
         }
     }
-    free(ring);
+    free(key);
     if (count > 0)
-        report_twice(inspection, count, first, original);
+        report_repeated(inspection, count, first, original);
     return true;
 }
 
 /* --- how faces that share an edge are wound */
 
-static void mark_edge(void *context, uint32_t low, const struct cage_half_edge *side, size_t n)
+static void mark_edge(void *context, uint32_t low, const struct cage_half_edge *half_edge, size_t n)
 {
     struct inspection *inspection = context;
     const uint32_t *face_vertex = inspection->cage->face_vertex;
     (void)low;
-    if (n == 1 || (n == 2 && face_vertex[side[0].corner] != face_vertex[side[1].corner]))
+    if (n == 1 || (n == 2 && face_vertex[half_edge[0].corner] != face_vertex[half_edge[1].corner]))
         return;
     for (size_t i = 0; i < n; i++)
-        inspection->flags[inspection->face_of[side[i].corner]] |= TANGLED;
+        inspection->flags[inspection->face_of[half_edge[i].corner]] |= TANGLED;
 }
 
 static uint32_t body_of(const struct inspection *inspection, uint32_t face)
@@ -247,8 +250,10 @@ static uint32_t body_of(const struct inspection *inspection, uint32_t face)
     return face;
 }
 
-/* Faces that repeat another are left out: they would be wound like it. */
-static void look_at_edge(void *context, uint32_t low, const struct cage_half_edge *side, size_t n)
+/* Faces that repeat another are left out: their edges would count as wound in the same
+ * direction. */
+static void look_at_edge(void *context, uint32_t low, const struct cage_half_edge *half_edge,
+                         size_t n)
 {
     struct inspection *inspection = context;
     const uint32_t *face_vertex = inspection->cage->face_vertex;
@@ -256,12 +261,12 @@ static void look_at_edge(void *context, uint32_t low, const struct cage_half_edg
     size_t n_faces = 0;
     uint32_t face[2] = {0, 0}, from[2] = {0, 0};
     for (size_t i = 0; i < n; i++) {
-        uint32_t f = inspection->face_of[side[i].corner];
-        if (inspection->flags[f] & AGAIN)
+        uint32_t f = inspection->face_of[half_edge[i].corner];
+        if (inspection->flags[f] & REPEATED)
             continue;
         size_t at = n_faces++ ? 1 : 0;
         face[at] = f;
-        from[at] = face_vertex[side[i].corner];
+        from[at] = face_vertex[half_edge[i].corner];
         inspection->body[body_of(inspection, f)] = body_of(inspection, face[0]);
     }
     if (n_faces == 0 || (n_faces == 2 && from[0] != from[1]))
@@ -280,7 +285,7 @@ static void find_winding(struct inspection *inspection)
     uint32_t most = 0;
     for (uint32_t f = 0; f < cage->n_faces; f++)
         inspection->body[f] = f;
-    cage_each_edge(&inspection->sides, cage->n_vertices, look_at_edge, inspection);
+    cage_each_edge(&inspection->edges, cage->n_vertices, look_at_edge, inspection);
     for (uint32_t f = 1; f < cage->n_faces; f++)
         if (inspection->against[f] > inspection->against[most])
             most = f;
@@ -302,7 +307,7 @@ static bool find_inside_out(struct inspection *inspection)
     uint32_t count, first = 0;
     for (uint32_t f = 0; f < cage->n_faces; f++) {
         inspection->body[f] = body_of(inspection, f);
-        inspection->flags[f] &= AGAIN | OPEN;
+        inspection->flags[f] &= REPEATED | OPEN;
     }
     const struct bodies bodies = {cage, inspection->body, inspection->flags};
     if (!bodies_inside_out(&bodies, &count, &first))
@@ -330,7 +335,7 @@ static bool inspection_init(struct inspection *inspection)
     inspection->against = calloc(cage->n_faces, sizeof *inspection->against);
     inspection->body = malloc(cage->n_faces * sizeof *inspection->body);
     if (!inspection->face_of || !inspection->flags || !inspection->against || !inspection->body ||
-        !cage_edges_init(&inspection->sides, cage))
+        !cage_edges_init(&inspection->edges, cage))
         return false;
     for (uint32_t f = 0; f < cage->n_faces; f++)
         for (uint32_t c = cage->face_start[f]; c < cage->face_start[f + 1]; c++)
@@ -340,7 +345,7 @@ static bool inspection_init(struct inspection *inspection)
 
 static void inspection_finish(struct inspection *inspection)
 {
-    cage_edges_finish(&inspection->sides);
+    cage_edges_finish(&inspection->edges);
     free(inspection->face_of);
     free(inspection->flags);
     free(inspection->against);
@@ -353,8 +358,8 @@ void cage_inspect(struct cage_builder *builder, const char *name)
     find_triangles(&inspection);
     bool ok = find_unwelded(&inspection) && inspection_init(&inspection);
     if (ok) {
-        cage_each_edge(&inspection.sides, inspection.cage->n_vertices, mark_edge, &inspection);
-        ok = find_twice(&inspection);
+        cage_each_edge(&inspection.edges, inspection.cage->n_vertices, mark_edge, &inspection);
+        ok = find_repeated(&inspection);
     }
     if (ok) {
         find_winding(&inspection);

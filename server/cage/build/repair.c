@@ -13,8 +13,9 @@ struct tally {
 
 struct repair {
     struct cage_builder *builder;
-    uint32_t *seen;     /* [n_vertices]: one more than the last face that had it */
-    uint32_t *face_map; /* [n_faces]: where a face went, or GONE; NULL: nobody asks */
+    uint32_t *seen; /* [n_vertices]: one more than the last face that had it */
+    uint32_t *
+        face_map; /* [n_faces]: the new index of a face, or GONE; NULL: the cage has no holes to renumber */
     struct tally tally[N_CAGE_FINDINGS];
 };
 
@@ -38,8 +39,8 @@ static void count(struct repair *repair, enum cage_finding_kind kind, uint32_t l
         *tally = (struct tally){1, line, line ? CAGE_NO_FACE : face};
 }
 
-/* Moves the corners of a face down to `out`, but for those that repeat a neighbour, and returns how
- * many stay. */
+/* Moves the corners of a face down to `out`, without those that repeat a neighbour, and returns
+ * how many stay. */
 static uint32_t drop_repeated(uint32_t *out, const uint32_t *corner, uint32_t n)
 {
     uint32_t kept = 0;
@@ -62,7 +63,8 @@ static bool repeats_a_vertex(const struct repair *repair, const uint32_t *corner
     return false;
 }
 
-/* Returns how many corners of the face stay, moved down to `out`; 0: it is passed over. */
+/* Moves the corners of a face that stay down to `out` and returns how many they are. 0: the
+ * face is passed over. */
 static uint32_t repair_face(struct repair *repair, uint32_t *out, const uint32_t *corner,
                             uint32_t n, uint32_t face)
 {
@@ -103,7 +105,7 @@ static void repair_faces(struct repair *repair)
     builder->n_face_vertices = kept_corners;
 }
 
-/* `is_edge` says of each crease whether it is on one. */
+/* is_edge[] says for each crease whether it lies on an edge. */
 static void repair_creases(struct repair *repair, const uint8_t *is_edge)
 {
     struct cage_builder *builder = repair->builder;
@@ -132,7 +134,8 @@ static void repair_corners(struct repair *repair)
     cage->n_corners = kept;
 }
 
-/* The hole of a face that is passed over goes with it; `n_faces` are the file's. */
+/* Renumbers holes; the hole of a face that is passed over is dropped without a finding.
+ * n_faces: of the file. */
 static void repair_holes(struct repair *repair, size_t n_faces)
 {
     struct cage_builder *builder = repair->builder;
@@ -163,7 +166,7 @@ static void report(struct repair *repair, const char *name)
     }
 }
 
-/* Names the first face, which is of one of the kinds that cost faces. */
+/* Fails with the first face and why it is passed over. Returns false. */
 static bool fail_without_faces(const struct repair *repair, const char *name, size_t n_faces,
                                struct error *error)
 {

@@ -8,8 +8,7 @@
 
 #define EMPTY UINT32_MAX
 
-/* Equal for equal coordinates: -0 and 0 are one place, and so are all NaN, of which none equals
- * itself. */
+/* A number that is equal for equal coordinates, for -0 and 0, and for all NaN. */
 static uint64_t coordinate_bits(double value)
 {
     uint64_t bits;
@@ -35,8 +34,8 @@ static bool same_place(const double a[3], const double b[3])
            coordinate_bits(a[2]) == coordinate_bits(b[2]);
 }
 
-/* Moves the vertices from `first` on that stay to the front and says in map[] where each of the old
- * ones went. */
+/* Moves the vertices from `first` on that stay to the front, and sets map[] to the new index of
+ * each of the old ones. */
 static bool weld_vertices(struct cage *cage, size_t first, uint32_t *map)
 {
     size_t slots = 16;
@@ -64,7 +63,7 @@ static bool weld_vertices(struct cage *cage, size_t first, uint32_t *map)
     return true;
 }
 
-/* Tags may name vertices that there are not. */
+/* Tags may name vertices that do not exist. */
 static void weld_tag(uint32_t *vertex, const uint32_t *map, size_t first, size_t n)
 {
     if (*vertex >= first && *vertex - first < n)

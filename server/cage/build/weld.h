@@ -1,5 +1,5 @@
-/* Joining vertices that stand at the same place: glTF files split them where normals or texture
- * coordinates differ, and OBJ files may ask for it. Internal to server/cage/read; any thread. */
+/* Joins vertices at equal positions: glTF files split vertices where normals or texture
+ * coordinates differ, and OBJ files may ask for welding. Internal to server/cage; any thread. */
 #ifndef SHEEN_CAGE_BUILD_WELD_H
 #define SHEEN_CAGE_BUILD_WELD_H
 
@@ -9,8 +9,8 @@
 extern "C" {
 #endif
 
-/* The lengths of the builder's arrays where the part to weld begins. What stands before it stays as
- * it is. Zeros: all of the cage is welded. */
+/* The lengths of the builder's arrays at the start of the part to weld. What is before that
+ * stays as it is. Zeros: the whole cage is welded. */
 struct weld_start {
     size_t vertices, face_vertices, creases, corners;
 };

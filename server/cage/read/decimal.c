@@ -7,7 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* Longer than any double needs (767 digits decide the worst case). */
+/* Longer texts are refused: 767 digits decide the worst case of a double. */
 #define MAX_LENGTH 1000
 
 /* The text as mantissa * 10^exponent, as far as 64 bits hold it. */
@@ -15,7 +15,7 @@ struct decimal {
     uint64_t mantissa;
     int exponent;
     bool negative;
-    bool whole; /* no digit was left out of the mantissa */
+    bool whole; /* the mantissa holds all digits */
 };
 
 static bool is_digit(char c)
@@ -78,7 +78,7 @@ static bool scan(const char *text, const char *end, struct decimal *decimal)
     return p == end;
 }
 
-/* The ways in which printf() of several C libraries writes what is no number. */
+/* How printf() of several C libraries writes NaN and infinity. */
 static bool is_not_finite_word(const char *text, size_t length)
 {
     static const char *const words[] = {"nan", "inf", "infinity", "1.#inf", "1.#ind", "1.#qnan"};
@@ -96,8 +96,7 @@ static bool is_not_finite_word(const char *text, size_t length)
 
 enum decimal_result decimal_read(const char *text, size_t length, locale_t c_locale, double *value)
 {
-    /* Both operands and the power are exact here, so one rounding is all there is (Clinger 1990).
-     */
+    /* Mantissa and power are exact here, so the result is rounded once (Clinger 1990). */
     static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                    1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                    1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};

@@ -1,4 +1,5 @@
-/* Decimal numbers out of a file, correctly rounded and whatever the locale. Pure; any thread. */
+/* Reads decimal numbers of files, correctly rounded, independent of the locale. Pure; any
+ * thread. */
 #ifndef SHEEN_CAGE_READ_DECIMAL_H
 #define SHEEN_CAGE_READ_DECIMAL_H
 

@@ -106,7 +106,8 @@ static bool read_face(struct obj_reader *reader)
                             "face corner %zu refers to vertex %lld, beyond the largest "
                             "that is read, %u",
                             corner, (long long)index, CAGE_MAX_VERTICES);
-        /* A later vertex may still come: read_all() looks at the end. */
+        /* Vertices may follow the face that names them: read_all() checks the index at the end
+         * of the file. */
         uint32_t vertex = (uint32_t)(index < 0 ? (int64_t)n_vertices + index : index - 1);
         if (!cage_builder_face_vertex(builder, vertex, reader->error))
             return false;
@@ -114,7 +115,7 @@ static bool read_face(struct obj_reader *reader)
     return cage_builder_end_face(builder, reader->line, reader->error);
 }
 
-/* What OBJ knows and a cage has no use for. */
+/* Keywords of OBJ that say nothing about a cage. */
 static bool is_passed_over(const struct obj_field *keyword)
 {
     static const char *const words[] = {"vn", "vt",     "vp",     "o", "g",
@@ -146,7 +147,8 @@ static bool read_statement(struct obj_reader *reader)
     return true;
 }
 
-/* An OBJ file could have had larger faces. */
+/* Whether all faces are triangles. OBJ could have held larger ones, so that triangles may not
+ * be meant. */
 static bool has_triangles_alone(const struct cage *cage)
 {
     for (size_t f = 0; f < cage->n_faces; f++)

@@ -24,9 +24,9 @@ struct obj_reader {
 bool obj_fail(const struct obj_reader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Reads the rest of a line that began with "t": an OpenSubdiv tag. The superset of its grammar
- * that is accepted: any blanks, any length, one sharpness for all edges of a crease or one for
- * each, or OpenSubdiv's own indexing of one for each vertex. Ends before the line's end. */
+/* Reads the rest of a line that began with "t": an OpenSubdiv tag. Accepted are any blanks, any
+ * length, and for a crease one sharpness for all edges, one for each edge, or, as OpenSubdiv
+ * counts them, one for each vertex. Stops before the line's end. */
 bool obj_read_tag(struct obj_reader *reader);
 
 #endif

@@ -52,8 +52,8 @@ static bool missing(const struct obj_reader *reader, const struct tag *tag, cons
                     OBJ_SHOWN(&tag->name), what, tag->n_ints, tag->n_floats, tag->n_strings);
 }
 
-/* A zero-based index: tags count from 0 where faces count from 1. A number that can be none, below
- * 0 or too large, becomes NO_INDEX, which cage_repair() passes over like others without element. */
+/* A zero-based index: tags count from 0, faces from 1. A number that can be no index, below 0
+ * or too large, becomes NO_INDEX: cage_repair() passes over tags whose element does not exist. */
 static bool read_index(struct obj_reader *reader, const struct tag *tag, uint32_t *index)
 {
     struct obj_field field;
@@ -70,7 +70,7 @@ static bool read_index(struct obj_reader *reader, const struct tag *tag, uint32_
                                 OBJ_SHOWN(&field));
 }
 
-/* To OpenSubdiv negative sharpness is smooth, too. */
+/* Negative sharpness is smooth, as in OpenSubdiv. */
 static bool read_sharpness(struct obj_reader *reader, const struct tag *tag, float *sharpness)
 {
     struct obj_field field;
@@ -108,7 +108,8 @@ static bool read_crease(struct obj_reader *reader, const struct tag *tag)
             !cage_builder_crease(reader->builder, &crease, reader->line, reader->error))
             return false;
     }
-    /* With one for each vertex OpenSubdiv takes every other one: the one of the edge's start. */
+    /* Of one sharpness for each vertex OpenSubdiv takes every other one, that of the edge's
+     * start. */
     uint32_t step = tag->n_floats == n_edges ? 1 : 2;
     for (uint32_t i = 0; i < tag->n_floats; i++) {
         float sharpness;
@@ -194,7 +195,7 @@ static bool read_choice(struct obj_reader *reader, const struct tag *tag, const 
     return true;
 }
 
-/* A tag of sheen's own: it names nothing, since all equal positions are joined. */
+/* A tag of sheen's own. It names no vertices, since all equal positions are joined. */
 static bool read_weld(struct obj_reader *reader, const struct tag *tag)
 {
     if (tag->n_ints != 0 || tag->n_floats != 0 || tag->n_strings != 0)
@@ -202,8 +203,8 @@ static bool read_weld(struct obj_reader *reader, const struct tag *tag)
     return reader->builder->weld = true;
 }
 
-/* Tags that say nothing about positions, hierarchical edits (which nobody evaluates any more) and
- * names nobody knows. */
+/* Passes over tags that change no position, hierarchical edits, which are not evaluated, and
+ * unknown names. */
 static void pass_over(struct obj_reader *reader, const struct tag *tag)
 {
     struct cage *cage = &reader->builder->cage;

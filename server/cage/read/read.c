@@ -10,10 +10,11 @@
 #include "server/cage/read/obj.h"
 #include "server/cage/build/weld.h"
 
-/* Messages have room for what is wrong only if the name leaves it. */
+/* The most bytes of a name in a message, so that the message has room for what is wrong. */
 #define SHOWN_NAME_BYTES 160
 
-/* The file's own name is what people know it by; of an overlong one they know the end. */
+/* The name as messages show it: of a name that is too long, its end, which holds the file's own
+ * name. */
 static const char *shown_name(const char *name)
 {
     if (!name || !*name)
@@ -22,7 +23,7 @@ static const char *shown_name(const char *name)
     return length > SHOWN_NAME_BYTES ? name + length - SHOWN_NAME_BYTES : name;
 }
 
-/* Mending takes away what welding has made of faces and tags, too. */
+/* Repair comes after welding, since it also removes corners that welding has made equal. */
 static bool weld_and_repair(struct cage_builder *builder, const char *name, struct error *error)
 {
     const struct weld_start start = {0};

@@ -15,7 +15,7 @@
 enum window {
     WINDOW_NONE, /* the ring is whole, or its vertex sharp */
     WINDOW_SUMS, /* over all edges and over all faces of a smooth ring */
-    WINDOW_ENDS, /* of a crease: the far ends of the ring's first and last edge, or of an outside crease */
+    WINDOW_ENDS, /* of a crease: the far ends of its two edges */
 };
 
 /* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the ring of the vertex, or a

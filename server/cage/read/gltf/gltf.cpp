@@ -57,7 +57,8 @@ bool skip_image(tinygltf::Image *, const int, std::string *, std::string *, int,
     return true;
 }
 
-/* Text that is no JSON object at all gets a plain word instead of a parser's. */
+/* Whether the text begins like a JSON object. If not, the error says so in place of a parser's
+ * message. */
 bool looks_like_json(const char *text, size_t size)
 {
     size_t at = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
@@ -66,7 +67,8 @@ bool looks_like_json(const char *text, size_t size)
     return at < size && text[at] == '{';
 }
 
-/* What the library says without the names of its parts: "[json.exception.parse_error.101] ...". */
+/* The library's message without names of its own, such as "[json.exception.parse_error.101]".
+ * *broken: the JSON itself is at fault. */
 std::string plain_problem(const std::string &problem, bool *broken)
 {
     std::string line = problem.substr(0, problem.find('\n'));
@@ -97,13 +99,14 @@ void parse(Reader &reader, const gltf_container &container)
                                                                container.bytes, container.size)
                                  : loader.LoadASCIIFromString(&reader.model, &problem, &warning,
                                                               text, container.size, "");
-    /* The library drops what it cannot parse and goes on; a part of the cage may be missing. */
+    /* The library drops what it cannot parse and goes on, so that a part of the cage may be
+     * missing: any message of it is an error. */
     if (done && problem.empty())
         return;
     static const std::string absent = "File not found : ";
     bool broken;
     problem = plain_problem(problem, &broken);
-    if (reader.packing && !broken) /* what is missing is packed */
+    if (reader.packing && !broken) /* what is missing is in the packed data */
         reader.need(gltf_extension_refuse_packing(reader.packing, reader.name, reader.failure));
     if (starts_with(problem, (absent + "data:").c_str()))
         reader.refuse("its '%.60s...' is no data: URI that is read: application/octet-stream in "
@@ -146,7 +149,7 @@ void add_warnings(Reader &reader)
     warn_count(reader, "nodes that KHR_node_visibility hides are passed over", passed.hidden_nodes);
 }
 
-/* A scene without a face gets the reason, if there is one. */
+/* Refuses a scene without faces, with the reason where one is known. */
 void check_faces(Reader &reader)
 {
     const PassedOver &passed = reader.passed_over;
@@ -173,7 +176,7 @@ void read(Reader &reader, const void *bytes, size_t size)
         parse(reader, container.c);
     }
     add_scene(reader);
-    reader.model = {}; /* the buffers are not needed any more, and what follows takes memory */
+    reader.model = {}; /* frees the buffers before the steps that follow, which take memory */
     check_faces(reader);
     add_warnings(reader);
 }
@@ -188,7 +191,7 @@ extern "C" bool gltf_read(cage_builder *builder, const void *bytes, size_t size,
     try {
         gltf::Reader reader = {};
         reader.builder = builder;
-        builder->cage.up = CAGE_UP_Y; /* says the specification */
+        builder->cage.up = CAGE_UP_Y; /* as the specification says */
         reader.name = name;
         reader.failure = error;
         reader.file_bytes = size;

@@ -1,4 +1,4 @@
-/* glTF 2.0 and GLB through tinygltf: the C++ behind server/cage/read. Internal to it. */
+/* Reads glTF 2.0 and GLB by tinygltf, in C++. Internal to server/cage/read. */
 #ifndef SHEEN_CAGE_READ_GLTF_GLTF_H
 #define SHEEN_CAGE_READ_GLTF_GLTF_H
 

@@ -53,7 +53,8 @@ const std::vector<unsigned char> &buffer_of(Reader &reader, const char *place, c
     if (view.buffer < 0 || size_t(view.buffer) >= buffers.size())
         reader.refuse("%s: %s has buffer %d, but there are %zu", place, what, view.buffer,
                       buffers.size());
-    /* The library takes the binary chunk for each buffer without a URI, but it is the first's. */
+    /* For each buffer without a URI the library takes the binary chunk, which belongs to the
+     * first buffer alone. */
     if (reader.binary && view.buffer > 0 && buffers[size_t(view.buffer)].uri.empty()) {
         if (reader.packing)
             reader.need(gltf_extension_refuse_packing(reader.packing, reader.name, reader.failure));
@@ -184,7 +185,8 @@ Elements find_elements(Reader &reader, const std::string &where, const char *wha
             reader.need(gltf_extension_refuse_packing(reader.packing, reader.name, reader.failure));
         reader.refuse("%s: %s has no buffer view, so it holds no data", where.c_str(), what);
     } else if (accessor.count > reader.file_bytes) {
-        /* All but a few are zeros, which cost the file nothing. */
+        /* Such elements are zeros, which take no room in the file: memory would not be bounded
+         * by the file's size. */
         reader.refuse("%s: %s has %zu elements without a buffer view, more than the file has bytes",
                       where.c_str(), what, accessor.count);
     }

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Each buffer without a URI is the binary chunk again; the format means one. */
+/* For each buffer without a URI the library copies the binary chunk; the format allows one such
+ * buffer. */
 #define MAX_BUFFERS_BESIDE_CHUNK 4u
 
 #define GLB_HEADER_BYTES 20u /* magic, version, length, and the first chunk's length and type */

@@ -4,12 +4,12 @@
 
 enum kind {
     READ,
-    PASSED_OVER, /* about looks, motion, sound, physics or records: no cage can change */
-    PACKING,     /* of vertices and faces, which are not there without it */
+    PASSED_OVER, /* about looks, motion, sound, physics or metadata: changes no cage */
+    PACKING,     /* packs vertices and faces, which cannot be read without it */
 };
 
-/* A name that ends in '*' stands for all that begin so. What is not here is refused where a file
- * requires it. */
+/* A name that ends in '*' stands for all names that begin so. An extension that is not in the
+ * table is refused where a file requires it. */
 static const struct {
     const char *name;
     enum kind kind;

@@ -101,7 +101,8 @@ static const char *value_of_key(const struct json_scan *scan)
     return at < scan->end && *at == ':' ? skip_blanks(at + 1, scan->end) : NULL;
 }
 
-/* A whole number of at most `most`: of what else stands there tinygltf makes 0 without a word. */
+/* Whether the value is a whole number from 0 to `most`. tinygltf makes 0 of anything else,
+ * without a message. */
 static bool is_unsigned(const char *at, const char *end, uint64_t most)
 {
     const char *first = at;
@@ -115,7 +116,7 @@ static bool is_unsigned(const char *at, const char *end, uint64_t most)
 
 static bool check_offset(const struct json_scan *scan, const struct json_text *key, const char *at)
 {
-    /* tinygltf keeps those of a sparse accessor in an int. */
+    /* tinygltf keeps offsets of sparse accessors in an int. */
     uint64_t most = scan->depth == 3 ? UINT64_MAX : INT_MAX;
     if ((!is_text(key, "byteOffset") && !is_text(key, "byteStride")) ||
         is_unsigned(at, scan->end, most))
@@ -174,7 +175,7 @@ static bool check_extension(struct json_scan *scan, const struct json_text *text
            gltf_extension_check(text->start, text->length, scan->name, scan->error);
 }
 
-/* Keys that are looked for must be spelt plainly, so that they can be told. */
+/* Keys must be spelt without escapes, so that the ones that are looked for are recognised. */
 static bool enter_part(struct json_scan *scan, const struct json_text *key)
 {
     scan->part = PART_OTHER;

@@ -1,11 +1,11 @@
-/* What is checked of glTF's JSON, and taken out of it, before a JSON library sees it. Internal to
- * the glTF reader.
+/* Checks glTF's JSON, and empties parts of it, before tinygltf reads it. Internal to the glTF reader.
  *
- * tinygltf recurses over nested values, copies the binary chunk for each buffer that names no URI,
- * and spends hundreds of bytes on each value in `extras`: a small hostile file could take the stack
- * or the memory. It also takes an offset or stride that is no whole number from 0 up for 0. These
- * checks bound the former three and refuse the latter. And it refuses files for what no cage has:
- * a skin without matrices, an animation whose target is no node. Such members are emptied. */
+ * tinygltf recurses over nested values, copies the binary chunk for each buffer that names no URI, and
+ * spends hundreds of bytes on each value in `extras`: a small hostile file could use up the stack or the
+ * memory. These checks bound all three. tinygltf also makes 0 of an offset or stride that is no whole
+ * number from 0 up: such files are refused here. And it refuses files for faults in parts that no cage
+ * depends on, such as a skin without matrices or an animation whose target is no node: these parts are
+ * emptied here. */
 #ifndef SHEEN_CAGE_READ_GLTF_GLTF_JSON_H
 #define SHEEN_CAGE_READ_GLTF_GLTF_JSON_H
 

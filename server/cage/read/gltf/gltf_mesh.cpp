@@ -13,7 +13,7 @@ namespace gltf
 namespace
 {
 
-/* A morph target of which the file's own weight takes something. */
+/* A morph target whose weight in the file is not 0. */
 struct Morph {
     int accessor;
     double weight;
@@ -140,7 +140,7 @@ std::vector<uint32_t> read_triangles(Reader &reader, const Primitive &primitive)
     return triangles;
 }
 
-/* False: it holds nothing that makes a surface, and is passed over. */
+/* Whether the primitive makes a surface. If not, it is counted as passed over. */
 bool is_surface(Reader &reader, const Primitive &primitive)
 {
     int mode = primitive.source->mode;

@@ -9,7 +9,7 @@ namespace gltf
 namespace
 {
 
-/* A body of one node may be as small as a triangle, but each is read anew. */
+/* How often a file may show meshes: each instance is read again, however small it is. */
 constexpr size_t MAX_INSTANCES = 1000000;
 
 std::vector<double> node_numbers(Reader &reader, int index, const char *key,
@@ -121,9 +121,9 @@ std::vector<transform> node_instances(Reader &reader, int index)
     return instances;
 }
 
-/* Zeros of a sparse accessor cost a file nothing and weld to one vertex, so that the limits of a
- * cage do not bound what instances take to read. This does, after the first of a node's. `each` is
- * what one instance reads and `left` how many are still to come. */
+/* Refuses a node whose instances read too many vertices. Zeros of a sparse accessor take no
+ * room in a file and weld to one vertex, so that the limits of a cage do not bound what reading
+ * many instances takes. `each` is what the first instance has read, `left` how many follow. */
 void limit_vertices(Reader &reader, int index, size_t each, size_t left)
 {
     size_t all = reader.vertices_read + each * left;

@@ -131,8 +131,8 @@ void read_corners_and_holes(Reader &reader, const Primitive &primitive, const Va
     }
 }
 
-/* One of a few words, which all primitives that say it must agree on. Returns whether it is said;
- * *choice is its place in words[]. */
+/* Reads a setting that is one of a few words. Returns whether it is given; *choice is its index
+ * in words[]. */
 bool read_word(Reader &reader, const Primitive &primitive, const Value &tags, const char *key,
                const std::vector<const char *> &words, size_t *choice)
 {
@@ -187,7 +187,8 @@ void read_settings(Reader &reader, const Primitive &primitive, const Value &tags
 
 } // namespace
 
-/* A mesh's own arrays speak of its one primitive; with several nobody could tell which. */
+/* Index arrays in the extras of a mesh are of its one primitive; with several primitives they
+ * would be ambiguous. */
 void read_tags(Reader &reader, const Primitive &primitive, const tinygltf::Mesh &mesh)
 {
     const Value *tags = tags_of(mesh.extras);

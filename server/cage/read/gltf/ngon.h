@@ -1,4 +1,5 @@
-/* Polygons out of triangles: glTF's FB_ngon_encoding. Internal to the glTF reader. */
+/* Makes polygons of triangles by glTF's FB_ngon_encoding. Internal to the glTF reader; any
+ * thread. */
 #ifndef SHEEN_CAGE_READ_GLTF_NGON_H
 #define SHEEN_CAGE_READ_GLTF_NGON_H
 
@@ -18,7 +19,8 @@ struct ngon_triangles {
 };
 
 /* Adds the faces to the builder. Triangles that share their first vertex but no edge, which the
- * extension does not allow, become separate faces and are counted in *n_breaks. */
+ * extension does not allow, become separate faces and are counted in *n_breaks. False: the
+ * builder's errors. */
 bool ngon_add_faces(struct cage_builder *builder, const struct ngon_triangles *triangles,
                     size_t *n_breaks, struct error *error);
 

@@ -13,7 +13,7 @@ struct transform {
 
 struct transform transform_identity(void);
 
-/* b first, then a. */
+/* The transform that applies b first, then a. */
 struct transform transform_multiply(const struct transform *a, const struct transform *b);
 
 /* Scale first, then rotation by the quaternion x, y, z, w (of any length but 0), then
@@ -23,7 +23,7 @@ struct transform transform_compose(const double translation[3], const double rot
 
 void transform_point(const struct transform *transform, const double in[3], double out[3]);
 
-/* Of the upper 3x3: negative where the transform mirrors. */
+/* The determinant of the upper 3x3: negative where the transform mirrors. */
 double transform_determinant(const struct transform *transform);
 
 #ifdef __cplusplus
