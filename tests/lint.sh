@@ -84,6 +84,9 @@ no_include server/image 'protocol/([^s]|s[^r])' 'of the protocol pictures know s
 no_include server/render 'protocol/([^s]|s[^r])' 'of the protocol a device knows srgb.h alone'
 no_include server/scene 'server/surface/([^tv]|t[^a]|v[^e])' 'of a surface a request knows tables.h and vec.h alone'
 no_include server/ops 'server/render/([^g]|g[^l]|gl/[^d]|gl/device_)' 'a device is chosen by its device.h alone'
+no_include server/render 'server/surface/(bicubic|texels)' 'of which degree patches are is the business of server/surface'
+no_include server/scene 'server/surface/(bicubic|texels|patch|evaluate|bound)' 'a request knows the size of a surface, not the surface'
+no_include server/assets 'server/surface/(bicubic|texels|patch|evaluate|bound|node|subdivision/[^b])' 'models are built and kept, not looked into'
 no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
 no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows sheen.h alone'
 no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the protocol the command knows no byte: libsheen says it'
@@ -104,6 +107,76 @@ only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protoco
 # The frame's way, file by file.
 for file in $(grep -oE '`(server|client|protocol)/[a-z0-9/_]+\.[a-z]+`' CONTRIBUTING.md | tr -d '`'); do
     [ -e "$file" ] || fail "CONTRIBUTING.md names $file, which is not there"
+done
+
+# No file may include what includes it, over however many files. NAME.c and NAME.h count as one file.
+# Prints each circle in its order, one that shares no file with those before. Circles that are still to be
+# ended lack one step each: here stands that step, "FILE FILE", as
+# a pattern. Nothing is added to this list.
+known_steps='
+server/frame/request (server/frame/request_internal|server/session/session)
+server/ops/options server/ops/options_table
+server/render/renderer server/render/device
+server/render/gl/[a-z_]* server/render/gl/device_internal
+server/render/gl/polygon_slices server/render/gl/(frame|kept)
+server/render/gl/shade_programs server/render/gl/program
+server/session/session server/session/session_internal
+'
+# shellcheck disable=SC2086
+circles=$(grep -E '^#include "(server|client|protocol)/' $(printf '%s\n' $files | grep -E '^(server|client|protocol)/') |
+    sed -E 's/^([^:]*):#include "([^"]*)".*/\1 \2/; s/\.[a-z]+( |$)/\1/g' |
+    grep -vxE "$(printf '%s' "$known_steps" | sed '/^$/d')" |
+    awk '$1 != $2 && !seen[$1, $2]++ { to[$1] = to[$1] " " $2; left[$1] = 1 }
+        # The first of the files that a file includes and that are left.
+        function next_of(file, i, n, list) {
+            n = split(to[file], list, " ")
+            for (i = 1; i <= n; i++)
+                if (list[i] in left)
+                    return list[i]
+            return ""
+        }
+        # Takes out the files that include no other file that is left: they are in no circle.
+        function peel(file, again) {
+            do {
+                again = 0
+                for (file in left)
+                    if (next_of(file) == "") {
+                        delete left[file]
+                        again = 1
+                    }
+            } while (again)
+        }
+        END {
+            for (peel(); ; peel()) {
+                start = ""
+                for (file in left)
+                    if (start == "" || file < start)
+                        start = file
+                if (start == "")
+                    exit
+                # Far enough along, every file is in the circle.
+                for (i in left)
+                    start = next_of(start)
+                text = file = start
+                do {
+                    step = next_of(file)
+                    text = text " -> " step
+                    took[file] = 1
+                    file = step
+                } while (file != start)
+                for (i in took)
+                    delete left[i]
+                print text
+            }
+        }')
+[ -z "$circles" ] || fail "files that include each other in a circle:
+$circles"
+
+# A folder that is larger is several rooms. Those that are still to be cut:
+known_large='client/cli server/render/gl'
+for folder in $(printf '%s\n' $files | grep -E '^(server|client|protocol)/' | sed 's|/[^/]*$||' | sort -u); do
+    lines=$(printf '%s\n' $files | grep -E "^$folder/[^/]*$" | xargs cat | wc -l)
+    [ "$lines" -le 3500 ] || case " $known_large " in *" $folder "*) ;; *) fail "$folder has $lines lines, more than 3500" ;; esac
 done
 
 # cppcheck reads no system header; without the macros of lists it takes their loops' variables for unset.
