@@ -34,21 +34,23 @@ static struct blends blends_at(double t)
     };
 }
 
-struct bicubic_point bicubic_evaluate(const struct vec grid[16], double s, double t)
+void bicubic_evaluate(const struct bicubic_texels *texels, double s, double t,
+                      struct bicubic_point *out)
 {
     struct blends x = blends_at(s), y = blends_at(t);
-    struct bicubic_point out = {0};
+    struct vec grid[16];
+    bicubic_read(texels, grid);
+    *out = (struct bicubic_point){0};
     for (int k = 0; k < 16; k++) {
         int i = k & 3, j = k >> 2;
         struct vec p = grid[k];
-        out.p = vec_mad(out.p, x.value[i] * y.value[j], p);
-        out.ps = vec_mad(out.ps, x.first[i] * y.value[j], p);
-        out.pt = vec_mad(out.pt, x.value[i] * y.first[j], p);
-        out.pss = vec_mad(out.pss, x.second[i] * y.value[j], p);
-        out.pst = vec_mad(out.pst, x.first[i] * y.first[j], p);
-        out.ptt = vec_mad(out.ptt, x.value[i] * y.second[j], p);
+        out->p = vec_mad(out->p, x.value[i] * y.value[j], p);
+        out->ps = vec_mad(out->ps, x.first[i] * y.value[j], p);
+        out->pt = vec_mad(out->pt, x.value[i] * y.first[j], p);
+        out->pss = vec_mad(out->pss, x.second[i] * y.value[j], p);
+        out->pst = vec_mad(out->pst, x.first[i] * y.first[j], p);
+        out->ptt = vec_mad(out->ptt, x.value[i] * y.second[j], p);
     }
-    return out;
 }
 
 /* The control points of [a, b] of a segment on [0, 1], whose own points are `stride` apart:

@@ -21,7 +21,8 @@ struct bicubic_point {
 
 void bicubic_read(const struct bicubic_texels *texels, struct vec grid[16]);
 
-struct bicubic_point bicubic_evaluate(const struct vec grid[16], double s, double t);
+void bicubic_evaluate(const struct bicubic_texels *texels, double s, double t,
+                      struct bicubic_point *out);
 
 /* The control points of the same surface over the square [s, s + size] x [t, t + size]. */
 void bicubic_cut(const struct vec grid[16], double s, double t, double size, struct vec out[16]);

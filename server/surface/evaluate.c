@@ -5,9 +5,8 @@
 /* In the node's frame, by s and t. */
 static void evaluate_points(const struct limit_patch *patch, struct limit_point *out)
 {
-    struct vec grid[16];
-    bicubic_read(&patch->points, grid);
-    struct bicubic_point at = bicubic_evaluate(grid, patch->s, patch->t);
+    struct bicubic_point at;
+    bicubic_evaluate(&patch->points, patch->s, patch->t, &at);
     out->s = at.p;
     out->su = at.ps;
     out->sv = at.pt;

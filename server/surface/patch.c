@@ -82,11 +82,9 @@ bool limit_patch_find(const struct limit_tables *tables, const struct limit_plac
     return true;
 }
 
-struct vec limit_frame_to_world(const struct limit_tables *tables, const struct limit_node *node,
-                                struct vec v)
+struct vec limit_turn_to_world(const struct limit_tables *tables, const struct limit_node *node,
+                               struct vec v)
 {
-    if (node->kind != LIMIT_CORNER)
-        return v;
     const float *q = tables->texels[node->first];
     struct vec axis = {(double)q[0], (double)q[1], (double)q[2]};
     struct vec twice = vec_scale(vec_cross(axis, v), 2);

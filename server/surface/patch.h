@@ -56,8 +56,15 @@ struct limit_bound limit_patch_bound(const struct limit_tables *tables,
                                      const struct limit_patch *patch, struct limit_square part,
                                      const struct vec *unseen, double centre[3]);
 
-/* A vector of a node's frame in the world. */
-struct vec limit_frame_to_world(const struct limit_tables *tables, const struct limit_node *node,
-                                struct vec v);
+/* A vector turned by the frame of a CORNER into the world. */
+struct vec limit_turn_to_world(const struct limit_tables *tables, const struct limit_node *node,
+                               struct vec v);
+
+/* A vector of a node's frame in the world: only a CORNER has a frame of its own. */
+static inline struct vec limit_frame_to_world(const struct limit_tables *tables,
+                                              const struct limit_node *node, struct vec v)
+{
+    return node->kind == LIMIT_CORNER ? limit_turn_to_world(tables, node, v) : v;
+}
 
 #endif
