@@ -334,11 +334,6 @@ static bool keep_listener(struct service *service, struct listener *listener, st
     return listener_kind(listener) != ADDRESS_TLS || access_can_tls(service->daemon.access, error);
 }
 
-static enum listener_reach metrics_reach(const struct service_options *options)
-{
-    return options->metrics_open ? LISTENER_ANYWHERE : LISTENER_LOOPBACK;
-}
-
 /* The service manager's sockets; one that it calls "metrics" is for those, one called "tls" for
  * TLS. */
 static bool adopt_listeners(struct service *service, struct error *error)
@@ -352,8 +347,8 @@ static bool adopt_listeners(struct service *service, struct error *error)
         if (!ok)
             close(fds.fd[i]);
         else if (strcmp(fds.name[i], "metrics") == 0)
-            ok =
-                monitor_adopt(service->monitor, fds.fd[i], metrics_reach(&service->options), error);
+            ok = monitor_adopt(service->monitor, fds.fd[i],
+                               service_metrics_reach(&service->options), error);
         else if (service->n_listeners < SERVICE_MAX_LISTENERS)
             ok = keep_listener(service,
                                listener_adopt(service->daemon.loop, fds.fd[i],
@@ -390,7 +385,7 @@ static bool open_listeners(struct service *service, struct error *error)
     }
     const struct service_listen *metrics = &service->options.metrics;
     return metrics->n == 0 || monitor_listen(service->monitor, &metrics->address[0],
-                                             metrics_reach(&service->options), error);
+                                             service_metrics_reach(&service->options), error);
 }
 
 static bool open_session(struct service *service, int fd, struct error *error)
@@ -518,50 +513,6 @@ static void tell_ready(const struct service *service)
               log_text("addresses", addresses),
               log_text("metrics", monitor_address(service->monitor)));
     notify_send("READY=1\nSTATUS=serving");
-}
-
-/* They are no secret that is worth TLS, nor for everybody to read who has not been let. */
-static bool check_metrics(const struct service_options *options, struct error *error)
-{
-    const struct address *address = &options->metrics.address[0];
-    if (options->metrics.n == 0)
-        return true;
-    if (address->kind == ADDRESS_TLS)
-        return error_set(error, ERROR_REQUEST,
-                         "metrics are served without TLS, and not at tls:%s:%u: give a Unix "
-                         "socket, unix:PATH, or an address on loopback, as tcp:127.0.0.1:%u",
-                         address->host, (unsigned)address->port, (unsigned)address->port);
-    if (listener_check(address, metrics_reach(options), error))
-        return true;
-    return error->kind == ERROR_REQUEST && /* else the name is not known */
-           error_set(error, ERROR_REQUEST,
-                     "metrics go to this machine alone, and not to tcp:%s:%u: give a Unix socket, "
-                     "unix:PATH, or an address on loopback, as tcp:127.0.0.1:%u; or say with "
-                     "--metrics-open that whoever reaches that address may read them",
-                     address->host, (unsigned)address->port, (unsigned)address->port);
-}
-
-bool service_options_check(const struct service_options *options, struct error *error)
-{
-    if (options->session_fd >= 0 && options->listen.n > 0)
-        return error_set(error, ERROR_REQUEST, "--session-fd and --listen exclude each other");
-    bool tls = false;
-    for (size_t i = 0; i < options->listen.n; i++) {
-        if (!listener_check(&options->listen.address[i], LISTENER_LOOPBACK, error))
-            return false;
-        tls |= options->listen.address[i].kind == ADDRESS_TLS;
-    }
-    if (!check_metrics(options, error))
-        return false;
-    int models_fd = *options->models ? model_folder_open(options->models, error) : -1;
-    if (models_fd >= 0)
-        close(models_fd);
-    else if (*options->models)
-        return false;
-    struct access *access = access_create(&options->access, error);
-    bool ok = access && (!tls || access_can_tls(access, error));
-    access_destroy(access);
-    return ok;
 }
 
 struct service *service_create(const struct service_options *options,

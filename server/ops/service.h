@@ -9,6 +9,7 @@
 #include "protocol/address.h"
 #include "server/base/error.h"
 #include "server/net/access.h"
+#include "server/net/listen.h"
 #include "server/ops/limits.h"
 #include "server/base/log.h"
 
@@ -47,6 +48,9 @@ struct service_reloader {
 /* What no single option can know, and what they name in the system: addresses that may be listened
  * on, certificates, tokens. ERROR_REQUEST, or ERROR_SERVER for a host that is not known. */
 bool service_options_check(const struct service_options *options, struct error *error);
+
+/* Where metrics may be listened for without TLS. */
+enum listener_reach service_metrics_reach(const struct service_options *options);
 
 struct service;
 
