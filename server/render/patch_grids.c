@@ -13,9 +13,6 @@
 static const double TOLERANCE_PX = 0.5;
 /* Squares are cut in four at most this often: 2^20 squares across a face. */
 enum { MAX_DEPTH = 20 };
-/* Grid vertices of a tile: what a software device draws in a few seconds, and many times what a
- * million faces need. */
-static const uint64_t MAX_VERTICES = 24000000;
 /* The coordinates s and t of a guess, each from 0 to 2, are stored in so many steps. */
 enum { GUESS_STEPS = 8191 };
 
@@ -30,8 +27,7 @@ struct chooser {
     const struct tile *tile;
     bool guesses;       /* guesses are asked for, not grids */
     size_t first_guess; /* of these */
-    uint32_t blocks[2]; /* of the tile: across and down */
-    size_t n_chosen;
+    uint32_t blocks[2]; /* of the tile: across and down; 0: not asked for */
     uint64_t n_vertices;
     bool no_memory;
 };
@@ -134,15 +130,16 @@ static void emit(struct chooser *c, unsigned shape, struct patch_grid grid,
         return;
     }
     c->n_vertices += (grid_cells[shape / GRID_SIDES] + 1u) * (grid_cells[shape % GRID_SIDES] + 1u);
-    if (c->n_vertices > MAX_VERTICES || c->no_memory)
+    if (c->n_vertices > GRIDS_MAX_VERTICES || c->no_memory)
         return;
-    cover(c, extent);
-    if (c->n_chosen == out->capacity && !grow(out)) {
+    if (c->blocks[0])
+        cover(c, extent);
+    if (out->n_chosen == out->capacity && !grow(out)) {
         c->no_memory = true;
         return;
     }
     grid.where |= shape << 16;
-    out->chosen[c->n_chosen++] = grid;
+    out->chosen[out->n_chosen++] = grid;
     out->first[shape + 1]++;
 }
 
@@ -155,7 +152,7 @@ static void sort_by_shape(struct chooser *c)
         next[g] = out->first[g];
         out->first[g + 1] += out->first[g];
     }
-    for (size_t i = 0; i < c->n_chosen; i++)
+    for (size_t i = 0; i < out->n_chosen; i++)
         out->grid[next[out->chosen[i].where >> 16]++] = out->chosen[i];
 }
 
@@ -230,7 +227,7 @@ static bool find_shape(const struct limit_bound *bound, double allowed, unsigned
 
 static void choose_square(struct chooser *c, struct patch_grid grid, const struct extent *extent)
 {
-    if (is_outside(c, extent) || c->n_vertices > MAX_VERTICES)
+    if (is_outside(c, extent) || c->n_vertices > GRIDS_MAX_VERTICES)
         return;
     double allowed = 8 * TOLERANCE_PX / in_px(c, extent, 1);
     unsigned shape = 0;
@@ -326,6 +323,7 @@ static bool reserve_blocks(struct chooser *c, struct error *error)
     c->blocks[0] = (c->tile->width + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
     c->blocks[1] = (c->tile->height + COVER_BLOCK_PX - 1) / COVER_BLOCK_PX;
     memset(out->first, 0, sizeof out->first);
+    out->n_chosen = 0;
     size_t n = (size_t)c->blocks[0] * c->blocks[1];
     if (n > out->block_capacity) {
         free(out->block);
@@ -350,20 +348,30 @@ static void list_blocks(struct chooser *c)
                 c->out->block[c->out->n_blocks++] = x | y << 16;
 }
 
+bool patch_grids_too_many(struct error *error)
+{
+    return error_set(error, ERROR_REQUEST,
+                     "camera: the view would take more than %u grid vertices: move it away from "
+                     "the model, or make the picture smaller",
+                     GRIDS_MAX_VERTICES);
+}
+
+/* What clusters [first, end) may show in the tile. False: no memory. */
+static bool choose_clusters(struct chooser *c, const struct clusters *clusters, size_t first,
+                            size_t end, struct error *error)
+{
+    view_sides_init(&c->sides, c->view, c->tile);
+    for (size_t k = first; k < end; k++)
+        choose_cluster(c, clusters, k);
+    return !c->no_memory ||
+           error_set(error, ERROR_SERVER, "out of memory for the grids of a frame");
+}
+
 /* All that the tile may show. */
 static bool choose_all(struct chooser *c, const struct clusters *clusters, struct error *error)
 {
-    view_sides_init(&c->sides, c->view, c->tile);
-    for (size_t k = 0; k < clusters->n; k++)
-        choose_cluster(c, clusters, k);
-    if (c->no_memory)
-        return error_set(error, ERROR_SERVER, "out of memory for the grids of a frame");
-    if (c->n_vertices > MAX_VERTICES)
-        return error_set(error, ERROR_REQUEST,
-                         "camera: the view would take more than %llu grid vertices: move it away "
-                         "from the model, or make the picture smaller",
-                         (unsigned long long)MAX_VERTICES);
-    return true;
+    return choose_clusters(c, clusters, 0, clusters->n, error) &&
+           (c->n_vertices <= GRIDS_MAX_VERTICES || patch_grids_too_many(error));
 }
 
 bool patch_grids_choose(struct patch_grids *grids, const struct limit_tables *tables,
@@ -376,6 +384,20 @@ bool patch_grids_choose(struct patch_grids *grids, const struct limit_tables *ta
     sort_by_shape(&c);
     list_blocks(&c);
     return true;
+}
+
+bool patch_grids_choose_part(struct patch_grids *grids, const struct limit_tables *tables,
+                             const struct clusters *clusters, size_t first, size_t n,
+                             const struct view *view, const struct tile *tile, uint64_t *n_vertices,
+                             struct error *error)
+{
+    struct chooser c = {.out = grids, .tables = tables, .view = view, .tile = tile};
+    size_t left = clusters->n - first;
+    memset(grids->first, 0, sizeof grids->first);
+    grids->n_chosen = 0;
+    bool ok = choose_clusters(&c, clusters, first, first + (n < left ? n : left), error);
+    *n_vertices += c.n_vertices;
+    return ok;
 }
 
 bool patch_grids_guess(struct patch_grids *grids, const struct limit_tables *tables,

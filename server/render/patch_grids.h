@@ -41,7 +41,8 @@ struct patch_grids {
     /* In the order of their shapes: those of shape g from first[g] to first[g + 1]. */
     struct patch_grid *grid;
     size_t first[GRID_SHAPES + 1];
-    struct patch_grid *chosen; /* scratch: in the order of the nodes */
+    struct patch_grid *chosen; /* in the order of the nodes */
+    size_t n_chosen;
     size_t capacity;
     /* Blocks of COVER_BLOCK_PX x COVER_BLOCK_PX pixels of the tile that the grids may cover, x |
      * y << 16 in blocks; outside of the blocks nothing is seen. */
@@ -61,6 +62,18 @@ struct patch_grids {
 bool patch_grids_choose(struct patch_grids *grids, const struct limit_tables *tables,
                         const struct clusters *clusters, const struct view *view,
                         const struct tile *tile, struct error *error);
+/* Chooses what clusters [first, first + n) may show, as `chosen`: neither in the order of shapes nor
+ * with blocks. Adds to *n_vertices how many of GRIDS_MAX_VERTICES that takes; beyond that it stops.
+ * Fails when memory is short, and for no other reason. */
+bool patch_grids_choose_part(struct patch_grids *grids, const struct limit_tables *tables,
+                             const struct clusters *clusters, size_t first, size_t n,
+                             const struct view *view, const struct tile *tile, uint64_t *n_vertices,
+                             struct error *error);
+/* Grid vertices of a tile: what a software device draws in a few seconds, and many times what a
+ * million faces need. */
+#define GRIDS_MAX_VERTICES 24000000u
+/* The error of a view that takes more. */
+bool patch_grids_too_many(struct error *error);
 /* Cuts what a tile of a few pixels may show so finely that grids of one cell would draw it as well
  * as patch_grids_choose() asks, and adds a guess in the middle of each part: one that leads to
  * whatever surface a ray of the tile meets. The grids and blocks chosen before stay. Adds none
