@@ -73,7 +73,20 @@ SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/
 # Between messages and scenes: for those who speak to clients.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
 SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))
-RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c)
+RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/native/*.c)
+# Compiled once for each instruction set: its name, its lanes, and what tells the compiler.
+LANES_SRC := $(wildcard server/render/native/lanes/*.c)
+ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
+LANE_SETS := v2 v3 v4
+LANES_v2 := -DLANES=4 -march=x86-64-v2
+LANES_v3 := -DLANES=8 -march=x86-64-v3
+LANES_v4 := -DLANES=16 -march=x86-64-v4 -mprefer-vector-width=512
+else
+LANE_SETS := base
+LANES_base := -DLANES=4
+endif
+# Frames need not be the same bytes from one instruction set to the next.
+LANES_FLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-O3) -ffp-contract=fast -fno-math-errno -fno-trapping-math
 IMAGE_SRC := $(wildcard server/image/*.c)
 IMAGE_LIBRARY_SRC := $(wildcard server/image/*.cpp)
 # What sheend shares with its workers, and what is theirs alone: each has a main and tasks.
@@ -89,7 +102,8 @@ SHADERS := $(sort $(wildcard shaders/*.glsl))
 
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(SURFACE_SRC) server/base/error.c)
-RENDER_OBJ := $(call obj,$(SCENE_SRC) $(RENDER_SRC) protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
+LANES_OBJ := $(foreach set,$(LANE_SETS),$(patsubst %.c,$(BUILD)/obj/%.$(set).o,$(LANES_SRC)))
+RENDER_OBJ := $(LANES_OBJ) $(call obj,$(SCENE_SRC) $(RENDER_SRC) protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,$(filter-out server/base/error.c,$(wildcard server/base/*.c)) $(SERVICE_SRC) $(CONVERT_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
@@ -170,6 +184,13 @@ $(BUILD)/obj/%.c.o: %.c | $(GEN)
 	@mkdir -p $(@D)
 	$(call say,CC $<)
 	$(Q)$(CC) $(CFLAGS) -c -o $@ $<
+define lanes_of
+$(BUILD)/obj/%.$(1).o: %.c
+	@mkdir -p $$(@D)
+	$$(call say,CC $$< $(1))
+	$$(Q)$$(CC) $$(CFLAGS) $$(LANES_FLAGS) $$(LANES_$(1)) -DLANE_SET=$(1) -c -o $$@ $$<
+endef
+$(foreach set,$(LANE_SETS),$(eval $(call lanes_of,$(set))))
 $(BUILD)/obj/%.cpp.o: %.cpp | $(GEN)
 	@mkdir -p $(@D)
 	$(call say,CXX $<)

@@ -59,6 +59,8 @@ room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the wor
 room server/scene "$common|protocol|server/cage|server/surface" 'a request is data'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl "$common|server/image|server/scene|server/render" 'a device draws, it serves nobody'
+room server/render/native "$common|server/surface|server/render|server/render/native/lanes" 'processors draw without GL'
+room server/render/native/lanes "$common|server/surface|server/render|server/render/native" 'one unit for each instruction set'
 # The rooms of the daemon itself, each above those that stand before it.
 room server/net "$common|protocol" 'connections do not know what is said over them'
 room server/threads "$common|server/cage|server/image|server/net|server/render|server/sandbox" \
@@ -94,7 +96,9 @@ only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/ren
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
     'socket calls' 'server client protocol' server/net/ server/ops/notify.c server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
-only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol'
+only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol' \
+    server/render/native/team.c
+only_in '<[a-z0-9]*intrin\.h>|\b_mm[0-9]*_' 'intrinsics' 'server client protocol' server/render/native/
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
     'server client protocol'
 only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp

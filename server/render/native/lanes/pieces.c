@@ -1,0 +1,368 @@
+/* Pieces of the surface as quads and grids in the picture, and the tiles that they lie in. */
+#include "server/render/native/lanes/entries.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "server/render/native/denormals.h"
+
+/* Beyond so many px from the picture's top left corner single precision tells places too badly. */
+static const float FARTHEST_PX = 30000;
+/* Rounding may move an edge over a pixel's centre. */
+static const float SLACK_PX = 1.0f / 512;
+
+/* Always four, whatever LANES is. */
+typedef float four __attribute__((vector_size(16)));
+
+/* Of what has been placed: the picture's box and the nearnesses. */
+struct reach {
+    float x0, x1, y0, y1, farthest, nearest;
+};
+
+/* A node in camera space. */
+struct placed {
+    float at[3], before;
+    float camera[3][3]; /* native_seen_node.camera */
+};
+
+static struct placed place_node(const struct native_frame *frame, uint32_t node)
+{
+    struct native_seen_node seen;
+    native_see_node(frame, &frame->model->tables->nodes[node], &seen);
+    struct placed placed = {
+        {(float)seen.at[0], (float)seen.at[1], (float)seen.at[2]}, (float)seen.before, {{0}}};
+    memcpy(placed.camera, seen.camera, sizeof seen.camera);
+    return placed;
+}
+
+static float least(four a)
+{
+    float x = a[0] < a[1] ? a[0] : a[1], y = a[2] < a[3] ? a[2] : a[3];
+    return x < y ? x : y;
+}
+
+static float largest(four a)
+{
+    float x = a[0] > a[1] ? a[0] : a[1], y = a[2] > a[3] ? a[2] : a[3];
+    return x > y ? x : y;
+}
+
+/* The corners of a quad, relative to the node's origin. False where they reach before the near
+ * depth. */
+static bool project_corners(const struct native_rays *rays, const struct placed *node,
+                            const float corner[3][4], struct native_quad *quad, struct reach *reach)
+{
+    four p[3], at[3];
+    memcpy(p, corner, sizeof p);
+    for (int a = 0; a < 3; a++)
+        at[a] = p[0] * rays->axis[a][0] + p[1] * rays->axis[a][1] + p[2] * rays->axis[a][2];
+    four before = node->before - at[2], z = at[2] + node->at[2], nearness = before, px;
+    if (rays->perspective) {
+        four inverse = 1 / z;
+        nearness = before * inverse;
+        px = inverse * (1 / rays->slope_px);
+    } else {
+        px = (four){0} + 1 / rays->start_px;
+    }
+    four x = (at[0] + node->at[0]) * px + rays->centre_px[0];
+    four y = (at[1] + node->at[1]) * px + rays->centre_px[1];
+    memcpy(quad->x, &x, sizeof x);
+    memcpy(quad->y, &y, sizeof y);
+    memcpy(quad->nearness, &nearness, sizeof nearness);
+    *reach = (struct reach){least(x),   largest(x),      least(y),
+                            largest(y), least(nearness), largest(nearness)};
+    return !rays->perspective || least(z) > 0;
+}
+
+/* The vertices of a grid over a piece. False where they reach before the eye. */
+static bool project_grid(const struct native_frame *frame, const struct native_piece *piece,
+                         const struct placed *node, uint32_t grid, float *vertex,
+                         struct reach *reach)
+{
+    const struct native_rays *rays = &frame->rays;
+    const struct native_patch *patch = piece->patch;
+    uint32_t n = (grid_cells[grid / GRID_SIDES] + 1u) * (grid_cells[grid % GRID_SIDES] + 1u);
+    float *to_x = vertex, *to_y = to_x + n + LANES, *to_nearness = to_y + n + LANES, turn[3][3];
+    for (int a = 0; a < 3; a++)
+        for (int k = 0; k < 3; k++)
+            turn[a][k] = patch->scale * node->camera[a][k];
+    vfloat x0 = v_float(INFINITY), x1 = -x0, y0 = x0, y1 = x1, farthest = x0, nearest = x1, z0 = x0;
+    for (uint32_t i = 0; i < n; i += LANES) {
+        vfloat s = v_load(frame->grid_s[grid] + i) * piece->size + piece->s;
+        vfloat t = v_load(frame->grid_t[grid] + i) * piece->size + piece->t, p[3], at[3];
+        for (int k = 0; k < 3; k++) {
+            vfloat row[4];
+            for (int j = 0; j < 4; j++) {
+                const float *c = patch->c[k][j];
+                row[j] = ((c[3] * s + c[2]) * s + c[1]) * s + c[0];
+            }
+            p[k] = ((row[3] * t + row[2]) * t + row[1]) * t + row[0];
+        }
+        for (int a = 0; a < 3; a++)
+            at[a] = p[0] * turn[a][0] + p[1] * turn[a][1] + p[2] * turn[a][2];
+        vfloat before = node->before - at[2], z = at[2] + node->at[2], nearness = before;
+        vfloat px = v_float(1 / rays->start_px);
+        if (rays->perspective) {
+            vfloat inverse = 1 / z;
+            nearness = before * inverse;
+            px = inverse * (1 / rays->slope_px);
+        }
+        vfloat x = (at[0] + node->at[0]) * px + rays->centre_px[0];
+        vfloat y = (at[1] + node->at[1]) * px + rays->centre_px[1];
+        v_store(to_x + i, x);
+        v_store(to_y + i, y);
+        v_store(to_nearness + i, nearness);
+        x0 = v_min(x0, x);
+        x1 = v_max(x1, x);
+        y0 = v_min(y0, y);
+        y1 = v_max(y1, y);
+        z0 = v_min(z0, z);
+        farthest = v_min(farthest, nearness);
+        nearest = v_max(nearest, nearness);
+    }
+    *reach = (struct reach){v_least(x0),   v_largest(x1),     v_least(y0),
+                            v_largest(y1), v_least(farthest), v_largest(nearest)};
+    return !rays->perspective || v_least(z0) > 0;
+}
+
+/* Whether the near plane leaves all of it, and single precision tells it well enough. */
+static bool is_plain(const struct native_rays *rays, const struct reach *r)
+{
+    return r->nearest <= rays->nearest && r->x0 > -FARTHEST_PX && r->x1 < FARTHEST_PX &&
+           r->y0 > -FARTHEST_PX && r->y1 < FARTHEST_PX;
+}
+
+/* The pixels whose centres a box may hold, cut to the picture's. False where it holds none of those
+ * that are looked at. */
+static bool pixels_of(const struct native_frame *frame, const struct reach *r, int box[4])
+{
+    const struct tile *around = &frame->around;
+    int x0 = (int)ceilf(r->x0 - 0.5f - SLACK_PX), x1 = (int)floorf(r->x1 - 0.5f + SLACK_PX);
+    int y0 = (int)ceilf(r->y0 - 0.5f - SLACK_PX), y1 = (int)floorf(r->y1 - 0.5f + SLACK_PX);
+    int width = (int)frame->view->width_px, height = (int)frame->view->height_px;
+    box[0] = x0 < 0 ? 0 : x0;
+    box[1] = y0 < 0 ? 0 : y0;
+    box[2] = x1 < width ? x1 : width - 1;
+    box[3] = y1 < height ? y1 : height - 1;
+    return box[0] <= box[2] && box[1] <= box[3] && box[2] >= (int)around->x &&
+           box[0] < (int)(around->x + around->width) && box[3] >= (int)around->y &&
+           box[1] < (int)(around->y + around->height);
+}
+
+/* --- */
+
+/* The corners of all that is left of a CORNER below a level: the vertex, and those of the next
+ * level that lie outermost. False: no memory. */
+static bool rest_corners(const struct native_frame *frame, struct native_thread *thread,
+                         uint32_t node, int level, float corner[3][4])
+{
+    int levels = frame->model->tables->nodes[node].levels & ~(int)LIMIT_NO_NORMAL;
+    bool is_last = level >= levels;
+    for (int c = 1; c < 4; c++) {
+        unsigned square = c == 1 ? 1 : c == 3 ? 2 : 3;
+        const struct native_patch *patch =
+            native_patch_get(frame->model, thread->number, node,
+                             3 * (uint32_t)(is_last ? levels - 1 : level) + square - 1);
+        if (!patch)
+            return false;
+        for (int k = 0; k < 3; k++)
+            corner[k][c] = patch->corner[k][is_last ? 0 : c];
+    }
+    for (int k = 0; k < 3; k++)
+        corner[k][0] = 0;
+    return true;
+}
+
+static bool strip_corners(const struct native_frame *frame, struct native_thread *thread,
+                          uint32_t node, float corner[3][4])
+{
+    uint32_t last = frame->model->tables->nodes[node].levels;
+    const struct native_patch *near = native_patch_get(frame->model, thread->number, node, last);
+    const struct native_patch *far = native_patch_get(frame->model, thread->number, node, 0);
+    for (int c = 0; near && far && c < 4; c++)
+        for (int k = 0; k < 3; k++)
+            corner[k][c] = (c < 2 ? near : far)->corner[k][c];
+    return near && far;
+}
+
+/* What patch_grids.c has chosen, as a piece. False: no memory. */
+static bool understand(const struct native_frame *frame, struct native_thread *thread,
+                       const struct patch_grid *chosen, struct native_piece *piece)
+{
+    const struct limit_node *node = &frame->model->tables->nodes[chosen->node];
+    int level = chosen->where & 63;
+    unsigned square = chosen->where >> 6 & 3, depth = chosen->where >> 8 & 0xff;
+    float size = ldexpf(1, -(int)depth);
+    *piece = (struct native_piece){.node = chosen->node,
+                                   .s = (float)chosen->x * size,
+                                   .t = (float)chosen->y * size,
+                                   .size = size,
+                                   .level = (uint8_t)level,
+                                   .square = (uint8_t)square};
+    if (node->kind == LIMIT_CORNER && !square)
+        piece->kind = PIECE_REST;
+    else if (node->kind == LIMIT_STRIP && !square && level == 0 && node->levels > 0)
+        piece->kind = PIECE_STRIP;
+    if (piece->kind != PIECE_OF_PATCH)
+        return true;
+    bool is_last = node->kind == LIMIT_STRIP && !square; /* comes after all levels */
+    piece->patch = native_patch_get(frame->model, thread->number, chosen->node,
+                                    native_patch_index(node, level + is_last, square));
+    return piece->patch;
+}
+
+/* Where a piece comes to lie: as a cell, a grid or triangles. 0: nowhere that is looked at; -1: no
+ * memory. */
+static int draw_piece(const struct native_frame *frame, struct native_thread *thread,
+                      const struct placed *node, uint32_t grid, struct native_piece *piece,
+                      struct native_quad *quad, float *nearest)
+{
+    float own[3][4];
+    const float(*corner)[4] = (const float(*)[4])own;
+    struct reach reach;
+    int box[4];
+    bool is_cell = grid == 0 && piece->size >= 1, is_before;
+    *quad = (struct native_quad){.grid = (uint16_t)(is_cell ? QUAD_CELL : grid),
+                                 .first = (uint32_t)thread->n_vertices};
+    if (piece->kind == PIECE_OF_PATCH)
+        corner = piece->patch ? (const float(*)[4])piece->patch->corner : corner;
+    else if (!(piece->kind == PIECE_REST
+                   ? rest_corners(frame, thread, piece->node, piece->level, own)
+                   : strip_corners(frame, thread, piece->node, own)))
+        return -1;
+    if (is_cell)
+        is_before = project_corners(&frame->rays, node, corner, quad, &reach);
+    else
+        is_before =
+            project_grid(frame, piece, node, grid, thread->vertex + thread->n_vertices, &reach);
+    if (is_before && is_plain(&frame->rays, &reach)) {
+        if (!pixels_of(frame, &reach, box))
+            return 0;
+        *nearest = reach.nearest;
+    } else {
+        *quad =
+            (struct native_quad){.grid = QUAD_TRIANGLES, .first = (uint32_t)thread->n_triangles};
+        int n = native_cut_piece(frame, thread, piece, grid, box, nearest);
+        if (n <= 0)
+            return n;
+        quad->n_triangles = (uint16_t)n;
+    }
+    quad->x0 = piece->x0 = (uint16_t)box[0];
+    quad->y0 = piece->y0 = (uint16_t)box[1];
+    quad->x1 = piece->x1 = (uint16_t)box[2];
+    quad->y1 = piece->y1 = (uint16_t)box[3];
+    return 1;
+}
+
+static uint32_t vertices_of(uint32_t grid)
+{
+    uint32_t n = (grid_cells[grid / GRID_SIDES] + 1u) * (grid_cells[grid % GRID_SIDES] + 1u);
+    return (3 * (n + LANES) + 15) & ~15u;
+}
+
+/* Room for what the chosen pieces may need. */
+static bool reserve(struct native_thread *thread, size_t n_chosen)
+{
+    size_t n_vertices = 0, n = thread->n_quads + n_chosen, most = thread->quad_capacity;
+    for (size_t i = 0; i < n_chosen; i++) {
+        uint32_t where = thread->grids.chosen[i].where;
+        n_vertices += where >> 8 ? vertices_of(where >> 16) : 0;
+    }
+    if (n > thread->quad_capacity) {
+        size_t quads = most, nearest = most;
+        if (!native_grow(&thread->piece, &most, n, sizeof *thread->piece) ||
+            !native_grow(&thread->quad, &quads, n, sizeof *thread->quad) ||
+            !native_grow(&thread->nearest, &nearest, n, sizeof *thread->nearest))
+            return false;
+        thread->quad_capacity = most;
+    }
+    return native_grow(&thread->vertex, &thread->vertex_capacity, thread->n_vertices + n_vertices,
+                       sizeof *thread->vertex);
+}
+
+/* The chosen pieces that cover pixels' centres. False: no memory. */
+static bool draw_chosen(const struct native_frame *frame, struct native_thread *thread,
+                        size_t n_chosen)
+{
+    struct placed node = {{0}, 0, {{0}}};
+    uint32_t last = UINT32_MAX;
+    for (size_t i = 0; i < n_chosen; i++) {
+        const struct patch_grid *chosen = &thread->grids.chosen[i];
+        uint32_t grid = chosen->where >> 16;
+        size_t at = thread->n_quads;
+        if (chosen->node != last)
+            node = place_node(frame, last = chosen->node);
+        if (!understand(frame, thread, chosen, &thread->piece[at]))
+            return false;
+        int drawn = draw_piece(frame, thread, &node, grid, &thread->piece[at], &thread->quad[at],
+                               &thread->nearest[at]);
+        if (drawn < 0)
+            return false;
+        if (drawn && thread->quad[at].grid < QUAD_TRIANGLES)
+            thread->n_vertices += vertices_of(grid);
+        thread->n_quads += (size_t)drawn;
+    }
+    return true;
+}
+
+/* --- */
+
+struct tiles {
+    uint32_t x0, y0, x1, y1;
+};
+
+/* The frame's tiles that a quad may be seen in, aprons included. */
+static struct tiles tiles_under(const struct native_frame *frame, const struct native_quad *quad)
+{
+    int x0 = (quad->x0 - APRON) / TILE_WIDTH - (int)frame->first_x;
+    int y0 = (quad->y0 - APRON) / TILE_HEIGHT - (int)frame->first_y;
+    int x1 = (quad->x1 + APRON) / TILE_WIDTH - (int)frame->first_x;
+    int y1 = (quad->y1 + APRON) / TILE_HEIGHT - (int)frame->first_y;
+    int last_x = (int)frame->tiles_x - 1, last_y = (int)frame->tiles_y - 1;
+    return (struct tiles){(uint32_t)(x0 < 0 ? 0 : x0), (uint32_t)(y0 < 0 ? 0 : y0),
+                          (uint32_t)(x1 > last_x ? last_x : x1),
+                          (uint32_t)(y1 > last_y ? last_y : y1)};
+}
+
+/* A counting sort of the thread's quads from `first` on by the tiles that they lie in. */
+static bool sort_by_tile(const struct native_frame *frame, struct native_thread *thread,
+                         struct native_part *part, size_t first)
+{
+    uint32_t n_tiles = frame->tiles_x * frame->tiles_y, *count = part->first_entry;
+    memset(count, 0, (n_tiles + 2) * sizeof *count);
+    for (size_t i = first; i < thread->n_quads; i++) {
+        struct tiles t = tiles_under(frame, &thread->quad[i]);
+        for (uint32_t y = t.y0; y <= t.y1; y++)
+            for (uint32_t x = t.x0; x <= t.x1; x++)
+                count[y * frame->tiles_x + x + 2]++;
+    }
+    count[0] = count[1] = (uint32_t)thread->n_entries;
+    for (uint32_t k = 1; k <= n_tiles; k++)
+        count[k + 1] += count[k];
+    size_t n = count[n_tiles + 1];
+    if (!native_grow(&thread->entry, &thread->entry_capacity, n, sizeof *thread->entry))
+        return false;
+    for (size_t i = first; i < thread->n_quads; i++) {
+        struct tiles t = tiles_under(frame, &thread->quad[i]);
+        for (uint32_t y = t.y0; y <= t.y1; y++)
+            for (uint32_t x = t.x0; x <= t.x1; x++)
+                thread->entry[count[y * frame->tiles_x + x + 1]++] =
+                    (struct native_entry){thread->nearest[i], (uint32_t)i};
+    }
+    thread->n_entries = n;
+    return true;
+}
+
+void LANE_NAME(native_pieces)(struct native_frame *frame, struct native_thread *thread,
+                              uint32_t number)
+{
+    struct native_part *part = &frame->part[number];
+    size_t first = thread->n_quads, n_chosen = thread->grids.n_chosen;
+    denormals saved = denormals_flush();
+    part->thread = thread->number;
+    bool ok = reserve(thread, n_chosen) && draw_chosen(frame, thread, n_chosen) &&
+              sort_by_tile(frame, thread, part, first);
+    if (!ok)
+        __atomic_store_n(&frame->out_of_memory, true, __ATOMIC_RELAXED);
+    denormals_restore(saved);
+}

@@ -1,0 +1,30 @@
+/* The steps of stage 2 in a tile. */
+#ifndef SHEEN_RENDER_NATIVE_LANES_STAGES_H
+#define SHEEN_RENDER_NATIVE_LANES_STAGES_H
+
+#include "server/render/native/lanes/surface.h"
+#include "server/render/native/tile.h"
+
+/* What depth nearness stands for: how far before the far one. */
+LANE_INLINE vfloat v_before(const struct native_rays *rays, vfloat nearness)
+{
+    return rays->perspective ? rays->far * nearness / (1 + nearness) : nearness;
+}
+
+LANE_INLINE float before_of(const struct native_rays *rays, float nearness)
+{
+    return rays->perspective ? rays->far * nearness / (1 + nearness) : nearness;
+}
+
+/* Of the pixels sorted by piece: those whose guess leads to a place on its own sub-patch are
+ * written; the others become strays. */
+void LANE_NAME(native_evaluate)(const struct native_frame *frame, struct native_tile_room *room);
+
+/* Where the rays of the room's tasks meet the surface. */
+void LANE_NAME(native_meet)(const struct native_frame *frame, struct native_tile_room *room);
+
+/* Writes into the tile's planes what has been met at pixels of it. */
+void LANE_NAME(native_write)(const struct native_frame *frame, struct native_tile_room *room,
+                             const uint16_t *pixel, const struct native_met *const *met, size_t n);
+
+#endif

@@ -1,0 +1,63 @@
+/* Stages 1 and 2 on processors: from the limit tables of a model and a view to the planes that
+ * shaders/planes.glsl describes, by vector code, without GL.
+ *
+ * A device has a team of threads that work on one frame at a time. Frames are the same bytes for
+ * any number of threads, and for any part of the picture that is asked for, but for pixels in gaps
+ * beside its border (below). Frames of two instruction sets agree as those of two devices do.
+ *
+ * Thread: one at a time calls a device; a model is drawn by one device at a time. */
+#ifndef SHEEN_RENDER_NATIVE_NATIVE_H
+#define SHEEN_RENDER_NATIVE_NATIVE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/base/error.h"
+#include "server/render/view.h"
+#include "server/surface/tables.h"
+
+struct native_device;
+struct native_model; /* patches.h */
+
+struct native_options {
+    unsigned n_threads; /* 1 to NATIVE_MAX_THREADS; 0: one for each processor */
+    const char *set;    /* "v2", "v3", "v4", "base"; NULL: the widest that the processor has */
+};
+
+/* What stage 2 finds at the pixels of a tile, rows top first, `pitch` elements apart. The caller's
+ * memory. Where depth is 0 no surface is met, and the other planes mean nothing. */
+struct native_planes {
+    size_t pitch;
+    float *depth;     /* along the view axis, units; 0: nothing */
+    float *normal[3]; /* unit, world, along the winding; 0, 0, 0 where there is none */
+    float *shape[3];  /* entries (1,1), (1,2), (2,2) of the shape operator in tangent_basis(normal)
+                         (shaders/basis.glsl), 1/unit */
+    uint32_t *face;   /* Ptex face */
+    float *u, *v;     /* on it */
+    uint32_t *border; /* shaders/border.glsl */
+};
+
+/* Of a frame: the processor's time of all threads together. */
+struct native_times {
+    uint64_t choose_us, quads_us, raster_us, sort_us, evaluate_us, retry_us, copy_us, gaps_us;
+};
+
+/* NULL with ERROR_SERVER when memory or threads are short, ERROR_REQUEST for a set that the
+ * processor lacks. */
+struct native_device *native_device_create(const struct native_options *options,
+                                           struct error *error);
+void native_device_destroy(struct native_device *device); /* NULL is safe */
+/* The instruction set: "AVX-512" and so on. */
+const char *native_device_name(const struct native_device *device);
+unsigned native_device_threads(const struct native_device *device);
+
+/* Draws a tile of the picture. A pixel through whose gap narrower than itself shows what triangles
+ * hid (shaders/gaps.comp.glsl) is found where the pixels on both sides lie in the tile: so tiles
+ * are to be drawn with a margin of a pixel at least. ERROR_REQUEST when the view takes too many
+ * vertices (patch_grids.h), ERROR_SERVER when memory is short. `times` may be NULL. */
+bool native_draw(struct native_device *device, struct native_model *model, const struct view *view,
+                 const struct tile *tile, const struct native_planes *planes,
+                 struct native_times *times, struct error *error);
+
+#endif

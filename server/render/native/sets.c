@@ -1,0 +1,62 @@
+#include "server/render/native/sets.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+
+#define DECLARE(set)                                                                               \
+    void native_pieces_##set(struct native_frame *, struct native_thread *, uint32_t);             \
+    void native_tile_##set(struct native_frame *, struct native_thread *, uint32_t);               \
+    void native_gaps_##set(struct native_frame *, struct native_thread *);
+#define SET(set, in_words, n_lanes)                                                                \
+    {                                                                                              \
+        .name = #set, .words = in_words, .lanes = n_lanes, .pieces = native_pieces_##set,          \
+        .tile = native_tile_##set, .gaps = native_gaps_##set                                       \
+    }
+
+#ifdef __x86_64__
+DECLARE(v2)
+DECLARE(v3)
+DECLARE(v4)
+/* Narrowest first. */
+static const struct native_set sets[] = {SET(v2, "SSE4.2", 4), SET(v3, "AVX2", 8),
+                                         SET(v4, "AVX-512", 16)};
+
+/* Has the processor what the levels of x86-64 say? Those instructions of a level that no processor
+ * lacks which has the others are not asked for. */
+static bool has(size_t k)
+{
+    __builtin_cpu_init();
+    if (k >= 1 && !(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                    __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2")))
+        return false;
+    if (k >= 2 && !(__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                    __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                    __builtin_cpu_supports("avx512vl")))
+        return false;
+    return __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
+}
+#else
+DECLARE(base)
+static const struct native_set sets[] = {SET(base, "four lanes", 4)};
+
+static bool has(size_t k)
+{
+    (void)k;
+    return true;
+}
+#endif
+
+const struct native_set *native_set_at(unsigned k)
+{
+    return k < sizeof sets / sizeof *sets && has(k) ? &sets[k] : NULL;
+}
+
+const struct native_set *native_set_find(const char *name)
+{
+    const struct native_set *found = NULL, *set;
+    for (unsigned k = 0; (set = native_set_at(k)); k++)
+        if (!name || strcmp(name, set->name) == 0)
+            found = set;
+    return found;
+}

@@ -1,0 +1,27 @@
+/* The instruction sets that lanes/ is compiled for, and what each has to offer. */
+#ifndef SHEEN_RENDER_NATIVE_SETS_H
+#define SHEEN_RENDER_NATIVE_SETS_H
+
+#include <stdint.h>
+
+struct native_frame;
+struct native_thread;
+
+struct native_set {
+    const char *name;  /* as an option says it */
+    const char *words; /* as people read it */
+    int lanes;
+    /* The pieces of a part of the model, and the tiles that they lie in. */
+    void (*pieces)(struct native_frame *frame, struct native_thread *thread, uint32_t part);
+    /* The planes of a tile, but for pixels in gaps. */
+    void (*tile)(struct native_frame *frame, struct native_thread *thread, uint32_t tile);
+    /* After all tiles, by one thread: the pixels in gaps. */
+    void (*gaps)(struct native_frame *frame, struct native_thread *thread);
+};
+
+/* The set of that name, or the widest that the processor has; NULL where it has not. Any thread. */
+const struct native_set *native_set_find(const char *name);
+/* The k-th set that the processor has, narrowest first; NULL from the last one on. */
+const struct native_set *native_set_at(unsigned k);
+
+#endif
