@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+/* Of what is left of a CORNER, about: 8 steps of native_tile_room.place. */
+static const double NEAR_VERTEX = 1.0 / 8000;
+
 static int levels_of(const struct limit_node *node)
 {
     return node->levels & ~(int)LIMIT_NO_NORMAL;
@@ -77,6 +80,9 @@ void native_begin_on(const struct native_model *model, struct native_task *task,
     double s = ((uint32_t)place & 0xffff) / 65535.0, t = ((uint32_t)place >> 16) / 65535.0, x, y;
     task->node = piece->node;
     if (piece->kind != PIECE_OF_PATCH) {
+        /* What a rounded place hardly tells from the vertex begins there: no step leads to it. */
+        if (piece->kind == PIECE_REST && fmax(s, t) < NEAR_VERTEX)
+            s = t = 0;
         native_place(model->tables, piece, s, t, &x, &y);
         native_begin_at(model, task, x, y);
         return;
