@@ -91,6 +91,12 @@ struct vec limit_turn_to_world(const struct limit_tables *tables, const struct l
     return vec_add(vec_mad(v, (double)q[3], twice), vec_cross(axis, twice));
 }
 
+double limit_patch_points(const struct limit_patch *patch, struct vec grid[16])
+{
+    bicubic_read(&patch->points, grid);
+    return patch->points.scale;
+}
+
 struct limit_bound limit_patch_bound(const struct limit_tables *tables,
                                      const struct limit_patch *patch, struct limit_square part,
                                      const struct vec *unseen, double centre[3])

@@ -44,6 +44,11 @@ bool limit_patch_find(const struct limit_tables *tables, const struct limit_plac
 void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *tables,
                           const struct limit_node *node, int n, double x, double y);
 
+/* The 16 control points of the patch, a uniform bicubic B-spline: grid[4 (j + 1) + (i + 1)], i along s
+ * and j along t in -1..2, in the frame of the node and in units of the model. Returns the power of two
+ * that the tables divide them by. For devices that evaluate patches themselves. */
+double limit_patch_points(const struct limit_patch *patch, struct vec grid[16]);
+
 /* The square [s, s + size] x [t, t + size] of a patch's parameters. */
 struct limit_square {
     double s, t, size;

@@ -171,9 +171,8 @@ void native_patch_make(const struct limit_tables *tables, uint32_t node, uint32_
     struct limit_patch from;
     struct vec points[16], corner[4];
     patch_at(tables, &tables->nodes[node], index, &from);
-    limit_patch_points(&from, points);
-    *patch = (struct native_patch){.scale = (float)from.scale};
-    double inverse = 1 / from.scale, value[3][4];
+    double scale = limit_patch_points(&from, points), inverse = 1 / scale, value[3][4];
+    *patch = (struct native_patch){.scale = (float)scale};
     for (int k = 0; k < 3; k++) {
         double p[16], c[4][4];
         for (int i = 0; i < 16; i++)
