@@ -187,3 +187,18 @@ void light_block_fill(struct light_block *block, const struct frame_request *req
     block->want[1] = (request->planes & PLANE_CURVATURE) != 0;
     block->want[2] = (request->planes & PLANE_LIGHT_CHANGE) != 0;
 }
+
+bool light_image_repeats_s(const struct frame_request *request, const struct light *light)
+{
+    enum line_family family = request->lines.family;
+    return family_is_at_infinity(family) ? family == LINES_ENVIRONMENT
+                                         : light->kind != LIGHT_RECTANGLE;
+}
+
+bool light_image_repeats_t(const struct frame_request *request, const struct light *light)
+{
+    enum line_family family = request->lines.family;
+    return family_is_at_infinity(family)
+               ? family == LINES_ZEBRA
+               : light->kind == LIGHT_PLANE || light->kind == LIGHT_TUNNEL;
+}

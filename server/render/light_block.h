@@ -21,4 +21,9 @@ struct light_block {
 /* For light i of the request, which has been checked. */
 void light_block_fill(struct light_block *block, const struct frame_request *request, uint32_t i);
 
+/* Whether the image of the light's pattern goes on beyond its sides, along s and along t: round the
+ * light, or again and again. Else it ends at the light's border. */
+bool light_image_repeats_s(const struct frame_request *request, const struct light *light);
+bool light_image_repeats_t(const struct frame_request *request, const struct light *light);
+
 #endif

@@ -71,3 +71,11 @@ bool tile_is_same(const struct tile *a, const struct tile *b)
 {
     return a->x == b->x && a->y == b->y && a->width == b->width && a->height == b->height;
 }
+
+uint32_t tile_max_rounded(const struct tile *tile)
+{
+    enum { PX_PER_ROUNDED = 32 };
+    uint64_t pixels = (uint64_t)tile->width * tile->height, most = pixels / PX_PER_ROUNDED;
+    most = most < ROUNDED_IN_ANY_CUT ? ROUNDED_IN_ANY_CUT : most;
+    return (uint32_t)(most < pixels ? most : pixels);
+}

@@ -46,4 +46,9 @@ struct tile_size tile_size_with_margin(const struct tile_size *size, uint32_t wi
 struct tile tile_within(const struct tile *part, const struct tile *place);
 bool tile_is_same(const struct tile *a, const struct tile *b);
 
+/* Of how many pixels of a tile all rays are met that find what the rounding of a crease shows
+ * (shaders/rounded.glsl). So many or fewer, and the tile may be cut in any way. */
+enum { ROUNDED_IN_ANY_CUT = 32768 };
+uint32_t tile_max_rounded(const struct tile *tile);
+
 #endif

@@ -94,6 +94,16 @@ void view_transform(const struct view *view, const double world[3], double camer
         camera[a] = view->axis[a][0] * d[0] + view->axis[a][1] * d[1] + view->axis[a][2] * d[2];
 }
 
+void view_position(const struct view *view, uint32_t x, uint32_t y, double z, float world[3])
+{
+    double px = view->units_per_px * (view->perspective ? z : 1);
+    double right = (x + 0.5 - view->centre_px[0]) * px;
+    double down = (y + 0.5 - view->centre_px[1]) * px;
+    for (int k = 0; k < 3; k++)
+        world[k] = (float)(view->eye[k] + right * view->axis[0][k] + down * view->axis[1][k] +
+                           z * view->axis[2][k]);
+}
+
 void view_sides_init(struct view_sides *sides, const struct view *view, const struct tile *tile)
 {
     const double low[2] = {tile->x, tile->y};

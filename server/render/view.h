@@ -36,6 +36,8 @@ void view_block_fill(struct view_block *block, const struct view *view, const st
 
 /* World to camera space. */
 void view_transform(const struct view *view, const double world[3], double camera[3]);
+/* Where the ray of a pixel's centre is at a depth: world coordinates, computed in double. */
+void view_position(const struct view *view, uint32_t x, uint32_t y, double z, float world[3]);
 
 /* The part of camera space that a tile may show: between four planes, from the nearest depth on. */
 struct view_sides {

@@ -159,6 +159,6 @@ void stage_rounded(struct gl_renderer *r, const struct gl_model *model,
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
     glUseProgram(programs->rounded);
     glUniform1ui(glGetUniformLocation(programs->rounded, "max_rounded"),
-                 target_max_rounded(&r->drawing.drawn));
+                 tile_max_rounded(&r->drawing.drawn));
     solve_listed(r->target.rounded);
 }

@@ -51,14 +51,10 @@ static void pack_position(const float *depth, const struct view *view, const str
     for (uint32_t y = 0; y < tile->height; y++) {
         float(*out)[3] = (float(*)[3])(void *)(rows->first + y * rows->stride);
         for (uint32_t x = 0; x < tile->width; x++, depth++) {
-            double z = (double)*depth;
-            double px = view->units_per_px * (view->perspective ? z : 1);
-            double right = (tile->x + x + 0.5 - view->centre_px[0]) * px;
-            double down = (tile->y + y + 0.5 - view->centre_px[1]) * px;
-            for (int k = 0; k < 3; k++)
-                out[x][k] = z > 0 ? (float)(view->eye[k] + right * view->axis[0][k] +
-                                            down * view->axis[1][k] + z * view->axis[2][k])
-                                  : NAN;
+            if (*depth > 0)
+                view_position(view, tile->x + x, tile->y + y, (double)*depth, out[x]);
+            else
+                out[x][0] = out[x][1] = out[x][2] = NAN;
         }
     }
 }

@@ -103,13 +103,10 @@ static void bind_picture(const struct gl_renderer *r, const struct frame_request
     glBindTextureUnit(0, image ? image->texture : r->shade.blank_texture);
     if (!image)
         return;
-    enum line_family family = request->lines.family;
-    bool no_light = family_is_at_infinity(family);
-    bool along_s = no_light ? family == LINES_ENVIRONMENT : light->kind != LIGHT_RECTANGLE;
-    bool along_t = no_light ? family == LINES_ZEBRA
-                            : light->kind == LIGHT_PLANE || light->kind == LIGHT_TUNNEL;
-    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S, wrapping(along_s));
-    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T, wrapping(along_t));
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_S,
+                        wrapping(light_image_repeats_s(request, light)));
+    glTextureParameteri(image->texture, GL_TEXTURE_WRAP_T,
+                        wrapping(light_image_repeats_t(request, light)));
 }
 
 /* For light i of those that are drawn. */
@@ -221,7 +218,7 @@ static void shade_listed(struct gl_renderer *r, const struct frame_request *requ
     dispatch_listed(program_of(r, request, light, SHADED_HIGH_CURVATURE), r->target.high_curvature);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
     glProgramUniform1ui(rounded, glGetUniformLocation(rounded, "max_rounded"),
-                        target_max_rounded(&r->drawing.drawn));
+                        tile_max_rounded(&r->drawing.drawn));
     dispatch_listed(rounded, r->target.rounded);
 }
 

@@ -32,10 +32,6 @@ enum { LIGHTS_BYTES = 2 * (8 + 2) };
 /* The lists of pixels of a target. */
 enum { N_LISTS = 7 };
 
-/* One in so many pixels may be rounded and have all its 16 rays, of 32 bytes
- * (shaders/rounded.glsl). */
-enum { PX_PER_ROUNDED = 32, MIN_ROUNDED = ROUNDED_IN_ANY_CUT }; /* the least even in small tiles */
-
 uint64_t target_bytes(uint32_t width, uint32_t height)
 {
     uint64_t pixel = N_LISTS * LIST_BYTES;
@@ -122,19 +118,12 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
     return true;
 }
 
-GLuint target_max_rounded(const struct tile *tile)
-{
-    uint64_t pixels = (uint64_t)tile->width * tile->height, most = pixels / PX_PER_ROUNDED;
-    most = most < MIN_ROUNDED ? MIN_ROUNDED : most;
-    return (GLuint)(most < pixels ? most : pixels);
-}
-
 bool target_reserve_rounded(struct target *target, struct error *error)
 {
     if (target->max_rounded)
         return true;
     target->max_rounded =
-        target_max_rounded(&(struct tile){.width = target->width, .height = target->height});
+        tile_max_rounded(&(struct tile){.width = target->width, .height = target->height});
     glCreateBuffers(1, &target->rounded_hits);
     glNamedBufferData(target->rounded_hits, (GLsizeiptr)target->max_rounded * ROUNDED_BYTES, NULL,
                       GL_DYNAMIC_COPY);

@@ -54,10 +54,6 @@ uint64_t target_bytes(uint32_t width, uint32_t height);
 bool target_reserve_rounded(struct target *target, struct error *error);
 /* Adds the planes of a frame of two lights and more. */
 bool target_reserve_lights(struct target *target, struct error *error);
-/* The number of a tile's pixels whose rounded rays all have room; it depends on the tile alone. */
-GLuint target_max_rounded(const struct tile *tile);
-/* With so many or fewer the tile may be cut in any way. */
-enum { ROUNDED_IN_ANY_CUT = 32768 };
 /* The lists of pixels change places. */
 void target_swap_lists(struct target *a, struct target *b);
 void target_finish(struct target *target);
