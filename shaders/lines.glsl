@@ -1,7 +1,8 @@
 // From a surface point to the light: the ray of the line family, where it meets the light, and how
 // both change over the pixel (server/surface/README.md 7.2; Igehy 1999).
 //
-// Defined before this file: FAMILY, LIGHT.
+// Defined before this file: FAMILY, LIGHT. Where these are constants, a compiler drops what other families and
+// lights need.
 
 #define REFLECTION 0
 #define HIGHLIGHT 1
@@ -104,20 +105,20 @@ Sample sample_at(vec2 q, float size_px, float z, vec3 n, vec3 h, vec3 h_normal)
 // The family's ray and its change: step 4.
 void ray_from(Sample at, out vec3 r, out vec3 dr[2])
 {
-#if FAMILY == HIGHLIGHT
-    float distance = length(at.x - line_eye.xyz);
-    float noise = line_eye.w > 0.0 ? eye_noise(at.x) / distance : 0.0;
-    float side = dot(at.n, at.v) < max(noise, LEAST_SINE) ? 1.0 : -1.0;
-    r = side * at.n;
-    for (int i = 0; i < 2; i++)
-        dr[i] = side * at.dn[i];
-#else
+    if (FAMILY == HIGHLIGHT) {
+        float distance = length(at.x - line_eye.xyz);
+        float noise = line_eye.w > 0.0 ? eye_noise(at.x) / distance : 0.0;
+        float side = dot(at.n, at.v) < max(noise, LEAST_SINE) ? 1.0 : -1.0;
+        r = side * at.n;
+        for (int i = 0; i < 2; i++)
+            dr[i] = side * at.dn[i];
+        return;
+    }
     float approach = dot(at.v, at.n);
     r = at.v - 2.0 * approach * at.n;
     for (int i = 0; i < 2; i++)
         dr[i] = at.dv[i] -
                 2.0 * ((dot(at.dv[i], at.n) + dot(at.v, at.dn[i])) * at.n + approach * at.dn[i]);
-#endif
 }
 
 // atan(y, x), to the last digits: a device's own may be off by far more than single precision's rounding.
@@ -160,7 +161,6 @@ Angles angles_of(vec3 r, vec3 dr[2])
 // the pixel: then its centre tells whether the light is met. Rad.
 const float MOST_TURN_OF_RAY = 0.5;
 
-#if LIGHT == RECTANGLE
 // How much of the pixel falls on the rectangle, on the side of the plane where the ray's approach times
 // `side` is positive. Where the ray runs along the light's plane the place it meets is a quotient, far from linear
 // in the pixel; but over and under it are, so each of the rectangle's four borders is a straight line through the
@@ -187,7 +187,6 @@ float rectangle_share(Sample at, vec3 r, vec3 dr[2], float ahead, float side)
     }
     return share_within(border);
 }
-#endif
 
 const Met NOT_MET = Met(vec2(0.0), vec2(0.0), vec2(0.0), 0.0, vec2(0.0), 0.0, false);
 
@@ -214,25 +213,20 @@ Met meet_plane(Sample at, vec3 r, vec3 dr[2])
         met.dt[i] = size.y * dot(axis_v.xyz, dy);
     }
     bool faces = !is_one_sided || ahead < 0.0;
-#if FAMILY == HIGHLIGHT
-    met.inside = faces && abs(approach) > LEAST_SINE;
-#else
-    met.inside = faces && towards > 0.0;
-#endif
-#if LIGHT == RECTANGLE && FAMILY == HIGHLIGHT
-    met.cover = faces ? rectangle_share(at, r, dr, ahead, 1.0) + rectangle_share(at, r, dr, ahead, -1.0) : 0.0;
-#elif LIGHT == RECTANGLE
-    met.cover = faces && ahead != 0.0 ? rectangle_share(at, r, dr, ahead, sign(ahead)) : 0.0;
-#elif FAMILY == HIGHLIGHT
-    met.cover = met.inside ? 1.0 : 0.0;
-#else
-    met.cover = faces && ahead != 0.0 ? half_plane(towards, d_approach) : 0.0;
-#endif
-#if LIGHT == RECTANGLE
-    met.inside = met.inside && max(abs(met.q.x / size.x), abs(met.q.y / size.y)) <= 0.5;
-    if (max(dot(dr[0], dr[0]), dot(dr[1], dr[1])) > MOST_TURN_OF_RAY * MOST_TURN_OF_RAY)
+    met.inside = faces && (FAMILY == HIGHLIGHT ? abs(approach) > LEAST_SINE : towards > 0.0);
+    if (LIGHT == RECTANGLE && FAMILY == HIGHLIGHT)
+        met.cover = faces ? rectangle_share(at, r, dr, ahead, 1.0) + rectangle_share(at, r, dr, ahead, -1.0) : 0.0;
+    else if (LIGHT == RECTANGLE)
+        met.cover = faces && ahead != 0.0 ? rectangle_share(at, r, dr, ahead, sign(ahead)) : 0.0;
+    else if (FAMILY == HIGHLIGHT)
         met.cover = met.inside ? 1.0 : 0.0;
-#endif
+    else
+        met.cover = faces && ahead != 0.0 ? half_plane(towards, d_approach) : 0.0;
+    if (LIGHT == RECTANGLE) {
+        met.inside = met.inside && max(abs(met.q.x / size.x), abs(met.q.y / size.y)) <= 0.5;
+        if (max(dot(dr[0], dr[0]), dot(dr[1], dr[1])) > MOST_TURN_OF_RAY * MOST_TURN_OF_RAY)
+            met.cover = met.inside ? 1.0 : 0.0;
+    }
     met.dtau *= sign(tau);
     met.tau = abs(tau);
     return met;
@@ -291,9 +285,8 @@ Met meet_infinity(vec2 q, vec2 ds, vec2 dt)
     return Met(q * degrees, ds * degrees, dt * degrees, 0.0, vec2(0.0), 1.0, true);
 }
 
-Met meet(Sample at)
+Met meet_isophote(Sample at)
 {
-#if FAMILY == ISOPHOTE
     vec3 d = has_direction ? axis_n.xyz : -at.v;
     vec3 e = cross(at.n, d);
     float sine = length(e), cosine = dot(at.n, d);
@@ -301,22 +294,27 @@ Met meet(Sample at)
     for (int i = 0; i < 2; i++)
         ds[i] = -(dot(at.dn[i], d) - (has_direction ? 0.0 : dot(at.n, at.dv[i]))) / max(sine, LEAST_SINE);
     return meet_infinity(vec2(angle_of(sine, cosine) - 0.5 * PI, 0.0), ds, vec2(0.0));
-#else
+}
+
+Met meet(Sample at)
+{
+    if (FAMILY == ISOPHOTE)
+        return meet_isophote(at);
     vec3 r, dr[2];
     ray_from(at, r, dr);
-#if FAMILY == ZEBRA
-    Angles a = angles_of(r, dr);
-    return meet_infinity(vec2(a.elevation, a.azimuth), a.d_elevation, a.d_azimuth);
-#elif FAMILY == ENVIRONMENT
-    Angles a = angles_of(r, dr);
-    return meet_infinity(vec2(-a.azimuth, a.elevation), -a.d_azimuth, a.d_elevation);
-#elif LIGHT == SPHERE
-    Angles a = angles_of(r, dr);
-    return meet_infinity(vec2(a.azimuth, a.elevation), a.d_azimuth, a.d_elevation);
-#elif LIGHT == TUNNEL
-    return meet_tunnel(at, r, dr);
-#else
+    if (FAMILY == ZEBRA) {
+        Angles a = angles_of(r, dr);
+        return meet_infinity(vec2(a.elevation, a.azimuth), a.d_elevation, a.d_azimuth);
+    }
+    if (FAMILY == ENVIRONMENT) {
+        Angles a = angles_of(r, dr);
+        return meet_infinity(vec2(-a.azimuth, a.elevation), -a.d_azimuth, a.d_elevation);
+    }
+    if (LIGHT == SPHERE) {
+        Angles a = angles_of(r, dr);
+        return meet_infinity(vec2(a.azimuth, a.elevation), a.d_azimuth, a.d_elevation);
+    }
+    if (LIGHT == TUNNEL)
+        return meet_tunnel(at, r, dr);
     return meet_plane(at, r, dr);
-#endif
-#endif
 }

@@ -1,8 +1,9 @@
 // What the light shows at a place, averaged over the pixel's footprint there. Colours here are linear
 // light, premultiplied by their alpha, so that their mean over a pixel is what the pixel shows.
 //
-// Defined before this file: PATTERN, and SOFT for soft edges: a program for each kind, since some
-// devices walk through every branch.
+// Defined before this file: PATTERN; IS_SOFT, whether edges are soft; IS_FILTERED, whether a pixel shows a mean or
+// what its centre meets. Some devices walk through every branch: for these they are constants, in a program for each
+// kind.
 
 #define STRIPES 0
 #define LATTICE 1
@@ -65,14 +66,11 @@ float soft_half_plane(float z, vec2 g, float soft)
 
 float wave_at(float phase, vec2 g)
 {
-#ifdef SOFT
-    return soft_stripe(phase, g, wave.z, wave.w);
-#else
+    if (IS_SOFT)
+        return soft_stripe(phase, g, wave.z, wave.w);
     return stripe(phase, g, wave.z);
-#endif
 }
 
-#if PATTERN == LATTICE
 // Where neither wave has a bright part: the pixel's share of it. The product of both is exact where
 // one wave is constant over the pixel, or neither changes along what the other changes along.
 float lattice_dark(vec2 phase, vec2 da, vec2 db)
@@ -83,16 +81,16 @@ float lattice_dark(vec2 phase, vec2 da, vec2 db)
                      max(dark.x, dark.y) < 1.0;
     vec2 reach = 0.5 * (abs(vec2(da.x, db.x)) + abs(vec2(da.y, db.y)));
     float sum = 0.0;
-#ifdef SOFT
-    // Over parts of the pixel the product is good enough.
-    int side = max(reach.x, reach.y) > 0.75 ? 8 : 4, n = is_turned ? side * side : 0;
-    for (int i = 0; i < n; i++) {
-        vec2 at = (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
-        sum += (1.0 - wave_at(phase.x + dot(da, at), da / float(side))) *
-               (1.0 - wave_at(phase.y + dot(db, at), db / float(side)));
+    if (IS_SOFT) {
+        // Over parts of the pixel the product is good enough.
+        int side = max(reach.x, reach.y) > 0.75 ? 8 : 4, n = is_turned ? side * side : 0;
+        for (int i = 0; i < n; i++) {
+            vec2 at = (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
+            sum += (1.0 - wave_at(phase.x + dot(da, at), da / float(side))) *
+                   (1.0 - wave_at(phase.y + dot(db, at), db / float(side)));
+        }
+        return n > 0 ? sum / float(side * side) : dark.x * dark.y;
     }
-    sum /= float(side * side);
-#else
     // The dark cells that the pixel may touch. Past so many of them the product is good enough.
     const float most_cells = 64.0;
     vec2 first = floor(phase - reach), cells = ceil(phase + reach - wave.z) - first;
@@ -101,12 +99,9 @@ float lattice_dark(vec2 phase, vec2 da, vec2 db)
         vec2 cell = first + vec2(i % int(cells.x), i / int(cells.x)) - phase;
         sum += box_share(cell + wave.z, cell + 1.0, da, db);
     }
-#endif
     return n > 0 ? sum : dark.x * dark.y;
 }
-#endif
 
-#if PATTERN == IMAGE
 // The image over the pixel's parallelogram, by samples on a grid of its two sides, a texel of the
 // chosen level apart, so that every texel counts alike. The level is as fine as it may be for about
 // so many samples: what a texel of it blurs beyond the footprint is small beside the shorter side.
@@ -133,7 +128,6 @@ vec4 image_colour(vec2 st, vec2 right, vec2 down)
         }
     return clamp(sum / (n.x * n.y), 0.0, 1.0);
 }
-#endif
 
 // A coordinate turned on the light, and its change over the pixel.
 void turned(Met met, vec2 along, out float a, out vec2 da)
@@ -144,11 +138,7 @@ void turned(Met met, vec2 along, out float a, out vec2 da)
 
 float line_edge(float z, vec2 g)
 {
-#ifdef SOFT
-    return soft_half_plane(z, g, wave.w * 2.0 * half_width);
-#else
-    return half_plane(z, g);
-#endif
+    return IS_SOFT ? soft_half_plane(z, g, wave.w * 2.0 * half_width) : half_plane(z, g);
 }
 
 // Single lines: how much of the pixel they cover.
@@ -162,58 +152,67 @@ float lines_at(float a, vec2 da)
     return min(bright, 1.0);
 }
 
-vec4 pattern_colour(Met met)
+// Each channel of a turn of hue is a wave whose edges take a sixth.
+vec4 rainbow(float a, vec2 da)
 {
-    vec2 da, db;
-    float a, b;
-    turned(met, turn.xy, a, da);
-    turned(met, vec2(-turn.y, turn.x), b, db);
-#if PATTERN == IMAGE
-    vec2 right = vec2(da.x, db.x) / size.xy, down = vec2(da.y, db.y) / size.xy;
-    return image_colour(vec2(a, b) / size.xy + 0.5, right, down);
-#elif PATTERN == RAINBOW
-    // Each channel of a turn of hue is a wave whose edges take a sixth.
     vec3 rgb;
     for (int i = 0; i < 3; i++)
         rgb[i] = soft_stripe(a * turn.z + wave.x + 0.25 - float(i) / 3.0, da * turn.z, 0.5, 1.0 / 6.0);
     return vec4(rgb, 1.0);
-#else
-#if PATTERN == CIRCLES
+}
+
+float circles_at(Met met)
+{
     float rho = length(met.q);
     vec2 radial = met.q / max(rho, 1e-20) * turn.z, g = radial.x * met.ds + radial.y * met.dt;
     g *= min(1.0, rho * turn.z / max(0.5 * (abs(g.x) + abs(g.y)), 1e-20));  // no ring is beyond the centre
-    float bright = wave_at(rho * turn.z + turn.w, g);
-#elif PATTERN == LINES
-    float bright = lines_at(a, da);
-#elif PATTERN == LATTICE
-    float bright =
-        1.0 - lattice_dark(vec2(a, b) * turn.z + wave.xy, da * turn.z, db * turn.z);
-#elif PATTERN == DISTANCE
-    float bright = wave_at(met.tau * turn.z + turn.w, met.dtau * turn.z);
-#else
-    float bright = wave_at(a * turn.z + wave.x, da * turn.z);
-#endif
+    return wave_at(rho * turn.z + turn.w, g);
+}
+
+vec4 pattern_colour(Met met)
+{
+    vec2 da, db;
+    float a, b, bright;
+    turned(met, turn.xy, a, da);
+    turned(met, vec2(-turn.y, turn.x), b, db);
+    if (PATTERN == IMAGE) {
+        vec2 right = vec2(da.x, db.x) / size.xy, down = vec2(da.y, db.y) / size.xy;
+        return image_colour(vec2(a, b) / size.xy + 0.5, right, down);
+    }
+    if (PATTERN == RAINBOW)
+        return rainbow(a, da);
+    if (PATTERN == CIRCLES)
+        bright = circles_at(met);
+    else if (PATTERN == LINES)
+        bright = lines_at(a, da);
+    else if (PATTERN == LATTICE)
+        bright = 1.0 - lattice_dark(vec2(a, b) * turn.z + wave.xy, da * turn.z, db * turn.z);
+    else if (PATTERN == DISTANCE)
+        bright = wave_at(met.tau * turn.z + turn.w, met.dtau * turn.z);
+    else
+        bright = wave_at(a * turn.z + wave.x, da * turn.z);
     return mix(background, foreground, bright);
-#endif
 }
 
 // Where a footprint cannot be taken whole it is cut into parts: at the border of a light, at the seam
 // of one that goes round, where a pattern whose periods do not close meets itself, and where rings
 // bend. What the first two leave of a part is its weight.
-#define NO_WRAP -1
-#if FAMILY == ZEBRA
-#define WRAP 1
-#elif FAMILY == ENVIRONMENT || (FAMILY != ISOPHOTE && (LIGHT == TUNNEL || LIGHT == SPHERE))
-#define WRAP 0
-#else
-#define WRAP NO_WRAP
-#endif
-#if LIGHT == RECTANGLE && (FAMILY == REFLECTION || FAMILY == HIGHLIGHT)
-#define HAS_BORDER
-#endif
-#if !defined(UNFILTERED) && (defined(HAS_BORDER) || WRAP != NO_WRAP || PATTERN == CIRCLES)
-#define IN_PARTS
-#endif
+
+// Whether the light goes round, and along which coordinate it does.
+bool has_seam()
+{
+    return FAMILY == ZEBRA || FAMILY == ENVIRONMENT || (FAMILY != ISOPHOTE && (LIGHT == TUNNEL || LIGHT == SPHERE));
+}
+
+int around()
+{
+    return FAMILY == ZEBRA ? 1 : 0;
+}
+
+bool has_border()
+{
+    return LIGHT == RECTANGLE && (FAMILY == REFLECTION || FAMILY == HIGHLIGHT);
+}
 
 // How far the footprint reaches to the sides, in q.
 vec2 reach_of(Met met)
@@ -221,25 +220,18 @@ vec2 reach_of(Met met)
     return 0.5 * vec2(abs(met.ds.x) + abs(met.ds.y), abs(met.dt.x) + abs(met.dt.y));
 }
 
-#ifdef IN_PARTS
 bool is_at_seam(Met met)
 {
-#if WRAP != NO_WRAP
-    return abs(met.q[WRAP]) + reach_of(met)[WRAP] > 0.5 * size[WRAP];
-#else
-    return false;
-#endif
+    return has_seam() && abs(met.q[around()]) + reach_of(met)[around()] > 0.5 * size[around()];
 }
 
 // Into how many parts, each way.
 float parts_across(Met met, bool at_seam)
 {
-    bool at_border = false;
-#ifdef HAS_BORDER
-    at_border = abs(met.cover - 0.5) < 0.499;
-#endif
+    bool at_border = has_border() && abs(met.cover - 0.5) < 0.499;
     float n = at_border || at_seam ? 4.0 : 1.0;
-#if PATTERN == CIRCLES
+    if (PATTERN != CIRCLES)
+        return n;
     // How far a ring bends away from a straight line over half of the footprint, in periods. Where
     // so many rings lie within it that the mean is all that is left, only their middle tells more.
     const float straight = 0.01, most = 8.0, many = 12.0;
@@ -248,7 +240,6 @@ float parts_across(Met met, bool at_seam)
     float rho = length(met.q), bend = 0.5 * reach * reach * turn.z / max(rho, 1e-3 * reach);
     if (bend > straight && (2.0 * reach * turn.z < many || rho < 2.0 * reach))
         n = max(n, min(ceil(sqrt(bend / straight)), most));
-#endif
     return n;
 }
 
@@ -257,20 +248,14 @@ float part_share(Met part)
 {
     vec2 inside = (0.5 * size.xy - abs(part.q)) / max(2.0 * reach_of(part), 1e-20);
     vec2 share = clamp(inside + 0.5, 1e-3, 1.0);
-#if defined(HAS_BORDER)
-    return share.x * share.y;
-#elif WRAP != NO_WRAP
-    return share[WRAP];
-#else
-    return 1.0;
-#endif
+    return has_border() ? share.x * share.y : has_seam() ? share[around()] : 1.0;
 }
-#endif
 
 // The pattern's mean over what of the footprint lies on the light.
 vec4 mean_colour(Met met)
 {
-#ifdef IN_PARTS
+    if (!IS_FILTERED || !(has_border() || has_seam() || PATTERN == CIRCLES))
+        return pattern_colour(met);
     bool at_seam = is_at_seam(met);
     float step = 1.0 / parts_across(met, at_seam), weight = 0.0;
     Met part = met;
@@ -291,15 +276,10 @@ vec4 mean_colour(Met met)
         if (at.y >= 0.5) {
             at = first;
             ends--;
-#if WRAP != NO_WRAP
-            q[WRAP] -= q[WRAP] < 0.0 ? -size[WRAP] : size[WRAP];
-#endif
+            q[around()] -= q[around()] < 0.0 ? -size[around()] : size[around()];
         }
     }
     return sum / weight;
-#else
-    return pattern_colour(met);
-#endif
 }
 
 // The pattern over the shaded base, over the lights behind; q as for sample_at.

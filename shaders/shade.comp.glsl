@@ -15,10 +15,10 @@ void main()
     vec2 q = pixel_offset(p);
     Sample at = sample_at(q, 1.0, hit.depth, hit.n, hit.h, hit.n);
     Met met = meet(at);
-#ifdef UNFILTERED  // one sample a pixel
-    met.ds = met.dt = met.dtau = vec2(0.0);
-    met.cover = float(met.inside);
-#endif
+    if (!IS_FILTERED) {  // one sample a pixel
+        met.ds = met.dt = met.dtau = vec2(0.0);
+        met.cover = float(met.inside);
+    }
     Shown behind = shown_behind(p);
     bool is_hit = hit.depth > 0.0;
     Shown shown = mirrors(hit) ? lay_over(behind, at, met, q) : behind;

@@ -125,8 +125,9 @@ struct program_source source_of_shading(struct shade_key key)
                                                            rounded, planes, share};
     struct program_source source = {.files = {files[key.which], NULL}};
     snprintf(source.defines, sizeof source.defines,
-             "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n%s%s", key.family, key.light,
-             key.pattern, key.soft ? "#define SOFT\n" : "",
-             key.which == SHADED_UNFILTERED ? "#define UNFILTERED\n" : "");
+             "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n"
+             "#define IS_SOFT %s\n#define IS_FILTERED %s\n",
+             key.family, key.light, key.pattern, key.soft ? "true" : "false",
+             key.which == SHADED_UNFILTERED ? "false" : "true");
     return source;
 }
