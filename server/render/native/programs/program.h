@@ -1,0 +1,83 @@
+/* The shaders as functions of this processor: every program of shaders/ that the native device runs, compiled once
+ * for each instruction set (shaders/lanes writes it as C++, glsl.hpp is what it is written in).
+ *
+ * A program finds what it reads and writes by the names that the shaders have for it. Thread: any; calls that share
+ * what they write must not run at once. */
+#ifndef SHEEN_RENDER_NATIVE_PROGRAMS_PROGRAM_H
+#define SHEEN_RENDER_NATIVE_PROGRAMS_PROGRAM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Planes of pixels, one a channel and each `channel_words` after the one before: rows of `width` words
+ * of 32 bits. */
+struct native_image {
+    uint32_t *words;
+    int32_t width, height, channels;
+    size_t channel_words;
+};
+
+/* A light image with its smaller copies, each of half the sides rounded down and no less than 1: linear light,
+ * premultiplied, four floats a texel, the first row the uppermost. */
+enum { NATIVE_MOST_LEVELS = 32 };
+struct native_picture {
+    const float *texels;
+    uint32_t first[NATIVE_MOST_LEVELS]; /* texel of each level */
+    int32_t width, height, n_levels;    /* of level 0; n_levels 0: no image */
+    bool repeats_s, repeats_t;          /* else the outermost texels go on */
+};
+
+/* A buffer texture: texels of four words. */
+struct native_texels {
+    const uint32_t *words;
+    uint32_t n;
+};
+
+/* A buffer's open array, of n elements. */
+struct native_array {
+    uint32_t *words;
+    uint32_t n;
+};
+
+/* As shaders/list.glsl has it. A program writes no more than the array holds. */
+struct native_list {
+    uint32_t x, y, z, n;
+    struct native_array at;
+};
+
+/* shaders/share.comp.glsl. */
+struct native_share {
+    uint32_t seen_px, met_px;
+    struct native_array met;
+};
+
+/* What a program does not use need not be set. */
+struct native_bindings {
+    const void *View, *Light; /* struct view_block, struct light_block */
+    struct native_texels texels, nodes, adjacency;
+    struct native_image seen, seen_depth, hit_depth, normal, shape, ptex, border;
+    struct native_image silhouette, colour, coverage;
+    struct native_image light_st, curvature, light_change;
+    struct native_image next_light, next_missed, behind_light, behind_missed;
+    struct native_picture picture;
+    struct native_list *groups, *listed, *edges, *high_curvature, *rounded, *rims;
+    struct native_array *RoundedHits;
+    struct native_share *Share;
+    int32_t shaded[4], inside[4];
+    int32_t line_family, light_kind, pattern_kind;
+    bool is_soft, is_filtered;
+    uint32_t max_rounded, stride;
+};
+
+/* Runs the workgroups [first, end), numbered as shaders/list.glsl does. */
+typedef void native_program(const struct native_bindings *bindings, uint32_t first, uint32_t end);
+
+/* The programs of an instruction set. */
+struct native_programs {
+    native_program *edges_find, *edges_recheck, *silhouette, *rounded_solve;
+    native_program *shade, *edges_shade, *high_curvature_shade, *rounded_shade;
+    native_program *shade_planes, *share;
+};
+
+#endif

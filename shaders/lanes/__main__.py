@@ -1,0 +1,45 @@
+"""python3 -m lanes NAME: writes a program of `programs` to standard output, as C++ for
+server/render/native/programs/glsl.hpp: what is compiled as native_NAME_SET for each instruction set."""
+import os
+import subprocess
+import sys
+
+from .parse import Failure
+from .program import program_text
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+# Tables fill one bank each; which lines, light and pattern there are is known when a program runs.
+MACROS = ("POINT_BANKS=1 NODE_BANKS=1 ADJACENCY_BANKS=1 BANK_TEXELS=1 NODE_BANK_TEXELS=1 TEXTURES_FREE=3 PTEX "
+          "FAMILY=line_family LIGHT=light_kind PATTERN=pattern_kind IS_SOFT=is_soft IS_FILTERED=is_filtered").split()
+KINDS = "uniform int line_family, light_kind, pattern_kind;\nuniform bool is_soft, is_filtered;\n"
+
+
+def files_of(name):
+    lists = {}
+    with open(os.path.join(HERE, "programs"), encoding="utf-8") as file:
+        for line in file:
+            if line.strip() and not line.startswith("#"):
+                first, *rest = line.split()
+                lists[first] = [part for word in rest for part in lists.get(word, [word])]
+    return lists[name]
+
+
+def main():
+    name = sys.argv[1]
+    text = ""
+    for file_name in files_of(name):
+        if file_name == "kinds":
+            text += KINDS
+            continue
+        with open(os.path.join(HERE, "..", file_name + ".glsl"), encoding="utf-8") as file:
+            text += file.read()
+    text = subprocess.run(os.environ.get("CC", "cc").split() + ["-E", "-P", "-undef", "-nostdinc", "-xc"] +
+                          ["-D" + macro for macro in MACROS] + ["-"],
+                          input=text, capture_output=True, text=True, check=True).stdout
+    try:
+        sys.stdout.write('#include "server/render/native/programs/glsl.hpp"\n\n' + program_text(text, name))
+    except Failure as failure:
+        sys.exit("%s: %s" % (name, failure))
+
+
+main()
