@@ -85,6 +85,9 @@ else
 LANE_SETS := base
 LANES_base := -DLANES=4
 endif
+# GCC 12 takes what its own intrinsics leave undefined on purpose for an error, and warns that vectors are passed
+# in other registers than by older compilers: no function here is called from outside of its unit.
+LANES_CXXFLAGS := -O2 -Wno-uninitialized -Wno-maybe-uninitialized -Wno-psabi -Wno-unused -Wno-unused-parameter -Wno-shadow
 # Frames need not be the same bytes from one instruction set to the next.
 LANES_FLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-O3) -ffp-contract=fast -fno-math-errno -fno-trapping-math
 IMAGE_SRC := $(wildcard server/image/*.c)
@@ -102,7 +105,10 @@ SHADERS := $(sort $(wildcard shaders/*.glsl))
 
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(SURFACE_SRC) server/base/error.c)
-LANES_OBJ := $(foreach set,$(LANE_SETS),$(patsubst %.c,$(BUILD)/obj/%.$(set).o,$(LANES_SRC)))
+# The programs of shaders/ that run on processors, written as C++ by shaders/lanes.
+NATIVE_PROGRAMS := $(shell sed -n 's/^\([a-z][a-z_]*\) .*/\1/p' shaders/lanes/programs)
+LANES_OBJ := $(foreach set,$(LANE_SETS),$(patsubst %.c,$(BUILD)/obj/%.$(set).o,$(LANES_SRC)) \
+             $(patsubst %,$(BUILD)/obj/gen/lanes/%.$(set).o,$(NATIVE_PROGRAMS)))
 RENDER_OBJ := $(LANES_OBJ) $(call obj,$(SCENE_SRC) $(RENDER_SRC) protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,$(filter-out server/base/error.c,$(wildcard server/base/*.c)) $(SERVICE_SRC) $(CONVERT_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
@@ -184,11 +190,16 @@ $(BUILD)/obj/%.c.o: %.c | $(GEN)
 	@mkdir -p $(@D)
 	$(call say,CC $<)
 	$(Q)$(CC) $(CFLAGS) -c -o $@ $<
+# One unit for each instruction set.
 define lanes_of
 $(BUILD)/obj/%.$(1).o: %.c
 	@mkdir -p $$(@D)
 	$$(call say,CC $$< $(1))
 	$$(Q)$$(CC) $$(CFLAGS) $$(LANES_FLAGS) $$(LANES_$(1)) -DLANE_SET=$(1) -c -o $$@ $$<
+$(BUILD)/obj/gen/lanes/%.$(1).o: $(BUILD)/gen/lanes/%.cpp
+	@mkdir -p $$(@D)
+	$$(call say,CXX $$< $(1))
+	$$(Q)$$(CXX) $$(CXXFLAGS) $$(LANES_FLAGS) $$(LANES_CXXFLAGS) $$(LANES_$(1)) -DLANE_SET=$(1) -c -o $$@ $$<
 endef
 $(foreach set,$(LANE_SETS),$(eval $(call lanes_of,$(set))))
 $(BUILD)/obj/%.cpp.o: %.cpp | $(GEN)
@@ -199,6 +210,10 @@ $(BUILD)/obj/%.cpp.o: %.cpp | $(GEN)
 $(BUILD)/gen/sheen.pb.c $(BUILD)/gen/sheen.pb.h &: protocol/sheen.proto protocol/sheen.options
 	@mkdir -p $(@D)
 	$(Q)$(NANOPB) -I protocol -D $(BUILD)/gen sheen.proto
+.PRECIOUS: $(BUILD)/gen/lanes/%.cpp
+$(BUILD)/gen/lanes/%.cpp: $(SHADERS) $(wildcard shaders/lanes/*)
+	@mkdir -p $(@D)
+	$(Q)CC="$(CC)" PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=shaders /usr/bin/python3 -m lanes $* > $@.part && mv $@.part $@
 $(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
 	@mkdir -p $(@D)
 	$(Q)sh shaders/embed.sh $(SHADERS) > $@

@@ -59,7 +59,9 @@ room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the wor
 room server/scene "$common|protocol|server/cage|server/surface" 'a request is data'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl "$common|server/image|server/scene|server/render" 'a device draws, it serves nobody'
-room server/render/native "$common|server/surface|server/render|server/render/native/lanes" 'processors draw without GL'
+room server/render/native "$common|protocol|server/image|server/scene|server/surface|server/render|server/render/native/lanes|server/render/native/programs" \
+    'processors draw without GL'
+room server/render/native/programs '' 'what shaders/lanes writes includes this and no more'
 room server/render/native/lanes "$common|server/surface|server/render|server/render/native" 'one unit for each instruction set'
 # The rooms of the daemon itself, each above those that stand before it.
 room server/net "$common|protocol" 'connections do not know what is said over them'
@@ -73,7 +75,7 @@ room server/frame "$common|protocol|server/assets|server/output|server/scene" \
     'a frame tells its session by events (request.h), so it includes none'
 room server/session "$common|protocol|server/assets|server/frame|server/net|server/output|server/threads" \
     'a session is one client'"'"'s messages; the main service hands it what it needs'
-room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/render/gl|server/session|server/threads" \
+room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/render/gl|server/render/native|server/session|server/threads" \
     'the daemon as a whole: nobody includes it'
 
 no_include() { # folder, pattern of what it must not include, why
@@ -85,7 +87,7 @@ no_include server/cage/read 'protocol/([^m]|m[^o])' 'of the protocol a reader kn
 no_include server/image 'protocol/([^s]|s[^r])' 'of the protocol pictures know srgb.h alone'
 no_include server/render 'protocol/([^s]|s[^r])' 'of the protocol a device knows srgb.h alone'
 no_include server/scene 'server/surface/([^tv]|t[^a]|v[^e])' 'of a surface a request knows tables.h and vec.h alone'
-no_include server/ops 'server/render/([^g]|g[^l]|gl/[^d]|gl/device_)' 'a device is chosen by its device.h alone'
+no_include server/ops 'server/render/([^gn]|g[^l]|(gl|native)/[^d]|(gl|native)/device_|n[^a])' 'a device is chosen by its device.h alone'
 no_include server/render 'server/surface/(bicubic|texels)' 'of which degree patches are is the business of server/surface'
 no_include server/scene 'server/surface/(bicubic|texels|patch|evaluate|bound)' 'a request knows the size of a surface, not the surface'
 no_include server/assets 'server/surface/(bicubic|texels|patch|evaluate|bound|node|subdivision/[^b])' 'models are built and kept, not looked into'
@@ -124,6 +126,8 @@ server/render/renderer server/render/device
 server/render/gl/[a-z_]* server/render/gl/device_internal
 server/render/gl/polygon_slices server/render/gl/(frame|kept)
 server/render/gl/shade_programs server/render/gl/program
+server/render/native/native server/render/native/(frame|tile)
+server/render/native/lanes/surface server/render/native/lanes/meet
 server/session/session server/session/session_internal
 '
 # shellcheck disable=SC2086

@@ -86,10 +86,11 @@ static bool hash_token(void *value, const char *text, struct error *error)
 static bool set_device(void *value, const char *text, struct error *error)
 {
     uint64_t number;
-    if (strcmp(text, "auto") != 0 && strcmp(text, "software") != 0 &&
+    if (strcmp(text, "auto") != 0 && strcmp(text, "software") != 0 && strcmp(text, "native") != 0 &&
         !number_parse(text, 0, 1023, false, &number))
         return error_set(error, ERROR_REQUEST,
-                         "device is '%s'; it must be auto, software or a device's number", text);
+                         "device is '%s'; it must be auto, software, native or a device's number",
+                         text);
     snprintf(value, SERVICE_DEVICE_BYTES, "%s", text);
     return true;
 }
@@ -137,8 +138,11 @@ static const struct option_row OWN_ROWS[] = {
      "unix:PATH, tcp:HOST:PORT (loopback only) or tls:HOST:PORT; several times\n"
      "(default: unix:$XDG_RUNTIME_DIR/sheen.sock, else unix:/tmp/sheen-UID/sheen.sock)",
      add_listen},
-    {"device", "auto|software|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0, NULL,
-     "auto", "a GPU if there is one, the software device, or the N-th device", set_device},
+    {"device", "auto|software|native|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0,
+     NULL, "auto",
+     "a GPU if there is one, the software device, processors by vector code (of the exact\n"
+     "surface alone, no polygons), or the N-th device",
+     set_device},
     {"threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_threads), 0, 0, NULL, "auto",
      "for building tables and encoding, 1 to 256; auto: one per processor", set_threads},
     {"allow-uid", "UID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.uids),

@@ -12,6 +12,7 @@
 #include "server/base/clock.h"
 #include "server/output/jpeg.h"
 #include "server/render/gl/device.h"
+#include "server/render/native/device.h"
 #include "server/net/listen.h"
 #include "server/ops/gpu_loss_log.h"
 #include "server/assets/model_file.h"
@@ -424,12 +425,14 @@ static bool start_threads(struct service *service, struct error *error)
         return error_set(error, ERROR_SERVER, "no memory for the daemon");
     const struct renderer_options renderer = {.device = options->device,
                                               .block_cache = daemon->block_cache};
+    const struct renderer_device *device =
+        strcmp(options->device, "native") == 0 ? &native_renderer_device : &gl_device;
     return (daemon->loop = loop_create(&hooks, error)) && watch_signals(service, error) &&
            workers_init(&daemon->workers, NULL, &limits->workers, limits->assets.memory_budget,
                         error) &&
            (daemon->completions = completions_create(daemon->loop, error)) &&
            (daemon->render_thread =
-                render_thread_create(&gl_device, &renderer, daemon->completions, error)) &&
+                render_thread_create(device, &renderer, daemon->completions, error)) &&
            (daemon->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1,
                                        &encode_context, daemon->completions, error)) &&
            (daemon->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0,

@@ -32,7 +32,7 @@ enum { N_MODELS = sizeof MODELS / sizeof *MODELS };
 struct planes {
     struct native_planes at;
     float *floats; /* all of them */
-    uint32_t *face, *border;
+    uint32_t *face, *border, *node, *where;
 };
 
 static void planes_init(struct planes *planes)
@@ -41,7 +41,9 @@ static void planes_init(struct planes *planes)
     planes->floats = calloc(FLOATS * PX, sizeof(float));
     planes->face = calloc(PX, sizeof(uint32_t));
     planes->border = calloc(PX, sizeof(uint32_t));
-    assert_true(planes->floats && planes->face && planes->border);
+    planes->node = calloc(PX, sizeof(uint32_t));
+    planes->where = calloc(PX, sizeof(uint32_t));
+    assert_true(planes->floats && planes->face && planes->border && planes->node && planes->where);
     float *f = planes->floats;
     planes->at = (struct native_planes){.pitch = WIDTH,
                                         .depth = f,
@@ -50,7 +52,9 @@ static void planes_init(struct planes *planes)
                                         .u = f + 7 * PX,
                                         .v = f + 8 * PX,
                                         .face = planes->face,
-                                        .border = planes->border};
+                                        .border = planes->border,
+                                        .node = planes->node,
+                                        .where = planes->where};
 }
 
 static void planes_finish(struct planes *planes)
@@ -58,6 +62,8 @@ static void planes_finish(struct planes *planes)
     free(planes->floats);
     free(planes->face);
     free(planes->border);
+    free(planes->node);
+    free(planes->where);
 }
 
 /* All that is written for a pixel is the same. */

@@ -71,8 +71,8 @@ static bool apply_device(struct options *options, const char *value, char *why)
     uint32_t number;
     options->device = value;
     return strcmp(value, "auto") == 0 || strcmp(value, "software") == 0 ||
-           value_uint32(value, &number) ||
-           options_refuse(why, "must be auto, software or a device's number");
+           strcmp(value, "native") == 0 || value_uint32(value, &number) ||
+           options_refuse(why, "must be auto, software, native or a device's number");
 }
 
 static bool apply_memory_budget(struct options *options, const char *value, char *why)
@@ -378,9 +378,10 @@ const struct option_row OPTIONS_COMMON[] = {
      "user alone)",
      apply_share, NULL},
     {"device", 0, "DEVICE",
-     "of the private daemon: auto, software, or a number from 0 (default: auto,\n"
+     "of the private daemon: auto, software, native (processors without OpenGL: no\n"
+     "polygons yet), or a number from 0 (default: auto,\n"
      "a GPU when there is one)",
-     apply_device, "auto software"},
+     apply_device, "auto software native"},
     {"memory-budget", 0, "BYTES",
      "of the private daemon: most that the model, its tables, images and frames may\n"
      "take together, in main memory and on the device, 4M or more, as 800M or 16G\n"

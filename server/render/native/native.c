@@ -200,6 +200,17 @@ const char *native_device_name(const struct native_device *device)
     return device->set->words;
 }
 
+const struct native_programs *native_device_programs(const struct native_device *device)
+{
+    return &device->set->programs;
+}
+
+void native_device_run(struct native_device *device, void (*work)(void *owner, unsigned number),
+                       void *owner)
+{
+    native_team_run(device->team, work, owner);
+}
+
 unsigned native_device_threads(const struct native_device *device)
 {
     return device->n_threads;

@@ -18,7 +18,8 @@
 #include "server/surface/tables.h"
 
 struct native_device;
-struct native_model; /* patches.h */
+struct native_programs; /* program.h */
+struct native_model;    /* patches.h */
 
 struct native_options {
     unsigned n_threads; /* 1 to NATIVE_MAX_THREADS; 0: one for each processor */
@@ -36,6 +37,8 @@ struct native_planes {
     uint32_t *face;   /* Ptex face */
     float *u, *v;     /* on it */
     uint32_t *border; /* shaders/border.glsl */
+    uint32_t *node;   /* where the surface is met: a node of the tables, */
+    uint32_t *where;  /* and the place on it as shaders/visibility.frag.glsl packs it */
 };
 
 /* Of a frame: the processor's time of all threads together. */
@@ -51,6 +54,11 @@ void native_device_destroy(struct native_device *device); /* NULL is safe */
 /* The instruction set: "AVX-512" and so on. */
 const char *native_device_name(const struct native_device *device);
 unsigned native_device_threads(const struct native_device *device);
+/* What shaders/ says, in its instruction set. */
+const struct native_programs *native_device_programs(const struct native_device *device);
+/* Every thread of the device calls work(owner, its number); returns when all have come back. */
+void native_device_run(struct native_device *device, void (*work)(void *owner, unsigned number),
+                       void *owner);
 
 /* Draws a tile of the picture. A pixel through whose gap narrower than itself shows what triangles
  * hid (shaders/gaps.comp.glsl) is found where the pixels on both sides lie in the tile: so tiles

@@ -62,6 +62,16 @@ static void prefetch(const struct native_patch *patch)
         __builtin_prefetch((const char *)patch + 64 * line);
 }
 
+uint32_t native_guess_of(const struct native_part_of_node *part, const struct limit_node *node,
+                         double x, double y)
+{
+    const double steps = 8191.0 / 2;
+    int level = node->kind == LIMIT_REGULAR ? 0 : part->scale_y;
+    double s = fmin(fmax(x * native_power(part->scale_x), 0), 2);
+    double t = fmin(fmax(y * native_power(part->scale_y), 0), 2);
+    return (uint32_t)level | (uint32_t)(s * steps + 0.5) << 6 | (uint32_t)(t * steps + 0.5) << 19;
+}
+
 void native_begin_at(const struct native_model *model, struct native_task *task, double x, double y)
 {
     struct native_part_of_node *part = &task->part;

@@ -7,11 +7,26 @@
 #define DECLARE(set)                                                                               \
     void native_pieces_##set(struct native_frame *, struct native_thread *, uint32_t);             \
     void native_tile_##set(struct native_frame *, struct native_thread *, uint32_t);               \
-    void native_gaps_##set(struct native_frame *, struct native_thread *);
+    void native_gaps_##set(struct native_frame *, struct native_thread *);                         \
+    native_program native_edges_find_##set, native_edges_recheck_##set, native_silhouette_##set,   \
+        native_rounded_solve_##set, native_shade_##set, native_edges_shade_##set,                  \
+        native_high_curvature_shade_##set, native_rounded_shade_##set, native_shade_planes_##set,  \
+        native_share_##set;
 #define SET(set, in_words, n_lanes)                                                                \
     {                                                                                              \
         .name = #set, .words = in_words, .lanes = n_lanes, .pieces = native_pieces_##set,          \
-        .tile = native_tile_##set, .gaps = native_gaps_##set                                       \
+        .tile = native_tile_##set, .gaps = native_gaps_##set, .programs = {                        \
+            native_edges_find_##set,                                                               \
+            native_edges_recheck_##set,                                                            \
+            native_silhouette_##set,                                                               \
+            native_rounded_solve_##set,                                                            \
+            native_shade_##set,                                                                    \
+            native_edges_shade_##set,                                                              \
+            native_high_curvature_shade_##set,                                                     \
+            native_rounded_shade_##set,                                                            \
+            native_shade_planes_##set,                                                             \
+            native_share_##set                                                                     \
+        }                                                                                          \
     }
 
 #ifdef __x86_64__

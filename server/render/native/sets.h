@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "server/render/native/programs/program.h"
+
 struct native_frame;
 struct native_thread;
 
@@ -11,6 +13,7 @@ struct native_set {
     const char *name;  /* as an option says it */
     const char *words; /* as people read it */
     int lanes;
+    struct native_programs programs;
     /* The pieces of a part of the model, and the tiles that they lie in. */
     void (*pieces)(struct native_frame *frame, struct native_thread *thread, uint32_t part);
     /* The planes of a tile, but for pixels in gaps. */

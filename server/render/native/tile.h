@@ -46,7 +46,7 @@ struct native_tile_planes {
     float before[TILE_PLANE]; /* how far before the far depth; below 0: nothing is met */
     float depth[TILE_PLANE], normal[3][TILE_PLANE], shape[3][TILE_PLANE];
     float u[TILE_PLANE], v[TILE_PLANE];
-    int32_t face[TILE_PLANE], border[TILE_PLANE];
+    int32_t face[TILE_PLANE], border[TILE_PLANE], node[TILE_PLANE], where[TILE_PLANE];
 };
 
 /* Patches that are in no native_model yet, as a thread has come across them. */
@@ -105,6 +105,9 @@ void native_begin_at(const struct native_model *model, struct native_task *task,
 void native_begin_on(const struct native_model *model, struct native_task *task,
                      const struct native_piece *piece, int32_t place);
 
+/* The place on its node as shaders/visibility.frag.glsl packs it. */
+uint32_t native_guess_of(const struct native_part_of_node *part, const struct limit_node *node,
+                         double x, double y);
 /* (u,v) on the Ptex face of a place on a node. */
 void native_ptex(const struct limit_node *node, double x, double y, float uv[2]);
 

@@ -19,6 +19,7 @@ struct piece_view {
     float start;                      /* the rays' start_px, in units of scale */
     float s, t, step;                 /* where its guesses begin on the patch, and their unit */
     float cell_x, cell_y, size;       /* of the node in its Ptex face */
+    int32_t number, level;            /* of the node, and of its sub-patch */
 };
 
 static void place_borders(const struct limit_node *node, struct one_place *place)
@@ -80,6 +81,8 @@ static void place_piece(const struct native_frame *frame, const struct native_ti
     view->flat_x[0][0] += place->a;
     view->flat_y[0][0] += place->b;
     view->node = node;
+    view->number = (int32_t)piece->node;
+    view->level = node->kind == LIMIT_REGULAR ? 0 : piece->level;
     view->at_x = (float)(x_px - room->tile.x - 0.5);
     view->at_y = (float)(y_px - room->tile.y - 0.5);
     view->start = (float)(start * inverse);
@@ -110,6 +113,7 @@ LANE_INLINE void write(struct native_tile_room *room, const struct piece_view *v
     default:
         u = found->y, v = 1 - found->x;
     }
+    vint guess = v_guess(found->x * view->place.up_x, found->y * view->place.up_y, view->level);
     u = (u + view->cell_x) * view->size;
     v = (v + view->cell_y) * view->size;
     /* Pixels that lie side by side have the same base: they are written together. */
@@ -130,6 +134,8 @@ LANE_INLINE void write(struct native_tile_room *room, const struct piece_view *v
         v_store_masked(to->u + at, run, u);
         v_store_masked(to->v + at, run, v);
         v_store_int_masked(to->border + at, run, found->border);
+        v_store_int_masked(to->node + at, run, v_int(view->number));
+        v_store_int_masked(to->where + at, run, guess);
     }
 }
 

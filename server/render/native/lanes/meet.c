@@ -309,6 +309,8 @@ static void write_lane(const struct native_frame *frame, struct native_tile_plan
     to->u[at] = uv[0];
     to->v[at] = uv[1];
     to->border[at] = found->border[k];
+    to->node[at] = (int32_t)met->node;
+    to->where[at] = (int32_t)native_guess_of(&met->part, node, met->x, met->y);
 }
 
 void LANE_NAME(native_write)(const struct native_frame *frame, struct native_tile_room *room,

@@ -83,4 +83,14 @@ LANE_INLINE vfloat v_close_enough(vfloat px_per_scale)
 #undef T
 #undef NAMED
 
+/* A place on a node for Newton's method to begin at, as shaders/visibility.frag.glsl packs it: the
+ * node's coordinates times 2^level, in [0, 2]. */
+LANE_INLINE vint v_guess(vfloat s, vfloat t, int32_t level)
+{
+    const float steps = 8191.0f / 2;
+    vint q = v_truncate(v_clamp(s, 0, 2) * steps + 0.5f);
+    vint r = v_truncate(v_clamp(t, 0, 2) * steps + 0.5f);
+    return level | q << 6 | r << 19;
+}
+
 #endif

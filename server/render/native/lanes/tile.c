@@ -67,6 +67,8 @@ static void copy_row(const struct native_planes *to, size_t at,
     memcpy(to->u + at, from->u + first, bytes);
     memcpy(to->v + at, from->v + first, bytes);
     memcpy(to->border + at, from->border + first, bytes);
+    memcpy(to->node + at, from->node + first, bytes);
+    memcpy(to->where + at, from->where + first, bytes);
 }
 
 /* Gives the caller what has been met; a depth of 0 where nothing has. */

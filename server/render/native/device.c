@@ -1,0 +1,88 @@
+#include "server/render/native/device.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "server/render/native/device_internal.h"
+#include "server/render/native/patches.h"
+
+/* A picture's side: no table of the device is as long. */
+enum { MAX_SIDE_PX = 32768 };
+
+static void destroy(struct renderer *renderer)
+{
+    struct native_renderer *r = native_renderer_of(renderer);
+    native_device_destroy(r->device);
+    native_target_finish(&r->target);
+    free(r);
+}
+
+static struct renderer *create(const struct renderer_options *options, struct error *error)
+{
+    struct native_renderer *r = calloc(1, sizeof *r);
+    if (!r) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    r->device = native_device_create(&(struct native_options){0}, error);
+    if (!r->device) {
+        free(r);
+        return NULL;
+    }
+    snprintf(r->name, sizeof r->name, "native %s", native_device_name(r->device));
+    r->base = (struct renderer){.device = &native_renderer_device,
+                                .options = *options,
+                                .info = {.device = r->name,
+                                         .driver = "sheen " SHEEN_VERSION,
+                                         .software = true,
+                                         .max_width_px = MAX_SIDE_PX,
+                                         .max_height_px = MAX_SIDE_PX}};
+    return &r->base;
+}
+
+static struct renderer_model *model_create(struct renderer *renderer,
+                                           const struct limit_tables *tables, struct error *error)
+{
+    struct native_renderer *r = native_renderer_of(renderer);
+    struct native_shown *shown = calloc(1, sizeof *shown);
+    if (!shown) {
+        error_set(error, ERROR_SERVER, "out of memory");
+        return NULL;
+    }
+    shown->base.tables = tables;
+    shown->serial = ++r->next_serial;
+    shown->model = native_model_create(tables, error);
+    if (shown->model)
+        return &shown->base;
+    free(shown);
+    return NULL;
+}
+
+static void model_destroy(struct renderer *renderer, struct renderer_model *model)
+{
+    struct native_shown *shown = (struct native_shown *)(void *)model;
+    (void)renderer;
+    native_model_destroy(shown->model);
+    free(shown);
+}
+
+/* Of polygons, which there are not. */
+static uint64_t paused_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px)
+{
+    (void)width_px, (void)height_px, (void)tile_px;
+    return 0;
+}
+
+const struct renderer_device native_renderer_device = {
+    .create = create,
+    .destroy = destroy,
+    .model_create = model_create,
+    .model_destroy = model_destroy,
+    .image_create = native_image_create,
+    .image_destroy = native_image_destroy,
+    .model_bytes = limit_tables_bytes,
+    .image_bytes = native_image_bytes,
+    .paused_bytes = paused_bytes,
+    .begin = native_frame_begin,
+    .step = native_frame_step,
+};

@@ -1,0 +1,58 @@
+/* What the native device makes for renderer.h. Internal to the folder; render thread only. */
+#ifndef SHEEN_RENDER_NATIVE_DEVICE_INTERNAL_H
+#define SHEEN_RENDER_NATIVE_DEVICE_INTERNAL_H
+
+#include "server/render/device.h"
+#include "server/render/native/native.h"
+#include "server/render/native/programs/program.h"
+#include "server/render/native/target.h"
+#include "server/render/tiles.h"
+
+/* A model, as renderer.h hands it on. */
+struct native_shown {
+    struct renderer_model base;
+    struct native_model *model;
+    uint64_t serial; /* no other model of the renderer has it */
+};
+
+/* What the target's planes hold, of a frame of one tile. serial 0: nothing. */
+struct native_kept {
+    uint64_t serial; /* of the model */
+    uint32_t width_px, height_px;
+    struct camera camera;
+    bool edges; /* and what edges take */
+};
+
+struct native_renderer {
+    struct renderer base;
+    char name[RENDERER_NAME_BYTES];
+    struct native_device *device;
+    struct native_target target;
+    struct native_kept kept;
+    uint64_t next_serial;
+};
+
+/* A light image, as renderer.h hands it on. */
+struct native_light_image {
+    struct renderer_image base;
+    struct native_picture picture;
+    float *texels;
+};
+
+static inline struct native_renderer *native_renderer_of(struct renderer *renderer)
+{
+    return (struct native_renderer *)(void *)renderer;
+}
+
+/* renderer_device's begin and step. */
+bool native_frame_begin(struct renderer *renderer, struct frame_work *work, struct error *error);
+enum frame_step native_frame_step(struct renderer *renderer, struct renderer_model *model,
+                                  struct frame_work *work, struct frame *frame,
+                                  struct error *error);
+
+struct renderer_image *native_image_create(struct renderer *renderer, const struct image *image,
+                                           struct error *error);
+void native_image_destroy(struct renderer *renderer, struct renderer_image *image);
+size_t native_image_bytes(const struct image *image);
+
+#endif

@@ -1,0 +1,153 @@
+/* The steps of a frame: a tile each. */
+#include <string.h>
+#include <time.h>
+
+#include "server/render/native/device_internal.h"
+#include "server/render/native/readback.h"
+#include "server/render/native/stages.h"
+
+struct native_frame_state {
+    struct frame_state base;
+    struct block_cache *block_cache;
+    uint32_t x, y; /* of the next tile */
+    struct tile_size tile;
+};
+
+static void destroy_state(struct frame_state *state)
+{
+    struct native_frame_state *own = (struct native_frame_state *)(void *)state;
+    block_cache_give(own->block_cache, own);
+}
+
+bool native_frame_begin(struct renderer *renderer, struct frame_work *work, struct error *error)
+{
+    const struct frame_request *request = work->request;
+    if (request->surface.kind != SURFACE_EXACT)
+        return error_set(
+            error, ERROR_REQUEST,
+            "surface: the native device draws no polygons and wireframes yet; a daemon "
+            "of --device software does");
+    struct block_cache *block_cache = renderer->options.block_cache;
+    struct native_frame_state *own = block_cache_take(block_cache, sizeof *own);
+    if (!own)
+        return error_set(error, ERROR_SERVER, "out of memory for a frame");
+    work->in_place = false;
+    *own = (struct native_frame_state){
+        .base.destroy = destroy_state,
+        .block_cache = block_cache,
+        .tile = tiles_cut(request->width_px, request->height_px, work->tile_px, false)};
+    work->state = &own->base;
+    return true;
+}
+
+static uint64_t now_us(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (uint64_t)t.tv_sec * 1000000 + (uint64_t)t.tv_nsec / 1000;
+}
+
+static bool same_camera(const struct camera *a, const struct camera *b)
+{
+    return a->kind == b->kind && !memcmp(a->eye, b->eye, sizeof a->eye) &&
+           !memcmp(a->target, b->target, sizeof a->target) && !memcmp(a->up, b->up, sizeof a->up) &&
+           a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
+}
+
+/* Whether the target holds all that stages 1 and 2 would draw. */
+static bool is_kept(const struct native_kept *kept, const struct native_shown *shown,
+                    const struct frame_request *request)
+{
+    return kept->serial == shown->serial && kept->width_px == request->width_px &&
+           kept->height_px == request->height_px && same_camera(&kept->camera, &request->camera) &&
+           (kept->edges || !request_has_coverage(request));
+}
+
+/* What two clocks tell of the time of both stages together: theirs, and the processors' of each. */
+static void add_times(struct frame_times *times, const struct native_times *parts, uint64_t all_us)
+{
+    uint64_t first = parts->choose_us + parts->quads_us + parts->raster_us + parts->sort_us;
+    uint64_t both = first + parts->evaluate_us + parts->retry_us + parts->copy_us + parts->gaps_us;
+    uint64_t visibility_us = both ? all_us * first / both : 0;
+    times->visibility_us += visibility_us;
+    times->evaluate_us += all_us - visibility_us;
+}
+
+/* Stages 1 and 2. */
+static bool draw_surface(struct native_renderer *r, const struct native_drawing *d,
+                         const struct view *view, struct frame *frame, struct error *error)
+{
+    struct native_times parts;
+    uint64_t begin_us = now_us();
+    if (!native_target_reserve(&r->target, d->place.width, d->place.height, error) ||
+        !native_draw(r->device, d->shown->model, view, &d->place, &r->target.planes, &parts, error))
+        return false;
+    add_times(&frame->times, &parts, now_us() - begin_us);
+    begin_us = now_us();
+    native_find_groups(d);
+    bool ok = !request_has_coverage(d->request) || native_edges(d, error);
+    frame->times.evaluate_us += now_us() - begin_us;
+    return ok;
+}
+
+static bool draw_tile(struct native_renderer *r, const struct native_drawing *d,
+                      const struct view *view, const struct frame_watch *watch, bool is_kept_view,
+                      struct frame *frame, struct error *error)
+{
+    if (!is_kept_view && !draw_surface(r, d, view, frame, error))
+        return false;
+    uint64_t begin_us = now_us();
+    if (!native_shade(d, watch, frame, error))
+        return false;
+    uint64_t shaded_us = now_us();
+    frame->times.shade_us += shaded_us - begin_us;
+    frame->shows_surface = frame->shows_surface || native_any_seen(&r->target);
+    native_readback(d, view, frame);
+    frame->times.readback_us += now_us() - shaded_us;
+    return true;
+}
+
+static void keep(struct native_kept *kept, const struct native_shown *shown,
+                 const struct frame_request *request)
+{
+    *kept = (struct native_kept){.serial = shown->serial,
+                                 .width_px = request->width_px,
+                                 .height_px = request->height_px,
+                                 .camera = request->camera,
+                                 .edges = request_has_coverage(request)};
+}
+
+enum frame_step native_frame_step(struct renderer *renderer, struct renderer_model *model,
+                                  struct frame_work *work, struct frame *frame, struct error *error)
+{
+    struct native_renderer *r = native_renderer_of(renderer);
+    struct native_frame_state *own = (struct native_frame_state *)(void *)work->state;
+    const struct native_shown *shown = (const struct native_shown *)(const void *)model;
+    const struct frame_request *request = work->request;
+    bool is_kept_view = own->x == 0 && own->y == 0 && is_kept(&r->kept, shown, request);
+    if (is_kept_view)
+        own->tile = (struct tile_size){request->width_px, request->height_px};
+    struct tile tile = tile_at(own->x, own->y, &own->tile, request->width_px, request->height_px);
+    struct native_drawing drawing = {
+        .device = r->device, .target = &r->target, .shown = shown, .request = request};
+    drawing.place = tile_with_margin(&tile, true, request->width_px, request->height_px);
+    drawing.inside = tile_within(&tile, &drawing.place);
+    struct view view;
+    view_init(&view, &request->camera, request->width_px, request->height_px,
+              model->tables->hull_min, model->tables->hull_max);
+    view_block_fill(&drawing.view, &view, &drawing.place);
+    if (!is_kept_view)
+        r->kept.serial = 0;
+    work->has_drawn = true;
+    if (!frame_watch_check(&work->watch, error) ||
+        !draw_tile(r, &drawing, &view, &work->watch, is_kept_view, frame, error))
+        return FRAME_FAILED;
+    if (tile.width == request->width_px && tile.height == request->height_px && !is_kept_view)
+        keep(&r->kept, shown, request);
+    own->x += own->tile.width;
+    if (own->x >= request->width_px) {
+        own->x = 0;
+        own->y += own->tile.height;
+    }
+    return own->y < request->height_px ? FRAME_MORE : FRAME_DONE;
+}

@@ -1,0 +1,360 @@
+#include "server/render/native/stages.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/render/native/denormals.h"
+
+/* Groups are of 4 x 2 pixels (shaders/groups.glsl). */
+enum { GROUP_WIDTH = 4, GROUP_HEIGHT = 2, GROUPS_PER_WORKGROUP = 8 };
+/* Workgroups that a thread takes at a time, and the most pixels that one of them may list. */
+enum { CHUNK = 32, WORKGROUP_PX = 64, CHUNK_PX = CHUNK * WORKGROUP_PX };
+/* Pixels of a list that a workgroup of its program takes (shaders/edges.glsl, rounded.glsl). */
+enum {
+    EDGES_PER_WORKGROUP = 32,
+    ROUNDED_PER_WORKGROUP = 4,
+    LISTED_PER_WORKGROUP = 64,
+    MAX_RAYS = 16
+};
+/* Beginning with as many, every pixel of a tile is one too many to count lights at. */
+enum { SHARE_ALL_PX = 1 << 18, SHARE_STRIDE = 8 };
+
+/* --- programs */
+
+/* A program over workgroups, in chunks that threads take one after the other. What it lists goes to a thread's own
+ * list first. */
+struct run {
+    native_program *program;
+    const struct native_bindings *bindings;
+    uint32_t n_workgroups, next;
+    struct native_share *share; /* where the program counts; NULL: it does not */
+};
+
+/* The lists that a program may add to. */
+enum { ADDED_LISTS = 4 };
+
+static struct native_list **added_list(struct native_bindings *bindings, int k)
+{
+    struct native_list **const lists[ADDED_LISTS] = {&bindings->edges, &bindings->high_curvature,
+                                                     &bindings->rounded, &bindings->rims};
+    return lists[k];
+}
+
+static void append(struct native_list *to, const struct native_list *from)
+{
+    uint32_t at = __atomic_fetch_add(&to->n, from->n, __ATOMIC_RELAXED);
+    if (from->n)
+        memcpy(to->at.words + at, from->at.words, from->n * sizeof *from->at.words);
+}
+
+/* One chunk, with lists that nobody else adds to. */
+static void run_chunk(struct run *run, uint32_t first, uint32_t end)
+{
+    uint32_t words[ADDED_LISTS][CHUNK_PX]; /* programs fill it */
+    struct native_list lists[ADDED_LISTS];
+    struct native_bindings bindings = *run->bindings;
+    struct native_share share = {0};
+    for (int k = 0; k < ADDED_LISTS; k++) {
+        /* cppcheck-suppress legacyUninitvar */
+        lists[k] = (struct native_list){.at = {words[k], CHUNK_PX}};
+        if (*added_list(&bindings, k))
+            *added_list(&bindings, k) = &lists[k];
+    }
+    if (run->share) {
+        share.met = run->share->met;
+        bindings.Share = &share;
+    }
+    run->program(&bindings, first, end);
+    struct native_bindings shared = *run->bindings;
+    for (int k = 0; k < ADDED_LISTS; k++)
+        if (*added_list(&shared, k))
+            append(*added_list(&shared, k), &lists[k]);
+    if (run->share) {
+        __atomic_fetch_add(&run->share->seen_px, share.seen_px, __ATOMIC_RELAXED);
+        __atomic_fetch_add(&run->share->met_px, share.met_px, __ATOMIC_RELAXED);
+    }
+}
+
+static void work(void *owner, unsigned number)
+{
+    struct run *run = owner;
+    (void)number;
+    denormals before = denormals_flush();
+    for (uint32_t first;
+         (first = __atomic_fetch_add(&run->next, CHUNK, __ATOMIC_RELAXED)) < run->n_workgroups;)
+        run_chunk(run, first,
+                  first + CHUNK < run->n_workgroups ? first + CHUNK : run->n_workgroups);
+    denormals_restore(before);
+}
+
+static void run_program(const struct native_drawing *d, native_program *program,
+                        const struct native_bindings *bindings, uint32_t n, uint32_t per_workgroup,
+                        struct native_share *share)
+{
+    struct run run = {program, bindings, (n + per_workgroup - 1) / per_workgroup, 0, share};
+    if (run.n_workgroups)
+        native_device_run(d->device, work, &run);
+}
+
+/* What every program finds. */
+static struct native_bindings bindings_of(const struct native_drawing *d)
+{
+    const struct native_target *t = d->target;
+    const struct limit_tables *tables = d->shown->base.tables;
+    struct native_bindings b = {
+        .View = &d->view,
+        .texels = {(const uint32_t *)(const void *)tables->texels, (uint32_t)tables->n_texels},
+        .nodes = {(const uint32_t *)(const void *)tables->nodes, (uint32_t)(3 * tables->n_nodes)},
+        .adjacency = {(const uint32_t *)(const void *)tables->adjacency, (uint32_t)tables->n_faces},
+        .seen = t->seen,
+        .seen_depth = t->seen_depth,
+        .hit_depth = t->hit_depth,
+        .normal = t->normal,
+        .shape = t->shape,
+        .border = t->border,
+        .silhouette = t->silhouette,
+        .colour = t->colour,
+        .coverage = t->coverage,
+        .light_st = t->light_st,
+        .curvature = t->curvature,
+        .light_change = t->light_change,
+    };
+    return b;
+}
+
+static struct native_list *list_of(const struct native_drawing *d, enum native_list_of which)
+{
+    return &d->target->list[which];
+}
+
+/* --- groups */
+
+/* Depths as the rasteriser of a graphics card would have left them (shaders/seen.glsl), and no guess where nothing is
+ * met. */
+static void fill_seen(const struct native_drawing *d)
+{
+    const struct native_target *t = d->target;
+    const float *depth = t->planes.depth;
+    float *ndc = (float *)(void *)t->seen_depth.words;
+    size_t n = (size_t)t->width * t->height;
+    bool perspective = d->view.ray[0] > 0;
+    for (size_t i = 0; i < n; i++) {
+        float z = depth[i];
+        float of = perspective ? d->view.depth[0] / z : d->view.depth[1] + z * d->view.depth[2];
+        ndc[i] = z > 0 ? of : 0;
+        t->planes.node[i] = z > 0 ? t->planes.node[i] : UINT32_MAX;
+    }
+}
+
+/* Whether a group, or a pixel beside it, shows surface. */
+static bool is_near(const struct native_target *t, uint32_t x, uint32_t y)
+{
+    uint32_t x0 = x ? x - 1 : 0, x1 = x + GROUP_WIDTH < t->width ? x + GROUP_WIDTH : t->width - 1;
+    uint32_t y0 = y ? y - 1 : 0,
+             y1 = y + GROUP_HEIGHT < t->height ? y + GROUP_HEIGHT : t->height - 1;
+    for (uint32_t j = y0; j <= y1; j++)
+        for (uint32_t i = x0; i <= x1; i++)
+            if (t->planes.depth[(size_t)j * t->width + i] > 0)
+                return true;
+    return false;
+}
+
+static void add(struct native_list *list, uint32_t x, uint32_t y)
+{
+    list->at.words[list->n++] = x | y << 16;
+}
+
+void native_find_groups(const struct native_drawing *d)
+{
+    const struct native_target *t = d->target;
+    const struct tile *in = &d->inside;
+    struct native_list *all = list_of(d, NATIVE_GROUPS);
+    struct native_list *shaded = list_of(d, NATIVE_SHADED_GROUPS);
+    all->n = shaded->n = 0;
+    fill_seen(d);
+    for (uint32_t y = 0; y < t->height; y += GROUP_HEIGHT) {
+        for (uint32_t x = 0; x < t->width; x += GROUP_WIDTH) {
+            if (!is_near(t, x, y))
+                continue;
+            add(all, x / GROUP_WIDTH, y / GROUP_HEIGHT);
+            if (x + GROUP_WIDTH > in->x && x < in->x + in->width && y + GROUP_HEIGHT > in->y &&
+                y < in->y + in->height)
+                add(shaded, x / GROUP_WIDTH, y / GROUP_HEIGHT);
+        }
+    }
+}
+
+bool native_any_seen(const struct native_target *target)
+{
+    return target->list[NATIVE_SHADED_GROUPS].n > 0;
+}
+
+/* --- edges */
+
+bool native_edges(const struct native_drawing *d, struct error *error)
+{
+    const struct native_programs *programs = native_device_programs(d->device);
+    struct native_target *t = d->target;
+    struct native_bindings b = bindings_of(d);
+    b.groups = list_of(d, NATIVE_GROUPS);
+    b.rims = list_of(d, NATIVE_RIMS);
+    b.edges = list_of(d, NATIVE_FOUND_EDGES);
+    b.high_curvature = list_of(d, NATIVE_HIGH_CURVATURE);
+    b.rounded = list_of(d, NATIVE_ROUNDED);
+    const int32_t shaded[4] = {(int32_t)d->inside.x, (int32_t)d->inside.y, (int32_t)d->inside.width,
+                               (int32_t)d->inside.height};
+    memcpy(b.shaded, shaded, sizeof shaded);
+    for (int i = NATIVE_RIMS; i < NATIVE_LISTS; i++)
+        t->list[i].n = 0;
+    memset(t->coverage.words, 0, (size_t)t->width * t->height * sizeof(float));
+    run_program(d, programs->edges_find, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
+
+    b = bindings_of(d);
+    b.listed = list_of(d, NATIVE_RIMS);
+    run_program(d, programs->silhouette, &b, b.listed->n, LISTED_PER_WORKGROUP, NULL);
+
+    b.listed = list_of(d, NATIVE_FOUND_EDGES);
+    b.edges = list_of(d, NATIVE_EDGES);
+    b.rounded = list_of(d, NATIVE_ROUNDED);
+    run_program(d, programs->edges_recheck, &b, b.listed->n, EDGES_PER_WORKGROUP, NULL);
+
+    b = bindings_of(d);
+    b.listed = list_of(d, NATIVE_ROUNDED);
+    b.max_rounded = tile_max_rounded(&d->place);
+    uint32_t with_rays = b.listed->n < b.max_rounded ? b.listed->n : b.max_rounded;
+    size_t n_rays = (size_t)with_rays * MAX_RAYS;
+    if (!native_target_reserve_hits(t, n_rays, error))
+        return false;
+    struct native_array hits = {t->hits, (uint32_t)n_rays};
+    b.RoundedHits = &hits;
+    run_program(d, programs->rounded_solve, &b, b.listed->n, ROUNDED_PER_WORKGROUP, NULL);
+    return true;
+}
+
+/* --- lights */
+
+static uint8_t byte_of(float a)
+{
+    return (uint8_t)lrintf(255 * fminf(fmaxf(a, 0), 1));
+}
+
+static void fill_words(const struct native_image *image, uint32_t word)
+{
+    size_t n = image->channel_words * (size_t)image->channels;
+    for (size_t i = 0; i < n; i++)
+        image->words[i] = word;
+}
+
+/* What lies outside of the groups shows no surface. */
+static void clear_planes(const struct native_drawing *d)
+{
+    static const uint32_t NAN_WORD = 0x7fc00000;
+    const struct frame_request *request = d->request;
+    const struct native_target *t = d->target;
+    uint32_t empty = 0;
+    /* As shaders/shown.glsl has it: a clear colour is 0. */
+    for (int k = 0; k < 4 && !(request->empty[3] < 0.5f / 255); k++)
+        empty |= (uint32_t)byte_of(request->empty[k]) << (8 * k);
+    fill_words(&t->colour, empty);
+    if (request->planes & PLANE_LIGHT)
+        fill_words(&t->light_st, NAN_WORD);
+    if (request->planes & PLANE_CURVATURE)
+        fill_words(&t->curvature, NAN_WORD);
+    if (request->planes & PLANE_LIGHT_CHANGE)
+        fill_words(&t->light_change, NAN_WORD);
+}
+
+static struct native_picture picture_of(const struct frame_request *request,
+                                        const struct light *light)
+{
+    const struct native_light_image *image =
+        (const struct native_light_image *)(const void *)light->pattern.image;
+    if (light->pattern.kind != PATTERN_IMAGE || !image)
+        return (struct native_picture){0};
+    struct native_picture picture = image->picture;
+    picture.repeats_s = light_image_repeats_s(request, light);
+    picture.repeats_t = light_image_repeats_t(request, light);
+    return picture;
+}
+
+/* The pixels that the edges' programs have listed, anew. */
+static void shade_listed(const struct native_drawing *d, struct native_bindings *b)
+{
+    const struct native_programs *programs = native_device_programs(d->device);
+    b->listed = list_of(d, NATIVE_EDGES);
+    run_program(d, programs->edges_shade, b, b->listed->n, EDGES_PER_WORKGROUP, NULL);
+    b->listed = list_of(d, NATIVE_HIGH_CURVATURE);
+    run_program(d, programs->high_curvature_shade, b, b->listed->n, LISTED_PER_WORKGROUP, NULL);
+    b->listed = list_of(d, NATIVE_ROUNDED);
+    b->max_rounded = tile_max_rounded(&d->place);
+    run_program(d, programs->rounded_shade, b, b->listed->n, ROUNDED_PER_WORKGROUP, NULL);
+}
+
+/* Counts in a list that the edges' programs are done with. */
+static void count_light(const struct native_drawing *d, struct native_bindings *b,
+                        struct native_share *share)
+{
+    const struct tile *in = &d->inside;
+    bool all = (uint64_t)in->width * in->height < SHARE_ALL_PX;
+    const int32_t inside[4] = {(int32_t)in->x, (int32_t)in->y, (int32_t)in->width,
+                               (int32_t)in->height};
+    memcpy(b->inside, inside, sizeof inside);
+    b->stride = all ? 1 : SHARE_STRIDE;
+    share->seen_px = share->met_px = 0;
+    share->met = list_of(d, NATIVE_FOUND_EDGES)->at;
+    run_program(d, native_device_programs(d->device)->share, b, b->groups->n, GROUPS_PER_WORKGROUP,
+                share);
+}
+
+/* Light i of those that are shown, over those behind it. */
+static void shade_light(const struct native_drawing *d, uint32_t i, struct native_share *share)
+{
+    const struct frame_request *request = d->request;
+    const struct native_programs *programs = native_device_programs(d->device);
+    const struct light *light = &request->lights[i];
+    const struct native_target *t = d->target;
+    struct light_block block;
+    struct native_array hits = {t->hits, (uint32_t)(t->n_hit_words / HIT_WORDS)};
+    struct native_bindings b = bindings_of(d);
+    b.RoundedHits = &hits;
+    light_block_fill(&block, request, i);
+    b.Light = &block;
+    b.line_family = (int32_t)request->lines.family;
+    b.light_kind = (int32_t)light->kind;
+    b.pattern_kind = (int32_t)light->pattern.kind;
+    b.is_soft = light->pattern.soft > 0;
+    b.is_filtered = !request->unfiltered;
+    b.picture = picture_of(request, light);
+    b.next_light = t->lights[i & 1];
+    b.next_missed = t->missed[i & 1];
+    b.behind_light = t->lights[~i & 1];
+    b.behind_missed = t->missed[~i & 1];
+    b.groups = list_of(d, NATIVE_SHADED_GROUPS);
+    run_program(d, programs->shade, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
+    if (request_has_coverage(request))
+        shade_listed(d, &b);
+    if (request_may_miss_light(request))
+        count_light(d, &b, share);
+    if (i == 0 && request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE))
+        run_program(d, programs->shade_planes, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
+}
+
+bool native_shade(const struct native_drawing *d, const struct frame_watch *watch,
+                  struct frame *frame, struct error *error)
+{
+    const struct frame_request *request = d->request;
+    bool any_seen = native_any_seen(d->target);
+    struct native_share share = {.seen_px = any_seen, .met_px = any_seen};
+    clear_planes(d);
+    for (uint32_t i = request->n_lights; i-- > 0;) {
+        if (!frame_watch_check(watch, error))
+            return false;
+        shade_light(d, i, &share);
+    }
+    if (request->count_light) {
+        frame->seen_px += share.seen_px;
+        frame->met_px += share.met_px;
+    }
+    return true;
+}

@@ -1,0 +1,33 @@
+/* Runs the programs of shaders/ over a target's pixels, by all threads of a device. Internal to the folder; the
+ * thread that has the device. */
+#ifndef SHEEN_RENDER_NATIVE_STAGES_H
+#define SHEEN_RENDER_NATIVE_STAGES_H
+
+#include "server/render/frame_watch.h"
+#include "server/render/light_block.h"
+#include "server/render/native/device_internal.h"
+
+/* A tile in the making. */
+struct native_drawing {
+    struct native_device *device;
+    struct native_target *target;
+    const struct native_shown *shown;
+    const struct frame_request *request;
+    struct view_block view;
+    struct tile place;  /* the part of the picture that the target holds */
+    struct tile inside; /* of that, the tile itself, without its margin */
+};
+
+/* After stage 2: what the other stages read of it beside its planes, and the groups of pixels near what is seen. */
+void native_find_groups(const struct native_drawing *drawing);
+/* Of the target: whether stage 1 has seen anything. */
+bool native_any_seen(const struct native_target *target);
+/* Lists the pixels that one sample cannot tell, finds where silhouettes run through them and meets their rays with
+ * the surface (shaders/edges.glsl). ERROR_SERVER when memory is short. */
+bool native_edges(const struct native_drawing *drawing, struct error *error);
+/* Stage 3, light by light. Adds to frame->seen_px and met_px where they are asked for. ERROR_SERVER once nobody waits
+ * or when memory is short. */
+bool native_shade(const struct native_drawing *drawing, const struct frame_watch *watch,
+                  struct frame *frame, struct error *error);
+
+#endif

@@ -1,0 +1,46 @@
+/* The planes and lists that a tile is drawn into. Internal to the folder; one owner. */
+#ifndef SHEEN_RENDER_NATIVE_TARGET_H
+#define SHEEN_RENDER_NATIVE_TARGET_H
+
+#include "server/base/error.h"
+#include "server/render/native/native.h"
+#include "server/render/native/programs/program.h"
+
+/* Words of a RoundedHit (shaders/rounded.glsl). */
+enum { HIT_WORDS = 8 };
+
+/* Lists of the target: groups of pixels near what is seen, those of them that are shaded, and pixels that are looked
+ * at more closely (shaders/edges.glsl). */
+enum native_list_of {
+    NATIVE_GROUPS,
+    NATIVE_SHADED_GROUPS,
+    NATIVE_RIMS,
+    NATIVE_FOUND_EDGES, /* before they are rechecked */
+    NATIVE_EDGES,
+    NATIVE_HIGH_CURVATURE,
+    NATIVE_ROUNDED,
+    NATIVE_LISTS
+};
+
+/* All zero before the first use. Planes have `width` words a row. */
+struct native_target {
+    uint32_t width, height;
+    struct native_planes planes; /* stage 2 */
+    struct native_image hit_depth, normal, shape, border, seen, seen_depth;
+    struct native_image silhouette, colour, coverage, light_st, curvature, light_change;
+    struct native_image lights[2], missed[2]; /* of frames of several lights */
+    struct native_list list[NATIVE_LISTS];
+    uint32_t *words; /* of all of them */
+    size_t n_words;
+    uint32_t *hits; /* of rounded pixels' rays */
+    size_t n_hit_words;
+};
+
+/* Gives the planes and empty lists the size of a tile; what they held is lost. ERROR_SERVER when memory is short. */
+bool native_target_reserve(struct native_target *target, uint32_t width, uint32_t height,
+                           struct error *error);
+/* Makes room for so many rays of RoundedHit (shaders/rounded.glsl). */
+bool native_target_reserve_hits(struct native_target *target, size_t n_rays, struct error *error);
+void native_target_finish(struct native_target *target);
+
+#endif

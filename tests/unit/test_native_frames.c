@@ -1,0 +1,222 @@
+/* The native device's pictures against those of the GL device: every line family, light and pattern. Both run the same
+ * shaders (shaders/lanes), so that what differs is rounding, and what each sees at a silhouette. */
+#include "server/render/native/device.h"
+#include "tests/unit/renderer_frames.h"
+
+enum { WIDTH = 200, HEIGHT = 150, PIXELS = WIDTH * HEIGHT };
+
+struct devices {
+    struct limit_tables tables;
+    struct renderer *renderer[2];
+    struct renderer_model *model[2];
+};
+
+static void open_devices(struct devices *devices, const char *path)
+{
+    const struct renderer_device *const kinds[2] = {&gl_device, &native_renderer_device};
+    const struct renderer_options options = {.device = "software"};
+    struct error error = {0};
+    build_file(path, &devices->tables);
+    for (int i = 0; i < 2; i++) {
+        devices->renderer[i] = renderer_create(kinds[i], &options, &error);
+        assert_non_null(devices->renderer[i]);
+        devices->model[i] = renderer_model_create(devices->renderer[i], &devices->tables, &error);
+        assert_non_null(devices->model[i]);
+    }
+}
+
+static void close_devices(struct devices *devices)
+{
+    for (int i = 0; i < 2; i++) {
+        renderer_model_destroy(devices->renderer[i], devices->model[i]);
+        renderer_destroy(devices->renderer[i]);
+    }
+    limit_tables_finish(&devices->tables);
+}
+
+/* Of two frames: pixels whose colours are further apart than one and than three steps, hits of one alone, and other
+ * faces. */
+struct difference {
+    int over_one, over_three, hits, faces, lights;
+};
+
+static int colour_step(const struct frame *a, const struct frame *b, int pixel)
+{
+    const uint8_t *p = (const uint8_t *)a->plane[0] + 4 * pixel;
+    const uint8_t *q = (const uint8_t *)b->plane[0] + 4 * pixel;
+    int most = 0;
+    for (int k = 0; k < 4; k++)
+        most = abs(p[k] - q[k]) > most ? abs(p[k] - q[k]) : most;
+    return most;
+}
+
+static struct difference compare(const struct frame *a, const struct frame *b)
+{
+    struct difference found = {0};
+    const uint32_t *face_a = a->plane[3], *face_b = b->plane[3];
+    const float *light_a = a->plane[4], *light_b = b->plane[4];
+    for (int i = 0; i < PIXELS; i++) {
+        int step = colour_step(a, b, i);
+        found.over_one += step > 1;
+        found.over_three += step > 3;
+        bool hit_a = face_a[3 * i] != UINT32_MAX, hit_b = face_b[3 * i] != UINT32_MAX;
+        found.hits += hit_a != hit_b;
+        found.faces += hit_a && hit_b && face_a[3 * i] != face_b[3 * i];
+        found.lights += isnan(light_a[2 * i]) != isnan(light_b[2 * i]);
+    }
+    return found;
+}
+
+static struct difference difference_of(struct devices *devices, const struct frame_request *request)
+{
+    struct frame frames[2];
+    for (int i = 0; i < 2; i++)
+        frames[i] = render(devices->renderer[i], devices->model[i], request);
+    struct difference found = compare(&frames[0], &frames[1]);
+    for (int i = 0; i < 2; i++)
+        frame_finish(&frames[i]);
+    return found;
+}
+
+/* Silhouettes and borders of Ptex faces may fall to either side of a pixel's centre, and a pixel at an edge may be one
+ * whose rays meet the surface on one device and none on the other. */
+static void assert_alike(const struct difference *found, const char *what)
+{
+    if (found->hits > PIXELS / 2000 || found->faces > PIXELS / 500 ||
+        found->lights > PIXELS / 500 || found->over_one > PIXELS / 500 ||
+        found->over_three > PIXELS / 1000)
+        fail_msg(
+            "%s: hits %d, faces %d, lights %d, colours by more than one step %d, than three %d",
+            what, found->hits, found->faces, found->lights, found->over_one, found->over_three);
+}
+
+static void test_families_and_lights(void **state)
+{
+    struct devices devices;
+    (void)state;
+    open_devices(&devices, "tests/models/body.obj");
+    for (int family = LINES_REFLECTION; family <= LINES_ENVIRONMENT; family++) {
+        for (int kind = LIGHT_RECTANGLE; kind <= LIGHT_SPHERE; kind++) {
+            struct frame_request request = request_for(&devices.tables, WIDTH, HEIGHT);
+            char what[64];
+            request.lines.family = (enum line_family)family;
+            request.lights[0].kind = (enum light_kind)kind;
+            scene_default_light(devices.tables.box_min, devices.tables.box_max, NULL,
+                                &request.lights[0]);
+            struct difference found = difference_of(&devices, &request);
+            snprintf(what, sizeof what, "family %d, light %d", family, kind);
+            assert_alike(&found, what);
+        }
+    }
+    close_devices(&devices);
+}
+
+static void test_patterns(void **state)
+{
+    struct devices devices;
+    (void)state;
+    open_devices(&devices, "tests/models/creases.obj");
+    for (int kind = PATTERN_STRIPES; kind <= PATTERN_DISTANCE; kind++) {
+        for (int soft = 0; soft < 2 && kind != PATTERN_IMAGE; soft++) {
+            struct frame_request request = request_for(&devices.tables, WIDTH, HEIGHT);
+            struct pattern *pattern = &request.lights[0].pattern;
+            char what[64];
+            pattern->kind = (enum pattern_kind)kind;
+            pattern->soft = 0.4 * soft;
+            pattern->width = 0.02;
+            pattern->n_at = 3;
+            for (uint32_t i = 0; i < pattern->n_at; i++)
+                pattern->at[i] = 0.3 + 0.2 * i;
+            struct difference found = difference_of(&devices, &request);
+            snprintf(what, sizeof what, "pattern %d, soft %d", kind, soft);
+            assert_alike(&found, what);
+        }
+    }
+    close_devices(&devices);
+}
+
+static void test_one_sample_and_several_lights(void **state)
+{
+    struct devices devices;
+    (void)state;
+    open_devices(&devices, "tests/models/fender.obj");
+    struct frame_request request = request_for(&devices.tables, WIDTH, HEIGHT);
+    request.unfiltered = true;
+    struct difference found = difference_of(&devices, &request);
+    assert_alike(&found, "one sample a pixel");
+    request.unfiltered = false;
+    request.n_lights = 3;
+    for (uint32_t i = 1; i < request.n_lights; i++) {
+        request.lights[i] = request.lights[0];
+        request.lights[i].kind = i == 1 ? LIGHT_TUNNEL : LIGHT_SPHERE;
+        request.lights[i].pattern.rotation_deg = 30 * i;
+        scene_default_light(devices.tables.box_min, devices.tables.box_max, NULL,
+                            &request.lights[i]);
+    }
+    request.lights[0].pattern.background[3] = 0;
+    request.lights[1].pattern.foreground[3] = 0.5f;
+    found = difference_of(&devices, &request);
+    assert_alike(&found, "three lights");
+    close_devices(&devices);
+}
+
+/* A frame in tiles, and one whose view is kept, against a new one: the same but for rounding, and bit by bit. */
+static void test_tiles_and_kept_planes(void **state)
+{
+    struct devices devices;
+    (void)state;
+    open_devices(&devices, "tests/models/creases.obj");
+    struct frame_request request = request_for(&devices.tables, WIDTH, HEIGHT);
+    struct frame whole = render(devices.renderer[1], devices.model[1], &request), tiled, again;
+    struct frame_work work = {.request = &request, .tile_px = 1};
+    struct error error = {0};
+    struct frame_request other = request;
+    other.lights[0].pattern.count = 7;
+    struct frame changed = render(devices.renderer[1], devices.model[1], &other);
+    again = render(devices.renderer[1], devices.model[1], &request);
+    assert_memory_equal(whole.plane[0], again.plane[0], 4 * PIXELS);
+    assert_memory_not_equal(whole.plane[0], changed.plane[0], 4 * PIXELS);
+    other.camera.fov_deg *= 0.5;
+    frame_finish(&changed);
+    changed = render(devices.renderer[1], devices.model[1], &other); /* another view */
+    assert_true(renderer_begin(devices.renderer[1], &work, &tiled, &error));
+    int steps = 1;
+    while (renderer_step(devices.renderer[1], devices.model[1], &work, &tiled, &error) ==
+           FRAME_MORE)
+        steps++;
+    assert_true(steps > 1);
+    struct difference found = compare(&whole, &tiled);
+    assert_alike(&found, "tiles");
+    frame_finish(&whole);
+    frame_finish(&tiled);
+    frame_finish(&again);
+    frame_finish(&changed);
+    close_devices(&devices);
+}
+
+static void test_polygons_are_refused(void **state)
+{
+    struct devices devices;
+    struct error error = {0};
+    struct frame frame;
+    (void)state;
+    open_devices(&devices, "tests/models/fender.obj");
+    struct frame_request request = request_for(&devices.tables, WIDTH, HEIGHT);
+    request.surface = (struct surface){SURFACE_POLYGON, 1};
+    assert_false(renderer_render(devices.renderer[1], devices.model[1], &request, &frame, &error));
+    assert_int_equal(error.kind, ERROR_REQUEST);
+    assert_non_null(strstr(error.text, "polygons"));
+    close_devices(&devices);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_families_and_lights),
+        cmocka_unit_test(test_patterns),
+        cmocka_unit_test(test_one_sample_and_several_lights),
+        cmocka_unit_test(test_tiles_and_kept_planes),
+        cmocka_unit_test(test_polygons_are_refused),
+    };
+    return cmocka_run_group_tests_name("native_frames", tests, NULL, NULL);
+}
