@@ -172,7 +172,7 @@ void native_patch_make(const struct limit_tables *tables, uint32_t node, uint32_
     struct vec points[16], corner[4];
     patch_at(tables, &tables->nodes[node], index, &from);
     double scale = limit_patch_points(&from, points), inverse = 1 / scale, value[3][4];
-    *patch = (struct native_patch){.scale = (float)scale};
+    *patch = (struct native_patch){.scale = (float)scale, .inverse_scale = (float)inverse};
     for (int k = 0; k < 3; k++) {
         double p[16], c[4][4];
         for (int i = 0; i < 16; i++)

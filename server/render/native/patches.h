@@ -21,10 +21,10 @@ enum { NATIVE_MAX_THREADS = 64 };
 struct native_patch {
     /* Its corners (0,0) (1,0) (0,1) (1,1) relative to the node's origin: x, y, z of each, world. */
     float corner[3][4];
-    float scale; /* a power of two that the coefficients are divided by */
+    float scale, inverse_scale; /* a power of two that the coefficients are divided by */
     /* At least |Sss| + 2 |Sst| + |Stt| anywhere on it, divided by scale. */
     float bend;
-    float unused[2];
+    float unused;
     /* c[k][j][i] is the coefficient of s^i t^j of coordinate k in the node's frame. */
     float c[3][4][4];
 };

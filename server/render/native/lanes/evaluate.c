@@ -47,7 +47,7 @@ static void place_piece(const struct native_frame *frame, const struct native_ti
     double q_x = x_px - frame->view->centre_px[0], q_y = y_px - frame->view->centre_px[1];
     double slope = frame->view->perspective ? frame->view->units_per_px : 0;
     double start = frame->view->perspective ? 0 : frame->view->units_per_px;
-    double inverse = 1 / (double)patch->scale;
+    double inverse = (double)patch->inverse_scale;
     int level = piece->level, scale_x = node->kind == LIMIT_CORNER ? level : 0;
     int scale_y = node->kind == LIMIT_REGULAR ? 0 : level;
     place->c = patch->c;
@@ -251,15 +251,37 @@ LANE_INLINE unsigned solve(const struct native_frame *frame, struct native_tile_
     return lanes & ~good;
 }
 
+/* Lists the pieces that some pixel shows, in the place of `order`. Returns how many. */
+static size_t list_shown(struct native_tile_room *room)
+{
+    size_t n = 0;
+    for (uint32_t l = 0; l < room->n_local; l++)
+        if (room->count[l] != room->count[l + 1])
+            room->order[n++] = l;
+    return n;
+}
+
+/* Pieces and their patches lie anywhere in memory: they are fetched some time before. */
+static void fetch_ahead(const struct native_tile_room *room, size_t i, size_t n)
+{
+    enum { PIECE_AHEAD = 8, PATCH_AHEAD = 3 };
+    if (i + PIECE_AHEAD < n)
+        __builtin_prefetch(room->local[room->order[i + PIECE_AHEAD]]);
+    const struct native_patch *patch =
+        i + PATCH_AHEAD < n ? room->local[room->order[i + PATCH_AHEAD]]->patch : NULL;
+    for (int line = 0; patch && line < 4; line++)
+        __builtin_prefetch((const char *)patch + 64 * line);
+}
+
 void LANE_NAME(native_evaluate)(const struct native_frame *frame, struct native_tile_room *room)
 {
     struct piece_view view;
     memset(&view, 0, sizeof view);
-    for (size_t l = 0; l < room->n_local; l++) {
-        uint32_t i = room->count[l], end = room->count[l + 1];
+    size_t n = list_shown(room);
+    for (size_t k = 0; k < n; k++) {
+        uint32_t l = room->order[k], i = room->count[l], end = room->count[l + 1];
         const struct native_piece *piece = room->local[l];
-        if (i == end)
-            continue;
+        fetch_ahead(room, k, n);
         if (piece->kind != PIECE_OF_PATCH) { /* each pixel has a sub-patch of its own */
             for (; i < end; i++)
                 room->stray[room->n_strays++] = room->pixel[i];

@@ -46,13 +46,14 @@ static void set_coefficients(struct lanes *lanes, int lane, const struct native_
         for (int i = 0; i < 16; i++)
             lanes->c[k][i / 4][i % 4][lane] = patch->c[k][i / 4][i % 4];
     set(&lanes->place.scale, lane, (double)patch->scale);
+    set(&lanes->place.inverse_scale, lane, (double)patch->inverse_scale);
     set(&lanes->place.bend, lane, (double)patch->bend);
 }
 
 /* At the vertex of a CORNER the surface is its tangent plane; where it has none, a plane across the
  * view. `turned`: the view's axes in the node's frame. */
 static void set_vertex(const struct native_frame *frame, struct lanes *lanes, int lane,
-                       const struct limit_node *node, float turned[3][3])
+                       const struct limit_node *node, const float turned[3][3])
 {
     const float *head = frame->model->tables->texels[node->first + 1];
     bool has_normal = !(node->levels & LIMIT_NO_NORMAL);
@@ -64,6 +65,7 @@ static void set_vertex(const struct native_frame *frame, struct lanes *lanes, in
         lanes->c[k][1][0][lane] = has_normal ? k == 1 : turned[1][k];
     }
     set(&lanes->place.scale, lane, (double)head[levels - 1]); /* texels follow each other */
+    set(&lanes->place.inverse_scale, lane, 1 / (double)head[levels - 1]);
     set(&lanes->place.bend, lane, 0);
 }
 
@@ -71,18 +73,17 @@ static void set_vertex(const struct native_frame *frame, struct lanes *lanes, in
 static void set_lane(const struct native_frame *frame, struct native_tile_room *room,
                      struct lanes *lanes, int lane, uint32_t node_index,
                      const struct native_part_of_node *part, const struct native_patch *patch,
-                     const double at_px[2], struct native_seen_node *seen)
+                     const double at_px[2], const struct native_seen_node *seen)
 {
     const struct limit_node *node = &frame->model->tables->nodes[node_index];
     const struct view *view = frame->view;
     struct each_place *place = &lanes->place;
-    native_see_node(frame, node, seen);
     if (part->at_vertex)
-        set_vertex(frame, lanes, lane, node, seen->camera);
+        set_vertex(frame, lanes, lane, node, (const float(*)[3])seen->camera);
     else
         set_coefficients(lanes, lane,
                          patch ? patch : find_patch(frame, room, node_index, part->index));
-    double inverse = 1 / (double)place->scale[lane];
+    double inverse = (double)place->inverse_scale[lane];
     double q_x = (at_px[0] - view->centre_px[0]) * view->units_per_px;
     double q_y = (at_px[1] - view->centre_px[1]) * view->units_per_px;
     double slope_x = view->perspective ? q_x : 0, start_x = q_x - slope_x;
@@ -109,6 +110,7 @@ static void set_met(const struct native_frame *frame, struct native_tile_room *r
     struct native_seen_node seen;
     struct native_borders borders;
     double x0 = met->part.origin_x, y0 = met->part.origin_y;
+    native_see_node(frame, node, &seen);
     set_lane(frame, room, lanes, lane, met->node, &met->part, NULL, at_px, &seen);
     native_borders_of(node, &borders);
     if (met->part.at_vertex) { /* s and t are those of the tangent plane */
@@ -122,7 +124,6 @@ static void set_met(const struct native_frame *frame, struct native_tile_room *r
     }
     for (int i = 0; i < 9; i++)
         set(&place->axes[i / 3][i % 3], lane, (double)seen.axes[i / 3][i % 3]);
-    set(&place->inverse_scale, lane, 1 / (double)place->scale[lane]);
     set(&place->lost, lane, seen.is_turned ? 1e-13 : 1e-8);
     set(&place->up_x, lane, native_power(met->part.scale_x));
     set(&place->up_y, lane, native_power(met->part.scale_y));
@@ -258,9 +259,13 @@ static uint32_t meet_lanes(const struct native_frame *frame, struct native_tile_
     struct lanes lanes;
     struct outcome outcome;
     float s[LANES], t[LANES], px[LANES];
-    for (int k = 0; k < LANES; k++) { /* lanes without a task do what the first does */
-        const struct native_task *task = &room->task[which[k < n ? k : 0]];
-        struct native_seen_node seen;
+    struct native_seen_node seen;
+    uint32_t seen_node = UINT32_MAX;  /* tasks that follow each other often have one node */
+    for (int k = 0; k < LANES; k++) { /* lanes without a task do what the last one does */
+        const struct native_task *task = &room->task[which[k < n ? k : n - 1]];
+        if (task->node != seen_node)
+            native_see_node(frame, &frame->model->tables->nodes[task->node], &seen);
+        seen_node = task->node;
         set_lane(frame, room, &lanes, k, task->node, &task->part, task->patch, task->at_px, &seen);
         s[k] = task->s;
         t[k] = task->t;

@@ -182,8 +182,12 @@ static bool list_local(const struct native_frame *frame, struct native_tile_room
 static void see(const struct native_frame *frame, struct native_tile_room *room)
 {
     memset(room->nearness, 0, sizeof room->nearness);
-    for (size_t k = 0; k < room->n_local; k++)
+    for (size_t k = 0; k < room->n_local; k++) {
+        enum { AHEAD = 10 }; /* quads lie anywhere in memory */
+        if (k + AHEAD < room->n_local)
+            __builtin_prefetch(room->quad[k + AHEAD]);
         LANE_NAME(native_raster)(room, &frame->thread[room->order[k]], room->quad[k], (int)k);
+    }
 }
 
 /* A counting sort of the wanted pixels that show something by their pieces. */
