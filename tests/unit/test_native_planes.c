@@ -15,6 +15,7 @@
 #include "server/render/native/native.h"
 #include "server/render/native/patches.h"
 #include "server/render/native/sets.h"
+#include "server/render/native/tile.h"
 #include "server/surface/evaluate.h"
 #include "tests/unit/gap_scene.h"
 #include "tests/unit/renderer_frames.h"
@@ -662,6 +663,57 @@ static void test_sets(void **state)
 
 /* --- what is rare */
 
+/* A node's place on its edge, so far outside of it. */
+static void place_on_edge(int edge, double along, double outside, double *x, double *y)
+{
+    const double xs[4] = {along, 1 + outside, along, -outside};
+    const double ys[4] = {-outside, along, 1 + outside, along};
+    *x = xs[edge];
+    *y = ys[edge];
+}
+
+static struct vec surface_at(const struct limit_tables *tables, uint32_t node, double x, double y)
+{
+    const struct limit_place place = {node, tables->nodes[node].rotation, x, y};
+    struct limit_point p = {0};
+    assert_true(limit_evaluate_at(tables, &place, &p));
+    return p.s;
+}
+
+/* A step over any edge of any node leads to the surface beside it. */
+static void test_walk(void **state)
+{
+    (void)state;
+    const double OUTSIDE = 1e-6;
+    size_t n_crossed = 0;
+    for (size_t m = 0; m < N_MODELS; m++) {
+        struct limit_tables tables = {0};
+        build_file(MODELS[m], &tables);
+        for (uint32_t i = 0; i < tables.n_nodes; i++) {
+            int kind = tables.nodes[i].kind;
+            if (kind != LIMIT_REGULAR && kind != LIMIT_CORNER && kind != LIMIT_STRIP)
+                continue;
+            double size = (double)tables.bounds[tables.bound_first[i]].radius;
+            for (int k = 0; k < 8; k++) {
+                uint32_t node = i;
+                double x, y, along = k < 4 ? 0.3 : 0.8;
+                place_on_edge(k & 3, along, 0, &x, &y);
+                struct vec from = surface_at(&tables, i, x, y);
+                place_on_edge(k & 3, along, OUTSIDE, &x, &y);
+                if (!native_walk(&tables, &node, &x, &y))
+                    continue;
+                n_crossed += node != i;
+                double away = vec_length(vec_sub(surface_at(&tables, node, x, y), from));
+                if (!(away < 1e-4 * size))
+                    fail_msg("%s: over edge %d of node %u at %g lies node %u, %g of a node away",
+                             MODELS[m], k & 3, i, along, node, away / size);
+            }
+        }
+        limit_tables_finish(&tables);
+    }
+    assert_true(n_crossed > 10000);
+}
+
 /* Pixels that look between two borders a third of a pixel apart show the wall behind. */
 static void test_gap(void **state)
 {
@@ -819,8 +871,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_exact),   cmocka_unit_test(test_borders), cmocka_unit_test(test_gl),
         cmocka_unit_test(test_threads), cmocka_unit_test(test_tiles),   cmocka_unit_test(test_sets),
-        cmocka_unit_test(test_gap),     cmocka_unit_test(test_tip),     cmocka_unit_test(test_zoom),
-        cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_walk),    cmocka_unit_test(test_gap),     cmocka_unit_test(test_tip),
+        cmocka_unit_test(test_zoom),    cmocka_unit_test(test_refuses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

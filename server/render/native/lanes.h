@@ -102,6 +102,9 @@ LANE_INLINE vint v_truncate(vfloat a)
 #if defined __x86_64__ && LANES == 16
 #include <immintrin.h>
 typedef __mmask16 vmask;
+/* Intrinsics with a mask name what the other lanes are; those without leave that undefined, of which
+ * some compilers of C++ warn. */
+#define V_ALL ((__mmask16)0xffff)
 
 LANE_INLINE vmask v_less(vfloat a, vfloat b)
 {
@@ -145,32 +148,33 @@ LANE_INLINE vmask v_mask(unsigned bits)
 
 LANE_INLINE vfloat v_min(vfloat a, vfloat b)
 {
-    return (vfloat)_mm512_min_ps((__m512)a, (__m512)b);
+    return (vfloat)_mm512_mask_min_ps((__m512)a, V_ALL, (__m512)a, (__m512)b);
 }
 
 LANE_INLINE vfloat v_max(vfloat a, vfloat b)
 {
-    return (vfloat)_mm512_max_ps((__m512)a, (__m512)b);
+    return (vfloat)_mm512_mask_max_ps((__m512)a, V_ALL, (__m512)a, (__m512)b);
 }
 
 LANE_INLINE vfloat v_sqrt(vfloat a)
 {
-    return (vfloat)_mm512_sqrt_ps((__m512)a);
+    return (vfloat)_mm512_mask_sqrt_ps((__m512)a, V_ALL, (__m512)a);
 }
 
 LANE_INLINE vint v_round(vfloat a)
 {
-    return (vint)_mm512_cvtps_epi32((__m512)a);
+    return (vint)_mm512_mask_cvtps_epi32((__m512i)a, V_ALL, (__m512)a);
 }
 
 LANE_INLINE vfloat v_gather(const float *p, vint at)
 {
-    return (vfloat)_mm512_i32gather_ps((__m512i)at, p, 4);
+    return (vfloat)_mm512_mask_i32gather_ps((__m512)at, V_ALL, (__m512i)at, p, 4);
 }
 
 LANE_INLINE vint v_load_u16(const uint16_t *p)
 {
-    return (vint)_mm512_cvtepu16_epi32(_mm256_loadu_si256((const __m256i *)(const void *)p));
+    return (vint)_mm512_maskz_cvtepu16_epi32(V_ALL,
+                                             _mm256_loadu_si256((const __m256i *)(const void *)p));
 }
 
 #else /* the mask is an integer vector, all bits of a lane alike */

@@ -60,10 +60,11 @@ const struct native_programs *native_device_programs(const struct native_device 
 void native_device_run(struct native_device *device, void (*work)(void *owner, unsigned number),
                        void *owner);
 
-/* Draws a tile of the picture. A pixel through whose gap narrower than itself shows what triangles
- * hid (shaders/gaps.comp.glsl) is found where the pixels on both sides lie in the tile: so tiles
- * are to be drawn with a margin of a pixel at least. ERROR_REQUEST when the view takes too many
- * vertices (patch_grids.h), ERROR_SERVER when memory is short. `times` may be NULL. */
+/* Draws a tile of the picture: not empty, inside the picture, which is at most 65,535 px wide and
+ * high. A pixel that looks through a gap narrower than itself (shaders/gaps.comp.glsl) is found
+ * where the pixels on both sides of it lie in the tile, so tiles of a larger picture need a margin
+ * of a pixel. ERROR_REQUEST when the view takes too many vertices (patch_grids.h), ERROR_SERVER when
+ * memory is short. `times` may be NULL. */
 bool native_draw(struct native_device *device, struct native_model *model, const struct view *view,
                  const struct tile *tile, const struct native_planes *planes,
                  struct native_times *times, struct error *error);
