@@ -115,9 +115,9 @@ static void draw(struct native_device *device, struct native_model *model,
 
 /* --- cameras */
 
-enum look { PLAIN, ORTHOGRAPHIC, CLOSE, CLOSE_ORTHOGRAPHIC, INSIDE, FAR, TOP, N_LOOKS };
+enum look { PLAIN, ORTHOGRAPHIC, CLOSE, CLOSE_ORTHOGRAPHIC, INSIDE, HALF, FAR, TOP, N_LOOKS };
 static const char *const LOOK_NAMES[N_LOOKS] = {
-    "plain", "orthographic", "close", "close orthographic", "inside", "far", "top"};
+    "plain", "orthographic", "close", "close orthographic", "inside", "half", "far", "top"};
 
 static void move_eye(struct camera *camera, double factor)
 {
@@ -158,6 +158,11 @@ static struct camera camera_for(const struct limit_tables *tables, enum look loo
     if (look == INSIDE) { /* surface reaches behind the eye */
         move_eye(&camera, 0.02);
         camera.fov_deg = 90;
+    }
+    if (look == HALF) { /* what lies behind the eye is not seen */
+        camera.kind = CAMERA_ORTHOGRAPHIC;
+        camera.ortho_height = size;
+        move_eye(&camera, 1e-3);
     }
     if (look == FAR) {
         move_eye(&camera, 1e5);

@@ -132,6 +132,13 @@ static bool is_plain(const struct native_rays *rays, const struct reach *r)
            r->y0 > -FARTHEST_PX && r->y1 < FARTHEST_PX;
 }
 
+static bool is_looked_at(const struct tile *around, const int box[4])
+{
+    return box[0] <= box[2] && box[1] <= box[3] && box[2] >= (int)around->x &&
+           box[0] < (int)(around->x + around->width) && box[3] >= (int)around->y &&
+           box[1] < (int)(around->y + around->height);
+}
+
 /* The pixels whose centres a box may hold, cut to the picture's. False where it holds none of those
  * that are looked at. */
 static bool pixels_of(const struct native_frame *frame, const struct reach *r, int box[4])
@@ -144,9 +151,7 @@ static bool pixels_of(const struct native_frame *frame, const struct reach *r, i
     box[1] = y0 < 0 ? 0 : y0;
     box[2] = x1 < width ? x1 : width - 1;
     box[3] = y1 < height ? y1 : height - 1;
-    return box[0] <= box[2] && box[1] <= box[3] && box[2] >= (int)around->x &&
-           box[0] < (int)(around->x + around->width) && box[3] >= (int)around->y &&
-           box[1] < (int)(around->y + around->height);
+    return is_looked_at(around, box);
 }
 
 /* --- */
@@ -243,8 +248,8 @@ static int draw_piece(const struct native_frame *frame, struct native_thread *th
         *quad =
             (struct native_quad){.grid = QUAD_TRIANGLES, .first = (uint32_t)thread->n_triangles};
         int n = native_cut_piece(frame, thread, piece, grid, box, nearest);
-        if (n <= 0)
-            return n;
+        if (n <= 0 || !is_looked_at(&frame->around, box))
+            return n < 0 ? n : 0;
         quad->n_triangles = (uint16_t)n;
     }
     quad->x0 = piece->x0 = (uint16_t)box[0];
