@@ -2,9 +2,9 @@
  * store, for memory, for its turn, for the render thread and for the encoder, and then tells its
  * client's session.
  *
- * A request owns itself. It ends after its reply. When it is answered before its time (replaced,
- * cancelled, late) or its client has gone, it ends as soon as nobody works for it any more. Which
- * states it passes is in request_state.h. Thread: the loop's. */
+ * A request frees itself after its reply. When it is answered early (replaced, cancelled, late) or
+ * its client has gone, it frees itself as soon as no thread and no build works for it any more.
+ * request_state.h lists the states of a request. Thread: the loop's. */
 #ifndef SHEEN_FRAME_REQUEST_H
 #define SHEEN_FRAME_REQUEST_H
 
@@ -21,7 +21,7 @@ LIST_HEAD(request_list, request);
 
 struct reply; /* where a client's session keeps what it owes to one request: known there alone */
 
-/* What all requests share; outlives them. */
+/* What all requests share. It outlives all requests. */
 struct request_host {
     struct pool *pool;
     struct render_thread *render_thread;
@@ -35,7 +35,7 @@ struct request_host {
 
     struct scheduler scheduler;
     struct costs costs;
-    struct request_list parked; /* they wait for memory that other frames have */
+    struct request_list parked; /* requests that wait for memory of other frames */
     unsigned n_file_loads;      /* files being read from the folder */
 };
 
@@ -70,9 +70,9 @@ struct request_client {
     struct request_list requests; /* not yet answered */
 };
 
-/* All other members have been set. */
+/* Sets `queue` and `requests`; the caller has set all other members. */
 void request_client_init(struct request_client *client);
-/* The client goes away: lets go of all its requests. */
+/* The client has gone: gives up all its requests. */
 void request_client_finish(struct request_client *client);
 
 /* The class of a message's number. */
@@ -92,12 +92,12 @@ void request_render(struct request_client *client, struct reply *reply, uint32_t
 
 /* Answers the request of this number ERROR_CANCELLED, if it has not been answered. */
 void request_cancel(struct request_client *client, uint32_t seq);
-/* The same for all of the client's. */
+/* Answers all requests of the client ERROR_CANCELLED. */
 void request_cancel_all(struct request_client *client);
 /* Answers all of the client's ERROR_SHUTTING_DOWN: the daemon's time to finish them, so many
  * seconds, is over. */
 void request_shut_down_all(struct request_client *client, uint64_t drain_s);
-/* Answers those whose time is over ERROR_DEADLINE. */
+/* Answers the client's requests whose deadline has passed ERROR_DEADLINE. */
 void request_end_late(struct request_client *client, uint64_t now_us);
 /* The client's socket has taken its interactive frame: the next that is ready goes. */
 void request_send_held(struct request_client *client);
