@@ -32,10 +32,10 @@ void account_init(struct account *account, struct account *parent, uint64_t limi
 
 /* Charges bytes, here and in all accounts above. The caller knows that they fit. */
 void account_charge(struct account *account, enum account_class class, uint64_t bytes);
-/* Takes back what was charged to this very account. */
+/* Takes back bytes that were charged to this account itself, not to one below it. */
 void account_refund(struct account *account, enum account_class class, uint64_t bytes);
 
-/* Of all classes. */
+/* The bytes in use of all classes together. */
 uint64_t account_used(const struct account *account);
 /* How many bytes more this account's own limit allows. */
 uint64_t account_room(const struct account *account);

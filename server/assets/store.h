@@ -110,7 +110,7 @@ struct asset *store_find(struct store *store, const uint8_t owner[static STORE_O
 /* Would the asset's file be read in the same way under this name? The ending of a name tells the
  * format. A file that has not been read yet, or could not be, may be good under another name. */
 bool store_is_known_as(const struct asset *asset, const char *name);
-/* From now on everybody may use it. */
+/* From now on every client may use the asset. */
 void store_share(struct asset *asset);
 
 /* The root of all accounts, whose limit is the memory budget. */
