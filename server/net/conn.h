@@ -40,7 +40,7 @@ struct conn_handler {
 
 /* How bytes move: over the plain socket, or TLS (conn_tls.h). */
 struct conn_transport {
-    /* As read() and sendmsg(). */
+    /* Results and errno as those of read() and sendmsg(). */
     ssize_t (*read)(struct conn *conn, void *bytes, size_t size);
     ssize_t (*write)(struct conn *conn, struct iovec *pieces, size_t n);
     /* Does the transport hold bytes for read() that the socket no longer reports? */
@@ -88,7 +88,7 @@ struct conn {
  * *sent_bytes is counted up by what is sent. */
 bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_handler *handler,
                void *owner, uint64_t *sent_bytes, struct error *error);
-/* Closes at once and gives all unsent blocks back. */
+/* Closes the connection at once and releases all unsent blocks. */
 void conn_finish(struct conn *conn);
 
 /* Closes a socket that gets no conn, after up to `size` bytes: what the socket does not take at once
@@ -107,7 +107,7 @@ void conn_flush(struct conn *conn);
 /* Stops and resumes input. After resuming, messages already read wait for conn_deliver(). */
 void conn_hold(struct conn *conn, bool held);
 void conn_deliver(struct conn *conn);
-/* Gives back the memory that long messages took, if there is none in it. */
+/* Frees the large input buffer that a long message needed, unless it still holds input. */
 void conn_trim(struct conn *conn);
 
 void conn_close_after_flush(struct conn *conn);
