@@ -15,7 +15,7 @@
 
 /* What the device keeps of a frame between two steps. The first member of a device's own struct. */
 struct frame_state {
-    /* Frees it. Any thread, also when the renderer has gone. */
+    /* Frees the state. Any thread, also after the renderer was destroyed. */
     void (*destroy)(struct frame_state *state);
 };
 

@@ -48,9 +48,9 @@ struct renderer_info {
 
 /* Opens a device. NULL with ERROR_DEVICE when there is none, saying what was found.
  *
- * The device may go. The tile that it was at fails with ERROR_GPU_LOST. What is called next opens
- * the same device again; models and images are put there again when they are drawn next, and frames
- * go on with their next tile. */
+ * The device may be lost. Then the tile that it was drawing fails with ERROR_GPU_LOST, and the next
+ * call opens the same device again. Models and images are put on it again when they are next drawn,
+ * and frames go on with their next tile. */
 struct renderer *renderer_create(const struct renderer_device *device,
                                  const struct renderer_options *options, struct error *error);
 void renderer_destroy(struct renderer *renderer); /* NULL is safe */
@@ -135,7 +135,7 @@ enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *
  * been filled in. */
 void frame_work_finish(struct frame_work *work);
 
-/* Begin and all steps at once. */
+/* Calls renderer_begin() and then renderer_step() until the frame is whole or has failed. */
 bool renderer_render(struct renderer *renderer, struct renderer_model *model,
                      const struct frame_request *request, struct frame *frame, struct error *error);
 

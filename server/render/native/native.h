@@ -41,7 +41,7 @@ struct native_planes {
     uint32_t *where;  /* and the place on it as shaders/visibility.frag.glsl packs it */
 };
 
-/* Of a frame: the processor's time of all threads together. */
+/* Processor time of each step of one frame, summed over all threads. */
 struct native_times {
     uint64_t choose_us, quads_us, raster_us, sort_us, evaluate_us, retry_us, copy_us, gaps_us;
 };
@@ -54,7 +54,7 @@ void native_device_destroy(struct native_device *device); /* NULL is safe */
 /* The instruction set: "AVX-512" and so on. */
 const char *native_device_name(const struct native_device *device);
 unsigned native_device_threads(const struct native_device *device);
-/* What shaders/ says, in its instruction set. */
+/* The programs made of shaders/, compiled for the device's instruction set. */
 const struct native_programs *native_device_programs(const struct native_device *device);
 /* Every thread of the device calls work(owner, its number); returns when all have come back. */
 void native_device_run(struct native_device *device, void (*work)(void *owner, unsigned number),
