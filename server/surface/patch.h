@@ -26,7 +26,7 @@ struct limit_place {
 /* One patch and a place on it. */
 struct limit_patch {
     const struct limit_node *node;
-    struct bicubic_texels points; /* all kinds of today hold bicubic patches */
+    struct bicubic_texels points; /* every present kind of node holds bicubic patches */
     double s, t;                  /* the place by the patch's own parameters, in [0,1] */
     int level_x, level_y; /* s and t run 2^level times faster than the node's local x and y */
     unsigned turn;        /* local x, y are the place's a, b seen from so many corners on */
@@ -61,7 +61,7 @@ struct limit_bound limit_patch_bound(const struct limit_tables *tables,
                                      const struct limit_patch *patch, struct limit_square part,
                                      const struct vec *unseen, double centre[3]);
 
-/* A vector turned by the frame of a CORNER into the world. */
+/* Turns a vector from the frame of a CORNER node into the world. */
 struct vec limit_turn_to_world(const struct limit_tables *tables, const struct limit_node *node,
                                struct vec v);
 
