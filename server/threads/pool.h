@@ -22,7 +22,7 @@ struct pool_context {
 
 enum pool_urgency {
     POOL_URGENT, /* an interactive frame waits for it: before all others */
-    POOL_SOON,   /* another frame does */
+    POOL_SOON,   /* a frame that is not interactive waits for it */
     POOL_LATER,  /* building tables, decoding images */
 };
 enum { POOL_URGENCIES = 3 };
