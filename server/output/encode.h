@@ -1,5 +1,5 @@
-/* A rendered frame turned into the bytes that the client asked for: on the pool; EXR and TIFF by a
- * worker process.
+/* Turns a rendered frame into the bytes that the client asked for. The pool's threads encode it;
+ * EXR and TIFF files are encoded by a worker process.
  * Thread: the loop's, for all functions here. */
 #ifndef SHEEN_OUTPUT_ENCODE_H
 #define SHEEN_OUTPUT_ENCODE_H

@@ -8,7 +8,7 @@
 
 #include "server/threads/workers.h"
 
-/* Pictures that are lower have no legend, nor have those that it is too wide for. */
+/* A picture of less height, or too narrow for the legend, has none. */
 #define LEGEND_MIN_HEIGHT_PX 120
 #define LEGEND_MAX_MARKS 5
 

@@ -54,7 +54,7 @@ bool png_strip_encode(struct png_encoder *encoder, const struct strip_layout *la
 uint32_t png_checksum(uint32_t before, const struct strip_layout *layout, size_t index,
                       bool has_alpha, uint32_t strip);
 
-/* What to allocate for the head, in bytes: strip_head_bound() of its length. */
+/* The bytes to allocate for the head: strip_head_bound() of the head's length. */
 size_t png_head_bound(const struct image_attribute *attributes, size_t n_attributes);
 
 /* Writes the head and returns its length. An attribute's name has 1 to 79 bytes. */

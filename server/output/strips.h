@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Strip i has the rows from i * rows on, the last one what is left. */
+/* Strip i begins at row i * rows; the last strip has the rows that are left. */
 struct strip_layout {
     uint32_t width_px, height_px;
     uint32_t rows; /* of each strip but the last */
