@@ -1,4 +1,4 @@
-/* How often the GPU has been lost lately: often enough, and the process had better start anew.
+/* Counts how often the GPU has been lost lately. After too many losses the process should restart.
  * Thread: the loop's. */
 #ifndef SHEEN_OPS_GPU_LOSS_LOG_H
 #define SHEEN_OPS_GPU_LOSS_LOG_H
@@ -15,8 +15,8 @@ struct gpu_loss_log {
     uint32_t n;                     /* ever */
 };
 
-/* Takes one in. True when it is the `most`-th (up to GPU_LOSSES_MAX; 0: never) within the window.
- */
+/* Records one loss. True when it is the `most`-th (up to GPU_LOSSES_MAX; 0: never) within the
+ * window. */
 bool gpu_loss_log_add(struct gpu_loss_log *log, uint64_t now_us, uint64_t most);
 
 #endif

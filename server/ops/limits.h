@@ -1,4 +1,4 @@
-/* Every number that a client or an administrator can run into, in one table: the options of the
+/* Every limit that a client or an administrator can meet, in one table: the options of the
  * command line, --help and the configuration file read it. Each room declares the numbers that it
  * needs; here they are put together. What the protocol fixes for both sides is in
  * protocol/limits.h.
@@ -39,7 +39,7 @@ struct limits_row {
 extern const struct limits_row LIMITS[];
 extern const size_t N_LIMITS;
 
-/* All at their defaults. */
+/* Sets all limits to their defaults. */
 void limits_init(struct limits *limits);
 
 /* A value as people write it. ERROR_REQUEST names the row, the value and the range. */

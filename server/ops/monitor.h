@@ -20,7 +20,7 @@ void monitor_destroy(struct monitor *monitor); /* NULL is safe */
 bool monitor_listen(struct monitor *monitor, const struct address *address,
                     enum listener_reach reach, struct error *error);
 bool monitor_adopt(struct monitor *monitor, int fd, enum listener_reach reach, struct error *error);
-/* "" without one. */
+/* The address that is served; "" when there is none. */
 const char *monitor_address(const struct monitor *monitor);
 
 void monitor_set_stuck(struct monitor *monitor, uint64_t stuck_us);

@@ -1,5 +1,5 @@
 /* The service manager's side of the daemon: sd_notify(3) and sd_listen_fds(3) by hand, which are a
- * datagram and two environment variables. Without a service manager all of it does nothing.
+ * datagram and two environment variables. Without a service manager these functions do nothing.
  * Thread: the loop's, and before it main's. */
 #ifndef SHEEN_OPS_NOTIFY_H
 #define SHEEN_OPS_NOTIFY_H
