@@ -8,7 +8,7 @@
 /* mean = share of a, the rest b; share in [0,1]. `mean` may be one of the two. */
 void blend(const float a[4], const float b[4], float share, float mean[4]);
 
-/* The same for a pixel of 8 bits, of which `colour` covers `share`. */
+/* Blends `colour`, which covers `share` of the pixel, over a pixel of 8 bits. */
 void blend_pixel(uint8_t rgba[4], const float colour[4], float share);
 
 /* Clamped and rounded to 8 bits. */

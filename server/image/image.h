@@ -88,7 +88,7 @@ struct text {
  * empty: ERROR_SERVER when the font or memory is missing. */
 bool text_create(struct text *text, const char *line, int size_px, struct error *error);
 void text_finish(struct text *text);
-/* Within TEXT_MAX_PX, coverage there and from 0 to 1. */
+/* True if sides and distances are within TEXT_MAX_PX and `coverage` is set, from 0 to 1. */
 bool text_check(const struct text *text);
 
 enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT };
