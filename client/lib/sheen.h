@@ -322,7 +322,7 @@ struct sheen_camera {
     bool auto_view, auto_up;  /* eye and target, or up, are the daemon's, which frames the model */
     bool has_target;          /* with auto_view: the daemon's eye looks at target */
     enum sheen_view view;     /* with auto_view */
-    double zoom;              /* the eye stays and looks so much closer, 1 to 1e6; 0: not */
+    double zoom;              /* magnification from the same eye, 1 to 1e6; 0: none */
     double zoom_at[2];        /* at this place of the picture, from its left and top, 0 to 1 */
     double eye[3], target[3]; /* not the same point */
     double up[3];             /* not along the line of sight; need not be perpendicular */
@@ -429,7 +429,7 @@ struct sheen_show {
 struct sheen_extreme {
     bool has_value; /* false: no pixel shows one, or the daemon is too old to say */
     double value;
-    bool has_place;      /* false: it is the same all over */
+    bool has_place;      /* false: the value is the same everywhere */
     uint32_t x_px, y_px; /* the first such pixel, from the top and then from the left */
     double position[3];
     bool has_ptex; /* the frame has that plane */
@@ -554,7 +554,7 @@ enum sheen_status sheen_receive(struct sheen_session *session,
                                 const struct sheen_progress *progress, struct sheen_frame *frame,
                                 struct sheen_error *error);
 
-/* The same without waiting: SHEEN_AGAIN when no answer is whole yet; *frame is then as it was, and
+/* sheen_receive() without waiting: SHEEN_AGAIN when no answer is whole yet. *frame then stays, and
  * what has come of the answer is kept in the session. Any frame may be given the next time. A
  * program calls it until it says SHEEN_AGAIN, and only then waits on sheen_descriptor(): bytes that
  * were read ahead wake no poll(). timeout_ms is the program's to hold. It may wait after all, for a
