@@ -135,6 +135,50 @@ static void test_patterns(void **state)
     close_devices(&devices);
 }
 
+/* Images of both kinds of texels, one that ends at its light and one that repeats. */
+static void test_images(void **state)
+{
+    enum { SIDE = 64 };
+    static uint8_t bytes[SIDE][SIDE][4];
+    static float floats[SIDE][SIDE][4];
+    struct devices devices;
+    struct error error = {0};
+    (void)state;
+    open_devices(&devices, "tests/models/body.obj");
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) {
+            const uint8_t texel[4] = {(uint8_t)(4 * x), (uint8_t)(4 * y), ((x ^ y) & 8) ? 255 : 0,
+                                      255};
+            memcpy(bytes[y][x], texel, sizeof texel);
+            for (int k = 0; k < 4; k++)
+                floats[y][x][k] = (float)texel[k] / 255;
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        struct image image = {SIDE, SIDE, i == 1, i == 1 ? (void *)floats : (void *)bytes};
+        struct frame_request request = request_for(&devices.tables, WIDTH, HEIGHT);
+        struct renderer_image *images[2];
+        struct frame frames[2];
+        request.lights[0].kind = i == 1 ? LIGHT_TUNNEL : LIGHT_RECTANGLE;
+        scene_default_light(devices.tables.box_min, devices.tables.box_max, NULL,
+                            &request.lights[0]);
+        request.lights[0].pattern.kind = PATTERN_IMAGE;
+        for (int k = 0; k < 2; k++) {
+            images[k] = renderer_image_create(devices.renderer[k], &image, &error);
+            assert_non_null(images[k]);
+            request.lights[0].pattern.image = images[k];
+            frames[k] = render(devices.renderer[k], devices.model[k], &request);
+        }
+        struct difference found = compare(&frames[0], &frames[1]);
+        assert_alike(&found, i == 1 ? "image of floats" : "image of bytes");
+        for (int k = 0; k < 2; k++) {
+            frame_finish(&frames[k]);
+            renderer_image_destroy(devices.renderer[k], images[k]);
+        }
+    }
+    close_devices(&devices);
+}
+
 static void test_one_sample_and_several_lights(void **state)
 {
     struct devices devices;
@@ -214,6 +258,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_families_and_lights),
         cmocka_unit_test(test_patterns),
+        cmocka_unit_test(test_images),
         cmocka_unit_test(test_one_sample_and_several_lights),
         cmocka_unit_test(test_tiles_and_kept_planes),
         cmocka_unit_test(test_polygons_are_refused),
