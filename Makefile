@@ -300,7 +300,7 @@ SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame
                    $(BENCH_MAIN) \
                    $(call obj,tests/bench/no_peers.cpp tests/bench/no_gltf.c) \
                    $(call obj,$(patsubst %,tests/oracle/%.cpp,scene cage_file folder)) \
-                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/base/fault.c server/base/block_cache.c) $(RENDER_OBJ) $(CORE_OBJ) \
+                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/base/fault.c server/base/block_cache.c server/base/clock.c) $(RENDER_OBJ) $(CORE_OBJ) \
                    $(KEEP_MODULES)
 $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 	$(call say,LD $@)

@@ -14,7 +14,6 @@ LIST(3, Discontinuous, discontinuous);
 uniform uint n_blocks;
 
 const int WIDTH = 4, HEIGHT = 2;
-const int ACROSS = WIDTH + 2, DOWN = HEIGHT + 2;  // with the pixels around
 
 void main()
 {
@@ -22,17 +21,16 @@ void main()
     uint block = blocks[min(i / 8u, n_blocks - 1u)];
     ivec2 group = list_place(block) * ivec2(2, 4) + ivec2(i % 2u, i / 2u % 4u);
     ivec2 first = group * ivec2(WIDTH, HEIGHT);
-    // Of the group and what is around it; row after row; its first pixel at (1, 1).
-    float ndc[ACROSS * DOWN];
-    for (int y = 0; y < DOWN; y++)
-        for (int x = 0; x < ACROSS; x++)
-            ndc[y * ACROSS + x] = ndc_at(first + ivec2(x, y) - 1);
+    // Of the group and what is around it; its first pixel at [1][1].
+    float ndc[HEIGHT + 2][WIDTH + 2];
+    for (int y = 0; y < HEIGHT + 2; y++)
+        for (int x = 0; x < WIDTH + 2; x++)
+            ndc[y][x] = ndc_at(first + ivec2(x, y) - 1);
     bool any_seen = false, calm = true;
     for (int y = 1; y <= HEIGHT; y++) {
         for (int x = 1; x <= WIDTH; x++) {
-            int at = y * ACROSS + x;
-            float own = ndc[at];
-            float front = max(max(ndc[at - 1], ndc[at + 1]), max(ndc[at - ACROSS], ndc[at + ACROSS]));
+            float own = ndc[y][x];
+            float front = max(max(ndc[y][x - 1], ndc[y][x + 1]), max(ndc[y - 1][x], ndc[y + 1][x]));
             float z = depth_of(own);
             any_seen = any_seen || max(own, front) > 0.0;
             calm = calm && (own > 0.0 ? front_of(front) >= z - CALM * pixel_units(z) : front == 0.0);

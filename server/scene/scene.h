@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 enum { MAX_LIGHTS = 8, MAX_LINES = 16 };
 
@@ -21,6 +22,14 @@ struct camera {
     double ortho_height; /* orthographic: world units from top to bottom of the picture,
                             RANGE_ORTHO_HEIGHT */
 };
+
+/* Whether two cameras see the same, bit by bit. */
+static inline bool camera_is_same(const struct camera *a, const struct camera *b)
+{
+    return a->kind == b->kind && !memcmp(a->eye, b->eye, sizeof a->eye) &&
+           !memcmp(a->target, b->target, sizeof a->target) && !memcmp(a->up, b->up, sizeof a->up) &&
+           a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
+}
 
 /* From where a camera that frames the model looks. With e1 the world's x axis made horizontal (y
  * where x is up) and e2 = up x e1: the front is at -e2, the right at e1. VIEW_AROUND looks down by

@@ -10,18 +10,12 @@
 /* Frames of fewer pixels, thumbnails and probes, have planes of their own. */
 enum { SMALL_PX = 4096 };
 
-static bool same_camera(const struct camera *a, const struct camera *b)
-{
-    return a->kind == b->kind && !memcmp(a->eye, b->eye, sizeof a->eye) &&
-           !memcmp(a->target, b->target, sizeof a->target) && !memcmp(a->up, b->up, sizeof a->up) &&
-           a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
-}
-
 bool is_kept(const struct kept *kept, const struct gl_model *model,
              const struct frame_request *request)
 {
     return kept->model_serial == model->serial && kept->width_px == request->width_px &&
-           kept->height_px == request->height_px && same_camera(&kept->camera, &request->camera) &&
+           kept->height_px == request->height_px &&
+           camera_is_same(&kept->camera, &request->camera) &&
            kept->surface.kind == request->surface.kind &&
            kept->surface.level == request->surface.level &&
            (kept->ptex || !(request->planes & PLANE_PTEX)) &&

@@ -1,16 +1,8 @@
 #include "server/render/gl/stage_clock.h"
 
-#include <time.h>
-
+#include "server/base/clock.h"
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/quirks.h"
-
-static uint64_t now_us(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
-}
 
 bool stage_clock_by_device(const struct gl_renderer *r)
 {
@@ -29,7 +21,7 @@ void stage_clock_init(struct gl_renderer *r)
 void stage_clock_begin(struct gl_renderer *r)
 {
     r->clock.n = 0;
-    r->clock.since_us = now_us();
+    r->clock.since_us = clock_now_us();
 }
 
 void stage_clock_start(struct gl_renderer *r)
@@ -50,7 +42,7 @@ bool stage_clock_end(struct gl_renderer *r, uint64_t *stage)
 bool stage_clock_wait(struct gl_renderer *r, uint64_t *stage)
 {
     bool ok = context_wait(&r->context);
-    uint64_t now = now_us();
+    uint64_t now = clock_now_us();
     *stage += now - r->clock.since_us;
     r->clock.since_us = now;
     return ok;

@@ -1,7 +1,7 @@
 /* The steps of a frame: a tile each. */
 #include <string.h>
-#include <time.h>
 
+#include "server/base/clock.h"
 #include "server/render/native/device_internal.h"
 #include "server/render/native/readback.h"
 #include "server/render/native/stages.h"
@@ -40,26 +40,13 @@ bool native_frame_begin(struct renderer *renderer, struct frame_work *work, stru
     return true;
 }
 
-static uint64_t now_us(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (uint64_t)t.tv_sec * 1000000 + (uint64_t)t.tv_nsec / 1000;
-}
-
-static bool same_camera(const struct camera *a, const struct camera *b)
-{
-    return a->kind == b->kind && !memcmp(a->eye, b->eye, sizeof a->eye) &&
-           !memcmp(a->target, b->target, sizeof a->target) && !memcmp(a->up, b->up, sizeof a->up) &&
-           a->fov_deg == b->fov_deg && a->ortho_height == b->ortho_height;
-}
-
 /* Whether the target holds all that stages 1 and 2 would draw. */
 static bool is_kept(const struct native_kept *kept, const struct native_shown *shown,
                     const struct frame_request *request)
 {
     return kept->serial == shown->serial && kept->width_px == request->width_px &&
-           kept->height_px == request->height_px && same_camera(&kept->camera, &request->camera) &&
+           kept->height_px == request->height_px &&
+           camera_is_same(&kept->camera, &request->camera) &&
            (kept->edges || !request_has_coverage(request));
 }
 
@@ -78,15 +65,15 @@ static bool draw_surface(struct native_renderer *r, const struct native_drawing 
                          const struct view *view, struct frame *frame, struct error *error)
 {
     struct native_times parts;
-    uint64_t begin_us = now_us();
+    uint64_t begin_us = clock_now_us();
     if (!native_target_reserve(&r->target, d->place.width, d->place.height, error) ||
         !native_draw(r->device, d->shown->model, view, &d->place, &r->target.planes, &parts, error))
         return false;
-    add_times(&frame->times, &parts, now_us() - begin_us);
-    begin_us = now_us();
+    add_times(&frame->times, &parts, clock_now_us() - begin_us);
+    begin_us = clock_now_us();
     native_find_groups(d);
     bool ok = !request_has_coverage(d->request) || native_edges(d, error);
-    frame->times.evaluate_us += now_us() - begin_us;
+    frame->times.evaluate_us += clock_now_us() - begin_us;
     return ok;
 }
 
@@ -96,14 +83,14 @@ static bool draw_tile(struct native_renderer *r, const struct native_drawing *d,
 {
     if (!is_kept_view && !draw_surface(r, d, view, frame, error))
         return false;
-    uint64_t begin_us = now_us();
+    uint64_t begin_us = clock_now_us();
     if (!native_shade(d, watch, frame, error))
         return false;
-    uint64_t shaded_us = now_us();
+    uint64_t shaded_us = clock_now_us();
     frame->times.shade_us += shaded_us - begin_us;
     frame->shows_surface = frame->shows_surface || native_any_seen(&r->target);
     native_readback(d, view, frame);
-    frame->times.readback_us += now_us() - shaded_us;
+    frame->times.readback_us += clock_now_us() - shaded_us;
     return true;
 }
 
