@@ -2,7 +2,7 @@
 # Writes the shader files given as C source: one table of {name, text}, found by shader_text().
 # No escapes are needed beyond \ and ": a line of GLSL becomes a string literal with a newline.
 set -eu
-echo '#include "server/render/gl/shaders.h"'
+echo '#include "server/render/gl/programs/shaders.h"'
 echo '#include <stddef.h>'
 echo 'const struct shader_file shader_files[] = {'
 for f in "$@"; do

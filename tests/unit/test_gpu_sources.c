@@ -13,8 +13,8 @@
 #include <cmocka.h>
 
 #include "server/render/gl/buffer_textures.h"
-#include "server/render/gl/shaders.h"
-#include "server/render/gl/sources.h"
+#include "server/render/gl/programs/shaders.h"
+#include "server/render/gl/programs/sources.h"
 
 enum {
     MAX_SHADERS = 4096,

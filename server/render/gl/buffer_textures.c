@@ -1,7 +1,7 @@
 #include "server/render/gl/buffer_textures.h"
 
-#include "server/render/gl/check.h"
-#include "server/render/gl/quirks.h"
+#include "server/render/gl/context/check.h"
+#include "server/render/gl/context/quirks.h"
 
 /* The buffer is never written again, and its padding is never read. */
 static void store(GLuint buffer, const void *texels, size_t n, size_t texel_bytes)

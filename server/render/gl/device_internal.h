@@ -2,7 +2,7 @@
 #ifndef SHEEN_RENDER_GL_DEVICE_INTERNAL_H
 #define SHEEN_RENDER_GL_DEVICE_INTERNAL_H
 
-#include "server/render/gl/context.h"
+#include "server/render/gl/context/context.h"
 #include "server/render/gl/edges.h"
 #include "server/render/gl/evaluate.h"
 #include "server/render/gl/gather.h"

@@ -1,7 +1,7 @@
 #include "server/render/gl/edges.h"
 
 #include "server/render/gl/device_internal.h"
-#include "server/render/gl/program.h"
+#include "server/render/gl/programs/program.h"
 
 bool stage_edges_init(struct edges_stage *stage, struct error *error)
 {

@@ -2,7 +2,7 @@
 
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/model.h"
-#include "server/render/gl/program.h"
+#include "server/render/gl/programs/program.h"
 
 bool stage_evaluate_init(struct evaluate_stage *stage, struct error *error)
 {

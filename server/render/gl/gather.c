@@ -1,7 +1,7 @@
 #include "server/render/gl/gather.h"
 
 #include "server/render/gl/device_internal.h"
-#include "server/render/gl/program.h"
+#include "server/render/gl/programs/program.h"
 
 bool stage_gather_init(struct gather_stage *stage, struct error *error)
 {

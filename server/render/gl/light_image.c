@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "server/render/gl/check.h"
+#include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
 
 size_t gl_image_bytes(const struct image *image)

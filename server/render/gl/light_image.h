@@ -5,7 +5,7 @@
 #include <epoxy/gl.h>
 
 #include "server/render/device.h"
-#include "server/render/gl/context.h"
+#include "server/render/gl/context/context.h"
 
 struct gl_renderer;
 

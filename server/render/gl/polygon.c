@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-#include "server/render/gl/check.h"
+#include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
-#include "server/render/gl/program.h"
+#include "server/render/gl/programs/program.h"
 
 static bool compile(struct polygon_stage *p, struct error *error)
 {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/render/gl/check.h"
+#include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/model.h"
 

@@ -5,7 +5,7 @@
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/frame.h"
 #include "server/render/gl/model.h"
-#include "server/render/gl/quirks.h"
+#include "server/render/gl/context/quirks.h"
 
 /* How much a step draws, and how much it puts on the device. On a software device a step takes no
  * longer than a tile of the exact surface (server/frame/request_frame.c). On hardware the aim is

@@ -7,7 +7,7 @@
 
 #include <stdatomic.h>
 
-#include "server/render/gl/context.h"
+#include "server/render/gl/context/context.h"
 #include "server/render/gl/kept.h"
 #include "server/render/view.h"
 

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "server/render/gl/check.h"
+#include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
 
 /* The rows of a tile inside a plane of the whole frame. */

@@ -2,10 +2,10 @@
 
 #include <math.h>
 
-#include "server/render/gl/check.h"
+#include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/light_image.h"
-#include "server/render/gl/quirks.h"
+#include "server/render/gl/context/quirks.h"
 #include "server/render/light_block.h"
 
 static struct shade_key key_of(const struct frame_request *request, const struct light *light,

@@ -5,7 +5,7 @@
 #include <epoxy/gl.h>
 
 #include "server/base/error.h"
-#include "server/render/gl/shade_programs.h"
+#include "server/render/gl/programs/shade_programs.h"
 #include "server/scene/frame.h"
 
 struct gl_renderer;

@@ -2,7 +2,7 @@
 
 #include "server/base/clock.h"
 #include "server/render/gl/device_internal.h"
-#include "server/render/gl/quirks.h"
+#include "server/render/gl/context/quirks.h"
 
 bool stage_clock_by_device(const struct gl_renderer *r)
 {

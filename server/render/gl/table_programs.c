@@ -2,7 +2,7 @@
 
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/model.h"
-#include "server/render/gl/program.h"
+#include "server/render/gl/programs/program.h"
 
 static void delete_all(const struct table_programs *programs)
 {

@@ -2,8 +2,8 @@
 
 #include <stddef.h>
 
-#include "server/render/gl/check.h"
-#include "server/render/gl/quirks.h"
+#include "server/render/gl/context/check.h"
+#include "server/render/gl/context/quirks.h"
 
 /* Every image of a target: where its name is kept, its format, and what a pixel takes. */
 static const struct {

@@ -2,10 +2,10 @@
 
 #include <stdlib.h>
 
-#include "server/render/gl/check.h"
+#include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/model.h"
-#include "server/render/gl/quirks.h"
+#include "server/render/gl/context/quirks.h"
 
 /* A grid's cells along u and v. */
 static uint32_t cells_along(int shape, int side)

@@ -1,11 +1,11 @@
 /* The GL context that there is now, and whether it is lost: by a reset, or by work that does not
  * end. GL names of a context that is lost went with it. GL thread. */
-#ifndef SHEEN_RENDER_GL_CONTEXT_H
-#define SHEEN_RENDER_GL_CONTEXT_H
+#ifndef SHEEN_RENDER_GL_CONTEXT_CONTEXT_H
+#define SHEEN_RENDER_GL_CONTEXT_CONTEXT_H
 
 #include <stdint.h>
 
-#include "server/render/gl/egl.h"
+#include "server/render/gl/context/egl.h"
 
 /* Which context an object's GL names are of. Names of an earlier one are dropped, never deleted:
  * they may be another object's by now. */

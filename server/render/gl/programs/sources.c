@@ -1,9 +1,9 @@
-#include "server/render/gl/sources.h"
+#include "server/render/gl/programs/sources.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "server/render/gl/shaders.h"
+#include "server/render/gl/programs/shaders.h"
 
 static const char *file_text(const char *name)
 {

@@ -1,7 +1,7 @@
 /* The programs of stage 3 that are kept: those used last. Private to server/render/gl; GL thread
  * only. */
-#ifndef SHEEN_RENDER_GL_SHADE_PROGRAMS_H
-#define SHEEN_RENDER_GL_SHADE_PROGRAMS_H
+#ifndef SHEEN_RENDER_GL_PROGRAMS_SHADE_PROGRAMS_H
+#define SHEEN_RENDER_GL_PROGRAMS_SHADE_PROGRAMS_H
 
 #include <epoxy/gl.h>
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "server/render/gl/program.h"
+#include "server/render/gl/programs/program.h"
 
 /* The source's k-th shader. */
 static GLuint compile(GLenum type, const struct program_source *source, int k, struct error *error)

@@ -1,4 +1,4 @@
-#include "server/render/gl/context.h"
+#include "server/render/gl/context/context.h"
 
 #include <epoxy/gl.h>
 

@@ -1,4 +1,4 @@
-#include "server/render/gl/libraries.h"
+#include "server/render/gl/context/libraries.h"
 
 #include <dlfcn.h>
 #include <stddef.h>

@@ -1,10 +1,10 @@
-#include "server/render/gl/egl.h"
+#include "server/render/gl/context/egl.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/render/gl/libraries.h"
+#include "server/render/gl/context/libraries.h"
 
 enum { MAX_DEVICES = 64 };
 

@@ -1,8 +1,8 @@
 /* An EGL device with a surfaceless OpenGL 4.5 core context, current on the calling thread. Where
  * the device can, the context tells that it is lost (glGetGraphicsResetStatus) and never reads or
  * writes outside of a buffer. */
-#ifndef SHEEN_RENDER_GL_EGL_H
-#define SHEEN_RENDER_GL_EGL_H
+#ifndef SHEEN_RENDER_GL_CONTEXT_EGL_H
+#define SHEEN_RENDER_GL_CONTEXT_EGL_H
 
 #include <stdbool.h>
 

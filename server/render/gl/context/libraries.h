@@ -1,7 +1,7 @@
 /* Checks for the shared libraries of EGL and OpenGL. libepoxy loads them when one of its functions
  * is first called, and ends the process where one is missing, so libraries_load() comes before. */
-#ifndef SHEEN_RENDER_GL_LIBRARIES_H
-#define SHEEN_RENDER_GL_LIBRARIES_H
+#ifndef SHEEN_RENDER_GL_CONTEXT_LIBRARIES_H
+#define SHEEN_RENDER_GL_CONTEXT_LIBRARIES_H
 
 #include <stdbool.h>
 

@@ -1,4 +1,4 @@
-#include "server/render/gl/check.h"
+#include "server/render/gl/context/check.h"
 
 #include <epoxy/gl.h>
 

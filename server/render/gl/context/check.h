@@ -1,6 +1,6 @@
 /* GL errors as errors of the daemon. GL thread. */
-#ifndef SHEEN_RENDER_GL_CHECK_H
-#define SHEEN_RENDER_GL_CHECK_H
+#ifndef SHEEN_RENDER_GL_CONTEXT_CHECK_H
+#define SHEEN_RENDER_GL_CONTEXT_CHECK_H
 
 #include "server/base/error.h"
 

@@ -1,11 +1,11 @@
 /* The source text of every GPU program: #define lines, then files of shaders/ in order. No GL call
  * is made here, so the texts can be made and checked on a machine without a device. Private to
  * server/render/gl; pure functions on constant data, any thread. */
-#ifndef SHEEN_RENDER_GL_SOURCES_H
-#define SHEEN_RENDER_GL_SOURCES_H
+#ifndef SHEEN_RENDER_GL_PROGRAMS_SOURCES_H
+#define SHEEN_RENDER_GL_PROGRAMS_SOURCES_H
 
 #include "server/base/error.h"
-#include "server/render/gl/shade_programs.h"
+#include "server/render/gl/programs/shade_programs.h"
 
 enum { PROGRAM_DEFINES_BYTES = 256, PROGRAM_MAX_FILES = 20 };
 

@@ -1,9 +1,9 @@
-#include "server/render/gl/shade_programs.h"
+#include "server/render/gl/programs/shade_programs.h"
 
 #include <assert.h>
 #include <string.h>
 
-#include "server/render/gl/program.h"
+#include "server/render/gl/programs/program.h"
 
 static_assert(MAX_SHADE_PROGRAMS >= MAX_FRAME_PROGRAMS, "a frame does not evict its own");
 static_assert(sizeof(struct shade_key) == 7, "no padding: keys are compared as bytes");

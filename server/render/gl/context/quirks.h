@@ -1,7 +1,7 @@
 /* What drivers do that no specification says, and what is done about it: all of it here, so
  * that it can go where no driver needs it. Measured on Mesa's llvmpipe. Any thread. */
-#ifndef SHEEN_RENDER_GL_QUIRKS_H
-#define SHEEN_RENDER_GL_QUIRKS_H
+#ifndef SHEEN_RENDER_GL_CONTEXT_QUIRKS_H
+#define SHEEN_RENDER_GL_CONTEXT_QUIRKS_H
 
 #include <stdbool.h>
 #include <stddef.h>
