@@ -128,7 +128,6 @@ server/ops/options server/ops/options_table
 server/render/renderer server/render/device
 server/render/gl/[a-z_]* server/render/gl/device_internal
 server/render/gl/polygon_slices server/render/gl/(frame|kept)
-server/render/gl/programs/shade_programs server/render/gl/programs/program
 server/render/native/native server/render/native/(frame|tile)
 server/render/native/lanes/surface server/render/native/lanes/meet
 server/session/session server/session/session_internal

@@ -211,21 +211,21 @@ static void test_table_sets(void **state)
     struct error error = {0};
     struct gl_model model = {.points.n = 1, .nodes.n = 1, .adjacency.n = 1};
     scene_init(&scene, tetrahedron);
-    GLuint first = programs_for(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate;
+    GLuint first = programs_of(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate;
     for (model.points.n = 2; model.points.n <= MAX_PROGRAM_SETS; model.points.n++)
-        assert_non_null(programs_for(gl_renderer_of(scene.renderer), &model, false, &error));
+        assert_non_null(programs_of(gl_renderer_of(scene.renderer), &model, false, &error));
     model.points.n = 1;
-    assert_int_equal(programs_for(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
+    assert_int_equal(programs_of(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
                      first);
     int n = count_programs();
     for (int k = 1; k <= 2; k++) {
         model.points.n = MAX_PROGRAM_SETS + k;
-        if (!programs_for(gl_renderer_of(scene.renderer), &model, k == 1, &error))
+        if (!programs_of(gl_renderer_of(scene.renderer), &model, k == 1, &error))
             fail_msg("%s", error.text);
     }
     assert_int_equal(count_programs(), n);
     model.points.n = 1; /* asked for later than the others */
-    assert_int_equal(programs_for(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
+    assert_int_equal(programs_of(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
                      first);
     assert_int_equal(draw_anew(&scene, &scene.request), 4);
     scene_finish(&scene);

@@ -15,6 +15,7 @@
 #include "server/render/gl/buffer_textures.h"
 #include "server/render/gl/programs/shaders.h"
 #include "server/render/gl/programs/sources.h"
+#include "server/scene/frame_request.h"
 
 enum {
     MAX_SHADERS = 4096,

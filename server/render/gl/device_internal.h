@@ -11,7 +11,7 @@
 #include "server/render/gl/polygon_slices.h"
 #include "server/render/gl/shade.h"
 #include "server/render/gl/stage_clock.h"
-#include "server/render/gl/table_programs.h"
+#include "server/render/gl/programs/table_programs.h"
 #include "server/render/gl/visibility.h"
 #include "server/render/patch_grids.h"
 #include "server/render/device.h"

@@ -21,7 +21,7 @@ static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
         return false;
     patch_grids_move_blocks(&r->grids, at.x / COVER_BLOCK_PX, at.y / COVER_BLOCK_PX);
     const struct table_programs *programs =
-        programs_for(r, model, request->planes & PLANE_PTEX, error);
+        programs_of(r, model, request->planes & PLANE_PTEX, error);
     if (!programs)
         return false;
     stage_clock_start(r);

@@ -12,6 +12,14 @@ static void take_down(struct gl_model *model)
     buffer_textures_finish(&model->adjacency);
 }
 
+const struct table_programs *programs_of(struct gl_renderer *r, const struct gl_model *model,
+                                         bool ptex, struct error *error)
+{
+    const struct table_layout layout = {model->points.n, model->nodes.n, model->adjacency.n,
+                                        r->max_texels, ptex};
+    return programs_for(&r->programs, &layout, error);
+}
+
 bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error *error)
 {
     if (context_is_current(&r->context, model->context))
@@ -29,7 +37,7 @@ bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error
     if (!buffer_textures_init(&model->points, &points, MAX_POINT_TEXTURES, max, error) ||
         !buffer_textures_init(&model->nodes, &nodes, MAX_NODE_TEXTURES, node_max, error) ||
         !buffer_textures_init(&model->adjacency, &adjacency, MAX_ADJACENCY_TEXTURES, max, error) ||
-        !programs_for(r, model, false, error)) {
+        !programs_of(r, model, false, error)) {
         take_down(model);
         return false;
     }

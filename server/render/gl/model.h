@@ -8,6 +8,7 @@
 #include "server/render/gl/context/context.h"
 
 struct gl_renderer;
+struct table_programs;
 
 struct gl_model {
     struct renderer_model base;
@@ -29,5 +30,9 @@ void gl_model_destroy(struct renderer *renderer, struct renderer_model *model);
 
 /* Puts the tables on the device where they are not. */
 bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error *error);
+/* The programs that read the tables of a model that is on the device, and write PLANE_PTEX or not:
+ * as programs_for(). */
+const struct table_programs *programs_of(struct gl_renderer *r, const struct gl_model *model,
+                                         bool ptex, struct error *error);
 
 #endif

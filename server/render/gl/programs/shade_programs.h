@@ -8,37 +8,14 @@
 #include <stdint.h>
 
 #include "server/base/error.h"
+#include "server/render/gl/programs/sources.h"
 #include "server/scene/frame_request.h"
-
-/* What a program of stage 3 makes: the colours of all pixels (filtered, or by one sample each), the
- * colours of listed pixels, the planes of light and curvature, or the share of the seen pixels that
- * meet the light. */
-enum shaded {
-    SHADED_ALL,
-    SHADED_UNFILTERED,
-    SHADED_EDGES,
-    SHADED_HIGH_CURVATURE,
-    SHADED_ROUNDED,
-    SHADED_PLANES,
-    SHADED_SHARE,
-    SHADED_KINDS
-};
 
 enum {
     /* One frame needs so many at most: five for each light, and one for its planes. */
     MAX_FRAME_PROGRAMS = 5 * MAX_LIGHTS + 1,
     /* On Mesa's software device a program takes 3.5 MB of main memory: 170 MB for all. */
     MAX_SHADE_PROGRAMS = 48
-};
-
-/* What tells one program from another. */
-struct shade_key {
-    uint8_t family, light; /* enum line_family; enum light_kind, 0 where it plays no part */
-    uint8_t pattern, soft; /* enum pattern_kind; with soft edges, where they change something */
-    uint8_t picture;       /* of PATTERN_IMAGE: image_quirks(); else 0 */
-    uint8_t which;         /* enum shaded */
-    uint8_t has_several;   /* lights: the colours behind come from textures, for which drivers have
-                              code of their own */
 };
 
 struct shade_program {

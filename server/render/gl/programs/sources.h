@@ -4,8 +4,11 @@
 #ifndef SHEEN_RENDER_GL_PROGRAMS_SOURCES_H
 #define SHEEN_RENDER_GL_PROGRAMS_SOURCES_H
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "server/base/error.h"
-#include "server/render/gl/programs/shade_programs.h"
 
 enum { PROGRAM_DEFINES_BYTES = 256, PROGRAM_MAX_FILES = 20 };
 
@@ -59,7 +62,30 @@ struct table_layout {
 struct program_source source_of_tables(enum table_program program,
                                        const struct table_layout *layout);
 
-/* The programs of stage 3: one for each key. */
+/* What a program of stage 3 makes: the colours of all pixels (filtered, or by one sample each), the
+ * colours of listed pixels, the planes of light and curvature, or the share of the seen pixels that
+ * meet the light. */
+enum shaded {
+    SHADED_ALL,
+    SHADED_UNFILTERED,
+    SHADED_EDGES,
+    SHADED_HIGH_CURVATURE,
+    SHADED_ROUNDED,
+    SHADED_PLANES,
+    SHADED_SHARE,
+    SHADED_KINDS
+};
+
+/* What tells one program of stage 3 from another. */
+struct shade_key {
+    uint8_t family, light; /* enum line_family; enum light_kind, 0 where it plays no part */
+    uint8_t pattern, soft; /* enum pattern_kind; with soft edges, where they change something */
+    uint8_t picture;       /* of PATTERN_IMAGE: image_quirks(); else 0 */
+    uint8_t which;         /* enum shaded */
+    uint8_t has_several;   /* lights: the colours behind come from textures, for which drivers have
+                              code of their own */
+};
+
 struct program_source source_of_shading(struct shade_key key);
 
 #endif
