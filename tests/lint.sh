@@ -126,8 +126,6 @@ known_steps='
 server/frame/request server/frame/request_internal
 server/ops/options server/ops/options_table
 server/render/renderer server/render/device
-server/render/gl/[a-z_]* server/render/gl/device_internal
-server/render/gl/polygon_slices server/render/gl/(frame|kept)
 server/render/native/native server/render/native/(frame|tile)
 server/render/native/lanes/surface server/render/native/lanes/meet
 server/session/session server/session/session_internal

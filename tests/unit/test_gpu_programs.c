@@ -10,7 +10,7 @@
 
 #include "server/render/gl/device.h"
 #include "server/render/gl/device_internal.h"
-#include "server/render/gl/frame.h"
+#include "server/render/gl/frame_state.h"
 #include "server/render/gl/model.h"
 #include "server/render/gl/context/quirks.h"
 #include "server/scene/defaults.h"

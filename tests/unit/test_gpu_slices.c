@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "server/render/gl/polygon_slices.h"
+#include "server/render/gl/polygon_kept.h"
 #include "server/render/mesh.h"
 
 enum { ONE_STROKE = 1 << 28 };

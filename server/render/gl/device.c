@@ -5,6 +5,14 @@
 #include <string.h>
 
 #include "server/render/gl/device_internal.h"
+#include "server/render/gl/polygon_meshes.h"
+#include "server/render/gl/paused_tiles.h"
+#include "server/render/gl/stage_clock.h"
+#include "server/render/gl/shade.h"
+#include "server/render/gl/edges.h"
+#include "server/render/gl/evaluate.h"
+#include "server/render/gl/gather.h"
+#include "server/render/gl/visibility.h"
 #include "server/render/gl/frame.h"
 #include "server/render/gl/light_image.h"
 #include "server/render/gl/model.h"
@@ -86,7 +94,9 @@ static struct renderer *create(const struct renderer_options *options, struct er
     return &r->base;
 }
 
-bool gl_ready(struct gl_renderer *r, struct error *error)
+/* Makes sure that there is a context: opens another one in place of one that is lost. ERROR_GPU_LOST
+ * when the device gives none yet. */
+static bool make_ready(struct gl_renderer *r, struct error *error)
 {
     if (!r->context.is_lost)
         return true;
@@ -111,16 +121,61 @@ bool gl_ready(struct gl_renderer *r, struct error *error)
                      "the GPU was lost and does not come back yet: try again later");
 }
 
+/* A model or image that is made while the device is lost comes to it with its first frame. */
+static struct renderer_model *create_model(struct renderer *renderer,
+                                           const struct limit_tables *tables, struct error *error)
+{
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    struct gl_model *model = gl_model_create(tables, ++r->next_serial, error);
+    if (!model)
+        return NULL;
+    if (!make_ready(r, error) || gl_model_upload(r, model, error) ||
+        context_check_lost(&r->context))
+        return &model->base;
+    gl_model_destroy(renderer, &model->base);
+    return NULL;
+}
+
+static void destroy_model(struct renderer *renderer, struct renderer_model *model)
+{
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    const struct gl_model *on_device = gl_model_of(model);
+    if (context_is_current(&r->context, on_device->context))
+        polygons_forget(&r->meshes, on_device->serial);
+    gl_model_destroy(renderer, model);
+}
+
+static struct renderer_image *create_image(struct renderer *renderer, const struct image *pixels,
+                                           struct error *error)
+{
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    struct gl_image *image = gl_image_create(pixels, error);
+    if (!image)
+        return NULL;
+    if (!make_ready(r, error) || gl_image_upload(r, image, error) ||
+        context_check_lost(&r->context))
+        return &image->base;
+    gl_image_destroy(renderer, &image->base);
+    return NULL;
+}
+
+static enum frame_step step(struct renderer *renderer, struct renderer_model *model,
+                            struct frame_work *work, struct frame *frame, struct error *error)
+{
+    make_ready(gl_renderer_of(renderer), error);
+    return gl_frame_step(renderer, model, work, frame, error);
+}
+
 const struct renderer_device gl_device = {
     .create = create,
     .destroy = destroy,
-    .model_create = gl_model_create,
-    .model_destroy = gl_model_destroy,
-    .image_create = gl_image_create,
+    .model_create = create_model,
+    .model_destroy = destroy_model,
+    .image_create = create_image,
     .image_destroy = gl_image_destroy,
     .model_bytes = limit_tables_bytes,
     .image_bytes = gl_image_bytes,
     .paused_bytes = gl_paused_bytes,
     .begin = gl_frame_begin,
-    .step = gl_frame_step,
+    .step = step,
 };

@@ -1,20 +1,16 @@
-/* A device that has been opened: what its stages share. Private to server/render/gl; GL thread. */
+/* A device that has been opened: what its stages share. Data, which names no function of them.
+ * Private to server/render/gl; GL thread. */
 #ifndef SHEEN_RENDER_GL_DEVICE_INTERNAL_H
 #define SHEEN_RENDER_GL_DEVICE_INTERNAL_H
 
-#include "server/render/gl/context/context.h"
-#include "server/render/gl/edges.h"
-#include "server/render/gl/evaluate.h"
-#include "server/render/gl/gather.h"
-#include "server/render/gl/kept.h"
-#include "server/render/gl/polygon.h"
-#include "server/render/gl/polygon_slices.h"
-#include "server/render/gl/shade.h"
-#include "server/render/gl/stage_clock.h"
-#include "server/render/gl/programs/table_programs.h"
-#include "server/render/gl/visibility.h"
-#include "server/render/patch_grids.h"
 #include "server/render/device.h"
+#include "server/render/gl/context/context.h"
+#include "server/render/gl/planes.h"
+#include "server/render/gl/polygon_kept.h"
+#include "server/render/gl/programs/table_programs.h"
+#include "server/render/gl/stages.h"
+#include "server/render/patch_grids.h"
+#include "server/render/tiles.h"
 
 /* The tile being drawn, as three rectangles of the picture. */
 struct drawing {
@@ -60,9 +56,5 @@ static inline struct gl_renderer *gl_renderer_of(struct renderer *renderer)
 {
     return (struct gl_renderer *)(void *)renderer;
 }
-
-/* Makes sure that there is a context: opens another one in place of one that is lost.
- * ERROR_GPU_LOST when the device gives none yet. */
-bool gl_ready(struct gl_renderer *r, struct error *error);
 
 #endif

@@ -1,6 +1,8 @@
 #include "server/render/gl/edges.h"
 
 #include "server/render/gl/device_internal.h"
+#include "server/render/gl/shade.h"
+#include "server/render/gl/gather.h"
 #include "server/render/gl/programs/program.h"
 
 bool stage_edges_init(struct edges_stage *stage, struct error *error)

@@ -3,16 +3,11 @@
 #ifndef SHEEN_RENDER_GL_EDGES_H
 #define SHEEN_RENDER_GL_EDGES_H
 
-#include <epoxy/gl.h>
-
 #include "server/base/error.h"
+#include "server/render/gl/stages.h"
 #include "server/render/tiles.h"
 
 struct gl_renderer;
-
-struct edges_stage {
-    GLuint find, recheck; /* programs */
-};
 
 bool stage_edges_init(struct edges_stage *stage, struct error *error);
 /* After stage 2, lists the pixels of a part of the target that stage 3 looks at more closely, and

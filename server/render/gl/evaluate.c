@@ -1,6 +1,7 @@
 #include "server/render/gl/evaluate.h"
 
 #include "server/render/gl/device_internal.h"
+#include "server/render/gl/gather.h"
 #include "server/render/gl/model.h"
 #include "server/render/gl/programs/program.h"
 

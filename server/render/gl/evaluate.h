@@ -3,20 +3,13 @@
 #ifndef SHEEN_RENDER_GL_EVALUATE_H
 #define SHEEN_RENDER_GL_EVALUATE_H
 
-#include <epoxy/gl.h>
-
 #include "server/base/error.h"
+#include "server/render/gl/stages.h"
 #include "server/render/view.h"
 
 struct gl_model;
 struct gl_renderer;
 struct table_programs;
-
-struct evaluate_stage {
-    GLuint recheck, gaps;         /* programs */
-    GLuint gap_ends, gap_guesses; /* buffers: shaders/unsolved.comp.glsl */
-    bool too_many_gaps; /* the last tile drawn has more than MAX_GAPS: its gaps all stay empty */
-};
 
 /* Pixels whose ray passes between two silhouettes (shaders/gaps.comp.glsl), of one tile: each takes
  * the processor 0.03 to 2 ms, and few pictures have more than two or three. */

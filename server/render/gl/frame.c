@@ -2,6 +2,18 @@
 
 #include "server/base/fault.h"
 #include "server/render/gl/device_internal.h"
+#include "server/render/gl/programs/table_programs.h"
+#include "server/render/gl/stage_clock.h"
+#include "server/render/gl/shade.h"
+#include "server/render/gl/edges.h"
+#include "server/render/gl/evaluate.h"
+#include "server/render/gl/gather.h"
+#include "server/render/gl/visibility.h"
+#include "server/render/gl/kept.h"
+#include "server/render/gl/frame_state.h"
+#include "server/render/gl/paused_tiles.h"
+#include "server/render/gl/polygon_slices.h"
+#include "server/render/gl/polygon_meshes.h"
 #include "server/render/gl/light_image.h"
 #include "server/render/gl/model.h"
 #include "server/render/gl/readback.h"
@@ -257,7 +269,7 @@ enum frame_step gl_frame_step(struct renderer *renderer, struct renderer_model *
     struct gl_renderer *r = gl_renderer_of(renderer);
     struct gl_model *shown = gl_model_of(model);
     struct gl_frame *own = gl_frame_of(work);
-    bool ready = gl_ready(r, error);
+    bool ready = !r->context.is_lost;
     own->work = work;
     if (ready && is_of_polygons(work->request) && !work->polygons &&
         (fault_at("gpu.polygons") ||

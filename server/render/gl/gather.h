@@ -2,18 +2,12 @@
 #ifndef SHEEN_RENDER_GL_GATHER_H
 #define SHEEN_RENDER_GL_GATHER_H
 
-#include <epoxy/gl.h>
-
 #include <stdbool.h>
 
 #include "server/base/error.h"
+#include "server/render/gl/stages.h"
 
 struct gl_renderer;
-
-struct gather_stage {
-    GLuint program;
-    GLuint block_buffer; /* the blocks of the last tile gathered */
-};
 
 bool stage_gather_init(struct gather_stage *stage, struct error *error);
 /* After stage 1 or polygons: lists the pixels near what is seen, target.groups, over which

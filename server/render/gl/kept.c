@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "server/render/gl/device_internal.h"
-#include "server/render/gl/frame.h"
+#include "server/render/gl/frame_state.h"
 #include "server/render/gl/model.h"
 
 /* Frames of fewer pixels, thumbnails and probes, have planes of their own. */

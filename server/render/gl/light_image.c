@@ -36,21 +36,14 @@ bool gl_image_upload(struct gl_renderer *r, struct gl_image *image, struct error
     return true;
 }
 
-struct renderer_image *gl_image_create(struct renderer *renderer, const struct image *image,
-                                       struct error *error)
+struct gl_image *gl_image_create(const struct image *pixels, struct error *error)
 {
-    struct gl_renderer *r = gl_renderer_of(renderer);
-    struct gl_image *out = calloc(1, sizeof *out);
-    if (!out) {
+    struct gl_image *image = calloc(1, sizeof *image);
+    if (image)
+        image->base.pixels = pixels;
+    else
         error_set(error, ERROR_SERVER, "out of memory");
-        return NULL;
-    }
-    out->base.pixels = image;
-    /* Where the device has been lost meanwhile, the image's first frame puts it there. */
-    if (!gl_ready(r, error) || gl_image_upload(r, out, error) || context_check_lost(&r->context))
-        return &out->base;
-    free(out);
-    return NULL;
+    return image;
 }
 
 void gl_image_destroy(struct renderer *renderer, struct renderer_image *base)

@@ -20,9 +20,9 @@ static inline struct gl_image *gl_image_of(struct renderer_image *image) /* NULL
     return (struct gl_image *)(void *)image;
 }
 
+/* An image that is on no device yet; NULL when memory is short. */
+struct gl_image *gl_image_create(const struct image *pixels, struct error *error);
 /* As struct renderer_device has them. */
-struct renderer_image *gl_image_create(struct renderer *renderer, const struct image *image,
-                                       struct error *error);
 void gl_image_destroy(struct renderer *renderer, struct renderer_image *image);
 size_t gl_image_bytes(const struct image *image);
 

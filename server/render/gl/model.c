@@ -45,23 +45,18 @@ bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error
     return true;
 }
 
-struct renderer_model *gl_model_create(struct renderer *renderer, const struct limit_tables *tables,
-                                       struct error *error)
+struct gl_model *gl_model_create(const struct limit_tables *tables, uint64_t serial,
+                                 struct error *error)
 {
-    struct gl_renderer *r = gl_renderer_of(renderer);
     struct gl_model *model = calloc(1, sizeof *model);
     if (!model) {
         error_set(error, ERROR_SERVER, "out of memory");
         return NULL;
     }
     model->base.tables = tables;
-    model->serial = ++r->next_serial;
-    /* Where the device has been lost meanwhile, the first frame of the model puts it there. */
-    if (clusters_init(&model->clusters, tables, error) &&
-        (!gl_ready(r, error) || gl_model_upload(r, model, error) ||
-         context_check_lost(&r->context)))
-        return &model->base;
-    clusters_finish(&model->clusters);
+    model->serial = serial;
+    if (clusters_init(&model->clusters, tables, error))
+        return model;
     free(model);
     return NULL;
 }
@@ -70,10 +65,8 @@ void gl_model_destroy(struct renderer *renderer, struct renderer_model *base)
 {
     struct gl_renderer *r = gl_renderer_of(renderer);
     struct gl_model *model = gl_model_of(base);
-    if (context_is_current(&r->context, model->context)) {
-        polygons_forget(&r->meshes, model->serial);
+    if (context_is_current(&r->context, model->context))
         take_down(model);
-    }
     clusters_finish(&model->clusters);
     free(model);
 }

@@ -23,9 +23,10 @@ static inline struct gl_model *gl_model_of(struct renderer_model *model)
     return (struct gl_model *)(void *)model;
 }
 
-/* As struct renderer_device has them. */
-struct renderer_model *gl_model_create(struct renderer *renderer, const struct limit_tables *tables,
-                                       struct error *error);
+/* A model that is on no device yet; NULL on failure. */
+struct gl_model *gl_model_create(const struct limit_tables *tables, uint64_t serial,
+                                 struct error *error);
+/* As struct renderer_device has it; the polygons of the model stay. */
 void gl_model_destroy(struct renderer *renderer, struct renderer_model *model);
 
 /* Puts the tables on the device where they are not. */

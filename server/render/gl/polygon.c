@@ -4,6 +4,8 @@
 
 #include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
+#include "server/render/gl/visibility.h"
+#include "server/render/gl/polygon_meshes.h"
 #include "server/render/gl/programs/program.h"
 
 static bool compile(struct polygon_stage *p, struct error *error)

@@ -3,16 +3,13 @@
 #ifndef SHEEN_RENDER_GL_POLYGON_H
 #define SHEEN_RENDER_GL_POLYGON_H
 
-#include <epoxy/gl.h>
+#include <stddef.h>
 
-#include "server/render/gl/polygon_meshes.h"
+#include "server/base/error.h"
+#include "server/render/gl/polygon_kept.h"
 #include "server/render/view.h"
 
-/* All zero until first used. */
-struct polygon_stage {
-    GLuint fill, edges; /* programs */
-    GLuint framebuffer;
-};
+struct gl_renderer;
 
 /* A part of a tile's polygons. */
 struct slice {

@@ -6,6 +6,7 @@
 
 #include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
+#include "server/render/gl/paused_tiles.h"
 #include "server/render/gl/model.h"
 
 /* All meshes that are not in use may take so much memory of the device. */

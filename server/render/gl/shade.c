@@ -4,6 +4,7 @@
 
 #include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
+#include "server/render/gl/gather.h"
 #include "server/render/gl/light_image.h"
 #include "server/render/gl/context/quirks.h"
 #include "server/render/light_block.h"

@@ -2,20 +2,11 @@
 #ifndef SHEEN_RENDER_GL_SHADE_H
 #define SHEEN_RENDER_GL_SHADE_H
 
-#include <epoxy/gl.h>
-
 #include "server/base/error.h"
-#include "server/render/gl/programs/shade_programs.h"
+#include "server/render/gl/stages.h"
 #include "server/scene/frame.h"
 
 struct gl_renderer;
-
-struct shade_stage {
-    struct shade_programs programs;
-    GLuint light_buffer;
-    GLuint blank_texture; /* stands in where a pattern has no image */
-    GLuint no_groups;     /* a buffer: an indirect dispatch of no group */
-};
 
 bool stage_shade_init(struct shade_stage *stage, struct error *error);
 /* Makes one of the programs that the frame needs and that are missing. *is_ready: none was missing,

@@ -10,14 +10,6 @@
 
 struct gl_renderer;
 
-enum { MAX_CLOCKED_STAGES = 3 };
-struct stage_clock {
-    GLuint mark[MAX_CLOCKED_STAGES][2];  /* queries: each stage's start and end on the device */
-    uint64_t *stage[MAX_CLOCKED_STAGES]; /* where its time is added */
-    int n;                               /* stages that have ended since the last reading */
-    uint64_t since_us;                   /* when the clock was last read */
-};
-
 /* Has the device timer queries that hold all of its work? */
 bool stage_clock_by_device(const struct gl_renderer *renderer);
 void stage_clock_init(struct gl_renderer *renderer);

@@ -2,21 +2,13 @@
 #ifndef SHEEN_RENDER_GL_VISIBILITY_H
 #define SHEEN_RENDER_GL_VISIBILITY_H
 
-#include <epoxy/gl.h>
-
 #include "server/base/error.h"
+#include "server/render/gl/stages.h"
 #include "server/render/patch_grids.h"
 
 struct gl_model;
 struct gl_renderer;
 struct table_programs;
-
-struct visibility_stage {
-    GLuint vertex_array;
-    GLuint index_buffer; /* element indices of an instance of each shape of grid */
-    size_t index_first[GRID_SHAPES];
-    GLuint grid_buffer, grid_texture; /* the grids that are drawn, and a texture of them */
-};
 
 bool stage_visibility_init(struct visibility_stage *stage, struct error *error);
 /* Draws r->grids on the tile that the view block in r->view_buffer describes. */
