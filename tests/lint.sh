@@ -127,7 +127,6 @@ server/frame/request server/frame/request_internal
 server/ops/options server/ops/options_table
 server/render/renderer server/render/device
 server/render/native/native server/render/native/(frame|tile)
-server/render/native/lanes/surface server/render/native/lanes/meet
 server/session/session server/session/session_internal
 '
 # shellcheck disable=SC2086

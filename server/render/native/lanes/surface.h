@@ -74,12 +74,12 @@ LANE_INLINE vfloat v_close_enough(vfloat px_per_scale)
 
 #define T float
 #define NAMED(name) one_##name
-#include "server/render/native/lanes/meet.h"
+#include "server/render/native/lanes/place.h"
 #undef T
 #undef NAMED
 #define T vfloat
 #define NAMED(name) each_##name
-#include "server/render/native/lanes/meet.h"
+#include "server/render/native/lanes/place.h"
 #undef T
 #undef NAMED
 
