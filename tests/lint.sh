@@ -126,7 +126,6 @@ known_steps='
 server/frame/request server/frame/request_internal
 server/ops/options server/ops/options_table
 server/render/renderer server/render/device
-server/render/native/native server/render/native/(frame|tile)
 server/session/session server/session/session_internal
 '
 # shellcheck disable=SC2086

@@ -13,7 +13,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "server/render/native/native.h"
+#include "server/render/native/planes.h"
 #include "server/render/native/patches.h"
 #include "server/render/native/sets.h"
 #include "server/render/patch_grids.h"

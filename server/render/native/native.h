@@ -10,12 +10,10 @@
 #define SHEEN_RENDER_NATIVE_NATIVE_H
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include "server/base/error.h"
+#include "server/render/native/planes.h"
 #include "server/render/view.h"
-#include "server/surface/tables.h"
 
 struct native_device;
 struct native_programs; /* program.h */
@@ -24,26 +22,6 @@ struct native_model;    /* patches.h */
 struct native_options {
     unsigned n_threads; /* 1 to NATIVE_MAX_THREADS; 0: one for each processor */
     const char *set;    /* "v2", "v3", "v4", "base"; NULL: the widest that the processor has */
-};
-
-/* What stage 2 finds at the pixels of a tile, rows top first, `pitch` elements apart. The caller's
- * memory. Where depth is 0 no surface is met, and the other planes mean nothing. */
-struct native_planes {
-    size_t pitch;
-    float *depth;     /* along the view axis, units; 0: nothing */
-    float *normal[3]; /* unit, world, along the winding; 0, 0, 0 where there is none */
-    float *shape[3];  /* entries (1,1), (1,2), (2,2) of the shape operator in tangent_basis(normal)
-                         (shaders/basis.glsl), 1/unit */
-    uint32_t *face;   /* Ptex face */
-    float *u, *v;     /* on it */
-    uint32_t *border; /* shaders/border.glsl */
-    uint32_t *node;   /* where the surface is met: a node of the tables, */
-    uint32_t *where;  /* and the place on it as shaders/visibility.frag.glsl packs it */
-};
-
-/* Processor time of each step of one frame, summed over all threads. */
-struct native_times {
-    uint64_t choose_us, quads_us, raster_us, sort_us, evaluate_us, retry_us, copy_us, gaps_us;
 };
 
 /* NULL with ERROR_SERVER when memory or threads are short, ERROR_REQUEST for a set that the

@@ -3,7 +3,7 @@
 #define SHEEN_RENDER_NATIVE_TARGET_H
 
 #include "server/base/error.h"
-#include "server/render/native/native.h"
+#include "server/render/native/planes.h"
 #include "server/render/native/programs/program.h"
 
 /* Words of a RoundedHit (shaders/rounded.glsl). */

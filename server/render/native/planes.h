@@ -1,0 +1,28 @@
+/* What stages 1 and 2 leave of a tile, and the time that they took. */
+#ifndef SHEEN_RENDER_NATIVE_PLANES_H
+#define SHEEN_RENDER_NATIVE_PLANES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* What stage 2 finds at the pixels of a tile, rows top first, `pitch` elements apart. The caller's
+ * memory. Where depth is 0 no surface is met, and the other planes mean nothing. */
+struct native_planes {
+    size_t pitch;
+    float *depth;     /* along the view axis, units; 0: nothing */
+    float *normal[3]; /* unit, world, along the winding; 0, 0, 0 where there is none */
+    float *shape[3];  /* entries (1,1), (1,2), (2,2) of the shape operator in tangent_basis(normal)
+                         (shaders/basis.glsl), 1/unit */
+    uint32_t *face;   /* Ptex face */
+    float *u, *v;     /* on it */
+    uint32_t *border; /* shaders/border.glsl */
+    uint32_t *node;   /* where the surface is met: a node of the tables, */
+    uint32_t *where;  /* and the place on it as shaders/visibility.frag.glsl packs it */
+};
+
+/* Processor time of each step of one frame, summed over all threads. */
+struct native_times {
+    uint64_t choose_us, quads_us, raster_us, sort_us, evaluate_us, retry_us, copy_us, gaps_us;
+};
+
+#endif
