@@ -13,6 +13,8 @@
 #include "server/threads/render_thread.h"
 #include "server/threads/workers.h"
 
+struct limit_tables;
+
 /* How far a build is; written by the build, read by the loop's thread. */
 struct build_progress {
     const char *stage; /* "reading", "tables", "upload"; changed on the loop's thread only */
@@ -34,6 +36,9 @@ struct build_order {
     uint64_t tables_cpu_us;       /* of processors, for a model's tables */
     const atomic_bool *cancelled; /* soon ends with a failure once this is true */
 
+    /* Can a result of at least so many bytes ever be kept? If not, *error says so. It reads what
+     * never changes: any thread, while the result is still measured. */
+    bool (*may_need)(void *owner, size_t bytes, struct error *error);
     /* May this much memory be kept until the result is destroyed? Called once, before it is
      * filled. Evicts others to make room. */
     bool (*reserve)(void *owner, size_t bytes, struct error *error);
@@ -41,5 +46,8 @@ struct build_order {
     void (*finished)(void *owner, void *result, const struct error *error);
     void *owner;
 };
+
+/* What a model with these tables takes, on the device and in main memory. */
+size_t build_model_bytes(const struct build_order *order, const struct limit_tables *tables);
 
 #endif

@@ -19,7 +19,7 @@ void build_clock_start(struct build_clock *clock, const struct build_order *orde
     *clock = (struct build_clock){order, spent_us, clock_now_us(), thread_cpu_us()};
 }
 
-bool build_clock_goes_on(void *owner, struct error *error)
+static bool goes_on(void *owner, struct error *error)
 {
     struct build_clock *clock = owner;
     const struct build_order *order = clock->order;
@@ -38,4 +38,20 @@ bool build_clock_goes_on(void *owner, struct error *error)
                      "its tables take more than %llu s of processor time (--tables-cpu): it is not "
                      "taken; vertices of fewer faces cost less",
                      (unsigned long long)(order->tables_cpu_us / 1000000));
+}
+
+static bool may_need(void *owner, const struct limit_size *size, struct error *error)
+{
+    const struct build_clock *clock = owner;
+    const struct limit_tables tables = {.n_faces = size->n_faces,
+                                        .n_nodes = size->n_nodes,
+                                        .n_texels = size->n_texels,
+                                        .n_bounds = size->n_bounds};
+    return clock->order->may_need(clock->order->owner, build_model_bytes(clock->order, &tables),
+                                  error);
+}
+
+struct limit_watch build_clock_watch(struct build_clock *clock)
+{
+    return (struct limit_watch){goes_on, may_need, clock};
 }

@@ -11,8 +11,6 @@
 
 #define MAX_RANGES 256 /* even shares for many cores, and a progress bar that moves */
 #define MIN_FACES_PER_RANGE 16
-/* Of a model however small: its names, its buffers and their textures. */
-#define OVERHEAD_BYTES ((size_t)8192)
 
 struct model_build;
 
@@ -114,8 +112,8 @@ static void range_run(struct task *task, void *context)
     struct range *range = task->owner;
     struct model_build *build = range->build;
     struct build_clock clock;
-    const struct limit_watch watch = {build_clock_goes_on, &clock};
     build_clock_start(&clock, &build->order, &build->cpu_us);
+    const struct limit_watch watch = build_clock_watch(&clock);
     range->ok = check_not_cancelled(&build->order, &range->error) &&
                 limit_build_faces(&build->model->tables, build->plan, range->first, range->last,
                                   &watch, &range->error);
@@ -127,8 +125,8 @@ static void support_run(struct task *task, void *context)
     (void)context;
     struct model_build *build = task->owner;
     struct build_clock clock;
-    const struct limit_watch watch = {build_clock_goes_on, &clock};
     build_clock_start(&clock, &build->order, &build->cpu_us);
+    const struct limit_watch watch = build_clock_watch(&clock);
     build->ok = check_not_cancelled(&build->order, &build->error) &&
                 limit_find_support(&build->model->tables, &watch, &build->error);
 }
@@ -196,8 +194,8 @@ static bool read_cage(struct model_build *build)
     if (build->cage.warnings && !(model->warnings = strdup(build->cage.warnings)))
         return error_set(&build->error, ERROR_SERVER, "%s: no memory", order->name);
     struct build_clock clock;
-    const struct limit_watch watch = {build_clock_goes_on, &clock};
     build_clock_start(&clock, order, &build->cpu_us);
+    const struct limit_watch watch = build_clock_watch(&clock);
     if (check_not_cancelled(order, &error) &&
         cage_statistics(&build->cage, &model->statistics, &error) &&
         (build->plan = limit_plan_create(&build->cage, &watch, &error)) &&
@@ -221,9 +219,8 @@ static void read_done(struct task *task)
         const struct limit_tables *tables = &build->model->tables;
         build->model->device_bytes =
             renderer_model_bytes(render_thread_device(order->render_thread), tables);
-        size_t bytes =
-            build->model->device_bytes + limit_tables_host_bytes(tables) + OVERHEAD_BYTES;
-        build->ok = order->reserve(order->owner, bytes, &build->error) && start_ranges(build);
+        build->ok = order->reserve(order->owner, build_model_bytes(order, tables), &build->error) &&
+                    start_ranges(build);
     }
     if (!build->ok)
         end_build(build, false);

@@ -386,6 +386,18 @@ static bool build_reserve(void *owner, size_t bytes, struct error *error)
                          asset->name, permanent, error);
 }
 
+/* A private daemon's model is measured to its end: its client is told how much to give. */
+static bool build_may_need(void *owner, size_t bytes, struct error *error)
+{
+    const struct asset *asset = owner;
+    const struct store *store = asset->store;
+    return bytes <= store->account.limit || store->is_private ||
+           error_set(error, ERROR_MODEL,
+                     "it needs at least %zu bytes and the daemon's memory budget is %" PRIu64
+                     ": ask its operator for more (sheend --memory-budget)",
+                     bytes, store->account.limit);
+}
+
 /* Does whoever asked for it have another build running? */
 static bool is_served(const struct store *store, const struct asset *asset)
 {
@@ -425,6 +437,7 @@ static void start_builds(struct store *store)
             .max_image_px = store->max_image_px,
             .tables_cpu_us = store->limits->tables_cpu_s * 1000000,
             .cancelled = &store->cancelled,
+            .may_need = build_may_need,
             .reserve = build_reserve,
             .finished = build_finished,
             .owner = asset,

@@ -405,7 +405,7 @@ class Budget(unittest.TestCase):
             with self.assertRaises(wire.Refused) as caught:
                 client.receive()
             self.assertEqual(caught.exception.code, wire.ERROR_MODEL)
-            self.assertIn("sheet.obj needs ", caught.exception.text)
+            self.assertIn("sheet.obj: it needs at least ", caught.exception.text)
             self.assertIn("4194304", caught.exception.text)
             client.stats()
             seq = client.next_seq()

@@ -8,6 +8,7 @@
 #include "server/surface/subdivision/dart_masks.h"
 #include "server/surface/subdivision/face.h"
 #include "server/surface/subdivision/plan.h"
+#include "server/surface/texels.h"
 
 static void bounding_box(const struct cage *cage, double box_min[3], double box_max[3])
 {
@@ -22,6 +23,24 @@ static void bounding_box(const struct cage *cage, double box_min[3], double box_
             box_max[k] = fmax(box_max[k], p[k]);
         }
     }
+}
+
+/* May the tables of this cage be kept, however simple its faces are? Asked before any other work. A
+ * face that has a surface takes a node of 16 points at least. */
+static bool may_need_least(const struct cage *cage, const struct limit_watch *watch,
+                           struct error *error)
+{
+    struct limit_size least = {0};
+    for (size_t f = 0; f < cage->n_faces; f++) {
+        uint32_t size = cage->face_start[f + 1] - cage->face_start[f];
+        least.n_faces += size == 4 ? 1 : size;
+    }
+    least.n_nodes = least.n_faces;
+    if (cage->n_holes == 0 && cage->boundary != CAGE_BOUNDARY_NONE) {
+        least.n_texels = least.n_faces * LIMIT_PATCH_TEXELS;
+        least.n_bounds = least.n_faces;
+    }
+    return limit_may_need(watch, &least, error);
 }
 
 /* Measures every face in turn: each one's share of the tables begins where that of the one
@@ -53,6 +72,9 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
             ok = error_set(error, ERROR_MODEL,
                            "the cage needs more than %u table texels: split it in parts",
                            UINT32_MAX);
+        const struct limit_size so_far = {
+            .n_faces = plan->n_ptex, .n_nodes = node, .n_texels = texel, .n_bounds = bound};
+        ok = ok && limit_may_need(watch, &so_far, error);
     }
     plan->offsets[plan->n_ptex] =
         (struct plan_offsets){(uint32_t)node, (uint32_t)texel, (uint32_t)bound};
@@ -78,7 +100,9 @@ struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit
         error_set(error, ERROR_SERVER, "out of memory");
         return NULL;
     }
-    if (plan_init(plan, cage, watch, error) && lay_out(plan, watch, error))
+    *plan = (struct limit_plan){0};
+    if (may_need_least(cage, watch, error) && plan_init(plan, cage, watch, error) &&
+        lay_out(plan, watch, error))
         return plan;
     limit_plan_destroy(plan);
     return NULL;
