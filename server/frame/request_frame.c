@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/base/clock.h"
+#include "server/frame/request.h"
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"
 

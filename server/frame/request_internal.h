@@ -4,7 +4,7 @@
 #ifndef SHEEN_FRAME_REQUEST_INTERNAL_H
 #define SHEEN_FRAME_REQUEST_INTERNAL_H
 
-#include "server/frame/request.h"
+#include "server/frame/request_client.h"
 #include "server/frame/request_state.h"
 #include "server/output/false_colour.h"
 #include "server/output/metadata.h"

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "server/base/clock.h"
+#include "server/frame/request.h"
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"
 

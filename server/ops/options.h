@@ -4,16 +4,9 @@
 #define SHEEN_OPS_OPTIONS_H
 
 #include "server/base/error.h"
-#include "server/ops/service.h"
+#include "server/ops/settings.h"
 
 #define OPTIONS_CHANGED_BYTES 480
-
-/* Every value that an option sets. Plain data: it can be copied and compared. */
-struct settings {
-    struct service_options service;
-    char config[ACCESS_PATH_BYTES]; /* "": none */
-    bool check_config;
-};
 
 enum options_result {
     OPTIONS_SERVE,

@@ -2,10 +2,11 @@
 #ifndef SHEEN_OPS_OPTIONS_TABLE_H
 #define SHEEN_OPS_OPTIONS_TABLE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/ops/options.h"
+#include "server/ops/settings.h"
 
 #define OPTION_MAX_ROWS 64
 

@@ -11,7 +11,16 @@
 #ifndef SHEEN_RENDER_DEVICE_H
 #define SHEEN_RENDER_DEVICE_H
 
-#include "server/render/renderer.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/base/error.h"
+#include "server/image/image.h"
+#include "server/render/frame_work.h"
+#include "server/render/renderer_options.h"
+#include "server/scene/frame.h"
+#include "server/surface/tables.h"
 
 /* What the device keeps of a frame between two steps. The first member of a device's own struct. */
 struct frame_state {

@@ -1,4 +1,6 @@
 /* What is alike for all devices; the rest goes on to the device. */
+#include "server/render/renderer.h"
+
 #include "server/render/device.h"
 #include "server/scene/request_check.h"
 

@@ -11,10 +11,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/base/block_cache.h"
 #include "server/base/error.h"
 #include "server/image/image.h"
 #include "server/render/frame_watch.h"
+#include "server/render/frame_work.h"
+#include "server/render/renderer_options.h"
 #include "server/scene/frame.h"
 #include "server/surface/tables.h"
 
@@ -23,28 +24,6 @@ struct renderer;          /* a device that has been opened */
 struct renderer_model;    /* one cage's tables on the device */
 struct renderer_image;    /* one light image on the device */
 struct renderer_polygons; /* a model's polygons of one level, in main memory */
-
-struct renderer_options {
-    const char *device; /* which of the machine's, in words that the kind of device knows */
-    /* Called on the render thread whenever the device is lost, and for every try to open it again
-     * that fails. NULL: nobody is told. */
-    void (*lost)(void *owner);
-    void *owner;
-    struct block_cache *block_cache; /* memory of frames, which outlives them; NULL: malloc's */
-    /* For tests. */
-    size_t max_texels; /* pretend that the device's tables hold no more; 0: ask the device */
-    size_t slice;      /* triangles of polygons drawn a step, about; 0: by the device */
-    bool device_times; /* frame_times by the device's own clock on a software device, too */
-};
-#define RENDERER_NAME_BYTES 256
-
-/* What the device is, in its own words. Strings live as long as the renderer. */
-struct renderer_info {
-    const char *device, *driver;
-    bool software;        /* it computes on the machine's processors */
-    bool timed_by_device; /* frame_times are its own, not the clock's */
-    uint32_t max_width_px, max_height_px;
-};
 
 /* Opens a device. NULL with ERROR_DEVICE when there is none, saying what was found.
  *
@@ -77,34 +56,6 @@ size_t renderer_image_bytes(const struct renderer_device *device, const struct i
 /* For a frame of polygons between its steps, cut into such tiles. */
 uint64_t renderer_paused_bytes(const struct renderer_device *device, uint32_t width_px,
                                uint32_t height_px, uint64_t tile_px);
-
-/* A frame in the making, one tile a step, so that the render thread can turn to other frames in
- * between; of polygons a step is a part of a tile, and the device takes them in several steps, too.
- * Fill in the first group and call renderer_begin(), then renderer_step() for as long as it says
- * FRAME_MORE or FRAME_POLYGONS. */
-struct frame_work {
-    const struct frame_request *request; /* stays until the last step, as the model does */
-    uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
-    bool in_place; /* of an exact frame in tiles: its pixels must be those of one tile, bit by bit,
-                      and its planes are kept. They are then as large as the whole picture;
-                      renderer_begin() clears in_place where the device has no such images */
-    struct frame_watch watch;
-    const struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
-
-    /* The renderer's from here on. */
-    bool has_drawn; /* the last step drew a tile or a part of one; else it made the device ready for
-                       it, which tells nothing about the time that tiles take */
-    struct frame_state *state; /* the device's, from begin to the last step; NULL: none */
-};
-
-enum frame_step {
-    FRAME_MORE, /* steps are left */
-    /* The device has no polygons for the request's surface, or no longer: set frame_work.polygons
-     * and go on. Making them takes as long as many tiles. */
-    FRAME_POLYGONS,
-    FRAME_DONE,   /* the frame is whole */
-    FRAME_FAILED, /* *error says why; ERROR_GPU_LOST: ask again. The frame is empty */
-};
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and
  * makes its planes. A frame that is given up between two steps needs frame_work_finish() and

@@ -1,12 +1,13 @@
-#include "server/base/clock.h"
-#include "server/session/session_internal.h"
+#include "server/session/session.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "server/base/clock.h"
 #include "server/base/log.h"
+#include "server/session/session_internal.h"
 
 #define SHUTTING_DOWN "the daemon is shutting down: connect to another or try later"
 

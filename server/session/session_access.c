@@ -1,4 +1,5 @@
 #include "server/base/log.h"
+#include "server/session/session.h"
 #include "server/session/session_internal.h"
 
 void session_turn_away(struct session *session, const char *why)

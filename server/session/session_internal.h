@@ -6,7 +6,7 @@
 #ifndef SHEEN_SESSION_SESSION_INTERNAL_H
 #define SHEEN_SESSION_SESSION_INTERNAL_H
 
-#include "server/session/session.h"
+#include "server/session/session_state.h"
 
 /* --- session.c */
 

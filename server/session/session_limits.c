@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "server/base/log.h"
+#include "server/session/session.h"
 #include "server/session/session_internal.h"
 
 void session_log_disconnect(struct session *session, const char *reason)
