@@ -12,6 +12,7 @@
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/frame_state.h"
 #include "server/render/gl/model.h"
+#include "server/render/renderer.h"
 #include "server/render/gl/context/quirks.h"
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
