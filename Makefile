@@ -109,7 +109,7 @@ CORE_OBJ := $(call obj,$(CAGE_SRC) $(SURFACE_SRC) server/base/error.c)
 NATIVE_PROGRAMS := $(shell sed -n 's/^\([a-z][a-z_]*\) .*/\1/p' shaders/lanes/programs)
 LANES_OBJ := $(foreach set,$(LANE_SETS),$(patsubst %.c,$(BUILD)/obj/%.$(set).o,$(LANES_SRC)) \
              $(patsubst %,$(BUILD)/obj/gen/lanes/%.$(set).o,$(NATIVE_PROGRAMS)))
-RENDER_OBJ := $(LANES_OBJ) $(call obj,$(SCENE_SRC) $(RENDER_SRC) protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
+RENDER_OBJ := $(LANES_OBJ) $(call obj,$(SCENE_SRC) $(RENDER_SRC) server/base/processors.c protocol/control_group.c protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,$(filter-out server/base/error.c,$(wildcard server/base/*.c)) $(SERVICE_SRC) $(CONVERT_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.

@@ -24,6 +24,10 @@
 #define PROTOCOL_LEAST_MEMORY_BYTES (4ull * 1024 * 1024)
 #define PROTOCOL_MOST_MEMORY_BYTES (UINT64_MAX / 4) /* sums of a few stay in range */
 
+/* Of the native device of a daemon: threads, and instruction sets. */
+#define PROTOCOL_MOST_NATIVE_THREADS 64
+#define PROTOCOL_NATIVE_ISAS "auto", "v2", "v3", "v4"
+
 /* Requests sent and not yet answered, per connection. A peer of minor version 0 has the first, and
  * more is left in the socket's buffer; to others HELLO_OK grants some, and more breaks the
  * protocol. */

@@ -95,6 +95,8 @@ static enum sheen_status connect_server(struct client *client, const struct opti
     connect.connect_timeout_ms = timeout_ms;
     connect.address = options->server;
     connect.device = options->device;
+    connect.native_isa = options->native_isa;
+    connect.native_threads = options->native_threads;
     connect.memory_budget_bytes = options->memory_budget_bytes;
     connect.ca = options->ca;
     connect.cert = options->cert;
@@ -296,6 +298,7 @@ void client_json_origin(struct json *json, const struct client *client,
     json_string(json, "device", frame->device);
     json_string(json, "driver", frame->driver);
     json_bool(json, "software", frame->software);
+    json_uint(json, "threads", frame->threads);
     json_string(json, "server", frame->server);
     json_hex(json, "model_sha256", client->model_id, SHEEN_ID_BYTES);
     json_bool(json, "weld", options->weld);

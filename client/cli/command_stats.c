@@ -4,6 +4,7 @@
 
 #include "client/cli/commands.h"
 #include "client/cli/client.h"
+#include "client/cli/options/values.h"
 
 /* What rates are counted over: of a daemon that has just started, whose one request would look like
  * a thousand a second, a second. */
@@ -41,6 +42,7 @@ static void print_json(struct json *json, const struct sheen_stats *stats)
     json_string(json, "device", stats->device);
     json_string(json, "driver", stats->driver);
     json_bool(json, "software", stats->software);
+    json_uint(json, "threads", stats->threads);
     json_uint(json, "uptime_us", stats->uptime_us);
     json_uint(json, "sessions", stats->sessions);
     json_uint(json, "queued", stats->queued);
@@ -97,8 +99,11 @@ static void print_latency(const char *name, const struct sheen_stats *stats,
 static void print_table(const struct sheen_stats *stats)
 {
     printf("%-10s sheend %s, up %.0f s\n", "server", stats->server, (double)stats->uptime_us / 1e6);
-    printf("%-10s %s (%s)%s\n", "device", stats->device, stats->driver,
+    printf("%-10s %s (%s)%s", "device", stats->device, stats->driver,
            stats->software ? ", software" : "");
+    if (stats->threads)
+        printf(", %u %s", stats->threads, value_noun(stats->threads, "thread", "threads"));
+    putchar('\n');
     printf("%-10s %u, %u requests queued\n", "sessions", stats->sessions, stats->queued);
     printf("%-10s %" PRIu64 " sent, %" PRIu64 " errors\n", "frames", stats->frames, stats->errors);
     printf("%-10s %" PRIu64 " superseded, %" PRIu64 " cancelled, %" PRIu64 " late; %" PRIu64

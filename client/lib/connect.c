@@ -24,8 +24,7 @@ static enum sheen_status start_private(struct sheen_session *session,
         connection_pair(&session->connection, &peer_fd, connect_timeout_ms(options), error);
     if (status)
         return status;
-    status = private_daemon_start(&session->daemon, peer_fd, options->device,
-                                  options->memory_budget_bytes, error);
+    status = private_daemon_start(&session->daemon, peer_fd, options, error);
     close(peer_fd);
     return status;
 }
@@ -36,10 +35,15 @@ static enum sheen_status open_address(struct sheen_session *session,
 {
     struct address address;
     char text[ADDRESS_TEXT_BYTES];
-    if (options->device || options->memory_budget_bytes)
+    const char *chosen = options->device                ? "device"
+                         : options->native_isa          ? "native ISA"
+                         : options->native_threads      ? "number of native threads"
+                         : options->memory_budget_bytes ? "memory budget"
+                                                        : NULL;
+    if (chosen)
         return status_set(error, SHEEN_BAD_ARGUMENT,
-                          "a %s is chosen for a private daemon; the one at %s has its own",
-                          options->device ? "device" : "memory budget", options->address);
+                          "a %s is chosen for a private daemon; the one at %s has its own", chosen,
+                          options->address);
     if (!address_parse(&address, options->address, text))
         return status_set(error, SHEEN_BAD_ARGUMENT, "%s", text);
     if (address.kind != ADDRESS_UNIX && address.port == 0)

@@ -79,17 +79,21 @@ static uint64_t budget_bytes(uint64_t asked)
     return half > PROTOCOL_LEAST_MEMORY_BYTES ? half : PROTOCOL_LEAST_MEMORY_BYTES;
 }
 
-/* `bytes` is the memory budget, or 0. */
-static int spawn(pid_t *pid, const char *path, int session_fd, int stderr_fd, const char *device,
-                 uint64_t bytes)
+static int spawn(pid_t *pid, const char *path, int session_fd, int stderr_fd,
+                 const struct sheen_connect_options *options)
 {
-    char fd_text[12], bytes_text[24];
+    uint64_t bytes = budget_bytes(options->memory_budget_bytes);
+    char fd_text[12], threads_text[12], bytes_text[24];
     snprintf(fd_text, sizeof(fd_text), "%d", SESSION_FD);
+    snprintf(threads_text, sizeof(threads_text), "%u", options->native_threads);
     snprintf(bytes_text, sizeof(bytes_text), "%" PRIu64, bytes);
-    const char *argv[10] = {"sheend", "--session-fd", fd_text};
-    const char *const more[][2] = {{"--device", device},
-                                   {"--memory-budget", bytes ? bytes_text : NULL},
-                                   {"--peer-memory", bytes ? bytes_text : NULL}};
+    const char *argv[14] = {"sheend", "--session-fd", fd_text};
+    const char *const more[][2] = {
+        {"--device", options->device},
+        {"--native-threads", options->native_threads ? threads_text : NULL},
+        {"--native-isa", options->native_isa},
+        {"--memory-budget", bytes ? bytes_text : NULL},
+        {"--peer-memory", bytes ? bytes_text : NULL}};
     for (size_t i = 0, n = 3; i < sizeof(more) / sizeof(*more); i++)
         if (more[i][1]) {
             argv[n++] = more[i][0];
@@ -119,7 +123,7 @@ finish_files:
 }
 
 enum sheen_status private_daemon_start(struct private_daemon *daemon, int session_fd,
-                                       const char *device, uint64_t memory_budget_bytes,
+                                       const struct sheen_connect_options *options,
                                        struct sheen_error *error)
 {
     char path[PATH_BYTES];
@@ -132,8 +136,7 @@ enum sheen_status private_daemon_start(struct private_daemon *daemon, int sessio
     if (high_fd < 0 || daemon->stderr_fd < 0)
         failed = errno;
     else
-        failed = spawn(&daemon->pid, path, high_fd, daemon->stderr_fd, device,
-                       budget_bytes(memory_budget_bytes));
+        failed = spawn(&daemon->pid, path, high_fd, daemon->stderr_fd, options);
     if (high_fd >= 0)
         close(high_fd);
     if (memory_fd >= 0)

@@ -14,11 +14,11 @@ struct private_daemon {
     int stderr_fd; /* a memory file with what it wrote to standard error; -1: none */
 };
 
-/* Starts `sheend --session-fd N [--device DEVICE]` on `session_fd`, which stays the caller's: he
- * closes it right after. device may be NULL. Its budget of memory, all of which is its one
- * client's, is as sheen_connect_options says. SHEEN_NO_SERVER when it cannot be started. */
+/* Starts `sheend --session-fd N` on `session_fd`, which stays the caller's: he closes it right
+ * after. Device, threads and budget of memory, all of which is its one client's, are as *options
+ * says. SHEEN_NO_SERVER when it cannot be started. */
 enum sheen_status private_daemon_start(struct private_daemon *daemon, int session_fd,
-                                       const char *device, uint64_t memory_budget_bytes,
+                                       const struct sheen_connect_options *options,
                                        struct sheen_error *error);
 
 /* Once the connection is lost: waits briefly for the daemon's end and puts why it ended into

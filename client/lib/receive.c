@@ -85,6 +85,7 @@ static void fill_frame(struct sheen_frame *frame, const sheen_Frame *body)
         .data_bytes = (size_t)body->data_bytes,
         .times = times_from_message(&body->times),
         .software = body->software,
+        .threads = body->threads,
     };
     scene_from_message(frame, body);
     memcpy(frame->device, body->device, sizeof(frame->device));

@@ -90,7 +90,7 @@ struct sheen_error {
     char text[640]; /* one line, UTF-8, no newline: what, where, what to do */
 };
 
-/* The library's version and the wire's: "0.1.0, protocol 1.2". Pure. */
+/* The library's version and the wire's: "0.1.0, protocol 1.3". Pure. */
 const char *sheen_version(void);
 
 /* The exit code that the `sheen` command ends with: 0, 2, 3, 4 or 5. Pure, as the next one. */
@@ -123,6 +123,10 @@ struct sheen_connect_options {
     const char *ca, *cert, *key;
     const char *token; /* sent over TLS only */
     bool share;        /* whoever knows its SHA-256 may use what this session uploads */
+    /* Private daemon's native device: "auto" (NULL), "v2", "v3" or "v4" of x86-64's instructions,
+     * and how many threads draw, 1 to 64; 0: one for each processor that it may use. */
+    const char *native_isa;
+    uint32_t native_threads;
 };
 #define SHEEN_CONNECT_DEFAULTS                                                                     \
     ((struct sheen_connect_options){.size = sizeof(struct sheen_connect_options),                  \
@@ -530,6 +534,7 @@ struct sheen_frame {
     struct sheen_times times;
     char device[128], driver[128], server[32];
     bool software;
+    uint32_t threads; /* of the native device; 0: a GPU, or a driver or daemon that does not say */
 };
 #define SHEEN_FRAME_DEFAULTS ((struct sheen_frame){.size = sizeof(struct sheen_frame)})
 
@@ -604,6 +609,7 @@ struct sheen_stats {
     struct sheen_times p50, p95, p99;
     char device[128], driver[128], server[32];
     bool software;
+    uint32_t threads; /* of the native device; 0: a GPU, or a driver or daemon that does not say */
 };
 #define SHEEN_STATS_DEFAULTS ((struct sheen_stats){.size = sizeof(struct sheen_stats)})
 

@@ -61,6 +61,7 @@ enum sheen_status sheen_query_stats(struct sheen_session *session, struct sheen_
         .p95 = times_from_message(&body.p95),
         .p99 = times_from_message(&body.p99),
         .software = body.software,
+        .threads = body.threads,
     };
     memcpy(whole.device, body.device, sizeof(whole.device));
     memcpy(whole.driver, body.driver, sizeof(whole.driver));

@@ -38,6 +38,8 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .empty = scene_write_colour(asked->empty),
         .has_base = true,
         .base = scene_write_colour(asked->base),
+        .has_threads = info->n_threads > 0,
+        .threads = info->n_threads,
         .has_show_least = request->extremes.has_values,
         .show_least = request->extremes.least,
         .has_show_greatest = request->extremes.has_values,

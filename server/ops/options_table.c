@@ -1,12 +1,14 @@
 /* The table of options, and how their values are read. */
 #include "server/ops/options_table.h"
 
-#include <sched.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "protocol/limits.h"
 #include "protocol/number.h"
+#include "server/base/processors.h"
+#include "server/threads/render_thread.h"
 #include "server/threads/pool.h"
 #include "server/net/tokens.h"
 
@@ -95,19 +97,40 @@ static bool set_device(void *value, const char *text, struct error *error)
     return true;
 }
 
-/* The default: a thread for each processor that this process may use. */
-static bool set_threads(void *value, const char *text, struct error *error)
+/* "auto" is a thread for each processor that this process may use. */
+static bool read_threads(void *value, const char *text, const char *name, unsigned most,
+                         struct error *error)
 {
     uint64_t n;
-    cpu_set_t set;
     if (strcmp(text, "auto") == 0)
-        n = sched_getaffinity(0, sizeof set, &set) == 0 ? (uint64_t)CPU_COUNT(&set) : 1;
-    else if (!number_parse(text, 1, POOL_MAX_THREADS, false, &n))
+        n = processors_available("");
+    else if (!number_parse(text, 1, most, false, &n))
         return error_set(error, ERROR_REQUEST,
-                         "threads is '%s'; it must be auto or a whole number from 1 to %u", text,
-                         POOL_MAX_THREADS);
-    n = n < 1 ? 1 : n > POOL_MAX_THREADS ? POOL_MAX_THREADS : n;
+                         "%s is '%s'; it must be auto or a whole number from 1 to %u", name, text,
+                         most);
+    n = n > most ? most : n;
     memcpy(value, &n, sizeof n);
+    return true;
+}
+
+static bool set_threads(void *value, const char *text, struct error *error)
+{
+    return read_threads(value, text, "threads", POOL_MAX_THREADS, error);
+}
+
+static bool set_native_threads(void *value, const char *text, struct error *error)
+{
+    _Static_assert(PROTOCOL_MOST_NATIVE_THREADS == RENDERER_MAX_THREADS, "clients know the range");
+    return read_threads(value, text, "native-threads", RENDERER_MAX_THREADS, error);
+}
+
+static bool set_native_isa(void *value, const char *text, struct error *error)
+{
+    static const char *const SETS[] = {PROTOCOL_NATIVE_ISAS, NULL};
+    int chosen;
+    if (!set_choice(&chosen, text, "native-isa", SETS, error))
+        return false;
+    snprintf(value, SERVICE_ISA_BYTES, "%s", text);
     return true;
 }
 
@@ -143,8 +166,19 @@ static const struct option_row OWN_ROWS[] = {
      "a GPU if there is one, the software device, processors by vector code (of the exact\n"
      "surface alone, no polygons), or the N-th device",
      set_device},
+    {"native-threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_native_threads), 0, 0,
+     NULL, "auto",
+     "that draw on the native device, 1 to 64; auto: one for each processor that this\n"
+     "process and its control group may use. Pictures are the same for any number",
+     set_native_threads},
+    {"native-isa", "auto|v2|v3|v4", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.native_isa), 0, 0,
+     NULL, "auto",
+     "instructions that the native device draws by: v2 (SSE4.2), v3 (AVX2 and FMA), v4\n"
+     "(AVX-512) of x86-64; auto: the widest that the processor has. Pictures of two\n"
+     "sets differ by rounding; with one for all of them mixed machines make the same",
+     set_native_isa},
     {"threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_threads), 0, 0, NULL, "auto",
-     "for building tables and encoding, 1 to 256; auto: one per processor", set_threads},
+     "for building tables and encoding, 1 to 256; auto: as for native-threads", set_threads},
     {"allow-uid", "UID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.uids),
      0, 0, NULL, NULL,
      "a user who may connect to the Unix sockets; several times, up to 64. With\n"

@@ -423,8 +423,11 @@ static bool start_threads(struct service *service, struct error *error)
     const struct loop_hooks hooks = {after_batch, tick, service};
     if (!(daemon->block_cache = block_cache_create((size_t)limits->spare_memory)))
         return error_set(error, ERROR_SERVER, "no memory for the daemon");
-    const struct renderer_options renderer = {.device = options->device,
-                                              .block_cache = daemon->block_cache};
+    const struct renderer_options renderer = {
+        .device = options->device,
+        .n_threads = (unsigned)options->n_native_threads,
+        .isa = strcmp(options->native_isa, "auto") == 0 ? NULL : options->native_isa,
+        .block_cache = daemon->block_cache};
     const struct renderer_device *device =
         strcmp(options->device, "native") == 0 ? &native_renderer_device : &gl_device;
     return (daemon->loop = loop_create(&hooks, error)) && watch_signals(service, error) &&

@@ -16,6 +16,7 @@
 #define SERVICE_MAX_LISTENERS 16
 #define SERVICE_MAX_STRANGERS 64u /* clients over TLS that have not shown who they are */
 #define SERVICE_DEVICE_BYTES 64
+#define SERVICE_ISA_BYTES 8
 
 struct service_listen {
     size_t n;
@@ -25,11 +26,13 @@ struct service_listen {
 /* Plain data, zeroed before it is filled, so that two can be compared byte by byte. */
 struct service_options {
     struct service_listen listen;
-    struct service_listen metrics;     /* of health and metrics: none or one */
-    bool metrics_open;                 /* they may be beyond the loopback */
-    int session_fd;                    /* serve this connected socket alone; -1: listen */
-    char device[SERVICE_DEVICE_BYTES]; /* as renderer_options.device */
-    uint64_t n_threads;                /* of the pool, 1 to POOL_MAX_THREADS */
+    struct service_listen metrics;      /* of health and metrics: none or one */
+    bool metrics_open;                  /* they may be beyond the loopback */
+    int session_fd;                     /* serve this connected socket alone; -1: listen */
+    char device[SERVICE_DEVICE_BYTES];  /* as renderer_options.device */
+    uint64_t n_native_threads;          /* as renderer_options.n_threads, not 0 */
+    char native_isa[SERVICE_ISA_BYTES]; /* "auto", or as renderer_options.isa */
+    uint64_t n_threads;                 /* of the pool, 1 to POOL_MAX_THREADS */
     struct limits limits;
     uint64_t stuck_s; /* as monitor_create() */
     struct access_options access;

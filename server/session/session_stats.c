@@ -41,6 +41,8 @@ void session_reply_stats(struct session *session, uint32_t seq)
         .uploads_bytes = host->stats.upload_bytes,
         .sent_bytes = host->stats.sent_bytes,
         .software = info->software,
+        .has_threads = info->n_threads > 0,
+        .threads = info->n_threads,
         .mean = stats_mean(&host->stats),
         .queued = scheduler->waiting,
         .has_superseded = true,

@@ -212,7 +212,7 @@ class Client(unittest.TestCase):
             self.assertEqual(value, wanted, name)
         options = set(re.findall(r"^ +(?:-., )?--([a-z-]+)", sheen("render", "--help").stdout, re.M))
         not_of_the_frame = {"quiet", "json", "help", "ca", "cert", "key", "token-file", "share",
-                            "reconnect", "memory-budget"}
+                            "reconnect", "memory-budget", "native-threads", "native-isa"}
         self.assertEqual(options - not_of_the_frame, set(said))
 
     def test_json_asked_again(self):

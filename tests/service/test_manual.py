@@ -196,7 +196,8 @@ class Bash(unittest.TestCase):
                 ("sheen", "stream", "--class", ""): ["interactive", "still", "batch"],
                 ("sheen", "render", "--size", ""): [],
                 ("sheen", "stats", ""): ["--server", "--ca", "--cert", "--key", "--token-file",
-                                         "--share", "--device", "--memory-budget", "--quiet", "-q",
+                                         "--share", "--device", "--native-threads",
+                                         "--native-isa", "--memory-budget", "--quiet", "-q",
                                          "--json", "--help", "-h"],
                 ("sheen", "stats", "--leg"): [],
                 ("sheen", "render", "sheen.f"): ["sheen.fish"],
@@ -204,6 +205,8 @@ class Bash(unittest.TestCase):
                 ("sheen", "render", "--ca", "sheen.f"): ["sheen.fish"],
                 ("sheend", "--tls-c"): ["--tls-cert", "--tls-crl"],
                 ("sheend", "--device", "s"): ["software"],
+                ("sheend", "--native-isa", "v"): ["v2", "v3", "v4"],
+                ("sheen", "render", "--native-isa", ""): ["auto", "v2", "v3", "v4"],
         }.items():
             with self.subTest(words=words):
                 self.assertEqual(self.complete(*words), wanted)

@@ -136,12 +136,16 @@ static void arguments_and_files(void **state)
     struct sheen_session *session;
     struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS;
     options.device = "software";
+    options.native_isa = "v2";
+    options.native_threads = 64;
     options.memory_budget_bytes = 5000000;
     assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_LOST_SERVER);
     read_report(report, sizeof(report));
-    assert_string_equal(report, "--session-fd 3 --device software --memory-budget 5000000 "
-                                "--peer-memory 5000000\n0 1 2 3 4 ");
-    options.device = NULL;
+    assert_string_equal(report,
+                        "--session-fd 3 --device software --native-threads 64 --native-isa v2 "
+                        "--memory-budget 5000000 --peer-memory 5000000\n0 1 2 3 4 ");
+    options.device = options.native_isa = NULL;
+    options.native_threads = 0;
     options.memory_budget_bytes = 0;
     assert_int_equal(sheen_connect(&session, &options, &error), SHEEN_LOST_SERVER);
     read_report(report, sizeof(report));
@@ -210,7 +214,8 @@ static void the_daemon_ends_with_its_socket(void **state)
     int peer_fd;
     play("cat <&3 >/dev/null"); /* until the end of the stream */
     assert_int_equal(connection_pair(&connection, &peer_fd, 1000, &error), SHEEN_OK);
-    assert_int_equal(private_daemon_start(&daemon, peer_fd, NULL, 0, &error), SHEEN_OK);
+    const struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS;
+    assert_int_equal(private_daemon_start(&daemon, peer_fd, &options, &error), SHEEN_OK);
     close(peer_fd);
     assert_int_equal(waitpid(daemon.pid, NULL, WNOHANG), 0);
     connection_finish(&connection);

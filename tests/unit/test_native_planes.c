@@ -866,7 +866,7 @@ static void test_refuses(void **state)
     const struct native_options options = {.n_threads = 1, .set = "v9"};
     struct error error = {0};
     assert_null(native_device_create(&options, &error));
-    assert_int_equal(error.kind, ERROR_REQUEST);
+    assert_int_equal(error.kind, ERROR_DEVICE);
     native_device_destroy(NULL);
     native_model_destroy(NULL);
 }

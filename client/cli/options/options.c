@@ -196,6 +196,11 @@ enum options_result options_parse(const struct command *command, int argc, char 
     if (options->server && options->device)
         return wrong(why, "--device is for a private daemon; the one at %.120s has its own",
                      options->server);
+    if (options->server && (options->native_isa || options->native_threads))
+        return wrong(why,
+                     "--native-isa and --native-threads are for a private daemon; the one at "
+                     "%.120s has its own",
+                     options->server);
     if (options->server && options->memory_budget_bytes)
         return wrong(
             why,

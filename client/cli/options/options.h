@@ -39,6 +39,8 @@ struct options {
     const char *model;            /* the file, NULL for commands without */
     const char *server;           /* --server, else SHEEN_SERVER, else NULL: a private daemon */
     const char *device;           /* NULL: auto */
+    const char *native_isa;       /* NULL: auto */
+    uint32_t native_threads;      /* 0: auto */
     uint64_t memory_budget_bytes; /* of the private daemon; 0: as libsheen has it */
     const char *ca, *cert, *key;  /* of a tls: server; NULL: none */
     bool share;                   /* what is uploaded */

@@ -75,6 +75,27 @@ static bool apply_device(struct options *options, const char *value, char *why)
            options_refuse(why, "must be auto, software, native or a device's number");
 }
 
+static bool apply_native_threads(struct options *options, const char *value, char *why)
+{
+    uint64_t n = 0;
+    if (strcmp(value, "auto") != 0 &&
+        !number_parse(value, 1, PROTOCOL_MOST_NATIVE_THREADS, false, &n))
+        return options_refuse(why, "must be auto or a whole number from 1 to %u",
+                              PROTOCOL_MOST_NATIVE_THREADS);
+    options->native_threads = (uint32_t)n;
+    return true;
+}
+
+static bool apply_native_isa(struct options *options, const char *value, char *why)
+{
+    static const char *const ISAS[] = {PROTOCOL_NATIVE_ISAS};
+    options->native_isa = value;
+    for (size_t i = 0; i < sizeof(ISAS) / sizeof(*ISAS); i++)
+        if (strcmp(value, ISAS[i]) == 0)
+            return true;
+    return options_refuse(why, "must be auto, v2, v3 or v4");
+}
+
 static bool apply_memory_budget(struct options *options, const char *value, char *why)
 {
     return number_parse(value, PROTOCOL_LEAST_MEMORY_BYTES, PROTOCOL_MOST_MEMORY_BYTES, true,
@@ -382,6 +403,16 @@ const struct option_row OPTIONS_COMMON[] = {
      "polygons yet), or a number from 0 (default: auto,\n"
      "a GPU when there is one)",
      apply_device, "auto software native"},
+    {"native-threads", 0, "N",
+     "of the private daemon: threads that draw on the native device, 1 to 64, or\n"
+     "auto (default), one for each processor that it may use. Pictures are the same\n"
+     "for any number",
+     apply_native_threads, "auto"},
+    {"native-isa", 0, "ISA",
+     "of the private daemon: instructions that the native device draws by, v2\n"
+     "(SSE4.2), v3 (AVX2 and FMA) or v4 (AVX-512) of x86-64, or auto (default), the\n"
+     "widest that the processor has. Pictures of two sets differ by rounding",
+     apply_native_isa, "auto v2 v3 v4"},
     {"memory-budget", 0, "BYTES",
      "of the private daemon: most that the model, its tables, images and frames may\n"
      "take together, in main memory and on the device, 4M or more, as 800M or 16G\n"

@@ -24,7 +24,8 @@ static struct renderer *create(const struct renderer_options *options, struct er
         error_set(error, ERROR_SERVER, "out of memory");
         return NULL;
     }
-    r->device = native_device_create(&(struct native_options){0}, error);
+    const struct native_options chosen = {.n_threads = options->n_threads, .set = options->isa};
+    r->device = native_device_create(&chosen, error);
     if (!r->device) {
         free(r);
         return NULL;
@@ -35,6 +36,7 @@ static struct renderer *create(const struct renderer_options *options, struct er
                                 .info = {.device = r->name,
                                          .driver = "sheen " SHEEN_VERSION,
                                          .software = true,
+                                         .n_threads = native_device_threads(r->device),
                                          .max_width_px = MAX_SIDE_PX,
                                          .max_height_px = MAX_SIDE_PX}};
     return &r->base;

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
+#include "server/base/processors.h"
 #include "server/render/native/frame.h"
 #include "server/render/native/team.h"
 #include "server/render/native/tile.h"
@@ -141,15 +141,18 @@ struct native_device *native_device_create(const struct native_options *options,
 {
     const struct native_set *set = native_set_find(options->set);
     if (!set) {
-        error_set(error, ERROR_REQUEST, "the processor has no instruction set \"%s\"",
-                  options->set ? options->set : "that is known");
+        const struct native_set *widest = native_set_find(NULL);
+        error_set(error, ERROR_DEVICE,
+                  "this processor lacks the instructions %s of --native-isa; the widest that it "
+                  "has and sheen draws by: %s",
+                  options->set ? options->set : "v2", widest ? widest->name : "none");
         return NULL;
     }
     struct native_device *device = calloc(1, sizeof *device);
     if (device) {
-        long n = options->n_threads ? options->n_threads : sysconf(_SC_NPROCESSORS_ONLN);
+        unsigned n = options->n_threads ? options->n_threads : processors_available("");
         device->set = set;
-        device->n_threads = n < 1 ? 1 : n > NATIVE_MAX_THREADS ? NATIVE_MAX_THREADS : (unsigned)n;
+        device->n_threads = n > NATIVE_MAX_THREADS ? NATIVE_MAX_THREADS : n;
     }
     if (device && make_grids(device) && make_threads(device))
         device->team = native_team_create(device->n_threads);

@@ -20,11 +20,11 @@ struct native_programs; /* program.h */
 struct native_model;    /* patches.h */
 
 struct native_options {
-    unsigned n_threads; /* 1 to NATIVE_MAX_THREADS; 0: one for each processor */
+    unsigned n_threads; /* 1 to NATIVE_MAX_THREADS; 0: one for each processor that is available */
     const char *set;    /* "v2", "v3", "v4", "base"; NULL: the widest that the processor has */
 };
 
-/* NULL with ERROR_SERVER when memory or threads are short, ERROR_REQUEST for a set that the
+/* NULL with ERROR_SERVER when memory or threads are short, ERROR_DEVICE for a set that the
  * processor lacks. */
 struct native_device *native_device_create(const struct native_options *options,
                                            struct error *error);

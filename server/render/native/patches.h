@@ -13,9 +13,10 @@
 
 #include "server/base/error.h"
 #include "server/render/clusters.h"
+#include "server/render/renderer_options.h"
 #include "server/surface/tables.h"
 
-enum { NATIVE_MAX_THREADS = 64 };
+enum { NATIVE_MAX_THREADS = RENDERER_MAX_THREADS };
 
 /* Four cache lines: the first is all that a piece of one cell needs. */
 struct native_patch {

@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "server/base/fault.h"
+
 #define DECLARE(set)                                                                               \
     void native_pieces_##set(struct native_frame *, struct native_thread *, uint32_t);             \
     void native_tile_##set(struct native_frame *, struct native_thread *, uint32_t);               \
@@ -42,6 +44,8 @@ static const struct native_set sets[] = {SET(v2, "SSE4.2", 4), SET(v3, "AVX2", 8
 static bool has(size_t k)
 {
     __builtin_cpu_init();
+    if ((k >= 1 && fault_at("native.v3")) || (k >= 2 && fault_at("native.v4")))
+        return false;
     if (k >= 1 && !(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                     __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2")))
         return false;
