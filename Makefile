@@ -88,7 +88,7 @@ LANES_base := -DLANES=4
 endif
 # GCC 12 takes what its own intrinsics leave undefined on purpose for an error, and warns that vectors are passed
 # in other registers than by older compilers: no function here is called from outside of its unit.
-LANES_CXXFLAGS := -O2 -Wno-uninitialized -Wno-maybe-uninitialized -Wno-psabi -Wno-unused -Wno-unused-parameter -Wno-shadow
+LANES_CXXFLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),-O2) -Wno-uninitialized -Wno-maybe-uninitialized -Wno-psabi -Wno-unused -Wno-unused-parameter -Wno-shadow
 # Frames need not be the same bytes from one instruction set to the next.
 LANES_FLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-O3) -ffp-contract=fast -fno-math-errno -fno-trapping-math
 IMAGE_SRC := $(wildcard server/image/*.c)

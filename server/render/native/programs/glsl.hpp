@@ -363,20 +363,43 @@ template <class T> constexpr bool is_vector<vec4<T>> = true;
 #define VECTOR template <class> class V
 #define IF_VECTOR(T) class = std::enable_if_t<is_vector<V<T>>>
 
-// f of each component, or of each pair of components.
-template <VECTOR, class T, class F> INLINE auto map(const V<T> &a, F f)
+// f of each component, or of each pair of components. Written out: a loop would keep vectors in memory.
+template <class T, class F> INLINE auto map(const vec2<T> &a, F f)
 {
-    V<decltype(f(a.x))> result;
-    for (int i = 0; i < V<T>::SIZE; i++)
-        result[i] = f(a[i]);
-    return result;
+    return vec2<decltype(f(a.x))>(f(a.x), f(a.y));
 }
-template <VECTOR, class T, class U, class F> INLINE auto map(const V<T> &a, const V<U> &b, F f)
+template <class T, class F> INLINE auto map(const vec3<T> &a, F f)
 {
-    V<decltype(f(a.x, b.x))> result;
-    for (int i = 0; i < V<T>::SIZE; i++)
-        result[i] = f(a[i], b[i]);
-    return result;
+    return vec3<decltype(f(a.x))>(f(a.x), f(a.y), f(a.z));
+}
+template <class T, class F> INLINE auto map(const vec4<T> &a, F f)
+{
+    return vec4<decltype(f(a.x))>(f(a.x), f(a.y), f(a.z), f(a.w));
+}
+template <class T, class U, class F> INLINE auto map(const vec2<T> &a, const vec2<U> &b, F f)
+{
+    return vec2<decltype(f(a.x, b.x))>(f(a.x, b.x), f(a.y, b.y));
+}
+template <class T, class U, class F> INLINE auto map(const vec3<T> &a, const vec3<U> &b, F f)
+{
+    return vec3<decltype(f(a.x, b.x))>(f(a.x, b.x), f(a.y, b.y), f(a.z, b.z));
+}
+template <class T, class U, class F> INLINE auto map(const vec4<T> &a, const vec4<U> &b, F f)
+{
+    return vec4<decltype(f(a.x, b.x))>(f(a.x, b.x), f(a.y, b.y), f(a.z, b.z), f(a.w, b.w));
+}
+// All components, one after the other, by f of what came before and the next one.
+template <class T, class F> INLINE auto fold(const vec2<T> &a, F f)
+{
+    return f(a.x, a.y);
+}
+template <class T, class F> INLINE auto fold(const vec3<T> &a, F f)
+{
+    return f(f(a.x, a.y), a.z);
+}
+template <class T, class F> INLINE auto fold(const vec4<T> &a, F f)
+{
+    return f(f(f(a.x, a.y), a.z), a.w);
 }
 
 #define OPERATOR(op)                                                                               \
@@ -691,33 +714,21 @@ template <VECTOR, class T, IF_VECTOR(T)> INLINE V<T> select(vbool m, const V<T> 
 }
 template <VECTOR, class T, IF_VECTOR(T)> INLINE auto equal(const V<T> &a, const V<T> &b)
 {
-    auto result = equal(a.x, b.x);
-    for (int i = 1; i < V<T>::SIZE; i++)
-        result = result & equal(a[i], b[i]);
-    return result;
+    return all(map(a, b, [](T p, T q) { return equal(p, q); }));
 }
 template <VECTOR, class T, IF_VECTOR(T)> INLINE T any(const V<T> &a)
 {
-    T result = a.x;
-    for (int i = 1; i < V<T>::SIZE; i++)
-        result = result | a[i];
-    return result;
+    return fold(a, [](T p, T q) { return (T)(p | q); });
 }
 template <VECTOR, class T, IF_VECTOR(T)> INLINE T all(const V<T> &a)
 {
-    T result = a.x;
-    for (int i = 1; i < V<T>::SIZE; i++)
-        result = result & a[i];
-    return result;
+    return fold(a, [](T p, T q) { return (T)(p & q); });
 }
 
 // --- geometry
 template <VECTOR, class T, IF_VECTOR(T)> INLINE T dot(const V<T> &a, const V<T> &b)
 {
-    T sum = a.x * b.x;
-    for (int i = 1; i < V<T>::SIZE; i++)
-        sum += a[i] * b[i];
-    return sum;
+    return fold(a * b, [](T p, T q) { return p + q; });
 }
 template <VECTOR, class T, IF_VECTOR(T)> INLINE T length(const V<T> &a)
 {
@@ -1031,10 +1042,10 @@ template <class T> struct image2D : image {
 template <class T> INLINE vec4<T> imageLoad(const image2D<T> &of, const vec2<vint> &p)
 {
     vint word = pixel_word(of, p);
-    vec4<T> result(T{});
-    for (int i = 0; i < of.channels; i++)
-        result[i] = (T)gather(of.words + (size_t)i * of.channel_words, word);
-    return result;
+    auto channel = [&](int i) {
+        return i < of.channels ? (T)gather(of.words + (size_t)i * of.channel_words, word) : T{};
+    };
+    return vec4<T>(channel(0), channel(1), channel(2), channel(3));
 }
 template <class T>
 INLINE void imageStore(const image2D<T> &of, const vec2<vint> &p, const vec4<T> &value, vbool m)
