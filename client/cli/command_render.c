@@ -5,6 +5,7 @@
 #include "client/cli/commands.h"
 #include "client/cli/files/file.h"
 #include "client/cli/client.h"
+#include "client/cli/notices.h"
 #include "client/cli/output/scene_json.h"
 #include "client/cli/options/values.h"
 
@@ -58,53 +59,14 @@ static void print_json(struct json *json, const struct options *options,
     json_object_end(json);
 }
 
-/* To whom little of the light is met. */
-static const char *light_advice(const struct sheen_request *request)
+static void print_summary(const struct options *options, const struct sheen_frame *frame,
+                          const struct sheen_model_info *info)
 {
-    bool is_placed = false;
-    for (uint32_t i = 0; i < request->n_lights; i++)
-        is_placed = is_placed || request->lights[i].is_placed;
-    return is_placed ? "move it with --light-center, --light-u and --light-v, or leave these and "
-                       "--light out for a tunnel, which is met everywhere"
-                     : "--light tunnel, or no --light, is met everywhere; or place it with "
-                       "--light-center, --light-u and --light-v";
-}
-
-static void print_summary(struct client *client, const struct options *options,
-                          const struct sheen_frame *frame, const struct sheen_model_info *info)
-{
-    progress_clear(&client->progress);
-    client_print_warnings(client, info->warnings);
-    if (frame->up_source == SHEEN_UP_GUESSED)
-        progress_note(
-            &client->progress,
-            "up: %s, guessed from the model's box; where it is wrong, --up %s, or another",
-            frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "y" : "z");
-    if (frame->blank)
-        fprintf(stderr,
-                "sheen: warning: no pixel shows the surface: see --eye, --target, --fov and "
-                "--ortho; without them a camera frames the model\n");
-    if (frame->light_share < 0.5)
-        progress_note(&client->progress, "the light is met on %.2g %% of what is seen: %s",
-                      100 * frame->light_share, light_advice(&options->request));
     fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", ", options->output, frame->width_px,
             frame->height_px);
     if (info->faces)
         fprintf(stderr, "%" PRIu32 " %s, ", info->faces, value_noun(info->faces, "face", "faces"));
     fprintf(stderr, "%s, %.0f ms\n", frame->device, (double)frame->times.total_us / 1e3);
-}
-
-/* What there is to say about the model. The frame is here by then and outlives a daemon that is
- * not: the info says that the rest is unknown, its counts are 0. */
-static void ask_about_model(struct client *client, const char *model, struct sheen_model_info *info)
-{
-    struct sheen_error error;
-    if (sheen_query_model(client->session, client->model_id, &client->report, info, &error) ==
-        SHEEN_OK)
-        return;
-    *info = (struct sheen_model_info){0};
-    snprintf(info->warnings, sizeof(info->warnings), "%.1000s: its warnings are unknown: %s", model,
-             error.text);
 }
 
 static int run(const struct options *options)
@@ -123,9 +85,11 @@ static int run(const struct options *options)
         status = file_write(options->output, frame.data, frame.data_bytes, &client.error);
     /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
     if (!status)
-        ask_about_model(&client, options->model, &info);
+        notices_ask(&client, options, &info);
+    if (!status)
+        notices_print(&client, options, &frame, &info);
     if (!status && !options->quiet)
-        print_summary(&client, options, &frame, &info);
+        print_summary(options, &frame, &info);
     if (!status && options->json) {
         struct json json = {.out = stdout};
         print_json(&json, options, &client, &frame, &info);
