@@ -37,7 +37,11 @@ mat3 frame_of(Node node)
     mat3 camera = transpose(mat3(axis[0].xyz, axis[1].xyz, axis[2].xyz));
     if (node.kind != CORNER)
         return camera;
+#ifdef MADE_PATCHES
+    vec4 q = texelFetch(heads, int(4u * node.index));
+#else
     vec4 q = texel_at(node.first);
+#endif
     vec3 d = 2.0 * q.xyz;
     float xx = q.x * d.x, yy = q.y * d.y, zz = q.z * d.z;
     float xy = q.x * d.y, xz = q.x * d.z, yz = q.y * d.z;
@@ -79,11 +83,17 @@ SubPatch sub_patch_at(Node node, vec2 xy)
     vec2 st = ldexp(xy, scale);
     bvec2 far = bvec2(corner && st.x >= 1.0, (corner && st.y >= 1.0) || (strip && !last));
     uint n = uint(max(level, 1)) - 1u;
+#ifdef MADE_PATCHES
+    uint square = far.y ? (far.x ? 1u : 2u) : 0u;
+    uint at = makeTexels(texels, node.index, corner ? 3u * n + square : n);
+    return SubPatch(scale, vec2(far), st - vec2(far), at, 0u, at + 1u, NONE, limit);
+#else
     uint patches = node.first + (strip ? PATCH_TEXELS * n : 0u);
     uint levels = node.first + 1u + (uint(node.levels) + 3u) / 4u + LEVEL_TEXELS * n;
     return SubPatch(scale, vec2(far), st - vec2(far), corner ? node.first + 1u + n / 4u : patches,
                     corner ? n % 4u : 0u, corner ? levels + (far.y ? 3u : 0u) : patches + 1u,
                     corner && !far.x ? levels + 15u : NONE, limit);
+#endif
 }
 
 // 16 points as rows of their x, y and z: of row j, x[j][i].

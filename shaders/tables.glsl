@@ -1,6 +1,9 @@
 // The limit tables (server/surface/tables.h) as buffer textures. A table larger than one buffer
 // texture is spread over several banks of BANK_TEXELS texels.
 //
+// On processors (MADE_PATCHES) `texels` holds no table: makeTexels(texels, node, part) makes the points of a
+// node's sub-patch and returns where they are until it is called again; `heads` holds the nodes' frames.
+//
 // Defined before this file: POINT_BANKS, NODE_BANKS, ADJACENCY_BANKS, BANK_TEXELS, and
 // NODE_BANK_TEXELS, which keeps the three texels of a node together.
 
@@ -11,6 +14,9 @@ const uint NO_NORMAL = 0x80u;
 const uint BORDER_SHARP = 15u;
 
 layout(binding = 0) uniform samplerBuffer texels[POINT_BANKS];
+#ifdef MADE_PATCHES
+uniform samplerBuffer heads;
+#endif
 layout(binding = POINT_BANKS) uniform usamplerBuffer nodes[NODE_BANKS];
 layout(binding = POINT_BANKS + NODE_BANKS) uniform usamplerBuffer adjacency[ADJACENCY_BANKS];
 
@@ -86,6 +92,9 @@ uvec4 adjacency_of(uint face)
 }
 
 struct Node {
+#ifdef MADE_PATCHES
+    uint index;
+#endif
     uint first;
     uint face;
     uvec2 cell;
@@ -103,6 +112,9 @@ Node node_load(uint i)
 {
     uvec4 a = node_texel(3u * i), b = node_texel(3u * i + 1u), c = node_texel(3u * i + 2u);
     Node node;
+#ifdef MADE_PATCHES
+    node.index = i;
+#endif
     // The difference is taken in double: far from the world's origin nothing is lost.
     dvec3 origin = dvec3(packDouble2x32(a.xy), packDouble2x32(a.zw), packDouble2x32(b.xy));
     node.origin = to_camera(vec3(origin - eye.xyz));

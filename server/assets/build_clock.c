@@ -43,7 +43,9 @@ static bool goes_on(void *owner, struct error *error)
 static bool may_need(void *owner, const struct limit_size *size, struct error *error)
 {
     const struct build_clock *clock = owner;
-    const struct limit_tables tables = {.n_faces = size->n_faces,
+    const struct renderer_device *device = render_thread_device(clock->order->render_thread);
+    const struct limit_tables tables = {.on_demand = renderer_takes_tables_on_demand(device),
+                                        .n_faces = size->n_faces,
                                         .n_nodes = size->n_nodes,
                                         .n_texels = size->n_texels,
                                         .n_bounds = size->n_bounds};

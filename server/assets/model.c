@@ -178,6 +178,17 @@ static bool start_ranges(struct model_build *build)
     return true;
 }
 
+/* In the form that the device takes. */
+static bool init_tables(struct model_build *build, struct error *error)
+{
+    const struct limit_size *size = limit_plan_size(build->plan);
+    struct limit_tables *tables = &build->model->tables;
+    cage_finish(&build->cage); /* the plan has what is needed of it */
+    return renderer_takes_tables_on_demand(render_thread_device(build->order.render_thread))
+               ? limit_tables_init_on_demand(tables, size, error)
+               : limit_tables_init(tables, size, error);
+}
+
 static bool read_cage(struct model_build *build)
 {
     const struct build_order *order = &build->order;
@@ -199,7 +210,7 @@ static bool read_cage(struct model_build *build)
     if (check_not_cancelled(order, &error) &&
         cage_statistics(&build->cage, &model->statistics, &error) &&
         (build->plan = limit_plan_create(&build->cage, &watch, &error)) &&
-        limit_tables_init(&model->tables, limit_plan_size(build->plan), &error))
+        init_tables(build, &error))
         return true;
     return fail_named(build, &error);
 }

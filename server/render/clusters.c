@@ -8,10 +8,10 @@
 /* More than rounding changes distances by. */
 static const double SLACK = 1 + 1e-6;
 
-/* A node's first bound holds all of it. */
+/* The bound of the whole node. */
 static double radius_of(const struct limit_tables *tables, size_t node)
 {
-    return tables->bounds[tables->bound_first[node]].radius;
+    return tables->whole[node].radius;
 }
 
 /* About the middle of the box of the nodes' origins. */

@@ -42,6 +42,7 @@ struct renderer_image {
 };
 
 struct renderer_device {
+    bool on_demand; /* it takes tables on demand; else it needs stored ones */
     /* Fills in struct renderer, too. NULL on failure. */
     struct renderer *(*create)(const struct renderer_options *options, struct error *error);
     void (*destroy)(struct renderer *renderer); /* not NULL, as in the functions below */

@@ -157,18 +157,17 @@ static void sort_by_shape(struct chooser *c)
 }
 
 /* The patch that a grid covers a part of. */
-static struct limit_patch patch_of(const struct limit_tables *tables, const struct patch_grid *grid)
+static void find_patch(const struct limit_tables *tables, const struct patch_grid *grid,
+                       struct limit_patch *patch)
 {
     const struct limit_node *node = &tables->nodes[grid->node];
     int level = grid->where & 63;
     unsigned square = grid->where >> 6 & 3;
-    struct limit_patch patch;
     /* A place in its middle; the rest of a STRIP comes after all levels. */
     bool rest = node->kind == LIMIT_STRIP && !square;
     double x = square == 1 || square == 2 ? 1.5 : 0.5, y = square >= 2 ? 1.5 : 0.5;
-    limit_patch_of_level(&patch, tables, node, rest ? level + 1 : level, ldexp(x, -level),
+    limit_patch_of_level(patch, tables, node, rest ? level + 1 : level, ldexp(x, -level),
                          ldexp(y, -level));
-    return patch;
 }
 
 static struct extent square_extent(const struct chooser *c, const struct patch_grid *grid,
@@ -191,7 +190,8 @@ static void choose_square(struct chooser *c, struct patch_grid grid, const struc
 /* Too large for the finest grid: four quarters, each with its own bounds. */
 static void choose_quarters(struct chooser *c, struct patch_grid grid)
 {
-    const struct limit_patch patch = patch_of(c->tables, &grid);
+    struct limit_patch patch;
+    find_patch(c->tables, &grid, &patch);
     for (uint32_t i = 0; i < 4; i++) {
         struct patch_grid quarter = {grid.node, grid.where + (1u << 8), 2 * grid.x + (i & 1),
                                      2 * grid.y + (i >> 1)};
@@ -242,7 +242,7 @@ static void choose_square(struct chooser *c, struct patch_grid grid, const struc
 
 static void choose_regular(struct chooser *c, uint32_t node)
 {
-    struct extent extent = {.bound = c->tables->bounds[c->tables->bound_first[node]]};
+    struct extent extent = {.bound = c->tables->whole[node]};
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
     choose_square(c, (struct patch_grid){node, 0, 0, 0}, &extent);
 }
@@ -251,9 +251,8 @@ static void choose_regular(struct chooser *c, uint32_t node)
  */
 static void choose_strip(struct chooser *c, uint32_t node)
 {
-    const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
     uint32_t levels = c->tables->nodes[node].levels;
-    struct extent extent = {.bound = *bounds};
+    struct extent extent = {.bound = c->tables->whole[node]};
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
     if (is_outside(c, &extent))
         return;
@@ -262,7 +261,7 @@ static void choose_strip(struct chooser *c, uint32_t node)
         return;
     }
     for (uint32_t n = 1; n <= levels + 1; n++) {
-        extent.bound = bounds[n];
+        extent.bound = limit_level_bound(c->tables, node, n);
         uint32_t where = n <= levels ? n | 3u << 6 : levels;
         choose_square(c, (struct patch_grid){node, where, 0, 0}, &extent);
     }
@@ -273,12 +272,17 @@ static void choose_strip(struct chooser *c, uint32_t node)
  * times; the rings inside it add their own, a geometric series.) */
 static void choose_corner(struct chooser *c, uint32_t node)
 {
-    const struct limit_bound *bounds = &c->tables->bounds[c->tables->bound_first[node]];
-    struct extent extent;
+    struct extent extent = {.bound = c->tables->whole[node]};
     view_transform(c->view, c->tables->nodes[node].origin, extent.centre);
+    if (is_outside(c, &extent))
+        return;
     uint32_t level = 0, levels = limit_levels(&c->tables->nodes[node]);
-    for (; level < levels; level++) {
-        extent.bound = bounds[level];
+    /* The node's own net bends four times as much as that of its first level, or somewhat less where many
+     * faces meet. */
+    bool is_small = in_px(c, &extent, extent.bound.radius) < TOLERANCE_PX ||
+                    in_px(c, &extent, bound_bend(&extent.bound)) < 2 * TOLERANCE_PX;
+    for (; level < levels && !is_small; level++) {
+        extent.bound = limit_level_bound(c->tables, node, level + 1);
         if (is_outside(c, &extent))
             return;
         if (in_px(c, &extent, extent.bound.radius) < TOLERANCE_PX ||

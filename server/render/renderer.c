@@ -51,6 +51,11 @@ void renderer_image_destroy(struct renderer *renderer, struct renderer_image *im
         renderer->device->image_destroy(renderer, image);
 }
 
+bool renderer_takes_tables_on_demand(const struct renderer_device *device)
+{
+    return device->on_demand;
+}
+
 size_t renderer_model_bytes(const struct renderer_device *device, const struct limit_tables *tables)
 {
     return device->model_bytes(tables);

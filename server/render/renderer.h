@@ -47,6 +47,8 @@ struct renderer_image *renderer_image_create(struct renderer *renderer, const st
                                              struct error *error);
 void renderer_image_destroy(struct renderer *renderer, struct renderer_image *image);
 
+/* Whether it takes tables on demand (tables.h); else they must be stored ones. Any thread. */
+bool renderer_takes_tables_on_demand(const struct renderer_device *device);
 /* Memory that the device takes beside the main memory of its caller. Any thread. */
 /* For a model's tables. */
 size_t renderer_model_bytes(const struct renderer_device *device,

@@ -13,34 +13,54 @@ static void turn_place(unsigned turn, double a, double b, double *x, double *y)
     *y = ys[turn & 3];
 }
 
+/* Where the texels of level n lie, the scale apart: in the tables, or in what is made now. */
+static const float (*level_texels(struct limit_patch *patch, const struct limit_tables *tables,
+                                  const struct limit_node *node, int n))[4]
+{
+    if (!tables->texels) {
+        tables->source->make(tables->source, tables, (uint32_t)(node - tables->nodes), (unsigned)n,
+                             &patch->made, NULL);
+        patch->points.scale = (double)patch->made.texels[0][0];
+        return (const float(*)[4])patch->made.texels + 1;
+    }
+    const float(*texels)[4] = (const float(*)[4])tables->texels + node->first;
+    if (node->kind == LIMIT_CORNER) {
+        patch->points.scale = (double)texels[1 + (n - 1) / 4][(n - 1) % 4];
+        return texels + LIMIT_CORNER_HEAD((int)limit_levels(node)) + LIMIT_LEVEL_TEXELS * (n - 1);
+    }
+    if (node->kind == LIMIT_STRIP)
+        texels += LIMIT_PATCH_TEXELS * (n - 1);
+    patch->points.scale = (double)texels[0][0];
+    return texels + 1;
+}
+
 void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *tables,
                           const struct limit_node *node, int n, double x, double y)
 {
-    const float(*texels)[4] = (const float(*)[4])tables->texels + node->first;
-    *patch = (struct limit_patch){.node = node, .s = x, .t = y};
+    patch->node = node;
+    patch->s = x;
+    patch->t = y;
+    patch->level_x = patch->level_y = patch->depth = 0;
+    patch->turn = 0;
+    patch->is_vertex = false;
+    patch->points.column = NULL;
+    const float(*texels)[4] = level_texels(patch, tables, node, n);
+    patch->points.rows = texels;
     if (node->kind == LIMIT_CORNER) {
-        int head = LIMIT_CORNER_HEAD((int)limit_levels(node));
-        patch->points.scale = (double)texels[1 + (n - 1) / 4][(n - 1) % 4];
         patch->level_x = patch->level_y = n;
         patch->s = ldexp(x, n);
         patch->t = ldexp(y, n);
         bool far_x = patch->s >= 1, far_y = patch->t >= 1;
         patch->s -= far_x;
         patch->t -= far_y;
-        const float(*level)[4] = texels + head + LIMIT_LEVEL_TEXELS * (n - 1);
-        patch->points.rows = far_y ? level + 3 : level;
-        patch->points.column = far_x ? NULL : level + 15;
-        return;
-    }
-    if (node->kind == LIMIT_STRIP) {
+        patch->points.rows = far_y ? texels + 3 : texels;
+        patch->points.column = far_x ? NULL : texels + 15;
+    } else if (node->kind == LIMIT_STRIP) {
         /* Patch n = 1..levels covers 2^-n <= y <= 2^(1-n), patch levels + 1 the rest. */
         bool is_last = n > node->levels;
-        texels += LIMIT_PATCH_TEXELS * (n - 1);
         patch->level_y = is_last ? n - 1 : n;
         patch->t = ldexp(y, patch->level_y) - !is_last;
     }
-    patch->points.scale = (double)texels[0][0];
-    patch->points.rows = texels + 1;
 }
 
 /* Which level of a node holds (x,y). A number beyond the last level of a CORNER stands for its
@@ -85,7 +105,7 @@ bool limit_patch_find(const struct limit_tables *tables, const struct limit_plac
 struct vec limit_turn_to_world(const struct limit_tables *tables, const struct limit_node *node,
                                struct vec v)
 {
-    const float *q = tables->texels[node->first];
+    const float *q = tables->heads[node - tables->nodes].frame;
     struct vec axis = {(double)q[0], (double)q[1], (double)q[2]};
     struct vec twice = vec_scale(vec_cross(axis, v), 2);
     return vec_add(vec_mad(v, (double)q[3], twice), vec_cross(axis, twice));

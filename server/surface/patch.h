@@ -3,7 +3,8 @@
  * domain has and of which degree its patches are is known behind this interface and in evaluate.c;
  * users take a patch, evaluate it (evaluate.h) and bound it.
  *
- * Patches point into the tables they were found in. Pure; any thread. */
+ * Patches point into the tables they were found in, or hold points that were made for them: a copy of a
+ * patch still reads the first one's. Any thread; no failure. */
 #ifndef SHEEN_SURFACE_PATCH_H
 #define SHEEN_SURFACE_PATCH_H
 
@@ -11,6 +12,7 @@
 #include <stdint.h>
 
 #include "server/surface/bicubic.h"
+#include "server/surface/source.h"
 #include "server/surface/tables.h"
 #include "server/surface/vec.h"
 
@@ -28,10 +30,11 @@ struct limit_patch {
     const struct limit_node *node;
     struct bicubic_texels points; /* every present kind of node holds bicubic patches */
     double s, t;                  /* the place by the patch's own parameters, in [0,1] */
-    int level_x, level_y; /* s and t run 2^level times faster than the node's local x and y */
-    unsigned turn;        /* local x, y are the place's a, b seen from so many corners on */
-    int depth;            /* the node spans 2^-depth of the place's node */
-    bool is_vertex;       /* beyond a CORNER's last level: the extraordinary vertex itself */
+    int level_x, level_y;    /* s and t run 2^level times faster than the node's local x and y */
+    unsigned turn;           /* local x, y are the place's a, b seen from so many corners on */
+    int depth;               /* the node spans 2^-depth of the place's node */
+    bool is_vertex;          /* beyond a CORNER's last level: the extraordinary vertex itself */
+    struct limit_level made; /* of tables on demand: the points */
 };
 
 /* The patch that holds a place. False in a hole. */

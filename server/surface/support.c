@@ -47,16 +47,14 @@ static void add_point(struct cells *cells, struct vec at)
         cells->point[cell][k] = (float)(world[k] - cells->middle[k]);
 }
 
-/* Steps along each side of a node. Its first bound is the largest; that of a CORNER is of its
- * first level, whose parameters run twice as fast as the node's. */
+/* Steps along each side of a node; 0: it is as small as a point. */
 static int steps_of(const struct limit_tables *tables, uint32_t node, double tolerance)
 {
-    const struct limit_bound *bound = &tables->bounds[tables->bound_first[node]];
-    if (bound->radius < tolerance)
+    const struct limit_bound *bound = &tables->whole[node];
+    if ((double)bound->radius < tolerance)
         return 0;
-    double faster = tables->nodes[node].kind == LIMIT_CORNER ? 4 : 1;
-    double steps = ceil(sqrt((double)bound_bend(bound) * faster / 8 / tolerance));
-    return steps < 2 ? 2 : steps > LIMIT_SUPPORT_STEPS ? LIMIT_SUPPORT_STEPS : (int)steps;
+    double steps = ceil(sqrt((double)bound_bend(bound) / 8 / tolerance));
+    return steps < 1 ? 1 : steps > LIMIT_SUPPORT_STEPS ? LIMIT_SUPPORT_STEPS : (int)steps;
 }
 
 static void add_node(struct cells *cells, const struct limit_tables *tables, uint32_t node,
@@ -65,10 +63,15 @@ static void add_node(struct cells *cells, const struct limit_tables *tables, uin
     if (!limit_has_points(&tables->nodes[node]))
         return;
     const double *origin = tables->nodes[node].origin;
+    const struct limit_head *head = &tables->heads[node];
     int steps = steps_of(tables, node, tolerance);
     if (steps == 0)
         add_point(cells, (struct vec){origin[0], origin[1], origin[2]});
-    for (int i = 0; steps > 0 && i <= steps; i++)
+    for (int k = 0; steps > 0 && k < 4; k++)
+        add_point(cells, (struct vec){origin[0] + (double)head->corner[0][k],
+                                      origin[1] + (double)head->corner[1][k],
+                                      origin[2] + (double)head->corner[2][k]});
+    for (int i = 0; steps > 1 && i <= steps; i++)
         for (int j = 0; j <= steps; j++) {
             struct limit_place place = {
                 .node = node, .a = (double)i / steps, .b = (double)j / steps};

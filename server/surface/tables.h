@@ -5,6 +5,11 @@
  * digits, divided by a power of two and rounded once at the end. README.md says how, and why that
  * is exact.
  *
+ * There are two forms. Stored tables hold the points of every level, as devices copy them to their own
+ * memory: 10,000 bytes for each CORNER. Tables on demand hold what each node looks like as a whole, and
+ * make the points of a level where they are asked for, from the cage, the same bytes (source.h): a
+ * thousand levels that no view reaches cost nothing.
+ *
  * Builders (subdivision/build.h) say how large the tables are, and fill any range of faces: several
  * threads may fill disjoint ranges. Once filled they are read only and any thread may read them. */
 #ifndef SHEEN_SURFACE_TABLES_H
@@ -16,6 +21,9 @@
 
 #include "server/base/error.h"
 #include "server/surface/node.h"
+
+struct limit_source; /* source.h */
+struct record_cache; /* record_cache.h */
 
 /* How far a piece of surface reaches and bends, in units: for culling, and to choose the grid that
  * it is drawn with. Cut into m x n cells the piece lies within (u / m^2 + 2 mixed / (m n) + v /
@@ -40,24 +48,39 @@ struct limit_size {
     double box_min[3],
         box_max[3]; /* about the surface, by its limit positions: what a camera frames */
     double hull_min[3], hull_max[3]; /* about the control points: nothing lies outside */
+    struct limit_source *source;     /* the plan's */
+};
+
+/* What a node looks like as a whole, from its origin: its frame as a quaternion x y z w, which turns the
+ * frame's coordinates into world directions (of a CORNER); then x, y and z, world, of the surface at
+ * its corners: local (0,0) (1,0) (0,1) (1,1). */
+struct limit_head {
+    float frame[4];
+    float corner[3][4];
 };
 
 struct limit_tables {
+    bool on_demand;
     size_t n_faces;
     size_t n_nodes;
     struct limit_node *nodes;          /* [n_nodes]; node f is the root of face f */
     struct limit_adjacency *adjacency; /* [n_faces] */
-    size_t n_texels;
-    float (*texels)[4]; /* [n_texels], see texels.h */
+    struct limit_head *heads;          /* [n_nodes]; nothing of SPLIT and HOLE */
+    struct limit_bound
+        *whole; /* [n_nodes], about the node's origin: of the node's own net, one step
+                                     coarser than a CORNER's first level; radius -1: SPLIT, HOLE */
+    struct limit_source *source; /* makes points */
 
-    /* For the processor's choice of grids; not on the GPU. bound_first[node] indexes bounds, and
-     * the first of a node's bounds holds all of it: one for REGULAR, one for each level of a
-     * CORNER, one for the whole of a STRIP and one for each of its patches; none for SPLIT and
-     * HOLE. Of a CORNER's levels each also holds all that lies nearer to the vertex. About the
-     * node's origin. */
+    /* Of stored tables; NULL: on demand. bound_first[node] indexes bounds, which are one for each
+     * level of a CORNER or patch of a STRIP or REGULAR. Of a CORNER's levels each also holds all that
+     * lies nearer to the vertex. */
+    size_t n_texels;
+    float (*texels)[4];    /* [n_texels], see texels.h */
     uint32_t *bound_first; /* [n_nodes] */
     struct limit_bound *bounds;
     size_t n_bounds;
+    /* Of tables on demand: bounds that have been asked for. */
+    struct record_cache *level_bounds;
 
     double box_min[3], box_max[3]; /* as in limit_size */
     double hull_min[3], hull_max[3];
@@ -69,18 +92,28 @@ struct limit_tables {
     size_t count[LIMIT_KINDS]; /* of nodes, by kind: for `sheen info` */
 };
 
-/* Allocates tables of a size, without contents. ERROR_SERVER, which names the bytes, when there is
- * no memory; there is nothing to finish then. */
+/* Allocates tables of a size, without contents: stored ones, or on demand. ERROR_SERVER, which names
+ * the bytes, when there is no memory; there is nothing to finish then. */
 bool limit_tables_init(struct limit_tables *tables, const struct limit_size *size,
                        struct error *error);
+bool limit_tables_init_on_demand(struct limit_tables *tables, const struct limit_size *size,
+                                 struct error *error);
 void limit_tables_finish(struct limit_tables *tables);
 
-/* Bytes that the GPU holds for these tables: nodes, adjacency and texels. */
+/* How far level n (from 1) of a CORNER or patch n of a STRIP or REGULAR node reaches and bends, about
+ * the node's origin. Any thread. */
+struct limit_bound limit_level_bound(const struct limit_tables *tables, uint32_t node, unsigned n);
+/* Between two frames, when nobody else asks for bounds: bounds that none of the last frames has
+ * asked for may be dropped. */
+void limit_tables_turn(const struct limit_tables *tables);
+
+/* Bytes that the GPU holds for stored tables: nodes, adjacency and texels. */
 size_t limit_tables_bytes(const struct limit_tables *tables);
 /* How many support points there may be. */
 size_t limit_support_room(const struct limit_tables *tables);
-/* Bytes that they take in main memory from limit_tables_init() on: the same, the bounds, and room
- * for the support points. */
+/* Bytes that they take in main memory from limit_tables_init() on, at most, with room for the support
+ * points and with what their source holds. Of tables that are still measured, without a source: without
+ * that. */
 size_t limit_tables_host_bytes(const struct limit_tables *tables);
 /* Bytes that the GPU holds for a face of one REGULAR node, or of one CORNER node with as many
  * levels as there can be. */

@@ -38,12 +38,12 @@ void texels_write_patch(const struct vec *grid, float (*texels)[4])
         write_row(grid + 4 * j, 1, ldexp(1, -exponent), texels + 1 + 3 * j);
 }
 
-float texels_write_level(struct vec grid[5][5], float (*texels)[4])
+float texels_write_level(const struct vec grid[25], float (*texels)[4])
 {
-    int exponent = exponent_of(&grid[0][1], 24);
+    int exponent = exponent_of(grid + 1, 24);
     for (size_t j = 0; j < 5; j++)
-        write_row(&grid[j][1], 1, ldexp(1, -exponent), texels + 3 * j);
-    write_row(&grid[1][0], 5, ldexp(1, -exponent), texels + 15);
+        write_row(grid + 5 * j + 1, 1, ldexp(1, -exponent), texels + 3 * j);
+    write_row(grid + 5, 5, ldexp(1, -exponent), texels + 15);
     return (float)ldexp(1, exponent);
 }
 

@@ -28,9 +28,9 @@
  * forms in single precision, then neither overflow nor vanish. */
 void texels_write_patch(const struct vec *grid, float (*texels)[4]);
 
-/* Writes LIMIT_LEVEL_TEXELS texels of the points grid[j + 1][i + 1], whose [0][0] is not read, and
- * returns the power of two that they are divided by. */
-float texels_write_level(struct vec grid[5][5], float (*texels)[4]);
+/* Writes LIMIT_LEVEL_TEXELS texels of the points grid[5 (j + 1) + i + 1], the first of which is not
+ * read, and returns the power of two that they are divided by. */
+float texels_write_level(const struct vec grid[25], float (*texels)[4]);
 
 /* Four points of a row, from its three texels, times `scale`. */
 void texels_read_row(const float (*texels)[4], double scale, struct vec row[4]);

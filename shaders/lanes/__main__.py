@@ -8,9 +8,10 @@ from .parse import Failure
 from .program import program_text
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-# Tables fill one bank each; which lines, light and pattern there are is known when a program runs.
-MACROS = ("POINT_BANKS=1 NODE_BANKS=1 ADJACENCY_BANKS=1 BANK_TEXELS=1 NODE_BANK_TEXELS=1 TEXTURES_FREE=3 PTEX "
-          "FAMILY=line_family LIGHT=light_kind PATTERN=pattern_kind IS_SOFT=is_soft IS_FILTERED=is_filtered").split()
+# Tables fill one bank each, and sub-patches are made where they are wanted; which lines, light and pattern there are is
+# known when a program runs.
+MACROS = ("MADE_PATCHES POINT_BANKS=1 NODE_BANKS=1 ADJACENCY_BANKS=1 BANK_TEXELS=1 NODE_BANK_TEXELS=1 TEXTURES_FREE=3 "
+          "PTEX FAMILY=line_family LIGHT=light_kind PATTERN=pattern_kind IS_SOFT=is_soft IS_FILTERED=is_filtered").split()
 KINDS = "uniform int line_family, light_kind, pattern_kind;\nuniform bool is_soft, is_filtered;\n"
 
 

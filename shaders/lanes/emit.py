@@ -30,7 +30,7 @@ BUILTINS = {
     "uintBitsToFloat": "floats", "packDouble2x32": Type("double"),
 }
 MEMORY = ("texelFetch", "textureLod", "textureSize", "imageLoad", "imageStore", "atomicAdd", "atomicMax", "barrier",
-          "frexp")
+          "frexp", "makeTexels")
 # What an image or a texture holds.
 TEXEL = {"image2D": Type("float", 4), "uimage2D": Type("uint", 4), "sampler2D": Type("float", 4),
          "usampler2D": Type("uint", 4), "samplerBuffer": Type("float", 4), "usamplerBuffer": Type("uint", 4)}
@@ -849,6 +849,9 @@ class Function:
             return self.stored(Value("%s(%s, %s, %s)" % (name, place.code, self.lanes(more).code, mask), UINT, True))
         image = self.value(first)
         given = [self.value(argument) for argument in node.arguments[1:]]
+        if name == "makeTexels":
+            node, part = (self.lanes(value).code for value in given)
+            return self.stored(Value("makeTexels(%s, %s, %s, %s)" % (image.code, node, part, mask), UINT, True))
         if name == "textureSize":
             return Value("textureSize(%s, 0)" % image.code, Type("int", 2), False)
         if name == "imageStore":

@@ -60,6 +60,8 @@ def variable_text(whole, item):
             element, name, name, of.size, element)
     if name in whole.filtered:
         return "    picture2D %s;" % name
+    if name in whole.made:
+        return "    made_texture %s;" % name
     if of.base in IMAGES:
         return "    %s %s;" % ("bytes2D" if "rgba8" in item.qualifiers else IMAGES[of.base], name)
     return "    %s %s;" % (cpp_type(of, False), name)
@@ -98,6 +100,7 @@ def invoke_text(main, local_size):
 def program_text(text, name):
     whole = Emitter(Parser(text))
     whole.filtered = set(re.findall(r"textureLod\((\w+)", text))
+    whole.made = set(re.findall(r"makeTexels\((\w+)", text))
     lines, members = ["namespace", "{", ""], []
     for item in whole.parser.items:
         if item.kind == "struct":

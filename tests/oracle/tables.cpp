@@ -54,7 +54,7 @@ void break_tables(limit_tables *t)
         if (has_fault("point"))
             texels[node->kind == LIMIT_CORNER ? LIMIT_CORNER_HEAD(levels) + 6 : 6][0] += off;
         if (has_fault("frame") && node->kind == LIMIT_CORNER)
-            texels[0][0] += off;
+            texels[0][0] = t->heads[k].frame[0] += off;
         if (has_fault("deep") && node->kind == LIMIT_CORNER)
             texels[1 + 25 / 4][25 % 4] *= 1.001f;
         if (has_fault("hole") && !opened)

@@ -17,7 +17,8 @@
 #include "server/surface/tables.h"
 #include "server/surface/vec.h"
 
-static inline void build(const char *bytes, size_t size, struct limit_tables *tables)
+static inline void build_as(const char *bytes, size_t size, bool stored,
+                            struct limit_tables *tables)
 {
     struct cage cage;
     struct error error = {0};
@@ -25,20 +26,37 @@ static inline void build(const char *bytes, size_t size, struct limit_tables *ta
         fail_msg("%s", error.text);
     struct limit_plan *plan = limit_plan_create(&cage, NULL, &error);
     assert_non_null(plan);
-    assert_true(limit_tables_init(tables, limit_plan_size(plan), &error));
+    assert_true((stored ? limit_tables_init
+                        : limit_tables_init_on_demand)(tables, limit_plan_size(plan), &error));
     assert_true(limit_build_faces(tables, plan, 0, tables->n_faces, NULL, &error));
     limit_plan_destroy(plan);
     cage_finish(&cage);
 }
 
-static inline void build_file(const char *path, struct limit_tables *tables)
+static inline void build(const char *bytes, size_t size, struct limit_tables *tables)
+{
+    build_as(bytes, size, true, tables);
+}
+
+static inline void build_file_as(const char *path, bool stored, struct limit_tables *tables)
 {
     static char bytes[1 << 20];
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
     size_t size = fread(bytes, 1, sizeof bytes, file);
     fclose(file);
-    build(bytes, size, tables);
+    build_as(bytes, size, stored, tables);
+}
+
+static inline void build_file(const char *path, struct limit_tables *tables)
+{
+    build_file_as(path, true, tables);
+}
+
+/* Without the points of any level. */
+static inline void build_file_on_demand(const char *path, struct limit_tables *tables)
+{
+    build_file_as(path, false, tables);
 }
 
 /* A torus of n x n quads: smooth, and regular all over. */

@@ -89,7 +89,7 @@ static struct native_device *open_device(const char *set, unsigned n_threads)
 static struct native_model *open_model(const struct limit_tables *tables)
 {
     struct error error = {0};
-    struct native_model *model = native_model_create(tables, &error);
+    struct native_model *model = native_model_create(tables, NATIVE_PATCH_BYTES, &error);
     if (!model)
         fail_msg("%s", error.text);
     return model;

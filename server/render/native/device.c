@@ -53,7 +53,7 @@ static struct renderer_model *model_create(struct renderer *renderer,
     }
     shown->base.tables = tables;
     shown->serial = ++r->next_serial;
-    shown->model = native_model_create(tables, error);
+    shown->model = native_model_create(tables, NATIVE_PATCH_BYTES, error);
     if (shown->model)
         return &shown->base;
     free(shown);
@@ -68,6 +68,11 @@ static void model_destroy(struct renderer *renderer, struct renderer_model *mode
     free(shown);
 }
 
+static size_t model_bytes(const struct limit_tables *tables)
+{
+    return native_model_most_bytes(tables, NATIVE_PATCH_BYTES);
+}
+
 /* Of polygons, which there are not. */
 static uint64_t paused_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px)
 {
@@ -76,13 +81,14 @@ static uint64_t paused_bytes(uint32_t width_px, uint32_t height_px, uint64_t til
 }
 
 const struct renderer_device native_renderer_device = {
+    .on_demand = true,
     .create = create,
     .destroy = destroy,
     .model_create = model_create,
     .model_destroy = model_destroy,
     .image_create = native_image_create,
     .image_destroy = native_image_destroy,
-    .model_bytes = limit_tables_bytes,
+    .model_bytes = model_bytes,
     .image_bytes = native_image_bytes,
     .paused_bytes = paused_bytes,
     .begin = native_frame_begin,

@@ -50,7 +50,7 @@ enum piece_kind {
 
 /* A piece of the surface that covers some pixel's centre. */
 struct native_piece {
-    const struct native_patch *patch; /* of PIECE_OF_PATCH */
+    const struct native_patch *patch; /* of PIECE_OF_PATCH; NULL: not made yet, or not kept */
     uint32_t node;
     float s, t, size;        /* the part of the patch, in its parameters */
     uint16_t x0, y0, x1, y1; /* px of the picture that it may cover, inclusive */

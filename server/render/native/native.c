@@ -50,7 +50,7 @@ bool native_grow(void *pointer, size_t *capacity, size_t n, size_t size)
 static void frame_of(const struct limit_tables *tables, const struct limit_node *node,
                      float axes[3][3])
 {
-    const float *q = tables->texels[node->first];
+    const float *q = tables->heads[node - tables->nodes].frame;
     float x = q[0], y = q[1], z = q[2], w = q[3];
     const float matrix[3][3] = {
         {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
@@ -384,6 +384,7 @@ bool native_draw(struct native_device *device, struct native_model *model, const
                                    .n_threads = device->n_threads,
                                    .grid_s = device->grid_s,
                                    .grid_t = device->grid_t};
+    native_model_turn(model);
     set_rays(frame);
     set_tiles(frame);
     if (set_parts(frame, device)) {

@@ -2,7 +2,10 @@
  * shaders/neighbours.glsl and surface.glsl say, in double. */
 #include "server/render/native/tile.h"
 
+#include <assert.h>
 #include <math.h>
+
+static_assert(TILE_PATCHES == 256, "eight bits of a key's hash");
 
 /* Of what is left of a CORNER, about: 8 steps of native_tile_room.place. */
 static const double NEAR_VERTEX = 1.0 / 8000;
@@ -10,6 +13,35 @@ static const double NEAR_VERTEX = 1.0 / 8000;
 static int levels_of(const struct limit_node *node)
 {
     return node->levels & ~(int)LIMIT_NO_NORMAL;
+}
+
+const struct native_patch *native_patch_of(const struct native_frame *frame,
+                                           struct native_tile_room *room, uint32_t node,
+                                           uint32_t index)
+{
+    uint64_t key = record_cache_key(node, index);
+    struct native_found_patch *found = &room->patch[key * 0x9e3779b97f4a7c15u >> 56];
+    const struct native_patch *kept = native_patch_find(frame->model, node, index);
+    if (kept)
+        return kept;
+    if (found->node != node || found->index != index) {
+        kept = native_patch_get(frame->model, node, index, &found->patch);
+        found->node = node;
+        found->index = index;
+    }
+    return kept ? kept : &found->patch;
+}
+
+const struct native_patch *native_patch_of_piece(const struct native_frame *frame,
+                                                 struct native_tile_room *room,
+                                                 const struct native_piece *piece)
+{
+    if (piece->patch)
+        return piece->patch;
+    const struct limit_node *node = &frame->model->tables->nodes[piece->node];
+    bool is_last = node->kind == LIMIT_STRIP && !piece->square; /* comes after all levels */
+    return native_patch_of(frame, room, piece->node,
+                           native_patch_index(node, piece->level + is_last, piece->square));
 }
 
 struct native_part_of_node native_patch_at(const struct limit_node *node, double x, double y)
@@ -107,7 +139,8 @@ void native_begin_on(const struct native_model *model, struct native_task *task,
     task->s = piece->s + (float)s * piece->size;
     task->t = piece->t + (float)t * piece->size;
     task->patch = piece->patch;
-    prefetch(task->patch);
+    if (task->patch)
+        prefetch(task->patch);
 }
 
 /* --- */

@@ -3,17 +3,13 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <sys/mman.h>
+#include <string.h>
 
+#include "server/render/native/programs/program.h"
 #include "server/surface/evaluate.h"
 #include "server/surface/vec.h"
 
 static_assert(sizeof(struct native_patch) == 256, "four cache lines");
-
-/* A segment is a huge page, and a thread takes a run of patches at a time. */
-enum { SEGMENT_PATCHES = 1 << 13, RUN_PATCHES = 64, HUGE_PAGE = 2 << 20 };
-static_assert(SEGMENT_PATCHES * sizeof(struct native_patch) == HUGE_PAGE, "one huge page");
-static_assert(SEGMENT_PATCHES % RUN_PATCHES == 0, "whole runs");
 
 static uint32_t patches_of(const struct limit_node *node)
 {
@@ -21,49 +17,48 @@ static uint32_t patches_of(const struct limit_node *node)
     case LIMIT_REGULAR:
         return 1;
     case LIMIT_CORNER:
-        return 3 * (node->levels & ~LIMIT_NO_NORMAL);
+        return 3 * limit_levels(node);
     case LIMIT_STRIP:
         return node->levels + 1u;
     }
     return 0;
 }
 
-/* Where each node's patches begin in made[]. False where there are too many to count. */
-static bool number_patches(struct native_model *model)
+/* As programs read them. */
+struct native_patch_texels {
+    float texels[NATIVE_PATCH_TEXELS][4];
+};
+
+/* How many patches, and how many of them as texels, which outlines and roundings alone ask for, are
+ * kept. */
+static void set_room(const struct limit_tables *tables, size_t patch_bytes, size_t *patches,
+                     size_t *texels)
 {
-    const struct limit_tables *tables = model->tables;
-    uint64_t n = 0;
-    for (size_t i = 0; i < tables->n_nodes; i++) {
-        model->first[i] = (uint32_t)n;
-        n += patches_of(&tables->nodes[i]);
-    }
-    model->n_patches = (size_t)n;
-    return n < UINT32_MAX - NATIVE_MAX_THREADS * RUN_PATCHES;
+    size_t n = 3 * tables->n_bounds; /* no fewer than there are */
+    size_t most = patch_bytes / sizeof(struct native_patch);
+    *patches = n < most ? n : most;
+    *texels = n < most / 4 ? n : most / 4;
 }
 
-struct native_model *native_model_create(const struct limit_tables *tables, struct error *error)
+struct native_model *native_model_create(const struct limit_tables *tables, size_t patch_bytes,
+                                         struct error *error)
 {
     struct native_model *model = calloc(1, sizeof *model);
     if (!model) {
         error_set(error, ERROR_SERVER, "out of memory for a model");
         return NULL;
     }
+    size_t patches, texels;
     model->tables = tables;
     if (!clusters_init(&model->clusters, tables, error)) {
         native_model_destroy(model);
         return NULL;
     }
-    model->first = malloc((tables->n_nodes + 1) * sizeof *model->first);
-    if (model->first && number_patches(model)) {
-        /* Each thread may leave a run unfinished. */
-        size_t most = model->n_patches + NATIVE_MAX_THREADS * RUN_PATCHES;
-        model->n_segments = (most + SEGMENT_PATCHES - 1) / SEGMENT_PATCHES;
-        model->segment = calloc(model->n_segments, sizeof(struct native_patch *));
-        model->made = calloc(model->n_patches + 1, sizeof *model->made);
-    }
-    if (!model->segment || !model->made) {
-        error_set(error, ERROR_SERVER, "out of memory for the %zu patches of a model",
-                  model->n_patches);
+    set_room(tables, patch_bytes, &patches, &texels);
+    model->patches = record_cache_create(sizeof(struct native_patch), patches);
+    model->texels = record_cache_create(sizeof(struct native_patch_texels), texels);
+    if (!model->patches || !model->texels) {
+        error_set(error, ERROR_SERVER, "out of memory for the patches of a model");
         native_model_destroy(model);
         return NULL;
     }
@@ -74,24 +69,32 @@ void native_model_destroy(struct native_model *model)
 {
     if (!model)
         return;
-    for (size_t i = 0; model->segment && i < model->n_segments; i++)
-        free(model->segment[i]);
-    free(model->segment);
-    free(model->made);
-    free(model->first);
+    record_cache_destroy(model->patches);
+    record_cache_destroy(model->texels);
     clusters_finish(&model->clusters);
     free(model);
 }
 
 size_t native_model_bytes(const struct native_model *model)
 {
-    size_t bytes = sizeof *model + model->clusters.n * sizeof *model->clusters.cluster +
-                   (model->tables->n_nodes + 1) * sizeof *model->first +
-                   (model->n_patches + 1) * sizeof *model->made +
-                   model->n_segments * sizeof(struct native_patch *);
-    for (size_t i = 0; i < model->n_segments; i++)
-        bytes += model->segment[i] ? HUGE_PAGE : 0;
-    return bytes;
+    return sizeof *model + model->clusters.n * sizeof *model->clusters.cluster +
+           record_cache_bytes(model->patches) + record_cache_bytes(model->texels);
+}
+
+size_t native_model_most_bytes(const struct limit_tables *tables, size_t patch_bytes)
+{
+    size_t patches, texels, clusters = tables->n_nodes / CLUSTER_NODES + 1;
+    set_room(tables, patch_bytes, &patches, &texels);
+    return sizeof(struct native_model) + clusters * sizeof(struct cluster) +
+           record_cache_most_bytes(sizeof(struct native_patch), patches) +
+           record_cache_most_bytes(sizeof(struct native_patch_texels), texels);
+}
+
+void native_model_turn(struct native_model *model)
+{
+    record_cache_turn(model->patches);
+    record_cache_turn(model->texels);
+    limit_tables_turn(model->tables);
 }
 
 /* --- */
@@ -193,37 +196,42 @@ void native_patch_make(const struct limit_tables *tables, uint32_t node, uint32_
     }
 }
 
-/* Memory for the patches of a segment, unless it has some. */
-static bool reserve(struct native_model *model, uint32_t segment)
+const struct native_patch *native_patch_get(struct native_model *model, uint32_t node,
+                                            uint32_t index, struct native_patch *room)
 {
-    struct native_patch **at = &model->segment[segment], *none = NULL;
-    if (__atomic_load_n(at, __ATOMIC_ACQUIRE))
-        return true;
-    struct native_patch *taken = aligned_alloc(HUGE_PAGE, HUGE_PAGE);
-    if (!taken)
-        return false;
-    madvise(taken, HUGE_PAGE, MADV_HUGEPAGE); /* a wish: without huge pages all is as it was */
-    if (!__atomic_compare_exchange_n(at, &none, taken, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE))
-        free(taken); /* another thread was first */
-    return true;
+    const struct native_patch *kept = native_patch_find(model, node, index);
+    if (kept)
+        return kept;
+    native_patch_make(model->tables, node, index, room);
+    kept = record_cache_add(model->patches, record_cache_key(node, index), room);
+    return kept ? kept : room;
 }
 
-const struct native_patch *native_patch_get(struct native_model *model, unsigned thread,
-                                            uint32_t node, uint32_t index)
+void native_patch_texels(const void *owner, uint32_t node, uint32_t index, float (*texels)[4])
 {
-    const struct native_patch *found = native_patch_find(model, node, index);
-    if (found)
-        return found;
-    struct native_cursor *cursor = &model->cursor[thread];
-    if (cursor->next == cursor->end) {
-        uint32_t next = __atomic_fetch_add(&model->n_taken, RUN_PATCHES, __ATOMIC_RELAXED);
-        *cursor = (struct native_cursor){next, next + RUN_PATCHES};
+    const struct native_model *model = owner;
+    const struct limit_tables *tables = model->tables;
+    struct native_patch_texels made = {0};
+    /* Lanes that have lost their way may name anything. */
+    if (node >= tables->n_nodes || index >= patches_of(&tables->nodes[node])) {
+        memset(texels, 0, sizeof made.texels);
+        return;
     }
-    if (!reserve(model, cursor->next / SEGMENT_PATCHES))
-        return NULL;
-    uint32_t at = cursor->next++;
-    struct native_patch *patch = &model->segment[at / SEGMENT_PATCHES][at % SEGMENT_PATCHES];
-    native_patch_make(model->tables, node, index, patch);
-    model->made[model->first[node] + index] = at + 1;
-    return patch;
+    uint64_t key = record_cache_key(node, index);
+    const struct native_patch_texels *kept = record_cache_find(model->texels, key);
+    if (!kept) {
+        struct limit_patch from;
+        patch_at(tables, &tables->nodes[node], index, &from);
+        made.texels[0][0] = (float)from.points.scale;
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 3; k++)
+                for (int i = 0; i < 4; i++) {
+                    const float(*rows)[4] = from.points.rows, (*column)[4] = from.points.column;
+                    made.texels[1 + 3 * j + k][i] = !column  ? rows[3 * j + k][i]
+                                                    : i == 0 ? column[k][j]
+                                                             : rows[3 * j + k][i - 1];
+                }
+        kept = record_cache_add(model->texels, key, &made);
+    }
+    memcpy(texels, kept ? kept : &made, sizeof made.texels);
 }

@@ -1,9 +1,10 @@
 /* A model as the native device reads it: each sub-patch as monomials, made from the limit tables
- * when it is first seen, so that a view costs what it shows and not what the tables hold.
+ * when it is first seen, so that a view costs what it shows and not what the tables hold. Those that
+ * have been made are kept as long as there is room for them; without room they are made again, and
+ * are the same bytes.
  *
- * A sub-patch is made while a frame's pieces are chosen (native_patch_get), by the one thread that
- * has the node's cluster. After that all threads read (native_patch_find). So one frame of a model
- * may be under way at a time. */
+ * Threads: any number may ask for patches at once, within a frame. One frame of a model may be under
+ * way at a time. */
 #ifndef SHEEN_RENDER_NATIVE_PATCHES_H
 #define SHEEN_RENDER_NATIVE_PATCHES_H
 
@@ -14,6 +15,7 @@
 #include "server/base/error.h"
 #include "server/render/clusters.h"
 #include "server/render/renderer_options.h"
+#include "server/surface/record_cache.h"
 #include "server/surface/tables.h"
 
 enum { NATIVE_MAX_THREADS = RENDERER_MAX_THREADS };
@@ -30,29 +32,27 @@ struct native_patch {
     float c[3][4][4];
 };
 
-/* Patches that one thread has taken and not yet made. */
-struct native_cursor {
-    uint32_t next, end;
-};
-
 struct native_model {
     const struct limit_tables *tables;
     struct clusters clusters;
-    uint32_t *first;  /* [n_nodes] of made[]: the node's sub-patches follow each other */
-    uint32_t *made;   /* where each sub-patch is, plus one; 0: not made yet */
-    size_t n_patches; /* that the tables have */
-    struct native_patch **segment; /* where they are; NULL: no memory taken yet */
-    size_t n_segments;
-    uint32_t n_taken;
-    struct native_cursor cursor[NATIVE_MAX_THREADS];
+    struct record_cache *patches; /* struct native_patch */
+    struct record_cache *texels;  /* struct native_patch_texels */
 };
 
-/* The tables must stay until the model is destroyed. NULL, with ERROR_SERVER, when memory is short.
- */
-struct native_model *native_model_create(const struct limit_tables *tables, struct error *error);
+/* Memory for patches of a model, unless all that it can have take less. */
+#define NATIVE_PATCH_BYTES ((size_t)64 << 20)
+
+/* The tables must stay until the model is destroyed. `patch_bytes`: for patches, about; 0 keeps a few
+ * hundred. NULL, with ERROR_SERVER, when memory is short. */
+struct native_model *native_model_create(const struct limit_tables *tables, size_t patch_bytes,
+                                         struct error *error);
 void native_model_destroy(struct native_model *model); /* NULL is safe */
 /* What it takes in main memory now, without the tables. Not while a frame is under way. */
 size_t native_model_bytes(const struct native_model *model);
+/* What a model of such tables takes at most. */
+size_t native_model_most_bytes(const struct limit_tables *tables, size_t patch_bytes);
+/* Before a frame: what has not been used for longest makes room. */
+void native_model_turn(struct native_model *model);
 
 /* Which of its node's sub-patches: of a STRIP, `level` 1 to levels + 1 from the far side to the
  * crease; of a CORNER, square 1 to 3 of level 1 to levels; of a REGULAR node the only one. */
@@ -67,20 +67,19 @@ static inline uint32_t native_patch_index(const struct limit_node *node, int lev
 void native_patch_make(const struct limit_tables *tables, uint32_t node, uint32_t index,
                        struct native_patch *patch);
 
-/* The patch of that index, made now if it is not. NULL when memory is short. Only for the thread
- * that has the node's cluster, whose number `thread` is. */
-const struct native_patch *native_patch_get(struct native_model *model, unsigned thread,
-                                            uint32_t node, uint32_t index);
+/* The patch of that index, made now if it is not kept. Where there is no room to keep it, it is in
+ * *room, which is returned. What is kept stays for the frame. */
+const struct native_patch *native_patch_get(struct native_model *model, uint32_t node,
+                                            uint32_t index, struct native_patch *room);
 
-/* NULL where it is not made. */
+/* NULL where it is not kept. */
 static inline const struct native_patch *native_patch_find(const struct native_model *model,
                                                            uint32_t node, uint32_t index)
 {
-    enum { SEGMENT_BITS = 13 };
-    uint32_t at = model->made[model->first[node] + index];
-    if (!at)
-        return NULL;
-    return &model->segment[(at - 1) >> SEGMENT_BITS][(at - 1) & ((1u << SEGMENT_BITS) - 1)];
+    return record_cache_find(model->patches, record_cache_key(node, index));
 }
+
+/* native_made_texels.make (programs/program.h), of a struct native_model. */
+void native_patch_texels(const void *model, uint32_t node, uint32_t index, float (*texels)[4]);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/render/native/denormals.h"
+#include "server/render/native/patches.h"
 
 /* Groups are of 4 x 2 pixels (shaders/groups.glsl). */
 enum { GROUP_WIDTH = 4, GROUP_HEIGHT = 2, GROUPS_PER_WORKGROUP = 8 };
@@ -104,7 +105,8 @@ static struct native_bindings bindings_of(const struct native_drawing *d)
     const struct limit_tables *tables = d->shown->base.tables;
     struct native_bindings b = {
         .View = &d->view,
-        .texels = {(const uint32_t *)(const void *)tables->texels, (uint32_t)tables->n_texels},
+        .texels = {d->shown->model, native_patch_texels},
+        .heads = {(const uint32_t *)(const void *)tables->heads, (uint32_t)(4 * tables->n_nodes)},
         .nodes = {(const uint32_t *)(const void *)tables->nodes, (uint32_t)(3 * tables->n_nodes)},
         .adjacency = {(const uint32_t *)(const void *)tables->adjacency, (uint32_t)tables->n_faces},
         .seen = t->seen,

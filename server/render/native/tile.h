@@ -16,7 +16,7 @@ struct native_task {
     uint32_t asker; /* an index of the caller's */
     uint32_t node;
     struct native_part_of_node part;
-    const struct native_patch *patch; /* of that part; NULL: not made yet */
+    const struct native_patch *patch; /* of that part; NULL: not kept */
     float s, t;                       /* on it */
     float before;                     /* how far the guess is before the far depth */
     double at_px[2];                  /* where the ray runs, px of the picture */
@@ -49,7 +49,7 @@ struct native_tile_planes {
     int32_t face[TILE_PLANE], border[TILE_PLANE], node[TILE_PLANE], where[TILE_PLANE];
 };
 
-/* Patches that are in no native_model yet, as a thread has come across them. */
+/* Patches that their native_model has no room for, as a thread has come across them. */
 enum { TILE_PATCHES = 256 };
 struct native_found_patch {
     uint32_t node, index; /* node: UINT32_MAX where there is none */
@@ -94,6 +94,15 @@ void native_place(const struct limit_tables *tables, const struct native_piece *
 /* Where a step to (x,y) leads from a node, over its borders if need be (shaders/neighbours.glsl).
  * False where there is no surface. */
 bool native_walk(const struct limit_tables *tables, uint32_t *node, double *x, double *y);
+
+/* A sub-patch: kept by the model, else the thread's own until it asks for others. */
+const struct native_patch *native_patch_of(const struct native_frame *frame,
+                                           struct native_tile_room *room, uint32_t node,
+                                           uint32_t index);
+/* That of a PIECE_OF_PATCH. */
+const struct native_patch *native_patch_of_piece(const struct native_frame *frame,
+                                                 struct native_tile_room *room,
+                                                 const struct native_piece *piece);
 
 /* The sub-patch of a node that holds a place. */
 struct native_part_of_node native_patch_at(const struct limit_node *node, double x, double y);

@@ -7,6 +7,7 @@
 
 #include "server/surface/subdivision/dart_masks.h"
 #include "server/surface/subdivision/face.h"
+#include "server/surface/subdivision/maker.h"
 #include "server/surface/subdivision/plan.h"
 #include "server/surface/texels.h"
 
@@ -92,6 +93,22 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
     return ok;
 }
 
+static void keep(struct limit_source *source)
+{
+    struct limit_plan *plan = (struct limit_plan *)(void *)source;
+    __atomic_fetch_add(&plan->n_users, 1, __ATOMIC_RELAXED);
+}
+
+static void drop(struct limit_source *source)
+{
+    struct limit_plan *plan = (struct limit_plan *)(void *)source;
+    if (__atomic_sub_fetch(&plan->n_users, 1, __ATOMIC_ACQ_REL) > 0)
+        return;
+    maker_pool_destroy(plan->makers);
+    plan_finish(plan);
+    free(plan);
+}
+
 struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit_watch *watch,
                                      struct error *error)
 {
@@ -100,20 +117,24 @@ struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit
         error_set(error, ERROR_SERVER, "out of memory");
         return NULL;
     }
-    *plan = (struct limit_plan){0};
+    *plan = (struct limit_plan){.n_users = 1};
     if (may_need_least(cage, watch, error) && plan_init(plan, cage, watch, error) &&
-        lay_out(plan, watch, error))
-        return plan;
+        lay_out(plan, watch, error)) {
+        plan->makers = maker_pool_create(plan);
+        plan->source = (struct limit_source){keep, drop, maker_make, plan_bytes(plan)};
+        plan->size.source = &plan->source;
+        if (plan->makers)
+            return plan;
+        error_set(error, ERROR_SERVER, "out of memory while measuring tables");
+    }
     limit_plan_destroy(plan);
     return NULL;
 }
 
 void limit_plan_destroy(struct limit_plan *plan)
 {
-    if (!plan)
-        return;
-    plan_finish(plan);
-    free(plan);
+    if (plan)
+        drop((struct limit_source *)(void *)plan);
 }
 
 const struct limit_size *limit_plan_size(const struct limit_plan *plan)

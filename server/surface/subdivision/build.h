@@ -12,11 +12,12 @@
 
 struct limit_plan; /* the cage's connectivity and the layout of its tables */
 
-/* `cage` has passed cage_check() and must outlive the plan. NULL on failure: ERROR_MODEL for what
+/* `cage` has passed cage_check(); the plan keeps what it needs of it. NULL on failure: ERROR_MODEL for what
  * is not evaluated (another scheme than Catmull-Clark, too large a valence), ERROR_SERVER when
  * memory is short, or the watch's error. One thread. */
 struct limit_plan *limit_plan_create(const struct cage *cage, const struct limit_watch *watch,
                                      struct error *error);
+/* Tables that were built from the plan keep what they need of it. NULL is safe. */
 void limit_plan_destroy(struct limit_plan *plan);
 
 /* For limit_tables_init(); the plan's. */

@@ -11,23 +11,6 @@
 #include "server/surface/subdivision/settle.h"
 #include "server/surface/texels.h"
 
-/* What the rule of a vertex takes of its ring that a window of the ring lacks. */
-enum window {
-    WINDOW_NONE, /* the ring is whole, or its vertex sharp */
-    WINDOW_SUMS, /* over all edges and over all faces of a smooth ring */
-    WINDOW_ENDS, /* of a crease: the far ends of its two edges */
-};
-
-/* The net of one level: grid[j + 1][i + 1] for i,j = -1..3, and the ring of the vertex, or a
- * window of a large ring. */
-struct net {
-    struct vec grid[5][5];
-    struct ring ring;
-    enum window window;
-    double n_faces; /* of the whole ring */
-    struct vec edges, faces, end[2];
-};
-
 /* Each level makes one more edge at either end of a window wrong. A window is so wide that the
  * edges which the grid takes stay right. */
 enum { WINDOW_SIDE = LIMIT_MAX_LEVELS + 3, WINDOW = 2 * WINDOW_SIDE };
@@ -309,41 +292,66 @@ unsigned corner_levels(const struct ring *ring)
  * larger than pixels, which are the first ones. */
 enum { WEIGHED_LEVELS = 6 };
 
-bool corner_table(const struct quad *quad, unsigned levels, const struct dart_mask_list *known,
-                  struct arena *arena, float (*texels)[4], struct limit_bound *bounds,
-                  double origin[3])
+void corner_begin(struct corner_nets *nets, const struct quad *quad,
+                  const struct dart_mask_list *known, struct arena *arena)
 {
     const struct ring *ring = &quad->corner[0];
-    struct vertex_limit own, *vertex = ring_cache_vertex(ring);
+    struct vertex_limit *vertex = ring_cache_vertex(ring);
     if (!vertex) {
-        vertex = &own;
+        vertex = &nets->own;
         vertex->is_known = false;
     }
     if (!vertex->is_known)
         find_vertex_limit(vertex, ring, known, arena);
-    struct net net[2] = {0};
-    for (int k = 0; k < 2; k++)
+    nets->vertex = vertex;
+    nets->level = 0;
+    struct net *net = nets->net;
+    for (int k = 0; k < 2; k++) {
+        net[k] = (struct net){0};
         net[k].ring = needs_window(ring)
                           ? ring_take(arena, WINDOW, false, false)
                           : ring_take(arena, ring->n_faces, ring->closed, ring->creases.edge);
-    struct vec axis[3] = {vertex->axis[0], vertex->axis[1], vertex->axis[2]};
-    first_net(quad, vertex, axis, &net[0]);
-    if (!ring_has_one_normal(ring)) {
-        own_frame(net, &vertex->masks, axis);
-        first_net(quad, vertex, axis, &net[0]);
+        nets->axis[k] = vertex->axis[k];
     }
-    write_frame(axis, texels[0]);
+    nets->axis[2] = vertex->axis[2];
+    first_net(quad, vertex, nets->axis, &net[0]);
+    if (!ring_has_one_normal(ring)) {
+        own_frame(net, &vertex->masks, nets->axis);
+        first_net(quad, vertex, nets->axis, &net[0]);
+    }
+}
+
+const struct vec *corner_next_level(struct corner_nets *nets)
+{
+    struct net *net = nets->net;
+    unsigned n = nets->level++;
+    next_net(&net[n & 1], &nets->vertex->masks, &net[(n + 1) & 1]);
+    return (const struct vec *)(const void *)net[(n + 1) & 1].grid;
+}
+
+struct limit_bound corner_level_bound(const struct vec grid[25], unsigned level)
+{
+    return bound_of_grid(grid, 5, true, level <= WEIGHED_LEVELS);
+}
+
+void corner_write_head(const struct corner_nets *nets, float frame[4], double origin[3])
+{
+    write_frame(nets->axis, frame);
+    origin[0] = nets->vertex->limit.x;
+    origin[1] = nets->vertex->limit.y;
+    origin[2] = nets->vertex->limit.z;
+}
+
+void corner_write_levels(struct corner_nets *nets, unsigned levels, float (*texels)[4],
+                         struct limit_bound *bounds)
+{
+    write_frame(nets->axis, texels[0]);
     float *scales = texels[1];
     memset(scales, 0, (LIMIT_CORNER_HEAD(levels) - 1) * sizeof *texels);
     texels += LIMIT_CORNER_HEAD(levels);
     for (unsigned n = 0; n < levels; n++) {
-        struct net *fine = &net[(n + 1) & 1];
-        next_net(&net[n & 1], &vertex->masks, fine);
-        scales[n] = texels_write_level(fine->grid, texels + n * LIMIT_LEVEL_TEXELS);
-        bounds[n] = bound_of_grid(&fine->grid[0][0], 5, true, n < WEIGHED_LEVELS);
+        const struct vec *grid = corner_next_level(nets);
+        scales[n] = texels_write_level(grid, texels + n * LIMIT_LEVEL_TEXELS);
+        bounds[n] = corner_level_bound(grid, n + 1);
     }
-    origin[0] = vertex->limit.x;
-    origin[1] = vertex->limit.y;
-    origin[2] = vertex->limit.z;
-    return vertex->has_normal;
 }

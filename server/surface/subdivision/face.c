@@ -1,5 +1,7 @@
 #include "server/surface/subdivision/face.h"
 
+#include <string.h>
+
 #include "server/surface/subdivision/adjacency.h"
 #include "server/surface/bound.h"
 #include "server/surface/subdivision/corner.h"
@@ -9,23 +11,53 @@
 #include "server/surface/subdivision/strip.h"
 #include "server/surface/texels.h"
 
+/* The surface at a corner of a bicubic patch: the middle of the 3 x 3 points about (x,y). */
+static struct vec corner_point(const struct vec grid[16], int x, int y)
+{
+    static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6};
+    struct vec sum = {0, 0, 0};
+    for (int k = 0; k < 9; k++)
+        sum =
+            vec_mad(sum, weight[k / 3] * weight[k % 3], grid[4 * (y + k / 3 - 1) + x + k % 3 - 1]);
+    return sum;
+}
+
+static void write_corner(struct limit_head *head, int corner, struct vec p)
+{
+    head->corner[0][corner] = (float)p.x;
+    head->corner[1][corner] = (float)p.y;
+    head->corner[2][corner] = (float)p.z;
+}
+
+/* A bound's radius also holds the corners' rounded coordinates. */
+static void write_head(struct face_builder *b, uint32_t node, const struct vec first[16],
+                       const struct vec last[16])
+{
+    struct limit_head *head = &b->tables->heads[node];
+    memset(head->frame, 0, sizeof head->frame);
+    head->frame[3] = 1;
+    for (int k = 0; k < 4; k++)
+        write_corner(head, k, corner_point(k < 2 ? first : last, k & 1 ? 2 : 1, k < 2 ? 1 : 2));
+}
+
 /* A REGULAR node of 16 control points. While measuring, only room for it. */
 static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4][4])
 {
     if (b->tables) {
         struct limit_node *out = &b->tables->nodes[node];
-        struct vec centre = {0, 0, 0};
-        for (int k = 0; k < 16; k++)
-            centre = vec_mad(centre, 1.0 / 16, grid[k / 4][k % 4]);
-        for (int k = 0; k < 16; k++)
-            grid[k / 4][k % 4] = vec_sub(grid[k / 4][k % 4], centre);
+        struct vec centre = regular_centre(&grid[0][0]);
         out->kind = LIMIT_REGULAR;
         out->origin[0] = centre.x;
         out->origin[1] = centre.y;
         out->origin[2] = centre.z;
         out->first = b->next.texel;
-        texels_write_patch(&grid[0][0], b->tables->texels + b->next.texel);
-        b->tables->bounds[b->next.bound] = bound_of_grid(&grid[0][0], 4, false, true);
+        struct limit_bound bound = bound_of_grid(&grid[0][0], 4, false, true);
+        b->tables->whole[node] = bound;
+        write_head(b, node, &grid[0][0], &grid[0][0]);
+        if (b->tables->texels) {
+            texels_write_patch(&grid[0][0], b->tables->texels + b->next.texel);
+            b->tables->bounds[b->next.bound] = bound;
+        }
     }
     b->next.texel += LIMIT_PATCH_TEXELS;
     b->next.bound += 1;
@@ -38,6 +70,29 @@ static void build_regular(struct face_builder *b, uint32_t node, const struct qu
     if (b->tables)
         quad_grid(quad, grid);
     build_patch(b, node, grid);
+}
+
+/* How the surface about a corner's own net looks, from its vertex's limit position. */
+static void write_corner_whole(struct face_builder *b, uint32_t node, const struct quad *quad,
+                               struct vec origin)
+{
+    struct vec grid[16];
+    const struct ring *ring = &quad->corner[0];
+    quad_grid(quad, (struct vec(*)[4])grid);
+    for (int k = 0; k < 16; k++)
+        grid[k] = vec_sub(grid[k], origin);
+    struct limit_bound bound = bound_of_grid(grid, 4, true, true);
+    double reach = (double)bound.radius;
+    for (uint32_t k = 0; k < ring_edges(ring); k++)
+        reach = fmax(reach, 1.000001 * vec_length(vec_sub(ring->edge[k], origin)));
+    for (uint32_t k = 0; k < ring->n_faces; k++)
+        reach = fmax(reach, 1.000001 * vec_length(vec_sub(ring->face[k], origin)));
+    bound.radius = (float)(reach * 1.000001);
+    b->tables->whole[node] = bound;
+    struct limit_head *head = &b->tables->heads[node];
+    write_corner(head, 0, (struct vec){0, 0, 0});
+    for (int k = 1; k < 4; k++)
+        write_corner(head, k, corner_point(grid, k & 1 ? 2 : 1, k < 2 ? 1 : 2));
 }
 
 static void build_corner(struct face_builder *b, uint32_t node, const struct quad *quad,
@@ -53,13 +108,17 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
     } else {
         struct limit_node *out = &b->tables->nodes[node];
         struct quad turned = quad_rotated(quad, corner);
+        struct corner_nets *nets = &b->nets;
         out->kind = LIMIT_CORNER;
         out->rotation = (uint8_t)corner;
         out->first = b->next.texel;
-        bool has_normal = corner_table(&turned, levels, b->plan->darts, &b->arena,
-                                       b->tables->texels + b->next.texel,
-                                       b->tables->bounds + b->next.bound, out->origin);
-        out->levels = (uint8_t)(has_normal ? levels : levels | LIMIT_NO_NORMAL);
+        corner_begin(nets, &turned, b->plan->darts, &b->arena);
+        out->levels = (uint8_t)(nets->vertex->has_normal ? levels : levels | LIMIT_NO_NORMAL);
+        corner_write_head(nets, b->tables->heads[node].frame, out->origin);
+        write_corner_whole(b, node, &turned, nets->vertex->limit);
+        if (b->tables->texels)
+            corner_write_levels(nets, levels, b->tables->texels + b->next.texel,
+                                b->tables->bounds + b->next.bound);
     }
     b->next.texel += LIMIT_CORNER_TEXELS(levels);
     b->next.bound += levels;
@@ -72,15 +131,22 @@ static void build_strip(struct face_builder *b, uint32_t node, const struct quad
     if (b->tables) {
         struct limit_node *out = &b->tables->nodes[node];
         struct quad turned = quad_rotated(quad, edge);
+        struct vec whole[16], patch[STRIP_MAX_LEVELS + 1][16];
         out->kind = LIMIT_STRIP;
         out->rotation = (uint8_t)edge;
         out->levels = (uint8_t)levels;
         out->first = b->next.texel;
-        strip_table(&turned, levels, b->tables->texels + b->next.texel,
-                    b->tables->bounds + b->next.bound, out->origin);
+        strip_points(&turned, levels, whole, patch, out->origin);
+        b->tables->whole[node] = bound_of_grid(whole, 4, false, true);
+        write_head(b, node, patch[levels], patch[0]);
+        for (unsigned n = 0; n <= levels && b->tables->texels; n++) {
+            texels_write_patch(patch[n],
+                               b->tables->texels + b->next.texel + n * LIMIT_PATCH_TEXELS);
+            b->tables->bounds[b->next.bound + n] = bound_of_grid(patch[n], 4, false, true);
+        }
     }
     b->next.texel += (levels + 1) * LIMIT_PATCH_TEXELS;
-    b->next.bound += levels + 2;
+    b->next.bound += levels + 1;
     b->count[LIMIT_STRIP]++;
 }
 
@@ -148,6 +214,8 @@ static void build_node(struct face_builder *b, uint32_t node, const struct quad 
     bool semisharp = quad_is_semisharp(quad);
     unsigned levels = semisharp ? strip_levels(quad, &edge) : 0;
     if (b->tables)
+        b->tables->whole[node].radius = -1;
+    if (b->tables && b->tables->texels)
         b->tables->bound_first[node] = b->next.bound;
     bool is_strip = levels > 0 && levels <= STRIP_MAX_LEVELS;
     bool is_split = !is_strip && (semisharp || extraordinary & (extraordinary - 1));
@@ -182,14 +250,6 @@ static void build_plain(struct face_builder *b, uint32_t ptex, uint32_t c)
         }
     }
     build_patch(b, ptex, grid);
-}
-
-static bool touches_ngon(const struct topology *t, uint32_t c)
-{
-    for (unsigned i = 0; i < 4; i++, c = corner_next(t, c))
-        if (t->vertex_flags[corner_vertex(t, c)] & VERTEX_BY_NGON)
-            return true;
-    return false;
 }
 
 /* What stands in limit_node.borders for half-edge c of a cage face. */
@@ -229,8 +289,48 @@ static void start_root(struct face_builder *b, uint32_t ptex)
     root->ngon_size = size == 4 ? 0 : size;
     root->ngon_corner = (uint16_t)(size == 4 ? 0 : c - t->cage->face_start[t->face[c]]);
     root->borders = borders_of(b->plan, c);
-    b->tables->bound_first[ptex] = b->next.bound;
+    b->tables->whole[ptex].radius = -1;
+    if (b->tables->texels)
+        b->tables->bound_first[ptex] = b->next.bound;
     b->tables->adjacency[ptex] = adjacency_of(b->plan, ptex);
+}
+
+struct vec regular_centre(struct vec grid[16])
+{
+    struct vec centre = {0, 0, 0};
+    for (int k = 0; k < 16; k++)
+        centre = vec_mad(centre, 1.0 / 16, grid[k]);
+    for (int k = 0; k < 16; k++)
+        grid[k] = vec_sub(grid[k], centre);
+    return centre;
+}
+
+static bool touches_ngon(const struct topology *t, uint32_t c)
+{
+    for (unsigned i = 0; i < 4; i++, c = corner_next(t, c))
+        if (t->vertex_flags[corner_vertex(t, c)] & VERTEX_BY_NGON)
+            return true;
+    return false;
+}
+
+bool face_quads(const struct limit_plan *plan, uint32_t ptex, struct ring_cache *rings,
+                struct arena *arena, struct quad quad[4])
+{
+    const struct topology *t = &plan->topology;
+    uint32_t c = plan->corner[ptex];
+    if (face_size(t, t->face[c]) != 4) {
+        quad[0] = extract_refined_quad(t, &plan->refined, c, rings, arena);
+        return false;
+    }
+    if (!plan->refined.face || !touches_ngon(t, c)) {
+        quad[0] = extract_quad(t, c, rings, arena);
+        return false;
+    }
+    for (unsigned i = 0; i < 4; i++, c = corner_next(t, c)) {
+        struct quad own = extract_refined_quad(t, &plan->refined, c, rings, arena);
+        quad[i] = quad_rotated(&own, (4 - i) & 3);
+    }
+    return true;
 }
 
 void face_build(struct face_builder *b, uint32_t ptex)
@@ -249,18 +349,9 @@ void face_build(struct face_builder *b, uint32_t ptex)
         build_plain(b, ptex, c);
         return;
     }
-    struct quad quad, child[4];
-    if (face_size(t, face) != 4) {
-        quad = extract_refined_quad(t, &plan->refined, c, &b->rings, &b->arena);
-        build_node(b, ptex, &quad);
-    } else if (plan->refined.face && touches_ngon(t, c)) {
-        for (unsigned i = 0; i < 4; i++, c = corner_next(t, c)) {
-            quad = extract_refined_quad(t, &plan->refined, c, &b->rings, &b->arena);
-            child[i] = quad_rotated(&quad, (4 - i) & 3);
-        }
-        build_split(b, ptex, child);
-    } else {
-        quad = extract_quad(t, c, &b->rings, &b->arena);
-        build_node(b, ptex, &quad);
-    }
+    struct quad quad[4];
+    if (face_quads(plan, ptex, &b->rings, &b->arena, quad))
+        build_split(b, ptex, quad);
+    else
+        build_node(b, ptex, &quad[0]);
 }

@@ -1,7 +1,9 @@
 #include "server/surface/subdivision/plan.h"
 
 #include <stdlib.h>
+#include <string.h>
 
+#include "server/surface/topology/nonmanifold.h"
 #include "server/surface/topology/topology.h"
 
 /* Boundary mode NONE: faces at a boundary are support only, unless all boundary edges at their
@@ -89,17 +91,68 @@ static bool refine_if_needed(struct limit_plan *plan, const struct limit_watch *
     return ok;
 }
 
+static void *copy_of(const void *from, size_t n, size_t size)
+{
+    void *to = malloc(n * size);
+    if (to)
+        memcpy(to, from, n * size);
+    return to;
+}
+
+/* Vertices and faces: from then on nothing else of the cage is read. */
+static bool keep_cage(struct limit_plan *plan, const struct cage *cage)
+{
+    size_t n_corners = cage->face_start[cage->n_faces];
+    plan->copy = (struct cage){
+        .n_vertices = cage->n_vertices,
+        .position = copy_of(cage->position, cage->n_vertices, sizeof *cage->position),
+        .n_faces = cage->n_faces,
+        .face_start = copy_of(cage->face_start, cage->n_faces + 1, sizeof *cage->face_start),
+        .face_vertex = copy_of(cage->face_vertex, n_corners, sizeof *cage->face_vertex),
+        .scheme = cage->scheme,
+        .boundary = cage->boundary,
+        .chaikin = cage->chaikin,
+        .smooth_triangles = cage->smooth_triangles,
+    };
+    plan->cage = plan->topology.cage = &plan->copy;
+    return plan->copy.position && plan->copy.face_start && plan->copy.face_vertex;
+}
+
 bool plan_init(struct limit_plan *plan, const struct cage *cage, const struct limit_watch *watch,
                struct error *error)
 {
-    *plan = (struct limit_plan){.cage = cage};
+    *plan = (struct limit_plan){.n_users = 1, .cage = cage};
     if (!check_supported(cage, error) || !topology_init(&plan->topology, cage, error) ||
         !check_valence(plan, error))
         return false;
     if (!number_ptex_faces(plan) || !mark_holes(plan))
         return error_set(error, ERROR_SERVER, "out of memory for the Ptex faces of %zu faces",
                          cage->n_faces);
+    if (!keep_cage(plan, cage))
+        return error_set(error, ERROR_SERVER, "out of memory for the cage of %zu faces",
+                         cage->n_faces);
     return refine_if_needed(plan, watch, error);
+}
+
+size_t plan_bytes(const struct limit_plan *plan)
+{
+    const struct cage *cage = plan->cage;
+    const struct topology *t = &plan->topology;
+    size_t n_corners = cage->face_start[cage->n_faces];
+    size_t per_corner = sizeof *cage->face_vertex + sizeof *t->twin + sizeof *t->face +
+                        (t->edge_sharpness ? sizeof *t->edge_sharpness : 0) +
+                        (t->child_sharpness ? sizeof *t->child_sharpness : 0) +
+                        (plan->refined.edge ? sizeof *plan->refined.edge : 0);
+    size_t per_vertex = sizeof *cage->position + sizeof *t->vertex_flags +
+                        (t->vertex_sharpness ? sizeof *t->vertex_sharpness : 0) +
+                        (plan->refined.vertex ? sizeof *plan->refined.vertex : 0);
+    size_t per_face = sizeof *cage->face_start + sizeof *plan->first_ptex + (plan->hole ? 1 : 0) +
+                      (plan->refined.face ? sizeof *plan->refined.face : 0);
+    return sizeof *plan + n_corners * per_corner + cage->n_vertices * per_vertex +
+           cage->n_faces * per_face +
+           plan->n_ptex * (sizeof *plan->corner + sizeof *plan->offsets) +
+           t->n_nonmanifold * sizeof *t->nonmanifold +
+           t->n_vertex_creases * sizeof *t->vertex_creases + plan->arena_bytes;
 }
 
 void plan_finish(struct limit_plan *plan)
@@ -111,5 +164,6 @@ void plan_finish(struct limit_plan *plan)
     free(plan->corner);
     free(plan->hole);
     free(plan->offsets);
+    cage_finish(&plan->copy);
     *plan = (struct limit_plan){0};
 }

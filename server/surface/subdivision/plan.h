@@ -5,6 +5,7 @@
 
 #include "server/surface/subdivision/dart_mask_list.h"
 #include "server/surface/subdivision/extract.h"
+#include "server/surface/source.h"
 #include "server/surface/tables.h"
 
 /* The most faces around a vertex, or corners of a face: dozens of such rings are held at once. */
@@ -16,6 +17,10 @@ struct plan_offsets {
 };
 
 struct limit_plan {
+    struct limit_source source; /* first; maker.h */
+    struct maker_pool *makers;
+    unsigned n_users; /* the caller, and tables that make points from it */
+    struct cage copy; /* of the cage: what the topology reads */
     const struct cage *cage;
     struct topology topology;
     struct refined_points refined; /* empty where the cage has quads alone */
@@ -29,11 +34,13 @@ struct limit_plan {
     size_t arena_bytes;     /* what building any one face takes at most */
 };
 
-/* All but what build.c fills in. The cage must outlive the plan. False: ERROR_MODEL for what is not
+/* All but what build.c fills in. False: ERROR_MODEL for what is not
  * evaluated, ERROR_SERVER when memory is short, or the watch's error; plan_finish() is called by
  * the caller in both cases. One thread. */
 bool plan_init(struct limit_plan *plan, const struct cage *cage, const struct limit_watch *watch,
                struct error *error);
 void plan_finish(struct limit_plan *plan);
+/* What it takes in main memory, with the arena of one thread. */
+size_t plan_bytes(const struct limit_plan *plan);
 
 #endif

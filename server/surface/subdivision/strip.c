@@ -1,9 +1,9 @@
 #include "server/surface/subdivision/strip.h"
 
-#include "server/surface/bound.h"
+#include <string.h>
+
 #include "server/surface/subdivision/crease.h"
 #include "server/surface/subdivision/settle.h"
-#include "server/surface/texels.h"
 #include "server/surface/topology/sharpness.h"
 
 /* The sharpness of the crease that runs straight through a regular vertex along the quad's edge
@@ -53,16 +53,8 @@ static void refine_rows(struct vec rows[4][4], double crease, struct vec fine[5]
     }
 }
 
-static void write_patch(const struct vec *points, float (**texels)[4], struct limit_bound **bounds)
-{
-    texels_write_patch(points, *texels);
-    **bounds = bound_of_grid(points, 4, false, true);
-    *texels += LIMIT_PATCH_TEXELS;
-    *bounds += 1;
-}
-
-void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
-                 struct limit_bound *bounds, double origin[3])
+void strip_points(const struct quad *quad, unsigned levels, struct vec whole[16],
+                  struct vec (*patch)[16], double origin[3])
 {
     struct vec rows[4][4], fine[5][4], centre = {0, 0, 0};
     quad_grid(quad, rows);
@@ -70,16 +62,15 @@ void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
         centre = vec_mad(centre, 1.0 / 16, rows[k / 4][k % 4]);
     for (int k = 0; k < 16; k++)
         rows[k / 4][k % 4] = vec_sub(rows[k / 4][k % 4], centre);
-    *bounds++ = bound_of_grid(&rows[0][0], 4, false, true);
+    memcpy(whole, rows, sizeof rows);
     float sharpness = straight_crease(&quad->corner[0], 0);
     for (unsigned n = 0; n < levels; n++) {
         refine_rows(rows, sharpness < 1 ? (double)sharpness : 1, fine);
-        write_patch(&fine[1][0], &texels, &bounds);
+        memcpy(patch[n], fine[1], sizeof patch[n]);
         sharpness = sharpness_child(sharpness);
-        for (int k = 0; k < 16; k++)
-            rows[k / 4][k % 4] = fine[k / 4][k % 4];
+        memcpy(rows, fine, sizeof rows);
     }
-    write_patch(&rows[0][0], &texels, &bounds);
+    memcpy(patch[levels], rows, sizeof rows);
     origin[0] = centre.x;
     origin[1] = centre.y;
     origin[2] = centre.z;

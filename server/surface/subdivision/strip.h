@@ -18,10 +18,10 @@ enum { STRIP_MAX_LEVELS = 3 };
  * any other quad. Pure. */
 unsigned strip_levels(const struct quad *quad, unsigned *edge);
 
-/* Writes the table of a quad that is turned so that the crease is its edge 0, with levels = L:
- * (levels + 1) * LIMIT_PATCH_TEXELS texels, levels + 2 bounds (of the whole, then of each patch), and the
- * origin, the mean of the points, world. The caller owns all three. */
-void strip_table(const struct quad *quad, unsigned levels, float (*texels)[4],
-                 struct limit_bound *bounds, double origin[3]);
+/* The points of a quad that is turned so that the crease is its edge 0, with levels = L: those of its
+ * own net, then those of its L + 1 patches, 4 (j + 1) + i + 1 each, from the origin, which is the mean
+ * of its own net, world. Pure. */
+void strip_points(const struct quad *quad, unsigned levels, struct vec whole[16],
+                  struct vec (*patch)[16], double origin[3]);
 
 #endif

@@ -35,10 +35,10 @@ static void place_borders(const struct limit_node *node, struct one_place *place
 }
 
 /* The piece's patch as the ray through the middle of its box sees it. */
-static void place_piece(const struct native_frame *frame, const struct native_tile_room *room,
+static void place_piece(const struct native_frame *frame, struct native_tile_room *room,
                         const struct native_piece *piece, struct piece_view *view)
 {
-    const struct native_patch *patch = piece->patch;
+    const struct native_patch *patch = native_patch_of_piece(frame, room, piece);
     const struct limit_node *node = &frame->model->tables->nodes[piece->node];
     struct one_place *place = &view->place;
     struct native_seen_node seen;

@@ -22,24 +22,6 @@ static inline void set(vfloat *lanes, int lane, double value)
     (*lanes)[lane] = (float)value;
 }
 
-/* A patch that no piece has been chosen of is the thread's own. */
-static const struct native_patch *find_patch(const struct native_frame *frame,
-                                             struct native_tile_room *room, uint32_t node,
-                                             uint32_t index)
-{
-    const struct native_patch *patch = native_patch_find(frame->model, node, index);
-    if (patch)
-        return patch;
-    struct native_found_patch *found =
-        &room->patch[(frame->model->first[node] + index) % TILE_PATCHES];
-    if (found->node != node || found->index != index) {
-        native_patch_make(frame->model->tables, node, index, &found->patch);
-        found->node = node;
-        found->index = index;
-    }
-    return &found->patch;
-}
-
 static void set_coefficients(struct lanes *lanes, int lane, const struct native_patch *patch)
 {
     for (int k = 0; k < 3; k++)
@@ -52,20 +34,21 @@ static void set_coefficients(struct lanes *lanes, int lane, const struct native_
 
 /* At the vertex of a CORNER the surface is its tangent plane; where it has none, a plane across the
  * view. `turned`: the view's axes in the node's frame. */
-static void set_vertex(const struct native_frame *frame, struct lanes *lanes, int lane,
-                       const struct limit_node *node, const float turned[3][3])
+static void set_vertex(const struct native_frame *frame, struct native_tile_room *room,
+                       struct lanes *lanes, int lane, uint32_t node_index, const float turned[3][3])
 {
-    const float *head = frame->model->tables->texels[node->first + 1];
+    const struct limit_node *node = &frame->model->tables->nodes[node_index];
     bool has_normal = !(node->levels & LIMIT_NO_NORMAL);
-    int levels = node->levels & ~(int)LIMIT_NO_NORMAL;
+    const struct native_patch *last = native_patch_of(
+        frame, room, node_index, native_patch_index(node, (int)limit_levels(node), 1));
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < 16; i++)
             lanes->c[k][i / 4][i % 4][lane] = 0;
         lanes->c[k][0][1][lane] = has_normal ? k == 0 : turned[0][k];
         lanes->c[k][1][0][lane] = has_normal ? k == 1 : turned[1][k];
     }
-    set(&lanes->place.scale, lane, (double)head[levels - 1]); /* texels follow each other */
-    set(&lanes->place.inverse_scale, lane, 1 / (double)head[levels - 1]);
+    set(&lanes->place.scale, lane, (double)last->scale);
+    set(&lanes->place.inverse_scale, lane, (double)last->inverse_scale);
     set(&lanes->place.bend, lane, 0);
 }
 
@@ -75,14 +58,13 @@ static void set_lane(const struct native_frame *frame, struct native_tile_room *
                      const struct native_part_of_node *part, const struct native_patch *patch,
                      const double at_px[2], const struct native_seen_node *seen)
 {
-    const struct limit_node *node = &frame->model->tables->nodes[node_index];
     const struct view *view = frame->view;
     struct each_place *place = &lanes->place;
     if (part->at_vertex)
-        set_vertex(frame, lanes, lane, node, (const float(*)[3])seen->camera);
+        set_vertex(frame, room, lanes, lane, node_index, (const float(*)[3])seen->camera);
     else
         set_coefficients(lanes, lane,
-                         patch ? patch : find_patch(frame, room, node_index, part->index));
+                         patch ? patch : native_patch_of(frame, room, node_index, part->index));
     double inverse = (double)place->inverse_scale[lane];
     double q_x = (at_px[0] - view->centre_px[0]) * view->units_per_px;
     double q_y = (at_px[1] - view->centre_px[1]) * view->units_per_px;

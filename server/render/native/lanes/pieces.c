@@ -75,12 +75,11 @@ static bool project_corners(const struct native_rays *rays, const struct placed 
 }
 
 /* The vertices of a grid over a piece. False where they reach before the eye. */
-static bool project_grid(const struct native_frame *frame, const struct native_piece *piece,
-                         const struct placed *node, uint32_t grid, float *vertex,
-                         struct reach *reach)
+static bool project_grid(const struct native_frame *frame, const struct native_patch *patch,
+                         const struct native_piece *piece, const struct placed *node, uint32_t grid,
+                         float *vertex, struct reach *reach)
 {
     const struct native_rays *rays = &frame->rays;
-    const struct native_patch *patch = piece->patch;
     uint32_t n = (grid_cells[grid / GRID_SIDES] + 1u) * (grid_cells[grid % GRID_SIDES] + 1u);
     float *to_x = vertex, *to_y = to_x + n + LANES, *to_nearness = to_y + n + LANES, turn[3][3];
     for (int a = 0; a < 3; a++)
@@ -157,42 +156,31 @@ static bool pixels_of(const struct native_frame *frame, const struct reach *r, i
 /* --- */
 
 /* The corners of all that is left of a CORNER below a level: the vertex, and those of the next
- * level that lie outermost. False: no memory. */
-static bool rest_corners(const struct native_frame *frame, struct native_thread *thread,
-                         uint32_t node, int level, float corner[3][4])
+ * level that lie outermost. */
+static void rest_corners(const struct native_frame *frame, uint32_t node, int level,
+                         float corner[3][4])
 {
-    int levels = frame->model->tables->nodes[node].levels & ~(int)LIMIT_NO_NORMAL;
+    const struct limit_node *of = &frame->model->tables->nodes[node];
+    int levels = (int)limit_levels(of);
     bool is_last = level >= levels;
     for (int c = 1; c < 4; c++) {
         unsigned square = c == 1 ? 1 : c == 3 ? 2 : 3;
+        struct native_patch room;
         const struct native_patch *patch =
-            native_patch_get(frame->model, thread->number, node,
-                             3 * (uint32_t)(is_last ? levels - 1 : level) + square - 1);
-        if (!patch)
-            return false;
+            native_patch_get(frame->model, node,
+                             native_patch_index(of, is_last ? levels : level + 1, square), &room);
         for (int k = 0; k < 3; k++)
             corner[k][c] = patch->corner[k][is_last ? 0 : c];
     }
     for (int k = 0; k < 3; k++)
         corner[k][0] = 0;
-    return true;
 }
 
-static bool strip_corners(const struct native_frame *frame, struct native_thread *thread,
-                          uint32_t node, float corner[3][4])
-{
-    uint32_t last = frame->model->tables->nodes[node].levels;
-    const struct native_patch *near = native_patch_get(frame->model, thread->number, node, last);
-    const struct native_patch *far = native_patch_get(frame->model, thread->number, node, 0);
-    for (int c = 0; near && far && c < 4; c++)
-        for (int k = 0; k < 3; k++)
-            corner[k][c] = (c < 2 ? near : far)->corner[k][c];
-    return near && far;
-}
-
-/* What patch_grids.c has chosen, as a piece. False: no memory. */
-static bool understand(const struct native_frame *frame, struct native_thread *thread,
-                       const struct patch_grid *chosen, struct native_piece *piece)
+/* What patch_grids.c has chosen, as a piece; and its sub-patch, which is in *room if it is not kept, or
+ * NULL where the corners of its node tell where it lies. */
+static const struct native_patch *understand(const struct native_frame *frame,
+                                             const struct patch_grid *chosen,
+                                             struct native_piece *piece, struct native_patch *room)
 {
     const struct limit_node *node = &frame->model->tables->nodes[chosen->node];
     int level = chosen->where & 63;
@@ -208,38 +196,40 @@ static bool understand(const struct native_frame *frame, struct native_thread *t
         piece->kind = PIECE_REST;
     else if (node->kind == LIMIT_STRIP && !square && level == 0 && node->levels > 0)
         piece->kind = PIECE_STRIP;
-    if (piece->kind != PIECE_OF_PATCH)
-        return true;
+    bool is_whole = node->kind == LIMIT_REGULAR && chosen->where >> 8 == 0;
+    if (piece->kind != PIECE_OF_PATCH || is_whole)
+        return NULL;
     bool is_last = node->kind == LIMIT_STRIP && !square; /* comes after all levels */
-    piece->patch = native_patch_get(frame->model, thread->number, chosen->node,
-                                    native_patch_index(node, level + is_last, square));
-    return piece->patch;
+    const struct native_patch *patch = native_patch_get(
+        frame->model, chosen->node, native_patch_index(node, level + is_last, square), room);
+    piece->patch = patch == room ? NULL : patch;
+    return patch;
 }
 
 /* Where a piece comes to lie: as a cell, a grid or triangles. 0: nowhere that is looked at; -1: no
  * memory. */
 static int draw_piece(const struct native_frame *frame, struct native_thread *thread,
-                      const struct placed *node, uint32_t grid, struct native_piece *piece,
-                      struct native_quad *quad, float *nearest)
+                      const struct placed *node, uint32_t grid, const struct native_patch *patch,
+                      struct native_piece *piece, struct native_quad *quad, float *nearest)
 {
     float own[3][4];
-    const float(*corner)[4] = (const float(*)[4])own;
+    const float(*corner)[4] = (const float(*)[4])frame->model->tables->heads[piece->node].corner;
     struct reach reach;
     int box[4];
     bool is_cell = grid == 0 && piece->size >= 1, is_before;
     *quad = (struct native_quad){.grid = (uint16_t)(is_cell ? QUAD_CELL : grid),
                                  .first = (uint32_t)thread->n_vertices};
-    if (piece->kind == PIECE_OF_PATCH)
-        corner = piece->patch ? (const float(*)[4])piece->patch->corner : corner;
-    else if (!(piece->kind == PIECE_REST
-                   ? rest_corners(frame, thread, piece->node, piece->level, own)
-                   : strip_corners(frame, thread, piece->node, own)))
-        return -1;
+    if (patch) {
+        corner = (const float(*)[4])patch->corner;
+    } else if (piece->kind == PIECE_REST && piece->level > 0) {
+        rest_corners(frame, piece->node, piece->level, own);
+        corner = (const float(*)[4])own;
+    }
     if (is_cell)
         is_before = project_corners(&frame->rays, node, corner, quad, &reach);
     else
-        is_before =
-            project_grid(frame, piece, node, grid, thread->vertex + thread->n_vertices, &reach);
+        is_before = project_grid(frame, patch, piece, node, grid,
+                                 thread->vertex + thread->n_vertices, &reach);
     if (is_before && is_plain(&frame->rays, &reach)) {
         if (!pixels_of(frame, &reach, box))
             return 0;
@@ -297,10 +287,10 @@ static bool draw_chosen(const struct native_frame *frame, struct native_thread *
         size_t at = thread->n_quads;
         if (chosen->node != last)
             node = place_node(frame, last = chosen->node);
-        if (!understand(frame, thread, chosen, &thread->piece[at]))
-            return false;
-        int drawn = draw_piece(frame, thread, &node, grid, &thread->piece[at], &thread->quad[at],
-                               &thread->nearest[at]);
+        struct native_patch room;
+        const struct native_patch *patch = understand(frame, chosen, &thread->piece[at], &room);
+        int drawn = draw_piece(frame, thread, &node, grid, patch, &thread->piece[at],
+                               &thread->quad[at], &thread->nearest[at]);
         if (drawn < 0)
             return false;
         if (drawn && thread->quad[at].grid < QUAD_TRIANGLES)

@@ -1126,7 +1126,38 @@ template <class T> INLINE vec4<T> texelFetch(const buffer_texture<T> &of, vint a
     return quad_of<T>(of.words, inside(at, of.n) * 4);
 }
 
+// Points that are made where they are asked for, a place for each lane.
+struct made_texture {
+    native_made_texels from;
+    uint32_t node[LANES], part[LANES];
+    float texels[LANES][NATIVE_PATCH_TEXELS][4];
+};
+INLINE vec4<vfloat> texelFetch(const made_texture &of, vint at)
+{
+    return quad_of<vfloat>((const uint32_t *)of.texels,
+                           inside(at, LANES * NATIVE_PATCH_TEXELS) * 4);
+}
+INLINE vuint makeTexels(made_texture &of, vuint node, vuint part, vbool m)
+{
+    vint at = {};
+    for (int i = 0; i < LANES; i++) {
+        at[i] = i * NATIVE_PATCH_TEXELS;
+        if (!m[i] || (of.node[i] == (uint32_t)node[i] && of.part[i] == (uint32_t)part[i]))
+            continue;
+        of.node[i] = (uint32_t)node[i];
+        of.part[i] = (uint32_t)part[i];
+        of.from.make(of.from.owner, of.node[i], of.part[i], of.texels[i]);
+    }
+    return (vuint)at;
+}
+
 // --- what a host binds
+INLINE void set(made_texture &to, const native_made_texels &from)
+{
+    to.from = from;
+    for (int i = 0; i < LANES; i++)
+        to.node[i] = to.part[i] = UINT32_MAX;
+}
 template <class T> INLINE void set(image2D<T> &to, const native_image &from)
 {
     static_cast<image &>(to) = from;

@@ -34,6 +34,15 @@ struct native_texels {
     uint32_t n;
 };
 
+/* The points of sub-patches, made where a program asks for them (shaders/tables.glsl): make() writes those of a
+ * node's part (patches.h) as a texel whose x is the scale and four rows of three (server/surface/texels.h).
+ * Any thread. */
+enum { NATIVE_PATCH_TEXELS = 13 };
+struct native_made_texels {
+    const void *owner;
+    void (*make)(const void *owner, uint32_t node, uint32_t part, float (*texels)[4]);
+};
+
 /* A buffer's open array, of n elements. */
 struct native_array {
     uint32_t *words;
@@ -55,7 +64,8 @@ struct native_share {
 /* What a program does not use need not be set. */
 struct native_bindings {
     const void *View, *Light; /* struct view_block, struct light_block */
-    struct native_texels texels, nodes, adjacency;
+    struct native_made_texels texels;
+    struct native_texels heads, nodes, adjacency;
     struct native_image seen, seen_depth, hit_depth, normal, shape, ptex, border;
     struct native_image silhouette, colour, coverage;
     struct native_image light_st, curvature, light_change;
