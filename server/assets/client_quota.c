@@ -1,6 +1,7 @@
 #include "server/assets/client_quota.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 void client_quotas_init(struct client_quotas *quotas, struct account *daemon, uint64_t limit)
 {
@@ -10,24 +11,19 @@ void client_quotas_init(struct client_quotas *quotas, struct account *daemon, ui
         LIST_INIT(&quotas->bucket[i]);
 }
 
-static struct client_quota_list *bucket_of(struct client_quotas *quotas, const struct peer *peer)
+struct client_quota *client_quota_get(struct client_quotas *quotas, const struct identity *identity)
 {
-    uint64_t mixed = (peer->key[0] * 31 + peer->key[1]) * 0x9e3779b97f4a7c15u;
-    return &quotas->bucket[mixed >> 56];
-}
-
-struct client_quota *client_quota_get(struct client_quotas *quotas, int fd)
-{
-    const struct peer peer = peer_identify(fd);
-    struct client_quota_list *bucket = bucket_of(quotas, &peer);
+    struct client_quota_list *bucket = &quotas->bucket[identity->owner[0]]; /* it is a hash */
     struct client_quota *quota;
     LIST_FOREACH (quota, bucket, link)
-        if (quota->peer.key[0] == peer.key[0] && quota->peer.key[1] == peer.key[1])
+        if (memcmp(quota->identity, identity->owner, OWNER_BYTES) == 0)
             return client_quota_reference(quota);
     quota = malloc(sizeof *quota);
     if (!quota)
         return NULL;
-    *quota = (struct client_quota){.peer = peer, .references = 1};
+    *quota = (struct client_quota){.references = 1};
+    memcpy(quota->identity, identity->owner, OWNER_BYTES);
+    memcpy(quota->name, identity->name, sizeof quota->name);
     account_init(&quota->account, quotas->daemon, quotas->limit);
     LIST_INSERT_HEAD(bucket, quota, link);
     return quota;

@@ -24,8 +24,7 @@ static bool refuse_peer(const struct client_quota *quota, const char *what, uint
     return error_set(error, ERROR_SERVER,
                      "%s needs %" PRIu64 " bytes; of the %" PRIu64 " that uploads and frames of %s "
                      "may take (--peer-memory), %" PRIu64 " are in use now: try again later",
-                     what, bytes, quota->account.limit, quota->peer.name,
-                     account_used(&quota->account));
+                     what, bytes, quota->account.limit, quota->name, account_used(&quota->account));
 }
 
 /* Stills and batches leave room for interactive frames, and those of one peer for others': the peer

@@ -1,6 +1,6 @@
 /* The rules by which clients take from the memory budget: every upload and long message under way,
  * and every frame from its first tile until its last byte has gone to the socket, is charged to the
- * quota of the peer that asked for it, and so to the daemon's budget. Thread: the loop's. */
+ * quota of the identity that asked for it, and so to the daemon's budget. Thread: the loop's. */
 #ifndef SHEEN_ASSETS_MEMORY_H
 #define SHEEN_ASSETS_MEMORY_H
 

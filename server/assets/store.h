@@ -39,8 +39,8 @@ enum asset_state {
 struct asset_limits {
     uint64_t memory_budget; /* bytes: files, tables, polygons, texels, frames, all together, in main
                                memory and on the device */
-    uint64_t peer_memory;   /* bytes: uploads, long messages under way and frames of one user or
-                               address */
+    uint64_t peer_memory;   /* bytes: uploads, long messages under way and frames of one
+                               identity */
     uint64_t max_image_side; /* px of a light image, either way */
     uint64_t tables_cpu_s;   /* of processors, for one model's tables */
 };

@@ -16,9 +16,10 @@ enum request_class request_class_of(sheen_RequestClass request_class)
                                                                  : CLASS_STILL;
 }
 
-void request_client_init(struct request_client *client)
+void request_client_join(struct request_client *client, struct party *party)
 {
-    scheduler_add_queue(&client->queue);
+    client->party = party;
+    scheduler_add_queue(&client->queue, &party->schedule);
     LIST_INIT(&client->requests);
 }
 
@@ -33,6 +34,7 @@ static struct request *request_create(struct request_client *client, struct repl
     }
     *request = (struct request){.host = client->host, .state = REQUEST_LOADING};
     request->client = client;
+    request->party = party_reference(client->party);
     request->reply = reply;
     request->seq = seq;
     memcpy(request->assets_of, client->assets_of, sizeof request->assets_of);
@@ -64,6 +66,7 @@ void request_end(struct request *request)
         LIST_REMOVE(request, parked_link);
     request_state_move(&request->state, REQUEST_ENDED);
     scheduler_finished(&request->host->scheduler, &request->entry);
+    party_put(request->party);
     request_drop_frame(request);
     if (request->model.asset)
         store_unuse(request->model.asset);

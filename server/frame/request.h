@@ -10,8 +10,9 @@
 
 #include "server/frame/request_client.h"
 
-/* Sets `queue` and `requests`; the caller has set all other members. */
-void request_client_init(struct request_client *client);
+/* It is known who the client is, so that it may ask: joins its party. The caller has set all members
+ * but `party`, `queue` and `requests`, and holds the references to quota and party. */
+void request_client_join(struct request_client *client, struct party *party);
 /* The client has gone: gives up all its requests. */
 void request_client_finish(struct request_client *client);
 

@@ -7,6 +7,7 @@
 #include "protocol/message.h"
 #include "server/assets/memory.h"
 #include "server/frame/costs.h"
+#include "server/frame/parties.h"
 #include "server/frame/scheduler.h"
 #include "server/output/encode.h"
 
@@ -28,6 +29,7 @@ struct request_host {
     uint32_t gpu_generation; /* 1, and one more for each time that the GPU was lost */
 
     struct scheduler scheduler;
+    struct parties parties;
     struct costs costs;
     struct request_list parked; /* requests that wait for memory of other frames */
     unsigned n_file_loads;      /* files being read from the folder */
@@ -54,8 +56,10 @@ struct request_events {
 struct request_client {
     struct request_host *host;
     const struct request_events *events;
-    void *owner;                /* of the events */
-    struct client_quota *quota; /* that frames are charged to */
+    void *owner; /* of the events */
+    struct client_quota
+        *quota;          /* that frames are charged to; of the client's identity, as `party` */
+    struct party *party; /* both NULL until the client has joined, and asks for nothing */
     /* The client's identity, and the owner of the assets that it may use beside those of
      * everybody; STORE_OWNER_BYTES each. */
     const uint8_t *identity, *assets_of;

@@ -19,6 +19,7 @@ struct needed {
 struct request {
     struct request_host *host;
     enum request_state state;
+    struct party *party;             /* the client's, which may go before */
     struct request_client *client;   /* NULL: REQUEST_ABANDONED, or about to be */
     LIST_ENTRY(request) client_link; /* while there is a client */
     LIST_ENTRY(request) parked_link; /* while REQUEST_PARKED */

@@ -2,12 +2,21 @@
 
 #include <stddef.h>
 
-void scheduler_add_queue(struct schedule_queue *queue)
+void scheduler_add_party(struct schedule_party *party)
 {
-    *queue = (struct schedule_queue){0};
-    TAILQ_INIT(&queue->entries);
+    *party = (struct schedule_party){0};
     for (int c = 0; c < N_CLASSES; c++)
+        party->part[c].turn.of = &party->part[c];
+}
+
+void scheduler_add_queue(struct schedule_queue *queue, struct schedule_party *party)
+{
+    *queue = (struct schedule_queue){.party = party};
+    TAILQ_INIT(&queue->entries);
+    for (int c = 0; c < N_CLASSES; c++) {
         queue->flow[c].queue = queue;
+        queue->flow[c].turn.of = &queue->flow[c];
+    }
 }
 
 static struct schedule_flow *flow_of(const struct schedule_entry *entry)
@@ -15,38 +24,17 @@ static struct schedule_flow *flow_of(const struct schedule_entry *entry)
     return &entry->queue->flow[entry->request_class];
 }
 
-/* --- the ring of flows that have entries */
-
-static void link_flow(struct schedule_class *class, struct schedule_flow *flow)
+static struct schedule_part *part_of(const struct schedule_entry *entry)
 {
-    if (!class->turn) {
-        flow->next = flow->previous = class->turn = flow;
-        return;
-    }
-    flow->next = class->turn; /* last in the round */
-    flow->previous = class->turn->previous;
-    flow->previous->next = flow;
-    flow->next->previous = flow;
+    return &entry->party->part[entry->request_class];
 }
 
-static void unlink_flow(struct schedule_class *class, struct schedule_flow *flow)
+/* Books time against the entry's connection and its party. */
+static void charge(const struct schedule_entry *entry, int64_t us)
 {
-    flow->previous->next = flow->next;
-    flow->next->previous = flow->previous;
-    if (class->turn == flow)
-        class->turn = flow->next == flow ? NULL : flow->next;
-}
-
-/* Brings a flow's deficit up to the class's round. A session that asks for little cannot save up;
- * one that has used ahead pays it back, also while it has nothing to ask. */
-static void settle(const struct schedule_class *class, struct schedule_flow *flow)
-{
-    uint64_t rounds = class->round - flow->round;
-    int64_t most = SCHEDULER_QUANTUM_US;
-    flow->round = class->round;
-    flow->deficit_us = rounds > UINT32_MAX ? most : flow->deficit_us + (int64_t)rounds * most;
-    if (flow->deficit_us > most)
-        flow->deficit_us = most;
+    turn_charge(&part_of(entry)->turn, us);
+    if (entry->queue)
+        turn_charge(&flow_of(entry)->turn, us);
 }
 
 /* --- entries come and go */
@@ -81,10 +69,15 @@ struct schedule_entry *scheduler_enter(struct scheduler *scheduler, struct sched
     if (is_replaceable(entry) && (replaced = find_replaced(queue, entry)))
         scheduler_leave(scheduler, replaced);
     entry->queue = queue;
+    entry->party = queue->party;
     TAILQ_INSERT_TAIL(&queue->entries, entry, link);
     struct schedule_flow *flow = flow_of(entry);
-    if (flow->n++ == 0)
-        link_flow(&scheduler->classes[entry->request_class], flow);
+    struct schedule_part *part = part_of(entry);
+    if (flow->n++ == 0) {
+        if (!part->flows.first)
+            turns_join(&scheduler->classes[entry->request_class].parts, &part->turn);
+        turns_join(&part->flows, &flow->turn);
+    }
     scheduler->waiting++;
     return replaced;
 }
@@ -100,9 +93,13 @@ void scheduler_leave(struct scheduler *scheduler, struct schedule_entry *entry)
         return;
     struct schedule_class *class = &scheduler->classes[entry->request_class];
     struct schedule_flow *flow = flow_of(entry);
+    struct schedule_part *part = part_of(entry);
     TAILQ_REMOVE(&entry->queue->entries, entry, link);
-    if (--flow->n == 0)
-        unlink_flow(class, flow);
+    if (--flow->n == 0) {
+        turns_leave(&part->flows, &flow->turn);
+        if (!part->flows.first)
+            turns_leave(&class->parts, &part->turn);
+    }
     entry->queue = NULL;
     if (!has_begun(entry)) {
         scheduler->waiting--;
@@ -112,6 +109,7 @@ void scheduler_leave(struct scheduler *scheduler, struct schedule_entry *entry)
     flow->begun--;
     if (entry->state == SCHEDULE_BEGUN || entry->state == SCHEDULE_HELD) {
         class->begun--;
+        part->begun--;
         entry->state = SCHEDULE_OUT;
     }
 }
@@ -119,8 +117,10 @@ void scheduler_leave(struct scheduler *scheduler, struct schedule_entry *entry)
 void scheduler_finished(struct scheduler *scheduler, struct schedule_entry *entry)
 {
     scheduler_leave(scheduler, entry);
-    if (has_begun(entry))
+    if (has_begun(entry)) {
         scheduler->classes[entry->request_class].begun--;
+        part_of(entry)->begun--;
+    }
     entry->state = SCHEDULE_OUT;
 }
 
@@ -133,6 +133,14 @@ struct schedule_entry *scheduler_hold(struct schedule_entry *entry)
 
 /* --- whose turn it is */
 
+/* May another frame of this class begin? Where as many have begun as keep the pool busy, only one of a
+ * party that has hardly any: nobody is kept out by the frames of others, which may wait for sockets
+ * that are not read. */
+static bool may_begin(const struct schedule_class *class, const struct schedule_part *part)
+{
+    return class->begun < SCHEDULER_PER_CLASS || part->begun < SCHEDULER_PER_PARTY;
+}
+
 /* The flow's entry that may draw now, or NULL. It draws one frame after the other: what begins late
  * may be replaced until then. No other begins before one that waits: its answer would stand behind
  * that one's, and its memory be what the other waits for. */
@@ -140,8 +148,9 @@ static struct schedule_entry *drawable(const struct scheduler *scheduler,
                                        const struct schedule_flow *flow,
                                        enum request_class request_class)
 {
-    bool may_begin = !flow->held && flow->begun < SCHEDULER_PER_QUEUE &&
-                     scheduler->classes[request_class].begun < SCHEDULER_PER_CLASS;
+    bool begins =
+        !flow->held && flow->begun < SCHEDULER_PER_QUEUE &&
+        may_begin(&scheduler->classes[request_class], &flow->queue->party->part[request_class]);
     struct schedule_entry *first_ready = NULL;
     bool one_waits = false;
     struct schedule_entry *entry;
@@ -156,56 +165,55 @@ static struct schedule_entry *drawable(const struct scheduler *scheduler,
         if (entry->state == SCHEDULE_READY && !first_ready && !one_waits)
             first_ready = entry;
     }
-    return may_begin ? first_ready : NULL;
+    return begins ? first_ready : NULL;
+}
+
+/* What the two rings of a class are asked with. */
+struct choice {
+    const struct scheduler *scheduler;
+    enum request_class request_class;
+};
+
+static bool can_flow(const struct turn *turn, void *context)
+{
+    const struct choice *choice = context;
+    return drawable(choice->scheduler, turn->of, choice->request_class) != NULL;
+}
+
+static bool can_part(const struct turn *turn, void *context)
+{
+    const struct schedule_part *part = turn->of;
+    const struct turn *flow = part->flows.first;
+    do {
+        if (can_flow(flow, context))
+            return true;
+        flow = flow->next;
+    } while (flow != part->flows.first);
+    return false;
 }
 
 static bool can_draw(const struct scheduler *scheduler, enum request_class request_class)
 {
-    const struct schedule_flow *first = scheduler->classes[request_class].turn, *flow = first;
+    struct choice choice = {scheduler, request_class};
+    const struct turn *first = scheduler->classes[request_class].parts.first, *part = first;
     if (!first)
         return false;
     do {
-        if (drawable(scheduler, flow, request_class))
+        if (can_part(part, &choice))
             return true;
-        flow = flow->next;
-    } while (flow != first);
+        part = part->next;
+    } while (part != first);
     return false;
 }
 
-/* One pass over the flows: the first that has something left of its round. If none has,
- * *rounds_short says how many rounds it takes until one has. */
-static struct schedule_entry *pass(struct scheduler *scheduler, enum request_class request_class,
-                                   uint64_t *rounds_short)
-{
-    struct schedule_class *class = &scheduler->classes[request_class];
-    struct schedule_flow *first = class->turn, *flow = first;
-    *rounds_short = UINT64_MAX;
-    do {
-        struct schedule_entry *entry = drawable(scheduler, flow, request_class);
-        if (entry) {
-            settle(class, flow);
-            if (flow->deficit_us > 0) {
-                class->turn = flow;
-                return entry;
-            }
-            uint64_t rounds = (uint64_t)-flow->deficit_us / SCHEDULER_QUANTUM_US + 1;
-            *rounds_short = rounds < *rounds_short ? rounds : *rounds_short;
-        }
-        flow = flow->next;
-    } while (flow != first);
-    return NULL;
-}
-
-/* There is one that can draw. */
+/* There is one that can draw: first a party has its turn, then one of its connections. */
 static struct schedule_entry *pick(struct scheduler *scheduler, enum request_class request_class)
 {
-    struct schedule_class *class = &scheduler->classes[request_class];
-    uint64_t rounds_short;
-    struct schedule_entry *entry = pass(scheduler, request_class, &rounds_short);
-    if (entry)
-        return entry;
-    class->round += rounds_short;
-    return pass(scheduler, request_class, &rounds_short);
+    struct choice choice = {scheduler, request_class};
+    struct turn *turn = turns_next(&scheduler->classes[request_class].parts, can_part, &choice);
+    struct schedule_part *part = turn->of;
+    turn = turns_next(&part->flows, can_flow, &choice);
+    return drawable(scheduler, turn->of, request_class);
 }
 
 /* Books time of the device: a part of it to those that wait for their share, all of it against the
@@ -264,12 +272,13 @@ struct schedule_entry *scheduler_next(struct scheduler *scheduler)
     struct schedule_flow *flow = flow_of(entry);
     if (entry->state == SCHEDULE_READY) {
         flow->begun++;
+        part_of(entry)->begun++;
         scheduler->classes[c].begun++;
         scheduler->waiting--;
     }
     entry->state = SCHEDULE_DRAWING;
     entry->charged_us = entry->estimate_us;
-    flow->deficit_us -= (int64_t)entry->charged_us;
+    charge(entry, (int64_t)entry->charged_us);
     book(scheduler, entry->request_class, (int64_t)entry->charged_us);
     scheduler->on_device++;
     return entry;
@@ -279,13 +288,14 @@ void scheduler_put_back(struct scheduler *scheduler, struct schedule_entry *entr
 {
     struct schedule_flow *flow = flow_of(entry);
     scheduler->on_device--;
-    flow->deficit_us += (int64_t)entry->charged_us;
+    charge(entry, -(int64_t)entry->charged_us);
     book(scheduler, entry->request_class, -(int64_t)entry->charged_us);
     entry->state = SCHEDULE_BEGUN;
     if (entry->has_drawn)
         return;
     entry->state = SCHEDULE_WAITING;
     flow->begun--;
+    part_of(entry)->begun--;
     scheduler->classes[entry->request_class].begun--;
     scheduler->waiting++;
 }
@@ -297,8 +307,7 @@ void scheduler_stepped(struct scheduler *scheduler, struct schedule_entry *entry
     scheduler->on_device--;
     scheduler->classes[entry->request_class].spent_us += took_us;
     book(scheduler, entry->request_class, missed);
-    if (entry->queue)
-        flow_of(entry)->deficit_us -= missed;
+    charge(entry, missed);
     entry->has_drawn = true;
     entry->state = more && entry->queue ? SCHEDULE_BEGUN : SCHEDULE_ENCODING;
 }

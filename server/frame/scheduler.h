@@ -1,6 +1,7 @@
 /* Which frame draws its next tile: interactive ones first, stills and batches with a fifth of the
- * device's time each as long as they want it, and within a class every session with an equal share
- * of the time (deficit round robin: Shreedhar and Varghese, 1995), whatever its frames cost.
+ * device's time each as long as they want it. Within a class every party, which is a client's identity,
+ * has an equal share of the time, and of its share each of its connections, whatever their frames cost
+ * (turns.h).
  *
  * Pure bookkeeping over nodes embedded in their owners: no descriptor, no thread, no clock, no
  * allocation; times are what the owner measured. A frame is an entry: it enters when it is asked
@@ -14,13 +15,15 @@
 #include <stdint.h>
 #include <sys/queue.h>
 
+#include "server/base/turns.h"
+
 enum request_class { CLASS_INTERACTIVE, CLASS_STILL, CLASS_BATCH };
 enum { N_CLASSES = 3 };
 
 #define SCHEDULER_PER_QUEUE 2u     /* begun, of a session and class: one draws, one is encoded */
+#define SCHEDULER_PER_PARTY 2u     /* begun, of a party and class, however many others have */
 #define SCHEDULER_PER_CLASS 8u     /* begun, of a class: keeps the pool busy, no more */
 #define SCHEDULER_SHARE_PERCENT 20 /* of the time, for stills and for batches, while they wait */
-#define SCHEDULER_QUANTUM_US 1000  /* a session's part of one round */
 
 enum schedule_state {
     SCHEDULE_OUT,      /* in no queue */
@@ -44,6 +47,7 @@ struct schedule_entry {
 
     enum schedule_state state;
     struct schedule_queue *queue; /* NULL once it has left, or its session has */
+    struct schedule_party *party; /* its queue's, also after that: until nobody works for it */
     TAILQ_ENTRY(schedule_entry) link;
     uint64_t charged_us; /* for the tile on the device */
     bool has_drawn;      /* a tile */
@@ -51,22 +55,31 @@ struct schedule_entry {
 
 /* A session's part in one class. */
 struct schedule_flow {
+    struct turn turn; /* among those of its party */
     struct schedule_queue *queue;
-    int64_t deficit_us; /* what it may still use in this round; negative: has used ahead */
-    uint64_t round;     /* when deficit_us was right */
-    unsigned n, begun;  /* entries */
-    bool held;          /* the session cannot take more output of this class: begin nothing */
-    struct schedule_flow *next, *previous; /* ring of those with entries */
+    unsigned n, begun; /* entries */
+    bool held;         /* the session cannot take more output of this class: begin nothing */
 };
 
 struct schedule_queue {                                   /* one per session */
     TAILQ_HEAD(schedule_entries, schedule_entry) entries; /* in the order in which they entered */
+    struct schedule_party *party;
     struct schedule_flow flow[N_CLASSES];
 };
 
+/* A party's part in one class. */
+struct schedule_part {
+    struct turn turn;   /* among all parties */
+    struct turns flows; /* with entries */
+    unsigned begun;     /* counted as that of the class */
+};
+
+struct schedule_party { /* one for each identity; outlives its entries */
+    struct schedule_part part[N_CLASSES];
+};
+
 struct schedule_class {
-    struct schedule_flow *turn; /* whose turn it is; NULL: no flow has an entry */
-    uint64_t round;
+    struct turns parts; /* with entries */
     unsigned begun;
     int64_t owed_us; /* of its share; the class is served before others while this is above 0 */
     uint64_t spent_us;
@@ -78,7 +91,8 @@ struct scheduler {
     unsigned on_device; /* tiles that scheduler_next() has given out: at most 2 */
 };
 
-void scheduler_add_queue(struct schedule_queue *queue);
+void scheduler_add_party(struct schedule_party *party);
+void scheduler_add_queue(struct schedule_queue *queue, struct schedule_party *party);
 
 /* The entry joins its session's queue, WAITING. Returns the entry of the same view that it
  * replaces, which has left, or NULL. Batches are not replaced and replace nothing. */

@@ -29,8 +29,10 @@ const struct limits_row LIMITS[] = {
      "main memory and on the device",
      LEAST_MEMORY, MOST_BYTES, 4 * GIB, AT(assets.memory_budget)},
     {"peer-memory", UNIT_BYTES,
-     "most that uploads, long messages under way and frames of one user (Unix socket) or\naddress "
-     "may take; models and images that are stored are not in it: whoever holds more\nthan an equal "
+     "most that uploads, long messages under way and frames of one user (Unix "
+     "socket),\ncertificate "
+     "or token may take; models and images that are stored are not in it: whoever holds more\nthan "
+     "an equal "
      "share of the budget makes room first",
      LEAST_MEMORY, MOST_BYTES, 2 * GIB, AT(assets.peer_memory)},
     {"spare-memory", UNIT_BYTES,
@@ -45,8 +47,9 @@ const struct limits_row LIMITS[] = {
      PROTOCOL_MAX_SIZE_PX, 16384, AT(assets.max_image_side)},
     {"max-connections", UNIT_COUNT, "clients at the same time", 1, 1000000, 4096,
      AT(max_connections)},
-    {"max-peer-connections", UNIT_COUNT, "of one user (Unix socket) or address", 1, 1000000, 2048,
-     AT(max_peer_connections)},
+    {"max-peer-connections", UNIT_COUNT,
+     "of one user (Unix socket), certificate or token, and all of loopback TCP together", 1,
+     1000000, 256, AT(session.connections)},
     {"credits", UNIT_COUNT, "requests of one client that wait for their answers", 1,
      PROTOCOL_MAX_CREDITS, 16, AT(session.credits)},
     {"interactive-hard", UNIT_BYTES,

@@ -22,7 +22,7 @@ struct limits {
     struct session_limits session;
     uint64_t spare_memory; /* bytes: of frames that have gone, kept for the next
                               (server/base/block_cache.h) */
-    uint64_t max_connections, max_peer_connections;
+    uint64_t max_connections;
     uint64_t gpu_losses; /* in ten minutes (gpu_loss_log.h) end the daemon; 0: none do */
 };
 

@@ -60,23 +60,12 @@ static void turn_away(int fd, const char *text)
     conn_turn_away(fd, buffer, length);
 }
 
-/* The quota of a connection that there is room for, with another reference; else NULL. */
-static struct client_quota *find_quota(struct daemon *daemon, int fd, struct error *error)
+/* Is there room for one more client? */
+static bool has_room(const struct daemon *daemon, struct error *error)
 {
-    struct client_quota *quota = NULL;
-    if (daemon->sessions.n_sessions >= daemon->limits.max_connections)
-        error_set(error, ERROR_SERVER,
-                  "the daemon has as many clients as it takes: try again later");
-    else if (!(quota = client_quota_get(&daemon->memory.quotas, fd)))
-        error_set(error, ERROR_SERVER, "no memory for another client: try again later");
-    else if (quota->n_connections >= daemon->limits.max_peer_connections)
-        error_set(error, ERROR_SERVER,
-                  "this user or address has as many connections as it may: close one");
-    else
-        return quota;
-    daemon->sessions.stats.errors++;
-    client_quota_put(quota);
-    return NULL;
+    return daemon->sessions.n_sessions < daemon->limits.max_connections ||
+           error_set(error, ERROR_SERVER,
+                     "the daemon has as many clients as it takes: try again later");
 }
 
 static void accepted(void *owner, const struct listener *listener, int fd)
@@ -98,11 +87,14 @@ static void accepted(void *owner, const struct listener *listener, int fd)
             error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
         conn_turn_away(fd, NULL, 0); /* a stranger is told nothing */
     } else {
-        struct client_quota *quota = find_quota(daemon, fd, &error);
-        if (quota)
-            session = session_create(&daemon->sessions, fd, &client, quota, &error);
-        else
+        struct session_seat seat = {0};
+        if (has_room(daemon, &error) &&
+            (stranger || session_take_seat(&daemon->sessions, &client.identity, &seat, &error))) {
+            session = session_create(&daemon->sessions, fd, &client, seat, &error);
+        } else {
+            daemon->sessions.stats.errors++;
             turn_away(fd, stranger ? NULL : error.text);
+        }
     }
     if (!session) {
         daemon->sessions.stats.refused++;
@@ -394,10 +386,10 @@ static bool open_session(struct service *service, int fd, struct error *error)
     struct daemon *daemon = &service->daemon;
     struct session_client client = {.kind = CLIENT_PRIVATE, .peer = "private"};
     access_admit_private(&client.identity);
-    struct client_quota *quota = client_quota_get(&daemon->memory.quotas, fd);
-    if (!quota)
-        return error_set(error, ERROR_SERVER, "no memory for a client");
-    struct session *session = session_create(&daemon->sessions, fd, &client, quota, error);
+    struct session_seat seat;
+    if (!session_take_seat(&daemon->sessions, &client.identity, &seat, error))
+        return false;
+    struct session *session = session_create(&daemon->sessions, fd, &client, seat, error);
     if (session)
         LIST_INSERT_HEAD(&service->sessions, session, link);
     return session != NULL;

@@ -52,7 +52,7 @@ static void handle_hello(struct session *session, uint32_t seq, const uint8_t *b
         session_refuse(session, seq, sheen_ErrorCode_ERROR_PROTOCOL, "HELLO: %s", text);
         return;
     }
-    if (!session->admitted && !session_admit(session, &hello))
+    if (!session->admitted && !session_admit(session, seq, &hello))
         return;
     const struct renderer_info *info = render_thread_info(session->host->render_thread);
     session->minor = hello.minor < PROTOCOL_MINOR ? hello.minor : PROTOCOL_MINOR;
@@ -177,14 +177,14 @@ static void on_malformed(void *owner, const struct message_header *header, enum 
 /* --- its life */
 
 struct session *session_create(struct session_host *host, int fd,
-                               const struct session_client *client, struct client_quota *quota,
+                               const struct session_client *client, struct session_seat seat,
                                struct error *error)
 {
     static const struct conn_handler handler = {on_message, on_malformed, session_make_room};
     struct session *session = calloc(1, sizeof *session);
     if (!session) {
         close(fd);
-        client_quota_put(quota);
+        session_leave_seat(&seat);
         error_set(error, ERROR_SERVER, "no memory for another session");
         return NULL;
     }
@@ -192,7 +192,7 @@ struct session *session_create(struct session_host *host, int fd,
                    error) ||
         (client->kind == CLIENT_TLS && !access_start_tls(host->access, &session->conn, error))) {
         conn_finish(&session->conn);
-        client_quota_put(quota);
+        session_leave_seat(&seat);
         free(session);
         return NULL;
     }
@@ -204,16 +204,15 @@ struct session *session_create(struct session_host *host, int fd,
         .host = host->requests,
         .events = &session_request_events,
         .owner = session,
-        .quota = quota,
         .identity = session->client.identity.owner,
         .assets_of = host->share_models ? STORE_SHARED : session->client.identity.owner,
     };
-    request_client_init(&session->requests);
     session->admitted = client->kind != CLIENT_TLS;
+    if (session->admitted)
+        session_sit_down(session, &seat);
     host->n_strangers += !session->admitted;
     session->output_class = CLASS_STILL;
     session->start_us = clock_now_us();
-    quota->n_connections++;
     host->n_sessions++;
     host->stats.sessions++;
     session->id = ++host->last_session_id;
@@ -241,8 +240,7 @@ void session_destroy(struct session *session)
     conn_finish(&session->conn);
     session_release_input(session);
     host->n_strangers -= !session->admitted;
-    session->requests.quota->n_connections--;
-    client_quota_put(session->requests.quota);
+    session_leave_seat(&session->seat);
     host->n_sessions--;
     free(session);
 }

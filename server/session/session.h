@@ -11,9 +11,16 @@
 /* How long the drain has gone on beyond drain-timeout, in microseconds; 0: it has not. */
 uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us);
 
-/* Takes the socket over (closes it on failure), and the reference to its quota. */
+/* A seat for one more connection of an identity. ERROR_SERVER when it has as many as it may, or
+ * without memory. */
+bool session_take_seat(struct session_host *host, const struct identity *identity,
+                       struct session_seat *seat, struct error *error);
+void session_leave_seat(struct session_seat *seat);
+
+/* Takes the socket over (closes it on failure), and the seat, which is zeroed for a client that shows
+ * who it is by HELLO. */
 struct session *session_create(struct session_host *host, int fd,
-                               const struct session_client *client, struct client_quota *quota,
+                               const struct session_client *client, struct session_seat seat,
                                struct error *error);
 /* Closes at once; requests in flight end unseen. */
 void session_destroy(struct session *session);

@@ -11,7 +11,47 @@ void session_turn_away(struct session *session, const char *why)
     conn_close(&session->conn);
 }
 
-bool session_admit(struct session *session, const sheen_Hello *hello)
+bool session_take_seat(struct session_host *host, const struct identity *identity,
+                       struct session_seat *seat, struct error *error)
+{
+    *seat = (struct session_seat){client_quota_get(&host->memory->quotas, identity),
+                                  party_get(&host->requests->parties, identity->owner)};
+    const struct client_quota *quota = seat->quota;
+    bool ok = quota && seat->party;
+    if (!ok)
+        error_set(error, ERROR_SERVER, "no memory for another client: try again later");
+    else if (quota->n_connections >= host->limits.connections)
+        ok =
+            error_set(error, ERROR_SERVER, "%s has as many connections as it may (%llu): close one",
+                      identity->name, (unsigned long long)host->limits.connections);
+    if (ok) {
+        seat->quota->n_connections++;
+        return true;
+    }
+    client_quota_put(seat->quota);
+    party_put(seat->party);
+    *seat = (struct session_seat){0};
+    return false;
+}
+
+void session_leave_seat(struct session_seat *seat)
+{
+    if (!seat->quota)
+        return;
+    seat->quota->n_connections--;
+    client_quota_put(seat->quota);
+    party_put(seat->party);
+    *seat = (struct session_seat){0};
+}
+
+void session_sit_down(struct session *session, const struct session_seat *seat)
+{
+    session->seat = *seat;
+    session->requests.quota = seat->quota;
+    request_client_join(&session->requests, seat->party);
+}
+
+bool session_admit(struct session *session, uint32_t seq, const sheen_Hello *hello)
 {
     struct error error = {0};
     struct identity *identity = &session->client.identity;
@@ -24,6 +64,12 @@ bool session_admit(struct session *session, const sheen_Hello *hello)
     session->host->n_strangers--;
     log_event(LOG_INFO, "client admitted", log_number("session", session->id),
               log_text("identity", identity->name));
+    struct session_seat seat;
+    if (!session_take_seat(session->host, identity, &seat, &error)) {
+        session_refuse(session, seq, sheen_ErrorCode_ERROR_OVERLOADED, "%s", error.text);
+        return false;
+    }
+    session_sit_down(session, &seat);
     return true;
 }
 

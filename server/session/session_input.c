@@ -64,6 +64,8 @@ void session_trim_input(struct session *session)
 
 void session_release_input(struct session *session)
 {
+    if (session->input_bytes == 0)
+        return; /* a client that is not admitted has no quota, and no long message */
     memory_refund_input(session->requests.quota, session->input_bytes);
     session->input_bytes = 0;
 }

@@ -61,10 +61,12 @@ void session_reply_stats(struct session *session, uint32_t seq);
 
 /* --- session_access.c */
 
+/* The admitted client's seat, from where it may ask. */
+void session_sit_down(struct session *session, const struct session_seat *seat);
 /* A stranger learns nothing, not even what is wrong; the log does. Closes. */
 void session_turn_away(struct session *session, const char *why);
-/* A client behind TLS says who it is. False when it has been turned away. */
-bool session_admit(struct session *session, const sheen_Hello *hello);
+/* A client behind TLS says who it is. False when it has been turned away or refused. */
+bool session_admit(struct session *session, uint32_t seq, const sheen_Hello *hello);
 
 /* --- session_limits.c */
 

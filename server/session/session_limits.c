@@ -9,7 +9,7 @@ void session_log_disconnect(struct session *session, const char *reason)
 {
     session->host->stats.disconnected++;
     log_event(LOG_WARN, "client disconnected", log_number("session", session->id),
-              log_text("peer", session->requests.quota->peer.name), log_text("text", reason));
+              log_text("peer", session->client.peer), log_text("text", reason));
 }
 
 /* Closes a client that cannot be told why, or not in time; the log has the reason. */

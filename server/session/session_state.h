@@ -27,9 +27,10 @@
 
 /* What one client may do, and for how long. */
 struct session_limits {
-    uint64_t max_upload; /* bytes of one file */
-    uint64_t max_frame;  /* bytes of one frame's planes */
-    uint64_t credits;    /* unanswered requests of one connection */
+    uint64_t max_upload;  /* bytes of one file */
+    uint64_t max_frame;   /* bytes of one frame's planes */
+    uint64_t credits;     /* unanswered requests of one connection */
+    uint64_t connections; /* of one identity */
 
     /* What may wait to be sent, in bytes: more than `hard` when another answer comes, or more than
      * `soft` for so many seconds, ends the connection. */
@@ -75,6 +76,12 @@ struct session_client {
     struct identity identity;   /* CLIENT_TLS: not before HELLO */
 };
 
+/* What a client has once it is known who it is: its part of the daemon. */
+struct session_seat {
+    struct client_quota *quota;
+    struct party *party;
+};
+
 struct session {
     struct session_host *host;
     struct conn conn;
@@ -85,9 +92,10 @@ struct session {
     uint64_t n_replies;
     enum stats_end end; /* why it ends, once the daemon has decided that it does */
     struct session_client client;
-    bool admitted;  /* the client is who it says; till then it is told nothing */
-    bool greeted;   /* HELLO has been answered */
-    uint32_t minor; /* version spoken with the client */
+    struct session_seat seat; /* zeroed until the client is admitted */
+    bool admitted;            /* the client is who it says; till then it is told nothing */
+    bool greeted;             /* HELLO has been answered */
+    uint32_t minor;           /* version spoken with the client */
     uint32_t credits;
     enum request_class output_class; /* of the latest frame: whose output limits hold */
     uint64_t over_soft_since_us;     /* 0: no more is unsent than the soft limit allows */

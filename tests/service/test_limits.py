@@ -425,7 +425,7 @@ class Output(unittest.TestCase):
             self.assertLess(time.monotonic(), end, daemon.errors())
             time.sleep(0.02)
         self.assertRegex(daemon.errors(), r'msg="client disconnected" session=\d+ '
-                                          r'peer=("user \d+"|127\.0\.0\.1) ')
+                                          r'peer=("unix uid=\d+ gid=\d+ pid=\d+"|127\.0\.0\.1:\d+) ')
         with Client(daemon.unix) as client:
             self.assertEqual(client.stats()[19], [1])
             self.assertEqual(client.stats()[2], [1])  # sessions

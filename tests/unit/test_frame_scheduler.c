@@ -22,6 +22,16 @@ static struct schedule_entry view_of(enum request_class request_class, uint32_t 
         .request_class = request_class, .has_view = true, .view = view, .estimate_us = 1000};
 }
 
+/* The session of a client that has no other. */
+static void add_queue(struct schedule_queue *queue)
+{
+    static struct schedule_party parties[1024];
+    static unsigned n;
+    struct schedule_party *party = &parties[n++ % 1024];
+    scheduler_add_party(party);
+    scheduler_add_queue(queue, party);
+}
+
 static void ask(struct scheduler *scheduler, struct schedule_queue *queue,
                 struct schedule_entry *entry)
 {
@@ -40,7 +50,7 @@ static void assert_is_empty(const struct scheduler *scheduler)
 {
     assert_int_equal(scheduler->waiting + scheduler->on_device, 0);
     for (int c = 0; c < N_CLASSES; c++) {
-        assert_null(scheduler->classes[c].turn);
+        assert_null(scheduler->classes[c].parts.first);
         assert_int_equal(scheduler->classes[c].begun, 0);
     }
 }
@@ -52,7 +62,7 @@ static void test_empty(void **state)
     assert_null(scheduler_next(&scheduler));
     struct schedule_queue queue;
     struct schedule_entry entry = entry_of(CLASS_STILL, 1);
-    scheduler_add_queue(&queue);
+    add_queue(&queue);
     assert_null(scheduler_enter(&scheduler, &queue, &entry));
     assert_null(scheduler_next(&scheduler)); /* it waits for its model */
     assert_int_equal(scheduler.waiting, 1);
@@ -67,7 +77,7 @@ static void test_order_and_two_begun(void **state)
     struct scheduler scheduler = {0};
     struct schedule_queue queue;
     struct schedule_entry e[4];
-    scheduler_add_queue(&queue);
+    add_queue(&queue);
     for (int i = 0; i < 4; i++) {
         e[i] = entry_of(CLASS_STILL, 1000);
         ask(&scheduler, &queue, &e[i]);
@@ -98,7 +108,7 @@ static void test_two_tiles_on_the_device(void **state)
     struct schedule_entry interactive[2] = {entry_of(CLASS_INTERACTIVE, 1000),
                                             entry_of(CLASS_INTERACTIVE, 1000)};
     for (int q = 0; q < 3; q++)
-        scheduler_add_queue(&queue[q]);
+        add_queue(&queue[q]);
     ask(&scheduler, &queue[0], &batch);
     assert_ptr_equal(scheduler_next(&scheduler), &batch);
     ask(&scheduler, &queue[0], &still);
@@ -128,8 +138,8 @@ static void test_newer_request_of_a_view_replaces(void **state)
     struct scheduler scheduler = {0};
     struct schedule_queue queue, other;
     struct schedule_entry e[6];
-    scheduler_add_queue(&queue);
-    scheduler_add_queue(&other);
+    add_queue(&queue);
+    add_queue(&other);
     for (int i = 0; i < 6; i++)
         e[i] = view_of(CLASS_INTERACTIVE, 7);
     e[0].estimate_us = 10;
@@ -166,7 +176,7 @@ static void test_batches_and_stills_without_a_view_stay(void **state)
     struct schedule_entry still[2] = {entry_of(CLASS_STILL, 1), entry_of(CLASS_STILL, 1)};
     struct schedule_entry interactive = view_of(CLASS_INTERACTIVE, 7);
     struct schedule_entry zero = view_of(CLASS_INTERACTIVE, 0);
-    scheduler_add_queue(&queue);
+    add_queue(&queue);
     for (int i = 0; i < 2; i++) {
         ask(&scheduler, &queue, &batch[i]);
         ask(&scheduler, &queue, &still[i]);
@@ -186,7 +196,7 @@ static void test_faster_than_drawn(void **state)
     struct schedule_queue queue;
     static struct schedule_entry e[N];
     unsigned n_drawn = 0, n_replaced = 0;
-    scheduler_add_queue(&queue);
+    add_queue(&queue);
     struct schedule_entry *drawing = NULL;
     for (int i = 0; i < N; i++) {
         e[i] = view_of(CLASS_INTERACTIVE, 1);
@@ -212,7 +222,7 @@ static void test_encoded_frames_are_replaced_while_held(void **state)
     struct scheduler scheduler = {0};
     struct schedule_queue queue;
     struct schedule_entry e[3];
-    scheduler_add_queue(&queue);
+    add_queue(&queue);
     for (int i = 0; i < 3; i++)
         e[i] = view_of(CLASS_INTERACTIVE, 1);
     ask(&scheduler, &queue, &e[0]);
@@ -240,10 +250,12 @@ static void test_bound_of_a_class(void **state)
     (void)state;
     enum { N = SCHEDULER_PER_CLASS + 1 };
     struct scheduler scheduler = {0};
+    struct schedule_party party;
     struct schedule_queue queue[N];
     struct schedule_entry e[N], other = entry_of(CLASS_INTERACTIVE, 1000);
+    scheduler_add_party(&party);
     for (unsigned q = 0; q < N; q++) {
-        scheduler_add_queue(&queue[q]);
+        scheduler_add_queue(&queue[q], &party);
         e[q] = entry_of(CLASS_BATCH, 1000);
         ask(&scheduler, &queue[q], &e[q]);
     }
@@ -259,14 +271,55 @@ static void test_bound_of_a_class(void **state)
     assert_ptr_equal(scheduler_next(&scheduler), &e[SCHEDULER_PER_CLASS]);
 }
 
+/* Frames of one party that wait for sockets, which nobody reads, keep no other party out. */
+static void test_a_full_class_admits_others(void **state)
+{
+    (void)state;
+    enum { N = SCHEDULER_PER_CLASS };
+    struct scheduler scheduler = {0};
+    struct schedule_party party;
+    struct schedule_queue queue[N], other;
+    struct schedule_entry e[N], more = entry_of(CLASS_INTERACTIVE, 1000), theirs[3];
+    scheduler_add_party(&party);
+    add_queue(&other);
+    for (unsigned q = 0; q < N; q++) {
+        scheduler_add_queue(&queue[q], &party);
+        e[q] = view_of(CLASS_INTERACTIVE, 1);
+        ask(&scheduler, &queue[q], &e[q]);
+        assert_ptr_equal(scheduler_next(&scheduler), &e[q]);
+        scheduler_stepped(&scheduler, &e[q], 1000, false);
+        assert_null(scheduler_hold(&e[q]));
+    }
+    ask(&scheduler, &queue[0], &more);
+    assert_null(scheduler_next(&scheduler));
+    for (unsigned i = 0; i < 3; i++) {
+        theirs[i] = entry_of(CLASS_INTERACTIVE, 1000);
+        ask(&scheduler, &other, &theirs[i]);
+    }
+    for (unsigned i = 0; i < SCHEDULER_PER_PARTY; i++) {
+        assert_ptr_equal(scheduler_next(&scheduler), &theirs[i]);
+        scheduler_stepped(&scheduler, &theirs[i], 1000, false);
+    }
+    assert_null(scheduler_next(&scheduler));
+    scheduler_finished(&scheduler, &theirs[0]);
+    assert_ptr_equal(scheduler_next(&scheduler), &theirs[2]);
+    draw_whole(&scheduler, &theirs[2], 1000);
+    scheduler_finished(&scheduler, &theirs[1]);
+    for (unsigned q = 0; q < N; q++)
+        scheduler_finished(&scheduler, &e[q]);
+    assert_ptr_equal(scheduler_next(&scheduler), &more);
+    draw_whole(&scheduler, &more, 1000);
+    assert_is_empty(&scheduler);
+}
+
 static void test_held_session_is_passed_over(void **state)
 {
     (void)state;
     struct scheduler scheduler = {0};
     struct schedule_queue a, b;
     struct schedule_entry ea = entry_of(CLASS_STILL, 1), eb = entry_of(CLASS_STILL, 1);
-    scheduler_add_queue(&a);
-    scheduler_add_queue(&b);
+    add_queue(&a);
+    add_queue(&b);
     ask(&scheduler, &a, &ea);
     ask(&scheduler, &b, &eb);
     a.flow[CLASS_STILL].held = true;
@@ -286,8 +339,8 @@ static void test_session_that_goes(void **state)
     struct scheduler scheduler = {0};
     struct schedule_queue a, b;
     struct schedule_entry ea[3], eb = entry_of(CLASS_STILL, 1);
-    scheduler_add_queue(&a);
-    scheduler_add_queue(&b);
+    add_queue(&a);
+    add_queue(&b);
     for (int i = 0; i < 3; i++) {
         ea[i] = entry_of(CLASS_STILL, 1);
         ask(&scheduler, &a, &ea[i]);
@@ -338,17 +391,28 @@ static void client_asks(struct device *device, struct client *client, int i)
     ask(&device->scheduler, &client->queue, entry);
 }
 
-static struct client *add_client(struct device *device, enum request_class request_class,
-                                 uint64_t tile_us, unsigned tiles_of_frame)
+/* `party` NULL: a client that is alone in its own. */
+static struct client *add_client_of(struct device *device, struct schedule_party *party,
+                                    enum request_class request_class, uint64_t tile_us,
+                                    unsigned tiles_of_frame)
 {
     struct client *client = &device->client[device->n_clients++];
     client->request_class = request_class;
     client->tile_us = tile_us;
     client->tiles_of_frame = tiles_of_frame;
-    scheduler_add_queue(&client->queue);
+    if (party)
+        scheduler_add_queue(&client->queue, party);
+    else
+        add_queue(&client->queue);
     for (int i = 0; i < PER_SESSION; i++)
         client_asks(device, client, i);
     return client;
+}
+
+static struct client *add_client(struct device *device, enum request_class request_class,
+                                 uint64_t tile_us, unsigned tiles_of_frame)
+{
+    return add_client_of(device, NULL, request_class, tile_us, tiles_of_frame);
 }
 
 static void run_device(struct device *device, uint64_t until_us)
@@ -396,6 +460,36 @@ static void test_sessions_share_time_not_frames(void **state)
         run_device(device, 60000000);
         for (int i = 0; i < 5; i++)
             assert_in_range(device->client[i].used_us, 11500000, 12500000);
+        free(device);
+    }
+}
+
+/* Parties have equal shares, however many connections they have, and of a party's share each of its
+ * connections has the same. */
+static void test_parties_share_before_sessions(void **state)
+{
+    (void)state;
+    for (int c = 0; c < N_CLASSES; c++) {
+        struct device *device = calloc(1, sizeof *device);
+        struct schedule_party many, few;
+        scheduler_add_party(&many);
+        scheduler_add_party(&few);
+        for (int i = 0; i < 60; i++)
+            add_client_of(device, &many, (enum request_class)c, 1000 + 100 * (uint64_t)i, 1);
+        add_client_of(device, &few, (enum request_class)c, 7000, 1);
+        add_client_of(device, &few, (enum request_class)c, 500, 3);
+        struct client *one = add_client(device, (enum request_class)c, 4000, 1);
+        run_device(device, 180000000);
+        uint64_t of_many = 0;
+        for (int i = 0; i < 60; i++) {
+            of_many += device->client[i].used_us;
+            assert_in_range(device->client[i].used_us, 950000, 1050000);
+        }
+        assert_in_range(of_many, 59500000, 60500000);
+        assert_in_range(device->client[60].used_us, 29500000, 30500000);
+        assert_in_range(device->client[61].used_us, 29500000, 30500000);
+        assert_in_range(one->used_us, 59500000, 60500000);
+        assert_true(one->longest_wait_us < 40000); /* a turn of each party, two frames ahead */
         free(device);
     }
 }
@@ -461,7 +555,7 @@ static void test_interactive_waits_for_one_tile(void **state)
     for (int i = 0; i < 8; i++)
         add_client(device, CLASS_BATCH, 8000, 50);
     struct schedule_queue queue;
-    scheduler_add_queue(&queue);
+    add_queue(&queue);
     for (int i = 0; i < 100; i++) {
         run_device(device, device->now_us + 50000);
         struct schedule_entry *tile = scheduler_next(&device->scheduler);
@@ -484,7 +578,7 @@ static void test_rare_ones_are_served_at_once(void **state)
     for (unsigned i = 0; 2 * i + 2 < SCHEDULER_PER_CLASS; i++) /* two of each have begun */
         add_client(device, CLASS_STILL, 4000, 3);
     struct schedule_queue queue;
-    scheduler_add_queue(&queue);
+    add_queue(&queue);
     for (int i = 0; i < 50; i++) {
         run_device(device, device->now_us + 500000);
         struct schedule_entry rare = entry_of(CLASS_STILL, 1000), *next;
@@ -515,7 +609,7 @@ static void test_lies_about_costs_do_not_pay(void **state)
     uint64_t used[2] = {0, 0}, took[2] = {10000, 1000};
     struct schedule_entry e[2];
     for (int q = 0; q < 2; q++) {
-        scheduler_add_queue(&queue[q]);
+        add_queue(&queue[q]);
         e[q] = entry_of(CLASS_STILL, q == 0 ? 1 : 1000000);
         ask(&scheduler, &queue[q], &e[q]);
     }
@@ -558,9 +652,11 @@ int main(void)
         cmocka_unit_test(test_faster_than_drawn),
         cmocka_unit_test(test_encoded_frames_are_replaced_while_held),
         cmocka_unit_test(test_bound_of_a_class),
+        cmocka_unit_test(test_a_full_class_admits_others),
         cmocka_unit_test(test_held_session_is_passed_over),
         cmocka_unit_test(test_session_that_goes),
         cmocka_unit_test(test_sessions_share_time_not_frames),
+        cmocka_unit_test(test_parties_share_before_sessions),
         cmocka_unit_test(test_batches_keep_a_fifth),
         cmocka_unit_test(test_three_classes),
         cmocka_unit_test(test_shares_of_what_is_wanted),

@@ -1,0 +1,74 @@
+#include "server/base/turns.h"
+
+#include <stddef.h>
+
+void turns_join(struct turns *turns, struct turn *turn)
+{
+    if (!turns->first) {
+        turn->next = turn->previous = turns->first = turn;
+        return;
+    }
+    turn->next = turns->first; /* last in the round */
+    turn->previous = turns->first->previous;
+    turn->previous->next = turn;
+    turn->next->previous = turn;
+}
+
+void turns_leave(struct turns *turns, struct turn *turn)
+{
+    turn->previous->next = turn->next;
+    turn->next->previous = turn->previous;
+    if (turns->first == turn)
+        turns->first = turn->next == turn ? NULL : turn->next;
+    turn->next = turn->previous = NULL;
+}
+
+/* Brings a member's deficit up to the ring's round. One that asks for little cannot save up; one that
+ * has used ahead pays it back, also while it has nothing to ask. */
+static void settle(const struct turns *turns, struct turn *turn)
+{
+    uint64_t rounds = turns->round - turn->round;
+    const int64_t most = TURNS_QUANTUM_US;
+    turn->round = turns->round;
+    turn->deficit_us = rounds > UINT32_MAX ? most : turn->deficit_us + (int64_t)rounds * most;
+    if (turn->deficit_us > most)
+        turn->deficit_us = most;
+}
+
+/* Once round the ring: the first that has something left of its round. If none has, *rounds_short
+ * says how many rounds it takes until one has; 0: nobody can use anything. */
+static struct turn *once_round(struct turns *turns,
+                               bool (*can_use)(const struct turn *turn, void *context),
+                               void *context, uint64_t *rounds_short)
+{
+    struct turn *turn = turns->first;
+    *rounds_short = 0;
+    do {
+        if (can_use(turn, context)) {
+            settle(turns, turn);
+            if (turn->deficit_us > 0)
+                return turn;
+            uint64_t rounds = (uint64_t)-turn->deficit_us / TURNS_QUANTUM_US + 1;
+            if (*rounds_short == 0 || rounds < *rounds_short)
+                *rounds_short = rounds;
+        }
+        turn = turn->next;
+    } while (turn != turns->first);
+    return NULL;
+}
+
+struct turn *turns_next(struct turns *turns,
+                        bool (*can_use)(const struct turn *turn, void *context), void *context)
+{
+    uint64_t rounds_short;
+    if (!turns->first)
+        return NULL;
+    struct turn *turn = once_round(turns, can_use, context, &rounds_short);
+    if (!turn && rounds_short > 0) {
+        turns->round += rounds_short;
+        turn = once_round(turns, can_use, context, &rounds_short);
+    }
+    if (turn)
+        turns->first = turn;
+    return turn;
+}

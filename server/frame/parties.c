@@ -1,0 +1,35 @@
+#include "server/frame/parties.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct party *party_get(struct parties *parties, const uint8_t identity[static STORE_OWNER_BYTES])
+{
+    struct party_list *bucket = &parties->buckets[identity[0]]; /* identities are hashes */
+    struct party *party;
+    LIST_FOREACH (party, bucket, link)
+        if (memcmp(party->identity, identity, STORE_OWNER_BYTES) == 0)
+            return party_reference(party);
+    party = malloc(sizeof *party);
+    if (!party)
+        return NULL;
+    scheduler_add_party(&party->schedule);
+    memcpy(party->identity, identity, STORE_OWNER_BYTES);
+    party->references = 1;
+    LIST_INSERT_HEAD(bucket, party, link);
+    return party;
+}
+
+struct party *party_reference(struct party *party)
+{
+    party->references++;
+    return party;
+}
+
+void party_put(struct party *party)
+{
+    if (!party || --party->references > 0)
+        return;
+    LIST_REMOVE(party, link);
+    free(party);
+}
