@@ -49,7 +49,7 @@ class Soak(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_a_thousand_idle_and_a_65th(self):
-        daemon = Daemon()
+        daemon = Daemon("--max-peer-connections", "1000")
         hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
         resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 4096), hard))
 

@@ -100,6 +100,29 @@ class Tls(Case):
 
     # --- who comes in
 
+    def test_connections_of_one_certificate(self):
+        """They are counted by who shows it, from whatever address."""
+        daemon = Daemon("--listen", "tls:127.0.0.1:0", "--tls-cert", self.server[0], "--tls-key",
+                        self.server[1], "--client-ca", self.ours.cert, "--tokens", self.tokens,
+                        "--max-peer-connections", "2")
+        address = tls_address(daemon)
+        anna, farm = {"tls": context(self.ours, self.anna)}, {"tls": context(self.ours),
+                                                              "token": self.token}
+        first = Client(address, **anna)
+        with first, Client(address, **anna), Client(address, **farm):
+            with self.assertRaises(wire.Refused) as caught:
+                Client(address, **anna)
+            self.assertEqual(caught.exception.code, wire.ERROR_OVERLOADED)
+            self.assertIn("cert:CN=anna has as many connections as it may (2)", str(caught.exception))
+            with Client(address, **farm) as client:
+                client.stats()
+            first.socket.close()
+            daemon.wait_for('msg="session closed"')
+            time.sleep(0.1)
+            with Client(address, **anna) as client:
+                client.stats()
+        self.assertEqual(daemon.stop(), 0)
+
     def test_certificate(self):
         with self.client(self.anna) as client:
             self.assertEqual(client.socket.version(), "TLSv1.3")

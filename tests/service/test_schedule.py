@@ -261,6 +261,28 @@ class Schedule(DaemonCase):
                            for level in range(7)])
         self.assertEqual(frames[0], frames[5])
 
+    def test_many_connections_have_one_share(self):
+        """A user's frame of eight tiles, among 48 such frames that 24 connections of another identity
+        have asked for: half of the tiles are his, so that eight frames at most end before, which had
+        begun, and those that are drawn beside his."""
+        size = {"width": 720, "height": 720, "kind": STILL}
+        one = self.client()
+        many = []
+        for _ in range(24):
+            client = Client(self.daemon.tcp, minor=1)
+            self.addCleanup(client.socket.close)
+            model = client.upload(CUBE, "cube.obj")
+            many.append(client)
+        many[0].render(model)
+        asked = [(client, client.ask(model, **size)) for client in many for _ in range(2)]
+        for client in many:
+            client.stats()  # the requests before have been read
+        before = self.stats()[3][0]
+        one.render(self.model, **size)
+        self.assertLess(self.stats()[3][0] - before, 14)
+        for client, seq in asked:
+            self.assertEqual(client.answer()[0], seq)
+
     def test_a_client_that_has_gone_leaves_the_device(self):
         """Eight lights over 16 million pixels, or a mesh of millions: the next client does not wait
         until they are done."""
