@@ -334,25 +334,43 @@ void tls_end(struct tls_channel *channel)
     ERR_clear_error();
 }
 
-bool tls_peer(const struct tls_channel *channel, char name[static TLS_NAME_BYTES],
-              int64_t *expires_s)
+static bool print_name(const X509_NAME *name, char text[static TLS_NAME_BYTES])
 {
-    const X509 *cert = SSL_get0_peer_certificate(channel->ssl);
-    BIO *text = cert ? BIO_new(BIO_s_mem()) : NULL;
-    bool ok = false;
-    struct tm expires = {0};
+    BIO *printed = BIO_new(BIO_s_mem());
     char *bytes = NULL;
     long length = 0;
-    if (text && X509_NAME_print_ex(text, X509_get_subject_name(cert), 0, XN_FLAG_RFC2253) >= 0)
-        length = BIO_get_mem_data(text, &bytes);
-    if (length > 0 && length < TLS_NAME_BYTES &&
-        ASN1_TIME_to_tm(X509_get0_notAfter(cert), &expires) == 1) {
-        memcpy(name, bytes, (size_t)length);
-        name[length] = 0;
-        *expires_s = timegm(&expires);
-        ok = true;
+    if (printed && X509_NAME_print_ex(printed, name, 0, XN_FLAG_RFC2253) >= 0)
+        length = BIO_get_mem_data(printed, &bytes);
+    bool ok = length > 0 && length < TLS_NAME_BYTES;
+    if (ok)
+        memcpy(text, bytes, (size_t)length);
+    text[ok ? length : 0] = 0;
+    BIO_free(printed);
+    return ok;
+}
+
+/* Of the certificate that the peer's was checked by; of itself where it is its own authority. */
+static bool hash_issuer_key(const struct tls_channel *channel, uint8_t *hash)
+{
+    const STACK_OF(X509) *chain = SSL_get0_verified_chain(channel->ssl);
+    int n = chain ? sk_X509_num(chain) : 0;
+    unsigned length = 0;
+    return n > 0 &&
+           X509_pubkey_digest(sk_X509_value(chain, n > 1 ? 1 : 0), EVP_sha256(), hash, &length) &&
+           length == TLS_KEY_HASH_BYTES;
+}
+
+bool tls_peer(const struct tls_channel *channel, struct tls_peer *peer)
+{
+    const X509 *cert = SSL_get0_peer_certificate(channel->ssl);
+    struct tm expires = {0};
+    bool ok = cert && print_name(X509_get_subject_name(cert), peer->subject) &&
+              hash_issuer_key(channel, peer->issuer_key) &&
+              ASN1_TIME_to_tm(X509_get0_notAfter(cert), &expires) == 1;
+    if (ok) {
+        print_name(X509_get_issuer_name(cert), peer->issuer);
+        peer->expires_s = timegm(&expires);
     }
-    BIO_free(text);
     ERR_clear_error();
     return ok;
 }

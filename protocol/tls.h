@@ -12,6 +12,7 @@
 
 #define TLS_TEXT_BYTES 400
 #define TLS_NAME_BYTES 256 /* of a subject; a longer one is refused */
+#define TLS_KEY_HASH_BYTES 32
 
 enum tls_side { TLS_SERVER, TLS_CLIENT };
 
@@ -63,11 +64,18 @@ size_t tls_pending(const struct tls_channel *channel);
 /* Says that nothing more is sent, if it can be said now. */
 void tls_end(struct tls_channel *channel);
 
-/* The subject of the peer's certificate, as in RFC 2253, and when it expires in Unix seconds. False
- * when it showed none, or one without a subject or with one that is too long. The handshake has
- * checked it. */
-bool tls_peer(const struct tls_channel *channel, char name[static TLS_NAME_BYTES],
-              int64_t *expires_s);
+/* The other side's certificate, which the handshake has checked. */
+struct tls_peer {
+    char subject[TLS_NAME_BYTES],
+        issuer[TLS_NAME_BYTES];             /* names as in RFC 2253; issuer "" if it is
+                                                             too long */
+    uint8_t issuer_key[TLS_KEY_HASH_BYTES]; /* SHA-256 of its issuer's public key, which tells two
+                                               authorities of one name apart */
+    int64_t expires_s;                      /* Unix seconds */
+};
+
+/* False when it showed none, or one without a subject or with one that is too long. */
+bool tls_peer(const struct tls_channel *channel, struct tls_peer *peer);
 /* Would a handshake with this context take the peer's certificate today? True when the peer showed
  * none. If not, `text` says why. */
 bool tls_still_trusts(const struct tls_context *context, const struct tls_channel *channel,

@@ -118,6 +118,18 @@ static void identify(struct identity *identity, const char *kind, const char *na
     SHA256((const unsigned char *)identity->name, strlen(identity->name), identity->owner);
 }
 
+/* Two authorities may certify the same name: they mean two people. */
+static void identify_certificate(struct identity *identity, const struct tls_peer *peer)
+{
+    identify(identity, "cert:", peer->subject);
+    identity->expires_s = peer->expires_s;
+    snprintf(identity->issuer, sizeof identity->issuer, "%s", peer->issuer);
+    uint8_t both[2 * OWNER_BYTES];
+    memcpy(both, identity->owner, OWNER_BYTES);
+    memcpy(both + OWNER_BYTES, peer->issuer_key, OWNER_BYTES);
+    SHA256(both, sizeof both, identity->owner);
+}
+
 static bool is_listed(const struct access_ids *ids, uint64_t id)
 {
     for (size_t i = 0; i < ids->n; i++)
@@ -189,11 +201,9 @@ bool access_start_tls(const struct access *access, struct conn *conn, struct err
 bool access_admit_tls(const struct access *access, const struct conn *conn, const char *token,
                       struct identity *identity, struct error *error)
 {
-    char subject[TLS_NAME_BYTES];
-    int64_t expires_s = 0;
-    if (conn_tls_peer(conn, subject, &expires_s)) {
-        identify(identity, "cert:", subject);
-        identity->expires_s = expires_s;
+    struct tls_peer peer;
+    if (conn_tls_peer(conn, &peer)) {
+        identify_certificate(identity, &peer);
         return access_still_admits(access, identity, error);
     }
     if (!token || !*token)

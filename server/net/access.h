@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "protocol/address.h"
+#include "protocol/tls.h"
 #include "server/base/error.h"
 #include "server/net/conn.h"
 #include "server/net/tokens.h"
@@ -18,7 +19,7 @@
 #define ACCESS_PATH_BYTES 512
 #define ACCESS_MAX_IDS 64
 #define IDENTITY_NAME_BYTES 272
-#define OWNER_BYTES 32 /* SHA-256 of an identity's name */
+#define OWNER_BYTES 32 /* SHA-256 of an identity's name, with the key of a certificate's issuer */
 
 struct access_ids {
     size_t n;
@@ -35,7 +36,8 @@ struct access_options {
 /* A client that has been admitted. */
 struct identity {
     char name[IDENTITY_NAME_BYTES]; /* "uid:1000", "cert:CN=anna", "token:farm", "tcp", "private" */
-    uint8_t owner[OWNER_BYTES];     /* what its uploads belong to */
+    char issuer[TLS_NAME_BYTES];    /* of the certificate; "" without one */
+    uint8_t owner[OWNER_BYTES];     /* what its uploads belong to: tells all identities apart */
     int64_t expires_s;              /* Unix seconds; 0: never */
     bool by_token;
     uint8_t token_hash[TOKEN_HASH_BYTES];

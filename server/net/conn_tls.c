@@ -95,7 +95,7 @@ bool conn_start_tls(struct conn *conn, struct tls_context *context, struct error
     return true;
 }
 
-bool conn_tls_peer(const struct conn *conn, char name[static TLS_NAME_BYTES], int64_t *expires_s)
+bool conn_tls_peer(const struct conn *conn, struct tls_peer *peer)
 {
-    return conn->channel && tls_peer(conn->channel, name, expires_s);
+    return conn->channel && tls_peer(conn->channel, peer);
 }

@@ -9,6 +9,6 @@
 bool conn_start_tls(struct conn *conn, struct tls_context *context, struct error *error);
 
 /* As tls_peer(); false for a conn without TLS, or one that has closed. */
-bool conn_tls_peer(const struct conn *conn, char name[static TLS_NAME_BYTES], int64_t *expires_s);
+bool conn_tls_peer(const struct conn *conn, struct tls_peer *peer);
 
 #endif

@@ -209,8 +209,8 @@ static const struct option_row OWN_ROWS[] = {
     {"share-models", NULL, OPTION_FLAG, OPTION_IN_FILE, VALUE(service.share_models), 0, 0, NULL,
      NULL,
      "whoever knows a model's SHA-256 may use it, whoever has uploaded it (default:\n"
-     "only its owner: a user, a certificate's subject, a token's name; or whoever,\n"
-     "where the owner has said --share)",
+     "only its owner: a user, a certificate's subject and issuer, a token's name; or\n"
+     "whoever, where the owner has said --share)",
      NULL},
     {"models", "DIR", OPTION_TEXT, OPTION_IN_FILE, VALUE(service.models), 0, 0, NULL, NULL,
      "clients may name model files below this folder, as server:NAME; no symbolic\n"

@@ -63,7 +63,7 @@ bool session_admit(struct session *session, uint32_t seq, const sheen_Hello *hel
     session->admitted = true;
     session->host->n_strangers--;
     log_event(LOG_INFO, "client admitted", log_number("session", session->id),
-              log_text("identity", identity->name));
+              log_text("identity", identity->name), log_text("issuer", identity->issuer));
     struct session_seat seat;
     if (!session_take_seat(session->host, identity, &seat, &error)) {
         session_refuse(session, seq, sheen_ErrorCode_ERROR_OVERLOADED, "%s", error.text);

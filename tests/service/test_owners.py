@@ -84,6 +84,30 @@ class Owners(Case):
             self.assert_unknown(f, model)
         self.assertEqual(daemon.stop(), 0)
 
+    def test_one_subject_of_two_authorities(self):
+        """Who is called the same by another authority is another person, even where the authorities are
+        called the same."""
+        ours, theirs = Authority(self.path("ours")), Authority(self.path("theirs"))
+        both = self.path("both.pem")
+        with open(both, "w", encoding="ascii") as bundle:
+            for authority in (ours, theirs):
+                with open(authority.cert, encoding="ascii") as file:
+                    bundle.write(file.read())
+        cert, key = ours.issue("server")
+        daemon = Daemon("--listen", "tls:127.0.0.1:0", "--tls-cert", cert, "--tls-key", key,
+                        "--client-ca", both)
+        pairs = [authority.issue(name, "/CN=anna")
+                 for authority, name in ((ours, "anna"), (ours, "renewed"), (theirs, "anna"))]
+        anna, renewed, other = [Client(tls_address(daemon), tls=context(ours, pair))
+                                for pair in pairs]
+        with anna, renewed, other:
+            model = anna.upload(CUBE, "cube.obj")
+            renewed.render(model)
+            self.assert_unknown(other, model)
+            self.assert_unsent(other, CUBE)
+        self.assertEqual(daemon.errors().count('identity="cert:CN=anna" issuer="CN=authority"'), 3)
+        self.assertEqual(daemon.stop(), 0)
+
     def test_shared_by_its_owner(self):
         daemon = Daemon()
         with Client(daemon.unix) as owner, Client(daemon.tcp) as other:

@@ -269,13 +269,14 @@ static void test_peer(void **state)
 {
     (void)state;
     static struct pair pair;
-    char name[TLS_NAME_BYTES], text[TLS_TEXT_BYTES];
-    int64_t expires_s, now = time(NULL);
+    struct tls_peer peer, again;
+    char text[TLS_TEXT_BYTES];
+    int64_t now = time(NULL);
     pair_init(&pair, MAX_PIPE, client_context, "localhost");
     assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
-    assert_false(tls_peer(pair.server.channel, name, &expires_s));
-    assert_true(tls_peer(pair.client.channel, name, &expires_s));
-    assert_string_equal(name, "CN=server");
+    assert_false(tls_peer(pair.server.channel, &peer));
+    assert_true(tls_peer(pair.client.channel, &peer));
+    assert_string_equal(peer.subject, "CN=server");
     pair_finish(&pair);
 
     const struct tls_files anna = {
@@ -285,9 +286,11 @@ static void test_peer(void **state)
     pair_init(&pair, MAX_PIPE, context, "localhost");
     tls_context_destroy(context); /* its channel goes on */
     assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
-    assert_true(tls_peer(pair.server.channel, name, &expires_s));
-    assert_string_equal(name, "CN=anna");
-    assert_true(expires_s > now + 86400 && expires_s < now + 3 * 86400);
+    assert_true(tls_peer(pair.server.channel, &again));
+    assert_string_equal(again.subject, "CN=anna");
+    assert_string_equal(again.issuer, peer.issuer);
+    assert_memory_equal(again.issuer_key, peer.issuer_key, sizeof peer.issuer_key);
+    assert_true(again.expires_s > now + 86400 && again.expires_s < now + 3 * 86400);
     pair_finish(&pair);
 }
 
