@@ -1,4 +1,5 @@
-/* Vectors and colours of messages from and to arrays. Pure, any thread. */
+/* What client and daemon fill in alike from structs of their own: vectors, colours, and the numbers
+ * of patterns. Pure, any thread. */
 #ifndef SHEEN_PROTOCOL_MESSAGE_VALUES_H
 #define SHEEN_PROTOCOL_MESSAGE_VALUES_H
 
@@ -28,5 +29,19 @@ static inline void message_read_colour(const sheen_Colour *from, float to[4])
     to[2] = from->b;
     to[3] = from->a;
 }
+
+/* Initializers of a sheen_Pattern from a struct that has these numbers under the same names, and of
+ * such a struct from a sheen_Pattern. A number that patterns gain comes into both. */
+#define MESSAGE_PATTERN_NUMBERS(pattern)                                                           \
+    .has_count = true, .count = (pattern)->count, .has_period = (pattern)->period != 0,            \
+    .period = (pattern)->period, .has_duty = true, .duty = (pattern)->duty,                        \
+    .has_rotation_deg = true, .rotation_deg = (pattern)->rotation_deg, .has_offset = true,         \
+    .offset = (pattern)->offset, .has_soft = true, .soft = (pattern)->soft, .has_opacity = true,   \
+    .opacity = (pattern)->opacity, .width = (pattern)->width
+#define MESSAGE_PATTERN_NUMBERS_OF(message)                                                        \
+    .count = (message)->count, .period = (message)->has_period ? (message)->period : 0,            \
+    .duty = (message)->duty, .rotation_deg = (message)->rotation_deg, .offset = (message)->offset, \
+    .soft = (message)->soft, .opacity = (message)->opacity, .n_at = (message)->at_count,           \
+    .width = (message)->width
 
 #endif

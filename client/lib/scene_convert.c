@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "protocol/message_values.h"
+
 _Static_assert((int)SHEEN_PATTERN_IMAGE == (int)sheen_PatternKind_PATTERN_IMAGE, "same order");
 _Static_assert((int)SHEEN_PATTERN_DISTANCE == (int)sheen_PatternKind_PATTERN_DISTANCE,
                "same order");
@@ -20,50 +22,13 @@ _Static_assert(SHEEN_MAX_LIGHTS == sizeof((sheen_Render *)0)->lights / sizeof(sh
 _Static_assert(SHEEN_MAX_LINES == sizeof((sheen_Pattern *)0)->at / sizeof(double),
                "as many as the wire carries");
 
-static sheen_Vec3 message_vec3(const double v[3])
-{
-    return (sheen_Vec3){v[0], v[1], v[2]};
-}
-
-static void message_get_vec3(double v[3], const sheen_Vec3 *message)
-{
-    v[0] = message->x;
-    v[1] = message->y;
-    v[2] = message->z;
-}
-
-static sheen_Colour message_colour(const float c[4])
-{
-    return (sheen_Colour){c[0], c[1], c[2], c[3]};
-}
-
-static void get_colour(float c[4], const sheen_Colour *message)
-{
-    const float value[4] = {message->r, message->g, message->b, message->a};
-    memcpy(c, value, sizeof(value));
-}
-
 static sheen_Pattern to_pattern(const struct sheen_pattern *pattern)
 {
     bool is_lines = pattern->kind == SHEEN_PATTERN_LINES;
     sheen_Pattern message = {
         .kind = (sheen_PatternKind)pattern->kind,
-        .has_count = true,
-        .count = pattern->count,
-        .has_period = pattern->period != 0,
-        .period = pattern->period,
-        .has_duty = true,
-        .duty = pattern->duty,
-        .has_rotation_deg = true,
-        .rotation_deg = pattern->rotation_deg,
-        .has_offset = true,
-        .offset = pattern->offset,
-        .has_soft = true,
-        .soft = pattern->soft,
-        .has_opacity = true,
-        .opacity = pattern->opacity,
+        MESSAGE_PATTERN_NUMBERS(pattern),
         .has_width = is_lines,
-        .width = pattern->width,
         .has_foreground = pattern->has_colours,
         .foreground = message_colour(pattern->foreground),
         .has_background = pattern->has_colours,
@@ -190,21 +155,13 @@ static void from_pattern(struct sheen_pattern *pattern, const sheen_Pattern *mes
 {
     *pattern = (struct sheen_pattern){
         .kind = (enum sheen_pattern_kind)message->kind,
-        .count = message->count,
-        .period = message->has_period ? message->period : 0,
-        .duty = message->duty,
-        .rotation_deg = message->rotation_deg,
-        .offset = message->offset,
-        .soft = message->soft,
-        .opacity = message->opacity,
-        .n_at = message->at_count,
-        .width = message->width,
+        MESSAGE_PATTERN_NUMBERS_OF(message),
         .has_colours = true,
     };
     memcpy(pattern->at, message->at, sizeof(pattern->at));
     memcpy(pattern->image_id, message->image_sha256, SHEEN_ID_BYTES);
-    get_colour(pattern->foreground, &message->foreground);
-    get_colour(pattern->background, &message->background);
+    message_read_colour(&message->foreground, pattern->foreground);
+    message_read_colour(&message->background, pattern->background);
 }
 
 static void get_extreme(struct sheen_extreme *extreme, bool has_value, const sheen_Extreme *message)
@@ -220,7 +177,7 @@ static void get_extreme(struct sheen_extreme *extreme, bool has_value, const she
         .u = message->u,
         .v = message->v,
     };
-    message_get_vec3(extreme->position, &message->position);
+    message_read_vec3(&message->position, extreme->position);
 }
 
 static void get_lights(struct sheen_frame *frame, const sheen_Frame *body)
@@ -233,15 +190,15 @@ static void get_lights(struct sheen_frame *frame, const sheen_Frame *body)
                     : lines->has_eye_direction ? SHEEN_LINE_EYE_DIRECTION
                                                : SHEEN_LINE_EYE_CAMERA,
     };
-    message_get_vec3(frame->lines.direction, &lines->direction);
-    message_get_vec3(frame->lines.eye, lines->has_eye ? &lines->eye : &lines->eye_direction);
+    message_read_vec3(&lines->direction, frame->lines.direction);
+    message_read_vec3(lines->has_eye ? &lines->eye : &lines->eye_direction, frame->lines.eye);
     frame->show_range = body->has_show_range ? body->show_range : 0;
     get_extreme(&frame->show_least, body->has_show_least, &body->show_least);
     get_extreme(&frame->show_greatest, body->has_show_greatest, &body->show_greatest);
     frame->has_colours = body->has_miss && body->has_empty && body->has_base;
-    get_colour(frame->miss, &body->miss);
-    get_colour(frame->empty, &body->empty);
-    get_colour(frame->base, &body->base);
+    message_read_colour(&body->miss, frame->miss);
+    message_read_colour(&body->empty, frame->empty);
+    message_read_colour(&body->base, frame->base);
     frame->n_lights = body->lights_count;
     for (uint32_t i = 0; i < frame->n_lights; i++) {
         const sheen_Light *from = &body->lights[i];
@@ -249,9 +206,9 @@ static void get_lights(struct sheen_frame *frame, const sheen_Frame *body)
         to->kind = (enum sheen_light_kind)from->kind;
         to->has_kind = to->is_placed = true;
         to->one_sided = from->one_sided;
-        message_get_vec3(to->centre, &from->centre);
-        message_get_vec3(to->u, &from->u);
-        message_get_vec3(to->v, &from->v);
+        message_read_vec3(&from->centre, to->centre);
+        message_read_vec3(&from->u, to->u);
+        message_read_vec3(&from->v, to->v);
         from_pattern(&to->pattern, &from->pattern);
     }
 }
@@ -265,10 +222,10 @@ void scene_from_message(struct sheen_frame *frame, const sheen_Frame *body)
         .fov_deg = camera->fov_deg,
         .ortho_height = camera->ortho_height,
     };
-    message_get_vec3(frame->camera.eye, &camera->eye);
-    message_get_vec3(frame->camera.target, &camera->target);
-    message_get_vec3(frame->camera.up, &camera->up);
-    message_get_vec3(frame->up, &body->up);
+    message_read_vec3(&camera->eye, frame->camera.eye);
+    message_read_vec3(&camera->target, frame->camera.target);
+    message_read_vec3(&camera->up, frame->camera.up);
+    message_read_vec3(&body->up, frame->up);
     frame->up_source = body->has_up && body->has_up_source ? (enum sheen_up_source)body->up_source
                                                            : SHEEN_UP_UNKNOWN;
     frame->blank = body->blank;

@@ -49,7 +49,7 @@ static bool take(struct memory *memory, struct client_quota *quota, const uint8_
 }
 
 enum memory_result memory_charge_frame(struct memory *memory, struct client_quota *quota,
-                                       const uint8_t asker[static STORE_OWNER_BYTES],
+                                       const uint8_t asker[static OWNER_BYTES],
                                        enum account_class class, uint64_t bytes,
                                        struct memory_charge **charge, struct error *error)
 {
@@ -88,8 +88,8 @@ void memory_charge_release(void *owner)
 }
 
 bool memory_charge_input(struct memory *memory, struct client_quota *quota,
-                         const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
-                         const char *name, enum error_kind permanent, struct error *error)
+                         const uint8_t asker[static OWNER_BYTES], uint64_t bytes, const char *name,
+                         enum error_kind permanent, struct error *error)
 {
     if (bytes > account_room(&quota->account))
         return refuse_peer(quota, name, bytes, error);

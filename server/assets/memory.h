@@ -32,7 +32,7 @@ enum memory_result {
  * quarter and one frame. In a shared daemon `bytes` is no more than the limits memory_budget and
  * peer_memory. `asker` as in store_reserve(). */
 enum memory_result memory_charge_frame(struct memory *memory, struct client_quota *quota,
-                                       const uint8_t asker[static STORE_OWNER_BYTES],
+                                       const uint8_t asker[static OWNER_BYTES],
                                        enum account_class class, uint64_t bytes,
                                        struct memory_charge **charge, struct error *error);
 /* It takes no more than this after all. */
@@ -42,8 +42,8 @@ void memory_charge_release(void *charge); /* NULL is safe */
 /* The same for what comes in: the bytes of an upload as they come, and messages on their way, as
  * ACCOUNT_INPUT. `name` is the file's; `asker` and `permanent` as in store_reserve(). */
 bool memory_charge_input(struct memory *memory, struct client_quota *quota,
-                         const uint8_t asker[static STORE_OWNER_BYTES], uint64_t bytes,
-                         const char *name, enum error_kind permanent, struct error *error);
+                         const uint8_t asker[static OWNER_BYTES], uint64_t bytes, const char *name,
+                         enum error_kind permanent, struct error *error);
 void memory_refund_input(struct client_quota *quota, uint64_t bytes);
 
 #endif

@@ -17,7 +17,7 @@ struct load {
     struct task task;
     struct model_file_order order;
     char name[STORE_NAME_BYTES]; /* without folders */
-    uint8_t holder[STORE_OWNER_BYTES];
+    uint8_t holder[OWNER_BYTES];
     int fd;
     uint8_t *bytes;
     size_t size;

@@ -19,7 +19,7 @@ struct model_file_order {
     int folder_fd;
     const char *name;
     size_t max_bytes;
-    const uint8_t *holder; /* STORE_OWNER_BYTES: for whom it counts, whoever asked first */
+    const uint8_t *holder; /* OWNER_BYTES: for whom it counts, whoever asked first */
     struct pool *pool;
     struct store *store;
     void (*loaded)(void *owner, const uint8_t *sha256, const struct error *error);

@@ -28,7 +28,7 @@ struct store {
     struct bucket buckets[N_BUCKETS];
 };
 
-const uint8_t STORE_SHARED[STORE_OWNER_BYTES] = {0};
+const uint8_t STORE_SHARED[OWNER_BYTES] = {0};
 
 /* SHA-256 is its own hash. */
 static struct bucket *bucket_of(struct store *store, const uint8_t *sha256)
@@ -194,12 +194,12 @@ static struct asset *find_owned(struct store *store, const uint8_t *owner, enum 
     struct asset *asset;
     LIST_FOREACH (asset, bucket_of(store, sha256), bucket_link)
         if (asset->kind == kind && memcmp(asset->sha256, sha256, MODEL_ID_BYTES) == 0 &&
-            memcmp(asset->owner, owner, STORE_OWNER_BYTES) == 0)
+            memcmp(asset->owner, owner, OWNER_BYTES) == 0)
             return asset;
     return NULL;
 }
 
-struct asset *store_find(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+struct asset *store_find(struct store *store, const uint8_t owner[static OWNER_BYTES],
                          enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES])
 {
     struct asset *own = find_owned(store, owner, kind, sha256);
@@ -232,7 +232,7 @@ static bool refuse_private(const struct store *store, uint64_t bytes, const char
                      what, bytes, used, store->account.limit, (used + bytes) / 8 * 9 / mib + 1);
 }
 
-bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES],
+bool store_reserve(struct store *store, const uint8_t asker[static OWNER_BYTES],
                    struct account *account, enum account_class class, uint64_t bytes,
                    const char *what, enum error_kind permanent, struct error *error)
 {
@@ -289,8 +289,8 @@ static struct asset *add_entry(struct store *store, const uint8_t *holder)
     return asset;
 }
 
-bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
-               const uint8_t holder[static STORE_OWNER_BYTES], enum asset_kind kind,
+bool store_add(struct store *store, const uint8_t owner[static OWNER_BYTES],
+               const uint8_t holder[static OWNER_BYTES], enum asset_kind kind,
                const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
                size_t file_bytes, struct account *charged, struct error *error)
 {
@@ -450,7 +450,7 @@ static void start_builds(struct store *store)
     }
 }
 
-static void queue_build(struct asset *asset, const uint8_t asker[static STORE_OWNER_BYTES])
+static void queue_build(struct asset *asset, const uint8_t asker[static OWNER_BYTES])
 {
     struct store *store = asset->store;
     memcpy(asset->asker, asker, sizeof asset->asker);
@@ -468,8 +468,7 @@ static void add_waiter(struct asset *asset, struct asset_waiter *waiter)
     LIST_INSERT_HEAD(&asset->waiters, waiter, link);
 }
 
-enum acquire_result store_acquire(struct asset *asset,
-                                  const uint8_t asker[static STORE_OWNER_BYTES],
+enum acquire_result store_acquire(struct asset *asset, const uint8_t asker[static OWNER_BYTES],
                                   struct asset_waiter *waiter, struct error *error)
 {
     struct store *store = asset->store;

@@ -24,7 +24,7 @@
 #define STORE_NAME_BYTES 256
 
 /* The owner of what everybody may use. */
-extern const uint8_t STORE_SHARED[STORE_OWNER_BYTES];
+extern const uint8_t STORE_SHARED[OWNER_BYTES];
 
 enum asset_kind { ASSET_MODEL, ASSET_IMAGE };
 
@@ -52,8 +52,8 @@ struct asset {
     enum asset_kind kind;
     enum asset_state state;
     uint8_t sha256[MODEL_ID_BYTES];
-    uint8_t owner[STORE_OWNER_BYTES]; /* equal files of two owners are two assets */
-    uint8_t asker[STORE_OWNER_BYTES]; /* whoever asked for the build first */
+    uint8_t owner[OWNER_BYTES]; /* equal files of two owners are two assets */
+    uint8_t asker[OWNER_BYTES]; /* whoever asked for the build first */
     char name[STORE_NAME_BYTES];
     uint8_t *file; /* malloc'd, or NULL */
     size_t file_bytes;
@@ -105,7 +105,7 @@ void store_destroy(struct store *store); /* NULL is safe */
 
 /* The owner's own, else the shared one, else NULL; the shared one, too, where his own cannot be
  * read. The asset stays at least until the loop's next turn. */
-struct asset *store_find(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
+struct asset *store_find(struct store *store, const uint8_t owner[static OWNER_BYTES],
                          enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES]);
 /* Would the asset's file be read in the same way under this name? The ending of a name tells the
  * format. A file that has not been read yet, or could not be, may be good under another name. */
@@ -122,7 +122,7 @@ struct account *store_account(struct store *store);
  * those of clients that do. The caller has checked the limits of accounts below the store's. The
  * error names the need and the budget, and what its reader can do: `permanent` kind if the bytes
  * can never fit, else ERROR_SERVER. */
-bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_BYTES],
+bool store_reserve(struct store *store, const uint8_t asker[static OWNER_BYTES],
                    struct account *account, enum account_class class, uint64_t bytes,
                    const char *what, enum error_kind permanent, struct error *error);
 
@@ -131,8 +131,8 @@ bool store_reserve(struct store *store, const uint8_t asker[static STORE_OWNER_B
  * `holder`, the identity of the client that brought it, also where everybody may use it. A file
  * that is here already, and known as this, is freed and its charge refunded; so it is when there is
  * no room for another entry: ERROR_SERVER. */
-bool store_add(struct store *store, const uint8_t owner[static STORE_OWNER_BYTES],
-               const uint8_t holder[static STORE_OWNER_BYTES], enum asset_kind kind,
+bool store_add(struct store *store, const uint8_t owner[static OWNER_BYTES],
+               const uint8_t holder[static OWNER_BYTES], enum asset_kind kind,
                const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
                size_t file_bytes, struct account *charged, struct error *error);
 
@@ -141,8 +141,7 @@ enum acquire_result { ACQUIRE_READY, ACQUIRE_WAIT, ACQUIRE_FAILED };
 /* Wants to use an asset, for the client of this identity, whoever owns it: of those who wait for
  * builds each has his turn. READY: it is, until store_unuse(). WAIT: waiter->ready() will be
  * called; without a failure that is as READY. FAILED: *error says why. */
-enum acquire_result store_acquire(struct asset *asset,
-                                  const uint8_t asker[static STORE_OWNER_BYTES],
+enum acquire_result store_acquire(struct asset *asset, const uint8_t asker[static OWNER_BYTES],
                                   struct asset_waiter *waiter, struct error *error);
 void store_unuse(struct asset *asset);
 /* The waiter wants the asset no more: ready() will not be called. False if it does not wait. The

@@ -10,11 +10,11 @@ void store_shares_init(struct store_shares *shares, struct account *daemon)
 }
 
 struct store_share *store_share_find(struct store_shares *shares,
-                                     const uint8_t id[static STORE_OWNER_BYTES])
+                                     const uint8_t id[static OWNER_BYTES])
 {
     struct store_share *share;
     LIST_FOREACH (share, &shares->list, link) {
-        if (memcmp(share->id, id, STORE_OWNER_BYTES) != 0)
+        if (memcmp(share->id, id, OWNER_BYTES) != 0)
             continue;
         share->references++;
         return share;
@@ -23,7 +23,7 @@ struct store_share *store_share_find(struct store_shares *shares,
 }
 
 struct store_share *store_share_get(struct store_shares *shares,
-                                    const uint8_t id[static STORE_OWNER_BYTES])
+                                    const uint8_t id[static OWNER_BYTES])
 {
     struct store_share *share = store_share_find(shares, id);
     if (share || !(share = calloc(1, sizeof *share)))

@@ -8,8 +8,7 @@
 #include <sys/queue.h>
 
 #include "server/assets/account.h"
-
-#define STORE_OWNER_BYTES 32 /* an identity's: access.h */
+#include "server/base/owner.h"
 
 /* The two things that the store has a limited amount of: bytes of the memory budget, and entries.
  */
@@ -17,7 +16,7 @@ enum share_kind { SHARE_BYTES, SHARE_ENTRIES };
 
 /* What one client holds. */
 struct store_share {
-    uint8_t id[STORE_OWNER_BYTES];
+    uint8_t id[OWNER_BYTES];
     struct account account; /* what the client's assets are charged with */
     uint64_t n_entries;
     unsigned references; /* one for each asset, and for each function that works with the share */
@@ -37,10 +36,10 @@ void store_shares_init(struct store_shares *shares, struct account *daemon);
 
 /* The client's share, with another reference. NULL when memory is short. */
 struct store_share *store_share_get(struct store_shares *shares,
-                                    const uint8_t id[static STORE_OWNER_BYTES]);
+                                    const uint8_t id[static OWNER_BYTES]);
 /* The same, but NULL when the client holds nothing. */
 struct store_share *store_share_find(struct store_shares *shares,
-                                     const uint8_t id[static STORE_OWNER_BYTES]);
+                                     const uint8_t id[static OWNER_BYTES]);
 void store_share_put(struct store_shares *shares, struct store_share *share); /* NULL is safe */
 
 /* Bytes or entries. */

@@ -10,7 +10,7 @@ struct upload {
     struct memory *memory;
     struct client_quota *quota;
     sheen_UploadBegin begin;
-    uint8_t owner[STORE_OWNER_BYTES], holder[STORE_OWNER_BYTES];
+    uint8_t owner[OWNER_BYTES], holder[OWNER_BYTES];
     uint8_t *file; /* grows, and is charged, as bytes come: announcing costs nothing */
     size_t received, capacity;
     EVP_MD_CTX *hash;
@@ -22,8 +22,8 @@ static enum error_kind kind_of_error(const sheen_UploadBegin *begin)
 }
 
 struct upload *upload_create(struct memory *memory, struct client_quota *quota,
-                             const uint8_t owner[static STORE_OWNER_BYTES],
-                             const uint8_t holder[static STORE_OWNER_BYTES],
+                             const uint8_t owner[static OWNER_BYTES],
+                             const uint8_t holder[static OWNER_BYTES],
                              const sheen_UploadBegin *begin, struct error *error)
 {
     struct upload *upload = calloc(1, sizeof *upload);

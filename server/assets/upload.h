@@ -19,8 +19,8 @@ enum upload_state {
  * owner's, or everybody's if begin->share; it counts for `holder` (store_add). `begin` has passed
  * message_check_upload_begin(); `quota` stays as long as the upload. */
 struct upload *upload_create(struct memory *memory, struct client_quota *quota,
-                             const uint8_t owner[static STORE_OWNER_BYTES],
-                             const uint8_t holder[static STORE_OWNER_BYTES],
+                             const uint8_t owner[static OWNER_BYTES],
+                             const uint8_t holder[static OWNER_BYTES],
                              const sheen_UploadBegin *begin, struct error *error);
 /* Gives the bytes back, unless the store has them. NULL is safe. */
 void upload_destroy(struct upload *upload);

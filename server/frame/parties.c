@@ -3,18 +3,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct party *party_get(struct parties *parties, const uint8_t identity[static STORE_OWNER_BYTES])
+struct party *party_get(struct parties *parties, const uint8_t identity[static OWNER_BYTES])
 {
     struct party_list *bucket = &parties->buckets[identity[0]]; /* identities are hashes */
     struct party *party;
     LIST_FOREACH (party, bucket, link)
-        if (memcmp(party->identity, identity, STORE_OWNER_BYTES) == 0)
+        if (memcmp(party->identity, identity, OWNER_BYTES) == 0)
             return party_reference(party);
     party = malloc(sizeof *party);
     if (!party)
         return NULL;
     scheduler_add_party(&party->schedule);
-    memcpy(party->identity, identity, STORE_OWNER_BYTES);
+    memcpy(party->identity, identity, OWNER_BYTES);
     party->references = 1;
     LIST_INSERT_HEAD(bucket, party, link);
     return party;

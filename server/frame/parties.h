@@ -3,12 +3,14 @@
 #ifndef SHEEN_FRAME_PARTIES_H
 #define SHEEN_FRAME_PARTIES_H
 
-#include "server/assets/store_shares.h"
+#include <sys/queue.h>
+
+#include "server/base/owner.h"
 #include "server/frame/scheduler.h"
 
 struct party {
     struct schedule_party schedule;
-    uint8_t identity[STORE_OWNER_BYTES];
+    uint8_t identity[OWNER_BYTES];
     unsigned references; /* the module's own, as what follows */
     LIST_ENTRY(party) link;
 };
@@ -22,7 +24,7 @@ struct parties { /* zeroed: nobody */
 };
 
 /* The party of an identity, with another reference. NULL when memory is short. */
-struct party *party_get(struct parties *parties, const uint8_t identity[static STORE_OWNER_BYTES]);
+struct party *party_get(struct parties *parties, const uint8_t identity[static OWNER_BYTES]);
 struct party *party_reference(struct party *party);
 void party_put(struct party *party); /* NULL is safe */
 

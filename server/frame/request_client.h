@@ -61,7 +61,7 @@ struct request_client {
         *quota;          /* that frames are charged to; of the client's identity, as `party` */
     struct party *party; /* both NULL until the client has joined, and asks for nothing */
     /* The client's identity, and the owner of the assets that it may use beside those of
-     * everybody; STORE_OWNER_BYTES each. */
+     * everybody; OWNER_BYTES each. */
     const uint8_t *identity, *assets_of;
 
     struct schedule_queue queue;

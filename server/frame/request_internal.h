@@ -25,10 +25,10 @@ struct request {
     LIST_ENTRY(request) parked_link; /* while REQUEST_PARKED */
     struct reply *reply;             /* valid while there is a client */
     uint32_t seq;
-    uint8_t assets_of[STORE_OWNER_BYTES]; /* the client's, which may go before */
-    uint8_t asker[STORE_OWNER_BYTES];     /* the client's identity */
-    bool is_query;                        /* of a model; else of a frame */
-    uint64_t start_us, deadline_us;       /* clock_now_us(); deadline 0: none */
+    uint8_t assets_of[OWNER_BYTES]; /* the client's, which may go before */
+    uint8_t asker[OWNER_BYTES];     /* the client's identity */
+    bool is_query;                  /* of a model; else of a frame */
+    uint64_t start_us, deadline_us; /* clock_now_us(); deadline 0: none */
 
     struct needed model, images[MAX_LIGHTS];
     unsigned n_awaited;

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "protocol/message_values.h"
 #include "server/assets/model_file.h"
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"
@@ -67,8 +68,8 @@ void request_reply_query(struct request *request)
         .regular_bytes = limit_face_bytes(LIMIT_REGULAR),
         .corner_bytes = limit_face_bytes(LIMIT_CORNER),
         .tables_us = model->build_us,
-        .box_min = scene_write_vec3(tables->box_min),
-        .box_max = scene_write_vec3(tables->box_max),
+        .box_min = message_vec3(tables->box_min),
+        .box_max = message_vec3(tables->box_max),
     };
     memcpy(info.sha256, asset->sha256, sizeof info.sha256);
     snprintf(info.name, sizeof info.name, "%s", asset->name);

@@ -1,6 +1,7 @@
 /* How a frame that has been drawn is encoded, held back and answered. */
 #include <stdio.h>
 
+#include "protocol/message_values.h"
 #include "server/base/clock.h"
 #include "server/frame/request.h"
 #include "server/frame/request_internal.h"
@@ -29,15 +30,15 @@ static void fill_frame(const struct request *request, const struct encoded *enco
         .has_light_share = request->has_light_share,
         .light_share = request->light_share,
         .has_up = true,
-        .up = scene_write_vec3(request->up),
+        .up = message_vec3(request->up),
         .has_up_source = true,
         .up_source = request->up_source,
         .has_miss = true,
-        .miss = scene_write_colour(asked->miss),
+        .miss = message_colour(asked->miss),
         .has_empty = true,
-        .empty = scene_write_colour(asked->empty),
+        .empty = message_colour(asked->empty),
         .has_base = true,
-        .base = scene_write_colour(asked->base),
+        .base = message_colour(asked->base),
         .has_threads = info->n_threads > 0,
         .threads = info->n_threads,
         .has_show_least = request->extremes.has_values,

@@ -13,13 +13,13 @@
 #include "protocol/address.h"
 #include "protocol/tls.h"
 #include "server/base/error.h"
+#include "server/base/owner.h"
 #include "server/net/conn.h"
 #include "server/net/tokens.h"
 
 #define ACCESS_PATH_BYTES 512
 #define ACCESS_MAX_IDS 64
 #define IDENTITY_NAME_BYTES 272
-#define OWNER_BYTES 32 /* SHA-256 of an identity's name, with the key of a certificate's issuer */
 
 struct access_ids {
     size_t n;

@@ -60,7 +60,7 @@ static void draw_bar(uint8_t *rgba, uint32_t width_px, const struct box *box,
         }
 }
 
-struct canvas {
+struct legend_target {
     uint8_t *rgba;
     uint32_t width_px, height_px;
     struct workers *workers;
@@ -68,22 +68,22 @@ struct canvas {
     struct error *error;
 };
 
-static bool write_text(const struct canvas *canvas, int x, int y, int size_px,
+static bool write_text(const struct legend_target *target, int x, int y, int size_px,
                        enum text_align align, const char *line)
 {
     struct text text;
-    if (!workers_draw_text(canvas->workers, canvas->block_cache, &text, line, size_px,
-                           canvas->error))
+    if (!workers_draw_text(target->workers, target->block_cache, &text, line, size_px,
+                           target->error))
         return false;
-    text_draw(&text, canvas->rgba, canvas->width_px, canvas->height_px, x, y, align, TEXT_COLOUR);
-    block_cache_give(canvas->block_cache, text.coverage);
+    text_draw(&text, target->rgba, target->width_px, target->height_px, x, y, align, TEXT_COLOUR);
+    block_cache_give(target->block_cache, text.coverage);
     return true;
 }
 
 bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
                  struct workers *workers, struct block_cache *block_cache, struct error *error)
 {
-    const struct canvas canvas = {rgba, width_px, height_px, workers, block_cache, error};
+    const struct legend_target target = {rgba, width_px, height_px, workers, block_cache, error};
     int font = (int)(height_px / FONT_SHARE);
     font = font < MIN_FONT_PX ? MIN_FONT_PX : font;
     struct box panel = {.width = PANEL_WIDTH * font, .height = (int)(PANEL_HEIGHT * font)};
@@ -96,14 +96,14 @@ bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const str
                             panel.width - 2 * margin, (int)(BAR_HEIGHT * font)};
     darken(rgba, width_px, &panel);
     draw_bar(rgba, width_px, &bar, legend);
-    bool ok = write_text(&canvas, bar.x, panel.y + (int)(TITLE_BASELINE * font), font, TEXT_LEFT,
+    bool ok = write_text(&target, bar.x, panel.y + (int)(TITLE_BASELINE * font), font, TEXT_LEFT,
                          legend->title);
     for (unsigned i = 0; ok && i < legend->n_marks; i++) {
         const struct legend_mark *mark = &legend->marks[i];
         enum text_align align = mark->at <= 0   ? TEXT_LEFT
                                 : mark->at >= 1 ? TEXT_RIGHT
                                                 : TEXT_CENTRE;
-        ok = write_text(&canvas, bar.x + (int)(mark->at * bar.width),
+        ok = write_text(&target, bar.x + (int)(mark->at * bar.width),
                         panel.y + (int)(MARKS_BASELINE * font), font, align, mark->text);
     }
     return ok;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "protocol/message_values.h"
 #include "server/scene/defaults.h"
 
 _Static_assert((int)PLANE_COLOUR == (int)sheen_Plane_PLANE_COLOUR &&
@@ -27,39 +28,14 @@ static const sheen_Colour DEFAULT_MISS = {0.16f, 0.19f, 0.23f, 1};
 static const sheen_Colour DEFAULT_EMPTY = {0.5f, 0.5f, 0.5f, 1};
 static const sheen_Colour DEFAULT_BASE = {0.7f, 0.72f, 0.75f, 1};
 
-void scene_read_vec3(const sheen_Vec3 *from, double to[3])
-{
-    to[0] = from->x;
-    to[1] = from->y;
-    to[2] = from->z;
-}
-
-sheen_Vec3 scene_write_vec3(const double v[3])
-{
-    return (sheen_Vec3){v[0], v[1], v[2]};
-}
-
-void scene_read_colour(const sheen_Colour *from, float to[4])
-{
-    to[0] = from->r;
-    to[1] = from->g;
-    to[2] = from->b;
-    to[3] = from->a;
-}
-
-sheen_Colour scene_write_colour(const float c[4])
-{
-    return (sheen_Colour){c[0], c[1], c[2], c[3]};
-}
-
 /* Puts what a request says of the camera over the one that frames the model. */
 static void to_camera(const sheen_Camera *from, const struct scene_subject *subject,
                       const double up[3], struct camera *to)
 {
     if (from->has_eye)
-        scene_read_vec3(&from->eye, to->eye);
+        message_read_vec3(&from->eye, to->eye);
     if (from->has_target)
-        scene_read_vec3(&from->target, to->target);
+        message_read_vec3(&from->target, to->target);
     if (from->has_target && !(from->has_eye && from->has_up))
         scene_default_roll(up, to);
     if (from->has_fov_deg)
@@ -85,11 +61,11 @@ sheen_Camera scene_write_camera(const struct camera *camera)
     bool ortho = camera->kind == CAMERA_ORTHOGRAPHIC;
     return (sheen_Camera){
         .has_eye = true,
-        .eye = scene_write_vec3(camera->eye),
+        .eye = message_vec3(camera->eye),
         .has_target = true,
-        .target = scene_write_vec3(camera->target),
+        .target = message_vec3(camera->target),
         .has_up = true,
-        .up = scene_write_vec3(camera->up),
+        .up = message_vec3(camera->up),
         .has_fov_deg = !ortho,
         .fov_deg = camera->fov_deg,
         .has_ortho_height = ortho,
@@ -101,7 +77,7 @@ sheen_UpSource scene_model_up(const sheen_Render *render, const struct scene_sub
                               double up[3])
 {
     if (render->has_camera && render->camera.has_up) {
-        scene_read_vec3(&render->camera.up, up);
+        message_read_vec3(&render->camera.up, up);
         return sheen_UpSource_UP_GIVEN;
     }
     if (subject->up == CAGE_UP_UNSAID) {
@@ -140,7 +116,7 @@ void scene_read_request(const sheen_Render *render, const struct scene_subject *
     for (uint32_t i = 0; i < request->n_lights; i++)
         scene_read_light(render->lights_count ? &render->lights[i] : &default_light, subject, up,
                          &request->lights[i]);
-    scene_read_colour(render->has_miss ? &render->miss : &DEFAULT_MISS, request->miss);
-    scene_read_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
-    scene_read_colour(render->has_base ? &render->base : &DEFAULT_BASE, request->base);
+    message_read_colour(render->has_miss ? &render->miss : &DEFAULT_MISS, request->miss);
+    message_read_colour(render->has_empty ? &render->empty : &DEFAULT_EMPTY, request->empty);
+    message_read_colour(render->has_base ? &render->base : &DEFAULT_BASE, request->base);
 }

@@ -25,10 +25,6 @@ void scene_read_request(const sheen_Render *render, const struct scene_subject *
                         struct frame_request *request);
 
 sheen_Camera scene_write_camera(const struct camera *camera);
-sheen_Vec3 scene_write_vec3(const double v[3]);
-sheen_Colour scene_write_colour(const float c[4]);
-void scene_read_vec3(const sheen_Vec3 *from, double to[3]);
-void scene_read_colour(const sheen_Colour *from, float to[4]);
 
 /* Line families, lights and patterns (scene_convert_light.c). The box and `up` place lights that
  * have no place of their own, and `up` is the axis of families that are told none. `asked` gives an

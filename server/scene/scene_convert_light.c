@@ -1,6 +1,7 @@
 /* Line families, lights and patterns between messages and the renderer. */
 #include <string.h>
 
+#include "protocol/message_values.h"
 #include "server/scene/scene_convert.h"
 #include "server/scene/defaults.h"
 
@@ -21,49 +22,27 @@ static void to_pattern(const sheen_Pattern *from, struct pattern *to)
 {
     *to = (struct pattern){
         .kind = (enum pattern_kind)from->kind,
-        .count = from->count,
-        .period = from->has_period ? from->period : 0,
-        .duty = from->duty,
-        .rotation_deg = from->rotation_deg,
-        .offset = from->offset,
-        .soft = from->soft,
-        .opacity = from->opacity,
-        .n_at = from->at_count,
-        .width = from->width,
+        MESSAGE_PATTERN_NUMBERS_OF(from),
     };
     for (uint32_t i = 0; i < to->n_at; i++)
         to->at[i] = from->at[i];
-    scene_read_colour(from->has_foreground ? &from->foreground : &DEFAULT_FOREGROUND,
-                      to->foreground);
-    scene_read_colour(from->has_background ? &from->background : &DEFAULT_BACKGROUND,
-                      to->background);
+    message_read_colour(from->has_foreground ? &from->foreground : &DEFAULT_FOREGROUND,
+                        to->foreground);
+    message_read_colour(from->has_background ? &from->background : &DEFAULT_BACKGROUND,
+                        to->background);
 }
 
 static sheen_Pattern from_pattern(const struct pattern *pattern, const sheen_Pattern *asked)
 {
     sheen_Pattern wire = {
         .kind = (sheen_PatternKind)pattern->kind,
-        .has_count = true,
-        .count = pattern->count,
-        .has_period = pattern->period > 0,
-        .period = pattern->period,
-        .has_duty = true,
-        .duty = pattern->duty,
-        .has_rotation_deg = true,
-        .rotation_deg = pattern->rotation_deg,
-        .has_offset = true,
-        .offset = pattern->offset,
-        .has_soft = true,
-        .soft = pattern->soft,
-        .has_opacity = true,
-        .opacity = pattern->opacity,
+        MESSAGE_PATTERN_NUMBERS(pattern),
         .at_count = (pb_size_t)pattern->n_at,
         .has_width = true,
-        .width = pattern->width,
         .has_foreground = true,
-        .foreground = scene_write_colour(pattern->foreground),
+        .foreground = message_colour(pattern->foreground),
         .has_background = true,
-        .background = scene_write_colour(pattern->background),
+        .background = message_colour(pattern->background),
     };
     for (uint32_t i = 0; i < pattern->n_at; i++)
         wire.at[i] = pattern->at[i];
@@ -86,9 +65,9 @@ void scene_read_light(const sheen_Light *from, const struct scene_subject *subje
     static const sheen_Pattern default_pattern = sheen_Pattern_init_default;
     *to = (struct light){.kind = kind_of(from), .one_sided = from->one_sided};
     if (from->has_centre) {
-        scene_read_vec3(&from->centre, to->centre);
-        scene_read_vec3(&from->u, to->u);
-        scene_read_vec3(&from->v, to->v);
+        message_read_vec3(&from->centre, to->centre);
+        message_read_vec3(&from->u, to->u);
+        message_read_vec3(&from->v, to->v);
     } else {
         scene_default_light(subject->tables->box_min, subject->tables->box_max, up, to);
     }
@@ -99,11 +78,11 @@ sheen_Light scene_write_light(const struct light *light, const sheen_Light *aske
 {
     return (sheen_Light){
         .has_centre = true,
-        .centre = scene_write_vec3(light->centre),
+        .centre = message_vec3(light->centre),
         .has_u = true,
-        .u = scene_write_vec3(light->u),
+        .u = message_vec3(light->u),
         .has_v = true,
-        .v = scene_write_vec3(light->v),
+        .v = message_vec3(light->v),
         .has_kind = true,
         .kind = (sheen_LightKind)light->kind,
         .has_one_sided = true,
@@ -119,12 +98,12 @@ void scene_read_lines(const sheen_Lines *from, const double up[3], struct lines 
     bool needs_axis = to->family == LINES_ZEBRA || to->family == LINES_ENVIRONMENT;
     to->has_direction = from->has_direction || needs_axis;
     if (from->has_direction)
-        scene_read_vec3(&from->direction, to->direction);
+        message_read_vec3(&from->direction, to->direction);
     else if (needs_axis)
         memcpy(to->direction, up, sizeof to->direction);
     if (from->has_eye || from->has_eye_direction) {
         to->eye_kind = from->has_eye ? LINE_EYE_POINT : LINE_EYE_DIRECTION;
-        scene_read_vec3(from->has_eye ? &from->eye : &from->eye_direction, to->eye);
+        message_read_vec3(from->has_eye ? &from->eye : &from->eye_direction, to->eye);
     }
 }
 
@@ -133,10 +112,10 @@ sheen_Lines scene_write_lines(const struct lines *lines)
     return (sheen_Lines){
         .family = (sheen_LineFamily)lines->family,
         .has_direction = lines->has_direction,
-        .direction = scene_write_vec3(lines->direction),
+        .direction = message_vec3(lines->direction),
         .has_eye = lines->eye_kind == LINE_EYE_POINT,
-        .eye = scene_write_vec3(lines->eye),
+        .eye = message_vec3(lines->eye),
         .has_eye_direction = lines->eye_kind == LINE_EYE_DIRECTION,
-        .eye_direction = scene_write_vec3(lines->eye),
+        .eye_direction = message_vec3(lines->eye),
     };
 }

@@ -183,7 +183,7 @@ static void test_shares(void **state)
     account_init(&root, NULL, ACCOUNT_NO_LIMIT);
     store_shares_init(&shares, &root);
     for (int i = 0; i < N; i++) {
-        uint8_t id[STORE_OWNER_BYTES] = {(uint8_t)i, 1};
+        uint8_t id[OWNER_BYTES] = {(uint8_t)i, 1};
         assert_null(store_share_find(&shares, id));
         share[i] = store_share_get(&shares, id);
         account_charge(&share[i]->account, ACCOUNT_ASSETS, next_random(&seed) % 1000);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "protocol/message_values.h"
 #include "client/cli/commands.h"
 #include "protocol/limits.h"
 #include "protocol/message.h"
@@ -371,7 +372,7 @@ static void directions_agree(void **state)
         struct frame_request frame;
         struct error error = {0};
         scene_read_request(&render, &SUBJECT, &frame);
-        scene_read_vec3(&render.camera.up, frame.camera.up); /* where it is parallel, too */
+        message_read_vec3(&render.camera.up, frame.camera.up); /* where it is parallel, too */
         bool is_taken = message_check_render(&render, 16384, 16384, text);
         if (request_check(&frame, 16384, 16384, &error) != is_taken)
             fail_msg("case %d: message %d '%s', renderer '%s'", i, is_taken, text, error.text);
