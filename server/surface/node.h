@@ -55,6 +55,16 @@ struct limit_adjacency {
     uint32_t across[4];
 };
 
+/* How far a piece of surface reaches and bends, in units: for culling, and to choose the grid that
+ * it is drawn with. Cut into m x n cells the piece lies within (u / m^2 + 2 mixed / (m n) + v /
+ * n^2) / 8 of their triangles, and a curve on it along u or v, as its borders are, within border_u
+ * / (8 m^2) or border_v / (8 n^2) (README.md 6.1). */
+struct limit_bound {
+    float radius; /* of a sphere about the piece's origin that holds its control points */
+    float u, mixed, v;
+    float border_u, border_v;
+};
+
 /* The levels of a CORNER. */
 static inline unsigned limit_levels(const struct limit_node *node)
 {

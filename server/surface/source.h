@@ -5,8 +5,13 @@
 #ifndef SHEEN_SURFACE_SOURCE_H
 #define SHEEN_SURFACE_SOURCE_H
 
-#include "server/surface/tables.h"
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/surface/node.h"
 #include "server/surface/texels.h"
+
+struct limit_tables; /* tables.h */
 
 /* The points of one level of a CORNER, or of one patch of another node, as tables store them: the
  * scale is the first texel's x, the points' texels follow. */
