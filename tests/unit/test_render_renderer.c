@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "server/render/device.h"
+#include "server/render/renderer.h"
 
 enum { N_STEPS = 3, MAX_PX = 64 };
 
