@@ -38,7 +38,11 @@ static struct renderer *create(const struct renderer_options *options, struct er
     assert_non_null(renderer);
     renderer->device = &counting;
     renderer->options = *options;
-    renderer->info = (struct renderer_info){"counting", "none", true, false, MAX_PX, MAX_PX};
+    renderer->info = (struct renderer_info){.device = "counting",
+                                             .driver = "none",
+                                             .software = true,
+                                             .max_width_px = MAX_PX,
+                                             .max_height_px = MAX_PX};
     counts.opened++;
     return renderer;
 }
