@@ -39,10 +39,10 @@ static struct renderer *create(const struct renderer_options *options, struct er
     renderer->device = &counting;
     renderer->options = *options;
     renderer->info = (struct renderer_info){.device = "counting",
-                                             .driver = "none",
-                                             .software = true,
-                                             .max_width_px = MAX_PX,
-                                             .max_height_px = MAX_PX};
+                                            .driver = "none",
+                                            .software = true,
+                                            .max_width_px = MAX_PX,
+                                            .max_height_px = MAX_PX};
     counts.opened++;
     return renderer;
 }
