@@ -9,6 +9,7 @@
 #include "client/cli/files/file.h"
 #include "client/cli/output/glyphs.h"
 #include "client/cli/client.h"
+#include "client/cli/notices.h"
 #include "client/cli/base/failure.h"
 #include "client/cli/options/values.h"
 
@@ -184,7 +185,7 @@ static void print_text(const struct figure *figure)
 
 static void print_json(struct json *json, const struct options *options,
                        const struct client *client, const struct sheen_frame *exact,
-                       const struct figure *figure)
+                       const struct sheen_model_info *info, const struct figure *figure)
 {
     json_object_begin(json, NULL);
     json_string(json, "file", options->output);
@@ -202,6 +203,7 @@ static void print_json(struct json *json, const struct options *options,
         json_object_end(json);
     }
     json_array_end(json);
+    json_lines(json, "warnings", info->warnings);
     json_object_end(json);
 }
 
@@ -209,6 +211,7 @@ static int run(const struct options *options)
 {
     struct client client = {0};
     struct sheen_frame exact = SHEEN_FRAME_DEFAULTS;
+    struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
     struct figure figure = {0};
     enum sheen_status status = file_check_writable(options->output, &client.error);
     if (status)
@@ -217,9 +220,13 @@ static int run(const struct options *options)
     if (!status)
         status = draw(&client, options, &exact, &figure);
     progress_clear(&client.progress);
+    if (!status) {
+        notices_ask(&client, options, &info);
+        notices_print(&client, options, &exact, &info);
+    }
     if (!status && options->json) {
         struct json json = {.out = stdout};
-        print_json(&json, options, &client, &exact, &figure);
+        print_json(&json, options, &client, &exact, &info, &figure);
         status = client_finish_json(&client, &json);
     } else if (!status) {
         print_text(&figure);

@@ -10,6 +10,7 @@
 #include "client/cli/commands.h"
 #include "client/cli/files/file.h"
 #include "client/cli/client.h"
+#include "client/cli/notices.h"
 #include "client/cli/options/lights_text.h"
 #include "client/cli/base/failure.h"
 #include "client/cli/turntable.h"
@@ -39,13 +40,15 @@ struct sent {
 };
 
 struct stream {
-    struct sheen_request request; /* its camera and light move */
-    bool has_camera;              /* before any frame */
-    struct sheen_camera camera;   /* of the first frame */
-    double axis[3];               /* that it goes about: the model's up */
-    uint64_t tables_us;           /* that the first frame would have waited */
-    struct sheen_light light;     /* the first: the one that moves */
+    struct sheen_request request;   /* its camera and light move */
+    bool has_camera;                /* before any frame */
+    struct sheen_camera camera;     /* of the first frame */
+    double axis[3];                 /* that it goes about: the model's up */
+    enum sheen_up_source up_source; /* where that up is from */
+    uint64_t tables_us;             /* that the first frame would have waited */
+    struct sheen_light light;       /* the first: the one that moves */
     struct sheen_frame frame;
+    struct sheen_model_info info;
     struct record *records;                /* [frames], by the frame's number */
     uint32_t n_drawn, n_late;              /* frames that came, and that were not drawn in time */
     uint64_t written_bytes;                /* of their files, if there are any */
@@ -140,6 +143,7 @@ static void keep_axis(struct stream *stream, const struct sheen_frame *frame)
 {
     const double *up = frame->up_source == SHEEN_UP_UNKNOWN ? frame->camera.up : frame->up;
     memcpy(stream->axis, up, sizeof(stream->axis));
+    stream->up_source = frame->up_source;
 }
 
 /* Puts the camera of a turntable by what the daemon says of its own camera and of the model. */
@@ -220,6 +224,10 @@ static enum sheen_status first_frame(struct client *client, struct stream *strea
         keep_axis(stream, &stream->frame);
     }
     stream->light = stream->frame.lights[0];
+    /* The camera of a turntable gives the up that the daemon itself had chosen for the probe. */
+    stream->frame.up_source = stream->up_source;
+    notices_ask(client, options, &stream->info);
+    notices_print(client, options, &stream->frame, &stream->info);
     stream->records[0].stage_us[TABLES] += stream->tables_us;
     stream->start_us = clock_now_us();
     return SHEEN_OK;
@@ -354,6 +362,7 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
         json_object_end(json);
     }
     json_array_end(json);
+    json_lines(json, "warnings", stream->info.warnings);
     json_object_end(json);
 }
 
@@ -397,7 +406,9 @@ static enum sheen_status run_command(struct client *client, struct stream *strea
 static int run(const struct options *options)
 {
     struct client client = {0};
-    struct stream stream = {.request = options->request, .frame = SHEEN_FRAME_DEFAULTS};
+    struct stream stream = {.request = options->request,
+                            .frame = SHEEN_FRAME_DEFAULTS,
+                            .info = SHEEN_MODEL_INFO_DEFAULTS};
     if (!options->output)
         stream.request.format = SHEEN_FORMAT_ZSTD;
     if (!(options->given & GIVEN_CLASS))

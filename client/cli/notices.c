@@ -38,9 +38,8 @@ void notices_print(struct client *client, const struct options *options,
             "up: %s, guessed from the model's box; where it is wrong, --up %s, or another",
             frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "y" : "z");
     if (frame->blank)
-        fprintf(stderr,
-                "sheen: warning: no pixel shows the surface: see --eye, --target, --fov and "
-                "--ortho; without them a camera frames the model\n");
+        fprintf(stderr, "sheen: warning: no pixel shows the surface: see --eye, --target, --zoom, "
+                        "--fov and --ortho; without them a camera frames the model\n");
     if (frame->light_share < 0.5)
         progress_note(&client->progress, "the light is met on %.2g %% of what is seen: %s",
                       100 * frame->light_share, light_advice(&options->request));

@@ -276,7 +276,7 @@ class Client(unittest.TestCase):
         daemon = Daemon("--credits", "1", tcp=False)
         self.addCleanup(daemon.stop)
         done = sheen("stream", FENDER, "--frames", "5", "--size", "64x48", "--server", daemon.unix,
-                     "--json")
+                     "--json", "--up", "z")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(len(json.loads(done.stdout)["frames"]), 5)
 

@@ -242,6 +242,35 @@ class Said(DaemonCase):
             self.assertIsNone(said["light_share"], options)
             self.assertNotIn("is met on", text)
 
+    def test_every_command_that_draws_says_it(self):
+        """The file's warnings, the guessed up, the light that is hardly met, nothing to see: once."""
+        bad = os.path.join(self.folder, "bad.obj")
+        with open(bad, "wb") as file:
+            file.write(DOOR + b"f 1 2\n")
+        warning = "bad.obj:%d: a face with fewer than 3 different corners" % (DOOR.count(b"\n") + 1)
+        commands = (("render", bad, "-o", os.path.join(self.folder, "a.png")),
+                    ("stream", bad, "--frames", "3"), ("stream", bad, "--frames", "3", "--light-only"),
+                    ("levels", bad, "-o", os.path.join(self.folder, "l.png")))
+        away = ("--eye", "0,-9,1", "--target", "0,-18,1")
+        low = ("--light-center", "0,9,0", "--light-u", "1,0,0", "--light-v", "0,0,1")
+        for command in commands:
+            for options, words in (((), ("up: y, guessed",)), (("--up", "y"), ()),
+                                   (low, ("up: y, guessed", "the light is met on")),
+                                   (away, ("up: y, guessed", "no pixel shows the surface"))):
+                with self.subTest(command=command[0], options=options):
+                    asked = (SHEEN, *command, *options, "--size", "90x60", "--server",
+                             self.daemon.unix, "--json")
+                    done = subprocess.run(asked, capture_output=True, text=True, timeout=60, check=True)
+                    for sentence in ("guessed", "is met on", "no pixel shows"):
+                        self.assertEqual(done.stderr.count(sentence),
+                                         any(sentence in each for each in words), done.stderr)
+                    self.assertEqual(done.stderr.count(f"sheen: warning: {warning}"), 1, done.stderr)
+                    told = json.loads(done.stdout)["warnings"]
+                    self.assertEqual([line.startswith(warning) for line in told], [True])
+                    done = subprocess.run((*asked, "-q"), capture_output=True, text=True, timeout=60,
+                                          check=True)
+                    self.assertEqual(done.stderr, "")
+
     def test_straight_down(self):
         """No --up is needed; the lines are those of every other camera."""
         whole, _ = self.sheen(os.path.join(MODELS, "fender.obj"))

@@ -46,7 +46,7 @@ class Reconnect(unittest.TestCase):
     def stream(self, daemon, *arguments, frames):
         """One that has had some of its frames."""
         client = start("stream", FENDER, "--server", daemon.unix, "--frames", str(frames), "--json",
-                       *arguments)
+                       "--up", "z", *arguments)
         with Client(daemon.unix) as other:
             while other.stats()[3][0] < 5:
                 time.sleep(0.02)
@@ -289,7 +289,7 @@ class Broken(Reconnect):
     def test_every_loss_after_an_answer_is_the_first(self):
         """More losses than there may be in a row."""
         with Between(self.served, cut_at(wire.RENDER, 3, range(6))) as between:
-            done = sheen("stream", FENDER, "--frames", "12", "--json", *SMALL, "--server",
+            done = sheen("stream", FENDER, "--frames", "12", "--json", "--up", "z", *SMALL, "--server",
                          between.unix)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertGreater(between.n_connections, 5)
