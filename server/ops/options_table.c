@@ -8,6 +8,7 @@
 #include "protocol/limits.h"
 #include "protocol/number.h"
 #include "server/base/processors.h"
+#include "server/ops/device_choice.h"
 #include "server/threads/render_thread.h"
 #include "server/threads/pool.h"
 #include "server/net/tokens.h"
@@ -87,9 +88,8 @@ static bool hash_token(void *value, const char *text, struct error *error)
 
 static bool set_device(void *value, const char *text, struct error *error)
 {
-    uint64_t number;
-    if (strcmp(text, "auto") != 0 && strcmp(text, "software") != 0 && strcmp(text, "native") != 0 &&
-        !number_parse(text, 0, 1023, false, &number))
+    struct device_try tries[DEVICE_MOST_TRIES];
+    if (!device_tries(text, tries))
         return error_set(error, ERROR_REQUEST,
                          "device is '%s'; it must be auto, software, native or a device's number",
                          text);

@@ -11,12 +11,11 @@
 
 #include "server/base/clock.h"
 #include "server/output/jpeg.h"
-#include "server/render/gl/device.h"
-#include "server/render/native/device.h"
 #include "server/net/listen.h"
 #include "server/ops/gpu_loss_log.h"
 #include "server/assets/model_file.h"
 #include "server/ops/daemon.h"
+#include "server/ops/device_choice.h"
 #include "server/ops/monitor.h"
 #include "server/ops/notify.h"
 #include "server/threads/pool.h"
@@ -405,6 +404,26 @@ static void allow_descriptors(uint64_t n)
     setrlimit(RLIMIT_NOFILE, &files); /* with fewer, accepting rests when they are used up */
 }
 
+/* The first of the devices asked for that opens; the error is the last one's. */
+static struct render_thread *open_device(struct daemon *daemon,
+                                         const struct service_options *options, struct error *error)
+{
+    struct device_try tries[DEVICE_MOST_TRIES];
+    struct render_thread *thread = NULL;
+    int n = device_tries(options->device, tries);
+    for (int i = 0; i < n && !thread; i++) {
+        const struct renderer_options renderer = {
+            .device = tries[i].device,
+            .n_threads = (unsigned)options->n_native_threads,
+            .isa = strcmp(options->native_isa, "auto") == 0 ? NULL : options->native_isa,
+            .block_cache = daemon->block_cache};
+        thread = render_thread_create(tries[i].kind, &renderer, daemon->completions, error);
+        if (!thread && i + 1 < n)
+            log_event(LOG_INFO, "no GPU: processors draw", log_text("text", error->text));
+    }
+    return thread;
+}
+
 /* Threads, worker programs and what they work for. The reader of cages starts while the device
  * opens. */
 static bool start_threads(struct service *service, struct error *error)
@@ -415,19 +434,11 @@ static bool start_threads(struct service *service, struct error *error)
     const struct loop_hooks hooks = {after_batch, tick, service};
     if (!(daemon->block_cache = block_cache_create((size_t)limits->spare_memory)))
         return error_set(error, ERROR_SERVER, "no memory for the daemon");
-    const struct renderer_options renderer = {
-        .device = options->device,
-        .n_threads = (unsigned)options->n_native_threads,
-        .isa = strcmp(options->native_isa, "auto") == 0 ? NULL : options->native_isa,
-        .block_cache = daemon->block_cache};
-    const struct renderer_device *device =
-        strcmp(options->device, "native") == 0 ? &native_renderer_device : &gl_device;
     return (daemon->loop = loop_create(&hooks, error)) && watch_signals(service, error) &&
            workers_init(&daemon->workers, NULL, &limits->workers, limits->assets.memory_budget,
                         error) &&
            (daemon->completions = completions_create(daemon->loop, error)) &&
-           (daemon->render_thread =
-                render_thread_create(device, &renderer, daemon->completions, error)) &&
+           (daemon->render_thread = open_device(daemon, options, error)) &&
            (daemon->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1,
                                        &encode_context, daemon->completions, error)) &&
            (daemon->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0,
