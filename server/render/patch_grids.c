@@ -277,10 +277,10 @@ static void choose_corner(struct chooser *c, uint32_t node)
     if (is_outside(c, &extent))
         return;
     uint32_t level = 0, levels = limit_levels(&c->tables->nodes[node]);
-    /* The node's own net bends four times as much as that of its first level, or somewhat less where many
-     * faces meet. */
+    /* The node's own net bends four times as much as that of its first level, or somewhat less where
+     * many faces meet. */
     bool is_small = in_px(c, &extent, extent.bound.radius) < TOLERANCE_PX ||
-                    in_px(c, &extent, bound_bend(&extent.bound)) < 2 * TOLERANCE_PX;
+                    in_px(c, &extent, bound_bend(&extent.bound)) < 3 * TOLERANCE_PX;
     for (; level < levels && !is_small; level++) {
         extent.bound = limit_level_bound(c->tables, node, level + 1);
         if (is_outside(c, &extent))

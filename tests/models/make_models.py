@@ -480,6 +480,25 @@ def nonmanifold():
     return Cage(points, faces)
 
 
+def triangles():
+    """A waved sheet of plain triangles with a boundary: inner vertices of 4 to 8 triangles."""
+    n, state = 10, 7
+
+    def random():
+        nonlocal state
+        state = (state * 1103515245 + 12345) % 2 ** 31
+        return state / 2 ** 31
+
+    points = [(i + 0.3 * (random() - 0.5), j + 0.3 * (random() - 0.5), math.sin(0.7 * i) * math.cos(0.5 * j) + 0.1 * random())
+              for j in range(n + 1) for i in range(n + 1)]
+    faces = []
+    for j in range(n):
+        for i in range(n):
+            a, b, c, d = (j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1, (j + 1) * (n + 1) + i)
+            faces += [(a, b, c), (a, c, d)] if random() < 0.5 else [(a, b, d), (b, c, d)]
+    return Cage(points, faces)
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
 
@@ -501,6 +520,7 @@ def main():
               comment="The same body and tags, creases by Chaikin's rule")
     write_obj(path("smoothtriangles.obj"), *smooth_triangles(), comment="The drum with smooth triangles")
     write_obj(path("nonmanifold.obj"), nonmanifold(), comment="A fin, a shared vertex, a turned quad")
+    write_obj(path("triangles.obj"), triangles(), comment="A waved sheet of plain triangles")
 
 
 if __name__ == "__main__":

@@ -155,22 +155,19 @@ static bool pixels_of(const struct native_frame *frame, const struct reach *r, i
 
 /* --- */
 
-/* The corners of all that is left of a CORNER below a level: the vertex, and those of the next
- * level that lie outermost. */
+/* The corners of all that is left of a CORNER below a level: the vertex, and the inner corners of that
+ * level's squares. */
 static void rest_corners(const struct native_frame *frame, uint32_t node, int level,
                          float corner[3][4])
 {
     const struct limit_node *of = &frame->model->tables->nodes[node];
-    int levels = (int)limit_levels(of);
-    bool is_last = level >= levels;
     for (int c = 1; c < 4; c++) {
         unsigned square = c == 1 ? 1 : c == 3 ? 2 : 3;
         struct native_patch room;
-        const struct native_patch *patch =
-            native_patch_get(frame->model, node,
-                             native_patch_index(of, is_last ? levels : level + 1, square), &room);
+        const struct native_patch *patch = native_patch_get(
+            frame->model, node, native_patch_index(of, level, square), &room);
         for (int k = 0; k < 3; k++)
-            corner[k][c] = patch->corner[k][is_last ? 0 : c];
+            corner[k][c] = patch->corner[k][0];
     }
     for (int k = 0; k < 3; k++)
         corner[k][0] = 0;
