@@ -74,7 +74,7 @@ SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/
 # Between messages and scenes: for those who speak to clients.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
 SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))
-RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c)
+RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/polygons/*.c)
 # Compiled once for each instruction set: its name, its lanes, and what tells the compiler.
 LANES_SRC := $(wildcard server/render/native/lanes/*.c)
 ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)

@@ -1,12 +1,4 @@
-// The edges of the polygons (--surface wireframe:LEVEL) over the picture that was shaded: lines of
-// WIDTH px in all, half of it on either side, by the distance in the picture to the nearest edge.
-// The grid's coordinates are linear over a triangle, so the diagonal of a quad is no edge. Where
-// lines come close they grow thinner, so that those of one direction take at most MOST of the surface,
-// and where the pixels cannot show them they fade to that mean: a fine mesh is a grey, not a noise.
-
-const uint FAN = 0x80000000u;
-const float WIDTH = 1.0, MOST = 0.2;
-const vec3 LINE = vec3(0.010), FILL = vec3(0.71);  // linear light
+// The edges of the polygons over the picture that was shaded.
 
 in vec3 seen_at;
 in vec3 facing;
@@ -15,22 +7,7 @@ flat in uvec2 where;
 
 layout(location = 0) out vec4 colour;
 
-// Share of the pixel under the lines of one of the grid's directions.
-float line(float at, bool is_fan)
-{
-    float nearest = round(at);
-    float per_px = max(length(vec2(dFdxFine(at), dFdyFine(at))), 1e-20);
-    float width = min(WIDTH, MOST / per_px);
-    float px = abs(at - nearest) / per_px;
-    float sharp = clamp(0.5 + 0.5 * width - px, 0.0, min(width, 1.0));
-    float mean = width * per_px;
-    // Of a fan's part only the edges at the n-gon's corner are edges.
-    return is_fan && nearest > 0.0 ? 0.0 : mix(sharp, mean, smoothstep(0.4, 0.8, per_px));
-}
-
 void main()
 {
-    bool is_fan = (where.x & FAN) != 0u;
-    float ink = 1.0 - (1.0 - line(grid.x, is_fan)) * (1.0 - line(grid.y, is_fan));
-    colour = vec4(srgb_encoded(mix(FILL, LINE, ink)), 1.0);
+    colour = wireframe_colour(grid, dFdxFine(grid), dFdyFine(grid), (where.x & FAN) != 0u);
 }

@@ -163,8 +163,8 @@ static const struct option_row OWN_ROWS[] = {
      add_listen},
     {"device", "auto|software|native|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0,
      NULL, "auto",
-     "a GPU if there is one, the software device, processors by vector code (of the exact\n"
-     "surface alone, no polygons), or the N-th device",
+     "a GPU if there is one, the software device, processors by vector code, or the\n"
+     "N-th device",
      set_device},
     {"native-threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_native_threads), 0, 0,
      NULL, "auto",

@@ -22,7 +22,7 @@ struct frame_work {
                       and its planes are kept. They are then as large as the whole picture;
                       renderer_begin() clears in_place where the device has no such images */
     struct frame_watch watch;
-    const struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
+    struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
 
     /* The renderer's from here on. */
     bool has_drawn; /* the last step drew a tile or a part of one; else it made the device ready for

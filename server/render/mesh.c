@@ -52,6 +52,7 @@ struct renderer_polygons *renderer_polygons_create(const struct limit_tables *ta
         error_set(error, ERROR_SERVER, "out of memory for polygons");
         return NULL;
     }
+    atomic_init(&polygons->holders, 1);
     if (mesh_init(&polygons->mesh, tables, level, watch, error))
         return polygons;
     free(polygons);
@@ -60,7 +61,17 @@ struct renderer_polygons *renderer_polygons_create(const struct limit_tables *ta
 
 void renderer_polygons_destroy(struct renderer_polygons *polygons)
 {
-    if (!polygons)
+    polygons_release(polygons);
+}
+
+void polygons_hold(struct renderer_polygons *polygons)
+{
+    atomic_fetch_add(&polygons->holders, 1);
+}
+
+void polygons_release(struct renderer_polygons *polygons)
+{
+    if (!polygons || atomic_fetch_sub(&polygons->holders, 1) > 1)
         return;
     mesh_finish(&polygons->mesh);
     free(polygons);
@@ -267,4 +278,22 @@ void mesh_finish(struct mesh *mesh)
     free(mesh->part);
     free(mesh->chunk);
     *mesh = (struct mesh){0};
+}
+
+bool mesh_part_is_outside(const struct mesh_part *part, const double centre[3],
+                          const struct view *view, const struct view_sides *sides)
+{
+    double world[3], camera[3], radius = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = (double)part->box_min[k], high = (double)part->box_max[k];
+        world[k] = centre[k] + 0.5 * (low + high);
+        radius = hypot(radius, 0.5 * (high - low));
+    }
+    view_transform(view, world, camera);
+    double px = view->units_per_px * (view->perspective ? fabs(camera[2]) + radius : 1);
+    /* The error of single precision in positions relative to the mesh's centre and to the eye. */
+    double rounding = 1e-6 * radius;
+    for (int k = 0; k < 3; k++)
+        rounding += 1e-6 * (fabs(camera[k]) + fabs(centre[k] - view->eye[k]));
+    return view_sides_exclude(sides, camera, radius + px + rounding);
 }

@@ -11,10 +11,12 @@
 #ifndef SHEEN_RENDER_MESH_H
 #define SHEEN_RENDER_MESH_H
 
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "server/render/frame_watch.h"
+#include "server/render/view.h"
 #include "server/surface/tables.h"
 
 /* Of one mesh: 256 MiB of vertices, and 192 MiB of indices. */
@@ -55,12 +57,22 @@ struct mesh {
 
 struct renderer_polygons {
     struct mesh mesh;
+    atomic_uint holders;
 };
+
+/* A device may hold polygons on after the frame that they were made for. Whoever holds them releases them; the last one
+ * frees them. Any thread. */
+void polygons_hold(struct renderer_polygons *polygons);
+void polygons_release(struct renderer_polygons *polygons); /* NULL is safe */
 
 /* ERROR_REQUEST when the level has more than MESH_MAX_VERTICES, naming the finest that has not;
  * ERROR_SERVER when memory is short or the watch says that nobody waits. */
 bool mesh_init(struct mesh *mesh, const struct limit_tables *tables, uint32_t level,
                const struct frame_watch *watch, struct error *error);
 void mesh_finish(struct mesh *mesh);
+
+/* No triangle of a part reaches the tile that the sides are those of, or a pixel beside it. `centre` is the mesh's. */
+bool mesh_part_is_outside(const struct mesh_part *part, const double centre[3],
+                          const struct view *view, const struct view_sides *sides);
 
 #endif

@@ -25,6 +25,12 @@ def files_of(name):
     return lists[name]
 
 
+def path_of(file_name):
+    """What no graphics card runs stands here."""
+    own = os.path.join(HERE, file_name)
+    return own if os.path.exists(own) else os.path.join(HERE, "..", file_name)
+
+
 def main():
     name = sys.argv[1]
     text = ""
@@ -32,7 +38,7 @@ def main():
         if file_name == "kinds":
             text += KINDS
             continue
-        with open(os.path.join(HERE, "..", file_name + ".glsl"), encoding="utf-8") as file:
+        with open(path_of(file_name + ".glsl"), encoding="utf-8") as file:
             text += file.read()
     text = subprocess.run(os.environ.get("CC", "cc").split() + ["-E", "-P", "-undef", "-nostdinc", "-xc"] +
                           ["-D" + macro for macro in MACROS] + ["-"],

@@ -22,8 +22,8 @@ PLAIN = {"float": "float", "int": "int32_t", "uint": "uint32_t", "bool": "bool",
 # Built-in functions by their result: "same" as the widest argument, "scalar" of its base, or a type.
 BUILTINS = {
     **{name: "same" for name in (
-        "abs sign floor ceil round fract min max clamp mix step sqrt inversesqrt pow exp2 log2 cross normalize "
-        "ldexp transpose").split()},
+        "abs sign floor ceil round fract min max clamp mix step smoothstep sqrt inversesqrt pow exp2 log2 cross "
+        "normalize ldexp transpose").split()},
     **{name: "scalar" for name in "dot length distance".split()},
     **{name: "bools" for name in ("lessThan lessThanEqual greaterThan greaterThanEqual").split()},
     "any": BOOL, "all": BOOL, "bitCount": INT, "findLSB": INT, "floatBitsToUint": "uints",

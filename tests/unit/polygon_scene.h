@@ -1,11 +1,15 @@
-/* A model on a software device, and frames of it, for the tests of polygons. */
+/* A model on a software device, and frames of it, for the tests of polygons, which both devices must pass. */
 #ifndef SHEEN_TESTS_POLYGON_SCENE_H
 #define SHEEN_TESTS_POLYGON_SCENE_H
 
 #include "server/render/gl/device.h"
+#include "server/render/native/device.h"
 #include "server/render/renderer.h"
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
+
+/* The device that scenes are opened on. */
+static const struct renderer_device *scene_device = &gl_device;
 
 struct scene {
     struct limit_tables tables;
@@ -18,7 +22,7 @@ static inline void open_scene(struct scene *scene, size_t slice)
 {
     const struct renderer_options options = {.device = "software", .slice = slice};
     struct error error = {0};
-    scene->renderer = renderer_create(&gl_device, &options, &error);
+    scene->renderer = renderer_create(scene_device, &options, &error);
     if (!scene->renderer)
         fail_msg("%s", error.text);
     scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
@@ -62,5 +66,12 @@ static inline void assert_same(const struct frame *a, const struct frame *b)
                                 (size_t)a->width_px * a->height_px *
                                     frame_plane_bytes((enum frame_plane)(1 << p)));
 }
+
+/* Runs the tests on one device after the other, and returns how many have failed. */
+#define RETURN_FAILED_ON_BOTH_DEVICES(tests)                                                       \
+    scene_device = &gl_device;                                                                     \
+    int failed_on_gl = cmocka_run_group_tests_name("GL", tests, NULL, NULL);                       \
+    scene_device = &native_renderer_device;                                                        \
+    return failed_on_gl + cmocka_run_group_tests_name("native", tests, NULL, NULL)
 
 #endif

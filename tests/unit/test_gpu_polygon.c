@@ -358,5 +358,5 @@ int main(void)
         cmocka_unit_test(test_ngons),
         cmocka_unit_test(test_too_many),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    RETURN_FAILED_ON_BOTH_DEVICES(tests);
 }

@@ -1,71 +1,8 @@
 /* The native device's pictures against those of the GL device: every line family, light and pattern. Both run the same
  * shaders (shaders/lanes), so that what differs is rounding, and what each sees at a silhouette. */
-#include "server/render/native/device.h"
-#include "tests/unit/renderer_frames.h"
+#include "tests/unit/native_scene.h"
 
 enum { WIDTH = 200, HEIGHT = 150, PIXELS = WIDTH * HEIGHT };
-
-struct devices {
-    struct limit_tables tables;
-    struct renderer *renderer[2];
-    struct renderer_model *model[2];
-};
-
-static void open_devices(struct devices *devices, const char *path)
-{
-    const struct renderer_device *const kinds[2] = {&gl_device, &native_renderer_device};
-    const struct renderer_options options = {.device = "software"};
-    struct error error = {0};
-    build_file(path, &devices->tables);
-    for (int i = 0; i < 2; i++) {
-        devices->renderer[i] = renderer_create(kinds[i], &options, &error);
-        assert_non_null(devices->renderer[i]);
-        devices->model[i] = renderer_model_create(devices->renderer[i], &devices->tables, &error);
-        assert_non_null(devices->model[i]);
-    }
-}
-
-static void close_devices(struct devices *devices)
-{
-    for (int i = 0; i < 2; i++) {
-        renderer_model_destroy(devices->renderer[i], devices->model[i]);
-        renderer_destroy(devices->renderer[i]);
-    }
-    limit_tables_finish(&devices->tables);
-}
-
-/* Of two frames: pixels whose colours are further apart than one and than three steps, hits of one alone, and other
- * faces. */
-struct difference {
-    int over_one, over_three, hits, faces, lights;
-};
-
-static int colour_step(const struct frame *a, const struct frame *b, int pixel)
-{
-    const uint8_t *p = (const uint8_t *)a->plane[0] + 4 * pixel;
-    const uint8_t *q = (const uint8_t *)b->plane[0] + 4 * pixel;
-    int most = 0;
-    for (int k = 0; k < 4; k++)
-        most = abs(p[k] - q[k]) > most ? abs(p[k] - q[k]) : most;
-    return most;
-}
-
-static struct difference compare(const struct frame *a, const struct frame *b)
-{
-    struct difference found = {0};
-    const uint32_t *face_a = a->plane[3], *face_b = b->plane[3];
-    const float *light_a = a->plane[4], *light_b = b->plane[4];
-    for (int i = 0; i < PIXELS; i++) {
-        int step = colour_step(a, b, i);
-        found.over_one += step > 1;
-        found.over_three += step > 3;
-        bool hit_a = face_a[3 * i] != UINT32_MAX, hit_b = face_b[3 * i] != UINT32_MAX;
-        found.hits += hit_a != hit_b;
-        found.faces += hit_a && hit_b && face_a[3 * i] != face_b[3 * i];
-        found.lights += isnan(light_a[2 * i]) != isnan(light_b[2 * i]);
-    }
-    return found;
-}
 
 static struct difference difference_of(struct devices *devices, const struct frame_request *request)
 {
@@ -76,18 +13,6 @@ static struct difference difference_of(struct devices *devices, const struct fra
     for (int i = 0; i < 2; i++)
         frame_finish(&frames[i]);
     return found;
-}
-
-/* Silhouettes and borders of Ptex faces may fall to either side of a pixel's centre, and a pixel at an edge may be one
- * whose rays meet the surface on one device and none on the other. */
-static void assert_alike(const struct difference *found, const char *what)
-{
-    if (found->hits > PIXELS / 2000 || found->faces > PIXELS / 500 ||
-        found->lights > PIXELS / 500 || found->over_one > PIXELS / 500 ||
-        found->over_three > PIXELS / 1000)
-        fail_msg(
-            "%s: hits %d, faces %d, lights %d, colours by more than one step %d, than three %d",
-            what, found->hits, found->faces, found->lights, found->over_one, found->over_three);
 }
 
 static void test_families_and_lights(void **state)
@@ -238,21 +163,6 @@ static void test_tiles_and_kept_planes(void **state)
     close_devices(&devices);
 }
 
-static void test_polygons_are_refused(void **state)
-{
-    struct devices devices;
-    struct error error = {0};
-    struct frame frame;
-    (void)state;
-    open_devices(&devices, "tests/models/fender.obj");
-    struct frame_request request = request_for(&devices.tables, WIDTH, HEIGHT);
-    request.surface = (struct surface){SURFACE_POLYGON, 1};
-    assert_false(renderer_render(devices.renderer[1], devices.model[1], &request, &frame, &error));
-    assert_int_equal(error.kind, ERROR_REQUEST);
-    assert_non_null(strstr(error.text, "polygons"));
-    close_devices(&devices);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,7 +171,6 @@ int main(void)
         cmocka_unit_test(test_images),
         cmocka_unit_test(test_one_sample_and_several_lights),
         cmocka_unit_test(test_tiles_and_kept_planes),
-        cmocka_unit_test(test_polygons_are_refused),
     };
     return cmocka_run_group_tests_name("native_frames", tests, NULL, NULL);
 }

@@ -1,7 +1,5 @@
 #include "server/render/gl/polygon.h"
 
-#include <math.h>
-
 #include "server/render/gl/context/check.h"
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/visibility.h"
@@ -28,27 +26,6 @@ static void attach(struct gl_renderer *r, const GLuint *planes, GLsizei n)
         glNamedFramebufferTexture(framebuffer, all[k], k < n ? planes[k] : 0, 0);
     glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, r->target.seen_depth, 0);
     glNamedFramebufferDrawBuffers(framebuffer, n, all);
-}
-
-/* No triangle of the part reaches the tile, or a pixel beside it. */
-static bool is_outside(const struct slice *slice, const struct mesh_part *part,
-                       const struct view_sides *sides)
-{
-    const struct polygon_mesh *mesh = slice->mesh;
-    const struct view *view = slice->view;
-    double world[3], camera[3], radius = 0;
-    for (int k = 0; k < 3; k++) {
-        double low = (double)part->box_min[k], high = (double)part->box_max[k];
-        world[k] = mesh->centre[k] + 0.5 * (low + high);
-        radius = hypot(radius, 0.5 * (high - low));
-    }
-    view_transform(view, world, camera);
-    double px = view->units_per_px * (view->perspective ? fabs(camera[2]) + radius : 1);
-    /* The error of single precision in positions relative to the mesh's centre and to the eye. */
-    double rounding = 1e-6 * radius;
-    for (int k = 0; k < 3; k++)
-        rounding += 1e-6 * (fabs(camera[k]) + fabs(mesh->centre[k] - view->eye[k]));
-    return view_sides_exclude(sides, camera, radius + px + rounding);
 }
 
 /* Indices of one chunk. */
@@ -83,7 +60,7 @@ static void draw(struct slice *slice, GLuint program)
     glUniform3fv(glGetUniformLocation(program, "centre"), 1, centre);
     for (; slice->part < mesh->n_parts; slice->part++) {
         const struct mesh_part *next = &mesh->part[slice->part];
-        if (is_outside(slice, next, &sides))
+        if (mesh_part_is_outside(next, mesh->centre, slice->view, &sides))
             continue;
         if (slice->left == 0)
             break;

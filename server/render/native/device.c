@@ -14,6 +14,8 @@ static void destroy(struct renderer *renderer)
     struct native_renderer *r = native_renderer_of(renderer);
     native_device_destroy(r->device);
     native_target_finish(&r->target);
+    native_polygon_stage_finish(&r->polygons);
+    native_meshes_finish(&r->meshes);
     free(r);
 }
 
@@ -63,7 +65,7 @@ static struct renderer_model *model_create(struct renderer *renderer,
 static void model_destroy(struct renderer *renderer, struct renderer_model *model)
 {
     struct native_shown *shown = (struct native_shown *)(void *)model;
-    (void)renderer;
+    native_meshes_forget(&native_renderer_of(renderer)->meshes, shown->serial);
     native_model_destroy(shown->model);
     free(shown);
 }
@@ -73,11 +75,11 @@ static size_t model_bytes(const struct limit_tables *tables)
     return native_model_most_bytes(tables, NATIVE_PATCH_BYTES);
 }
 
-/* Of polygons, which there are not. */
 static uint64_t paused_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px)
 {
-    (void)width_px, (void)height_px, (void)tile_px;
-    return 0;
+    const struct tile_size tile = tiles_cut(width_px, height_px, tile_px, false);
+    const struct tile_size drawn = tile_size_with_margin(&tile, width_px, height_px);
+    return native_seen_bytes(drawn.width, drawn.height);
 }
 
 const struct renderer_device native_renderer_device = {

@@ -4,6 +4,8 @@
 
 #include "server/render/device.h"
 #include "server/render/native/native.h"
+#include "server/render/native/polygons/meshes.h"
+#include "server/render/native/polygons/fill.h"
 #include "server/render/native/programs/program.h"
 #include "server/render/native/target.h"
 #include "server/render/tiles.h"
@@ -20,6 +22,7 @@ struct native_kept {
     uint64_t serial; /* of the model */
     uint32_t width_px, height_px;
     struct camera camera;
+    struct surface surface;
     bool edges; /* and what edges take */
 };
 
@@ -29,6 +32,8 @@ struct native_renderer {
     struct native_device *device;
     struct native_target target;
     struct native_kept kept;
+    struct native_polygon_stage polygons;
+    struct native_meshes meshes;
     uint64_t next_serial;
 };
 

@@ -41,6 +41,8 @@ struct native_rays {
     float nearest, farthest; /* nearness of the view's near and of its far depth */
 };
 
+void native_rays_init(struct native_rays *rays, const struct view *view);
+
 /* What of its node a piece is. */
 enum piece_kind {
     PIECE_OF_PATCH, /* a part of one sub-patch, or all of it */

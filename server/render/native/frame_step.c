@@ -2,7 +2,9 @@
 #include <string.h>
 
 #include "server/base/clock.h"
+#include "server/base/fault.h"
 #include "server/render/native/device_internal.h"
+#include "server/render/native/polygons/planes.h"
 #include "server/render/native/readback.h"
 #include "server/render/native/stages.h"
 
@@ -11,22 +13,26 @@ struct native_frame_state {
     struct block_cache *block_cache;
     uint32_t x, y; /* of the next tile */
     struct tile_size tile;
+    /* Of polygons: their mesh, which the frame holds, and what has been drawn of the tile. */
+    struct renderer_polygons *polygons;
+    struct native_seen_triangles seen;
+    size_t part; /* of the mesh, the next one to be drawn */
 };
+
+/* So many triangles are drawn a step, which takes about as long as a tile of the exact surface. */
+static const size_t TRIANGLES_A_STEP = (size_t)1 << 18;
 
 static void destroy_state(struct frame_state *state)
 {
     struct native_frame_state *own = (struct native_frame_state *)(void *)state;
+    polygons_release(own->polygons);
+    native_seen_finish(&own->seen);
     block_cache_give(own->block_cache, own);
 }
 
 bool native_frame_begin(struct renderer *renderer, struct frame_work *work, struct error *error)
 {
     const struct frame_request *request = work->request;
-    if (request->surface.kind != SURFACE_EXACT)
-        return error_set(
-            error, ERROR_REQUEST,
-            "surface: the native device draws no polygons and wireframes yet; a daemon "
-            "of --device software does");
     struct block_cache *block_cache = renderer->options.block_cache;
     struct native_frame_state *own = block_cache_take(block_cache, sizeof *own);
     if (!own)
@@ -47,6 +53,8 @@ static bool is_kept(const struct native_kept *kept, const struct native_shown *s
     return kept->serial == shown->serial && kept->width_px == request->width_px &&
            kept->height_px == request->height_px &&
            camera_is_same(&kept->camera, &request->camera) &&
+           kept->surface.kind == request->surface.kind &&
+           kept->surface.level == request->surface.level &&
            (kept->edges || !request_has_coverage(request));
 }
 
@@ -66,6 +74,7 @@ static bool draw_surface(struct native_renderer *r, const struct native_drawing 
 {
     struct native_times parts;
     uint64_t begin_us = clock_now_us();
+    r->kept.serial = 0;
     if (!native_target_reserve(&r->target, d->place.width, d->place.height, error) ||
         !native_draw(r->device, d->shown->model, view, &d->place, &r->target.planes, &parts, error))
         return false;
@@ -77,15 +86,70 @@ static bool draw_surface(struct native_renderer *r, const struct native_drawing 
     return ok;
 }
 
-static bool draw_tile(struct native_renderer *r, const struct native_drawing *d,
-                      const struct view *view, const struct frame_watch *watch, bool is_kept_view,
-                      struct frame *frame, struct error *error)
+static bool is_of_polygons(const struct frame_request *request)
 {
-    if (!is_kept_view && !draw_surface(r, d, view, frame, error))
+    return request->surface.kind != SURFACE_EXACT;
+}
+
+/* The frame's polygons, which it holds from now on. False: the device has none. */
+static bool find_polygons(struct native_renderer *r, struct native_frame_state *own,
+                          const struct native_shown *shown, const struct frame_work *work)
+{
+    uint32_t level = work->request->surface.level;
+    if (own->polygons || (!work->polygons && fault_at("gpu.polygons")))
+        return own->polygons;
+    own->polygons = native_meshes_find(&r->meshes, shown->serial, level);
+    if (!own->polygons && work->polygons) {
+        native_meshes_keep(&r->meshes, shown->serial, level, work->polygons);
+        own->polygons = native_meshes_find(&r->meshes, shown->serial, level);
+    }
+    return own->polygons;
+}
+
+/* Stages 1 and 2 of polygons, as much as a step may draw. *is_whole: all of the tile. Planes follow in a step of their own
+ * if drawing took several. */
+static bool draw_polygons(struct native_renderer *r, struct native_frame_state *own,
+                          const struct native_drawing *d, const struct view *view,
+                          struct frame *frame, bool *is_whole, struct error *error)
+{
+    const struct mesh *mesh = &own->polygons->mesh;
+    uint64_t begin_us = clock_now_us();
+    bool is_first = own->part == 0, is_drawn = own->part == mesh->n_parts && !is_first;
+    size_t most = r->base.options.slice ? r->base.options.slice : TRIANGLES_A_STEP;
+    if (!is_drawn && !native_polygons_fill(&r->polygons, r->device, mesh, view, &d->place,
+                                           &own->seen, &own->part, most, error))
         return false;
+    *is_whole = is_drawn || (is_first && own->part == mesh->n_parts);
+    if (*is_whole) {
+        own->part = 0;
+        r->kept.serial = 0;
+        if (!native_target_reserve(&r->target, d->place.width, d->place.height, error))
+            return false;
+        native_polygon_planes(d, view, mesh, &own->seen);
+    }
+    frame->times.visibility_us += clock_now_us() - begin_us;
+    return true;
+}
+
+/* *is_whole: the tile stands in the frame; else there is more to draw of it. */
+static bool draw_tile(struct native_renderer *r, struct native_frame_state *own,
+                      const struct native_drawing *d, const struct view *view,
+                      const struct frame_watch *watch, bool is_kept_view, struct frame *frame,
+                      bool *is_whole, struct error *error)
+{
+    const struct frame_request *request = d->request;
+    *is_whole = true;
+    if (!is_kept_view &&
+        !(is_of_polygons(request) ? draw_polygons(r, own, d, view, frame, is_whole, error)
+                                  : draw_surface(r, d, view, frame, error)))
+        return false;
+    if (!*is_whole)
+        return true;
     uint64_t begin_us = clock_now_us();
     if (!native_shade(d, watch, frame, error))
         return false;
+    if (request->surface.kind == SURFACE_WIREFRAME)
+        native_polygon_edges(d, view, &own->polygons->mesh);
     uint64_t shaded_us = clock_now_us();
     frame->times.shade_us += shaded_us - begin_us;
     frame->shows_surface = frame->shows_surface || native_any_seen(&r->target);
@@ -101,6 +165,7 @@ static void keep(struct native_kept *kept, const struct native_shown *shown,
                                  .width_px = request->width_px,
                                  .height_px = request->height_px,
                                  .camera = request->camera,
+                                 .surface = request->surface,
                                  .edges = request_has_coverage(request)};
 }
 
@@ -111,7 +176,11 @@ enum frame_step native_frame_step(struct renderer *renderer, struct renderer_mod
     struct native_frame_state *own = (struct native_frame_state *)(void *)work->state;
     const struct native_shown *shown = (const struct native_shown *)(const void *)model;
     const struct frame_request *request = work->request;
-    bool is_kept_view = own->x == 0 && own->y == 0 && is_kept(&r->kept, shown, request);
+    if (is_of_polygons(request) && !find_polygons(r, own, shown, work))
+        return FRAME_POLYGONS;
+    bool is_kept_view =
+             own->x == 0 && own->y == 0 && own->part == 0 && is_kept(&r->kept, shown, request),
+         is_whole;
     if (is_kept_view)
         own->tile = (struct tile_size){request->width_px, request->height_px};
     struct tile tile = tile_at(own->x, own->y, &own->tile, request->width_px, request->height_px);
@@ -123,12 +192,12 @@ enum frame_step native_frame_step(struct renderer *renderer, struct renderer_mod
     view_init(&view, &request->camera, request->width_px, request->height_px,
               model->tables->hull_min, model->tables->hull_max);
     view_block_fill(&drawing.view, &view, &drawing.place);
-    if (!is_kept_view)
-        r->kept.serial = 0;
     work->has_drawn = true;
     if (!frame_watch_check(&work->watch, error) ||
-        !draw_tile(r, &drawing, &view, &work->watch, is_kept_view, frame, error))
+        !draw_tile(r, own, &drawing, &view, &work->watch, is_kept_view, frame, &is_whole, error))
         return FRAME_FAILED;
+    if (!is_whole)
+        return FRAME_MORE;
     if (tile.width == request->width_px && tile.height == request->height_px && !is_kept_view)
         keep(&r->kept, shown, request);
     own->x += own->tile.width;

@@ -355,6 +355,20 @@ LANE_INLINE vmask v_mask(unsigned bits)
 }
 #endif
 
+/* Of integers of 32 bits. */
+LANE_INLINE vint v_gather_int(const void *p, vint at)
+{
+#if defined __x86_64__ && LANES >= 8
+    return (vint)v_gather((const float *)p, at);
+#else
+    typedef int32_t number __attribute__((may_alias));
+    vint a = {0};
+    for (int k = 0; k < LANES; k++)
+        a[k] = ((const number *)p)[at[k]];
+    return a;
+#endif
+}
+
 /* A block of pixels: lanes run along BLOCK_WIDTH of a row, then on to the next row. */
 #define BLOCK_WIDTH (LANES < 8 ? LANES : 8)
 #define BLOCK_HEIGHT (LANES / BLOCK_WIDTH)

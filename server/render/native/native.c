@@ -203,6 +203,11 @@ const char *native_device_name(const struct native_device *device)
     return device->set->words;
 }
 
+const struct native_set *native_device_set(const struct native_device *device)
+{
+    return device->set;
+}
+
 const struct native_programs *native_device_programs(const struct native_device *device)
 {
     return &device->set->programs;
@@ -221,10 +226,8 @@ unsigned native_device_threads(const struct native_device *device)
 
 /* --- */
 
-static void set_rays(struct native_frame *frame)
+void native_rays_init(struct native_rays *rays, const struct view *view)
 {
-    const struct view *view = frame->view;
-    struct native_rays *rays = &frame->rays;
     for (int a = 0; a < 3; a++)
         for (int k = 0; k < 3; k++)
             rays->axis[a][k] = (float)view->axis[a][k];
@@ -385,7 +388,7 @@ bool native_draw(struct native_device *device, struct native_model *model, const
                                    .grid_s = device->grid_s,
                                    .grid_t = device->grid_t};
     native_model_turn(model);
-    set_rays(frame);
+    native_rays_init(&frame->rays, view);
     set_tiles(frame);
     if (set_parts(frame, device)) {
         native_team_run(device->team, work, &job);

@@ -17,6 +17,7 @@
 
 struct native_device;
 struct native_programs; /* program.h */
+struct native_set;      /* sets.h */
 struct native_model;    /* patches.h */
 
 struct native_options {
@@ -32,6 +33,7 @@ void native_device_destroy(struct native_device *device); /* NULL is safe */
 /* The instruction set: "AVX-512" and so on. */
 const char *native_device_name(const struct native_device *device);
 unsigned native_device_threads(const struct native_device *device);
+const struct native_set *native_device_set(const struct native_device *device);
 /* The programs made of shaders/, compiled for the device's instruction set. */
 const struct native_programs *native_device_programs(const struct native_device *device);
 /* Every thread of the device calls work(owner, its number); returns when all have come back. */

@@ -7,6 +7,8 @@
 #include "server/render/native/programs/program.h"
 
 struct native_frame;
+struct native_polygon_thread;
+struct native_slice;
 struct native_thread;
 
 struct native_set {
@@ -20,6 +22,10 @@ struct native_set {
     void (*tile)(struct native_frame *frame, struct native_thread *thread, uint32_t tile);
     /* After all tiles, by one thread: the pixels in gaps. */
     void (*gaps)(struct native_frame *frame, struct native_thread *thread);
+    /* Of polygons (polygons/fill.h): the triangles of the slice's part of that number, and the tiles that they lie in. */
+    void (*place)(struct native_slice *slice, struct native_polygon_thread *thread, uint32_t part);
+    /* Draws what has been placed in a tile. */
+    void (*triangles)(struct native_slice *slice, uint32_t tile);
 };
 
 /* The set of that name, or the widest that the processor has; NULL where it has not. Any thread. */

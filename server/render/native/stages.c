@@ -98,8 +98,13 @@ static void run_program(const struct native_drawing *d, native_program *program,
         native_device_run(d->device, work, &run);
 }
 
-/* What every program finds. */
-static struct native_bindings bindings_of(const struct native_drawing *d)
+void native_run_program(const struct native_drawing *d, native_program *program,
+                        const struct native_bindings *bindings, uint32_t n_workgroups)
+{
+    run_program(d, program, bindings, n_workgroups, 1, NULL);
+}
+
+struct native_bindings native_bindings_of(const struct native_drawing *d)
 {
     const struct native_target *t = d->target;
     const struct limit_tables *tables = d->shown->base.tables;
@@ -198,7 +203,7 @@ bool native_edges(const struct native_drawing *d, struct error *error)
 {
     const struct native_programs *programs = native_device_programs(d->device);
     struct native_target *t = d->target;
-    struct native_bindings b = bindings_of(d);
+    struct native_bindings b = native_bindings_of(d);
     b.groups = list_of(d, NATIVE_GROUPS);
     b.rims = list_of(d, NATIVE_RIMS);
     b.edges = list_of(d, NATIVE_FOUND_EDGES);
@@ -212,7 +217,7 @@ bool native_edges(const struct native_drawing *d, struct error *error)
     memset(t->coverage.words, 0, (size_t)t->width * t->height * sizeof(float));
     run_program(d, programs->edges_find, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
 
-    b = bindings_of(d);
+    b = native_bindings_of(d);
     b.listed = list_of(d, NATIVE_RIMS);
     run_program(d, programs->silhouette, &b, b.listed->n, LISTED_PER_WORKGROUP, NULL);
 
@@ -221,7 +226,7 @@ bool native_edges(const struct native_drawing *d, struct error *error)
     b.rounded = list_of(d, NATIVE_ROUNDED);
     run_program(d, programs->edges_recheck, &b, b.listed->n, EDGES_PER_WORKGROUP, NULL);
 
-    b = bindings_of(d);
+    b = native_bindings_of(d);
     b.listed = list_of(d, NATIVE_ROUNDED);
     b.max_rounded = tile_max_rounded(&d->place);
     uint32_t with_rays = b.listed->n < b.max_rounded ? b.listed->n : b.max_rounded;
@@ -318,7 +323,7 @@ static void shade_light(const struct native_drawing *d, uint32_t i, struct nativ
     const struct native_target *t = d->target;
     struct light_block block;
     struct native_array hits = {t->hits, (uint32_t)(t->n_hit_words / HIT_WORDS)};
-    struct native_bindings b = bindings_of(d);
+    struct native_bindings b = native_bindings_of(d);
     b.RoundedHits = &hits;
     light_block_fill(&block, request, i);
     b.Light = &block;

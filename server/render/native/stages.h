@@ -18,6 +18,11 @@ struct native_drawing {
     struct tile inside; /* of that, the tile itself, without its margin */
 };
 
+/* What every program finds. */
+struct native_bindings native_bindings_of(const struct native_drawing *drawing);
+/* Runs a program that lists no pixels. */
+void native_run_program(const struct native_drawing *drawing, native_program *program,
+                        const struct native_bindings *bindings, uint32_t n_workgroups);
 /* After stage 2: what the other stages read of it beside its planes, and the groups of pixels near what is seen. */
 void native_find_groups(const struct native_drawing *drawing);
 /* Of the target: whether stage 1 has seen anything. */

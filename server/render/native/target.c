@@ -34,15 +34,15 @@ static void lay_out_surface(struct native_target *t, struct layout *layout)
     t->border = take(layout, 1);
     t->seen = take(layout, 2);
     t->seen_depth = take(layout, 1);
-    struct native_image face = take(layout, 1), uv = take(layout, 2);
+    t->ptex = take(layout, 3);
     t->planes = (struct native_planes){
         .pitch = layout->width,
         .depth = floats(&t->hit_depth, 0),
         .normal = {floats(&t->normal, 0), floats(&t->normal, 1), floats(&t->normal, 2)},
         .shape = {floats(&t->shape, 0), floats(&t->shape, 1), floats(&t->normal, 3)},
-        .face = face.words,
-        .u = floats(&uv, 0),
-        .v = floats(&uv, 1),
+        .face = t->ptex.words,
+        .u = floats(&t->ptex, 1),
+        .v = floats(&t->ptex, 2),
         .border = t->border.words,
         .node = t->seen.words,
         .where = t->seen.words + t->seen.channel_words,

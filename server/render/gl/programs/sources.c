@@ -55,8 +55,11 @@ struct program_source source_of_single(enum single_program program)
         "border.glsl", "edges.glsl", "rounded.glsl", "pieces.glsl", "edges_recheck.comp.glsl",
         NULL};
     static const char *const vertex[] = {"view.glsl", "polygon.vert.glsl", NULL};
-    static const char *const polygons[] = {"view.glsl", "basis.glsl", "polygon.frag.glsl", NULL};
-    static const char *const wireframe[] = {"srgb.glsl", "wireframe.frag.glsl", NULL};
+    static const char *const polygons[] = {"view.glsl", "basis.glsl", "polygon.glsl",
+                                           "polygon.frag.glsl", NULL};
+    static const char *const wireframe[] = {"view.glsl", "basis.glsl",     "polygon.glsl",
+                                            "srgb.glsl", "wireframe.glsl", "wireframe.frag.glsl",
+                                            NULL};
 #define NO_TABLES "#define TEXTURES_FREE 0\n"
     static const struct program_source sources[SINGLE_PROGRAMS] = {
         [PROGRAM_GATHER] = {NO_TABLES, {gather, NULL}},

@@ -602,6 +602,11 @@ FOR_SCALAR(float)
 FOR_SCALAR(int32_t)
 FOR_SCALAR(uint32_t)
 #undef FOR_SCALAR
+INLINE vfloat smoothstep(vfloat low, vfloat high, vfloat a)
+{
+    vfloat t = clamp((a - low) / (high - low), vfloat{}, lanes(1.0f));
+    return t * t * (3.0f - 2.0f * t);
+}
 INLINE vfloat mix(vfloat a, vfloat b, vfloat t)
 {
     return a + (b - a) * t;

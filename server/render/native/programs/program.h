@@ -65,15 +65,16 @@ struct native_share {
 struct native_bindings {
     const void *View, *Light; /* struct view_block, struct light_block */
     struct native_made_texels texels;
-    struct native_texels heads, nodes, adjacency;
+    struct native_texels heads, nodes, adjacency, vertices;
     struct native_image seen, seen_depth, hit_depth, normal, shape, ptex, border;
     struct native_image silhouette, colour, coverage;
     struct native_image light_st, curvature, light_change;
     struct native_image next_light, next_missed, behind_light, behind_missed;
     struct native_picture picture;
     struct native_list *groups, *listed, *edges, *high_curvature, *rounded, *rims;
-    struct native_array *RoundedHits;
+    struct native_array *RoundedHits, *Corners;
     struct native_share *Share;
+    float centre[3];
     int32_t shaded[4], inside[4];
     int32_t line_family, light_kind, pattern_kind;
     bool is_soft, is_filtered;
@@ -87,7 +88,7 @@ typedef void native_program(const struct native_bindings *bindings, uint32_t fir
 struct native_programs {
     native_program *edges_find, *edges_recheck, *silhouette, *rounded_solve;
     native_program *shade, *edges_shade, *high_curvature_shade, *rounded_shade;
-    native_program *shade_planes, *share;
+    native_program *shade_planes, *share, *polygon_planes, *polygon_edges;
 };
 
 #endif
