@@ -14,7 +14,6 @@
 enum account_class {
     ACCOUNT_ASSETS,      /* stored files, and tables, texels and polygons made of them */
     ACCOUNT_INPUT,       /* uploads and long messages under way, files being read */
-    ACCOUNT_POLYGONS,    /* polygons on their way to the device */
     ACCOUNT_INTERACTIVE, /* interactive frames, from the first tile to the last byte sent */
     ACCOUNT_PATIENT,     /* the same of stills and batches, which may wait for others */
 };

@@ -21,6 +21,7 @@ struct store {
     struct store_shares shares;
     uint64_t n_hits, n_misses, n_evictions;
     unsigned n_building;
+    unsigned n_polygons_made; /* polygons that the pool makes now */
     const struct asset *building[STORE_MAX_BUILDS];
     atomic_bool cancelled;
     TAILQ_HEAD(asset_builds, asset) builds; /* wait for a turn */
@@ -90,6 +91,7 @@ static void asset_destroy(struct asset *asset)
         model_destroy(asset->model, store->render_thread);
     if (asset->image)
         light_image_destroy(asset->image, store->render_thread);
+    renderer_polygons_destroy(asset->polygons);
     free(asset);
 }
 
@@ -187,7 +189,7 @@ static bool make_room(struct store *store, const uint8_t *asker, const struct wa
     return true;
 }
 
-/* Exactly this owner's. */
+/* Exactly this owner's model or image. */
 static struct asset *find_owned(struct store *store, const uint8_t *owner, enum asset_kind kind,
                                 const uint8_t *sha256)
 {
@@ -286,7 +288,19 @@ static struct asset *add_entry(struct store *store, const uint8_t *holder)
     asset->share->n_entries++;
     account_init(&asset->account, &asset->share->account, ACCOUNT_NO_LIMIT);
     LIST_INIT(&asset->waiters);
+    atomic_init(&asset->is_unwanted, false);
     return asset;
+}
+
+/* All but its place by use. */
+static void enter(struct asset *asset, enum asset_kind kind, const uint8_t *sha256,
+                  const uint8_t *owner)
+{
+    asset->kind = kind;
+    memcpy(asset->sha256, sha256, MODEL_ID_BYTES);
+    memcpy(asset->owner, owner, sizeof asset->owner);
+    LIST_INSERT_HEAD(bucket_of(asset->store, sha256), asset, bucket_link);
+    asset->store->n_assets++;
 }
 
 bool store_add(struct store *store, const uint8_t owner[static OWNER_BYTES],
@@ -307,13 +321,9 @@ bool store_add(struct store *store, const uint8_t owner[static OWNER_BYTES],
         return known || error_set(error, ERROR_SERVER,
                                   "%s: no room for another model or image: try again later", name);
     }
-    asset->kind = kind;
-    memcpy(asset->sha256, sha256, MODEL_ID_BYTES);
-    memcpy(asset->owner, owner, sizeof asset->owner);
+    enter(asset, kind, sha256, owner);
     take_file(asset, name, file, file_bytes, charged);
-    LIST_INSERT_HEAD(bucket_of(store, sha256), asset, bucket_link);
     TAILQ_INSERT_HEAD(&store->by_use, asset, use_link);
-    store->n_assets++;
     return true;
 }
 
@@ -462,18 +472,90 @@ static void queue_build(struct asset *asset, const uint8_t asker[static OWNER_BY
     start_builds(store);
 }
 
+/* --- polygons */
+
+/* Charges what they take, on the device or here, to an account of the model's holder. */
+static bool reserve_polygons(struct asset *charged, struct asset *model, uint32_t level,
+                             struct error *error)
+{
+    size_t bytes = renderer_polygon_bytes(&model->model->tables, level);
+    return store_reserve(model->store, model->share->id, &charged->account, ACCOUNT_ASSETS, bytes,
+                         model->name, ERROR_REQUEST, error);
+}
+
+static bool start_polygons(struct asset *asset, struct error *error);
+
+static void polygons_finished(void *owner, struct renderer_polygons *polygons,
+                              const struct error *failure)
+{
+    struct asset *asset = owner, *model = asset->of;
+    struct error again = {0};
+    asset->store->n_polygons_made--;
+    asset->polygons = polygons;
+    asset->state = polygons ? ASSET_READY : ASSET_STORED;
+    if (!polygons)
+        account_refund(&asset->account, ACCOUNT_ASSETS, account_used(&asset->account));
+    /* It was given up, and has been asked for since. */
+    if (!polygons && asset->was_unwanted && !LIST_EMPTY(&asset->waiters)) {
+        if (start_polygons(asset, &again)) {
+            model->users--;
+            return;
+        }
+        failure = &again;
+    }
+    wake_waiters(asset, failure);
+    model->users--;
+}
+
+/* The model is in use as long as its polygons are made. */
+static bool start_polygons(struct asset *asset, struct error *error)
+{
+    struct store *store = asset->store;
+    const struct polygons_order order = {
+        .pool = store->pool,
+        .tables = &asset->of->model->tables,
+        .level = asset->level,
+        .cancelled = &store->cancelled,
+        .is_unwanted = &asset->is_unwanted,
+        .finished = polygons_finished,
+        .owner = asset,
+    };
+    if (!reserve_polygons(asset, asset->of, asset->level, error))
+        return false;
+    if (!polygons_build_start(&order, error)) {
+        account_refund(&asset->account, ACCOUNT_ASSETS, account_used(&asset->account));
+        return false;
+    }
+    asset->was_unwanted = false;
+    asset->state = ASSET_BUILDING;
+    asset->of->users++;
+    store->n_polygons_made++;
+    return true;
+}
+
 static void add_waiter(struct asset *asset, struct asset_waiter *waiter)
 {
     waiter->asset = asset;
     LIST_INSERT_HEAD(&asset->waiters, waiter, link);
 }
 
+/* Now it is the one used last. Polygons stand behind their model, so that they are evicted before
+ * it. */
+static void touch(struct asset *asset)
+{
+    struct store *store = asset->store;
+    TAILQ_REMOVE(&store->by_use, asset, use_link);
+    if (asset->of)
+        TAILQ_INSERT_AFTER(&store->by_use, asset->of, asset, use_link);
+    else
+        TAILQ_INSERT_HEAD(&store->by_use, asset, use_link);
+}
+
 enum acquire_result store_acquire(struct asset *asset, const uint8_t asker[static OWNER_BYTES],
                                   struct asset_waiter *waiter, struct error *error)
 {
     struct store *store = asset->store;
-    TAILQ_REMOVE(&store->by_use, asset, use_link);
-    TAILQ_INSERT_HEAD(&store->by_use, asset, use_link);
+    touch(asset);
     if (asset->state == ASSET_FAILED) {
         *error = asset->failure;
         return ACQUIRE_FAILED;
@@ -485,21 +567,39 @@ enum acquire_result store_acquire(struct asset *asset, const uint8_t asker[stati
     }
     store->n_misses++;
     add_waiter(asset, waiter);
+    atomic_store(&asset->is_unwanted, false);
+    if (asset->kind == ASSET_POLYGONS && asset->state == ASSET_STORED &&
+        !start_polygons(asset, error)) {
+        store_stop_waiting(waiter);
+        return ACQUIRE_FAILED;
+    }
     if (asset->state == ASSET_STORED)
         queue_build(asset, asker);
     return ACQUIRE_WAIT;
 }
 
-bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *error)
+struct asset *store_find_polygons(struct asset *model, uint32_t level, struct error *error)
 {
-    if (asset->polygon_levels & 1u << level)
-        return true;
-    size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
-    if (!store_reserve(asset->store, asset->share->id, &asset->account, ACCOUNT_ASSETS, bytes,
-                       asset->name, ERROR_REQUEST, error))
-        return false;
-    asset->polygon_levels |= 1u << level;
-    return true;
+    struct store *store = model->store;
+    struct asset *asset;
+    if (!(model->polygon_levels & 1u << level) && !reserve_polygons(model, model, level, error))
+        return NULL;
+    model->polygon_levels |= 1u << level;
+    LIST_FOREACH (asset, bucket_of(store, model->sha256), bucket_link)
+        if (asset->of == model && asset->level == level)
+            return asset;
+    asset = add_entry(store, model->share->id);
+    if (!asset) {
+        error_set(error, ERROR_SERVER, "%s: no room for its polygons: try again later",
+                  model->name);
+        return NULL;
+    }
+    enter(asset, ASSET_POLYGONS, model->sha256, model->owner);
+    memcpy(asset->name, model->name, sizeof asset->name);
+    asset->of = model;
+    asset->level = level;
+    TAILQ_INSERT_AFTER(&store->by_use, model, asset, use_link);
+    return asset;
 }
 
 void store_unuse(struct asset *asset)
@@ -514,6 +614,10 @@ bool store_stop_waiting(struct asset_waiter *waiter)
         return false;
     unlink_waiter(waiter);
     asset->users--;
+    if (LIST_EMPTY(&asset->waiters) && asset->state == ASSET_BUILDING) {
+        asset->was_unwanted = true;
+        atomic_store(&asset->is_unwanted, true);
+    }
     return true;
 }
 
@@ -524,7 +628,7 @@ void store_cancel_builds(struct store *store)
 
 bool store_is_building(const struct store *store)
 {
-    return store->n_building > 0 || !TAILQ_EMPTY(&store->builds);
+    return store->n_building > 0 || store->n_polygons_made > 0 || !TAILQ_EMPTY(&store->builds);
 }
 
 struct store_counts store_count(const struct store *store)

@@ -1,6 +1,6 @@
 /* Everything that clients have uploaded, by owner, kind and SHA-256: files that wait to be used,
- * models and light images that are ready on the GPU; and the memory budget for all that the daemon
- * holds.
+ * models and light images that are ready on the GPU; the polygons of models, by model and level; and
+ * the memory budget for all that the daemon holds.
  *
  * An asset is built once, when it is first used, however many requests wait for it; a few builds run
  * at a time. When room is needed, assets that no request uses are evicted: first those of clients
@@ -18,6 +18,7 @@
 #include "server/assets/store_shares.h"
 #include "server/assets/light_image.h"
 #include "server/assets/model.h"
+#include "server/assets/polygons.h"
 
 #define STORE_MAX_ASSETS 4096
 #define STORE_MAX_BUILDS 2 /* at once; bounds the queues of the pool and the render thread */
@@ -26,12 +27,13 @@
 /* The owner of what everybody may use. */
 extern const uint8_t STORE_SHARED[OWNER_BYTES];
 
-enum asset_kind { ASSET_MODEL, ASSET_IMAGE };
+enum asset_kind { ASSET_MODEL, ASSET_IMAGE, ASSET_POLYGONS };
 
 enum asset_state {
-    ASSET_STORED,   /* the file is here; also after a build that may work another time */
+    ASSET_STORED,   /* the file is here; also after a build that may work another time. Of polygons:
+                       they are not made yet */
     ASSET_BUILDING, /* or waiting for its turn */
-    ASSET_READY,    /* `model` or `image` is set, the file is gone */
+    ASSET_READY,    /* `model`, `image` or `polygons` is set, the file is gone */
     ASSET_FAILED,   /* the file is bad and gone; `failure` says why */
 };
 
@@ -59,6 +61,7 @@ struct asset {
     size_t file_bytes;
     struct model *model;
     struct light_image *image;
+    struct renderer_polygons *polygons; /* in main memory */
     struct error failure;
     struct build_progress progress; /* while BUILDING */
     uint64_t unreported_us;         /* time of the build until a frame has reported it */
@@ -68,9 +71,13 @@ struct asset {
     struct store_share *share; /* that it counts for */
     unsigned users;            /* requests that wait for it or use it */
     struct account account;    /* what it is charged with, all of it ACCOUNT_ASSETS */
-    unsigned polygon_levels;   /* bits: levels whose polygons are charged */
+    unsigned polygon_levels;   /* bits: levels whose polygons on the device are charged */
     unsigned drawn_levels;     /* bits: levels that the device has had polygons of */
     uint32_t drawn_on;         /* the generation of the device that drawn_levels is of */
+    struct asset *of;          /* of polygons: their model; not NULL, and it stays as long */
+    uint32_t level;            /* of polygons */
+    atomic_bool is_unwanted;   /* of polygons: nobody waits for them now */
+    bool was_unwanted;         /* so it was at some time since the build began */
     LIST_HEAD(asset_waiters, asset_waiter) waiters;
     TAILQ_ENTRY(asset) build_link; /* in the queue for a turn */
     TAILQ_ENTRY(asset) use_link;   /* by last use */
@@ -148,9 +155,12 @@ void store_unuse(struct asset *asset);
  * build goes on. */
 bool store_stop_waiting(struct asset_waiter *waiter);
 
-/* A model in use will be drawn as polygons of this level (0 to 6): they are charged once, until the
- * model goes. False as store_reserve(). */
-bool store_charge_polygons(struct asset *asset, uint32_t level, struct error *error);
+/* The polygons of a level (0 to 6) of a model that is in use, for store_acquire(): they are made
+ * when they are first acquired, and count for whom the model counts. What the device takes for them
+ * is charged once, until the model goes; what they take in main memory, until they are evicted.
+ * Making them is given up when nobody waits for them any more. NULL on failure, as
+ * store_reserve(). */
+struct asset *store_find_polygons(struct asset *model, uint32_t level, struct error *error);
 
 /* From now on every build fails soon: nobody waits for it any more. */
 void store_cancel_builds(struct store *store);

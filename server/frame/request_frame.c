@@ -81,56 +81,66 @@ static uint64_t cost_key(const struct request *request)
     return costs_key(key, next_tile_px(request) >> 16); /* small tiles cost more by the pixel */
 }
 
-/* --- polygons, which are made on the pool: the render thread would be away for seconds */
+/* --- polygons, which the store has: one frame or several may show them */
 
 static bool has_begun(const struct request *request)
 {
     return request->frame.width_px > 0;
 }
 
-static void polygons_run(struct task *task, void *context)
+/* Lets go of them, or stops waiting for them. */
+static void drop_polygons(struct request *request)
 {
-    (void)context;
-    struct request *request = task->owner;
-    const struct frame_watch watch = {is_abandoned, request};
-    request->polygons =
-        renderer_polygons_create(&request->model.asset->model->tables,
-                                 request->frame_request.surface.level, &watch, &request->failure);
+    struct needed *needed = &request->polygons;
+    request->frame_work.polygons = NULL;
+    if (needed->asset && !store_stop_waiting(&needed->waiter))
+        store_unuse(needed->asset);
+    needed->asset = NULL;
 }
 
-static void polygons_done(struct task *task)
+static void join_queue(struct request *request)
 {
-    struct request *request = task->owner;
-    request->frame_work.polygons = request->polygons;
-    if (request->state == REQUEST_ABANDONED) {
-        request_end(request);
-    } else if (!request->polygons) {
-        request_fail(request, &request->failure);
-    } else {
-        request_state_move(&request->state, REQUEST_QUEUED);
-        if (has_begun(request))
-            scheduler_resume(&request->entry);
-        else
-            scheduler_ready(&request->entry);
-    }
+    request->frame_work.polygons = request->polygons.asset->polygons;
+    request_state_move(&request->state, REQUEST_QUEUED);
+    if (has_begun(request))
+        scheduler_resume(&request->entry);
+    else
+        scheduler_ready(&request->entry);
 }
 
-/* Makes them where the device has never had them, or has none any more. */
-static void start_polygons(struct request *request)
+static void polygons_ready(struct asset_waiter *waiter, const struct error *failure)
 {
-    struct asset *asset = request->model.asset;
-    uint32_t level = request->frame_request.surface.level;
-    size_t bytes = renderer_polygon_bytes(&asset->model->tables, level);
-    if (!store_charge_polygons(asset, level, &request->failure) ||
-        !store_reserve(request->host->store, request->asker, store_account(request->host->store),
-                       ACCOUNT_POLYGONS, bytes, asset->name, ERROR_REQUEST, &request->failure)) {
-        request_fail(request, &request->failure);
+    struct request *request = waiter->owner;
+    if (!failure) {
+        join_queue(request);
         return;
     }
-    request->polygon_bytes = bytes;
+    request->polygons.asset = NULL;
+    request_fail(request, failure);
+}
+
+/* Asks for them where the device has never had them, or has none any more. */
+static void start_polygons(struct request *request)
+{
+    struct needed *needed = &request->polygons;
+    const uint32_t level = request->frame_request.surface.level;
+    drop_polygons(request); /* those that the device has had and lost */
+    needed->asset = store_find_polygons(request->model.asset, level, &request->failure);
+    needed->waiter = (struct asset_waiter){.ready = polygons_ready, .owner = request};
     request_state_move(&request->state, REQUEST_POLYGONS);
-    request->task = (struct task){polygons_run, polygons_done, request, {NULL}};
-    pool_submit(request->host->pool, &request->task, POOL_LATER);
+    switch (needed->asset
+                ? store_acquire(needed->asset, request->asker, &needed->waiter, &request->failure)
+                : ACQUIRE_FAILED) {
+    case ACQUIRE_WAIT:
+        break;
+    case ACQUIRE_READY:
+        join_queue(request);
+        break;
+    case ACQUIRE_FAILED:
+        needed->asset = NULL;
+        request_fail(request, &request->failure);
+        break;
+    }
 }
 
 static bool needs_polygons(const struct request *request)
@@ -140,14 +150,6 @@ static bool needs_polygons(const struct request *request)
     bool has = asset->drawn_on == request->host->gpu_generation &&
                asset->drawn_levels & 1u << surface->level;
     return surface->kind != SURFACE_EXACT && !has;
-}
-
-static void drop_polygons(struct request *request)
-{
-    renderer_polygons_destroy(request->polygons);
-    account_refund(store_account(request->host->store), ACCOUNT_POLYGONS, request->polygon_bytes);
-    request->polygons = NULL;
-    request->polygon_bytes = 0;
 }
 
 static bool shows_lines(const sheen_Render *render)

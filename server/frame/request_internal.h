@@ -57,9 +57,8 @@ struct request {
     double light_share; /* of what is seen: where a light is met */
     uint64_t encode_start_us;
     struct metadata metadata;
-    struct renderer_polygons *polygons; /* until the device has them */
-    size_t polygon_bytes;               /* that they are charged with here */
-    struct encoded *held;               /* while REQUEST_HELD */
+    struct needed polygons; /* from when the device lacks them until the frame ends */
+    struct encoded *held;   /* while REQUEST_HELD */
 };
 
 /* --- request.c */

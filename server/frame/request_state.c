@@ -13,7 +13,7 @@ static const struct {
     bool is_busy;
 } STATES[N_REQUEST_STATES] = {
     [REQUEST_LOADING] = {"loading", TO(POLYGONS) | TO(QUEUED) | TO(ABANDONED) | TO(ENDED), false},
-    [REQUEST_POLYGONS] = {"polygons", TO(QUEUED) | TO(ABANDONED) | TO(ENDED), true},
+    [REQUEST_POLYGONS] = {"polygons", TO(QUEUED) | TO(ENDED), false},
     [REQUEST_QUEUED] = {"queued", TO(PARKED) | TO(DRAWING) | TO(ENDED), false},
     [REQUEST_PARKED] = {"parked", TO(QUEUED) | TO(ENDED), false},
     [REQUEST_DRAWING] = {"drawing",

@@ -7,7 +7,7 @@
 
 enum request_state {
     REQUEST_LOADING,  /* the store builds what it needs, or a file is read; a request begins here */
-    REQUEST_POLYGONS, /* the pool makes polygons for the device */
+    REQUEST_POLYGONS, /* the store makes polygons for the device */
     REQUEST_QUEUED,   /* waits until the scheduler lets it draw a tile */
     REQUEST_PARKED,   /* waits for memory that other frames have */
     REQUEST_DRAWING,  /* the render thread draws a tile */
