@@ -35,11 +35,17 @@ bool message_is_text(const char *text, bool lines)
 
 void message_make_text(char *text, bool lines)
 {
-    if (message_is_text(text, lines))
-        return;
-    for (char *c = text; *c; c++)
-        if ((*c < 0x20 && !(lines && *c == '\n')) || *c > 0x7e)
-            *c = '?';
+    if (!message_is_text(text, lines))
+        for (char *c = text; *c; c++)
+            if ((*c < 0x20 && !(lines && *c == '\n')) || *c > 0x7e)
+                *c = '?';
+    char *to = text;
+    for (const char *from = text; *from;) {
+        size_t unseen = text_unseen_length(from);
+        *to++ = unseen ? '?' : *from;
+        from += unseen ? unseen : 1;
+    }
+    *to = 0;
 }
 
 static bool check_text(const char *value, const char *field, char *text)

@@ -25,18 +25,18 @@ size_t text_utf8_length(const char *text)
     return code < least[n] || code > 0x10ffff || surrogate || c1_control ? 0 : n;
 }
 
-/* Whether a mark begins at `c` that turns the direction of the text behind it, so that a terminal
- * shows it in another order: U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069. */
-static bool turns_text(const char *c)
+size_t text_unseen_length(const char *text)
 {
     static const char marks[][4] = {
-        "\u061c", "\u200e", "\u200f", "\u202a", "\u202b", "\u202c",
-        "\u202d", "\u202e", "\u2066", "\u2067", "\u2068", "\u2069",
+        "\u061c", "\u200e", "\u200f", "\u202a", "\u202b", "\u202c", "\u202d",
+        "\u202e", "\u2028", "\u2029", "\u2066", "\u2067", "\u2068", "\u2069",
     };
     for (size_t i = 0; i < sizeof(marks) / sizeof(*marks); i++)
-        if (strncmp(c, marks[i], strlen(marks[i])) == 0)
-            return true;
-    return false;
+        if (strncmp(text, marks[i], strlen(marks[i])) == 0)
+            return strlen(marks[i]);
+    const unsigned char *c = (const unsigned char *)text; /* F3 A0 80 80 to F3 A0 81 BF */
+    bool is_tag = c[0] == 0xf3 && c[1] == 0xa0 && (c[2] & 0xfe) == 0x80 && (c[3] & 0xc0) == 0x80;
+    return is_tag ? 4 : 0;
 }
 
 static void hide_controls(char *text)
@@ -45,8 +45,8 @@ static void hide_controls(char *text)
     for (const char *from = text; *from;) {
         size_t length = text_utf8_length(from);
         bool c1_control = from[0] == '\xc2' && ((unsigned char)from[1] & 0xe0) == 0x80;
-        bool shown =
-            length > 0 && (unsigned char)*from >= 0x20 && *from != 0x7f && !turns_text(from);
+        bool shown = length > 0 && (unsigned char)*from >= 0x20 && *from != 0x7f &&
+                     text_unseen_length(from) == 0;
         size_t n = length > 0 ? length : c1_control ? 2 : 1;
         if (shown)
             memmove(to, from, n);

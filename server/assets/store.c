@@ -189,25 +189,37 @@ static bool make_room(struct store *store, const uint8_t *asker, const struct wa
     return true;
 }
 
-/* Exactly this owner's model or image. */
-static struct asset *find_owned(struct store *store, const uint8_t *owner, enum asset_kind kind,
-                                const uint8_t *sha256)
+/* Of several that hold the same bytes: the lower, the better for this client. Everybody's may have been
+ * brought by several clients under different names, each of whom has his own read by his. */
+static int rank_of(const struct asset *asset, const uint8_t *asker)
 {
-    struct asset *asset;
+    bool is_own = memcmp(asset->share->id, asker, OWNER_BYTES) == 0;
+    if (asset->state == ASSET_FAILED)
+        return is_own ? 3 : 4;
+    return is_own ? 0 : asset->state == ASSET_READY ? 1 : 2;
+}
+
+/* Exactly this owner's: the best for the asker, and of equal ones the oldest. */
+static struct asset *find_owned(struct store *store, const uint8_t *owner, const uint8_t *asker,
+                                enum asset_kind kind, const uint8_t *sha256)
+{
+    struct asset *asset, *best = NULL;
     LIST_FOREACH (asset, bucket_of(store, sha256), bucket_link)
         if (asset->kind == kind && memcmp(asset->sha256, sha256, MODEL_ID_BYTES) == 0 &&
-            memcmp(asset->owner, owner, OWNER_BYTES) == 0)
-            return asset;
-    return NULL;
+            memcmp(asset->owner, owner, OWNER_BYTES) == 0 &&
+            (!best || rank_of(asset, asker) <= rank_of(best, asker)))
+            best = asset;
+    return best;
 }
 
 struct asset *store_find(struct store *store, const uint8_t owner[static OWNER_BYTES],
-                         enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES])
+                         const uint8_t asker[static OWNER_BYTES], enum asset_kind kind,
+                         const uint8_t sha256[static MODEL_ID_BYTES])
 {
-    struct asset *own = find_owned(store, owner, kind, sha256);
+    struct asset *own = find_owned(store, owner, asker, kind, sha256);
     if (own && own->state != ASSET_FAILED)
         return own;
-    struct asset *shared = find_owned(store, STORE_SHARED, kind, sha256);
+    struct asset *shared = find_owned(store, STORE_SHARED, asker, kind, sha256);
     return shared ? shared : own;
 }
 
@@ -218,7 +230,9 @@ bool store_is_known_as(const struct asset *asset, const char *name)
 
 void store_share(struct asset *asset)
 {
-    if (!find_owned(asset->store, STORE_SHARED, asset->kind, asset->sha256))
+    const struct asset *shared =
+        find_owned(asset->store, STORE_SHARED, asset->share->id, asset->kind, asset->sha256);
+    if (!shared || (shared->share != asset->share && !store_is_known_as(shared, asset->name)))
         memcpy(asset->owner, STORE_SHARED, sizeof asset->owner);
 }
 
@@ -308,11 +322,14 @@ bool store_add(struct store *store, const uint8_t owner[static OWNER_BYTES],
                const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,
                size_t file_bytes, struct account *charged, struct error *error)
 {
-    struct asset *asset = NULL, *known = find_owned(store, owner, kind, sha256);
-    if (known && known->state != ASSET_BUILDING && !store_is_known_as(known, name)) {
+    struct asset *asset = NULL, *known = find_owned(store, owner, holder, kind, sha256);
+    bool is_own = known && memcmp(known->share->id, holder, OWNER_BYTES) == 0;
+    if (is_own && known->state != ASSET_BUILDING && !store_is_known_as(known, name)) {
         take_file(known, name, file, file_bytes, charged);
         return true;
     }
+    if (known && !is_own && !store_is_known_as(known, name))
+        known = NULL; /* his own name must not decide how others' are read */
     if (!known)
         asset = add_entry(store, holder);
     if (!asset) {

@@ -111,9 +111,12 @@ struct store *store_create(struct pool *pool, struct pool *readers,
 void store_destroy(struct store *store); /* NULL is safe */
 
 /* The owner's own, else the shared one, else NULL; the shared one, too, where his own cannot be
- * read. The asset stays at least until the loop's next turn. */
+ * read. Of several shared ones, which were brought under different names, the one that `asker`, the
+ * client's identity, brought himself, else one that can be read. The asset stays at least until the
+ * loop's next turn. */
 struct asset *store_find(struct store *store, const uint8_t owner[static OWNER_BYTES],
-                         enum asset_kind kind, const uint8_t sha256[static MODEL_ID_BYTES]);
+                         const uint8_t asker[static OWNER_BYTES], enum asset_kind kind,
+                         const uint8_t sha256[static MODEL_ID_BYTES]);
 /* Would the asset's file be read in the same way under this name? The ending of a name tells the
  * format. A file that has not been read yet, or could not be, may be good under another name. */
 bool store_is_known_as(const struct asset *asset, const char *name);
@@ -137,7 +140,8 @@ bool store_reserve(struct store *store, const uint8_t asker[static OWNER_BYTES],
  * `charged` as ACCOUNT_INPUT, from where the charge moves to the asset. The asset counts for
  * `holder`, the identity of the client that brought it, also where everybody may use it. A file
  * that is here already, and known as this, is freed and its charge refunded; so it is when there is
- * no room for another entry: ERROR_SERVER. */
+ * no room for another entry: ERROR_SERVER. Under another name it takes the place of what the same
+ * holder brought, and stands beside what another did. */
 bool store_add(struct store *store, const uint8_t owner[static OWNER_BYTES],
                const uint8_t holder[static OWNER_BYTES], enum asset_kind kind,
                const uint8_t sha256[static MODEL_ID_BYTES], const char *name, uint8_t *file,

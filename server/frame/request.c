@@ -203,7 +203,8 @@ void request_acquire(struct request *request, struct needed *needed, enum asset_
 {
     needed->request = request;
     needed->waiter = (struct asset_waiter){.ready = asset_ready, .owner = needed};
-    needed->asset = store_find(request->host->store, request->assets_of, kind, sha256);
+    needed->asset =
+        store_find(request->host->store, request->assets_of, request->asker, kind, sha256);
     request->n_awaited++;
     switch (store_acquire(needed->asset, request->asker, &needed->waiter, &request->failure)) {
     case ACQUIRE_WAIT:
@@ -220,7 +221,7 @@ void request_acquire(struct request *request, struct needed *needed, enum asset_
 /* Answers and returns false when the daemon lacks the file. */
 static bool is_known(struct request *request, enum asset_kind kind, const uint8_t *sha256)
 {
-    if (store_find(request->host->store, request->assets_of, kind, sha256))
+    if (store_find(request->host->store, request->assets_of, request->asker, kind, sha256))
         return true;
     char hex[2 * MODEL_ID_BYTES + 1], text[160];
     hex_write(sha256, MODEL_ID_BYTES, hex);

@@ -277,6 +277,7 @@ static void deliver(struct conn *conn)
     skip(conn);
     while (conn->state == CONN_OPEN && !conn->held &&
            conn->in_used - used >= MESSAGE_HEADER_BYTES) {
+        header = (struct message_header){0}; /* nothing of the message before */
         enum header_error error = message_header_decode(&header, conn->in + used);
         if (error != HEADER_OK) {
             refuse_input(conn, &header, error);

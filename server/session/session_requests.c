@@ -27,7 +27,8 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
         return;
     }
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
-    struct asset *known = store_find(host->store, session->requests.assets_of, kind, begin->sha256);
+    struct asset *known = store_find(host->store, session->requests.assets_of,
+                                     session->client.identity.owner, kind, begin->sha256);
     if (known && store_is_known_as(known, begin->name)) {
         if (begin->share)
             store_share(known);

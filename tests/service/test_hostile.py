@@ -32,7 +32,25 @@ class Hostile(DaemonCase):
     def test_wrong_magic_later(self):
         for client in self.each():
             client.send(message(wire.STATS_QUERY, 2, magic=b"NEHS"))
-            self.assert_closed(client, wire.ERROR_PROTOCOL, "SHEN")
+            self.assert_closed(client, wire.ERROR_PROTOCOL, "SHEN", 0)
+
+    def test_wrong_magic_behind_a_request(self):
+        """In one read: the number of the request before is no number of what cannot be read."""
+        for client in self.each():
+            client.send(message(wire.STATS_QUERY, 2) + b"garbage-garbage-")
+            client.expect(wire.STATS, 2)
+            self.assert_closed(client, wire.ERROR_PROTOCOL, "SHEN", 0)
+
+    def test_names_that_look_like_others(self):
+        """Marks that turn text and other unseen characters reach neither log nor terminal."""
+        with Client(self.daemon.unix) as client:
+            name = "a\u202egnp\u2028x\U000e0041.obj"
+            model = client.upload(b"f 1 2 3\n# " + os.urandom(8).hex().encode(), name)
+            client.send(wire.render(9, model))
+            self.assert_refused(client, wire.ERROR_MODEL, "a?gnp?x?.obj:", 9)
+            self.daemon.wait_for("a?gnp?x?.obj:")
+            for mark in "\u202e\u2028\U000e0041":
+                self.assertNotIn(mark, self.daemon.errors())
 
     def test_wrong_version(self):
         for client in self.each(greet=False):

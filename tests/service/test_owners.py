@@ -158,6 +158,28 @@ class Owners(Case):
             other.query(model)
         self.assertEqual(daemon.stop(), 0)
 
+    def test_a_shared_file_keeps_its_name(self):
+        """Somebody else's name for the same bytes decides nothing for who has brought them, whoever came
+        first, nor for the daemon that has read them already."""
+        for who_shares in ("clients", "daemon"):
+            with self.subTest(who_shares):
+                daemon = Daemon(*(["--share-models"] if who_shares == "daemon" else []))
+                share = who_shares == "clients"
+                with Client(daemon.unix) as good, Client(daemon.tcp) as bad:
+                    for first, second in (("good.obj", "bad.glb"), ("bad.glb", "good.obj")):
+                        data = CUBE + f"# {first} comes first\n".encode()
+                        for name in (first, second):
+                            client = good if name == "good.obj" else bad
+                            model = client.upload(data, name, share=share)
+                        with self.assertRaises(wire.Refused) as caught:
+                            bad.query(model)
+                        self.assertIn("bad.glb", caught.exception.text)
+                        self.assertEqual(good.query(model)[2], [b"good.obj"])
+                        self.assertEqual(bad.query(model)[2], [b"good.obj"])  # his own is no file
+                        bad.upload(data, "bad.glb", share=share)
+                        self.assertEqual(good.query(model)[2], [b"good.obj"])
+                self.assertEqual(daemon.stop(), 0)
+
     def test_shared_by_the_daemon(self):
         daemon = Daemon("--share-models")
         with Client(daemon.unix) as owner, Client(daemon.tcp) as other:

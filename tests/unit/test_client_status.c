@@ -15,7 +15,8 @@ static void expect_text(const char *given, const char *shown)
     assert_string_equal(error.text, shown);
 }
 
-/* Every character of one to three bytes that is a control or turns text, and every other. */
+/* Every character of one to three bytes that is a control, turns text or begins a line, and every
+ * other. */
 static void controls_are_hidden(void **state)
 {
     (void)state;
@@ -23,7 +24,7 @@ static void controls_are_hidden(void **state)
         if (code >= 0xd800 && code < 0xe000)
             continue; /* no characters */
         bool hidden = code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c ||
-                      code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) ||
+                      code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||
                       (code >= 0x2066 && code <= 0x2069);
         char text[16];
         int n = code < 0x80 ? snprintf(text, sizeof text, "a%cz", code)
@@ -37,6 +38,7 @@ static void controls_are_hidden(void **state)
     expect_text("\U0001F697\u202e\xc2\x9b"
                 "31m",
                 "\U0001F697??31m");
+    expect_text("a\U000e0000b\U000e007fc\U000e0080", "a?b?c\U000e0080"); /* tags */
 }
 
 static void bytes_that_are_no_text_are_hidden(void **state)
