@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "server/base/error.h"
+#include "server/assets/slices.h"
 #include "server/threads/pool.h"
 #include "server/threads/render_thread.h"
 #include "server/threads/workers.h"
@@ -24,8 +25,9 @@ struct build_progress {
 
 /* What a build reads and whom it tells. Everything here stays until finished() is called. */
 struct build_order {
-    struct pool *pool;    /* fills tables */
-    struct pool *readers; /* wait for the workers: nobody's frame waits for a slow file */
+    struct slices *slices; /* fill tables */
+    struct pool *readers; /* a thread for each build: waits for the workers, and does what cannot be
+                              cut */
     struct render_thread *render_thread;
     struct workers *workers;
     const uint8_t *file;

@@ -9,29 +9,32 @@
 #include "server/surface/support.h"
 #include "server/assets/build_clock.h"
 
-#define MAX_RANGES 256 /* even shares for many cores, and a progress bar that moves */
-#define MIN_FACES_PER_RANGE 16
+#define FIRST_SLICE_FACES 16 /* then as many as take SLICE_US */
+#define MOST_SLICE_FACES 65536
 
 struct model_build;
 
-struct range {
+/* Faces whose tables one task of the pool fills in. */
+struct slice {
     struct task task;
     struct model_build *build;
-    size_t first, last; /* Ptex faces */
+    size_t first, last; /* Ptex faces; equal: free */
+    uint64_t took_us;
     bool ok;
     struct error error;
 };
 
 struct model_build {
     struct build_order order;
-    struct task task; /* reading, later uploading */
+    struct task task; /* reading, outlining, uploading */
     struct cage cage;
     struct limit_plan *plan;
     struct model *model;
     bool ok;
     struct error error;
-    struct range *ranges;
-    size_t n_ranges, n_ranges_left;
+    struct slice_source source;
+    struct slice *slices; /* [n_slices]: as many as may run at once */
+    size_t n_slices, n_running, next_face, slice_faces;
     atomic_ullong cpu_us; /* that measuring and filling have taken */
     uint64_t start_us;
 };
@@ -71,7 +74,7 @@ static void end_build(struct model_build *build, bool ok)
         model->build_us = clock_now_us() - build->start_us;
     }
     build->order.finished(build->order.owner, model, ok ? NULL : &build->error);
-    free(build->ranges);
+    free(build->slices);
     free(build);
 }
 
@@ -106,18 +109,20 @@ static bool check_not_cancelled(const struct build_order *order, struct error *e
            error_set(error, ERROR_SERVER, "the daemon is shutting down");
 }
 
-static void range_run(struct task *task, void *context)
+static void slice_run(struct task *task, void *context)
 {
     (void)context;
-    struct range *range = task->owner;
-    struct model_build *build = range->build;
+    struct slice *slice = task->owner;
+    struct model_build *build = slice->build;
     struct build_clock clock;
+    const uint64_t start_us = clock_now_us();
     build_clock_start(&clock, &build->order, &build->cpu_us);
     const struct limit_watch watch = build_clock_watch(&clock);
-    range->ok = check_not_cancelled(&build->order, &range->error) &&
-                limit_build_faces(&build->model->tables, build->plan, range->first, range->last,
-                                  &watch, &range->error);
-    atomic_fetch_add(&build->order.progress->done, range->last - range->first);
+    slice->ok = check_not_cancelled(&build->order, &slice->error) &&
+                limit_build_faces(&build->model->tables, build->plan, slice->first, slice->last,
+                                  &watch, &slice->error);
+    slice->took_us = clock_now_us() - start_us;
+    atomic_fetch_add(&build->order.progress->done, slice->last - slice->first);
 }
 
 static void support_run(struct task *task, void *context)
@@ -140,41 +145,75 @@ static void support_done(struct task *task)
         end_build(build, fail_named(build, &build->error));
 }
 
-static void range_done(struct task *task)
+/* The next slice is as large as takes SLICE_US, by what this one took. */
+static void learn_size(struct model_build *build, const struct slice *slice)
 {
-    struct model_build *build = ((struct range *)task->owner)->build;
-    if (--build->n_ranges_left > 0)
-        return;
-    for (size_t i = 0; i < build->n_ranges; i++) {
-        if (build->ranges[i].ok)
-            continue;
-        end_build(build, fail_named(build, &build->ranges[i].error));
-        return;
-    }
-    build->task = (struct task){support_run, support_done, build, {NULL}};
-    pool_submit(build->order.pool, &build->task, POOL_LATER);
+    size_t n = slice->last - slice->first, most = 4 * n;
+    size_t faces = slice->took_us == 0 ? most : n * SLICE_US / slice->took_us;
+    faces = faces > most ? most : faces < 1 ? 1 : faces;
+    build->slice_faces = faces > MOST_SLICE_FACES ? MOST_SLICE_FACES : faces;
 }
 
-static bool start_ranges(struct model_build *build)
+static void slice_done(struct task *task)
 {
-    size_t n_faces = build->model->tables.n_faces;
-    size_t n = n_faces / MIN_FACES_PER_RANGE + 1;
-    n = n > MAX_RANGES ? MAX_RANGES : n;
-    build->ranges = fault_at("model.build") ? NULL : calloc(n, sizeof *build->ranges);
-    if (!build->ranges)
+    struct slice *slice = task->owner;
+    struct model_build *build = slice->build;
+    struct slices *slices = build->order.slices;
+    slices_done(slices, &build->source, slice->took_us);
+    if (!slice->ok && build->ok) {
+        build->ok = false;
+        build->error = slice->error;
+        build->next_face = build->model->tables.n_faces; /* no more */
+    }
+    learn_size(build, slice);
+    slice->last = slice->first;
+    if (--build->n_running == 0 && build->next_face == build->model->tables.n_faces) {
+        slices_leave(slices, &build->source);
+        if (build->ok) {
+            build->task = (struct task){support_run, support_done, build, {NULL}};
+            pool_submit(build->order.readers, &build->task, POOL_LATER);
+        } else {
+            end_build(build, fail_named(build, &build->error));
+        }
+    }
+    slices_start(slices);
+}
+
+static struct task *next_slice(struct slice_source *source)
+{
+    struct model_build *build = source->build;
+    const size_t n_faces = build->model->tables.n_faces;
+    size_t at = 0;
+    while (at < build->n_slices && build->slices[at].first < build->slices[at].last)
+        at++;
+    if (at == build->n_slices || build->next_face == n_faces)
+        return NULL;
+    struct slice *slice = &build->slices[at];
+    size_t left = n_faces - build->next_face;
+    slice->build = build;
+    slice->first = build->next_face;
+    slice->last = slice->first + (left < build->slice_faces ? left : build->slice_faces);
+    slice->task = (struct task){slice_run, slice_done, slice, {NULL}};
+    build->next_face = slice->last;
+    build->n_running++;
+    return &slice->task;
+}
+
+static bool start_slices(struct model_build *build)
+{
+    struct slices *slices = build->order.slices;
+    build->n_slices = slices->most_running;
+    build->slices = fault_at("model.build") ? NULL : calloc(build->n_slices, sizeof *build->slices);
+    if (!build->slices)
         return error_set(&build->error, ERROR_SERVER, "%s: no memory to build its tables",
                          build->order.name);
-    build->n_ranges = build->n_ranges_left = n;
+    build->slice_faces = FIRST_SLICE_FACES;
     build->order.progress->stage = "tables";
-    build->order.progress->total = n_faces;
-    for (size_t i = 0; i < n; i++) {
-        struct range *range = &build->ranges[i];
-        range->first = (size_t)((unsigned __int128)n_faces * i / n);
-        range->last = (size_t)((unsigned __int128)n_faces * (i + 1) / n);
-        range->build = build;
-        range->task = (struct task){range_run, range_done, range, {NULL}};
-        pool_submit(build->order.pool, &range->task, POOL_LATER);
-    }
+    build->order.progress->total = build->model->tables.n_faces;
+    build->source.build = build;
+    build->source.next = next_slice;
+    slices_join(slices, &build->source);
+    slices_start(slices);
     return true;
 }
 
@@ -231,7 +270,7 @@ static void read_done(struct task *task)
         build->model->device_bytes =
             renderer_model_bytes(render_thread_device(order->render_thread), tables);
         build->ok = order->reserve(order->owner, build_model_bytes(order, tables), &build->error) &&
-                    start_ranges(build);
+                    start_slices(build);
     }
     if (!build->ok)
         end_build(build, false);

@@ -10,7 +10,8 @@
 LIST_HEAD(bucket, asset);
 
 struct store {
-    struct pool *pool, *readers;
+    struct slices slices; /* of builds, on the pool */
+    struct pool *readers;
     struct render_thread *render_thread;
     struct workers *workers;
     const struct asset_limits *limits;
@@ -47,7 +48,7 @@ struct store *store_create(struct pool *pool, struct pool *readers,
         return NULL;
     }
     atomic_init(&store->cancelled, false);
-    store->pool = pool;
+    slices_init(&store->slices, pool);
     store->readers = readers;
     store->render_thread = render_thread;
     store->workers = workers;
@@ -434,26 +435,29 @@ static bool is_served(const struct store *store, const struct asset *asset)
     return false;
 }
 
-/* The first of those that wait whose asker has nothing running, else the first: who asks for a
- * hundred models that take a minute each must not hold up who asks for one. Some wait. */
+/* Takes the next build out of the queue, or NULL when none may start. The first whose asker has nothing
+ * running starts at once: who asks for a hundred models that take a minute each must not hold up who
+ * asks for one. One asker's second build starts only where no more than STORE_BUILDS_OF_ONE run. */
 static struct asset *take_next(struct store *store)
 {
     struct asset *asset;
+    if (store->n_building == STORE_MAX_BUILDS)
+        return NULL;
     TAILQ_FOREACH (asset, &store->builds, build_link)
         if (!is_served(store, asset))
             break;
-    if (!asset)
+    if (!asset && store->n_building < STORE_BUILDS_OF_ONE)
         asset = TAILQ_FIRST(&store->builds);
-    TAILQ_REMOVE(&store->builds, asset, build_link);
+    if (asset)
+        TAILQ_REMOVE(&store->builds, asset, build_link);
     return asset;
 }
 
 static void start_builds(struct store *store)
 {
-    while (store->n_building < STORE_MAX_BUILDS && !TAILQ_EMPTY(&store->builds)) {
-        struct asset *asset = take_next(store);
+    for (struct asset *asset; (asset = take_next(store));) {
         const struct build_order order = {
-            .pool = store->pool,
+            .slices = &store->slices,
             .readers = store->readers,
             .render_thread = store->render_thread,
             .workers = store->workers,

@@ -2,8 +2,8 @@
  * models and light images that are ready on the GPU; the polygons of models, by model and level; and
  * the memory budget for all that the daemon holds.
  *
- * An asset is built once, when it is first used, however many requests wait for it; a few builds run
- * at a time. When room is needed, assets that no request uses are evicted: first those of clients
+ * An asset is built once, when it is first used, however many requests wait for it. A client that has
+ * no build running gets one started at once, and all share the pool by slices (slices.h). When room is needed, assets that no request uses are evicted: first those of clients
  * that hold more than an equal share, and of each client the least recently used first. A client
  * that asks for an evicted model is told that the model is unknown, and uploads it again. Nothing in
  * use is ever evicted.
@@ -21,7 +21,8 @@
 #include "server/assets/polygons.h"
 
 #define STORE_MAX_ASSETS 4096
-#define STORE_MAX_BUILDS 2 /* at once; bounds the queues of the pool and the render thread */
+#define STORE_MAX_BUILDS 16   /* at once, of as many clients; each has a thread of `readers` */
+#define STORE_BUILDS_OF_ONE 2 /* of one client alone */
 #define STORE_NAME_BYTES 256
 
 /* The owner of what everybody may use. */

@@ -150,6 +150,11 @@ void pool_destroy(struct pool *pool)
     free(pool);
 }
 
+unsigned pool_threads(const struct pool *pool)
+{
+    return pool->n_threads - pool->n_urgent_threads;
+}
+
 uint64_t pool_busy_us(const struct pool *pool, uint64_t now_us)
 {
     uint64_t longest = 0;

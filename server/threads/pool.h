@@ -41,6 +41,9 @@ struct pool *pool_create(const char *name, unsigned n_threads, unsigned n_urgent
  * delivered then. NULL is safe. */
 void pool_destroy(struct pool *pool);
 
+/* How many threads take all tasks. */
+unsigned pool_threads(const struct pool *pool);
+
 /* The longest time that any thread has been at its present task without calling pool_beat(); 0: no
  * thread has a task. The caller takes a thread for stuck by the length of this time. */
 uint64_t pool_busy_us(const struct pool *pool, uint64_t now_us);

@@ -193,6 +193,23 @@ class Workers(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
 
+    def test_slow_builds_of_one_hold_nobody_up(self):
+        """Whoever has nothing running is built for at once, before any of the slow ones is done."""
+        daemon = Daemon("--tables-cpu", "600", "--threads", "2")
+        with Client(daemon.tcp, minor=1, timeout=60) as many, Client(daemon.unix) as one:
+            sheets = [grid(90 + i) for i in range(3)]
+            slow = [many.upload(self.slow(str(i)), "slow.obj") for i in range(6)]
+            many.send(b"".join(wire.message(wire.MODEL_QUERY, 100 + i, wire.field(1, model))
+                               for i, model in enumerate(slow)))
+            many.stats()  # all of them have been read
+            for sheet in sheets:
+                one.query(one.upload(sheet, "sheet.obj"))
+            seq = many.next_seq()
+            many.send(wire.message(wire.STATS_QUERY, seq))
+            many.expect(wire.STATS, seq)  # and no model before
+        daemon.process.kill()
+
+
 class Memory(DaemonCase):
     arguments = ("--memory-budget", "24M", "--peer-memory", "12M", "--max-upload", "4M",
                  "--max-frame", "8M", "--max-image-side", "100")
