@@ -23,15 +23,23 @@ static void *room_for_one(void *array, size_t count, size_t capacity, size_t *ne
     return grown;
 }
 
-static bool no_memory(const char *what, size_t count, struct error *error)
+static const char *name_of(const struct cage_builder *builder)
 {
-    return error_set(error, ERROR_SERVER, "not enough memory for %zu %s", count, what);
+    return builder->name ? builder->name : "cage";
 }
 
-static bool too_many(const char *what, size_t limit, struct error *error)
+static bool no_memory(const struct cage_builder *builder, const char *what, size_t count,
+                      struct error *error)
 {
-    return error_set(error, ERROR_MODEL, "the cage has more than %zu %s, the most that is read",
-                     limit, what);
+    return error_set(error, ERROR_SERVER, "%s: not enough memory for %zu %s", name_of(builder),
+                     count, what);
+}
+
+static bool too_many(const struct cage_builder *builder, const char *what, size_t limit,
+                     struct error *error)
+{
+    return error_set(error, ERROR_MODEL, "%s: the cage has more than %zu %s, the most that is read",
+                     name_of(builder), limit, what);
 }
 
 void cage_builder_finish(struct cage_builder *builder)
@@ -49,11 +57,11 @@ bool cage_builder_vertex(struct cage_builder *builder, const double position[3],
 {
     struct cage *cage = &builder->cage;
     if (cage->n_vertices >= CAGE_MAX_VERTICES)
-        return too_many("vertices", CAGE_MAX_VERTICES, error);
+        return too_many(builder, "vertices", CAGE_MAX_VERTICES, error);
     double(*grown)[3] = room_for_one(cage->position, cage->n_vertices, builder->vertex_capacity,
                                      &builder->vertex_capacity, sizeof *grown);
     if (!grown)
-        return no_memory("vertices", cage->n_vertices, error);
+        return no_memory(builder, "vertices", cage->n_vertices, error);
     cage->position = grown;
     for (int i = 0; i < 3; i++)
         grown[cage->n_vertices][i] = position[i];
@@ -65,12 +73,12 @@ bool cage_builder_face_vertex(struct cage_builder *builder, uint32_t vertex, str
 {
     struct cage *cage = &builder->cage;
     if (builder->n_face_vertices >= CAGE_MAX_CORNERS)
-        return too_many("face corners", CAGE_MAX_CORNERS, error);
+        return too_many(builder, "face corners", CAGE_MAX_CORNERS, error);
     uint32_t *grown =
         room_for_one(cage->face_vertex, builder->n_face_vertices, builder->face_vertex_capacity,
                      &builder->face_vertex_capacity, sizeof *grown);
     if (!grown)
-        return no_memory("face corners", builder->n_face_vertices, error);
+        return no_memory(builder, "face corners", builder->n_face_vertices, error);
     cage->face_vertex = grown;
     grown[builder->n_face_vertices++] = vertex;
     return true;
@@ -80,17 +88,17 @@ bool cage_builder_end_face(struct cage_builder *builder, uint32_t line, struct e
 {
     struct cage *cage = &builder->cage;
     if (cage->n_faces >= CAGE_MAX_FACES)
-        return too_many("faces", CAGE_MAX_FACES, error);
+        return too_many(builder, "faces", CAGE_MAX_FACES, error);
     size_t capacity;
     uint32_t *lines = room_for_one(builder->face_line, cage->n_faces, builder->face_capacity,
                                    &capacity, sizeof *lines);
     if (!lines)
-        return no_memory("faces", cage->n_faces, error);
+        return no_memory(builder, "faces", cage->n_faces, error);
     builder->face_line = lines;
     if (capacity != builder->face_capacity) {
         uint32_t *start = realloc(cage->face_start, (capacity + 1) * sizeof *start);
         if (!start)
-            return no_memory("faces", cage->n_faces, error);
+            return no_memory(builder, "faces", cage->n_faces, error);
         cage->face_start = start;
         builder->face_capacity = capacity;
     }
@@ -123,13 +131,13 @@ bool cage_builder_crease(struct cage_builder *builder, const struct cage_crease 
 {
     struct cage *cage = &builder->cage;
     if (cage->n_creases >= MAX_TAGS)
-        return too_many("creases", MAX_TAGS, error);
+        return too_many(builder, "creases", MAX_TAGS, error);
     void *tags = cage->crease;
     bool ok = room_for_tag(&tags, sizeof *crease, &builder->crease_line, cage->n_creases,
                            &builder->crease_capacity);
     cage->crease = tags;
     if (!ok)
-        return no_memory("creases", cage->n_creases, error);
+        return no_memory(builder, "creases", cage->n_creases, error);
     builder->crease_line[cage->n_creases] = line;
     cage->crease[cage->n_creases++] = *crease;
     return true;
@@ -140,13 +148,13 @@ bool cage_builder_corner(struct cage_builder *builder, const struct cage_corner 
 {
     struct cage *cage = &builder->cage;
     if (cage->n_corners >= MAX_TAGS)
-        return too_many("corner tags", MAX_TAGS, error);
+        return too_many(builder, "corner tags", MAX_TAGS, error);
     void *tags = cage->corner;
     bool ok = room_for_tag(&tags, sizeof *corner, &builder->corner_line, cage->n_corners,
                            &builder->corner_capacity);
     cage->corner = tags;
     if (!ok)
-        return no_memory("corner tags", cage->n_corners, error);
+        return no_memory(builder, "corner tags", cage->n_corners, error);
     builder->corner_line[cage->n_corners] = line;
     cage->corner[cage->n_corners++] = *corner;
     return true;
@@ -157,13 +165,13 @@ bool cage_builder_hole(struct cage_builder *builder, uint32_t face, uint32_t lin
 {
     struct cage *cage = &builder->cage;
     if (cage->n_holes >= MAX_TAGS)
-        return too_many("holes", MAX_TAGS, error);
+        return too_many(builder, "holes", MAX_TAGS, error);
     void *tags = cage->hole;
     bool ok = room_for_tag(&tags, sizeof face, &builder->hole_line, cage->n_holes,
                            &builder->hole_capacity);
     cage->hole = tags;
     if (!ok)
-        return no_memory("holes", cage->n_holes, error);
+        return no_memory(builder, "holes", cage->n_holes, error);
     builder->hole_line[cage->n_holes] = line;
     cage->hole[cage->n_holes++] = face;
     return true;

@@ -1,7 +1,7 @@
 /* A cage under construction: arrays that grow while a reader walks a file, and the line each part
  * came from, so that warnings made at the end can name it.
  *
- * The caller owns the struct: zero it, hand it to a reader, then either take `cage` out (and zero
+ * The caller owns the struct: zero it but for the name, hand it to a reader, then either take `cage` out (and zero
  * it) or drop all with cage_builder_finish(), which must be called in both cases. Every function
  * that returns bool fails with ERROR_SERVER when memory is short and ERROR_MODEL when a count
  * passes its CAGE_MAX_ limit; the builder stays valid. Thread: one at a time. */
@@ -12,6 +12,7 @@
 
 struct cage_builder {
     struct cage cage;
+    const char *name; /* of the file, for messages; the caller's */
     /* Line in the file (from 1) of each face, crease, corner tag and hole; 0 where the file has no
      * lines. As long as the cage's own arrays. */
     uint32_t *face_line, *crease_line, *corner_line, *hole_line;

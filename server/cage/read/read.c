@@ -38,7 +38,7 @@ bool cage_read(struct cage *cage, const void *bytes, size_t size, const char *na
     name = shown_name(name);
     if (size == 0)
         return error_set(error, ERROR_MODEL, "%s: the file is empty", name);
-    struct cage_builder builder = {0};
+    struct cage_builder builder = {.name = name};
     bool (*read)(struct cage_builder *, const void *, size_t, const char *, struct error *) =
         model_format_is_gltf(name, bytes, size) ? gltf_read : obj_read;
     bool ok = read(&builder, bytes, size, name, error) && weld_and_repair(&builder, name, error) &&
