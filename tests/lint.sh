@@ -103,7 +103,7 @@ only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfro
     'socket calls' 'server client protocol' server/net/ server/ops/notify.c server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
 only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol' \
-    server/render/native/team.c
+    server/render/native/team.c server/surface/subdivision/maker.c
 only_in '<[a-z0-9]*intrin\.h>|\b_mm[0-9]*_' 'intrinsics' 'server client protocol' server/render/native/
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
     'server client protocol'

@@ -533,7 +533,7 @@ static bool start_polygons(struct asset *asset, struct error *error)
 {
     struct store *store = asset->store;
     const struct polygons_order order = {
-        .pool = store->pool,
+        .pool = store->slices.pool,
         .tables = &asset->of->model->tables,
         .level = asset->level,
         .cancelled = &store->cancelled,

@@ -128,7 +128,7 @@ size_t limit_tables_host_bytes(const struct limit_tables *tables)
         tables->n_nodes * (sizeof *tables->nodes + sizeof *tables->heads + sizeof *tables->whole) +
         tables->n_faces * sizeof *tables->adjacency +
         limit_support_room(tables) * sizeof *tables->support +
-                   (tables->source ? tables->source->bytes : 0);
+        (tables->source ? tables->source->bytes : 0);
     if (tables->on_demand)
         return bytes + record_cache_most_bytes(sizeof(struct limit_bound), level_bounds_of(tables));
     return bytes + tables->n_texels * sizeof *tables->texels +

@@ -164,8 +164,8 @@ static void rest_corners(const struct native_frame *frame, uint32_t node, int le
     for (int c = 1; c < 4; c++) {
         unsigned square = c == 1 ? 1 : c == 3 ? 2 : 3;
         struct native_patch room;
-        const struct native_patch *patch = native_patch_get(
-            frame->model, node, native_patch_index(of, level, square), &room);
+        const struct native_patch *patch =
+            native_patch_get(frame->model, node, native_patch_index(of, level, square), &room);
         for (int k = 0; k < 3; k++)
             corner[k][c] = patch->corner[k][0];
     }
