@@ -1,10 +1,10 @@
 // Geometric antialiasing: the pixels that silhouettes, creases and open borders run through.
 //
 // Around each pixel's hit the surface is known to second order: a paraboloid from position, normal
-// and shape operator. Where its own piece ends is known too: `border`, and `silhouette`.
+// and shape operator. Where its own piece ends is known too: the plane `ends`.
 //   edges_find            lists the pixels whose neighbours their own paraboloid does not explain, and apart
 //                         from them those over which the normal turns so far that one footprint cannot tell;
-//   silhouette            finds where the pieces that pixels at edges show end;
+//   ends_find             finds where the pieces that pixels at edges show end;
 //   edges_recheck         sorts out the pixels at edges where the pieces around contradict each other;
 //   edges_shade           for each of the others at edges, shades the share of each of the pieces around;
 //   high_curvature_shade  for each of those of high curvature, shades nine parts of it.

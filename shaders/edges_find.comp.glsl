@@ -2,7 +2,7 @@
 // the coverage of all others. At an edge is a pixel whose border runs through it, whose neighbour to a side is not
 // where its paraboloid says, or one beside or across a corner from which shows surface where it shows none, or none
 // where it does. Those of them that show surface are listed apart, and around what is shaded too, since the pixels
-// there ask where these end (silhouette.comp.glsl).
+// there ask where these end (ends_find.comp.glsl).
 
 layout(local_size_x = 64) in;
 
@@ -15,7 +15,7 @@ LIST(4, Rims, rims);
 
 uniform ivec4 shaded;  // x, y, width, height: the part of what is drawn that the lists are for
 
-layout(binding = 6, r32ui) writeonly uniform uimage2D silhouette;
+layout(binding = 6, rg32ui) writeonly uniform uimage2D ends;
 
 const ivec2 AROUND[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 const ivec2 DIAGONAL[4] = ivec2[4](ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
@@ -62,7 +62,7 @@ void main()
         ivec2 q = clamp(p + DIAGONAL[i], ivec2(0), tile.zw - 1);
         at_edge = at_edge || is_hit != imageLoad(hit_depth, q).x > 0.0;
     }
-    imageStore(silhouette, p, uvec4(pack_border(NO_BORDER, 0.0)));
+    imageStore(ends, p, uvec4(NO_END, end_of_border(imageLoad(border, p).x), 0u, 0u));
     if (is_hit && at_edge)
         LIST_ADD(rims, p, 64u)
     if (any(lessThan(p, shaded.xy)) || any(greaterThanEqual(p, shaded.xy + shaded.zw)))

@@ -1,17 +1,22 @@
-// Sorts the pixels at edges into two lists. A pixel must be rechecked where a piece of surface around it contradicts
-// what a pixel's centre shows: the piece reaches a centre that does not show it, or ends before a centre that does, by
-// more than OFF. A pixel must also be rechecked where three pieces are around it, or two pieces and a pixel that shows
-// nothing: each piece tells its own end only, and between the ends there may be anything. Pixels to recheck join the
-// list of rounded ones, so that rays meet the surface itself there; all others are shaded from the pieces.
+// Sorts the pixels at edges into two lists. Pixels to recheck join the list of rounded ones, so that rays meet the
+// surface itself there; all others are shaded from the pieces of surface around. A pixel must be rechecked where
+//   a piece contradicts what a pixel's centre around shows: the piece reaches a centre that does not show it, or ends
+//   before a centre that does, by more than OFF;
+//   three pieces are around, or two pieces and a pixel that shows nothing: each piece tells its own ends only, and
+//   between these there may be anything;
+//   beside a pixel that shows nothing, two ends of one piece run through the pixel: where they meet they may turn;
+//   beside a pixel that shows nothing, the piece ends at a crease whose other side faces the eye as well: that side
+//   is seen, if narrower than a pixel.
 
 layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 
 LIST(2, Edges, edges);
 LIST(3, Rounded, rounded);
 
-const float OFF = 0.1;  // px
+const float OFF = 0.07, CREASE_NEAR = 0.7;  // px
 
-const ivec2 AROUND[8] = ivec2[8](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1), ivec2(-1, -1),
+// The pixel itself first.
+const ivec2 AROUND[9] = ivec2[9](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1), ivec2(-1, -1),
                                  ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
 
 bool disagrees(Piece piece, vec2 place, Hit there)
@@ -23,35 +28,60 @@ bool disagrees(Piece piece, vec2 place, Hit there)
     return inside > OFF && z > 0.0 && (there.depth == 0.0 || there.depth > z + pixel_units(z));
 }
 
+// How many of the piece's ends run through the pixel.
+int ends_in_pixel(Piece piece)
+{
+    int n = 0;
+    for (int k = 0; k < ENDS; k++) {
+        End end = piece.end[k];
+        n += int(k < piece.n_ends && abs(end.reach) < 0.5 * (abs(end.across.x) + abs(end.across.y)));
+    }
+    return n;
+}
+
+// Whether the pixel at `at` knows a crease within the pixel looked at whose other side faces the eye.
+bool is_crease_seen_beyond(ivec2 p, ivec2 at)
+{
+    uint crease = texelFetch(ends, p + at, 0).y;
+    vec2 place = vec2(at) + end_off(crease) * end_across(crease);
+    return crease != NO_END && (crease & END_GOES_ON) != 0u && max(abs(place.x), abs(place.y)) < CREASE_NEAR;
+}
+
 void main()
 {
     uint i = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 32u + gl_LocalInvocationIndex;
     if (i >= listed.n)
         return;
     ivec2 p = list_place(listed.at[i]);
-    Hit own = hit_at(p);
-    Piece piece;
-    Hit first = own, second;
-    second.depth = 0.0;
-    if (mirrors(own))
-        piece = piece_of(own, p, ivec2(0));
-    bool needs_recheck = false, beside_empty = own.depth == 0.0;
-    for (int k = 0; k < 8 && !needs_recheck; k++) {
+    Piece piece[2];
+    int n = 0;
+    bool beside_empty = false, seen_beyond = false;
+    for (int k = 0; k < 9 && n < 3; k++) {
         Hit hit = hit_at(p + AROUND[k]);
         beside_empty = beside_empty || hit.depth == 0.0;
-        if (mirrors(own) && hit.depth >= 0.0)
-            needs_recheck = disagrees(piece, vec2(AROUND[k]), hit);
         if (!mirrors(hit))
             continue;
-        needs_recheck = needs_recheck || disagrees(piece_of(hit, p, AROUND[k]), vec2(0.0), own);
-        if (!(first.depth > 0.0))
-            first = hit;
-        else if (!same_surface(first, hit)) {
-            needs_recheck = needs_recheck || (second.depth > 0.0 && !same_surface(second, hit));
-            second = hit;
+        seen_beyond = seen_beyond || is_crease_seen_beyond(p, AROUND[k]);
+        if (n > 0 && same_surface(piece[0].hit, hit))
+            add_ends(piece[0], p, AROUND[k]);
+        else if (n > 1 && same_surface(piece[1].hit, hit))
+            add_ends(piece[1], p, AROUND[k]);
+        else {
+            if (n == 0)
+                piece[0] = piece_of(hit, p, AROUND[k]);
+            else if (n == 1)
+                piece[1] = piece_of(hit, p, AROUND[k]);
+            n++;
         }
     }
-    if (needs_recheck || (beside_empty && second.depth > 0.0))
+    bool needs_recheck = n > 2 || (beside_empty && (n > 1 || seen_beyond || (n == 1 && ends_in_pixel(piece[0]) > 1)));
+    for (int k = 0; k < 9 && !needs_recheck; k++) {
+        Hit hit = hit_at(p + AROUND[k]);
+        if (hit.depth >= 0.0)
+            needs_recheck = (n > 0 && disagrees(piece[0], vec2(AROUND[k]), hit)) ||
+                            (n > 1 && disagrees(piece[1], vec2(AROUND[k]), hit));
+    }
+    if (needs_recheck)
         LIST_ADD(rounded, p, ROUNDED_PER_GROUP)
     else
         LIST_ADD(edges, p, EDGES_PER_GROUP)

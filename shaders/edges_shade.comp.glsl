@@ -64,27 +64,31 @@ Around pieces_around(ivec2 p)
     around.n = 0;
     around.beside_empty = false;
     float own_depth = imageLoad(hit_depth, p).x;
-    float ends = own_depth > 0.0 ? own_depth - 0.25 * pixel_units(own_depth) : NOWHERE;
+    float before = own_depth > 0.0 ? own_depth - 0.25 * pixel_units(own_depth) : NOWHERE;
     for (int i = 0; i < 9; i++) {
         Hit hit = hit_at(p + AROUND[i]);
         around.beside_empty = around.beside_empty || hit.depth == 0.0;
         bool is_new = mirrors(hit);
         for (int k = 0; k < PIECES; k++)
-            is_new = is_new && (k >= around.n || !same_surface(around.piece[k].hit, hit));
+            if (is_new && k < around.n && same_surface(around.piece[k].hit, hit)) {
+                add_ends(around.piece[k], p, AROUND[i]);
+                is_new = false;
+            }
         if (!is_new || around.n == PIECES)
             continue;
+        if (is_in_rounding(p + AROUND[i]))
+            continue;
         Piece piece = piece_of(hit, p, AROUND[i]);
-        // On a border the paraboloid holds for less than a pixel.
-        if (piece.foot == vec2(0.0))
-            continue;
-        // A piece that would hide what the pixel's centre shows ends before it.
-        if (i > 0 && depth_at(piece, vec2(0.0)) < ends && !end_at(piece, vec2(0.0)))
-            continue;
         for (int k = 0; k < PIECES; k++)  // no store to a place that is computed: some devices keep such arrays in memory
             if (k == around.n)
                 around.piece[k] = piece;
         around.n++;
     }
+    // A piece that would hide what the pixel's centre shows ends before it.
+    for (int k = 0; k < PIECES; k++)
+        if (k < around.n && around.piece[k].at != vec2(0.0) && depth_at(around.piece[k], vec2(0.0)) < before &&
+            !end_at(around.piece[k], vec2(0.0)))
+            around.piece[k].is_hidden = true;
     return around;
 }
 
@@ -99,7 +103,7 @@ void share_quarter(Around around, int quarter, inout vec3 seen[PARTS])
         vec4 part, z;  // of each piece
         for (int k = 0; k < PIECES; k++) {
             z[k] = depth_at(around.piece[k], square);
-            bool there = k < around.n && z[k] > 0.0;
+            bool there = k < around.n && z[k] > 0.0 && !around.piece[k].is_hidden;
             part[k] = there ? piece_share(around.piece[k], square, SIZE) : 0.0;
         }
         for (int k = 0; k < PIECES; k++) {

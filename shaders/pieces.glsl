@@ -1,9 +1,22 @@
-layout(binding = 3) uniform usampler2D silhouette;
+layout(binding = 3) uniform usampler2D ends;
 
 // The pieces of surface that a pixel looked at more closely may show (edges.glsl): a paraboloid each,
-// clipped by its border's line, and shaded away from the pixel it was seen at.
+// clipped by the lines where it ends, and shaded away from the pixel it was seen at.
 
 LIST(0, Listed, listed);  // the pixels to shade
+
+// A line where a piece ends: it lies where dot(across, place) < reach, in px from the middle of the pixel looked at.
+struct End {
+    vec2 across;  // unit, outwards
+    float reach;
+    vec2 place;   // for which the line was found
+};
+
+// Each pixel that shows a piece knows the nearest places of its ends, so several know one end: of their lines the one
+// counts that was found nearest to the pixel looked at. Lines are of one end if one passes the other's place by less than
+// ALIKE_PX, and the cosine of the angle between them is above ALIKE_COS.
+const int ENDS = 3;
+const float ALIKE_PX = 0.35, ALIKE_COS = 0.8;
 
 // Along the ray through the place where it was met plus d px, z units beyond its depth, a piece is where
 // a z^2 + b z + c = 0.
@@ -14,13 +27,52 @@ struct Piece {
     vec3 b;      // b.x + dot(b.yz, d)
     vec2 c;      // dot(c, d) + dot(cc, (dx dx, dx dy, dy dy))
     vec3 cc;
-    vec2 foot;   // where it ends: at the line across this, px
+    End end[ENDS];   // where it ends
+    int n_ends;
+    End crease;      // where the nearest border is, as the pixel at `at` knows it
     float rounding;  // how wide it is rounded towards there, px
-    float reach;     // dot(foot, d) where it ends
-    vec2 rim;        // and at its silhouette
-    float rim_reach;
-    float lacking;   // of b b - 4 a c, where it does not reach as far as the paraboloid does
+    bool is_hidden;  // nothing of it shows in the pixel
 };
+
+// No store to a place that is computed: some devices keep such arrays in memory.
+void add_end(inout Piece piece, End found)
+{
+    bool is_new = true;
+    for (int k = 0; k < ENDS; k++) {
+        End other = piece.end[k];
+        bool is_alike = k < piece.n_ends && dot(other.across, found.across) > ALIKE_COS &&
+                        abs(dot(other.across, found.place) - other.reach) < ALIKE_PX;
+        if (is_alike && dot(found.place, found.place) < dot(other.place, other.place))
+            piece.end[k] = found;
+        is_new = is_new && !is_alike;
+    }
+    for (int k = 0; k < ENDS; k++)
+        if (is_new && k == piece.n_ends)
+            piece.end[k] = found;
+    piece.n_ends += int(is_new && piece.n_ends < ENDS);
+}
+
+End end_from(uint packed_end, vec2 at)
+{
+    vec2 across = end_across(packed_end), place = at + end_off(packed_end) * across;
+    return End(across, dot(across, place), place);
+}
+
+// Whether the pixel's centre lies in the rounding of a crease: the paraboloid there holds for less than a pixel.
+bool is_in_rounding(ivec2 p)
+{
+    uint packed_end = texelFetch(ends, p, 0).y;
+    return packed_end != NO_END && end_off(packed_end) == 0.0;
+}
+
+// The ends that the pixel at `at` knows, which shows the same piece.
+void add_ends(inout Piece piece, ivec2 p, ivec2 at)
+{
+    uvec2 packed_ends = texelFetch(ends, p + at, 0).xy;
+    for (int k = 0; k < 2; k++)
+        if (packed_ends[k] != NO_END && end_off(packed_ends[k]) > 0.0)
+            add_end(piece, end_from(packed_ends[k], vec2(at)));
+}
 
 Piece piece_of(Hit hit, ivec2 p, ivec2 at)
 {
@@ -40,13 +92,12 @@ Piece piece_of(Hit hit, ivec2 p, ivec2 at)
     piece.b = vec3(dot(hit.n, ahead), ray.x * facing - px * vec2(dot(r, h * t), dot(s, h * t)));
     piece.c = px * facing;
     piece.cc = -0.5 * px * px * vec3(dot(r, h * r), 2.0 * dot(r, h * s), dot(s, h * s));
-    uint packed_border = imageLoad(border, p + at).x;
-    piece.foot = border_foot(packed_border);
-    piece.reach = dot(piece.foot, piece.foot);
-    piece.rim = border_foot(texelFetch(silhouette, p + at, 0).x);
-    piece.rim_reach = dot(piece.rim, piece.rim);
-    piece.lacking = 0.0;
-    piece.rounding = border_rounding(packed_border);
+    uint packed_crease = texelFetch(ends, p + at, 0).y;
+    piece.crease = end_from(packed_crease, vec2(at));
+    piece.rounding = packed_crease == NO_END ? 0.0 : end_rounding(packed_crease);
+    piece.n_ends = 0;
+    piece.is_hidden = false;
+    add_ends(piece, p, at);
     return piece;
 }
 
@@ -62,68 +113,49 @@ float depth_at(Piece piece, vec2 place)
     return piece.hit.depth - 2.0 * c / (below == 0.0 ? 1e-30 : below);
 }
 
-// How far a place is inside the piece's silhouette: a function that is next to linear, with its gradient.
-float inside_silhouette(Piece piece, vec2 place, out vec2 gradient)
-{
-    vec2 d = place - piece.at;
-    float to_rim = dot(piece.rim, d);
-    if (piece.rim != NO_BORDER && to_rim > 0.0) {
-        gradient = -piece.rim;
-        return piece.rim_reach - to_rim;
-    }
-    float b = piece.b.x + dot(piece.b.yz, d);
-    float c = dot(piece.c, d) + dot(piece.cc, vec3(d.x * d.x, d.x * d.y, d.y * d.y));
-    vec2 dc = piece.c + vec2(2.0 * piece.cc.x * d.x + piece.cc.y * d.y,
-                             piece.cc.y * d.x + 2.0 * piece.cc.z * d.y);
-    gradient = 2.0 * b * piece.b.yz - 4.0 * piece.a * dc;
-    return b * b - 4.0 * piece.a * c - piece.lacking;
-}
-
 // How much of a square the piece covers.
 float piece_share(Piece piece, vec2 middle, float size)
 {
-    vec2 gradient;
-    float inside = inside_silhouette(piece, middle, gradient);
-    float to_border = piece.reach - dot(piece.foot, middle - piece.at);
-    return half_plane(inside, size * gradient) * half_plane(to_border, size * piece.foot);
+    float share = 1.0;
+    for (int k = 0; k < ENDS; k++) {
+        End end = piece.end[k];
+        share *= k < piece.n_ends ? half_plane(end.reach - dot(end.across, middle), size * end.across) : 1.0;
+    }
+    return share;
 }
 
-bool covers(Piece piece, vec2 place)
-{
-    vec2 gradient;
-    return inside_silhouette(piece, place, gradient) >= 0.0 && dot(piece.foot, place - piece.at) <= piece.reach &&
-           depth_at(piece, place) > 0.0;
-}
+const float FAR_INSIDE = 1e3;  // px
 
 // How far inside the piece's ends a place is, px: less than 0 outside.
 float inside_px(Piece piece, vec2 place)
 {
-    vec2 gradient;
-    float inside = inside_silhouette(piece, place, gradient);
-    float to_border = piece.reach - dot(piece.foot, place - piece.at);
-    return min(inside / max(length(gradient), 1e-30), to_border / max(length(piece.foot), 1e-30));
+    float inside = FAR_INSIDE;
+    for (int k = 0; k < ENDS; k++) {
+        End end = piece.end[k];
+        inside = k < piece.n_ends ? min(inside, end.reach - dot(end.across, place)) : inside;
+    }
+    return inside;
 }
 
-// Where a piece reaches a place that it does not show, its silhouette or its border is a little off: moves
-// the nearer of both to there. False where that is too far away.
+bool covers(Piece piece, vec2 place)
+{
+    return inside_px(piece, place) >= 0.0 && depth_at(piece, place) > 0.0;
+}
+
+// Where a piece reaches a place that it does not show, one of its ends is a little off: moves the nearest to there.
+// False where that is too far away.
 const float MOST_OFF = 0.5;  // px
 
 bool end_at(inout Piece piece, vec2 place)
 {
-    vec2 gradient;
-    float inside = inside_silhouette(piece, place, gradient), far = length(gradient);
-    float to_border = piece.reach - dot(piece.foot, place - piece.at);
-    float off_silhouette = inside / max(far, 1e-30), off_border = to_border / length(piece.foot);
-    if (min(inside, to_border) <= 0.0)
+    float inside = inside_px(piece, place);
+    if (inside <= 0.0)
         return true;
-    if (min(off_silhouette, off_border) > MOST_OFF)
+    if (inside > MOST_OFF)
         return false;
-    if (off_border < off_silhouette)
-        piece.reach -= to_border;
-    else if (gradient == -piece.rim)
-        piece.rim_reach -= inside;
-    else
-        piece.lacking += inside;
+    for (int k = 0; k < ENDS; k++)
+        if (piece.end[k].reach - dot(piece.end[k].across, place) == inside)
+            piece.end[k].reach -= inside;
     return true;
 }
 

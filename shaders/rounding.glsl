@@ -10,9 +10,8 @@ const int ROUNDING_PARTS = 3;
 // How much of the pixel the rounding takes, on the piece's own side.
 float rounding_share(Piece piece)
 {
-    vec2 g = normalize(piece.foot);
-    float off = dot(g, piece.at + piece.foot);
-    return half_plane(off, g) - half_plane(off - piece.rounding, g);
+    vec2 g = piece.crease.across;
+    return half_plane(piece.crease.reach, g) - half_plane(piece.crease.reach - piece.rounding, g);
 }
 
 vec3 rounding_normal(vec3 side, vec3 other, float t)
@@ -22,8 +21,7 @@ vec3 rounding_normal(vec3 side, vec3 other, float t)
 
 vec2 rounding_place(Piece piece)
 {
-    vec2 g = normalize(piece.foot);
-    return clamp(g * (dot(g, piece.at + piece.foot) - 0.5 * piece.rounding), -0.5, 0.5);
+    return clamp(piece.crease.across * (piece.crease.reach - 0.5 * piece.rounding), -0.5, 0.5);
 }
 
 // A part that lies along the crease, averaged over all that its normal turns.
@@ -35,7 +33,7 @@ struct Strip {
 
 Strip rounding_strip(Piece piece, vec3 side, vec3 other, int i)
 {
-    vec2 g = normalize(piece.foot);
+    vec2 g = piece.crease.across;
     vec3 inner = rounding_normal(side, other, float(i) / float(ROUNDING_PARTS));
     vec3 outer = rounding_normal(side, other, float(i + 1) / float(ROUNDING_PARTS));
     mat2 sides = mat2(g * (piece.rounding / float(ROUNDING_PARTS)), vec2(-g.y, g.x));

@@ -32,7 +32,7 @@ void stage_edges(struct gl_renderer *r, const struct tile *shaded)
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
     glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
     glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-    glBindImageTexture(6, target->silhouette, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+    glBindImageTexture(6, target->ends, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32UI);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     glProgramUniform4i(r->edges.find, glGetUniformLocation(r->edges.find, "shaded"),
                        (GLint)shaded->x, (GLint)shaded->y, (GLint)shaded->width,
@@ -48,7 +48,7 @@ void stage_edges_recheck(struct gl_renderer *r)
     glBindImageTexture(1, target->normal, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
     glBindImageTexture(2, target->shape, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RG32F);
     glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
-    glBindTextureUnit(3, target->silhouette);
+    glBindTextureUnit(3, target->ends);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->unsolved);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->edges);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->rounded);

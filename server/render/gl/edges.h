@@ -15,7 +15,7 @@ bool stage_edges_init(struct edges_stage *stage, struct error *error);
  * are wanted of, in the list `retry_pixels` that stage 2 is done with, as it is with `unsolved`,
  * which gets those at edges. */
 void stage_edges(struct gl_renderer *r, const struct tile *shaded);
-/* After stage_silhouette(): the pixels at edges become the list `edges`, except that those whose
+/* After stage_ends(): the pixels at edges become the list `edges`, except that those whose
  * edges do not agree with what the pixels around show go to `rounded`. */
 void stage_edges_recheck(struct gl_renderer *r);
 

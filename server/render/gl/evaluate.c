@@ -144,12 +144,12 @@ bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
     return true;
 }
 
-void stage_silhouette(struct gl_renderer *r, const struct gl_model *model,
-                      const struct table_programs *programs)
+void stage_ends(struct gl_renderer *r, const struct gl_model *model,
+                const struct table_programs *programs)
 {
     bind_tables(r, model);
-    glBindImageTexture(5, r->target.silhouette, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
-    glUseProgram(programs->silhouette);
+    glBindImageTexture(5, r->target.ends, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG32UI);
+    glUseProgram(programs->ends);
     solve_listed(r->target.retry_pixels);
 }
 

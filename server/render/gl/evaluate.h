@@ -24,9 +24,9 @@ void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
 bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
                 const struct table_programs *programs, const struct view *view,
                 struct error *error);
-/* After stage_edges(): finds where the surface that the listed pixels show ends at a silhouette. */
-void stage_silhouette(struct gl_renderer *r, const struct gl_model *model,
-                      const struct table_programs *programs);
+/* After stage_edges(): finds where the surface that the listed pixels show ends. */
+void stage_ends(struct gl_renderer *r, const struct gl_model *model,
+                const struct table_programs *programs);
 /* After stage_edges_recheck(): intersects 16 rays of each pixel that shows the rounding of a crease
  * with the surface. */
 void stage_rounded(struct gl_renderer *r, const struct gl_model *model,

@@ -47,7 +47,7 @@ static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
         return false;
     if (request_has_coverage(request)) {
         stage_edges(r, &cut);
-        stage_silhouette(r, model, programs);
+        stage_ends(r, model, programs);
         stage_edges_recheck(r);
         stage_rounded(r, model, programs);
     }

@@ -130,7 +130,7 @@ static void bind_planes(const struct target *target, enum shaded which)
         glBindImageTexture(5, target->curvature, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
         glBindImageTexture(6, target->light_change, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
     } else {
-        glBindTextureUnit(3, target->silhouette);
+        glBindTextureUnit(3, target->ends);
         glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
         glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
     }

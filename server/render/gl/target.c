@@ -18,7 +18,7 @@ static const struct {
     {offsetof(struct target, shape), GL_RG32F, 8},
     {offsetof(struct target, ptex), GL_RGBA32UI, 16},
     {offsetof(struct target, border), GL_R32UI, 4},
-    {offsetof(struct target, silhouette), GL_R32UI, 4},
+    {offsetof(struct target, ends), GL_RG32UI, 8},
     {offsetof(struct target, colour), GL_RGBA8, 4},
     {offsetof(struct target, coverage), GL_R32F, 4},
     {offsetof(struct target, light), GL_RG32F, 8},

@@ -27,7 +27,7 @@ struct target {
     GLuint normal, shape;          /* RGBA32F, RG32F */
     GLuint ptex;                   /* RGBA32UI */
     GLuint border;                 /* R32UI: two halves, shaders/planes.glsl */
-    GLuint silhouette;             /* R32UI: shaders/silhouette.comp.glsl */
+    GLuint ends;                   /* RG32UI: shaders/ends.glsl */
     GLuint colour;                 /* RGBA8 */
     GLuint light, curvature;       /* RG32F */
     GLuint light_change;           /* RGBA32F */

@@ -12,7 +12,7 @@
     void native_gaps_##set(struct native_frame *, struct native_thread *);                         \
     void native_place_##set(struct native_slice *, struct native_polygon_thread *, uint32_t);      \
     void native_triangles_##set(struct native_slice *, uint32_t);                                  \
-    native_program native_edges_find_##set, native_edges_recheck_##set, native_silhouette_##set,   \
+    native_program native_edges_find_##set, native_edges_recheck_##set, native_ends_find_##set,    \
         native_rounded_solve_##set, native_shade_##set, native_edges_shade_##set,                  \
         native_high_curvature_shade_##set, native_rounded_shade_##set, native_shade_planes_##set,  \
         native_share_##set, native_polygon_planes_##set, native_polygon_edges_##set;
@@ -23,7 +23,7 @@
         .triangles = native_triangles_##set, .programs = {                                         \
             native_edges_find_##set,                                                               \
             native_edges_recheck_##set,                                                            \
-            native_silhouette_##set,                                                               \
+            native_ends_find_##set,                                                                \
             native_rounded_solve_##set,                                                            \
             native_shade_##set,                                                                    \
             native_edges_shade_##set,                                                              \

@@ -120,7 +120,7 @@ struct native_bindings native_bindings_of(const struct native_drawing *d)
         .normal = t->normal,
         .shape = t->shape,
         .border = t->border,
-        .silhouette = t->silhouette,
+        .ends = t->ends,
         .colour = t->colour,
         .coverage = t->coverage,
         .light_st = t->light_st,
@@ -219,7 +219,7 @@ bool native_edges(const struct native_drawing *d, struct error *error)
 
     b = native_bindings_of(d);
     b.listed = list_of(d, NATIVE_RIMS);
-    run_program(d, programs->silhouette, &b, b.listed->n, LISTED_PER_WORKGROUP, NULL);
+    run_program(d, programs->ends_find, &b, b.listed->n, LISTED_PER_WORKGROUP, NULL);
 
     b.listed = list_of(d, NATIVE_FOUND_EDGES);
     b.edges = list_of(d, NATIVE_EDGES);

@@ -52,7 +52,7 @@ static void lay_out_surface(struct native_target *t, struct layout *layout)
 static void lay_out(struct native_target *t, struct layout *layout)
 {
     lay_out_surface(t, layout);
-    t->silhouette = take(layout, 1);
+    t->ends = take(layout, 2);
     t->colour = take(layout, 1);
     t->coverage = take(layout, 1);
     t->light_st = take(layout, 2);
@@ -68,7 +68,7 @@ static void lay_out(struct native_target *t, struct layout *layout)
 }
 
 /* What lay_out() takes of a pixel: planes, and a word of each list. */
-enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 3 + 2 + 2 + 4 + 2 * 5 + NATIVE_LISTS };
+enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 4 + 2 + 2 + 4 + 2 * 5 + NATIVE_LISTS };
 
 bool native_target_reserve(struct native_target *target, uint32_t width, uint32_t height,
                            struct error *error)

@@ -27,7 +27,7 @@ struct native_target {
     uint32_t width, height;
     struct native_planes planes; /* stage 2 */
     struct native_image hit_depth, normal, shape, ptex, border, seen, seen_depth;
-    struct native_image silhouette, colour, coverage, light_st, curvature, light_change;
+    struct native_image ends, colour, coverage, light_st, curvature, light_change;
     struct native_image lights[2], missed[2]; /* of frames of several lights */
     struct native_list list[NATIVE_LISTS];
     uint32_t *words; /* of all of them */

@@ -40,20 +40,22 @@ struct program_source source_of_single(enum single_program program)
                                           "groups.glsl", "recheck.comp.glsl", NULL};
     static const char *const gaps[] = {"view.glsl", "list.glsl", "seen.glsl", "gaps.comp.glsl",
                                        NULL};
-    static const char *const edges_find[] = {"view.glsl",
-                                             "list.glsl",
-                                             "basis.glsl",
-                                             "hit.glsl",
-                                             "border.glsl",
-                                             "edges.glsl",
-                                             "rounded.glsl",
-                                             "groups.glsl",
-                                             "edges_find.comp.glsl",
-                                             NULL};
-    static const char *const edges_recheck[] = {
-        "view.glsl",   "list.glsl",  "basis.glsl",   "hit.glsl",    "coverage.glsl",
-        "border.glsl", "edges.glsl", "rounded.glsl", "pieces.glsl", "edges_recheck.comp.glsl",
+    static const char *const edges_find[] = {
+        "view.glsl", "list.glsl",  "basis.glsl",   "hit.glsl",    "border.glsl",
+        "ends.glsl", "edges.glsl", "rounded.glsl", "groups.glsl", "edges_find.comp.glsl",
         NULL};
+    static const char *const edges_recheck[] = {"view.glsl",
+                                                "list.glsl",
+                                                "basis.glsl",
+                                                "hit.glsl",
+                                                "coverage.glsl",
+                                                "border.glsl",
+                                                "ends.glsl",
+                                                "edges.glsl",
+                                                "rounded.glsl",
+                                                "pieces.glsl",
+                                                "edges_recheck.comp.glsl",
+                                                NULL};
     static const char *const vertex[] = {"view.glsl", "polygon.vert.glsl", NULL};
     static const char *const polygons[] = {"view.glsl", "basis.glsl", "polygon.glsl",
                                            "polygon.frag.glsl", NULL};
@@ -87,12 +89,15 @@ struct program_source source_of_tables(enum table_program program,
     static const char *const unsolved[] = {STAGE_2, "walk.glsl", "unsolved.comp.glsl", NULL};
     static const char *const rounded[] = {STAGE_2, "walk.glsl", "rounded.glsl",
                                           "rounded_solve.comp.glsl", NULL};
-    static const char *const silhouette[] = {STAGE_2, "walk.glsl", "silhouette.comp.glsl", NULL};
+    static const char *const ends[] = {STAGE_2, "walk.glsl", "ends.glsl", "ends_find.comp.glsl",
+                                       NULL};
 #undef STAGE_2
     static const char *const *const files[TABLE_PROGRAMS][2] = {
-        [PROGRAM_VISIBILITY] = {vertex, fragment}, [PROGRAM_EVALUATE] = {evaluate, NULL},
-        [PROGRAM_UNSOLVED] = {unsolved, NULL},     [PROGRAM_ROUNDED] = {rounded, NULL},
-        [PROGRAM_SILHOUETTE] = {silhouette, NULL},
+        [PROGRAM_VISIBILITY] = {vertex, fragment},
+        [PROGRAM_EVALUATE] = {evaluate, NULL},
+        [PROGRAM_UNSOLVED] = {unsolved, NULL},
+        [PROGRAM_ROUNDED] = {rounded, NULL},
+        [PROGRAM_ENDS] = {ends, NULL},
     };
     struct program_source source = {.files = {files[program][0], files[program][1]}};
     snprintf(source.defines, sizeof source.defines,
@@ -111,14 +116,24 @@ struct program_source source_of_shading(struct shade_key key)
 #define COMMON LINES, "srgb.glsl", "shown.glsl", "patterns.glsl"
     static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
     static const char *const edges[] = {
-        COMMON,          "border.glsl",           "edges.glsl", "pieces.glsl", "piece_shade.glsl",
+        COMMON,          "border.glsl",           "ends.glsl",
+        "edges.glsl",    "pieces.glsl",           "piece_shade.glsl",
         "rounding.glsl", "edges_shade.comp.glsl", NULL};
-    static const char *const high_curvature[] = {
-        COMMON,        "border.glsl",      "edges.glsl",
-        "pieces.glsl", "piece_shade.glsl", "high_curvature_shade.comp.glsl",
-        NULL};
-    static const char *const rounded[] = {COMMON,        "border.glsl",  "edges.glsl",
-                                          "pieces.glsl", "rounded.glsl", "rounded_shade.comp.glsl",
+    static const char *const high_curvature[] = {COMMON,
+                                                 "border.glsl",
+                                                 "ends.glsl",
+                                                 "edges.glsl",
+                                                 "pieces.glsl",
+                                                 "piece_shade.glsl",
+                                                 "high_curvature_shade.comp.glsl",
+                                                 NULL};
+    static const char *const rounded[] = {COMMON,
+                                          "border.glsl",
+                                          "ends.glsl",
+                                          "edges.glsl",
+                                          "pieces.glsl",
+                                          "rounded.glsl",
+                                          "rounded_shade.comp.glsl",
                                           NULL};
     static const char *const planes[] = {LINES, "groups.glsl", "shade_planes.comp.glsl", NULL};
     static const char *const share[] = {LINES, "groups.glsl", "share.comp.glsl", NULL};

@@ -51,7 +51,7 @@ enum table_program {
     PROGRAM_EVALUATE,
     PROGRAM_UNSOLVED,
     PROGRAM_ROUNDED,
-    PROGRAM_SILHOUETTE,
+    PROGRAM_ENDS,
     TABLE_PROGRAMS
 };
 struct table_layout {

@@ -8,7 +8,7 @@ static void delete_all(const struct table_programs *programs)
     glDeleteProgram(programs->evaluate);
     glDeleteProgram(programs->unsolved);
     glDeleteProgram(programs->rounded);
-    glDeleteProgram(programs->silhouette);
+    glDeleteProgram(programs->ends);
 }
 
 /* A free place, made free if need be. */
@@ -52,8 +52,8 @@ const struct table_programs *programs_for(struct program_sets *sets,
     made.evaluate = made.visibility ? create(PROGRAM_EVALUATE, layout, error) : 0;
     made.unsolved = made.evaluate ? create(PROGRAM_UNSOLVED, layout, error) : 0;
     made.rounded = made.unsolved ? create(PROGRAM_ROUNDED, layout, error) : 0;
-    made.silhouette = made.rounded ? create(PROGRAM_SILHOUETTE, layout, error) : 0;
-    if (!made.silhouette) {
+    made.ends = made.rounded ? create(PROGRAM_ENDS, layout, error) : 0;
+    if (!made.ends) {
         delete_all(&made);
         return NULL;
     }

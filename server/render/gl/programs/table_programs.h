@@ -12,7 +12,7 @@
 
 struct table_programs {
     struct table_layout layout;
-    GLuint visibility, evaluate, unsolved, rounded, silhouette;
+    GLuint visibility, evaluate, unsolved, rounded, ends;
     uint64_t used; /* by the clock of the sets */
 };
 

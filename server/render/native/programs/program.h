@@ -67,7 +67,7 @@ struct native_bindings {
     struct native_made_texels texels;
     struct native_texels heads, nodes, adjacency, vertices;
     struct native_image seen, seen_depth, hit_depth, normal, shape, ptex, border;
-    struct native_image silhouette, colour, coverage;
+    struct native_image ends, colour, coverage;
     struct native_image light_st, curvature, light_change;
     struct native_image next_light, next_missed, behind_light, behind_missed;
     struct native_picture picture;
@@ -86,7 +86,7 @@ typedef void native_program(const struct native_bindings *bindings, uint32_t fir
 
 /* The programs of an instruction set. */
 struct native_programs {
-    native_program *edges_find, *edges_recheck, *silhouette, *rounded_solve;
+    native_program *edges_find, *edges_recheck, *ends_find, *rounded_solve;
     native_program *shade, *edges_shade, *high_curvature_shade, *rounded_shade;
     native_program *shade_planes, *share, *polygon_planes, *polygon_edges;
 };
