@@ -19,10 +19,19 @@ int rounded_side(uint n_listed)
                                      : n_listed <= 16u * max_rounded ? 1 : 0;
 }
 
+// The places of 16 rays, px from the pixel's centre: one in each of 4 x 4 squares, moved within these by search so that
+// the share of them on one side of a straight line, whichever it is, is within 0.09 of the pixel's share there. (In the
+// middles of the squares they would be up to 0.125 off.)
+const vec2 RAYS[16] = vec2[16](
+    vec2(-0.278, -0.409), vec2(0.000, -0.376), vec2(0.248, -0.406), vec2(0.426, -0.256),
+    vec2(-0.429, -0.205), vec2(-0.171, -0.145), vec2(0.096, -0.143), vec2(0.318, -0.023),
+    vec2(-0.417, 0.092), vec2(-0.141, 0.061), vec2(0.114, 0.113), vec2(0.402, 0.222),
+    vec2(-0.348, 0.322), vec2(-0.189, 0.404), vec2(0.070, 0.342), vec2(0.306, 0.414));
+
 // Where ray i leaves its pixel's centre, px.
 vec2 rounded_place(int i, int side)
 {
-    return (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
+    return side == 4 ? RAYS[i] : (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
 }
 
 struct RoundedHit {

@@ -1,6 +1,8 @@
 // Meets the rays of the pixels that edges_find.comp.glsl listed as rounded with the surface: with the piece
 // that the pixel itself shows, and with those of the pixels towards which the ray lies where it meets
-// none or one lies in front. One invocation a ray.
+// none or one lies in front. A ray that meets none so begins again from where the rays beside it in the pixel have met the
+// surface, twice: Newton's method from a whole pixel away may not come over creases and small sub-patches. One invocation
+// a ray.
 
 layout(local_size_x = 64) in;
 
@@ -10,17 +12,43 @@ layout(std430, binding = 2) writeonly buffer RoundedHits {
     RoundedHit hits[];
 };
 
-void main()
+// Where the rays of this workgroup have met the surface.
+shared bool is_met[64];
+shared Place met_at[64];
+shared float met_depth[64];
+
+void put_met(uint local, Solution solution)
 {
-    uint group = gl_WorkGroupID.y * ROW + gl_WorkGroupID.x;
-    uint i = group * ROUNDED_PER_GROUP + gl_LocalInvocationIndex / MAX_RAYS;
-    uint part = gl_LocalInvocationIndex % MAX_RAYS;
-    int side = rounded_side(listed.n);
-    if (i >= listed.n || part >= uint(side * side))
-        return;
-    ivec2 p = list_place(listed.at[i]);
-    vec2 place = rounded_place(int(part), side);
-    Ray r = ray_through(pixel_offset(p) + place);
+    is_met[local] = solution.found;
+    if (solution.found) {
+        met_at[local] = place_of(solution.hit.node, solution.hit.xy);
+        met_depth[local] = solution.hit.surface.s.z;
+    }
+}
+
+const ivec2 RAYS_BESIDE[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+
+Solution solve_from_beside(uint local, int part, int side, Ray r)
+{
+    Solution result;
+    result.found = false;
+    for (int k = 0; k < 4 && !result.found; k++) {
+        ivec2 at = ivec2(part % side, part / side) + RAYS_BESIDE[k];
+        bool is_inside = min(at.x, at.y) >= 0 && max(at.x, at.y) < side;
+        uint beside = local + uint(is_inside ? at.y * side + at.x - part : 0);
+        if (!is_met[beside])
+            continue;
+        Node node;
+        vec2 xy;
+        node_under(met_at[beside], node, xy);
+        result = solve_from(node, xy, met_depth[beside], r);
+    }
+    return result;
+}
+
+// Of what the pixels' centres show.
+Solution solve_from_centres(ivec2 p, vec2 place, Ray r)
+{
     float front = nearest_around(p);
     Solution best;
     best.found = false;
@@ -33,11 +61,37 @@ void main()
         if (best.found && !needs_recheck(front, best.hit.surface.s.z))
             break;
     }
+    return best;
+}
+
+void main()
+{
+    uint group = gl_WorkGroupID.y * ROW + gl_WorkGroupID.x, local = gl_LocalInvocationIndex;
+    uint i = group * ROUNDED_PER_GROUP + local / MAX_RAYS, part = local % MAX_RAYS;
+    int side = rounded_side(listed.n);
+    bool is_ray = i < listed.n && part < uint(side * side);
+    ivec2 p = list_place(listed.at[min(i, listed.n - 1u)]);
+    vec2 place = rounded_place(int(part), max(side, 1));
+    Ray r = ray_through(pixel_offset(p) + place);
+    Solution best;
+    best.found = false;
+    if (is_ray)
+        best = solve_from_centres(p, place, r);
+    put_met(local, best);
+    barrier();
+    if (is_ray && !best.found) {
+        best = solve_from_beside(local, int(part), side, r);
+        put_met(local, best);
+    }
+    barrier();
+    if (is_ray && !best.found)
+        best = solve_from_beside(local, int(part), side, r);
     RoundedHit hit = RoundedHit(vec4(0.0), vec4(0.0));
     if (best.found) {
         Surface s = best.hit.surface;
         vec3 n = dot(s.n, s.n) > 0.0 ? normalize(to_world(s.n)) : vec3(0.0);
         hit = RoundedHit(vec4(n, s.s.z), vec4(shape_operator(s, n), 0.0));
     }
-    hits[i * uint(side * side) + part] = hit;
+    if (is_ray)
+        hits[i * uint(side * side) + part] = hit;
 }

@@ -59,15 +59,11 @@ Guess guess_of(ivec2 pixel)
 //
 // A sub-patch is fetched and projected once and left only when Newton's method has settled in it or
 // runs out of it: then what the border says of places beyond is a guess for the next.
-Solution solve(Guess guess, Ray r)
+Solution solve_from(Node node, vec2 xy, float depth, Ray r)
 {
     Solution result;
     result.found = false;
-    if (guess.node == UNSEEN)
-        return result;
-    Node node = node_load(guess.node);
-    vec2 xy = guess_xy(node, guess.where);
-    float px = pixel_units(guess.depth);
+    float px = pixel_units(depth);
     for (int i = 0; i < PATCHES; i++) {
         Net points;
         float scale;
@@ -98,4 +94,14 @@ Solution solve(Guess guess, Ray r)
             break;
     }
     return result;
+}
+
+Solution solve(Guess guess, Ray r)
+{
+    Solution result;
+    result.found = false;
+    if (guess.node == UNSEEN)
+        return result;
+    Node node = node_load(guess.node);
+    return solve_from(node, guess_xy(node, guess.where), guess.depth, r);
 }
