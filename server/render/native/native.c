@@ -219,6 +219,29 @@ void native_device_run(struct native_device *device, void (*work)(void *owner, u
     native_team_run(device->team, work, owner);
 }
 
+struct rows {
+    uint32_t n, next;
+    void (*work)(void *owner, uint32_t first, uint32_t end);
+    void *owner;
+};
+
+static void do_rows(void *owner, unsigned number)
+{
+    struct rows *rows = owner;
+    (void)number;
+    for (uint32_t first;
+         (first = __atomic_fetch_add(&rows->next, NATIVE_BAND, __ATOMIC_RELAXED)) < rows->n;)
+        rows->work(rows->owner, first,
+                   rows->n - first < NATIVE_BAND ? rows->n : first + NATIVE_BAND);
+}
+
+void native_device_rows(struct native_device *device, uint32_t n_rows,
+                        void (*work)(void *owner, uint32_t first, uint32_t end), void *owner)
+{
+    struct rows rows = {n_rows, 0, work, owner};
+    native_team_run(device->team, do_rows, &rows);
+}
+
 unsigned native_device_threads(const struct native_device *device)
 {
     return device->n_threads;

@@ -39,6 +39,10 @@ const struct native_programs *native_device_programs(const struct native_device 
 /* Every thread of the device calls work(owner, its number); returns when all have come back. */
 void native_device_run(struct native_device *device, void (*work)(void *owner, unsigned number),
                        void *owner);
+/* The same for bands of a plane's rows: each is [first, end) and begins at a multiple of NATIVE_BAND. */
+enum { NATIVE_BAND = 32 };
+void native_device_rows(struct native_device *device, uint32_t n_rows,
+                        void (*work)(void *owner, uint32_t first, uint32_t end), void *owner);
 
 /* Draws a tile of the picture: not empty, inside the picture, which is at most 65,535 px wide and
  * high. A pixel that looks through a gap narrower than itself (shaders/gaps.comp.glsl) is found

@@ -2,6 +2,7 @@
 #ifndef SHEEN_RENDER_NATIVE_PLANES_H
 #define SHEEN_RENDER_NATIVE_PLANES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -18,6 +19,19 @@ struct native_planes {
     uint32_t *border; /* shaders/border.glsl */
     uint32_t *node;   /* where the surface is met: a node of the tables, */
     uint32_t *where;  /* and the place on it as shaders/visibility.frag.glsl packs it */
+};
+
+/* Groups of pixels (shaders/groups.glsl). */
+enum { GROUP_WIDTH = 4, GROUP_HEIGHT = 2 };
+
+/* What is made of the planes for the shaders' programs: `ndc` as shaders/seen.glsl has it, and `node` becomes
+ * UINT32_MAX where nothing is met. */
+struct native_seen {
+    const struct native_planes *planes; /* whose pitch is the width */
+    uint32_t width, height;
+    float *ndc;
+    bool is_perspective;
+    float depth[3]; /* View.depth of shaders/view.glsl */
 };
 
 /* Processor time of each step of one frame, summed over all threads. */

@@ -13,6 +13,10 @@ struct row {
 static void put_channels(void *plane, const struct native_image *image, const struct row *row)
 {
     uint32_t *to = (uint32_t *)plane + row->to * (size_t)image->channels;
+    if (image->channels == 1) {
+        memcpy(to, image->words + row->from, row->n * sizeof *to);
+        return;
+    }
     for (size_t i = 0; i < row->n; i++)
         for (int c = 0; c < image->channels; c++)
             *to++ = image->words[(size_t)c * image->channel_words + row->from + i];
@@ -80,13 +84,27 @@ static void put_row(const struct native_drawing *d, const struct view *view, str
         put_ptex(frame->plane[3], &t->planes, row);
 }
 
-void native_readback(const struct native_drawing *d, const struct view *view, struct frame *frame)
+struct reading {
+    const struct native_drawing *drawing;
+    const struct view *view;
+    struct frame *frame;
+};
+
+static void put_rows(void *owner, uint32_t first, uint32_t end)
 {
-    for (uint32_t y = 0; y < d->inside.height; y++) {
+    const struct reading *reading = owner;
+    const struct native_drawing *d = reading->drawing;
+    for (uint32_t y = first; y < end; y++) {
         struct row row = {
             .x = d->place.x + d->inside.x, .y = d->place.y + d->inside.y + y, .n = d->inside.width};
         row.from = (size_t)(d->inside.y + y) * d->target->width + d->inside.x;
-        row.to = (size_t)row.y * frame->width_px + row.x;
-        put_row(d, view, frame, &row);
+        row.to = (size_t)row.y * reading->frame->width_px + row.x;
+        put_row(d, reading->view, reading->frame, &row);
     }
+}
+
+void native_readback(const struct native_drawing *d, const struct view *view, struct frame *frame)
+{
+    struct reading reading = {d, view, frame};
+    native_device_rows(d->device, d->inside.height, put_rows, &reading);
 }

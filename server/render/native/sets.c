@@ -12,6 +12,8 @@
     void native_gaps_##set(struct native_frame *, struct native_thread *);                         \
     void native_place_##set(struct native_slice *, struct native_polygon_thread *, uint32_t);      \
     void native_triangles_##set(struct native_slice *, uint32_t);                                  \
+    uint32_t native_groups_##set(const struct native_seen *, uint32_t, uint32_t, float *,          \
+                                 uint32_t *);                                                      \
     native_program native_edges_find_##set, native_edges_recheck_##set, native_ends_find_##set,    \
         native_rounded_solve_##set, native_shade_##set, native_edges_shade_##set,                  \
         native_high_curvature_shade_##set, native_rounded_shade_##set, native_shade_planes_##set,  \
@@ -19,8 +21,8 @@
 #define SET(set, in_words, n_lanes)                                                                \
     {                                                                                              \
         .name = #set, .words = in_words, .lanes = n_lanes, .pieces = native_pieces_##set,          \
-        .tile = native_tile_##set, .gaps = native_gaps_##set, .place = native_place_##set,         \
-        .triangles = native_triangles_##set, .programs = {                                         \
+        .tile = native_tile_##set, .gaps = native_gaps_##set, .groups = native_groups_##set,       \
+        .place = native_place_##set, .triangles = native_triangles_##set, .programs = {            \
             native_edges_find_##set,                                                               \
             native_edges_recheck_##set,                                                            \
             native_ends_find_##set,                                                                \

@@ -9,6 +9,7 @@
 struct native_frame;
 struct native_polygon_thread;
 struct native_slice;
+struct native_seen; /* planes.h */
 struct native_thread;
 
 struct native_set {
@@ -22,6 +23,9 @@ struct native_set {
     void (*tile)(struct native_frame *frame, struct native_thread *thread, uint32_t tile);
     /* After all tiles, by one thread: the pixels in gaps. */
     void (*gaps)(struct native_frame *frame, struct native_thread *thread);
+    /* Groups of pixels in some rows: lanes/entries.h. */
+    uint32_t (*groups)(const struct native_seen *seen, uint32_t first, uint32_t end, float *columns,
+                       uint32_t *groups);
     /* Of polygons (polygons/fill.h): the triangles of the slice's part of that number, and the tiles that they lie in. */
     void (*place)(struct native_slice *slice, struct native_polygon_thread *thread, uint32_t part);
     /* Draws what has been placed in a tile. */

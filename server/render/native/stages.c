@@ -7,8 +7,7 @@
 #include "server/render/native/denormals.h"
 #include "server/render/native/patches.h"
 
-/* Groups are of 4 x 2 pixels (shaders/groups.glsl). */
-enum { GROUP_WIDTH = 4, GROUP_HEIGHT = 2, GROUPS_PER_WORKGROUP = 8 };
+enum { GROUPS_PER_WORKGROUP = 8 };
 /* Workgroups that a thread takes at a time, and the most pixels that one of them may list. */
 enum { CHUNK = 32, WORKGROUP_PX = 64, CHUNK_PX = CHUNK * WORKGROUP_PX };
 /* Pixels of a list that a workgroup of its program takes (shaders/edges.glsl, rounded.glsl). */
@@ -135,68 +134,6 @@ static struct native_list *list_of(const struct native_drawing *d, enum native_l
     return &d->target->list[which];
 }
 
-/* --- groups */
-
-/* Depths as the rasteriser of a graphics card would have left them (shaders/seen.glsl), and no guess where nothing is
- * met. */
-static void fill_seen(const struct native_drawing *d)
-{
-    const struct native_target *t = d->target;
-    const float *depth = t->planes.depth;
-    float *ndc = (float *)(void *)t->seen_depth.words;
-    size_t n = (size_t)t->width * t->height;
-    bool perspective = d->view.ray[0] > 0;
-    for (size_t i = 0; i < n; i++) {
-        float z = depth[i];
-        float of = perspective ? d->view.depth[0] / z : d->view.depth[1] + z * d->view.depth[2];
-        ndc[i] = z > 0 ? of : 0;
-        t->planes.node[i] = z > 0 ? t->planes.node[i] : UINT32_MAX;
-    }
-}
-
-/* Whether a group, or a pixel beside it, shows surface. */
-static bool is_near(const struct native_target *t, uint32_t x, uint32_t y)
-{
-    uint32_t x0 = x ? x - 1 : 0, x1 = x + GROUP_WIDTH < t->width ? x + GROUP_WIDTH : t->width - 1;
-    uint32_t y0 = y ? y - 1 : 0,
-             y1 = y + GROUP_HEIGHT < t->height ? y + GROUP_HEIGHT : t->height - 1;
-    for (uint32_t j = y0; j <= y1; j++)
-        for (uint32_t i = x0; i <= x1; i++)
-            if (t->planes.depth[(size_t)j * t->width + i] > 0)
-                return true;
-    return false;
-}
-
-static void add(struct native_list *list, uint32_t x, uint32_t y)
-{
-    list->at.words[list->n++] = x | y << 16;
-}
-
-void native_find_groups(const struct native_drawing *d)
-{
-    const struct native_target *t = d->target;
-    const struct tile *in = &d->inside;
-    struct native_list *all = list_of(d, NATIVE_GROUPS);
-    struct native_list *shaded = list_of(d, NATIVE_SHADED_GROUPS);
-    all->n = shaded->n = 0;
-    fill_seen(d);
-    for (uint32_t y = 0; y < t->height; y += GROUP_HEIGHT) {
-        for (uint32_t x = 0; x < t->width; x += GROUP_WIDTH) {
-            if (!is_near(t, x, y))
-                continue;
-            add(all, x / GROUP_WIDTH, y / GROUP_HEIGHT);
-            if (x + GROUP_WIDTH > in->x && x < in->x + in->width && y + GROUP_HEIGHT > in->y &&
-                y < in->y + in->height)
-                add(shaded, x / GROUP_WIDTH, y / GROUP_HEIGHT);
-        }
-    }
-}
-
-bool native_any_seen(const struct native_target *target)
-{
-    return target->list[NATIVE_SHADED_GROUPS].n > 0;
-}
-
 /* --- edges */
 
 bool native_edges(const struct native_drawing *d, struct error *error)
@@ -246,30 +183,45 @@ static uint8_t byte_of(float a)
     return (uint8_t)lrintf(255 * fminf(fmaxf(a, 0), 1));
 }
 
-static void fill_words(const struct native_image *image, uint32_t word)
+/* What lies outside of the groups shows no surface. */
+struct cleared {
+    const struct native_target *target;
+    uint32_t colour, planes;
+};
+
+static void fill_words(const struct native_image *image, uint32_t first, uint32_t end,
+                       uint32_t word)
 {
-    size_t n = image->channel_words * (size_t)image->channels;
-    for (size_t i = 0; i < n; i++)
-        image->words[i] = word;
+    size_t width = (size_t)image->width;
+    for (int channel = 0; channel < image->channels; channel++) {
+        uint32_t *words = image->words + (size_t)channel * image->channel_words;
+        for (size_t i = first * width; i < end * width; i++)
+            words[i] = word;
+    }
 }
 
-/* What lies outside of the groups shows no surface. */
-static void clear_planes(const struct native_drawing *d)
+static void clear_rows(void *owner, uint32_t first, uint32_t end)
 {
     static const uint32_t NAN_WORD = 0x7fc00000;
+    const struct cleared *cleared = owner;
+    const struct native_target *t = cleared->target;
+    fill_words(&t->colour, first, end, cleared->colour);
+    if (cleared->planes & PLANE_LIGHT)
+        fill_words(&t->light_st, first, end, NAN_WORD);
+    if (cleared->planes & PLANE_CURVATURE)
+        fill_words(&t->curvature, first, end, NAN_WORD);
+    if (cleared->planes & PLANE_LIGHT_CHANGE)
+        fill_words(&t->light_change, first, end, NAN_WORD);
+}
+
+static void clear_planes(const struct native_drawing *d)
+{
     const struct frame_request *request = d->request;
-    const struct native_target *t = d->target;
-    uint32_t empty = 0;
+    struct cleared cleared = {d->target, 0, request->planes};
     /* As shaders/shown.glsl has it: a clear colour is 0. */
     for (int k = 0; k < 4 && !(request->empty[3] < 0.5f / 255); k++)
-        empty |= (uint32_t)byte_of(request->empty[k]) << (8 * k);
-    fill_words(&t->colour, empty);
-    if (request->planes & PLANE_LIGHT)
-        fill_words(&t->light_st, NAN_WORD);
-    if (request->planes & PLANE_CURVATURE)
-        fill_words(&t->curvature, NAN_WORD);
-    if (request->planes & PLANE_LIGHT_CHANGE)
-        fill_words(&t->light_change, NAN_WORD);
+        cleared.colour |= (uint32_t)byte_of(request->empty[k]) << (8 * k);
+    native_device_rows(d->device, d->target->height, clear_rows, &cleared);
 }
 
 static struct native_picture picture_of(const struct frame_request *request,

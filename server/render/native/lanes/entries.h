@@ -15,4 +15,10 @@ void LANE_NAME(native_place)(struct native_slice *slice, struct native_polygon_t
                              uint32_t number);
 void LANE_NAME(native_triangles)(struct native_slice *slice, uint32_t number);
 
+/* Fills in `seen` in the rows [first, end), of which first is a multiple of GROUP_HEIGHT, and lists their
+ * groups that show surface or lie beside some: x | y << 16, in groups. Returns how many. `columns`: memory for
+ * a row. */
+uint32_t LANE_NAME(native_groups)(const struct native_seen *seen, uint32_t first, uint32_t end,
+                                  float *columns, uint32_t *groups);
+
 #endif
