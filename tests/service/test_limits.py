@@ -397,6 +397,38 @@ class Memory(DaemonCase):
         self.assert_refused(client, wire.ERROR_REQUEST, "--memory-budget", client.seq)
 
 
+class Polygons(unittest.TestCase):
+    def polygons(self, clients, model, level):
+        """Asks for one frame of each client at once; what they answer."""
+        extra = field(40, 1) + field(41, level)
+        asked = [client.ask(model, 64, 48, extra=extra) for client in clients]
+        return [client.read_frame(seq).data for client, seq in zip(clients, asked)]
+
+    def test_polygons_are_made_once(self):
+        """Of one model and level there is one copy here and one on the device, whoever draws them: the
+        budget has no room for another. They are evicted before their model is, and made again."""
+        daemon = Daemon("--memory-budget", "24M")
+        clients = [Client(daemon.unix, minor=1) for _ in range(4)]
+        sheets = [clients[0].upload(grid(20) + b"# %d\n" % i, "sheet.obj", share=True)
+                  for i in range(3)]
+        of_each = 400 * (17 * 17 * 32 + 16 * 16 * 6 * 4)
+        for client in clients:
+            client.render(sheets[0])
+        before = clients[0].stats()[23][0]
+        frames = self.polygons(clients, sheets[0], 4)
+        self.assertEqual(len(set(frames)), 1)
+        used = clients[0].stats()[23][0] - before
+        self.assertGreaterEqual(used, 2 * of_each)
+        self.assertLess(used, 2.1 * of_each)
+        self.polygons(clients[:1], sheets[1], 4)
+        self.assertLess(clients[0].stats()[23][0], before + 4 * of_each)
+        clients[0].render(sheets[0])  # is still there
+        self.assertEqual(self.polygons(clients, sheets[0], 4), frames)
+        for client in clients:
+            client.socket.close()
+        self.assertEqual(daemon.stop(), 0)
+
+
 class Connections(unittest.TestCase):
     def turned_away(self, address):
         client = Client(address, greet=False)
