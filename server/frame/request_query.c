@@ -86,10 +86,10 @@ static void file_loaded(void *owner, const uint8_t *sha256, const struct error *
 {
     struct request *request = owner;
     request->host->n_file_loads--;
-    if (sha256)
-        request_acquire(request, &request->model, ASSET_MODEL, sha256);
-    else
+    if (!sha256)
         request->failure = *error;
+    else if (request->state != REQUEST_ABANDONED) /* else nobody waits: there is nothing to build */
+        request_acquire(request, &request->model, ASSET_MODEL, sha256);
     request_stop_awaiting(request);
 }
 

@@ -10,6 +10,7 @@ import wire
 from authority import Authority, context
 from daemon import CUBE, SHEEN, Daemon, grid
 from test_access import Case, tls_address, token_line
+from test_operations import get, metrics_address, read_metrics
 from wire import Client
 
 
@@ -332,6 +333,22 @@ class Files(Case):
             client.find("top.obj")
         self.assertIn("--models", caught.exception.text)
         self.assertEqual(caught.exception.code, wire.ERROR_REQUEST)
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_a_cancelled_query_builds_nothing(self):
+        """It is taken back before the file is there; who asks later waits for the only build."""
+        daemon = Daemon("--models", self.models, "--metrics", "tcp:127.0.0.1:0")
+        with Client(daemon.unix, minor=1) as client:
+            client.send(wire.message(wire.MODEL_QUERY, 7, wire.field(1, bytes(32)) +
+                                     wire.field(2, "large.obj")) + wire.message(wire.CANCEL, 7))
+            with self.assertRaises(wire.Refused) as caught:
+                client.receive()
+            self.assertEqual(caught.exception.code, wire.ERROR_CANCELLED)
+            client.seq = 7
+            client.find("large.obj")
+            counts = read_metrics(get(metrics_address(daemon), "/metrics")[1])
+            self.assertEqual(counts["sheen_model_cache_misses_total"], 1)
+            self.assertEqual(counts["sheen_model_cache_hits_total"], 0)
         self.assertEqual(daemon.stop(), 0)
 
     def test_ends_while_it_reads(self):
