@@ -4,6 +4,7 @@ build/sheend-faults counts the blocks that sheend's own code takes (allocations.
 import math
 import mmap
 import os
+import re
 import struct
 import tempfile
 import time
@@ -56,6 +57,13 @@ def clear():
                                   for i in range(1, 5)))
 
 
+def most_resident_kb(pid):
+    """The largest it ever was; 0 where the machine does not say or a sanitizer hoards memory."""
+    with open(f"/proc/{pid}/status", encoding="ascii") as file:
+        found = re.search(r"VmHWM:\s+(\d+) kB", file.read())
+    return int(found.group(1)) if found and resident_kb(pid) else 0
+
+
 class WarmFrames(unittest.TestCase):
     def serve(self, *arguments):
         """A daemon with the model, and a client that did not upload it: the room that an upload's
@@ -70,13 +78,23 @@ class WarmFrames(unittest.TestCase):
             client.query(model)
         return server, client, model
 
+    def least_allocations(self, count):
+        """Of a few runs. On a busy machine frames may be so far apart that spares are let go between
+        two of them; what each frame takes is in all runs."""
+        counts = []
+        while 0 not in counts and len(counts) < 8:
+            counts.append(count())
+        return min(counts)
+
     def warm_allocations(self, server, client, frames):
         """Taken by the second half of these frames; each is the arguments of one."""
-        for i, (model, named) in enumerate(frames):
-            if i == len(frames) // 2:
-                before = server.allocations()
-            client.render(model, **named)
-        return server.allocations() - before
+        def count():
+            for i, (model, named) in enumerate(frames):
+                if i == len(frames) // 2:
+                    before = server.allocations()
+                client.render(model, **named)
+            return server.allocations() - before
+        return self.least_allocations(count)
 
     def test_a_warm_frame_takes_nothing_from_the_heap(self):
         server, client, model = self.serve()
@@ -130,12 +148,9 @@ class WarmFrames(unittest.TestCase):
     def test_nor_do_two_in_flight(self):
         server, client, model = self.serve()
         for encoding in wire.RAW, wire.ZSTD, wire.JPEG, wire.PNG:
-            # How many frames are on their way at once is up to the clock, and of what few need the
-            # spares may have let go. What each frame takes is in all of these.
-            counts = []
-            while 0 not in counts and len(counts) < 8:
-                counts.append(self.two_in_flight(server, client, model, encoding))
-            self.assertIn(0, counts, encoding)
+            # How many frames are on their way at once is up to the clock, too.
+            count = lambda: self.two_in_flight(server, client, model, encoding)
+            self.assertEqual(self.least_allocations(count), 0, encoding)
 
     def test_without_spare_memory_each_takes_its_own(self):
         server, client, model = self.serve("--spare-memory", "0")
@@ -146,7 +161,7 @@ class WarmFrames(unittest.TestCase):
         server, client, model = self.serve()
         client.render(model, width=3840, height=2160, planes=COLOUR | P | N)
         client.socket.close()
-        most = resident_kb(server.process.pid)
+        most = most_resident_kb(server.process.pid)  # some may have gone back by now
         end = time.monotonic() + 40
         while resident_kb(server.process.pid) * 1024 > most * 1024 - 64 * MIB:
             if most == 0:
