@@ -74,7 +74,7 @@ SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/
 # Between messages and scenes: for those who speak to clients.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
 SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))
-RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/polygons/*.c)
+RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c)
 # Compiled once for each instruction set: its name, its lanes, and what tells the compiler.
 LANES_SRC := $(wildcard server/render/native/lanes/*.c)
 ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
@@ -309,7 +309,7 @@ $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 sheen-bench: $(BUILD)/sheen-bench
 
 # The native device for another processor, compiled and not linked: the libraries of the rest are this machine's.
-native-units: $(LANES_OBJ) $(call obj,$(wildcard server/render/native/*.c server/render/*.c))
+native-units: $(LANES_OBJ) $(call obj,$(wildcard server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/*.c))
 arm64:
 	$(MAKE) BUILD=build/arm64 CC="$(filter ccache,$(CC)) aarch64-linux-gnu-gcc" CXX="$(filter ccache,$(CXX)) aarch64-linux-gnu-g++" \
 	    OPT=-O1 LANES_FLAGS="$(filter-out -O3,$(LANES_FLAGS)) -O1" native-units

@@ -62,8 +62,9 @@ room server/render/gl/context "$common|server/image" 'a context knows nothing of
 room server/render/gl/programs "$common|server/scene" 'a program is a text and a name, whatever it draws'
 room server/render/gl "$common|server/image|server/scene|server/render|server/render/gl/context|server/render/gl/programs" \
     'a device draws, it serves nobody'
-room server/render/native "$common|protocol|server/image|server/scene|server/surface|server/render|server/render/native/lanes|server/render/native/polygons|server/render/native/programs" \
+room server/render/native "$common|protocol|server/image|server/scene|server/surface|server/render|server/render/native/frame|server/render/native/lanes|server/render/native/polygons|server/render/native/programs" \
     'processors draw without GL'
+room server/render/native/frame "$common|server/scene|server/render|server/render/native|server/render/native/polygons" 'what a frame goes through'
 room server/render/native/polygons "$common|server/render|server/render/native" 'polygons come after the surface'
 room server/render/native/programs '' 'what shaders/lanes writes includes this and no more'
 room server/render/native/lanes "$common|server/surface|server/render|server/render/native|server/render/native/polygons" 'one unit for each instruction set'

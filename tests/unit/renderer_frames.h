@@ -5,15 +5,19 @@
 #include <string.h>
 
 #include "server/render/gl/device.h"
+#include "server/render/native/device.h"
 #include "server/render/renderer.h"
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
+
+/* The device that renderers are opened on. */
+static const struct renderer_device *frames_device = &gl_device;
 
 static inline struct renderer *open_renderer(size_t max_texels)
 {
     struct error error = {0};
     struct renderer_options options = {.device = "auto", .max_texels = max_texels};
-    struct renderer *renderer = renderer_create(&gl_device, &options, &error);
+    struct renderer *renderer = renderer_create(frames_device, &options, &error);
     if (!renderer)
         fail_msg("%s", error.text);
     return renderer;

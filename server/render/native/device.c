@@ -13,7 +13,8 @@ static void destroy(struct renderer *renderer)
 {
     struct native_renderer *r = native_renderer_of(renderer);
     native_device_destroy(r->device);
-    native_target_finish(&r->target);
+    for (int i = 0; i < NATIVE_PLANES; i++)
+        native_target_finish(&r->planes[i].target);
     native_polygon_stage_finish(&r->polygons);
     native_meshes_finish(&r->meshes);
     free(r);

@@ -17,24 +17,42 @@ struct native_shown {
     uint64_t serial; /* no other model of the renderer has it */
 };
 
-/* What the target's planes hold, of a frame of one tile. serial 0: nothing. */
+/* What the planes of a target hold, so that a frame of the same view needs stage 3 alone. serial 0: nothing. */
 struct native_kept {
     uint64_t serial; /* of the model */
     uint32_t width_px, height_px;
     struct camera camera;
     struct surface surface;
-    bool edges; /* and what edges take */
+    bool edges;   /* and what edges take */
+    bool any_cut; /* the planes are the same, bit by bit, for any cut into tiles */
+};
+
+/* A target, and which view its planes hold. */
+struct native_view_planes {
+    struct native_target target;
+    struct native_kept kept;
+};
+
+/* Which planes a frame is drawn into: there are several, so that a frame of one kind does not overwrite planes that are
+ * kept for another. */
+enum native_planes_of {
+    NATIVE_WHOLE, /* the last frame that was one tile; kept */
+    NATIVE_SMALL, /* the last such frame of few pixels; kept */
+    NATIVE_TILED, /* the last frame of several tiles in_place, collected tile by tile; kept */
+    NATIVE_APART, /* one tile of several, never kept */
+    NATIVE_PLANES
 };
 
 struct native_renderer {
     struct renderer base;
     char name[RENDERER_NAME_BYTES];
     struct native_device *device;
-    struct native_target target;
-    struct native_kept kept;
+    struct native_view_planes planes[NATIVE_PLANES];
+    /* native_frame_state.serial of the frame whose tiles are all in NATIVE_TILED so far; 0: none. */
+    uint64_t collecting;
     struct native_polygon_stage polygons;
     struct native_meshes meshes;
-    uint64_t next_serial;
+    uint64_t next_serial, n_begun; /* models made, frames begun */
 };
 
 /* A light image, as renderer.h hands it on. */

@@ -131,6 +131,7 @@ struct native_frame {
     uint32_t next_part, next_tile;
     uint64_t n_vertices;
     bool out_of_memory, too_many;
+    bool left_gaps; /* more than NATIVE_MAX_GAPS */
 };
 
 /* 2^n, of an exponent that doubles have. */
@@ -148,6 +149,8 @@ static inline float native_pixel_units(const struct native_rays *rays, float z)
     return z * rays->slope_px + rays->start_px;
 }
 
+/* Aligned to cache lines, in huge pages where it is large. NULL when memory is short. */
+void *native_allocate(size_t bytes);
 /* Makes room for n elements of a size; those that there are stay. False when memory is short. */
 bool native_grow(void *pointer, size_t *capacity, size_t n, size_t size);
 

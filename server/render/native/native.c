@@ -22,7 +22,18 @@ struct native_device {
     const float *grid_s[GRID_SHAPES], *grid_t[GRID_SHAPES];
     uint32_t *first_entry; /* of all parts */
     size_t first_entry_capacity;
+    bool left_gaps;
 };
+
+void *native_allocate(size_t bytes)
+{
+    size_t align = bytes < HUGE_PAGE ? 64 : HUGE_PAGE;
+    bytes = (bytes + align - 1) & ~(align - 1);
+    void *memory = aligned_alloc(align, bytes);
+    if (memory && align == HUGE_PAGE)
+        madvise(memory, bytes, MADV_HUGEPAGE); /* a wish */
+    return memory;
+}
 
 bool native_grow(void *pointer, size_t *capacity, size_t n, size_t size)
 {
@@ -31,13 +42,9 @@ bool native_grow(void *pointer, size_t *capacity, size_t n, size_t size)
     size_t room = n + n / 4 + 64, bytes = room * size;
     if (room < n || bytes / size != room)
         return false;
-    size_t align = bytes < HUGE_PAGE ? 64 : HUGE_PAGE;
-    bytes = (bytes + align - 1) & ~(align - 1);
-    void *grown = aligned_alloc(align, bytes), *before;
+    void *grown = native_allocate(bytes), *before;
     if (!grown)
         return false;
-    if (align == HUGE_PAGE)
-        madvise(grown, bytes, MADV_HUGEPAGE); /* a wish */
     memcpy(&before, pointer, sizeof before);
     if (before)
         memcpy(grown, before, *capacity * size);
@@ -242,6 +249,11 @@ void native_device_rows(struct native_device *device, uint32_t n_rows,
     native_team_run(device->team, do_rows, &rows);
 }
 
+bool native_device_left_gaps(const struct native_device *device)
+{
+    return device->left_gaps;
+}
+
 unsigned native_device_threads(const struct native_device *device)
 {
     return device->n_threads;
@@ -376,6 +388,7 @@ static bool solve_gaps(struct native_frame *frame)
     }
     qsort(first->gap, n, sizeof *first->gap, compare);
     frame->set->gaps(frame, first);
+    frame->left_gaps = first->n_gaps > NATIVE_MAX_GAPS;
     return true;
 }
 
@@ -417,6 +430,7 @@ bool native_draw(struct native_device *device, struct native_model *model, const
         native_team_run(device->team, work, &job);
         uint64_t at = times_now();
         frame->out_of_memory = frame->out_of_memory || (!frame->too_many && !solve_gaps(frame));
+        device->left_gaps = frame->left_gaps;
         times_add(&frame->thread[0].times.gaps_us, &at);
         if (times)
             add_times(frame, times);

@@ -32,6 +32,9 @@ struct native_device *native_device_create(const struct native_options *options,
 void native_device_destroy(struct native_device *device); /* NULL is safe */
 /* The instruction set: "AVX-512" and so on. */
 const char *native_device_name(const struct native_device *device);
+/* More pixels of what was drawn last looked through gaps than are solved, so that another cut into tiles may show
+ * more there. */
+bool native_device_left_gaps(const struct native_device *device);
 unsigned native_device_threads(const struct native_device *device);
 const struct native_set *native_device_set(const struct native_device *device);
 /* The programs made of shaders/, compiled for the device's instruction set. */

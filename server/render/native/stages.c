@@ -11,12 +11,7 @@ enum { GROUPS_PER_WORKGROUP = 8 };
 /* Workgroups that a thread takes at a time, and the most pixels that one of them may list. */
 enum { CHUNK = 32, WORKGROUP_PX = 64, CHUNK_PX = CHUNK * WORKGROUP_PX };
 /* Pixels of a list that a workgroup of its program takes (shaders/edges.glsl, rounded.glsl). */
-enum {
-    EDGES_PER_WORKGROUP = 32,
-    ROUNDED_PER_WORKGROUP = 4,
-    LISTED_PER_WORKGROUP = 64,
-    MAX_RAYS = 16
-};
+enum { EDGES_PER_WORKGROUP = 32, ROUNDED_PER_WORKGROUP = 4, LISTED_PER_WORKGROUP = 64 };
 /* Beginning with as many, every pixel of a tile is one too many to count lights at. */
 enum { SHARE_ALL_PX = 1 << 18, SHARE_STRIDE = 8 };
 
@@ -167,7 +162,7 @@ bool native_edges(const struct native_drawing *d, struct error *error)
     b.listed = list_of(d, NATIVE_ROUNDED);
     b.max_rounded = tile_max_rounded(&d->place);
     uint32_t with_rays = b.listed->n < b.max_rounded ? b.listed->n : b.max_rounded;
-    size_t n_rays = (size_t)with_rays * MAX_RAYS;
+    size_t n_rays = (size_t)with_rays * NATIVE_MAX_RAYS;
     if (!native_target_reserve_hits(t, n_rays, error))
         return false;
     struct native_array hits = {t->hits, (uint32_t)n_rays};

@@ -49,37 +49,81 @@ static void lay_out_surface(struct native_target *t, struct layout *layout)
     };
 }
 
-static void lay_out(struct native_target *t, struct layout *layout)
+/* Groups need a word each; of pixels any list may hold all. */
+static void lay_out_lists(struct native_target *t, struct layout *layout)
 {
-    lay_out_surface(t, layout);
-    t->ends = take(layout, 2);
-    t->colour = take(layout, 1);
-    t->coverage = take(layout, 1);
-    t->light_st = take(layout, 2);
-    t->curvature = take(layout, 2);
-    t->light_change = take(layout, 4);
-    for (int i = 0; i < 2; i++) {
-        t->lights[i] = take(layout, 4);
-        t->missed[i] = take(layout, 1);
-    }
     uint32_t pixels = layout->width * layout->height;
-    for (int i = 0; i < NATIVE_LISTS; i++)
-        t->list[i] = (struct native_list){.at = {take(layout, 1).words, pixels}};
+    uint32_t groups =
+        ((layout->width - 1) / GROUP_WIDTH + 1) * ((layout->height - 1) / GROUP_HEIGHT + 1);
+    for (int i = 0; i < NATIVE_LISTS; i++) {
+        uint32_t n = i == NATIVE_GROUPS || i == NATIVE_SHADED_GROUPS ? groups : pixels;
+        t->list[i] = (struct native_list){.at = {layout->next, n}};
+        layout->next += n;
+    }
 }
 
-/* What lay_out() takes of a pixel: planes, and a word of each list. */
-enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 4 + 2 + 2 + 4 + 2 * 5 + NATIVE_LISTS };
+/* A pixel's words in what is always there, groups apart. */
+enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 4 + NATIVE_LISTS - 2 };
+enum { LIGHT_WORDS_PER_PX = 2 * 5, MEASURE_WORDS_PER_PX = 2 + 2 + 4 };
 
-bool native_target_reserve(struct native_target *target, uint32_t width, uint32_t height,
+/* What is not used any more is given back first. */
+static bool reserve(struct native_words *words, size_t n)
+{
+    enum { ALIGN = 64 };
+    if (n <= words->n && words->n / 2 <= n)
+        return true;
+    free(words->words);
+    *words = (struct native_words){0};
+    if (n == 0)
+        return true;
+    size_t bytes = (n * sizeof *words->words + ALIGN - 1) / ALIGN * ALIGN;
+    words->words = native_allocate(bytes);
+    words->n = words->words ? n : 0;
+    return words->words;
+}
+
+static bool has_no_memory(uint32_t width, uint32_t height, struct error *error)
+{
+    return error_set(error, ERROR_SERVER, "out of memory for a tile of %ux%u", width, height);
+}
+
+bool native_target_reserve(struct native_target *t, uint32_t width, uint32_t height,
                            struct error *error)
 {
-    size_t n = (size_t)width * height * WORDS_PER_PX;
-    if (!native_grow(&target->words, &target->n_words, n, sizeof *target->words))
-        return error_set(error, ERROR_SERVER, "out of memory for a tile of %ux%u", width, height);
-    struct layout layout = {target->words, width, height};
-    lay_out(target, &layout);
-    target->width = width;
-    target->height = height;
+    size_t pixels = (size_t)width * height;
+    size_t groups = (size_t)((width - 1) / GROUP_WIDTH + 1) * ((height - 1) / GROUP_HEIGHT + 1);
+    if (!reserve(&t->own, pixels * WORDS_PER_PX + 2 * groups)) {
+        t->width = t->height = 0;
+        return has_no_memory(width, height, error);
+    }
+    struct layout layout = {t->own.words, width, height};
+    lay_out_surface(t, &layout);
+    t->ends = take(&layout, 2);
+    t->colour = take(&layout, 1);
+    t->coverage = take(&layout, 1);
+    lay_out_lists(t, &layout);
+    t->width = width;
+    t->height = height;
+    return true;
+}
+
+bool native_target_reserve_shading(struct native_target *t, const struct frame_request *request,
+                                   struct error *error)
+{
+    size_t pixels = (size_t)t->width * t->height;
+    bool measures = request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE);
+    if (!reserve(&t->of_lights, request->n_lights > 1 ? pixels * LIGHT_WORDS_PER_PX : 0) ||
+        !reserve(&t->of_measures, measures ? pixels * MEASURE_WORDS_PER_PX : 0))
+        return has_no_memory(t->width, t->height, error);
+    struct layout layout = {t->of_lights.words, t->width, t->height};
+    for (int i = 0; i < 2; i++) {
+        t->lights[i] = take(&layout, 4);
+        t->missed[i] = take(&layout, 1);
+    }
+    layout.next = t->of_measures.words;
+    t->light_st = take(&layout, 2);
+    t->curvature = take(&layout, 2);
+    t->light_change = take(&layout, 4);
     return true;
 }
 
@@ -92,7 +136,9 @@ bool native_target_reserve_hits(struct native_target *target, size_t n_rays, str
 
 void native_target_finish(struct native_target *target)
 {
-    free(target->words);
+    free(target->own.words);
+    free(target->of_lights.words);
+    free(target->of_measures.words);
     free(target->hits);
     *target = (struct native_target){0};
 }

@@ -5,9 +5,10 @@
 #include "server/base/error.h"
 #include "server/render/native/planes.h"
 #include "server/render/native/programs/program.h"
+#include "server/scene/frame_request.h"
 
 /* Words of a RoundedHit (shaders/rounded.glsl). */
-enum { HIT_WORDS = 8 };
+enum { HIT_WORDS = 8, NATIVE_MAX_RAYS = 16 /* of a pixel */ };
 
 /* Lists of the target: groups of pixels near what is seen, those of them that are shaded, and pixels that are looked
  * at more closely (shaders/edges.glsl). */
@@ -30,8 +31,11 @@ struct native_target {
     struct native_image ends, colour, coverage, light_st, curvature, light_change;
     struct native_image lights[2], missed[2]; /* of frames of several lights */
     struct native_list list[NATIVE_LISTS];
-    uint32_t *words; /* of all of them */
-    size_t n_words;
+    /* Memory of all of them but for lights, missed and what is measured: light_st, curvature, light_change. */
+    struct native_words {
+        uint32_t *words;
+        size_t n;
+    } own, of_lights, of_measures;
     uint32_t *hits; /* of rounded pixels' rays */
     size_t n_hit_words;
 };
@@ -39,6 +43,9 @@ struct native_target {
 /* Gives the planes and empty lists the size of a tile; what they held is lost. ERROR_SERVER when memory is short. */
 bool native_target_reserve(struct native_target *target, uint32_t width, uint32_t height,
                            struct error *error);
+/* The planes that stage 3 of a request takes beside: those of several lights and of what is measured. */
+bool native_target_reserve_shading(struct native_target *target,
+                                   const struct frame_request *request, struct error *error);
 /* Makes room for so many rays of RoundedHit (shaders/rounded.glsl). */
 bool native_target_reserve_hits(struct native_target *target, size_t n_rays, struct error *error);
 void native_target_finish(struct native_target *target);

@@ -1,23 +1,11 @@
 /* The steps of a frame: a tile each. */
-#include <string.h>
-
 #include "server/base/clock.h"
 #include "server/base/fault.h"
-#include "server/render/native/device_internal.h"
+#include "server/render/native/frame/state.h"
+#include "server/render/native/frame/kept.h"
 #include "server/render/native/polygons/planes.h"
 #include "server/render/native/readback.h"
 #include "server/render/native/stages.h"
-
-struct native_frame_state {
-    struct frame_state base;
-    struct block_cache *block_cache;
-    uint32_t x, y; /* of the next tile */
-    struct tile_size tile;
-    /* Of polygons: their mesh, which the frame holds, and what has been drawn of the tile. */
-    struct renderer_polygons *polygons;
-    struct native_seen_triangles seen;
-    size_t part; /* of the mesh, the next one to be drawn */
-};
 
 /* So many triangles are drawn a step, which takes about as long as a tile of the exact surface. */
 static const size_t TRIANGLES_A_STEP = (size_t)1 << 18;
@@ -37,25 +25,13 @@ bool native_frame_begin(struct renderer *renderer, struct frame_work *work, stru
     struct native_frame_state *own = block_cache_take(block_cache, sizeof *own);
     if (!own)
         return error_set(error, ERROR_SERVER, "out of memory for a frame");
-    work->in_place = false;
     *own = (struct native_frame_state){
         .base.destroy = destroy_state,
         .block_cache = block_cache,
-        .tile = tiles_cut(request->width_px, request->height_px, work->tile_px, false)};
+        .serial = ++native_renderer_of(renderer)->n_begun,
+        .tile = tiles_cut(request->width_px, request->height_px, work->tile_px, work->in_place)};
     work->state = &own->base;
     return true;
-}
-
-/* Whether the target holds all that stages 1 and 2 would draw. */
-static bool is_kept(const struct native_kept *kept, const struct native_shown *shown,
-                    const struct frame_request *request)
-{
-    return kept->serial == shown->serial && kept->width_px == request->width_px &&
-           kept->height_px == request->height_px &&
-           camera_is_same(&kept->camera, &request->camera) &&
-           kept->surface.kind == request->surface.kind &&
-           kept->surface.level == request->surface.level &&
-           (kept->edges || !request_has_coverage(request));
 }
 
 /* What two clocks tell of the time of both stages together: theirs, and the processors' of each. */
@@ -64,8 +40,8 @@ static void add_times(struct frame_times *times, const struct native_times *part
     uint64_t first = parts->choose_us + parts->quads_us + parts->raster_us + parts->sort_us;
     uint64_t both = first + parts->evaluate_us + parts->retry_us + parts->copy_us + parts->gaps_us;
     uint64_t visibility_us = both ? all_us * first / both : 0;
-    times->visibility_us += visibility_us;
-    times->evaluate_us += all_us - visibility_us;
+    times->visibility_us += visibility_us + 1; /* 0 is for planes that were there */
+    times->evaluate_us += all_us - visibility_us + 1;
 }
 
 /* Stages 1 and 2. */
@@ -74,9 +50,9 @@ static bool draw_surface(struct native_renderer *r, const struct native_drawing 
 {
     struct native_times parts;
     uint64_t begin_us = clock_now_us();
-    r->kept.serial = 0;
-    if (!native_target_reserve(&r->target, d->place.width, d->place.height, error) ||
-        !native_draw(r->device, d->shown->model, view, &d->place, &r->target.planes, &parts, error))
+    if (!native_target_reserve(d->target, d->place.width, d->place.height, error) ||
+        !native_draw(r->device, d->shown->model, view, &d->place, &d->target->planes, &parts,
+                     error))
         return false;
     add_times(&frame->times, &parts, clock_now_us() - begin_us);
     begin_us = clock_now_us();
@@ -122,8 +98,7 @@ static bool draw_polygons(struct native_renderer *r, struct native_frame_state *
     *is_whole = is_drawn || (is_first && own->part == mesh->n_parts);
     if (*is_whole) {
         own->part = 0;
-        r->kept.serial = 0;
-        if (!native_target_reserve(&r->target, d->place.width, d->place.height, error))
+        if (!native_target_reserve(d->target, d->place.width, d->place.height, error))
             return false;
         native_polygon_planes(d, view, mesh, &own->seen);
     }
@@ -146,27 +121,17 @@ static bool draw_tile(struct native_renderer *r, struct native_frame_state *own,
     if (!*is_whole)
         return true;
     uint64_t begin_us = clock_now_us();
-    if (!native_shade(d, watch, frame, error))
+    if (!native_target_reserve_shading(d->target, request, error) ||
+        !native_shade(d, watch, frame, error))
         return false;
     if (request->surface.kind == SURFACE_WIREFRAME)
         native_polygon_edges(d, view, &own->polygons->mesh);
     uint64_t shaded_us = clock_now_us();
     frame->times.shade_us += shaded_us - begin_us;
-    frame->shows_surface = frame->shows_surface || native_any_seen(&r->target);
+    frame->shows_surface = frame->shows_surface || native_any_seen(d->target);
     native_readback(d, view, frame);
     frame->times.readback_us += clock_now_us() - shaded_us;
     return true;
-}
-
-static void keep(struct native_kept *kept, const struct native_shown *shown,
-                 const struct frame_request *request)
-{
-    *kept = (struct native_kept){.serial = shown->serial,
-                                 .width_px = request->width_px,
-                                 .height_px = request->height_px,
-                                 .camera = request->camera,
-                                 .surface = request->surface,
-                                 .edges = request_has_coverage(request)};
 }
 
 enum frame_step native_frame_step(struct renderer *renderer, struct renderer_model *model,
@@ -178,28 +143,27 @@ enum frame_step native_frame_step(struct renderer *renderer, struct renderer_mod
     const struct frame_request *request = work->request;
     if (is_of_polygons(request) && !find_polygons(r, own, shown, work))
         return FRAME_POLYGONS;
-    bool is_kept_view =
-             own->x == 0 && own->y == 0 && own->part == 0 && is_kept(&r->kept, shown, request),
-         is_whole;
-    if (is_kept_view)
-        own->tile = (struct tile_size){request->width_px, request->height_px};
+    bool is_kept_view, is_whole;
+    struct native_view_planes *planes = native_planes_choose(r, own, shown, work, &is_kept_view);
     struct tile tile = tile_at(own->x, own->y, &own->tile, request->width_px, request->height_px);
     struct native_drawing drawing = {
-        .device = r->device, .target = &r->target, .shown = shown, .request = request};
+        .device = r->device, .target = &planes->target, .shown = shown, .request = request};
     drawing.place = tile_with_margin(&tile, true, request->width_px, request->height_px);
     drawing.inside = tile_within(&tile, &drawing.place);
     struct view view;
     view_init(&view, &request->camera, request->width_px, request->height_px,
               model->tables->hull_min, model->tables->hull_max);
     view_block_fill(&drawing.view, &view, &drawing.place);
+    if (!is_kept_view)
+        planes->kept.serial = 0;
     work->has_drawn = true;
     if (!frame_watch_check(&work->watch, error) ||
         !draw_tile(r, own, &drawing, &view, &work->watch, is_kept_view, frame, &is_whole, error))
         return FRAME_FAILED;
     if (!is_whole)
         return FRAME_MORE;
-    if (tile.width == request->width_px && tile.height == request->height_px && !is_kept_view)
-        keep(&r->kept, shown, request);
+    if (!is_kept_view && !native_planes_keep(r, own, planes, &drawing, work, error))
+        return FRAME_FAILED;
     own->x += own->tile.width;
     if (own->x >= request->width_px) {
         own->x = 0;
