@@ -3,6 +3,7 @@
 #   make demo       install what is missing, build, render the demo model to a PNG
 #   make check      install what is missing, build, lint, run every test
 #   make unit | oracle | service    one kind of test
+#   make oracle     DEVICE=native|mesa|N ISA=v2|v3|v4: what the oracles judge (native, the widest)
 #   make test       T=NAME: one row of what `make check` prints; tests/README.md says which there are
 #   make fuzz       SECONDS=60: fuzz each target of tests/fuzz so long (needs clang-14: sh deploy/deps.sh fuzz)
 #   make fuzz-coverage   lines of protocol/, the readers and the workers' messages that the corpora reach
@@ -301,7 +302,7 @@ SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame
                    $(BENCH_MAIN) \
                    $(call obj,tests/bench/no_peers.cpp tests/bench/no_gltf.c) \
                    $(call obj,$(patsubst %,tests/oracle/%.cpp,scene cage_file folder)) \
-                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/base/fault.c server/base/block_cache.c server/base/clock.c) $(RENDER_OBJ) $(CORE_OBJ) \
+                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/base/fault.c server/base/block_cache.c server/base/clock.c server/ops/device_choice.c protocol/number.c) $(RENDER_OBJ) $(CORE_OBJ) \
                    $(KEEP_MODULES)
 $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 	$(call say,LD $@)
@@ -321,7 +322,7 @@ unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 service: all $(BUILD)/sheend-faults $(BUILD)/tests/no_library.so
 	bash tests/run.sh service $(BUILD)
 oracle: all $(ORACLE_TESTS)
-	bash tests/run.sh oracle $(BUILD)
+	DEVICE=$(DEVICE) ISA=$(ISA) bash tests/run.sh oracle $(BUILD)
 # A unit program and a corpus are built alone, what else tests need by the kind that the name tells.
 test: all $(if $(wildcard tests/unit/$(T).c)$(filter fuzz_%,$(T)),$(BUILD)/tests/$(T),\
           $(if $(filter service_%,$(T)),$(BUILD)/sheend-faults $(BUILD)/tests/no_library.so,$(ORACLE_TESTS)))

@@ -11,6 +11,11 @@ shapes=../shared/shapes
 # In builds with sanitizers: what libraries lose by themselves is not ours to report.
 export LSAN_OPTIONS="suppressions=tests/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp:print_suppressions=0"
+# What oracles judge: as sheend's --device and --native-isa, or mesa, which is Mesa's software device.
+mesa=$(/usr/bin/python3 tests/service/mesa.py)
+device=${DEVICE:-native}
+[ "$device" != mesa ] || device=$mesa
+export SHEEN_TEST_DEVICE="$device" SHEEN_TEST_ISA="${ISA:-auto}"
 mkdir -p "$build/tests"
 rm -f "$build"/tests/*.count
 
@@ -51,7 +56,8 @@ beside() { # name, command...
 served() { # command...
     address=unix:$build/tests/$name.sock
     rm -f "${address#unix:}"
-    "$build/sheend" --listen "$address" --log-level warn &
+    "$build/sheend" --listen "$address" --log-level warn --device "$SHEEN_TEST_DEVICE" \
+        --native-isa "$SHEEN_TEST_ISA" &
     daemon=$!
     for _ in $(seq 100); do
         [ -S "${address#unix:}" ] && break
@@ -67,6 +73,11 @@ served() { # command...
 # anew costs more than what is written into it.
 oracle_program() { # command...
     MALLOC_MMAP_THRESHOLD_=1073741824 MALLOC_TRIM_THRESHOLD_=2147483647 "$@"
+}
+
+# The same on Mesa's software device.
+on_mesa() { # command...
+    SHEEN_TEST_DEVICE=$mesa SHEEN_TEST_ISA=auto "$@"
 }
 
 # The Catmull-Clark cages there; and all, since any cage is one.
@@ -159,6 +170,16 @@ oracle() {
     beside fine served "$build/tests/test_fine" "$build/sheen" tests/models/plane.obj tests/models/fender.obj
     beside isophotes served "$build/tests/test_isophotes" "$build/sheen" tests/models/body.obj
     beside mirror served "$build/tests/test_mirror" "$build/sheen"
+    [ "$SHEEN_TEST_DEVICE" = "$mesa" ] || oracle_on_mesa
+}
+
+# The part that is judged on Mesa's software device, too: README.md says how it was chosen.
+oracle_on_mesa() {
+    beside mesa_frames on_mesa served "$build/tests/test_frames" "$build/sheen" tests/models/body.obj \
+        tests/models/creases.obj
+    beside mesa_areas on_mesa served "$build/tests/test_areas" "$build/sheen" tests/models/body.obj
+    beside mesa_filter on_mesa served "$build/tests/test_filter" "$build/sheen" tests/models/ngons.obj
+    beside mesa_lines on_mesa served "$build/tests/test_lines" "$build/sheen" tests/models/body.obj
 }
 
 # The longest first.

@@ -8,7 +8,7 @@
 #include "server/render/gl/device.h"
 #include "server/render/native/device.h"
 
-int device_tries(const char *words, struct device_try tries[static DEVICE_MOST_TRIES])
+int device_tries(const char *words, struct device_try tries[DEVICE_MOST_TRIES])
 {
     const struct device_try native = {&native_renderer_device, NULL};
     uint64_t number;

@@ -15,6 +15,6 @@ struct device_try {
 /* Fills in the devices that `words` asks for, to be opened in this order until one opens, and
  * returns how many: "auto", "software", "native", or the number of an EGL device. 0 for other words.
  * `words` must live as long as the tries. */
-int device_tries(const char *words, struct device_try tries[static DEVICE_MOST_TRIES]);
+int device_tries(const char *words, struct device_try tries[DEVICE_MOST_TRIES]);
 
 #endif

@@ -8,7 +8,7 @@
 #define line_family renderer_line_family
 #define line_eye_kind renderer_line_eye_kind
 extern "C" {
-#include "server/render/gl/device.h"
+#include "server/ops/device_choice.h"
 #include "server/render/renderer.h"
 #include "server/scene/defaults.h"
 }

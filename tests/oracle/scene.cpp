@@ -4,6 +4,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -86,17 +88,35 @@ frame_request scene::request(uint32_t width_px, uint32_t height_px) const
     return request;
 }
 
-drawing::drawing(const scene &scene, const char *device) : renderer(nullptr), model(nullptr)
+static const char *test_isa()
+{
+    const char *isa = std::getenv("SHEEN_TEST_ISA");
+    return isa && std::strcmp(isa, "auto") != 0 ? isa : nullptr;
+}
+
+drawing::drawing(const scene &scene, const char *device, const char *isa)
+    : renderer(nullptr), model(nullptr)
 {
     error error;
-    renderer_options options = {};
-    options.device = device;
-    renderer = renderer_create(&gl_device, &options, &error);
+    device_try tries[DEVICE_MOST_TRIES];
+    int n = device_tries(device, tries);
+    for (int i = 0; i < n && !renderer; i++) {
+        renderer_options options = {};
+        options.device = tries[i].device;
+        options.isa = isa;
+        renderer = renderer_create(tries[i].kind, &options, &error);
+    }
     check(renderer != nullptr, error);
     model = renderer_model_create(renderer, &scene.tables, &error);
     if (!model)
         renderer_destroy(renderer);
     check(model != nullptr, error);
+}
+
+drawing::drawing(const scene &scene)
+    : drawing(scene, std::getenv("SHEEN_TEST_DEVICE") ? std::getenv("SHEEN_TEST_DEVICE") : "native",
+              test_isa())
+{
 }
 
 drawing::~drawing()

@@ -50,7 +50,11 @@ struct frame_cost {
 class drawing
 {
   public:
-    drawing(const scene &scene, const char *device);
+    /* `device` as sheend's --device, `isa` as renderer_options. */
+    drawing(const scene &scene, const char *device, const char *isa = nullptr);
+    /* On the device that tests are to judge, by the environment: SHEEN_TEST_DEVICE (native) and
+     * SHEEN_TEST_ISA. */
+    explicit drawing(const scene &scene);
     ~drawing();
     drawing(const drawing &) = delete;
     drawing &operator=(const drawing &) = delete;

@@ -8,7 +8,7 @@ struct grid_model::parts {
     scene shown;
     drawing device;
 
-    explicit parts(const std::string &path) : shown(read_cage_file(path)), device(shown, "auto")
+    explicit parts(const std::string &path) : shown(read_cage_file(path)), device(shown)
     {
     }
 };

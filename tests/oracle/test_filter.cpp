@@ -204,7 +204,7 @@ void judge_model(const std::string &sheen, const std::string &path, verdict *ver
 {
     bool is_car = path.find("catmark_car") != std::string::npos;
     scene scene(read_cage_file(path));
-    drawing drawing(scene, "auto");
+    drawing drawing(scene);
     struct size {
         int width_px, height_px;
     };

@@ -191,7 +191,7 @@ std::string file_name(const std::string &path)
 void judge_model(const std::string &path, unsigned seed, verdict *verdict)
 {
     scene scene(read_cage_file(path));
-    drawing drawing(scene, "auto");
+    drawing drawing(scene);
     const double *low = scene.tables.box_min, *high = scene.tables.box_max;
     vec3 diagonal = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
     vec3 middle = 0.5 * vec3{low[0] + high[0], low[1] + high[1], low[2] + high[2]};
@@ -323,7 +323,7 @@ std::vector<flat_case> flat_cases()
 void judge_flat(const std::string &path, verdict *verdict)
 {
     scene scene(turned_cage(path));
-    drawing drawing(scene, "auto");
+    drawing drawing(scene);
     seen_setup asked;
     asked.camera.eye = placed(0.4, -2.1, 3.3);
     asked.camera.target = placed(0.1, 0.05, 0);

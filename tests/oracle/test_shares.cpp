@@ -104,7 +104,7 @@ tally judge(const std::string &path, verdict *verdict)
 {
     std::mt19937 random(seed);
     scene scene(read_cage_file(path));
-    drawing drawing(scene, "auto");
+    drawing drawing(scene);
     tally all;
     std::string name = path.substr(path.rfind('/') + 1);
     for (int view = 0; view < n_views; view++) {

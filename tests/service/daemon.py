@@ -9,11 +9,14 @@ import tempfile
 import time
 import unittest
 
+import mesa
 import wire
 
 BUILD = os.environ["SHEEN_BUILD"]
 SHEEND = os.path.join(BUILD, "sheend")
 SHEEN = os.path.join(BUILD, "sheen")
+DEVICE = os.environ.get("SHEEN_TEST_DEVICE", "software")
+MESA = mesa.device()  # for what a GL device alone does
 MODELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "models")
 
 with open(SHEEND, "rb") as _file:
@@ -58,7 +61,7 @@ class Daemon:
         self.unix = "unix:" + self.path
         listen = ["--listen", self.unix] + (["--listen", "tcp:127.0.0.1:0"] if tcp else [])
         self.stderr = tempfile.TemporaryFile("w+")
-        self.process = subprocess.Popen([*under, self.program, *listen, "--device", "software", *arguments],
+        self.process = subprocess.Popen([*under, self.program, *listen, "--device", DEVICE, *arguments],
                                         stdout=subprocess.DEVNULL, stderr=self.stderr,
                                         env={**os.environ, **(env or {})})
         atexit.register(self.process.kill)  # where a test fails before it stops its daemon

@@ -11,7 +11,7 @@ import time
 import unittest
 
 import wire
-from daemon import BUILD, CUBE, MODELS, SHEEN, Daemon, grid
+from daemon import BUILD, CUBE, MESA, MODELS, SHEEN, Daemon, grid
 from test_operations import get, metrics_address, read_metrics
 from test_untrusted import children, is_alive, workers
 
@@ -28,7 +28,7 @@ class FaultyDaemon(Daemon):
 
 class LostGpu(unittest.TestCase):
     def serve(self, faults, *arguments):
-        server = FaultyDaemon(faults, *arguments)
+        server = FaultyDaemon(faults, "--device", MESA, *arguments)
         self.addCleanup(lambda: server.process.poll() is None and server.stop())
         return server
 
