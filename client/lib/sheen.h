@@ -252,7 +252,7 @@ struct sheen_model_info {
     uint32_t nonmanifold_edges;            /* in 3 faces and more, or run in one direction by 2 */
     uint32_t nonmanifold_vertices;         /* whose faces are not one fan */
     uint32_t regular_patches, corner_patches, strip_patches, split_nodes, hole_nodes;
-    uint64_t table_bytes;                 /* on the GPU */
+    uint64_t table_bytes;                 /* on the GPU; of the native device in main memory */
     uint64_t regular_bytes, corner_bytes; /* of one such patch */
     uint64_t tables_us;                   /* reading, building and uploading took this long */
     double box_min[3], box_max[3];

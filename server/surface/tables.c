@@ -108,10 +108,18 @@ void limit_tables_turn(const struct limit_tables *tables)
         record_cache_turn(tables->level_bounds);
 }
 
+/* Of a node, without points. */
+static size_t whole_bytes(const struct limit_tables *tables)
+{
+    return sizeof *tables->heads + sizeof *tables->whole;
+}
+
 size_t limit_tables_bytes(const struct limit_tables *tables)
 {
-    return tables->n_nodes * sizeof *tables->nodes + tables->n_faces * sizeof *tables->adjacency +
-           tables->n_texels * sizeof *tables->texels;
+    size_t bytes =
+        tables->n_nodes * sizeof *tables->nodes + tables->n_faces * sizeof *tables->adjacency;
+    return bytes + (tables->on_demand ? tables->n_nodes * whole_bytes(tables)
+                                      : tables->n_texels * sizeof *tables->texels);
 }
 
 size_t limit_support_room(const struct limit_tables *tables)
@@ -124,21 +132,19 @@ size_t limit_support_room(const struct limit_tables *tables)
 
 size_t limit_tables_host_bytes(const struct limit_tables *tables)
 {
-    size_t bytes =
-        tables->n_nodes * (sizeof *tables->nodes + sizeof *tables->heads + sizeof *tables->whole) +
-        tables->n_faces * sizeof *tables->adjacency +
-        limit_support_room(tables) * sizeof *tables->support +
-        (tables->source ? tables->source->bytes : 0);
+    size_t bytes = limit_tables_bytes(tables) +
+                   limit_support_room(tables) * sizeof *tables->support +
+                   (tables->source ? tables->source->bytes : 0);
     if (tables->on_demand)
         return bytes + record_cache_most_bytes(sizeof(struct limit_bound), level_bounds_of(tables));
-    return bytes + tables->n_texels * sizeof *tables->texels +
-           tables->n_nodes * sizeof *tables->bound_first +
+    return bytes + tables->n_nodes * (whole_bytes(tables) + sizeof *tables->bound_first) +
            tables->n_bounds * sizeof *tables->bounds;
 }
 
-size_t limit_face_bytes(enum limit_kind kind)
+size_t limit_face_bytes(const struct limit_tables *tables, enum limit_kind kind)
 {
     size_t texels =
         kind == LIMIT_CORNER ? LIMIT_CORNER_TEXELS(LIMIT_MAX_LEVELS) : LIMIT_PATCH_TEXELS;
-    return sizeof(struct limit_node) + sizeof(struct limit_adjacency) + texels * sizeof(float[4]);
+    return sizeof(struct limit_node) + sizeof(struct limit_adjacency) +
+           (tables->on_demand ? whole_bytes(tables) : texels * sizeof(float[4]));
 }

@@ -97,7 +97,8 @@ struct limit_bound limit_level_bound(const struct limit_tables *tables, uint32_t
  * asked for may be dropped. */
 void limit_tables_turn(const struct limit_tables *tables);
 
-/* Bytes that the GPU holds for stored tables: nodes, adjacency and texels. */
+/* Bytes of nodes, adjacency and what both forms have of points: stored tables' texels, which a GPU holds a
+ * copy of, or heads and bounds of nodes. */
 size_t limit_tables_bytes(const struct limit_tables *tables);
 /* How many support points there may be. */
 size_t limit_support_room(const struct limit_tables *tables);
@@ -105,8 +106,8 @@ size_t limit_support_room(const struct limit_tables *tables);
  * points and with what their source holds. Of tables that are still measured, without a source: without
  * that. */
 size_t limit_tables_host_bytes(const struct limit_tables *tables);
-/* Bytes that the GPU holds for a face of one REGULAR node, or of one CORNER node with as many
- * levels as there can be. */
-size_t limit_face_bytes(enum limit_kind kind);
+/* Of that, bytes of a face of one REGULAR node, or of one CORNER node with as many levels as there can
+ * be. */
+size_t limit_face_bytes(const struct limit_tables *tables, enum limit_kind kind);
 
 #endif
