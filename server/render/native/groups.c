@@ -51,7 +51,8 @@ void native_find_groups(const struct native_drawing *d)
 {
     struct native_target *t = d->target;
     struct native_list *all = &t->list[NATIVE_GROUPS];
-    struct search search = {native_device_set(d->device), t,
+    struct search search = {native_device_set(d->device),
+                            t,
                             {.planes = &t->planes,
                              .width = t->width,
                              .height = t->height,
