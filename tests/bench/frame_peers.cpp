@@ -53,7 +53,7 @@ class osd_peer : public frame_peer
 
 } // namespace
 
-std::vector<frame_peer_kind> frame_peers()
+std::vector<frame_peer_kind> frame_peers(bool has_gl)
 {
     frame_peer_kind embree, osd;
     embree.name = "Embree";
@@ -71,5 +71,6 @@ std::vector<frame_peer_kind> frame_peers()
     osd.build = [](const cage &cage, const drawing &ours) {
         return std::make_unique<osd_peer>(cage, ours);
     };
-    return {embree, osd};
+    return has_gl ? std::vector<frame_peer_kind>{embree, osd}
+                  : std::vector<frame_peer_kind>{embree};
 }

@@ -54,11 +54,11 @@ void help(const std::string &program)
         std::printf("  %-8s %s\n           knows%s\n", question->name.c_str(),
                     question->asks.c_str(), keys.empty() ? " nothing else" : keys.c_str());
     }
-    std::printf(
-        "\n  --runs     measured so often in turn (9), medians are printed\n"
-        "  --folder   where the figures go, one JSON file a question (build/bench)\n"
-        "  --compare  figures to set beside them (those that lie there)\n"
-        "  --device   software, the number of an EGL device, or auto: hardware first (auto)\n");
+    std::printf("\n  --runs     measured so often in turn (9), medians are printed\n"
+                "  --folder   where the figures go, one JSON file a question (build/bench)\n"
+                "  --compare  figures to set beside them (those that lie there)\n"
+                "  --device   native, software, the number of an EGL device, or auto: hardware "
+                "first (auto)\n");
 }
 
 void run(const std::string &program, std::vector<std::string> arguments)

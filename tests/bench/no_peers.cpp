@@ -1,6 +1,6 @@
 #include "tests/bench/peers.h"
 
-std::vector<frame_peer_kind> frame_peers()
+std::vector<frame_peer_kind> frame_peers(bool)
 {
     return {};
 }

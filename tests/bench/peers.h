@@ -30,7 +30,8 @@ struct frame_peer_kind {
      * context is current. */
     std::function<std::unique_ptr<frame_peer>(const cage &, const drawing &ours)> build;
 };
-std::vector<frame_peer_kind> frame_peers();
+/* has_gl: whether the drawings beside them have a GL context that peers may draw in. */
+std::vector<frame_peer_kind> frame_peers(bool has_gl);
 
 struct tables_peer {
     std::string name;
