@@ -397,6 +397,11 @@ bool tls_still_trusts(const struct tls_context *context, const struct tls_channe
     return ok;
 }
 
+bool tls_has_begun(const struct tls_channel *channel)
+{
+    return !SSL_in_before(channel->ssl);
+}
+
 const char *tls_reason(const struct tls_channel *channel)
 {
     return channel->reason;

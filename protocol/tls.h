@@ -80,6 +80,8 @@ bool tls_peer(const struct tls_channel *channel, struct tls_peer *peer);
  * none. If not, `text` says why. */
 bool tls_still_trusts(const struct tls_context *context, const struct tls_channel *channel,
                       char text[static TLS_TEXT_BYTES]);
+/* Has the first message of the peer's handshake come? */
+bool tls_has_begun(const struct tls_channel *channel);
 /* Why the channel has failed, in words; "" when it has not. */
 const char *tls_reason(const struct tls_channel *channel);
 

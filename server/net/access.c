@@ -186,6 +186,11 @@ bool access_admit_local(const struct access *access, int fd, enum address_kind k
     return true;
 }
 
+void access_admit_proxied(const struct peer *peer, struct identity *identity)
+{
+    identify(identity, "tcp:", peer->name);
+}
+
 void access_admit_private(struct identity *identity)
 {
     identify(identity, "private", "");

@@ -15,6 +15,7 @@
 #include "server/base/error.h"
 #include "server/base/owner.h"
 #include "server/net/conn.h"
+#include "server/net/peer.h"
 #include "server/net/tokens.h"
 
 #define ACCESS_PATH_BYTES 512
@@ -59,6 +60,8 @@ bool access_has_list(const struct access *access);
  */
 bool access_admit_local(const struct access *access, int fd, enum address_kind kind,
                         struct identity *identity, struct error *error);
+/* A client of plain TCP whose address a balancer tells. */
+void access_admit_proxied(const struct peer *peer, struct identity *identity);
 /* A private daemon's one client. */
 void access_admit_private(struct identity *identity);
 /* Puts TLS under a fresh conn. */

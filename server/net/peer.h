@@ -2,22 +2,28 @@
 #ifndef SHEEN_NET_PEER_H
 #define SHEEN_NET_PEER_H
 
+#include <stdbool.h>
 #include <stdint.h>
+#include <sys/socket.h>
 
 #define PEER_NAME_BYTES 64
 #define PEER_TEXT_BYTES 80
 
-/* Connections of one user of the Unix socket, or from one address (of IPv6 its /64, which one
- * machine has to itself), have equal keys. */
+/* An address, of IPv6 its /64, which one machine has to itself: connections from there have equal
+ * keys. */
 struct peer {
-    char name[PEER_NAME_BYTES]; /* "user 1000", "127.0.0.1"; "unknown" when the peer has gone */
-    uint64_t key[2];            /* of all unknown peers the same */
+    char name[PEER_NAME_BYTES]; /* "127.0.0.1", "2001:db8::/64" */
+    uint64_t key[2];            /* of all unknown ones the same */
 };
 
-struct peer peer_identify(int fd);
+struct peer peer_of_address(const struct sockaddr *address);
+
+/* Who is at the other end of the socket. False when the peer has gone. */
+bool peer_address(int fd, struct sockaddr_storage *address);
 
 /* Who it is just now, for the log: "unix uid=1000 gid=1000 pid=42", or "192.0.2.1:4711"; "unknown"
  * when the peer has gone. */
 void peer_describe(int fd, char text[static PEER_TEXT_BYTES]);
+void peer_describe_address(const struct sockaddr *address, char text[static PEER_TEXT_BYTES]);
 
 #endif

@@ -50,6 +50,18 @@ const struct limits_row LIMITS[] = {
     {"max-peer-connections", UNIT_COUNT,
      "of one user (Unix socket), certificate or token, and all of loopback TCP together", 1,
      1000000, 256, AT(session.connections)},
+    {"max-strangers", UNIT_COUNT,
+     "clients over TLS that have not shown who they are, at the same time: the oldest leaves\nfor "
+     "the "
+     "next, first of the address that has most",
+     1, 1000000, 64, AT(session.strangers.all)},
+    {"max-peer-strangers", UNIT_COUNT, "of one address", 1, 1000000, 16,
+     AT(session.strangers.of_peer)},
+    {"max-penalty", UNIT_SECONDS,
+     "an address whose clients come without credentials again and again is turned away for\nso "
+     "long "
+     "at most; 0: never",
+     0, 86400, 600, AT(session.strangers.penalty_s)},
     {"credits", UNIT_COUNT, "requests of one client that wait for their answers", 1,
      PROTOCOL_MAX_CREDITS, 16, AT(session.credits)},
     {"interactive-hard", UNIT_BYTES,

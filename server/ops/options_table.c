@@ -80,6 +80,11 @@ static bool add_id(void *value, const char *text, struct error *error)
     return true;
 }
 
+static bool add_proxy_from(void *value, const char *text, struct error *error)
+{
+    return proxy_networks_add(value, text, error);
+}
+
 static bool hash_token(void *value, const char *text, struct error *error)
 {
     (void)value;
@@ -206,6 +211,12 @@ static const struct option_row OWN_ROWS[] = {
      "lines 'NAME HASH YYYY-MM-DD': tokens that may come in over TLS, each until\n"
      "the end of its day; with --client-ca too, one of both is enough",
      NULL},
+    {"proxy-from", "ADDRESS[/BITS]", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS,
+     VALUE(service.proxy_from), 0, 0, NULL, NULL,
+     "balancers, whose connections must begin with a header of PROXY protocol version 2\n"
+     "that tells the client's address; several times, up to 16. From anybody else such a\n"
+     "header is refused (default: none)",
+     add_proxy_from},
     {"share-models", NULL, OPTION_FLAG, OPTION_IN_FILE, VALUE(service.share_models), 0, 0, NULL,
      NULL,
      "whoever knows a model's SHA-256 may use it, whoever has uploaded it (default:\n"

@@ -8,7 +8,7 @@
 
 #include "server/ops/settings.h"
 
-#define OPTION_MAX_ROWS 64
+#define OPTION_MAX_ROWS 80
 
 enum option_type {
     OPTION_NUMBER, /* uint64_t from min to max */

@@ -12,6 +12,7 @@
 #include "server/base/clock.h"
 #include "server/output/jpeg.h"
 #include "server/net/listen.h"
+#include "server/net/proxied.h"
 #include "server/ops/gpu_loss_log.h"
 #include "server/assets/model_file.h"
 #include "server/ops/daemon.h"
@@ -35,6 +36,7 @@ struct service {
     struct monitor *monitor; /* NULL with a single session */
     struct listener *listeners[SERVICE_MAX_LISTENERS];
     size_t n_listeners;
+    struct proxied *proxied; /* NULL with a single session, and once nobody is accepted any more */
     struct loop_source signals;
     int signal_fd;
     LIST_HEAD(session_list, session) sessions;
@@ -67,41 +69,94 @@ static bool has_room(const struct daemon *daemon, struct error *error)
                      "the daemon has as many clients as it takes: try again later");
 }
 
-static void accepted(void *owner, const struct listener *listener, int fd)
+static void log_turned_away(struct service *service, enum log_level level, const char *peer,
+                            const struct listener *listener, const char *text)
 {
-    struct service *service = owner;
+    service->daemon.sessions.stats.refused++;
+    log_event(level, "client turned away", log_text("peer", peer),
+              log_text("listener", listener_text(listener)), log_text("text", text));
+}
+
+/* A connection, by whatever way it has come, whose client is known as far as it is before HELLO. */
+static void welcome(struct service *service, const struct listener *listener, int fd,
+                    const struct session_client *client)
+{
     struct daemon *daemon = &service->daemon;
     struct session *session = NULL;
+    struct session_seat seat = {0};
+    struct error error = {0};
+    bool stranger = client->kind == CLIENT_TLS;
+    if (has_room(daemon, &error) &&
+        (stranger || session_take_seat(&daemon->sessions, &client->identity, &seat, &error))) {
+        session = session_create(&daemon->sessions, fd, client, seat, &error);
+    } else {
+        daemon->sessions.stats.errors++;
+        turn_away(fd, stranger ? NULL : error.text); /* a stranger is told nothing */
+    }
+    if (session)
+        LIST_INSERT_HEAD(&service->sessions, session, link);
+    else
+        log_turned_away(service, LOG_WARN, client->peer, listener, error.text);
+}
+
+/* A connection of this machine or network, or one that a balancer tells to be from there. */
+static void came_from(struct service *service, const struct listener *listener, int fd,
+                      const struct sockaddr *from, bool by_balancer)
+{
+    struct daemon *daemon = &service->daemon;
     struct error error = {0};
     const enum address_kind kind = listener_kind(listener);
     struct session_client client = {.kind = kind == ADDRESS_UNIX  ? CLIENT_UNIX
                                             : kind == ADDRESS_TCP ? CLIENT_TCP
                                                                   : CLIENT_TLS};
-    peer_describe(fd, client.peer);
-    bool stranger = kind == ADDRESS_TLS ||
-                    !access_admit_local(daemon->access, fd, kind, &client.identity, &error);
-    if (stranger &&
-        (kind != ADDRESS_TLS || daemon->sessions.n_strangers >= SERVICE_MAX_STRANGERS)) {
-        if (kind == ADDRESS_TLS)
-            error_set(&error, ERROR_SERVER, "too many connections that do not say who they are");
-        conn_turn_away(fd, NULL, 0); /* a stranger is told nothing */
-    } else {
-        struct session_seat seat = {0};
-        if (has_room(daemon, &error) &&
-            (stranger || session_take_seat(&daemon->sessions, &client.identity, &seat, &error))) {
-            session = session_create(&daemon->sessions, fd, &client, seat, &error);
-        } else {
-            daemon->sessions.stats.errors++;
-            turn_away(fd, stranger ? NULL : error.text);
+    if (kind == ADDRESS_UNIX)
+        peer_describe(fd, client.peer);
+    else
+        peer_describe_address(from, client.peer);
+    client.from = peer_of_address(from);
+    client.is_balancer = !by_balancer && proxy_networks_hold(&service->options.proxy_from, from);
+    if (kind == ADDRESS_TLS) {
+        if (client.is_balancer ||
+            strangers_admits(&daemon->sessions.strangers, &client.from, clock_now_us())) {
+            welcome(service, listener, fd, &client);
+            return;
         }
+        conn_turn_away(fd, NULL, 0);
+        log_turned_away(service, LOG_DEBUG, client.peer, listener,
+                        "its address has come without credentials again and again");
+    } else if (access_admit_local(daemon->access, fd, kind, &client.identity, &error)) {
+        if (by_balancer)
+            access_admit_proxied(&client.from, &client.identity);
+        welcome(service, listener, fd, &client);
+    } else {
+        conn_turn_away(fd, NULL, 0); /* a stranger is told nothing */
+        log_turned_away(service, LOG_WARN, client.peer, listener, error.text);
     }
-    if (!session) {
-        daemon->sessions.stats.refused++;
-        log_event(LOG_WARN, "client turned away", log_text("peer", client.peer),
-                  log_text("listener", listener_text(listener)), log_text("text", error.text));
-        return;
-    }
-    LIST_INSERT_HEAD(&service->sessions, session, link);
+}
+
+static void accepted(void *owner, const struct listener *listener, int fd)
+{
+    struct service *service = owner;
+    struct sockaddr_storage address;
+    const struct sockaddr *from = (const struct sockaddr *)&address;
+    peer_address(fd, &address); /* of one who has gone: unknown */
+    if (proxy_networks_hold(&service->options.proxy_from, from))
+        proxied_accept(service->proxied, listener, fd);
+    else
+        came_from(service, listener, fd, from, false);
+}
+
+static void header_arrived(void *owner, const struct listener *listener, int fd,
+                           const struct sockaddr *from)
+{
+    struct sockaddr_storage address;
+    peer_address(fd, &address);
+    came_from(owner, listener, fd, from ? from : (const struct sockaddr *)&address, from != NULL);
+}
+
+static void header_refused(void *owner, const struct listener *listener, const char *why)
+{
+    log_turned_away(owner, LOG_WARN, "a balancer of --proxy-from", listener, why);
 }
 
 static void settle_sessions(struct service *service)
@@ -165,7 +220,8 @@ static void after_batch(void *owner)
     settle_sessions(service);
     request_start_next(&daemon->requests);
     bool has_sessions = !LIST_EMPTY(&service->sessions);
-    loop_set_ticking(daemon->loop, has_sessions || any_paused(service) || draining ||
+    bool any_proxied = service->proxied && !proxied_is_empty(service->proxied);
+    loop_set_ticking(daemon->loop, has_sessions || any_proxied || any_paused(service) || draining ||
                                        block_cache_bytes(daemon->block_cache) > 0);
     if (has_sessions || !(service->single || draining))
         return;
@@ -197,6 +253,8 @@ static void tick(void *owner)
         service->trimmed_us = now;
         block_cache_trim(daemon->block_cache);
     }
+    if (service->proxied)
+        proxied_tick(service->proxied, now, daemon->sessions.limits.handshake_s * 1000000);
     for (size_t i = 0; i < service->n_listeners; i++)
         if (listener_is_paused(service->listeners[i]))
             listener_resume(service->listeners[i]);
@@ -206,6 +264,8 @@ static void tick(void *owner)
 
 static void close_listeners(struct service *service)
 {
+    proxied_destroy(service->proxied);
+    service->proxied = NULL;
     while (service->n_listeners > 0)
         listener_close(service->listeners[--service->n_listeners]);
 }
@@ -358,6 +418,9 @@ static bool open_listeners(struct service *service, struct error *error)
 {
     const struct listener_handler handler = {accepted, service};
     struct service_listen listen = service->options.listen;
+    const struct proxied_handler proxied = {header_arrived, header_refused, service};
+    if (!(service->proxied = proxied_create(service->daemon.loop, &proxied)))
+        return error_set(error, ERROR_SERVER, "no memory for the daemon");
     if (!adopt_listeners(service, error))
         return false;
     if (listen.n == 0 && service->n_listeners == 0) {
@@ -482,6 +545,7 @@ static void connect_rooms(struct service *service)
     sessions->share_models = service->options.share_models;
     sessions->is_private = service->single;
     stats_init(&sessions->stats);
+    strangers_init(&sessions->strangers);
 }
 
 static bool start(struct service *service, struct error *error)

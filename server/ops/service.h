@@ -10,11 +10,11 @@
 #include "server/base/error.h"
 #include "server/net/access.h"
 #include "server/net/listen.h"
+#include "server/net/proxy_header.h"
 #include "server/ops/limits.h"
 #include "server/base/log.h"
 
 #define SERVICE_MAX_LISTENERS 16
-#define SERVICE_MAX_STRANGERS 64u /* clients over TLS that have not shown who they are */
 #define SERVICE_DEVICE_BYTES 64
 #define SERVICE_ISA_BYTES 8
 
@@ -27,6 +27,7 @@ struct service_listen {
 struct service_options {
     struct service_listen listen;
     struct service_listen metrics;      /* of health and metrics: none or one */
+    struct proxy_networks proxy_from;   /* balancers, which tell their clients' addresses */
     bool metrics_open;                  /* they may be beyond the loopback */
     int session_fd;                     /* serve this connected socket alone; -1: listen */
     char device[SERVICE_DEVICE_BYTES];  /* as renderer_options.device */

@@ -210,7 +210,8 @@ struct session *session_create(struct session_host *host, int fd,
     session->admitted = client->kind != CLIENT_TLS;
     if (session->admitted)
         session_sit_down(session, &seat);
-    host->n_strangers += !session->admitted;
+    if (!session->admitted)
+        session_be_stranger(session);
     session->output_class = CLASS_STILL;
     session->start_us = clock_now_us();
     host->n_sessions++;
@@ -239,7 +240,7 @@ void session_destroy(struct session *session)
     upload_destroy(session->upload);
     conn_finish(&session->conn);
     session_release_input(session);
-    host->n_strangers -= !session->admitted;
+    session_end_stranger(session, STRANGER_GONE);
     session_leave_seat(&session->seat);
     host->n_sessions--;
     free(session);

@@ -1,3 +1,4 @@
+#include "server/base/clock.h"
 #include "server/base/log.h"
 #include "server/session/session.h"
 #include "server/session/session_internal.h"
@@ -9,6 +10,41 @@ void session_turn_away(struct session *session, const char *why)
     session->end = END_CREDENTIALS;
     session->refused = true;
     conn_close(&session->conn);
+    session_end_stranger(session, STRANGER_GONE);
+}
+
+static bool is_silent(const struct stranger *stranger)
+{
+    const struct session *session = stranger->owner;
+    return session->conn.channel && !tls_has_begun(session->conn.channel);
+}
+
+void session_be_stranger(struct session *session)
+{
+    struct session_host *host = session->host;
+    session->is_stranger = true;
+    session->stranger = (struct stranger){.peer = session->client.from,
+                                          .is_exempt = session->client.is_balancer,
+                                          .is_silent = is_silent,
+                                          .owner = session};
+    struct stranger *leaves = strangers_enter(&host->strangers, &host->limits.strangers,
+                                              &session->stranger, session->start_us);
+    if (leaves)
+        session_turn_away(leaves->owner, "too many connections that do not say who they are: the "
+                                         "oldest leaves");
+}
+
+void session_end_stranger(struct session *session, enum stranger_end end)
+{
+    struct session_host *host = session->host;
+    if (!session->is_stranger)
+        return;
+    session->is_stranger = false;
+    if (strangers_leave(&host->strangers, &host->limits.strangers, &session->stranger, end,
+                        clock_now_us()))
+        log_event(LOG_WARN,
+                  "an address is turned away for a while: no client of it has credentials",
+                  log_text("address", session->stranger.peer.name));
 }
 
 bool session_take_seat(struct session_host *host, const struct identity *identity,
@@ -57,11 +93,12 @@ bool session_admit(struct session *session, uint32_t seq, const sheen_Hello *hel
     struct identity *identity = &session->client.identity;
     if (!access_admit_tls(session->host->access, &session->conn,
                           hello->has_token ? hello->token : NULL, identity, &error)) {
+        session_end_stranger(session, hello->has_token ? STRANGER_WRONG : STRANGER_GONE);
         session_turn_away(session, error.text);
         return false;
     }
     session->admitted = true;
-    session->host->n_strangers--;
+    session_end_stranger(session, STRANGER_ADMITTED);
     log_event(LOG_INFO, "client admitted", log_number("session", session->id),
               log_text("identity", identity->name), log_text("issuer", identity->issuer));
     struct session_seat seat;

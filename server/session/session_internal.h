@@ -61,6 +61,10 @@ void session_reply_stats(struct session *session, uint32_t seq);
 
 /* --- session_access.c */
 
+/* Not admitted yet: another stranger may have to leave for this one. */
+void session_be_stranger(struct session *session);
+/* Does nothing for one who is none any more. */
+void session_end_stranger(struct session *session, enum stranger_end end);
 /* The admitted client's seat, from where it may ask. */
 void session_sit_down(struct session *session, const struct session_seat *seat);
 /* A stranger learns nothing, not even what is wrong; the log does. Closes. */

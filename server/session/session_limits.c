@@ -97,8 +97,12 @@ static void check_input(struct session *session, uint64_t now)
     uint64_t idle_us = limits->idle_s * 1000000;
     if (session->refused)
         return;
-    if (!session->greeted && now - session->start_us > limits->handshake_s * 1000000)
-        refuse_late(session, END_HELLO, "no HELLO within %llu s", limits->handshake_s);
+    uint64_t patience_us = limits->handshake_s * 1000000;
+    if (session->is_stranger)
+        patience_us =
+            strangers_patience_us(&session->host->strangers, &limits->strangers, patience_us);
+    if (!session->greeted && now - session->start_us > patience_us)
+        refuse_late(session, END_HELLO, "no HELLO within %llu s", patience_us / 1000000);
     else if (!conn->held && (conn->in_used > 0 || conn->skipped > 0) &&
              now - conn->message_since_us > limits->message_s * 1000000)
         refuse_late(session, END_STALLED, "a message has not come to its end within %llu s",

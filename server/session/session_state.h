@@ -11,6 +11,7 @@
 #include "server/net/access.h"
 #include "server/net/conn.h"
 #include "server/net/peer.h"
+#include "server/net/strangers.h"
 #include "server/session/reply.h"
 #include "server/session/stats.h"
 #include "server/threads/workers.h"
@@ -39,10 +40,11 @@ struct session_limits {
 
     /* Times, in seconds. */
     uint64_t handshake_s; /* from accepting to HELLO */
-    uint64_t message_s;   /* from a message's first byte to its last */
-    uint64_t stall_s;     /* without a byte sent or of an upload received */
-    uint64_t idle_s;      /* without a request; 0: for ever */
-    uint64_t drain_s;     /* to finish and send what is asked when the daemon ends */
+    struct strangers_limits strangers;
+    uint64_t message_s; /* from a message's first byte to its last */
+    uint64_t stall_s;   /* without a byte sent or of an upload received */
+    uint64_t idle_s;    /* without a request; 0: for ever */
+    uint64_t drain_s;   /* to finish and send what is asked when the daemon ends */
 };
 
 /* What all sessions share; outlives them. */
@@ -63,9 +65,9 @@ struct session_host {
 
     struct stats stats;
     uint32_t n_sessions;
-    uint32_t n_strangers;     /* of them, not yet admitted */
-    uint64_t last_session_id; /* sessions are numbered in the log */
-    bool draining;            /* no new request is taken, and answers must be read soon */
+    struct strangers strangers; /* of them, not yet admitted */
+    uint64_t last_session_id;   /* sessions are numbered in the log */
+    bool draining;              /* no new request is taken, and answers must be read soon */
     uint64_t drain_start_us;
 };
 
@@ -73,6 +75,8 @@ struct session_host {
 struct session_client {
     enum { CLIENT_PRIVATE, CLIENT_UNIX, CLIENT_TCP, CLIENT_TLS } kind;
     char peer[PEER_TEXT_BYTES]; /* for the log */
+    struct peer from;           /* CLIENT_TLS */
+    bool is_balancer;           /* what has come is the balancer's own, not a client's */
     struct identity identity;   /* CLIENT_TLS: not before HELLO */
 };
 
@@ -93,9 +97,11 @@ struct session {
     enum stats_end end; /* why it ends, once the daemon has decided that it does */
     struct session_client client;
     struct session_seat seat; /* zeroed until the client is admitted */
-    bool admitted;            /* the client is who it says; till then it is told nothing */
-    bool greeted;             /* HELLO has been answered */
-    uint32_t minor;           /* version spoken with the client */
+    struct stranger stranger; /* while `is_stranger` */
+    bool is_stranger;
+    bool admitted;  /* the client is who it says; till then it is told nothing */
+    bool greeted;   /* HELLO has been answered */
+    uint32_t minor; /* version spoken with the client */
     uint32_t credits;
     enum request_class output_class; /* of the latest frame: whose output limits hold */
     uint64_t over_soft_since_us;     /* 0: no more is unsent than the soft limit allows */

@@ -1,4 +1,5 @@
 """Who may come in: nobody without credentials, and he learns nothing."""
+import contextlib
 import hashlib
 import os
 import re
@@ -8,6 +9,7 @@ import signal
 import socket
 import ssl
 import stat
+import struct
 import subprocess
 import tempfile
 import threading
@@ -214,20 +216,86 @@ class Tls(Case):
 
             self.assert_turned_away("no HELLO", act)
 
+    def crowd(self, address, n, source):
+        """So many silent connections from a loopback address of their own."""
+        host, port = address[4:].rsplit(":", 1)
+        made = [socket.create_connection((host, int(port)), timeout=10, source_address=(source, 0))
+                for _ in range(n)]
+        for one in made:
+            self.addCleanup(one.close)
+        return made
+
+    def daemon_of(self, *arguments):
+        daemon = Daemon("--listen", "tls:127.0.0.1:0", "--tls-cert", self.server[0], "--tls-key",
+                        self.server[1], "--client-ca", self.ours.cert, "--tokens", self.tokens,
+                        *arguments)
+        return daemon, tls_address(daemon)
+
     def test_many_strangers(self):
-        """They take no room from those who may come in, and not for long."""
-        crowd = [self.raw() for _ in range(64)]
+        """From wherever they come, and come again, everybody with credentials is served at once."""
+        daemon, address = self.daemon_of()
+        tls = context(self.ours, self.anna)
+        for i in range(12):
+            crowd = [self.crowd(address, 20, f"127.0.{i + 1}.{k + 2}") for k in range(5)]
+            with Client(address, tls=tls) as client:
+                client.stats()
+            self.assertEqual(crowd[0][0].recv(1), b"")  # the oldest of an address that has most
+        daemon.wait_for("too many connections that do not say who they are: the oldest leaves")
+        with Client(daemon.unix) as client:
+            client.stats()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_strangers_of_one_address(self):
+        """They take each other's places, the silent ones first, and no places of others."""
+        daemon, address = self.daemon_of("--max-peer-strangers", "3", "--max-penalty", "0",
+                                         "--handshake-timeout", "60")
+        begun = Client(address, tls=context(self.ours), greet=False)
+        silent = self.crowd(address, 2, "127.0.0.1")
         time.sleep(0.2)
-        start = time.monotonic()
-        self.assertEqual(self.raw().recv(1), b"")
-        self.assertLess(time.monotonic() - start, 2)
-        self.daemon.wait_for("too many connections that do not say who they are")
-        with Client(self.daemon.unix) as client:
-            client.stats()
-        for one in crowd:
+        other = self.crowd(address, 1, "127.0.0.9")
+        more = self.crowd(address, 2, "127.0.0.1")
+        for one in silent:
             self.assertEqual(one.recv(1), b"")
-        with self.client(token=self.token) as client:
+        for one in (*other, *more):
+            one.settimeout(0.2)
+            with self.assertRaises(TimeoutError):
+                one.recv(1)
+        begun.send(wire.hello(token=self.token))
+        begun.expect(wire.HELLO_OK, 1)
+        begun.socket.close()
+        self.assertEqual(daemon.stop(), 0)
+
+    def test_penalty(self):
+        """An address that comes without credentials again and again is turned away at once, until its
+        penalty is over; one credential that is good makes up for a few visits without."""
+        daemon, address = self.daemon_of("--max-penalty", "16")
+        tls, port = context(self.ours, self.anna), int(address.rsplit(":", 1)[1])
+
+        def visit(source):
+            with socket.create_connection(("127.0.0.1", port), timeout=10,
+                                          source_address=(source, 0)) as one:
+                one.sendall(b"no TLS at all\n" * 3)
+                with contextlib.suppress(OSError):
+                    while one.recv(100):
+                        pass
+
+        for _ in range(3):
+            for _ in range(10):
+                visit("127.0.0.1")
+            with Client(address, tls=tls) as client:
+                client.stats()
+        for _ in range(20):
+            visit("127.0.0.7")
+        daemon.wait_for('msg="an address is turned away for a while: no client of it has credentials" '
+                        "address=127.0.0.7")
+        self.assertEqual(daemon.errors().count("msg=\"an address is turned away"), 1)
+        before = daemon.errors().count('msg="session opened"')
+        for _ in range(5):
+            visit("127.0.0.7")
+        self.assertEqual(daemon.errors().count('msg="session opened"'), before)  # not even begun
+        with Client(address, tls=tls) as client:  # others' address is no matter
             client.stats()
+        self.assertEqual(daemon.stop(), 0)
 
     def test_a_port_scan(self):
         def act():
@@ -281,6 +349,112 @@ class Tls(Case):
             raise EOFError
 
         self.assert_turned_away("TLS: ", act)
+
+
+def proxy_header(source, command=0x21, family=0x11, extra=b""):
+    """PROXY protocol, version 2: TCP over IPv4."""
+    body = socket.inet_aton(source) + socket.inet_aton("127.0.0.1") + struct.pack(">HH", 4711, 7410)
+    body = (body if family == 0x11 else b"") + extra
+    return (b"\r\n\r\n\0\r\nQUIT\n" + bytes([command, family]) + struct.pack(">H", len(body)) + body)
+
+
+class Balancer(Case):
+    """Connections that a balancer hands on, who alone may say whose they are."""
+
+    def setUp(self):
+        ca = Authority(self.path(self.id()))
+        cert, key = ca.issue("server")
+        self.tls = context(ca, ca.issue("anna"))
+        self.daemon = Daemon("--listen", "tls:127.0.0.1:0", "--tls-cert", cert, "--tls-key", key,
+                             "--client-ca", ca.cert, "--handshake-timeout", "1",
+                             "--proxy-from", "127.0.0.2", "--proxy-from", "127.0.1.0/24")
+        self.address = tls_address(self.daemon)
+
+    def tearDown(self):
+        self.assertEqual(self.daemon.stop(), 0)
+
+    def connect(self, address, source, header):
+        host, port = address[4:].rsplit(":", 1)
+        one = socket.create_connection((host, int(port)), timeout=10, source_address=(source, 0))
+        self.addCleanup(one.close)
+        with contextlib.suppress(ConnectionResetError, BrokenPipeError):  # closed before its end
+            for at in range(0, len(header), 9):  # as it comes, in pieces
+                one.sendall(header[at:at + 9])
+                time.sleep(0.01)
+        return one
+
+    def client(self, one, tls=True):
+        """A client of wire.py over a connection that is there already."""
+        client = Client.__new__(Client)
+        client.socket, client.seq = one, 1
+        if tls:
+            client.socket = self.tls.wrap_socket(one, server_hostname="127.0.0.1")
+        client.send(wire.hello(minor=1))
+        client.expect(wire.HELLO_OK, 1)
+        return client
+
+    def assert_closed(self, one, words):
+        with contextlib.suppress(ConnectionResetError):
+            while one.recv(1000):
+                pass
+        self.daemon.wait_for(words)
+
+    def test_the_address_is_the_clients(self):
+        for source, header, peer in (
+                ("127.0.0.2", proxy_header("192.0.2.7"), "192.0.2.7:4711"),
+                ("127.0.1.200", proxy_header("192.0.2.8", extra=b"\x04\0\x01?"), "192.0.2.8:4711"),
+                ("127.0.0.2", proxy_header("192.0.2.9", command=0x20), "127.0.0.2:")):
+            with self.subTest(header=header):
+                self.client(self.connect(self.address, source, header)).stats()
+                self.daemon.wait_for(f"peer={peer}")
+        self.client(self.connect(self.address, "127.0.0.3", b"")).stats()  # no balancer
+
+    def test_plain_tcp_by_address(self):
+        """Of clients behind one that ends TLS itself, each address is an owner."""
+        owners = [self.client(self.connect(self.daemon.tcp, "127.0.0.2", proxy_header(source)), False)
+                  for source in ("192.0.2.7", "192.0.2.7", "192.0.2.8")]
+        model = owners[0].upload(CUBE, "cube.obj")
+        owners[1].render(model)
+        with self.assertRaises(wire.Refused) as caught:
+            owners[2].render(model)
+        self.assertEqual(caught.exception.code, wire.ERROR_UNKNOWN_MODEL)
+        self.daemon.wait_for("identity=tcp:192.0.2.7")
+
+    def test_from_anybody_else_a_header_is_refused(self):
+        header = proxy_header("192.0.2.7")
+        one = self.connect(self.address, "127.0.0.3", header)
+        self.assert_closed(one, "TLS: ")
+        client = Client.__new__(Client)
+        client.socket = self.connect(self.daemon.tcp, "127.0.0.3", header[:9])
+        with self.assertRaises(wire.Refused) as caught:
+            client.receive()
+        self.assertEqual(caught.exception.code, wire.ERROR_PROTOCOL)
+        self.assertNotIn("192.0.2.7", self.daemon.errors())
+
+    def test_a_balancer_must_send_one(self):
+        for header, words in ((b"SHEN" * 4, "no PROXY header of version 2"),
+                              (proxy_header("1.2.3.4", command=0x11), "no PROXY header of version 2"),
+                              (proxy_header("1.2.3.4")[:14] + b"\0\x04abcd", "too short"),
+                              (b"", "no PROXY header came in time"),
+                              (proxy_header("1.2.3.4")[:20], "no PROXY header came in time")):
+            for address in (self.address, self.daemon.tcp):
+                with self.subTest(header=header, address=address):
+                    one = self.connect(address, "127.0.0.2", header)
+                    self.assert_closed(one, words)
+        self.client(self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.7"))).stats()
+
+    def test_penalties_are_of_clients(self):
+        """A balancer is not turned away for what its clients do, they are."""
+        for _ in range(20):
+            one = self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.66") + b"no TLS" * 9)
+            self.assert_closed(one, "")
+        self.daemon.wait_for("no client of it has credentials\" address=192.0.2.66")
+        self.client(self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.7"))).stats()
+        one = self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.66"))
+        self.assert_closed(one, "")
+        for _ in range(20):  # its own probes
+            self.connect(self.address, "127.0.0.2", proxy_header("0.0.0.0", command=0x20)).close()
+        self.client(self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.7"))).stats()
 
 
 class Lasting(Case):
