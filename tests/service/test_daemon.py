@@ -390,7 +390,9 @@ class Timeouts(unittest.TestCase):
                 time.sleep(0.3)
             with self.assertRaises(wire.Refused) as caught:
                 idle.receive()
-            self.assertIn("1 s", caught.exception.text)
+            self.assertIn("no request for 1 s", caught.exception.text)
+            self.assertEqual((caught.exception.code, caught.exception.seq),
+                             (wire.ERROR_SHUTTING_DOWN, 0))
             self.assertTrue(idle.at_end())
             busy.render(model)
         self.assertEqual(daemon.stop(), 0)

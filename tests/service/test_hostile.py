@@ -4,6 +4,7 @@ After every test the daemon must serve others (DaemonCase.tearDown)."""
 import hashlib
 import os
 import random
+import socket
 import struct
 import time
 
@@ -222,6 +223,30 @@ class Uploads(DaemonCase):
                 client.send(message(wire.UPLOAD_CHUNK, seq, data))
                 self.assert_refused(client, wire.ERROR_PROTOCOL, "999", seq)
                 self.assertTrue(client.at_end())
+
+    def test_two_states_and_cancel_between(self):
+        """An upload has an answer to its beginning and one to its last byte; CANCEL does nothing to it."""
+        with Client(self.daemon.unix, minor=1) as client:
+            data = CUBE + b"# " + os.urandom(8).hex().encode()
+            seq = self.begin(client, data)
+            self.assertEqual(client.expect(wire.UPLOAD_STATE, seq), {1: [0], 2: [0]})
+            client.send(message(wire.UPLOAD_CHUNK, seq, data[:50]) + message(wire.CANCEL, seq) +
+                        message(wire.UPLOAD_CHUNK, seq, data[50:]))
+            self.assertEqual(client.expect(wire.UPLOAD_STATE, seq), {1: [1], 2: [len(data)]})
+            seq = self.begin(client, data)
+            self.assertEqual(client.expect(wire.UPLOAD_STATE, seq), {1: [1], 2: [len(data)]})
+            client.stats()  # and no other
+
+    def test_requests_before_hello_is_answered(self):
+        """Half-closed behind them, too."""
+        with Client(self.daemon.unix, greet=False) as client:
+            client.send(wire.hello(minor=1) + message(wire.STATS_QUERY, 2) +
+                        message(wire.STATS_QUERY, 3))
+            client.socket.shutdown(socket.SHUT_WR)
+            client.expect(wire.HELLO_OK, 1)
+            client.expect(wire.STATS, 2)
+            client.expect(wire.STATS, 3)
+            self.assertTrue(client.at_end())
 
     def test_chunk_of_no_upload(self):
         with Client(self.daemon.unix) as client:
