@@ -31,6 +31,15 @@ struct reply *reply_expect(struct reply_list *list, uint32_t seq, enum request_c
     return reply;
 }
 
+bool reply_list_owes(const struct reply_list *list, uint32_t seq)
+{
+    const struct reply *reply;
+    TAILQ_FOREACH (reply, &list->replies, link)
+        if (reply->seq == seq)
+            return true;
+    return false;
+}
+
 uint32_t reply_seq(const struct reply *reply)
 {
     return reply->seq;

@@ -27,6 +27,8 @@ void reply_list_init(struct reply_list *list, struct block_cache *block_cache);
 /* A request has come; `request_class` is that of its frame, CLASS_STILL for what has none. NULL
  * when memory is short: the connection cannot go on then. */
 struct reply *reply_expect(struct reply_list *list, uint32_t seq, enum request_class request_class);
+/* Is a request of this number unanswered? */
+bool reply_list_owes(const struct reply_list *list, uint32_t seq);
 /* The number of the request. */
 uint32_t reply_seq(const struct reply *reply);
 /* Gives up all that is owed. */

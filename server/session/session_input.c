@@ -16,6 +16,9 @@ const char *session_find_disorder(const struct session *session,
         return session->minor > 0 ? NULL : "a message of minor version 1";
     if (header->type == MESSAGE_UPLOAD_CHUNK && header->seq != session->upload_seq)
         return "no upload of its number is under way";
+    if (session->minor > 0 && header->type != MESSAGE_UPLOAD_CHUNK &&
+        reply_list_owes(&session->replies, header->seq))
+        return "its number is that of a request which is not answered yet";
     if (session->upload && header->type != MESSAGE_UPLOAD_CHUNK)
         return "an upload is under way and not complete";
     return NULL;

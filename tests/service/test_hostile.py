@@ -248,6 +248,17 @@ class Uploads(DaemonCase):
             client.expect(wire.STATS, 3)
             self.assertTrue(client.at_end())
 
+    def test_a_number_that_is_not_answered_yet(self):
+        with Client(self.daemon.unix, minor=1) as client:
+            model = client.upload(CUBE, "cube.obj")
+            for _ in range(2):  # answered in between
+                client.send(wire.render(9, model))
+                client.read_frame(9)
+            client.send(wire.render(9, model, 700, 700) + wire.render(9, model))
+            client.read_frame(9)
+            self.assert_refused(client, wire.ERROR_PROTOCOL, "not answered yet", 9)
+            self.assertTrue(client.at_end())
+
     def test_chunk_of_no_upload(self):
         with Client(self.daemon.unix) as client:
             client.send(message(wire.UPLOAD_CHUNK, 5, b"abc"))
