@@ -466,10 +466,10 @@ struct sheen_request {
     bool has_miss, has_empty, has_base; /* false: the daemon's colours */
     float miss[4];                      /* where no light is met, RGBA in [0, 1] */
     float empty[4];                     /* where no surface is hit */
-    float base[4];                      /* of the surface, where patterns are transparent */
-    bool unfiltered;                    /* one sample a pixel, for comparison */
-    struct sheen_show show;             /* in the colour plane; not with SHEEN_SURFACE_WIREFRAME */
-    uint32_t planes;                    /* enum sheen_plane bits */
+    float base[4];          /* of the surface, seen where a pattern's opacity is below 1 */
+    bool unfiltered;        /* one sample a pixel, for comparison */
+    struct sheen_show show; /* in the colour plane; not with SHEEN_SURFACE_WIREFRAME */
+    uint32_t planes;        /* enum sheen_plane bits */
     enum sheen_format format;
     uint32_t jpeg_quality; /* SHEEN_FORMAT_JPEG: 1 to 100; 0: the daemon's, 95 */
     enum sheen_jpeg_subsampling jpeg_subsampling; /* of SHEEN_FORMAT_JPEG */

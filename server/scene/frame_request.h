@@ -26,7 +26,7 @@ struct frame_request {
     uint32_t n_lights;               /* 1 to MAX_LIGHTS */
     float miss[4];                   /* colour where no light is met */
     float empty[4];                  /* colour where no surface is hit */
-    float base[4];                   /* of the surface, where patterns are transparent */
+    float base[4];                   /* of the surface, seen where a pattern's opacity is below 1 */
     bool unfiltered;                 /* one sample a pixel, for comparison */
     bool count_light;                /* count the pixels where lights are met: frame.met_px */
     uint32_t planes;                 /* enum frame_plane bits to read back */

@@ -516,7 +516,9 @@ const struct option_row OPTIONS_SCENE[] = {
      "for an eye at infinity that looks that way; holds the lines while the\n"
      "camera moves (default: camera)",
      apply_line_eye, "camera"},
-    {"base", 0, "COLOUR", "the surface, shaded, where patterns are transparent (default: #b3b8bf)",
+    {"base", 0, "COLOUR",
+     "the surface, shaded, seen through patterns whose opacity is below 1 (clear\n"
+     "colours of a pattern leave the picture clear) (default: #b3b8bf)",
      apply_base, NULL},
     {"filter", 0, "KIND",
      "exact: lines averaged over each pixel's footprint, or off: one sample a\n"
