@@ -39,7 +39,8 @@ static void print_findings(struct json *json, const struct sheen_model_info *inf
     json_array_end(json);
 }
 
-static void print_json(struct json *json, const struct sheen_model_info *info)
+static void print_json(struct json *json, const struct sheen_model_info *info,
+                       const struct sheen_server *server)
 {
     const struct {
         const char *key;
@@ -85,6 +86,9 @@ static void print_json(struct json *json, const struct sheen_model_info *info)
     json_array_end(json);
     json_vec3(json, "box_min", info->box_min);
     json_vec3(json, "box_max", info->box_max);
+    json_string(json, "device", server->device);
+    json_string(json, "driver", server->driver);
+    json_bool(json, "software", server->software);
     json_lines(json, "warnings", info->warnings);
     print_findings(json, info);
     json_object_end(json);
@@ -104,7 +108,7 @@ static void print_counts(const char *title, const struct count *counts)
     putchar('\n');
 }
 
-static void print_table(const struct sheen_model_info *info)
+static void print_table(const struct sheen_model_info *info, const struct sheen_server *server)
 {
     printf("%-16s %s\n%-16s ", "name", info->name, "sha256");
     for (size_t i = 0; i < SHEEN_ID_BYTES; i++)
@@ -148,36 +152,40 @@ static void print_table(const struct sheen_model_info *info)
                                         {info->split_nodes, "split, ", "split, "},
                                         {info->hole_nodes, "without surface", "without surface"},
                                         {0}});
-    printf("%-16s %" PRIu64 " bytes on the GPU: %" PRIu64 " a regular patch, %" PRIu64
+    printf("%-16s %" PRIu64 " bytes on the device: %" PRIu64 " a regular patch, %" PRIu64
            " a corner patch at most\n",
            "tables", info->table_bytes, info->regular_bytes, info->corner_bytes);
     printf("%-16s %.1f ms\n", "built in", (double)info->tables_us / 1e3);
+    printf("%-16s %s (%s)\n", "device", server->device, server->driver);
 }
 
-static enum sheen_status ask(struct client *client, struct sheen_model_info *info)
+static enum sheen_status ask(struct client *client, struct sheen_model_info *info,
+                             struct sheen_server *server)
 {
-    return sheen_query_model(client->session, client->model_id, &client->report, info,
-                             &client->error);
+    enum sheen_status status =
+        sheen_query_model(client->session, client->model_id, &client->report, info, &client->error);
+    return status ? status : sheen_get_server(client->session, server, &client->error);
 }
 
 static int run(const struct options *options)
 {
     struct client client;
     struct sheen_model_info info = SHEEN_MODEL_INFO_DEFAULTS;
+    struct sheen_server server = SHEEN_SERVER_DEFAULTS;
     enum sheen_status status = client_init(&client, options);
     if (!status)
-        status = ask(&client, &info);
+        status = ask(&client, &info, &server);
     while (status && client_resume(&client, options, &status))
-        status = ask(&client, &info);
+        status = ask(&client, &info, &server);
     progress_clear(&client.progress);
     if (!status && !options->quiet)
         client_print_warnings(&client, info.warnings);
     if (!status && options->json) {
         struct json json = {.out = stdout};
-        print_json(&json, &info);
+        print_json(&json, &info, &server);
         status = client_finish_json(&client, &json);
     } else if (!status) {
-        print_table(&info);
+        print_table(&info, &server);
     }
     return client_finish(&client, status);
 }
@@ -188,7 +196,7 @@ static const struct option_row *const TABLES[] = {OPTIONS_MODEL, OPTIONS_COMMON,
 const struct command COMMAND_INFO = {
     .name = "info",
     .arguments = "MODEL [option]...",
-    .summary = "Says what a model is made of, and what its tables cost on the GPU.",
+    .summary = "Says what a model is made of, and what its tables cost on which device.",
     .tables = TABLES,
     .examples = "  sheen info hood.obj\n"
                 "  sheen info hood.obj --json\n"

@@ -80,6 +80,12 @@ class Chosen(unittest.TestCase):
                          env=faults)
             self.assertEqual(json.loads(done.stdout)["device"], ISAS["v3"], done.stderr)
 
+    def test_info_names_the_device(self):
+        done = sheen("info", BODY, "--device", "native", "--json")
+        self.assertEqual({key: json.loads(done.stdout)[key] for key in ("device", "software")},
+                         {"device": self.render()[0]["device"], "software": True})
+        self.assertRegex(sheen("info", BODY, "--device", "native").stdout, r"(?m)^device +native .+ \(sheen .+\)$")
+
     def test_wrong_values(self):
         for words, *arguments in (("native-threads", "--native-threads", "0"),
                                   ("native-threads", "--native-threads", "65"),
