@@ -4,7 +4,7 @@
 #include "server/render/native/frame/state.h"
 #include "server/render/native/frame/kept.h"
 #include "server/render/native/polygons/planes.h"
-#include "server/render/native/readback.h"
+#include "server/render/native/frame/readback.h"
 #include "server/render/native/stages.h"
 
 /* So many triangles are drawn a step, which takes about as long as a tile of the exact surface. */

@@ -1,6 +1,6 @@
 /* From a target's planes to those of a frame. Internal to the folder. */
-#ifndef SHEEN_RENDER_NATIVE_READBACK_H
-#define SHEEN_RENDER_NATIVE_READBACK_H
+#ifndef SHEEN_RENDER_NATIVE_FRAME_READBACK_H
+#define SHEEN_RENDER_NATIVE_FRAME_READBACK_H
 
 #include "server/render/native/stages.h"
 

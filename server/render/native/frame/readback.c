@@ -1,4 +1,4 @@
-#include "server/render/native/readback.h"
+#include "server/render/native/frame/readback.h"
 
 #include <math.h>
 #include <string.h>
