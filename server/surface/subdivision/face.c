@@ -72,9 +72,18 @@ static void build_regular(struct face_builder *b, uint32_t node, const struct qu
     build_patch(b, node, grid);
 }
 
-/* How the surface about a corner's own net looks, from its vertex's limit position. */
+/* Whether the surface about a settled ring bends as its net does: no crease, boundary or sharp vertex shapes it,
+ * of this sheet or of others. */
+static bool bends_as_net(const struct ring *ring)
+{
+    return ring->closed && !ring->creases.edge && ring->sharpness <= 0 &&
+           !ring_has_outside_crease(ring);
+}
+
+/* How the surface about a corner's own net looks, from its vertex's limit position. `first` is the bound of its first
+ * level, whose parameters run twice as fast, or NULL where the net tells how the surface bends. */
 static void write_corner_whole(struct face_builder *b, uint32_t node, const struct quad *quad,
-                               struct vec origin)
+                               struct vec origin, const struct limit_bound *first)
 {
     struct vec grid[16];
     const struct ring *ring = &quad->corner[0];
@@ -87,6 +96,12 @@ static void write_corner_whole(struct face_builder *b, uint32_t node, const stru
         reach = fmax(reach, 1.000001 * vec_length(vec_sub(ring->edge[k], origin)));
     for (uint32_t k = 0; k < ring->n_faces; k++)
         reach = fmax(reach, 1.000001 * vec_length(vec_sub(ring->face[k], origin)));
+    if (first)
+        bound = (struct limit_bound){.u = 4 * first->u,
+                                     .mixed = 4 * first->mixed,
+                                     .v = 4 * first->v,
+                                     .border_u = 4 * first->border_u,
+                                     .border_v = 4 * first->border_v};
     bound.radius = (float)(reach * 1.000001);
     b->tables->whole[node] = bound;
     struct limit_head *head = &b->tables->heads[node];
@@ -115,10 +130,16 @@ static void build_corner(struct face_builder *b, uint32_t node, const struct qua
         corner_begin(nets, &turned, b->plan->darts, &b->arena);
         out->levels = (uint8_t)(nets->vertex->has_normal ? levels : levels | LIMIT_NO_NORMAL);
         corner_write_head(nets, b->tables->heads[node].frame, out->origin);
-        write_corner_whole(b, node, &turned, nets->vertex->limit);
-        if (b->tables->texels)
+        struct limit_bound first;
+        bool by_net = bends_as_net(&turned.corner[0]);
+        if (b->tables->texels) {
             corner_write_levels(nets, levels, b->tables->texels + b->next.texel,
                                 b->tables->bounds + b->next.bound);
+            first = b->tables->bounds[b->next.bound];
+        } else if (!by_net) {
+            first = corner_level_bound(corner_next_level(nets), 1);
+        }
+        write_corner_whole(b, node, &turned, nets->vertex->limit, by_net ? NULL : &first);
     }
     b->next.texel += LIMIT_CORNER_TEXELS(levels);
     b->next.bound += levels;
