@@ -16,7 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "server/surface/subdivision/arena.h"
+#include "server/base/arena.h"
 #include "server/surface/vec.h"
 
 /* Crease sharpness of the edges around a vertex (crease.h). */

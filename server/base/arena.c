@@ -1,4 +1,4 @@
-#include "server/surface/subdivision/arena.h"
+#include "server/base/arena.h"
 
 #include <assert.h>
 #include <stdlib.h>

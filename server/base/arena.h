@@ -1,7 +1,7 @@
-/* Memory for what lives only while one face is built: taken piece by piece, given back all at once or
+/* Memory for what lives for a short time, as while one face is built: taken piece by piece, given back all at once or
  * down to a mark (`used`). One thread. */
-#ifndef SHEEN_SURFACE_SUBDIVISION_ARENA_H
-#define SHEEN_SURFACE_SUBDIVISION_ARENA_H
+#ifndef SHEEN_BASE_ARENA_H
+#define SHEEN_BASE_ARENA_H
 
 #include <stdbool.h>
 #include <stddef.h>
