@@ -302,7 +302,7 @@ SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame
                    $(BENCH_MAIN) \
                    $(call obj,tests/bench/no_peers.cpp tests/bench/no_gltf.c) \
                    $(call obj,$(patsubst %,tests/oracle/%.cpp,scene cage_file folder)) \
-                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/base/fault.c server/base/block_cache.c server/base/clock.c server/ops/device_choice.c protocol/number.c) $(RENDER_OBJ) $(CORE_OBJ) \
+                   $(call obj,$(filter-out %.cpp,$(CAGE_READ_SRC)) server/base/arena.c server/base/fault.c server/base/block_cache.c server/base/clock.c server/ops/device_choice.c protocol/number.c) $(RENDER_OBJ) $(CORE_OBJ) \
                    $(KEEP_MODULES)
 $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 	$(call say,LD $@)
