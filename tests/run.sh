@@ -115,7 +115,7 @@ bench() {
 service_by() { # option, how
     for module in $(grep "$1" '^ALONE' tests/service/test_*.py); do
         name=$(basename "$module" .py)
-        "$2" "service_${name#test_}" /usr/bin/python3 tests/service/run.py "$build" "$name"
+        "$2" "service_${name#test_}" env -u SHEEN_TEST_DEVICE /usr/bin/python3 tests/service/run.py "$build" "$name"
     done
 }
 

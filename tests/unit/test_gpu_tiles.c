@@ -102,8 +102,9 @@ static void assert_same_picture(const struct frame *a, const struct frame *b, bo
             fail_msg("pixel %zu is %u and %u", k / 4, x[k], y[k]);
     assert_true(largest_difference(a, b, 1) < (exact ? 5e-6 : 2e-5) * size);
     assert_true(largest_difference(a, b, 2) < (exact ? 5e-5 : 3e-4));
+    /* Where a piece ends in a pixel is packed: rounding may move it by a step. */
     if (a->plane[7])
-        assert_true(largest_difference(a, b, 7) < 1e-5);
+        assert_true(largest_difference(a, b, 7) < 1e-4);
 }
 
 /* However a frame is cut, every pixel shows the same but for rounding: at silhouettes, creases and
