@@ -177,7 +177,7 @@ oracle() {
 oracle_on_mesa() {
     beside mesa_frames on_mesa served "$build/tests/test_frames" "$build/sheen" tests/models/body.obj \
         tests/models/creases.obj
-    beside mesa_areas on_mesa served "$build/tests/test_areas" "$build/sheen" tests/models/body.obj
+    beside mesa_shares on_mesa "$build/tests/test_shares" tests/models/body.obj tests/models/creases.obj
     beside mesa_filter on_mesa served "$build/tests/test_filter" "$build/sheen" tests/models/ngons.obj
     beside mesa_lines on_mesa served "$build/tests/test_lines" "$build/sheen" tests/models/body.obj
 }

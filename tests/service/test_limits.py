@@ -49,7 +49,7 @@ class Table(unittest.TestCase):
         said = re.findall(r"^[ *] --([a-z-]+) (?:BYTES|PX|N|SECONDS)\b.*?"
                           r"\(default: (\w+); (\w+) (?:to (\w+)|or more)\)",
                           text[text.index("limits;"):], re.S | re.M)
-        self.assertEqual(len(said), 26, said)
+        self.assertEqual(len(said), 29, said)
         for name, _, low, high in said:
             for value, code in ((low, 0), (high or low, 0), (high and high + "0", 2)):
                 if value:
