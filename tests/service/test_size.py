@@ -37,7 +37,8 @@ class Counted(DaemonCase):
             tables = client.query(model)[TABLE_BYTES][0]
         self.assertGreater(tables, 10 << 20)
         self.assertGreater(taken, 2 * tables)
-        self.assertLess(taken, 2.3 * tables)
+        # 88 bytes a node of what it looks like as a whole, and the cage that its tables were made from.
+        self.assertLess(taken, 3 * tables)
 
 
 @unittest.skipUnless(os.path.exists(SHEEN), "no client in this build")
@@ -113,7 +114,7 @@ class TooLarge(DaemonCase):
         text = caught.exception.text
         self.assertNotIn("\n", text)
         self.assertIn("--memory-budget", text)
-        found = re.search(r"needs (\d+) bytes.* budget (?:is|of) (\d+)", text)
+        found = re.search(r"needs (?:at least )?(\d+) bytes.* budget (?:is|of) (\d+)", text)
         self.assertIsNotNone(found, text)
         self.assertGreater(int(found.group(1)), int(found.group(2)))
         self.assertEqual(int(found.group(2)), 6 << 20)
@@ -155,21 +156,22 @@ class Resident(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
         return taken, counted
 
-    def assert_counted(self, make, n):
+    def assert_counted(self, make, n, least=0.85):
         taken, counted = self.grown(make, n)
         self.assertLess(taken, 1.15 * counted + (2 << 20), (taken, counted))
         if not SANITIZED:
-            self.assertGreater(taken, 0.85 * counted - (2 << 20), (taken, counted))
+            self.assertGreater(taken, least * counted - (2 << 20), (taken, counted))
 
     def test_small_models(self):
         self.assert_counted(
             lambda client, i: client.query(client.upload(CUBE + b"# %d\n" % i, "cube.obj")), 200)
 
     def test_tiny_models(self):
-        """Without surface: what they take is objects, not tables."""
+        """Without surface: what they take is objects, not tables. Room to make levels in is counted, about 60 KB a model,
+        which tables that hold all levels never take."""
         hole = grid(1) + b"t interpolateboundary 1/0/0 0\n"
         self.assert_counted(
-            lambda client, i: client.query(client.upload(hole + b"# %d\n" % i, "none.obj")), 1000)
+            lambda client, i: client.query(client.upload(hole + b"# %d\n" % i, "none.obj")), 1000, least=0.5)
 
     def test_large_models(self):
         self.assert_counted(
