@@ -69,7 +69,7 @@ void main()
         return;
     imageStore(coverage, p, vec4(is_hit));
     if (is_rounded || (at_edge && beside_rounded))
-        LIST_ADD(rounded, p, ROUNDED_PER_GROUP)
+        LIST_ADD(rounded, p + ivec2(0, at_edge ? AT_EDGE : 0), ROUNDED_PER_GROUP)
     else if (at_edge)
         LIST_ADD(edges, p, EDGES_PER_GROUP)
     else if (is_hit && turn_over_pixel(p, own) > MOST_TURN)

@@ -82,7 +82,7 @@ void main()
                             (n > 1 && disagrees(piece[1], vec2(AROUND[k]), hit));
     }
     if (needs_recheck)
-        LIST_ADD(rounded, p, ROUNDED_PER_GROUP)
+        LIST_ADD(rounded, p + ivec2(0, AT_EDGE), ROUNDED_PER_GROUP)
     else
         LIST_ADD(edges, p, EDGES_PER_GROUP)
 }

@@ -18,9 +18,10 @@ void main()
     int side = rounded_side(listed.n);
     uint rays = uint(side * side);
     bool is_ray = i < listed.n && ray < rays;
-    ivec2 p = list_place(listed.at[min(i, listed.n - 1u)]);
+    uint listed_pixel = listed.at[min(i, listed.n - 1u)];
+    ivec2 p = rounded_pixel(listed_pixel);
     RoundedHit hit = hits[is_ray ? i * rays + ray : 0u];
-    vec2 q = pixel_offset(p) + rounded_place(int(ray), side);
+    vec2 q = pixel_offset(p) + rounded_place(int(ray), side, rounded_at_edge(listed_pixel));
     seen_share[local] = is_ray && hit.normal_depth.w > 0.0 ? 1.0 / float(rays) : 0.0;
     barrier();
     uint first = local - ray;

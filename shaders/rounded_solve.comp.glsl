@@ -70,8 +70,9 @@ void main()
     uint i = group * ROUNDED_PER_GROUP + local / MAX_RAYS, part = local % MAX_RAYS;
     int side = rounded_side(listed.n);
     bool is_ray = i < listed.n && part < uint(side * side);
-    ivec2 p = list_place(listed.at[min(i, listed.n - 1u)]);
-    vec2 place = rounded_place(int(part), max(side, 1));
+    uint listed_pixel = listed.at[min(i, listed.n - 1u)];
+    ivec2 p = rounded_pixel(listed_pixel);
+    vec2 place = rounded_place(int(part), max(side, 1), rounded_at_edge(listed_pixel));
     Ray r = ray_through(pixel_offset(p) + place);
     Solution best;
     best.found = false;

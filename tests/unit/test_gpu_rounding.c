@@ -141,7 +141,7 @@ static void test_ridge(void **state)
     struct scene scene;
     scene_init(&scene, 8, 4, 4);
     for (double quad_px = 11.2; quad_px < 100; quad_px *= 1.25)
-        expect(&scene, quad_px, 5, quad_px < 16 ? 60 : 20);
+        expect(&scene, quad_px, 5, quad_px < 16 ? 60 : 15);
     scene_finish(&scene);
 }
 

@@ -100,6 +100,9 @@ static void append(const struct native_list *from, struct native_list *to, uint3
     to->n += from->n;
 }
 
+/* The y of a listed rounded pixel has 15 bits (AT_EDGE in shaders/rounded.glsl). */
+enum { MOST_LISTED_ROWS = 0x8000 };
+
 /* False where the picture's planes cannot serve another cut, or memory is short. */
 static bool append_rounded(const struct native_drawing *d, struct native_target *to)
 {
@@ -107,7 +110,8 @@ static bool append_rounded(const struct native_drawing *d, struct native_target 
     const struct native_list *from = &d->target->list[NATIVE_ROUNDED];
     struct native_list *all = &to->list[NATIVE_ROUNDED];
     size_t words = (size_t)NATIVE_MAX_RAYS * HIT_WORDS, n = all->n + (size_t)from->n;
-    if (n > ROUNDED_IN_ANY_CUT || !native_target_reserve_hits(to, n * NATIVE_MAX_RAYS, &error))
+    if (d->request->height_px > MOST_LISTED_ROWS || n > ROUNDED_IN_ANY_CUT ||
+        !native_target_reserve_hits(to, n * NATIVE_MAX_RAYS, &error))
         return false;
     if (from->n)
         memcpy(to->hits + all->n * words, d->target->hits, from->n * words * sizeof *to->hits);
