@@ -44,11 +44,12 @@ static bool may_need(void *owner, const struct limit_size *size, struct error *e
 {
     const struct build_clock *clock = owner;
     const struct renderer_device *device = render_thread_device(clock->order->render_thread);
-    const struct limit_tables tables = {.on_demand = renderer_takes_tables_on_demand(device),
-                                        .n_faces = size->n_faces,
-                                        .n_nodes = size->n_nodes,
-                                        .n_texels = size->n_texels,
-                                        .n_bounds = size->n_bounds};
+    struct limit_tables tables = {.on_demand = renderer_takes_tables_on_demand(device),
+                                  .n_faces = size->n_faces,
+                                  .n_nodes = size->n_nodes,
+                                  .n_texels = size->n_texels,
+                                  .n_bounds = size->n_bounds};
+    memcpy(tables.count, size->count, sizeof tables.count);
     return clock->order->may_need(clock->order->owner, build_model_bytes(clock->order, &tables),
                                   error);
 }

@@ -27,9 +27,7 @@ static bool init(struct limit_tables *tables, const struct limit_size *size, boo
                                     .n_faces = size->n_faces,
                                     .n_nodes = size->n_nodes,
                                     .n_texels = size->n_texels,
-                                    .n_bounds = size->n_bounds,
-                                    .source = size->source};
-    tables->source->keep(tables->source);
+                                    .n_bounds = size->n_bounds};
     tables->nodes = calloc(tables->n_nodes, sizeof *tables->nodes);
     tables->adjacency = malloc(tables->n_faces * sizeof *tables->adjacency);
     tables->heads = malloc(tables->n_nodes * sizeof *tables->heads);
@@ -41,6 +39,8 @@ static bool init(struct limit_tables *tables, const struct limit_size *size, boo
         tables->bounds = malloc((tables->n_bounds + 1) * sizeof *tables->bounds);
         has_levels = tables->texels && tables->bound_first && tables->bounds;
     } else {
+        tables->source = size->source;
+        tables->source->keep(tables->source);
         tables->level_bounds =
             record_cache_create(sizeof(struct limit_bound), level_bounds_of(tables));
         has_levels = tables->level_bounds;

@@ -59,17 +59,18 @@ struct limit_tables {
     struct limit_bound
         *whole; /* [n_nodes], about the node's origin: of the node's own net, one step
                                      coarser than a CORNER's first level; radius -1: SPLIT, HOLE */
-    struct limit_source *source; /* makes points */
 
     /* Of stored tables; NULL: on demand. bound_first[node] indexes bounds, which are one for each
-     * level of a CORNER or patch of a STRIP or REGULAR. Of a CORNER's levels each also holds all that
-     * lies nearer to the vertex. */
+     * level of a CORNER or patch of a STRIP. Of a CORNER's levels each also holds all that lies nearer to
+     * the vertex. */
     size_t n_texels;
     float (*texels)[4];    /* [n_texels], see texels.h */
     uint32_t *bound_first; /* [n_nodes] */
     struct limit_bound *bounds;
     size_t n_bounds;
-    /* Of tables on demand: bounds that have been asked for. */
+    /* Of tables on demand; NULL: stored. */
+    struct limit_source *source; /* makes points */
+    /* Bounds that have been asked for. */
     struct record_cache *level_bounds;
 
     double box_min[3], box_max[3]; /* as in limit_size */
@@ -90,8 +91,8 @@ bool limit_tables_init_on_demand(struct limit_tables *tables, const struct limit
                                  struct error *error);
 void limit_tables_finish(struct limit_tables *tables);
 
-/* How far level n (from 1) of a CORNER or patch n of a STRIP or REGULAR node reaches and bends, about
- * the node's origin. Any thread. */
+/* How far level n (from 1) of a CORNER or patch n of a STRIP reaches and bends, about the node's origin;
+ * of a REGULAR node `whole` says it. Any thread. */
 struct limit_bound limit_level_bound(const struct limit_tables *tables, uint32_t node, unsigned n);
 /* Between two frames, when nobody else asks for bounds: bounds that none of the last frames has
  * asked for may be dropped. */

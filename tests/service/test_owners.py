@@ -207,7 +207,7 @@ class Room(unittest.TestCase):
     """Who makes room in the store: there are two owners, whoever comes over TCP and the user."""
 
     def setUp(self):
-        self.daemon = Daemon("--memory-budget", "9M")
+        self.daemon = Daemon("--memory-budget", "8M")
         self.many, self.other = Client(self.daemon.unix), Client(self.daemon.tcp)
 
     def tearDown(self):

@@ -698,7 +698,7 @@ static void test_walk(void **state)
             int kind = tables.nodes[i].kind;
             if (kind != LIMIT_REGULAR && kind != LIMIT_CORNER && kind != LIMIT_STRIP)
                 continue;
-            double size = (double)tables.bounds[tables.bound_first[i]].radius;
+            double size = (double)tables.whole[i].radius;
             for (int k = 0; k < 8; k++) {
                 uint32_t node = i;
                 double x, y, along = k < 4 ? 0.3 : 0.8;
@@ -807,7 +807,7 @@ static void test_tip(void **state)
 /* An extraordinary vertex from where a pixel is 2^-24 of a face. */
 static struct camera zoomed_on(const struct limit_tables *tables, size_t corner, bool orthographic)
 {
-    double size = (double)tables->bounds[tables->bound_first[corner]].radius;
+    double size = (double)tables->whole[corner].radius;
     const struct limit_place place = {(uint32_t)corner, tables->nodes[corner].rotation, 0, 0};
     struct limit_point vertex;
     assert_true(limit_evaluate_at(tables, &place, &vertex));

@@ -51,7 +51,9 @@ static bool is_same(const struct limit_tables *stored, const struct limit_tables
     size_t bytes =
         sizeof *texels * (of->kind == LIMIT_CORNER ? LIMIT_LEVEL_TEXELS : LIMIT_PATCH_TEXELS - 1);
     made->source->make(made->source, made, node, n, &level, NULL);
-    struct limit_bound a = limit_level_bound(stored, node, n), b = limit_level_bound(made, node, n);
+    bool is_whole = of->kind == LIMIT_REGULAR;
+    struct limit_bound a = is_whole ? stored->whole[node] : limit_level_bound(stored, node, n),
+                       b = is_whole ? made->whole[node] : limit_level_bound(made, node, n);
     return scale == level.texels[0][0] && memcmp(texels, level.texels + 1, bytes) == 0 &&
            memcmp(&a, &b, sizeof a) == 0;
 }

@@ -34,7 +34,7 @@ struct native_patch_texels {
 static void set_room(const struct limit_tables *tables, size_t patch_bytes, size_t *patches,
                      size_t *texels)
 {
-    size_t n = 3 * tables->n_bounds; /* no fewer than there are */
+    size_t n = 3 * tables->n_bounds + tables->count[LIMIT_REGULAR]; /* no fewer than there are */
     size_t most = patch_bytes / sizeof(struct native_patch);
     *patches = n < most ? n : most;
     *texels = n < most / 4 ? n : most / 4;

@@ -39,7 +39,7 @@ static bool may_need_least(const struct cage *cage, const struct limit_watch *wa
     least.n_nodes = least.n_faces;
     if (cage->n_holes == 0 && cage->boundary != CAGE_BOUNDARY_NONE) {
         least.n_texels = least.n_faces * LIMIT_PATCH_TEXELS;
-        least.n_bounds = least.n_faces;
+        least.count[LIMIT_REGULAR] = least.n_faces;
     }
     return limit_may_need(watch, &least, error);
 }
@@ -73,8 +73,9 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
             ok = error_set(error, ERROR_MODEL,
                            "the cage needs more than %u table texels: split it in parts",
                            UINT32_MAX);
-        const struct limit_size so_far = {
+        struct limit_size so_far = {
             .n_faces = plan->n_ptex, .n_nodes = node, .n_texels = texel, .n_bounds = bound};
+        memcpy(so_far.count, measure.count, sizeof so_far.count);
         ok = ok && limit_may_need(watch, &so_far, error);
     }
     plan->offsets[plan->n_ptex] =

@@ -51,16 +51,12 @@ static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4
         out->origin[1] = centre.y;
         out->origin[2] = centre.z;
         out->first = b->next.texel;
-        struct limit_bound bound = bound_of_grid(&grid[0][0], 4, false, true);
-        b->tables->whole[node] = bound;
+        b->tables->whole[node] = bound_of_grid(&grid[0][0], 4, false, true);
         write_head(b, node, &grid[0][0], &grid[0][0]);
-        if (b->tables->texels) {
+        if (b->tables->texels)
             texels_write_patch(&grid[0][0], b->tables->texels + b->next.texel);
-            b->tables->bounds[b->next.bound] = bound;
-        }
     }
     b->next.texel += LIMIT_PATCH_TEXELS;
-    b->next.bound += 1;
     b->count[LIMIT_REGULAR]++;
 }
 
