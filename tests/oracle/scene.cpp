@@ -100,6 +100,9 @@ drawing::drawing(const scene &scene, const char *device, const char *isa)
     error error;
     device_try tries[DEVICE_MOST_TRIES];
     int n = device_tries(device, tries);
+    if (n == 0)
+        error_set(&error, ERROR_REQUEST,
+                  "device is '%s'; it must be auto, software, native or a device's number", device);
     for (int i = 0; i < n && !renderer; i++) {
         renderer_options options = {};
         options.device = tries[i].device;
