@@ -109,7 +109,9 @@ struct sheen_session;
 struct sheen_connect_options {
     size_t size;
     const char *address; /* unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; NULL: a private daemon */
-    const char *device;  /* private daemon: "auto", "software" or a number; NULL: auto */
+    /* Private daemon: "auto" (NULL), a GPU, else processors; "software" or "native", processors; or
+     * the number of an EGL device. */
+    const char *device;
     /* Private daemon: what files, tables and frames may take together, 4 MiB or more; 0: half of
      * the memory that this machine has, or its control group may take. */
     uint64_t memory_budget_bytes;

@@ -1,6 +1,5 @@
 #include "server/ops/device_choice.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -10,10 +9,18 @@
 
 int device_tries(const char *words, struct device_try tries[DEVICE_MOST_TRIES])
 {
-    const struct device_try native = {&native_renderer_device, NULL};
+    const struct device_try hardware = {&gl_device, "hardware"},
+                            native = {&native_renderer_device, NULL};
     uint64_t number;
-    bool is_native = strcmp(words, "native") == 0;
-    tries[0] = is_native ? native : (struct device_try){&gl_device, words};
-    return is_native || strcmp(words, "auto") == 0 || strcmp(words, "software") == 0 ||
-           number_parse(words, 0, 1023, false, &number);
+    if (number_parse(words, 0, 1023, false, &number)) {
+        tries[0] = (struct device_try){&gl_device, words};
+        return 1;
+    }
+    if (strcmp(words, "auto") == 0) {
+        tries[0] = hardware;
+        tries[1] = native;
+        return 2;
+    }
+    tries[0] = native;
+    return strcmp(words, "software") == 0 || strcmp(words, "native") == 0;
 }

@@ -168,8 +168,9 @@ static const struct option_row OWN_ROWS[] = {
      add_listen},
     {"device", "auto|software|native|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0,
      NULL, "auto",
-     "a GPU if there is one, the software device, processors by vector code, or the\n"
-     "N-th device",
+     "auto: a GPU if there is one, else native; software or native: processors, by\n"
+     "vector code, without OpenGL; N: the N-th EGL device, Mesa's software device among\n"
+     "them",
      set_device},
     {"native-threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_native_threads), 0, 0,
      NULL, "auto",

@@ -343,7 +343,7 @@ class Client(unittest.TestCase):
                 self.assert_fails(2, "", "render", FENDER, "-o", self.path("x.png"), "--size", size)
 
     def test_no_device(self):
-        done = sheen("render", FENDER, "-o", self.path("x.png"),
+        done = sheen("render", FENDER, "-o", self.path("x.png"), "--device", "0",
                      env={**os.environ, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"})
         self.assertEqual(done.returncode, 5, done.stderr)
         self.assertIn("EGL", done.stderr)

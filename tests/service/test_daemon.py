@@ -112,7 +112,7 @@ class Options(unittest.TestCase):
         hidden = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"}
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "s")
-            self.assert_fails(5, "EGL", "--listen", "unix:" + path, env=hidden)
+            self.assert_fails(5, "EGL", "--listen", "unix:" + path, "--device", "0", env=hidden)
             self.assertFalse(os.path.exists(path))
             self.assert_fails(5, "99", "--listen", "unix:" + path, "--device", "99")
 

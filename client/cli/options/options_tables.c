@@ -399,8 +399,9 @@ const struct option_row OPTIONS_COMMON[] = {
      "user alone)",
      apply_share, NULL},
     {"device", 0, "DEVICE",
-     "of the private daemon: auto, software, native (processors without OpenGL), or\n"
-     "a number from 0 (default: auto, a GPU when there is one)",
+     "of the private daemon: auto (default), a GPU when there is one, else native;\n"
+     "software or native, processors without OpenGL; or an EGL device's number from\n"
+     "0, Mesa's software device among them",
      apply_device, "auto software native"},
     {"native-threads", 0, "N",
      "of the private daemon: threads that draw on the native device, 1 to 64, or\n"

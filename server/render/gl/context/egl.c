@@ -76,18 +76,19 @@ static int choose_devices(const char *wanted, const EGLDeviceEXT *all, int n, EG
                       wanted, n);
         return n_chosen;
     }
-    bool automatic = strcmp(wanted, "auto") == 0;
-    if (!automatic && strcmp(wanted, "software") != 0) {
-        error_set(error, ERROR_REQUEST, "device '%s' is not auto, software or a number", wanted);
+    bool any = strcmp(wanted, "auto") == 0, hardware = strcmp(wanted, "hardware") == 0;
+    if (!any && !hardware && strcmp(wanted, "software") != 0) {
+        error_set(error, ERROR_REQUEST, "device '%s' is not auto, hardware, software or a number",
+                  wanted);
         return 0;
     }
-    for (int software = !automatic; software < 2; software++)
+    for (int software = !any && !hardware; software < 2 - hardware; software++)
         for (int i = 0; i < n; i++)
             if (is_software(all[i]) == (software == 1))
                 chosen[n_chosen++] = all[i];
     if (!n_chosen)
-        error_set(error, ERROR_DEVICE, "no %s EGL device among %d found: install libgl1-mesa-dri",
-                  wanted, n);
+        error_set(error, ERROR_DEVICE, "no %s EGL device among %d found: install %s", wanted, n,
+                  hardware ? "a GPU's driver with EGL" : "libgl1-mesa-dri");
     return n_chosen;
 }
 

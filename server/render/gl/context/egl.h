@@ -17,8 +17,8 @@ struct egl {
     bool software; /* EGL_MESA_device_software */
 };
 
-/* device: "auto" (the first hardware device that can, else software), "software", or a number in
- * EGL's enumeration. ERROR_DEVICE lists what was found. */
+/* device: "auto" (the first hardware device that can, else software), "hardware", "software", or a
+ * number in EGL's enumeration. ERROR_DEVICE lists what was found. */
 bool egl_init(struct egl *egl, const char *device, struct error *error);
 /* Another context on the same device, in place of one that is lost. False when the device gives
  * none yet: then there is no context, and this may be tried again. */
