@@ -48,6 +48,19 @@ Derivatives derivatives_at(FlatNet net, vec2 st)
     return at;
 }
 
+// How far apart pixels' rays are where the place at st lies: ends may be much deeper than the pixel's hit.
+float pixel_units_at(Node node, mat3 frame, Net p, float scale, vec2 st)
+{
+    vec4 bu, bv;
+    vec3 du, dv, forward = vec3(0.0, 0.0, 1.0) * frame;
+    blends(st.x, bu, du);
+    blends(st.y, bv, dv);
+    float z = 0.0;
+    for (int j = 0; j < 4; j++)
+        z += bv[j] * dot(bu, forward.x * p.x[j] + forward.y * p.y[j] + forward.z * p.z[j]);
+    return pixel_units(node.origin.z + scale * z);
+}
+
 float turn(vec2 a, vec2 b)
 {
     return a.x * b.y - a.y * b.x;
@@ -83,7 +96,6 @@ uint silhouette_end(ivec2 p)
     Guess guess = guess_of(p);
     if (guess.node == UNSEEN || is_in_gap(texelFetch(seen, p, 0).x))
         return NO_END;
-    float px = pixel_units(guess.depth);
     Node node = node_load(guess.node);
     vec2 xy = guess_xy(node, guess.where);
     for (int i = 0; i < SILHOUETTE_PATCHES; i++) {
@@ -105,10 +117,10 @@ uint silhouette_end(ivec2 p)
         bool inside = all(greaterThanEqual(st, vec2(-BEYOND))) && all(lessThanEqual(st, vec2(1.0 + BEYOND)));
         if (inside || i == SILHOUETTE_PATCHES - 1) {
             at = derivatives_at(net, st);
-            vec2 outward = outwards(at);
-            float off_px = dot(at.f, outward) * scale / px;
+            vec2 outward = outwards(at), f_px = at.f * scale / pixel_units_at(node, frame, points, scale, st);
+            float off_px = dot(f_px, outward);
             bool has_settled = inside && max(abs(move.x), abs(move.y)) < LAST_STEP;
-            bool is_near = length(at.f) * scale / px < FARTHEST_PX && off_px > -MOST_BEYOND_PX;
+            bool is_near = length(f_px) < FARTHEST_PX && off_px > -MOST_BEYOND_PX;
             return has_settled && is_near ? pack_end(outward, max(off_px, NEAREST_END), 0.0) : NO_END;
         }
         xy = ldexp(own.origin + st, -own.scale);
@@ -131,7 +143,7 @@ const int BORDER_PATCHES = 4, BORDER_NEWTON_STEPS = 4;
 
 // The line of edge e of a face, nearest to the pixel's centre, from the place at t on: how it lies, and how far, px.
 // False where there is none near.
-bool border_end(ivec2 p, uint face, uint e, float px, inout float t, out vec2 across, out float off)
+bool border_end(ivec2 p, uint face, uint e, inout float t, out vec2 across, out float off)
 {
     bool found = false;
     for (int i = 0; i < BORDER_PATCHES; i++) {
@@ -144,7 +156,8 @@ bool border_end(ivec2 p, uint face, uint e, float px, inout float t, out vec2 ac
         Net points;
         float scale;
         fetch_points(own, points, scale);
-        FlatNet net = project(node, frame_of(node), points, scale, ray_of(p));
+        mat3 frame = frame_of(node);
+        FlatNet net = project(node, frame, points, scale, ray_of(p));
         vec2 st = own.st, ft;
         Derivatives at;
         float left;
@@ -164,8 +177,9 @@ bool border_end(ivec2 p, uint face, uint e, float px, inout float t, out vec2 ac
         ft = along.x * at.fu + along.y * at.fv;
         across = normalize(vec2(-ft.y, ft.x));
         across = dot(inwards.x * at.fu + inwards.y * at.fv, across) > 0.0 ? -across : across;
-        off = dot(at.f, across) * scale / px;
-        found = off > -MOST_BEYOND_PX && length(at.f) * scale / px < FARTHEST_PX;
+        vec2 f_px = at.f * scale / pixel_units_at(node, frame, points, scale, st);
+        off = dot(f_px, across);
+        found = off > -MOST_BEYOND_PX && length(f_px) < FARTHEST_PX;
         vec2 onwards = left == 0.0 || own.limit ? vec2(0.0) : clamp(left, -2.0, 2.0) * abs(along);
         float next_t = clamp(turned(ptex_uv(node, ldexp(own.origin + st + onwards, -own.scale)), e).x, 0.0, 1.0);
         bool is_there = onwards == vec2(0.0) || abs(next_t - t) < 1e-7;
@@ -216,7 +230,7 @@ uint border_end_of(ivec2 p, float rounding_px)
         float t = turned(uv, e).x, off;
         vec2 across;
         if ((node.borders >> 4u * ((e - node.rotation) & 3u) & 15u) != 0u &&
-            border_end(p, node.face, e, pixel_units(guess.depth), t, across, off) && off < nearest_off) {
+            border_end(p, node.face, e, t, across, off) && off < nearest_off) {
             nearest = e;
             nearest_off = off;
             nearest_across = across;
