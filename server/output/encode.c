@@ -16,8 +16,8 @@ struct strip_task {
     struct task task;
     struct encoding *encoding;
     size_t index;
-    size_t start, size; /* of what was written, from where to where it is the frame's */
-    bool has_alpha;     /* PNG: encoded so */
+    size_t start, size; /* bytes `start` to `size` of the block belong to the frame */
+    bool has_alpha;     /* PNG: the strip was encoded with alpha */
     uint32_t checksum;  /* PNG: of the strip */
     struct error error; /* why it failed */
 };
@@ -39,13 +39,14 @@ struct encoding {
     size_t file_size;
     struct jpeg_layout jpeg;
     struct strip_layout png;
-    atomic_bool has_alpha; /* PNG: a strip has been found not to be opaque */
+    atomic_bool has_alpha; /* a strip that is not opaque was found */
     struct strip_task *strips;
     size_t n_strips, n_strips_left;
-    bool (*join)(struct encoding *encoding); /* the strips; false: no memory */
+    bool (*join)(struct encoding *encoding); /* puts the encoded strips together; false: no
+                                              * memory */
 };
 
-/* A thread's own. */
+/* The encoders of one thread. */
 struct encoders {
     struct codec_encoder *zstd;
     struct jpeg_encoder *jpeg;
@@ -152,14 +153,14 @@ static void start_raw(struct encoding *encoding)
     end_encoding(encoding, NULL);
 }
 
-/* --- strips: block 1 + i is strip i, block 0 what stands before them */
+/* --- strips: block 1 + i is strip i, block 0 what precedes the strips in the file */
 
 /* NULL: the strip has failed. */
 static uint8_t *take_strip(struct strip_task *strip, size_t bound)
 {
     struct encoded *encoded = strip->encoding->encoded;
     uint8_t **block = &encoded->blocks[1 + strip->index];
-    if (!*block) /* it has none from a first try */
+    if (!*block) /* a strip that is repeated keeps its block */
         *block = fault_at("encode") ? NULL : block_cache_take(encoded->block_cache, bound);
     if (!*block)
         set_no_memory(strip->encoding, &strip->error);
@@ -175,7 +176,8 @@ static void add_strips(struct encoding *encoding)
     }
 }
 
-/* Submits the strips that are not as the whole picture turned out to be. False: all are. */
+/* Submits again the strips that were encoded without alpha before another strip was found to have
+ * alpha. False: there is none. */
 static bool repeat_strips(struct encoding *encoding)
 {
     for (size_t i = 0; i < encoding->n_strips; i++) {
@@ -312,7 +314,7 @@ static void png_run(struct task *task, void *context)
     uint8_t *row =
         bytes ? block_cache_take(encoding->encoded->block_cache, png_row_bytes(&encoding->png))
               : NULL;
-    /* Most pictures are opaque: none is searched for alpha before its strips are encoded. */
+    /* Most pictures are opaque, so each strip is searched for alpha only when it is encoded. */
     if (!atomic_load(&encoding->has_alpha) &&
         !png_strip_is_opaque(&encoding->png, strip->index, rgba))
         atomic_store(&encoding->has_alpha, true);

@@ -12,9 +12,11 @@
 
 #define NO_FACE 0xffffffffu
 #define DEFAULT_DRAFT_DEG 3
-#define LEAST_TURN_RAD 1e-5 /* over the model, by a range from the frame: less is rounding */
-#define ROUNDING 1e-6       /* of single precision, relative */
-#define SHARE_INSIDE 0.98   /* of the values, by a range from the frame */
+#define LEAST_TURN_RAD                                                                             \
+    1e-5                  /* a smaller turn of the normal over the whole model is taken for
+                             * rounding */
+#define ROUNDING 1e-6     /* of single precision, relative */
+#define SHARE_INSIDE 0.98 /* of the values lie inside a range that is chosen from the frame */
 
 static const double DEG_PER_RAD = 57.295779513082320877;
 
@@ -23,7 +25,7 @@ struct ptex {
     float u, v;
 };
 
-/* A picture being painted. Planes that its kind does without are NULL. */
+/* A picture being painted. Planes that its kind does not need are NULL. */
 struct painting {
     sheen_ShowKind kind;
     size_t width_px, n_pixels;
@@ -47,7 +49,7 @@ static double draft_deg(const float n[3], const double pull[3])
     return atan2(along, across) * DEG_PER_RAD;
 }
 
-/* What a scale shows at a pixel; NaN or infinite: nothing. */
+/* The value that a scale shows at a pixel; NaN or infinite: no value. */
 static double value_at(const struct painting *painting, size_t i)
 {
     if (painting->kind == sheen_ShowKind_SHOW_DRAFT)
@@ -63,7 +65,7 @@ static double value_at(const struct painting *painting, size_t i)
     }
 }
 
-/* Of a magnitude; magnitudes are ordered as their bits are. */
+/* The bits of |value|. Magnitudes have the same order as their bits read as integers. */
 static uint64_t bits_of(double value)
 {
     double magnitude = fabs(value);
@@ -74,8 +76,8 @@ static uint64_t bits_of(double value)
 
 enum { DIGIT_BITS = 16 };
 
-/* How many finite values begin with the bits of `prefix`, all told and by the digit that follows.
- */
+/* Counts the finite values whose leading bits are `prefix`: returns how many there are, and in
+ * `counts` how many have each value of the next DIGIT_BITS bits, which end at bit `shift`. */
 static uint64_t count_digits(const struct painting *painting, uint64_t prefix, int shift,
                              uint32_t counts[static 1 << DIGIT_BITS])
 {
@@ -92,8 +94,9 @@ static uint64_t count_digits(const struct painting *painting, uint64_t prefix, i
     return n;
 }
 
-/* The magnitude that `share` of all values do not exceed, exactly and without memory for them:
- * digit by digit, as many passes over the frame. 0 when there is no value. */
+/* The magnitude that `share` (0 to 1) of all values do not exceed. It is exact and needs no memory
+ * for the values: a radix selection, digit by digit, with one pass over the frame for each digit. 0
+ * when there is no value. */
 static double percentile(const struct painting *painting, double share)
 {
     uint32_t counts[1 << DIGIT_BITS];
@@ -114,7 +117,7 @@ static double percentile(const struct painting *painting, double share)
     return magnitude;
 }
 
-/* Up to two significant digits, as near as a double comes to them. */
+/* Rounds up to two significant digits, as exactly as a double can hold them. */
 static double round_up(double value)
 {
     int exponent = (int)floor(log10(value)) - 1;
@@ -123,7 +126,7 @@ static double round_up(double value)
     return exponent < 0 ? digits / unit : digits * unit;
 }
 
-/* Differences of values that are no larger may be rounding. */
+/* A difference between two values that is no larger than this may come from rounding. */
 static double least_difference(const struct painting *painting, double size)
 {
     if (painting->kind == sheen_ShowKind_SHOW_DRAFT)
@@ -148,8 +151,9 @@ static void mix(const float a[3], const float b[3], double share, float rgb[3])
         rgb[k] = a[k] + (float)share * (b[k] - a[k]);
 }
 
-/* Moreland, Diverging color maps for scientific visualization (2009): even to the eye, no band
- * that is not in the values. t from 0 to 1. */
+/* Moreland, Diverging color maps for scientific visualization (2009): perceived differences are
+ * proportional to differences of the value, so that no bands appear that are not in the values. t
+ * from 0 to 1. */
 static void diverging(double t, float rgb[3])
 {
     enum { STEPS = 8 };
@@ -185,7 +189,7 @@ static void scale_colour(const struct painting *painting, double value, float rg
         diverging(0.5 + 0.5 * value / painting->range, rgb);
 }
 
-/* Faces that follow one another in number lie far apart in hue. */
+/* Faces with consecutive numbers get hues that lie far apart. */
 static void ptex_colour(const struct ptex *ptex, float rgb[3])
 {
     double hue = 6 * fmod(ptex->face * 0.61803398874989485, 1);
@@ -197,7 +201,8 @@ static void ptex_colour(const struct ptex *ptex, float rgb[3])
     }
 }
 
-/* The colour of a pixel, or false where there is no value; *value is a scale's, else left alone. */
+/* Sets the colour of a pixel; false if there is no value. *value is set for kinds with a scale
+ * only. */
 static bool colour_at(const struct painting *painting, size_t i, float rgb[3], double *value)
 {
     if (painting->kind == sheen_ShowKind_SHOW_PTEX) {
@@ -220,8 +225,8 @@ static bool is_empty(const struct painting *painting, size_t i)
     return painting->ptex ? painting->ptex[i].face == NO_FACE : isnan(painting->position[i][0]);
 }
 
-/* The pixel whose surface a partly covered one shows: itself, or where its centre sees none the
- * first neighbour whose centre does. n_pixels when there is none. */
+/* The pixel whose surface pixel i shows: i itself, or, if the centre of i sees no surface, the
+ * first neighbour whose centre sees one. n_pixels when there is none. */
 static size_t surface_near(const struct painting *painting, size_t i)
 {
     static const int around[9][2] = {{0, 0},   {-1, 0}, {1, 0},  {0, -1}, {0, 1},
@@ -235,7 +240,7 @@ static size_t surface_near(const struct painting *painting, size_t i)
     return painting->n_pixels;
 }
 
-/* Most pixels are of one colour alone. */
+/* Blends only where needed: most pixels have share 1. */
 static void paint_share(const float shown[4], const float empty[4], float share, float painted[4])
 {
     if (share < 1)
@@ -244,7 +249,7 @@ static void paint_share(const float shown[4], const float empty[4], float share,
         memcpy(painted, shown, 4 * sizeof *painted);
 }
 
-/* Returns the value at the pixel's own centre; NaN: it shows none. */
+/* Returns the value at the pixel's own centre; NaN if it has none. */
 static double paint_pixel(const struct painting *painting, size_t i, const float miss[4],
                           const float empty[4], float painted[4])
 {
@@ -261,7 +266,7 @@ static double paint_pixel(const struct painting *painting, size_t i, const float
     return from == i && isfinite(value) ? value : NAN;
 }
 
-/* Where a value is the least or the greatest so far. */
+/* The least and the greatest value so far, and the pixels that have them. */
 struct found {
     size_t n; /* values */
     size_t at_least, at_greatest;
@@ -293,13 +298,14 @@ static void paint_pixels(const struct painting *painting, uint8_t (*rgba)[4], co
     }
 }
 
-/* Polygons extrapolate u and v beyond their edge, where a pixel's centre lies beyond it. */
+/* Where a pixel's centre lies outside a polygon, u and v are extrapolated beyond the face. */
 static double within_face(float coordinate)
 {
     return fmin(1, fmax(0, (double)coordinate));
 }
 
-/* Rounded to single precision, a coordinate may be beyond the largest that is read. */
+/* Rounding to single precision may move a coordinate beyond the largest that the protocol
+ * allows. */
 static double within_range(float coordinate)
 {
     return fmin(PROTOCOL_MAX_COORDINATE, fmax(-PROTOCOL_MAX_COORDINATE, (double)coordinate));
@@ -339,7 +345,7 @@ static void fill_extremes(const struct painting *painting, const struct found *f
 
 /* --- the legend */
 
-/* Draft has a quarter of the bar for each of its four colours, whatever its range is. */
+/* On the bar for DRAFT each of the four colours takes a quarter, whatever the range is. */
 static void bar_colour(const void *context, double s, double t, float rgb[3])
 {
     const struct painting *painting = context;

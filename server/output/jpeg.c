@@ -4,7 +4,8 @@
 #include <string.h>
 #include <turbojpeg.h>
 
-/* What is coded at once: a block of each colour, which is that of more pixels the fewer it has. */
+/* The pixels that one coded unit (MCU) covers: 8x8 samples of each channel, whose colour samples
+ * cover more pixels the more they are subsampled. */
 static const struct {
     uint32_t width_px, height_px;
     int library; /* libjpeg-turbo's number */
@@ -14,13 +15,13 @@ static const struct {
     [JPEG_420] = {16, 16, TJSAMP_420},
 };
 
-/* Segments: 0xff, their kind, the length of what follows with its own two bytes. */
+/* A segment: 0xff, its kind, then the length of what follows, which counts its own two bytes. */
 enum { SOF0 = 0xc0, RST0 = 0xd0, SOS = 0xda, DRI = 0xdd, COM = 0xfe };
 #define SEGMENT_HEAD_BYTES 4
 #define SEGMENT_BYTES (UINT16_MAX - (size_t)2) /* at most */
 #define DRI_BYTES (SEGMENT_HEAD_BYTES + 2)
 #define SOI_BYTES 2
-/* SOI and APP0 with JFIF's 14 bytes, which must come first. */
+/* SOI and APP0 with the 14 bytes of JFIF, which must come first in a file. */
 #define JFIF_BYTES (SOI_BYTES + SEGMENT_HEAD_BYTES + 14)
 
 void jpeg_keep_defaults(void)
@@ -60,7 +61,7 @@ static void put_u16(uint8_t *bytes, size_t value)
     bytes[1] = (uint8_t)value;
 }
 
-/* Where the first segment of a kind begins in a file of the library, which has one. */
+/* The offset of the first segment of a kind in a file of the library, which has such a segment. */
 static size_t find_segment(const uint8_t *file, uint8_t kind)
 {
     size_t at = SOI_BYTES;

@@ -5,7 +5,7 @@
 
 #include "server/image/blend.h"
 
-/* Lengths in sizes of the font, that is 1/45 of the picture's height. */
+/* Lengths in units of the font's size, which is 1/45 of the picture's height. */
 #define FONT_SHARE 45
 #define MIN_FONT_PX 8
 #define PANEL_WIDTH 19
@@ -31,7 +31,7 @@ static uint8_t *pixel_at(uint8_t *rgba, uint32_t width_px, int x, int y)
 static void darken(uint8_t *rgba, uint32_t width_px, const struct box *box)
 {
     static const float black[4] = {0, 0, 0, 1};
-    uint8_t before[4] = {0}, after[4] = {0}; /* most pixels are as the one before */
+    uint8_t before[4] = {0}, after[4] = {0}; /* most pixels equal the previous one */
     blend_pixel(after, black, PANEL_SHARE);
     for (int y = box->y; y < box->y + box->height; y++)
         for (int x = box->x; x < box->x + box->width; x++) {

@@ -1,5 +1,6 @@
-/* The legend of a false-colour picture: a title over a bar of colours with marks under it, on a
- * dark panel in the lower right corner. Its size follows the picture's height. Any thread. */
+/* The legend of a false-colour picture: a title, a bar of colours and marks below the bar, on a
+ * dark panel in the lower right corner. Its size is proportional to the picture's height. Any
+ * thread. */
 #ifndef SHEEN_OUTPUT_LEGEND_H
 #define SHEEN_OUTPUT_LEGEND_H
 
@@ -8,26 +9,28 @@
 
 #include "server/threads/workers.h"
 
-/* A picture of less height, or too narrow for the legend, has none. */
+/* A picture that is lower than this, or too narrow for the panel, gets no legend. */
 #define LEGEND_MIN_HEIGHT_PX 120
 #define LEGEND_MAX_MARKS 5
 
 struct legend_mark {
-    double at; /* 0 to 1 along the bar */
+    double at; /* position on the bar, 0 left, 1 right */
     char text[24];
 };
 
 struct legend {
     const char *title;
-    /* The bar's colour at s to the right and t upwards, 0 to 1, as displayed. */
+    /* The bar's colour at s (0 left, 1 right) and t (0 bottom, 1 top); sRGB, 0 to 1. */
     void (*colour)(const void *context, double s, double t, float rgb[3]);
     const void *context;
     unsigned n_marks;
     struct legend_mark marks[LEGEND_MAX_MARKS];
 };
 
-/* Draws over the pixels of a colour plane, its texts' masks in memory of `block_cache` (NULL:
- * malloc's). False, saying why, when a text cannot be drawn; the bar is. */
+/* Draws the legend over a colour plane (8-bit sRGB RGBA, rows contiguous, top first). A worker
+ * process renders the text into masks, whose memory comes from `block_cache` (NULL: from malloc()).
+ * Returns false and sets *error if a text could not be drawn; the panel and the bar are drawn
+ * anyway. */
 bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
                  struct workers *workers, struct block_cache *block_cache, struct error *error);
 

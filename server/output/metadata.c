@@ -21,7 +21,7 @@ static const char *const NAMES[METADATA_ATTRIBUTES] = {
 #define COLOUR "%.9g,%.9g,%.9g,%.9g"
 #define COLOUR_OF(c) (double)(c)[0], (double)(c)[1], (double)(c)[2], (double)(c)[3]
 
-/* Adds to an attribute's value, as far as it holds more. */
+/* Appends to an attribute's value; what does not fit is cut off. */
 static void __attribute__((format(printf, 2, 3))) add(char *value, const char *format, ...)
 {
     size_t used = strlen(value);

@@ -1,5 +1,5 @@
-/* What a picture file says about itself: everything that made it, and no time, so that equal frames
- * are equal files. Pure, any thread. */
+/* The metadata of a picture file: everything that determines the picture (model, camera, lights,
+ * device, version), and no time, so that equal frames give equal files. Pure, any thread. */
 #ifndef SHEEN_OUTPUT_METADATA_H
 #define SHEEN_OUTPUT_METADATA_H
 
@@ -10,13 +10,15 @@
 #define METADATA_ATTRIBUTES 11 /* at most PICTURE_MAX_ATTRIBUTES */
 #define METADATA_VALUE_BYTES 8192
 
-/* Attributes point into the struct itself: it must not be moved once filled in. */
+/* `attributes` points into `values`: do not copy or move the struct once it is filled in. */
 struct metadata {
     struct image_attribute attributes[METADATA_ATTRIBUTES];
     char values[METADATA_ATTRIBUTES][METADATA_VALUE_BYTES];
 };
 
-/* `asked` is the message that the request was made from; its show.range is as used. */
+/* `request` is the frame as drawn, with all defaults filled in. `asked` is the message that it was
+ * made from; asked->show.range must already hold the range that was used. A value that is too long
+ * is cut off. */
 void metadata_init(struct metadata *metadata, const struct frame_request *request,
                    const sheen_Render *asked, const struct renderer_info *info);
 

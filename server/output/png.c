@@ -16,21 +16,25 @@
 #define CHECKSUM_BYTES 4
 #define TAIL_BYTES (CHUNK_BYTES + CHECKSUM_BYTES + CHUNK_BYTES)
 #define STREAM_HEAD_BYTES 2 /* of zlib */
-#define FLUSH_BYTES 16      /* an empty block, where compressBound() knows of none; and to spare */
+#define FLUSH_BYTES                                                                                \
+    16 /* an empty block that compressBound() does not count, and some to
+                             * spare */
 
 /* Raw deflate with the library's own window and memory. */
 #define WINDOW_BITS (-15)
 #define MEMORY_LEVEL 8
 
-/* How rows are stored: as they are, or each byte less that of the pixel to its left. */
+/* How rows are stored: unchanged, or as the difference of each byte to that of the pixel to its
+ * left. */
 enum filter { FILTER_NONE = 0, FILTER_SUB = 1 };
 
-/* Measured on pictures of 1280x720 without alpha, beside OpenImageIO's files (SUB, level 4): lines
- * of two colours take 0.90 to 1.00 of the size with NONE at level 1, and more at any with SUB;
- * smooth colours take 0.94 to 1.08 with SUB at level 3, and up to 1.25 at level 1. */
+/* Compression levels. Measured on pictures of 1280x720 without alpha, relative to OpenImageIO's
+ * files (SUB, level 4): pictures of lines in two colours take 0.90 to 1.00 of the size with NONE at
+ * level 1, and more with SUB at any level. Pictures of smooth colours take 0.94 to 1.08 with SUB at
+ * level 3, and up to 1.25 at level 1. */
 static const int LEVELS[] = {[FILTER_NONE] = 1, [FILTER_SUB] = 3};
 
-/* So many rows in its middle tell which is smaller for a strip. */
+/* The filter of a strip is chosen by this many rows in its middle. */
 #define SAMPLE_ROWS 4
 
 struct png_encoder {
@@ -94,15 +98,15 @@ size_t png_row_bytes(const struct strip_layout *layout)
     return stored_row_bytes(layout, true);
 }
 
-/* Four bytes less four others, each by itself. */
+/* Subtracts four bytes from four others, each by itself (modulo 256). */
 static uint32_t subtract_bytes(uint32_t a, uint32_t b)
 {
     const uint32_t high = 0x80808080u;
     return ((a | high) - (b & ~high)) ^ ((a ^ ~b) & high);
 }
 
-/* A row as it is stored. Without alpha each pixel's fourth byte is overwritten by the next pixel,
- * and the last one's stands in the room that rows with alpha have. */
+/* Writes a row as it is stored. Without alpha the next pixel overwrites the fourth byte of each
+ * pixel; the fourth byte of the last pixel falls into the room that a row with alpha needs. */
 static void store_row(uint8_t *row, const uint8_t *rgba, uint32_t width_px, bool has_alpha,
                       enum filter filter)
 {
@@ -123,7 +127,8 @@ static void store_row(uint8_t *row, const uint8_t *rgba, uint32_t width_px, bool
     }
 }
 
-/* Deflates rows of a picture on their own; true when all of it is in the stream's output. */
+/* Deflates rows of a picture as a stream of their own. True if all of it fits the stream's
+ * output. */
 static bool deflate_rows(z_stream *stream, const struct strip_layout *layout, const uint8_t *rgba,
                          uint32_t n_rows, bool has_alpha, enum filter filter, int level, int flush,
                          uint8_t *row, uint32_t *checksum)
@@ -154,8 +159,8 @@ static uint8_t *put_u32(uint8_t *bytes, size_t value)
     return bytes + 4;
 }
 
-/* Puts the rest around a chunk's data, which stand at `bytes` + CHUNK_HEAD_BYTES. Returns its end.
- */
+/* Completes a chunk whose data already stand at `bytes` + CHUNK_HEAD_BYTES. Returns the chunk's
+ * end. */
 static uint8_t *close_chunk(uint8_t *bytes, const char type[4], size_t size)
 {
     put_u32(bytes, size);
@@ -164,8 +169,8 @@ static uint8_t *close_chunk(uint8_t *bytes, const char type[4], size_t size)
                    crc32(crc32(0, NULL, 0), bytes + 4, (uInt)(4 + size)));
 }
 
-/* The filter with which a strip is smaller. What its rows deflate to goes to `bytes`, for nobody.
- */
+/* Chooses the filter with which a sample of the strip becomes smaller. `bytes` is scratch
+ * memory. */
 static bool choose_filter(z_stream *stream, const struct strip_layout *layout, const uint8_t *rgba,
                           uint32_t n_rows, bool has_alpha, uint8_t *row, uint8_t *bytes,
                           size_t room, enum filter *filter)
@@ -232,7 +237,7 @@ size_t png_head_bound(const struct image_attribute *attributes, size_t n_attribu
     return strip_head_bound(bytes);
 }
 
-/* A name, a zero, and a value without one. */
+/* tEXt: the name, a 0, and the value without a 0. */
 static uint8_t *write_text(uint8_t *at, const struct image_attribute *attribute)
 {
     const size_t name = strlen(attribute->name) + 1, value = strlen(attribute->value);

@@ -1,5 +1,5 @@
-/* How a picture is cut into horizontal strips, so that threads can share the work of encoding it:
- * what the encoders of files have in common. Pure, any thread. */
+/* How the file encoders cut a picture into horizontal strips, so that several threads can encode
+ * it. Pure, any thread. */
 #ifndef SHEEN_OUTPUT_STRIPS_H
 #define SHEEN_OUTPUT_STRIPS_H
 
@@ -11,23 +11,23 @@ struct strip_layout {
     uint32_t width_px, height_px;
     uint32_t rows; /* of each strip but the last */
     size_t n;      /* strips */
-    size_t bound;  /* what to allocate for an encoded strip */
+    size_t bound;  /* bytes to allocate for an encoded strip */
 };
 
-/* Cuts a picture into strips of about PROTOCOL_STRIP_BYTES of R, G, B and A of 8 bits each, whose
- * rows are a multiple of `multiple` (but for the last strip's). Sides are from 1 to
- * PROTOCOL_MAX_SIZE_PX. Leaves layout->bound 0: the encoder sets it. */
+/* Cuts a picture into strips of about PROTOCOL_STRIP_BYTES of RGBA with 8 bits each. The number of
+ * rows of a strip is a multiple of `multiple`, except that of the last. Both sides are from 1 to
+ * PROTOCOL_MAX_SIZE_PX. layout->bound stays 0: the encoder sets it. */
 void strip_layout_init(struct strip_layout *layout, uint32_t width_px, uint32_t height_px,
                        uint32_t multiple);
 
-/* Rows of a strip. */
+/* The number of rows of a strip. */
 uint32_t strip_rows(const struct strip_layout *layout, size_t index);
-/* The first pixel of a strip in a picture whose rows are contiguous. */
+/* The first pixel of a strip; `rgba` is the whole picture, its rows contiguous, top first. */
 const uint8_t *strip_pixels(const struct strip_layout *layout, size_t index, const uint8_t *rgba);
 
-/* What to allocate for a file's head of so many bytes: that, rounded up to 4 KiB. Heads hold the
- * metadata, whose length changes with the digits of the camera's numbers; rounded, a camera that
- * turns takes the same spare block (server/base/block_cache.h) again and again. */
+/* The bytes to allocate for a file's head of `bytes` bytes: `bytes` rounded up to 4 KiB. The length
+ * of a head changes with the number of digits in the metadata. Rounded, the heads of a turning
+ * camera all fit the same block of the block cache (server/base/block_cache.h). */
 size_t strip_head_bound(size_t bytes);
 
 #endif
