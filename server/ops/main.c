@@ -1,4 +1,5 @@
 /* sheend: start-up and shutdown. */
+#include <malloc.h>
 #include <stdio.h>
 
 #include "server/ops/options.h"
@@ -34,6 +35,16 @@ static int fail(const struct error *error)
                                          : EXIT_SERVICE;
 }
 
+/* Memory that is freed goes back to the system, so that the resident size stays near what the memory budget
+ * counts. By itself the allocator raises these thresholds to the largest block that was ever freed, and keeps a
+ * heap for each thread. */
+static void return_free_memory(void)
+{
+    mallopt(M_MMAP_THRESHOLD, 256 << 10);
+    mallopt(M_TRIM_THRESHOLD, 1 << 20);
+    mallopt(M_ARENA_MAX, 2);
+}
+
 int main(int argc, char **argv)
 {
     struct error error = {0};
@@ -50,6 +61,7 @@ int main(int argc, char **argv)
     case OPTIONS_WRONG:
         return fail(&error);
     }
+    return_free_memory();
     struct service *service = service_create(&program.settings.service, &reloader, &error);
     if (!service)
         return fail(&error);

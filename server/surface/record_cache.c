@@ -4,8 +4,13 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* A large segment is a huge page. */
-enum { SEGMENT_BYTES = 2 << 20, LARGE_CACHE = 8 * SEGMENT_BYTES, SMALL_SEGMENT_BYTES = 64 << 10 };
+/* A large segment is a huge page; the only one of a very small cache is a few pages. */
+enum {
+    SEGMENT_BYTES = 2 << 20,
+    LARGE_CACHE = 8 * SEGMENT_BYTES,
+    SMALL_SEGMENT_BYTES = 64 << 10,
+    PAGE_BYTES = 4096
+};
 /* An entry of the hash table: the key, and the record's number plus one; 0: no entry. */
 enum { KEY_BITS = 39, NUMBER_BITS = 64 - KEY_BITS };
 
@@ -25,7 +30,12 @@ struct record_cache {
 
 static size_t segment_bytes_of(size_t record_bytes, size_t most)
 {
-    return most * record_bytes >= LARGE_CACHE ? SEGMENT_BYTES : SMALL_SEGMENT_BYTES;
+    size_t bytes = most * record_bytes;
+    if (bytes >= LARGE_CACHE)
+        return SEGMENT_BYTES;
+    if (bytes >= SMALL_SEGMENT_BYTES)
+        return SMALL_SEGMENT_BYTES;
+    return bytes / PAGE_BYTES * PAGE_BYTES + PAGE_BYTES;
 }
 
 static uint64_t segments_of(size_t record_bytes, size_t most)

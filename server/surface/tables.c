@@ -15,9 +15,16 @@ static_assert(sizeof(struct limit_bound) % 8 == 0, "a record of a cache");
 /* Bounds that tables on demand keep. */
 enum { MOST_LEVEL_BOUNDS = 1 << 19 };
 
+size_t limit_view_levels(const struct limit_tables *tables)
+{
+    size_t n = LIMIT_VIEW_LEVELS * (tables->count[LIMIT_CORNER] + tables->count[LIMIT_STRIP]);
+    return n < tables->n_bounds ? n : tables->n_bounds;
+}
+
 static size_t level_bounds_of(const struct limit_tables *tables)
 {
-    return tables->n_bounds < MOST_LEVEL_BOUNDS ? tables->n_bounds : MOST_LEVEL_BOUNDS;
+    size_t n = limit_view_levels(tables);
+    return n < MOST_LEVEL_BOUNDS ? n : MOST_LEVEL_BOUNDS;
 }
 
 static bool init(struct limit_tables *tables, const struct limit_size *size, bool stored,
@@ -33,6 +40,7 @@ static bool init(struct limit_tables *tables, const struct limit_size *size, boo
     tables->heads = malloc(tables->n_nodes * sizeof *tables->heads);
     tables->whole = malloc(tables->n_nodes * sizeof *tables->whole);
     bool has_levels;
+    memcpy(tables->count, size->count, sizeof tables->count);
     if (stored) {
         tables->texels = malloc((tables->n_texels + 1) * sizeof *tables->texels);
         tables->bound_first = malloc(tables->n_nodes * sizeof *tables->bound_first);
@@ -45,7 +53,6 @@ static bool init(struct limit_tables *tables, const struct limit_size *size, boo
             record_cache_create(sizeof(struct limit_bound), level_bounds_of(tables));
         has_levels = tables->level_bounds;
     }
-    memcpy(tables->count, size->count, sizeof tables->count);
     if (!tables->nodes || !tables->adjacency || !tables->heads || !tables->whole || !has_levels) {
         size_t bytes = limit_tables_host_bytes(tables);
         limit_tables_finish(tables);

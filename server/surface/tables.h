@@ -101,6 +101,11 @@ void limit_tables_turn(const struct limit_tables *tables);
 /* Bytes of nodes, adjacency and what both forms have of points: stored tables' texels, which a GPU holds a
  * copy of, or heads and bounds of nodes. */
 size_t limit_tables_bytes(const struct limit_tables *tables);
+/* How many levels of CORNERs and patches of STRIPs a view of the whole model reaches, about: no corner
+ * of a face takes more than the first LIMIT_VIEW_LEVELS, where 1,000 pixels lie along its sides. A view from
+ * nearer reaches more levels of fewer faces. Caches of what is made on demand have room for so many. */
+enum { LIMIT_VIEW_LEVELS = 10 };
+size_t limit_view_levels(const struct limit_tables *tables);
 /* How many support points there may be. */
 size_t limit_support_room(const struct limit_tables *tables);
 /* Bytes that they take in main memory from limit_tables_init() on, at most, with room for the support

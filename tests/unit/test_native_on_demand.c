@@ -209,7 +209,7 @@ static void test_triangles(void **state)
     /* What is kept of patches and bounds is limited. The rest: 15 nodes a triangle of 48, 64 and 24 bytes,
      * and the cage. */
     struct limit_tables fewer;
-    enum { M = 60, FEWER = 2 * M * M };
+    enum { M = 67, FEWER = 2 * M * M };
     build_triangles(M, &fewer);
     size_t more = bytes_of(&tables) - bytes_of(&fewer);
     assert_true(more > (TRIANGLES - FEWER) * (size_t)(15 * (48 + 64 + 24)));

@@ -34,10 +34,10 @@ struct native_patch_texels {
 static void set_room(const struct limit_tables *tables, size_t patch_bytes, size_t *patches,
                      size_t *texels)
 {
-    size_t n = 3 * tables->n_bounds + tables->count[LIMIT_REGULAR]; /* no fewer than there are */
+    size_t n = 3 * limit_view_levels(tables) + tables->count[LIMIT_REGULAR];
     size_t most = patch_bytes / sizeof(struct native_patch);
     *patches = n < most ? n : most;
-    *texels = n < most / 4 ? n : most / 4;
+    *texels = *patches / 4;
 }
 
 struct native_model *native_model_create(const struct limit_tables *tables, size_t patch_bytes,
