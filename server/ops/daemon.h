@@ -1,5 +1,6 @@
-/* All parts of the daemon, as the files of this folder see them: service.c makes and ends them, the
- * monitor and the metrics read them. Thread: the loop's. */
+/* All parts of the daemon in one struct, for the files of this folder: service.c creates and
+ * destroys the parts; the monitor and the metrics read them.
+ * Thread: the loop's. */
 #ifndef SHEEN_OPS_DAEMON_H
 #define SHEEN_OPS_DAEMON_H
 
@@ -9,14 +10,14 @@
 #include "server/threads/render_thread.h"
 
 struct daemon {
-    struct limits limits; /* those in force */
+    struct limits limits; /* the limits in force */
     struct loop *loop;
     struct completions *completions;
     struct block_cache *block_cache;
     struct workers workers;
     struct render_thread *render_thread;
-    struct pool *pool;    /* fills tables, paints and encodes */
-    struct pool *readers; /* wait for the worker programs */
+    struct pool *pool;    /* builds tables, paints false colour, encodes frames */
+    struct pool *readers; /* threads that wait for the worker programs */
     struct access *access;
     struct store *store;
     struct memory memory;

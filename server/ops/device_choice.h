@@ -1,4 +1,4 @@
-/* Which devices `--device` means. Pure; any thread. */
+/* Translates the value of `--device` into the devices to open. Pure; any thread. */
 #ifndef SHEEN_OPS_DEVICE_CHOICE_H
 #define SHEEN_OPS_DEVICE_CHOICE_H
 
@@ -12,9 +12,10 @@ struct device_try {
     const char *device;
 };
 
-/* Fills in the devices that `words` asks for, to be opened in this order until one opens, and
- * returns how many: "auto", "software", "native", or the number of an EGL device. 0 for other words.
- * `words` must live as long as the tries. */
+/* Fills in the devices that `words` asks for, in the order in which they are to be tried until one
+ * opens, and returns their number. `words` is "auto" (a GPU, else processors), "software" or
+ * "native" (processors), or the number of an EGL device. Returns 0 for any other text. A try may
+ * point to `words`, which must stay valid as long as the tries. */
 int device_tries(const char *words, struct device_try tries[DEVICE_MOST_TRIES]);
 
 #endif

@@ -11,9 +11,10 @@
 #define KIB ((uint64_t)1 << 10)
 #define MIB ((uint64_t)1 << 20)
 #define GIB ((uint64_t)1 << 30)
-/* What nobody could be served with less of: memory for a frame of 640 x 480 pixels in colour, what
- * it is encoded to (6 bytes a pixel for JPEG at most) and a small model beside it; its planes
- * alone; a small file; a part of what the socket takes. */
+/* The lowest values that still let a client be served. Memory: a frame of 640 x 480 pixels in
+ * colour, the bytes that it is encoded to (JPEG: at most 6 a pixel) and a small model. Frame: the
+ * colour plane of 640 x 480 pixels. File: a small model. Output: about what a socket's buffer takes
+ * at once. */
 #define LEAST_MEMORY PROTOCOL_LEAST_MEMORY_BYTES
 #define LEAST_FRAME (640u * 480 * 4)
 #define LEAST_FILE (64 * KIB)

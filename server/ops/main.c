@@ -6,7 +6,7 @@
 
 enum exit_code { EXIT_DONE = 0, EXIT_USAGE = 2, EXIT_SERVICE = 4, EXIT_DEVICE = 5 };
 
-/* What a reload needs: the command line, and what is in force. */
+/* What a reload needs: the command line, and the settings in force. */
 struct program {
     int argc;
     char **argv;

@@ -178,7 +178,7 @@ static uint64_t count_descriptors(void)
     for (const struct dirent *entry; (entry = readdir(folder));)
         n += entry->d_name[0] != '.';
     closedir(folder);
-    return n - 1; /* the one it is read through */
+    return n - 1; /* without the descriptor that reads the folder */
 }
 
 static void write_process(const struct daemon *daemon, struct text_buffer *text)
@@ -199,7 +199,7 @@ static void write_process(const struct daemon *daemon, struct text_buffer *text)
     text_buffer_add(text, "\n");
     put(text, "log_lines_left_out_total", "counter", log_left_out(),
         "Log lines above the most a second.");
-    /* The names that every Prometheus client has for these. */
+    /* Names that all Prometheus clients use for these figures. */
     text_buffer_add(
         text,
         "# HELP process_start_time_seconds Unix time of the start.\n"

@@ -17,7 +17,7 @@
 
 struct monitor {
     const struct daemon *daemon;
-    uint64_t stuck_us, watchdog_us; /* watchdog_us 0: nobody watches */
+    uint64_t stuck_us, watchdog_us; /* watchdog_us is 0 without a watchdog */
     bool was_stuck;
     int timer_fd;
     struct loop_source timer;
@@ -25,7 +25,7 @@ struct monitor {
     struct http *http;
 };
 
-/* NULL, or who has been at one piece of work for too long. */
+/* The name of a thread that has worked on one task for too long, or NULL. */
 static const char *who_is_stuck(const struct monitor *monitor)
 {
     uint64_t now = clock_now_us();
@@ -100,7 +100,7 @@ static void timer_ready(struct loop_source *source, uint32_t events)
         listener_resume(monitor->listener);
 }
 
-/* Twice in the time that the watchdog waits, at least once a second. */
+/* Starts a timer with half of the watchdog's period, but at most one second. */
 static bool start_timer(struct monitor *monitor, struct error *error)
 {
     uint64_t us = monitor->watchdog_us ? monitor->watchdog_us / 2 : TICK_US;

@@ -1,6 +1,7 @@
-/* What watches the daemon while it serves: the service manager's watchdog, fed only while the GL
- * thread, the pool and the readers are well, and health and metrics over HTTP. Thread: the loop's.
- */
+/* Watches the daemon while it serves. The monitor feeds the service manager's watchdog as long as
+ * the render thread, the pool and the readers make progress, and it serves health and metrics over
+ * HTTP.
+ * Thread: the loop's. */
 #ifndef SHEEN_OPS_MONITOR_H
 #define SHEEN_OPS_MONITOR_H
 
@@ -10,17 +11,18 @@
 
 struct monitor;
 
-/* stuck_us: a thread that is at one piece of work for longer is taken for stuck. *daemon and what it
- * names stay until monitor_destroy(). */
+/* A thread that works on one task for longer than stuck_us counts as stuck. *daemon and everything
+ * that it points to must stay valid until monitor_destroy(). NULL with ERROR_SERVER on failure. */
 struct monitor *monitor_create(const struct daemon *daemon, uint64_t stuck_us, struct error *error);
 void monitor_destroy(struct monitor *monitor); /* NULL is safe */
 
-/* Serves GET /metrics, /healthz and /readyz at this address, or on a listening socket of the
- * service manager's, which it closes on failure: Unix, or TCP within `reach`, without TLS. */
+/* Serves GET /metrics, /healthz and /readyz without TLS: on a Unix socket, or on a TCP address
+ * within `reach`. monitor_listen() opens the address; monitor_adopt() takes over `fd`, a listening
+ * socket that the service manager has opened, and closes it on failure. */
 bool monitor_listen(struct monitor *monitor, const struct address *address,
                     enum listener_reach reach, struct error *error);
 bool monitor_adopt(struct monitor *monitor, int fd, enum listener_reach reach, struct error *error);
-/* The address that is served; "" when there is none. */
+/* The address that is served; "" if none is. */
 const char *monitor_address(const struct monitor *monitor);
 
 void monitor_set_stuck(struct monitor *monitor, uint64_t stuck_us);

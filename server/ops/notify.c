@@ -20,7 +20,7 @@ void notify_send(const char *state)
     size_t length = strlen(path);
     memcpy(name.sun_path, path, length);
     if (path[0] == '@')
-        name.sun_path[0] = 0; /* Linux's abstract names */
+        name.sun_path[0] = 0; /* an abstract socket name (Linux) */
     int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (fd < 0)
         return;
@@ -30,7 +30,8 @@ void notify_send(const char *state)
     close(fd);
 }
 
-/* A decimal number that is the whole of a variable; false when it is not there or no number. */
+/* Reads an environment variable that holds a decimal number and nothing else. False if there is no
+ * such variable, or if it holds something else. */
 static bool read_variable(const char *name, uint64_t *value)
 {
     const char *text = getenv(name);
@@ -52,7 +53,7 @@ uint64_t notify_watchdog_us(void)
     return other ? 0 : us;
 }
 
-/* LISTEN_FDNAMES: names with ':' between them, one for each descriptor. */
+/* LISTEN_FDNAMES: a name for each descriptor, separated by ':'. */
 static void take_names(struct notify_fds *fds)
 {
     const char *names = getenv("LISTEN_FDNAMES");
@@ -67,7 +68,8 @@ bool notify_listen_fds(struct notify_fds *fds, struct error *error)
 {
     uint64_t pid, n;
     *fds = (struct notify_fds){.n = 0};
-    /* Meant for another process: a child inherits the variables, not the sockets. */
+    /* The variables may be meant for a parent process: a child inherits them, but not the
+     * sockets. */
     if (!read_variable("LISTEN_PID", &pid) || pid != (uint64_t)getpid())
         return true;
     if (!read_variable("LISTEN_FDS", &n) || n > NOTIFY_MAX_FDS)

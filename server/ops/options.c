@@ -71,12 +71,12 @@ static const struct option_row *find_row(const char *name)
 struct file_reader {
     struct settings *settings;
     FILE *file;
-    int line;                   /* the last that was read; no other is once there is an error */
-    bool seen[OPTION_MAX_ROWS]; /* rows that a line was for */
+    int line;                   /* number of the last line read; reading stops at the first error */
+    bool seen[OPTION_MAX_ROWS]; /* the rows that the file has set */
     struct error error;
 };
 
-/* What inih would cut short, or make something else of, without a word. */
+/* Refuses lines that inih would cut off or misread without an error. */
 static bool check_line(const char *line, size_t length, bool is_whole, struct error *error)
 {
     static const char blank[] = " \t\v\f\r\n";
@@ -100,7 +100,7 @@ static bool is_at_end(FILE *file)
     return c == EOF || ungetc(c, file) == EOF;
 }
 
-/* inih's reader: as fgets(). */
+/* The reader for inih, which calls it like fgets(). */
 static char *read_line(char *text, int capacity, void *stream)
 {
     struct file_reader *reader = stream;
@@ -118,7 +118,7 @@ static char *read_line(char *text, int capacity, void *stream)
     return check_line(text, n, is_whole, &reader->error) ? text : NULL;
 }
 
-/* inih's handler: 0 is an error. */
+/* The handler for inih, which takes 0 for an error. */
 static int file_value(void *user, const char *section, const char *name, const char *value)
 {
     struct file_reader *reader = user;
@@ -150,14 +150,14 @@ static bool read_file(struct settings *settings, struct error *error)
     fclose(reader.file);
     if (!is_read)
         return error_set(error, ERROR_REQUEST, "cannot read %s to its end", settings->config);
-    if (wrong > 0 && (!has_error || wrong < reader.line)) /* inih's own: the first that is wrong */
+    if (wrong > 0 && (!has_error || wrong < reader.line)) /* an error that inih found before ours */
         return error_set(error, ERROR_REQUEST, "%s:%d: a line must be 'name = value'",
                          settings->config, wrong);
     return !has_error || error_set(error, ERROR_REQUEST, "%s:%d: %s", settings->config, reader.line,
                                    reader.error.text);
 }
 
-/* One option of the command line. `seen` tells whether it has been there before. */
+/* Takes one option of the command line. *seen: the option has occurred before. */
 static bool take(const struct option_row *row, struct settings *settings, bool *seen,
                  struct error *error)
 {
@@ -172,8 +172,8 @@ static bool is_config(const struct option_row *row)
     return row->offset == offsetof(struct settings, config);
 }
 
-/* Walks the command line: --config and what acts at once, or all the others, so that they go over
- * what the file says. */
+/* Walks the command line. The first walk takes --config and the options that act at once; the
+ * second takes all others, so that they replace the values of the file. */
 static enum options_result walk(int argc, char **argv, struct settings *settings, bool first,
                                 struct error *error)
 {

@@ -30,7 +30,8 @@ static bool add_listen(void *value, const char *text, struct error *error)
 
 static bool set_metrics(void *value, const char *text, struct error *error)
 {
-    memset(value, 0, sizeof(struct service_listen)); /* there is one: the last that is named */
+    /* only one address is kept: the last one given */
+    memset(value, 0, sizeof(struct service_listen));
     return add_listen(value, text, error);
 }
 
@@ -102,7 +103,7 @@ static bool set_device(void *value, const char *text, struct error *error)
     return true;
 }
 
-/* "auto" is a thread for each processor that this process may use. */
+/* "auto": one thread for each processor that this process may use. */
 static bool read_threads(void *value, const char *text, const char *name, unsigned most,
                          struct error *error)
 {
@@ -267,7 +268,7 @@ static const struct option_row OWN_ROWS[] = {
 };
 #define N_OWN_ROWS (sizeof OWN_ROWS / sizeof *OWN_ROWS)
 
-/* A reload takes over times; the rest has been counted on since the start. */
+/* A reload may change limits in seconds only: other parts depend on the rest since the start. */
 static void fill_limit(struct option_row *row, const struct limits_row *limit,
                        char initial[static LIMITS_TEXT_BYTES])
 {
@@ -286,7 +287,7 @@ static void fill_limit(struct option_row *row, const struct limits_row *limit,
     };
 }
 
-static struct option_row rows[OPTION_MAX_ROWS]; /* own, then limits; filled once */
+static struct option_row rows[OPTION_MAX_ROWS]; /* the options, then the limits; filled once */
 
 const struct limits_row *option_limit(const struct option_row *row)
 {
@@ -339,7 +340,8 @@ static bool set_text(const struct option_row *row, char *value, const char *text
     if (*text == 0 || strlen(text) >= row->size)
         return error_set(error, ERROR_REQUEST, "%s must be a text of 1 to %zu bytes", row->name,
                          row->size - 1);
-    strncpy(value, text, row->size); /* the rest is zeros: values are compared byte by byte */
+    /* strncpy() fills the rest with zeros: values are compared byte by byte */
+    strncpy(value, text, row->size);
     return true;
 }
 

@@ -23,33 +23,33 @@
 #include "server/frame/request.h"
 #include "server/session/session.h"
 
-#define SERVICE_TRIM_US 5000000u /* block_cache that lay unused for so long are given back */
-#define SERVICE_LAST_WORK_US                                                                       \
-    3000000u                         /* for other threads, when every client has gone in a drain   \
-                                      */
-#define SERVICE_OWN_DESCRIPTORS 128u /* listeners, devices, libraries: more than are used */
+#define SERVICE_TRIM_US 5000000u /* memory unused for so long goes back to the system */
+/* for other threads to finish, after the last client has gone while draining */
+#define SERVICE_LAST_WORK_US 3000000u
+#define SERVICE_OWN_DESCRIPTORS 128u /* for listeners, devices and libraries; more than are used */
 
 struct service {
-    struct service_options options; /* those in force */
+    struct service_options options; /* the options in force */
     struct service_reloader reloader;
     struct daemon daemon;
     struct monitor *monitor; /* NULL with a single session */
     struct listener *listeners[SERVICE_MAX_LISTENERS];
     size_t n_listeners;
-    struct proxied *proxied; /* NULL with a single session, and once nobody is accepted any more */
+    struct proxied *proxied; /* NULL with a single session, and while draining */
     struct loop_source signals;
     int signal_fd;
     LIST_HEAD(session_list, session) sessions;
-    struct gpu_loss_log gpu_losses; /* of the GPU */
-    uint64_t trimmed_us;            /* when the block_cache were last */
+    struct gpu_loss_log gpu_losses;
+    uint64_t trimmed_us; /* when the block cache was last trimmed */
     enum service_end end;
-    bool overdue; /* drain-timeout has passed, and the log has it */
-    bool single;  /* ends with its session */
+    bool overdue; /* drain-timeout has passed and is logged */
+    bool single;  /* private daemon: ends with its session */
 };
 
 /* --- sessions */
 
-/* Tells a client that cannot have a session why, unless text is NULL, and closes. */
+/* Closes the connection of a client that gets no session, after an error message with `text` unless
+ * it is NULL. */
 static void turn_away(int fd, const char *text)
 {
     sheen_Error error = {.code = sheen_ErrorCode_ERROR_OVERLOADED};
@@ -61,7 +61,7 @@ static void turn_away(int fd, const char *text)
     conn_turn_away(fd, buffer, length);
 }
 
-/* Is there room for one more client? */
+/* False with *error when there are as many clients as allowed. */
 static bool has_room(const struct daemon *daemon, struct error *error)
 {
     return daemon->sessions.n_sessions < daemon->limits.max_connections ||
@@ -77,7 +77,7 @@ static void log_turned_away(struct service *service, enum log_level level, const
               log_text("listener", listener_text(listener)), log_text("text", text));
 }
 
-/* A connection, by whatever way it has come, whose client is known as far as it is before HELLO. */
+/* Starts a session for a new connection. A TLS client is not identified before its HELLO. */
 static void welcome(struct service *service, const struct listener *listener, int fd,
                     const struct session_client *client)
 {
@@ -99,7 +99,8 @@ static void welcome(struct service *service, const struct listener *listener, in
         log_turned_away(service, LOG_WARN, client->peer, listener, error.text);
 }
 
-/* A connection of this machine or network, or one that a balancer tells to be from there. */
+/* Handles a new connection from address `from`, which the socket shows, or a balancer's PROXY
+ * header (by_balancer). */
 static void came_from(struct service *service, const struct listener *listener, int fd,
                       const struct sockaddr *from, bool by_balancer)
 {
@@ -139,7 +140,7 @@ static void accepted(void *owner, const struct listener *listener, int fd)
     struct service *service = owner;
     struct sockaddr_storage address;
     const struct sockaddr *from = (const struct sockaddr *)&address;
-    peer_address(fd, &address); /* of one who has gone: unknown */
+    peer_address(fd, &address); /* if the peer has gone already, the address is unknown */
     if (proxy_networks_hold(&service->options.proxy_from, from))
         proxied_accept(service->proxied, listener, fd);
     else
@@ -182,7 +183,8 @@ static bool any_paused(const struct service *service)
 
 static void drain(struct service *service);
 
-/* The frames that it took with it have been answered. */
+/* Counts GPU losses that the render thread has reported. The frames that were lost have been
+ * answered already. */
 static void count_losses(struct service *service)
 {
     struct daemon *daemon = &service->daemon;
@@ -201,11 +203,12 @@ static void count_losses(struct service *service)
     }
 }
 
-/* With threads at work, so that nothing can be taken down in order. */
+/* Exits at once. Other threads may still be working, so nothing can be freed in order. */
 static void leave_now(struct service *service)
 {
     workers_stop(&service->daemon.workers);
-    monitor_destroy(service->monitor); /* removes its socket; the others have gone */
+    /* removes its socket file; the other listeners are closed already */
+    monitor_destroy(service->monitor);
     if (!service->single)
         log_event(LOG_WARN, "ended while a thread was at work", log_number("code", service->end));
     _exit(service->end);
@@ -225,7 +228,7 @@ static void after_batch(void *owner)
                                        block_cache_bytes(daemon->block_cache) > 0);
     if (has_sessions || !(service->single || draining))
         return;
-    /* Nobody is left to answer; other threads may still be at work. */
+    /* No client is left; other threads may still be at work. */
     store_cancel_builds(daemon->store);
     workers_stop(&daemon->workers);
     if (!store_is_building(daemon->store) && scheduler_is_idle(&daemon->requests.scheduler) &&
@@ -233,7 +236,7 @@ static void after_batch(void *owner)
         loop_stop(daemon->loop);
     else if (service->single || session_host_overdue_us(&daemon->sessions, clock_now_us()) >
                                     SESSION_LAST_WORDS_US + SERVICE_LAST_WORK_US)
-        leave_now(service); /* a tile or a table may take long yet: nobody wants them */
+        leave_now(service); /* a tile or a table may still take long, and no client waits for it */
 }
 
 static void tick(void *owner)
@@ -274,16 +277,16 @@ static void drain(struct service *service)
 {
     struct session_host *sessions = &service->daemon.sessions;
     if (sessions->draining)
-        leave_now(service); /* asked twice */
+        leave_now(service); /* a second signal */
     sessions->draining = true;
     sessions->drain_start_us = clock_now_us();
     close_listeners(service);
-    if (!service->single) /* the manager of a private daemon's client is not its own */
+    if (!service->single) /* $NOTIFY_SOCKET of a private daemon belongs to its client */
         notify_send("STOPPING=1\nSTATUS=finishing what is in flight");
     log_event(LOG_INFO, "shutting down", log_number("sessions", sessions->n_sessions));
 }
 
-/* What may change while the daemon serves. Takes `access` over. */
+/* Puts into force the options that may change while the daemon serves. Takes `access` over. */
 static void apply(struct service *service, const struct service_options *options,
                   struct access *access)
 {
@@ -299,7 +302,7 @@ static void apply(struct service *service, const struct service_options *options
     daemon->limits = options->limits;
     daemon->sessions.limits = options->limits.session;
     workers_set_times(&daemon->workers, &options->limits.workers);
-    /* The client of a private daemon shows its last line when it dies. */
+    /* The client of a private daemon shows the last line of its log when the daemon dies. */
     log_set(service->single ? LOG_ERROR : options->log_level, options->log_format);
     if (service->monitor)
         monitor_set_stuck(service->monitor, options->stuck_s * 1000000);
@@ -313,7 +316,7 @@ static bool has_tls_listener(const struct service *service)
     return false;
 }
 
-/* The new rules, if those who listen can work by them. */
+/* The new rules of access, or NULL with *error if the open listeners cannot work with them. */
 static struct access *access_for(const struct service *service,
                                  const struct service_options *options, struct error *error)
 {
@@ -363,8 +366,8 @@ static bool watch_signals(struct service *service, struct error *error)
     sigaddset(&set, SIGTERM);
     sigaddset(&set, SIGINT);
     if (!service->single)
-        sigaddset(&set, SIGHUP); /* a private daemon hangs up with its terminal */
-    signal(SIGPIPE, SIG_IGN);    /* whoever read the log may have gone */
+        sigaddset(&set, SIGHUP); /* a private daemon ends with its terminal */
+    signal(SIGPIPE, SIG_IGN);    /* the reader of the log may have closed the pipe */
     /* Before any thread starts: threads inherit the mask. */
     pthread_sigmask(SIG_BLOCK, &set, NULL);
     service->signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
@@ -376,7 +379,8 @@ static bool watch_signals(struct service *service, struct error *error)
 
 /* --- start and stop */
 
-/* Keeps a listener that has been opened; NULL has been explained by who returns it. */
+/* Keeps an opened listener. `listener` may be NULL: then *error is already set, and false is
+ * returned. */
 static bool keep_listener(struct service *service, struct listener *listener, struct error *error)
 {
     if (!listener)
@@ -386,8 +390,8 @@ static bool keep_listener(struct service *service, struct listener *listener, st
     return listener_kind(listener) != ADDRESS_TLS || access_can_tls(service->daemon.access, error);
 }
 
-/* The service manager's sockets; one that it calls "metrics" is for those, one called "tls" for
- * TLS. */
+/* Takes over the service manager's sockets. One named "metrics" serves metrics, one named "tls"
+ * speaks TLS. */
 static bool adopt_listeners(struct service *service, struct error *error)
 {
     struct notify_fds fds;
@@ -457,17 +461,17 @@ static bool open_session(struct service *service, int fd, struct error *error)
     return session != NULL;
 }
 
-/* A descriptor for every client, as far as the system lets us. */
+/* Raises the limit of descriptors to `n`, or as far as the system allows. */
 static void allow_descriptors(uint64_t n)
 {
     struct rlimit files;
     if (getrlimit(RLIMIT_NOFILE, &files) < 0 || files.rlim_cur >= n)
         return;
     files.rlim_cur = files.rlim_max < n ? files.rlim_max : n;
-    setrlimit(RLIMIT_NOFILE, &files); /* with fewer, accepting rests when they are used up */
+    setrlimit(RLIMIT_NOFILE, &files); /* if that fails, accepting pauses while all are used */
 }
 
-/* The first of the devices asked for that opens; the error is the last one's. */
+/* Opens the first device of the list that works. On failure *error is that of the last one. */
 static struct render_thread *open_device(struct daemon *daemon,
                                          const struct service_options *options, struct error *error)
 {
@@ -487,8 +491,8 @@ static struct render_thread *open_device(struct daemon *daemon,
     return thread;
 }
 
-/* Threads, worker programs and what they work for. The reader of cages starts while the device
- * opens. */
+/* Starts the worker programs and the threads. The worker program that reads cages starts up while
+ * the device opens. */
 static bool start_threads(struct service *service, struct error *error)
 {
     struct daemon *daemon = &service->daemon;
@@ -511,7 +515,7 @@ static bool start_threads(struct service *service, struct error *error)
                              &daemon->limits.assets, service->single, error));
 }
 
-/* Gives each room what it needs of the others. */
+/* Hands to each folder's part what it needs of the others. */
 static void connect_rooms(struct service *service)
 {
     struct daemon *daemon = &service->daemon;
@@ -567,7 +571,7 @@ static bool start(struct service *service, struct error *error)
     return service->monitor && open_listeners(service, error);
 }
 
-/* Joined by ", ". */
+/* Writes the addresses of all listeners, separated by ", ". */
 static void list_addresses(const struct service *service, char *text, size_t capacity)
 {
     size_t used = 0;
@@ -620,8 +624,9 @@ enum service_end service_run(struct service *service)
     return service->end;
 }
 
-/* The store frees its models through the render thread, which therefore ends after it. What the pools
- * and the render thread finish at the end is delivered before the completions go. */
+/* The order matters: the store frees its models on the render thread, so it goes first. What the
+ * pools and the render thread finish while they stop is still delivered before the completions
+ * go. */
 void service_destroy(struct service *service)
 {
     if (!service)

@@ -1,4 +1,4 @@
-/* What the options of the main service say together. */
+/* Checks the options of the main service together. */
 #include <unistd.h>
 
 #include "server/assets/model_file.h"
@@ -9,8 +9,8 @@ enum listener_reach service_metrics_reach(const struct service_options *options)
     return options->metrics_open ? LISTENER_ANYWHERE : LISTENER_LOOPBACK;
 }
 
-/* Metrics are not worth TLS, but only those may read them whom the administrator lets: this machine,
- * or with --metrics-open whoever reaches the address. */
+/* Metrics are served without TLS, so only this machine may read them, or, with --metrics-open,
+ * everybody who reaches the address. */
 static bool check_metrics(const struct service_options *options, struct error *error)
 {
     const struct address *address = &options->metrics.address[0];
@@ -23,7 +23,7 @@ static bool check_metrics(const struct service_options *options, struct error *e
                          address->host, (unsigned)address->port, (unsigned)address->port);
     if (listener_check(address, service_metrics_reach(options), error))
         return true;
-    return error->kind == ERROR_REQUEST && /* else the name is not known */
+    return error->kind == ERROR_REQUEST && /* else a host name could not be resolved */
            error_set(error, ERROR_REQUEST,
                      "metrics go to this machine alone, and not to tcp:%s:%u: give a Unix socket, "
                      "unix:PATH, or an address on loopback, as tcp:127.0.0.1:%u; or say with "

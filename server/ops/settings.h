@@ -1,5 +1,5 @@
-/* Every value that an option of sheend sets: what options.h reads, and main.c starts the service with.
- */
+/* The values of all options of sheend: options.h fills them in, and main.c starts the service with
+ * them. */
 #ifndef SHEEN_OPS_SETTINGS_H
 #define SHEEN_OPS_SETTINGS_H
 
@@ -7,7 +7,7 @@
 
 #include "server/ops/service.h"
 
-/* Plain data: it can be copied and compared. */
+/* Plain data: may be copied and compared byte by byte. */
 struct settings {
     struct service_options service;
     char config[ACCESS_PATH_BYTES]; /* "": none */
