@@ -12,9 +12,8 @@
 
 #define NO_FACE 0xffffffffu
 #define DEFAULT_DRAFT_DEG 3
-#define LEAST_TURN_RAD                                                                             \
-    1e-5                  /* a smaller turn of the normal over the whole model is taken for
-                             * rounding */
+/* a smaller turn of the normal over the whole model is taken for rounding */
+#define LEAST_TURN_RAD 1e-5
 #define ROUNDING 1e-6     /* of single precision, relative */
 #define SHARE_INSIDE 0.98 /* of the values lie inside a range that is chosen from the frame */
 

@@ -16,9 +16,8 @@
 #define CHECKSUM_BYTES 4
 #define TAIL_BYTES (CHUNK_BYTES + CHECKSUM_BYTES + CHUNK_BYTES)
 #define STREAM_HEAD_BYTES 2 /* of zlib */
-#define FLUSH_BYTES                                                                                \
-    16 /* an empty block that compressBound() does not count, and some to
-                             * spare */
+/* an empty block that compressBound() does not count, and some to spare */
+#define FLUSH_BYTES 16
 
 /* Raw deflate with the library's own window and memory. */
 #define WINDOW_BITS (-15)
