@@ -23,7 +23,7 @@ static double average(double before, double latest)
     return before > 0 ? before + NEWEST * (latest - before) : latest;
 }
 
-/* Keys that share a place drive each other out: what is drawn often stays known. */
+/* Keys that share a slot replace each other: what is drawn often stays known. */
 void costs_learn(struct costs *costs, uint64_t key, uint64_t px, uint64_t us)
 {
     uint64_t place = key % COSTS_SLOTS;

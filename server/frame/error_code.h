@@ -1,4 +1,4 @@
-/* What a client is told of an error: the code of an ERROR message. Pure, any thread. */
+/* Maps an error of the server to the code of an ERROR message. Pure, any thread. */
 #ifndef SHEEN_FRAME_ERROR_CODE_H
 #define SHEEN_FRAME_ERROR_CODE_H
 

@@ -5,7 +5,8 @@
 
 struct party *party_get(struct parties *parties, const uint8_t identity[static OWNER_BYTES])
 {
-    struct party_list *bucket = &parties->buckets[identity[0]]; /* identities are hashes */
+    /* An identity is a hash, so its first byte is uniform. */
+    struct party_list *bucket = &parties->buckets[identity[0]];
     struct party *party;
     LIST_FOREACH (party, bucket, link)
         if (memcmp(party->identity, identity, OWNER_BYTES) == 0)

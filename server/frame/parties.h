@@ -1,5 +1,6 @@
-/* The parties of the scheduler, one for each identity of which a client is connected or a frame is being
- * worked on. Thread: the loop's. */
+/* The scheduler's parties: one for each identity that has a connected client or a frame in
+ * progress. Counted by references.
+ * Thread: the loop's. */
 #ifndef SHEEN_FRAME_PARTIES_H
 #define SHEEN_FRAME_PARTIES_H
 
@@ -11,7 +12,7 @@
 struct party {
     struct schedule_party schedule;
     uint8_t identity[OWNER_BYTES];
-    unsigned references; /* the module's own, as what follows */
+    unsigned references; /* private to parties.c, like what follows */
     LIST_ENTRY(party) link;
 };
 
@@ -19,13 +20,14 @@ LIST_HEAD(party_list, party);
 
 enum { PARTY_BUCKETS = 256 };
 
-struct parties { /* zeroed: nobody */
+struct parties { /* zeroed: empty */
     struct party_list buckets[PARTY_BUCKETS];
 };
 
-/* The party of an identity, with another reference. NULL when memory is short. */
+/* The party of an identity, made if needed; adds a reference. NULL when memory is short. */
 struct party *party_get(struct parties *parties, const uint8_t identity[static OWNER_BYTES]);
+/* Adds a reference; returns `party`. */
 struct party *party_reference(struct party *party);
-void party_put(struct party *party); /* NULL is safe */
+void party_put(struct party *party); /* drops a reference; NULL is safe */
 
 #endif

@@ -91,9 +91,9 @@ static void stop_waiting(struct request *request, struct needed *needed)
     request->n_awaited--;
 }
 
-/* The request goes on without a client if another thread works for it. It stops waiting for builds,
- * which go on without it: a build may take minutes, and a client that asks and cancels again and
- * again must not leave more and more requests behind. */
+/* Removes the client from the request. The request continues if another thread works for it. It
+ * stops waiting for builds, which may take minutes: a client that asks and cancels again and again
+ * must not leave more and more requests behind. */
 static void abandon(struct request *request)
 {
     atomic_store(&request->abandoned, true);
@@ -166,7 +166,7 @@ void request_reply_late(struct request *request)
     refuse_early(request, sheen_ErrorCode_ERROR_DEADLINE, text);
 }
 
-/* Frames that are drawn already are sent all the same. */
+/* Frames that have begun to be drawn are sent even if they are late. */
 void request_end_late(struct request_client *client, uint64_t now_us)
 {
     struct request *request = LIST_FIRST(&client->requests);
@@ -218,7 +218,7 @@ void request_acquire(struct request *request, struct needed *needed, enum asset_
     request_stop_awaiting(request);
 }
 
-/* Answers and returns false when the daemon lacks the file. */
+/* Answers and returns false if the store does not have the file. */
 static bool is_known(struct request *request, enum asset_kind kind, const uint8_t *sha256)
 {
     if (store_find(request->host->store, request->assets_of, request->asker, kind, sha256))
@@ -249,7 +249,8 @@ void request_query(struct request_client *client, struct reply *reply, uint32_t 
     request_stop_awaiting(request);
 }
 
-/* From here on a newer request of its view replaces it. */
+/* Puts the frame into the scheduler's queue. From here on a newer request of its view replaces
+ * it. */
 static void enter_queue(struct request *request)
 {
     struct schedule_entry *entry = &request->entry;
@@ -264,7 +265,7 @@ static void enter_queue(struct request *request)
         request_reply_superseded(replaced->owner, request->seq);
 }
 
-/* Does a worker process write it, or has it a legend? */
+/* True if the frame needs the worker program for images: for its file or for its legend. */
 static bool takes_images(const sheen_Render *render)
 {
     return render->encoding == sheen_Encoding_ENCODING_EXR ||

@@ -1,4 +1,6 @@
-/* What a request knows of its client, and what all requests share. Data. Thread: the loop's. */
+/* The data that requests need of their client, and the data that all requests share. Defines the
+ * events by which a request reports to its client's session.
+ * Thread: the loop's. */
 #ifndef SHEEN_FRAME_REQUEST_CLIENT_H
 #define SHEEN_FRAME_REQUEST_CLIENT_H
 
@@ -14,53 +16,53 @@
 struct request;
 LIST_HEAD(request_list, request);
 
-struct reply; /* where a client's session keeps what it owes to one request: known there alone */
+struct reply; /* the session's record of a reply that it owes; opaque here */
 
 /* What all requests share. It outlives all requests. */
 struct request_host {
     struct pool *pool;
     struct render_thread *render_thread;
     struct workers *workers;
-    struct block_cache *block_cache; /* the memory of frames and of requests */
+    struct block_cache *block_cache; /* memory of frames and requests */
     struct memory *memory;
     struct store *store;
     int models_fd;           /* the folder of --models; -1: none */
-    uint64_t max_file_bytes; /* of one file there */
-    uint32_t gpu_generation; /* 1, and one more for each time that the GPU was lost */
+    uint64_t max_file_bytes; /* largest file in that folder */
+    uint32_t gpu_generation; /* 1, plus 1 for each loss of the GPU */
 
     struct scheduler scheduler;
     struct parties parties;
     struct costs costs;
-    struct request_list parked; /* requests that wait for memory of other frames */
+    struct request_list parked; /* requests that wait until other frames free memory */
     unsigned n_file_loads;      /* files being read from the folder */
 };
 
-/* How a request tells its client's session what has become of it. Each request calls one of the
- * first three, once, unless the client goes before. Called on the loop's thread; a function may
- * close the client's connection, but calls none of the functions below. */
+/* The events by which a request reports to its client's session. Each request calls exactly one of
+ * the first three, once, unless the client goes before. They run on the loop's thread. An event may
+ * close the client's connection; it must not call the functions of request.h. */
 struct request_events {
-    /* Answered by a message of this type; `body` is the struct of the type (message.h). */
+    /* The reply is a message of this type; `body` is the type's struct (message.h). */
     void (*answered)(void *owner, struct reply *reply, uint8_t type, const void *body);
-    /* Answered by an error. */
+    /* The reply is an error. */
     void (*refused)(void *owner, struct reply *reply, sheen_ErrorCode code, const char *text);
-    /* A frame and its DATA, which the session takes over. */
+    /* The reply is a frame with its DATA; the session takes the ownership of `encoded`. */
     void (*drawn)(void *owner, struct reply *reply, enum request_class request_class,
                   const sheen_Frame *frame, struct encoded *encoded);
-    /* A build that the request waits for goes on. */
+    /* A build that the request waits for has made progress. Not a reply. */
     void (*progressed)(void *owner, const struct reply *reply, const sheen_Progress *progress);
-    /* Is an interactive frame on its way to the socket, so that the next has to wait? */
+    /* True while the socket has not taken an earlier interactive frame, so that the next one must
+     * wait. */
     bool (*is_sending)(void *owner);
 };
 
-/* A client as its requests see it; part of its session. */
+/* What requests know of their client; a member of its session. */
 struct request_client {
     struct request_host *host;
     const struct request_events *events;
-    void *owner; /* of the events */
-    struct client_quota
-        *quota;          /* that frames are charged to; of the client's identity, as `party` */
-    struct party *party; /* both NULL until the client has joined, and asks for nothing */
-    /* The client's identity, and the owner of the assets that it may use beside those of
+    void *owner;                /* passed to the events */
+    struct client_quota *quota; /* account of the client's frames */
+    struct party *party;        /* quota and party are NULL until request_client_join() */
+    /* The client's identity, and the owner of the assets that it may use in addition to those of
      * everybody; OWNER_BYTES each. */
     const uint8_t *identity, *assets_of;
 

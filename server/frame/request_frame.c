@@ -1,4 +1,4 @@
-/* How a frame is drawn, painted, encoded and answered. */
+/* How a frame gets its assets, memory and turn, and is drawn and painted. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,19 +9,21 @@
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"
 
-/* Stills and batches are drawn in tiles of so many pixels, so that others wait for one at most. The
- * size depends on the device and the request alone: equal requests give equal bytes. A tile of a
- * software device takes about 11 ms: fender.obj and a car of 1,575 faces at 1600x1000, `sheen
- * stream
- * --class still` on llvmpipe, with 2 cores that others used too. There, cut so, they took 1.5
- * and 1.1 times as long as whole; in tiles of half a megapixel 1.4 and 1.1 times. On hardware the
- * aim is 8 ms or less; that has not been measured. */
+/* Stills and batches are drawn in tiles of this many pixels, so that other frames wait for one tile
+ * at most. The size depends only on the device and the request, so that equal requests give equal
+ * bytes.
+ *
+ * Measured on llvmpipe with 2 cores shared with others, `sheen stream --class still` at 1600x1000
+ * of fender.obj and of a car with 1,575 faces: a tile takes about 11 ms. In such tiles the frames
+ * took 1.5 and 1.1 times as long as whole, in tiles of half a megapixel 1.4 and 1.1 times. On
+ * hardware the aim is 8 ms or less; that has not been measured. */
 #define SOFTWARE_TILE_PX (256u * 256)
 #define HARDWARE_TILE_PX (512u * 512)
-#define LIGHTS_OF_A_TILE 2 /* with more of them tiles are smaller, since each light is a pass */
-/* Up to so many tiles interactive frames are drawn whole, and the planes of all classes are kept
- * and serve all: a still after a drag is shaded alone, in one step, which takes others no longer
- * than the drag's frames have. Beyond, others would wait too long, and the planes be too large. */
+#define LIGHTS_OF_A_TILE 2 /* with more lights tiles are smaller, because each light is a pass */
+/* Frames of up to this many tiles are drawn whole if interactive, and their planes are kept for all
+ * classes: a still after a drag is only shaded again, in one step, which delays others no longer
+ * than the frames of the drag did. Larger frames would delay others too long, and their planes
+ * would take too much memory. */
 #define WHOLE_TILES 32
 
 static uint64_t device_tile_px(const struct request_host *host)
@@ -66,7 +68,7 @@ static uint64_t next_tile_px(const struct request *request)
     return tile > 0 && tile < px ? tile : px;
 }
 
-/* Frames cost alike by the pixel if these are the same. */
+/* Frames with the same key cost about the same per pixel. */
 static uint64_t cost_key(const struct request *request)
 {
     const struct frame_request *asked = &request->frame_request;
@@ -78,17 +80,17 @@ static uint64_t cost_key(const struct request *request)
     }
     key = costs_key(key, asked->planes | (uint64_t)asked->n_lights << 32);
     key = costs_key(key, (uint64_t)asked->surface.kind << 8 | asked->surface.level);
-    return costs_key(key, next_tile_px(request) >> 16); /* small tiles cost more by the pixel */
+    return costs_key(key, next_tile_px(request) >> 16); /* small tiles cost more per pixel */
 }
 
-/* --- polygons, which the store has: one frame or several may show them */
+/* --- polygons: the store makes them, and several frames may share them */
 
 static bool has_begun(const struct request *request)
 {
     return request->frame.width_px > 0;
 }
 
-/* Lets go of them, or stops waiting for them. */
+/* Releases the polygons, or stops waiting for them. */
 static void drop_polygons(struct request *request)
 {
     struct needed *needed = &request->polygons;
@@ -119,12 +121,12 @@ static void polygons_ready(struct asset_waiter *waiter, const struct error *fail
     request_fail(request, failure);
 }
 
-/* Asks for them where the device has never had them, or has none any more. */
+/* Asks the store for the polygons, because the device never had them or has lost them. */
 static void start_polygons(struct request *request)
 {
     struct needed *needed = &request->polygons;
     const uint32_t level = request->frame_request.surface.level;
-    drop_polygons(request); /* those that the device has had and lost */
+    drop_polygons(request); /* the device had these, and has lost them */
     needed->asset = store_find_polygons(request->model.asset, level, &request->failure);
     needed->waiter = (struct asset_waiter){.ready = polygons_ready, .owner = request};
     request_state_move(&request->state, REQUEST_POLYGONS);
@@ -261,7 +263,7 @@ static void step_run(struct task *task, void *context)
     request->step_us = clock_now_us() - start_us;
 }
 
-/* The device has the polygons that the frame shows. */
+/* Records that the device has the polygons of this frame. */
 static void note_polygons(const struct request *request)
 {
     const struct surface *surface = &request->frame_request.surface;
@@ -306,7 +308,7 @@ static enum account_class account_class(const struct request *request)
                                                              : ACCOUNT_PATIENT;
 }
 
-/* Takes the memory of a frame that is about to begin. False when it has to wait or has failed. */
+/* Charges the memory of a frame that is about to begin. False if it has to wait or has failed. */
 static bool take_memory(struct request *request)
 {
     struct request_host *host = request->host;

@@ -1,6 +1,11 @@
-/* What the files of requests share: request.c has their life and how they end early, request_query.c
- * the description of a model, request_frame.c how a frame is drawn, request_reply.c how it is
- * answered. Private to them. Thread: the loop's. */
+/* What the files of this folder share about requests. Private to them.
+ *
+ * request.c        a request's life, and early ends
+ * request_query.c  the description of a model
+ * request_frame.c  how a frame is drawn
+ * request_reply.c  how a frame is encoded and answered
+ *
+ * Thread: the loop's. */
 #ifndef SHEEN_FRAME_REQUEST_INTERNAL_H
 #define SHEEN_FRAME_REQUEST_INTERNAL_H
 
@@ -9,90 +14,92 @@
 #include "server/output/false_colour.h"
 #include "server/output/metadata.h"
 
-/* Something from the store that a request works with. */
+/* An asset of the store that a request needs. */
 struct needed {
     struct request *request;
-    struct asset *asset; /* in use, or waited for; NULL: not */
+    struct asset *asset; /* in use or waited for; NULL: neither */
     struct asset_waiter waiter;
 };
 
 struct request {
     struct request_host *host;
     enum request_state state;
-    struct party *party;             /* the client's, which may go before */
-    struct request_client *client;   /* NULL: REQUEST_ABANDONED, or about to be */
+    struct party *party;             /* the client's; the request holds a reference of its own */
+    struct request_client *client;   /* NULL: it has gone, or the request was answered early */
     LIST_ENTRY(request) client_link; /* while there is a client */
     LIST_ENTRY(request) parked_link; /* while REQUEST_PARKED */
     struct reply *reply;             /* valid while there is a client */
     uint32_t seq;
-    uint8_t assets_of[OWNER_BYTES]; /* the client's, which may go before */
+    uint8_t assets_of[OWNER_BYTES]; /* copied, because the client may go first */
     uint8_t asker[OWNER_BYTES];     /* the client's identity */
-    bool is_query;                  /* of a model; else of a frame */
+    bool is_query;                  /* a model query; else a frame */
     uint64_t start_us, deadline_us; /* clock_now_us(); deadline 0: none */
 
     struct needed model, images[MAX_LIGHTS];
     unsigned n_awaited;
-    struct error failure; /* kind ERROR_NONE: none yet */
+    struct error failure; /* of kind ERROR_NONE: no failure yet */
 
     sheen_Render render;
     struct frame_request frame_request;
-    double up[3]; /* of the model, for what the request left out */
+    double up[3]; /* the model's up direction, for defaults */
     sheen_UpSource up_source;
     struct codec_layout layout;
     struct schedule_entry entry;
     uint64_t cost_key;
     uint64_t frame_bytes;
-    struct memory_charge *charge; /* NULL: nothing yet, or the encoded frame's now */
+    /* Memory of the frame; NULL: none yet, or handed to the encoded frame. */
+    struct memory_charge *charge;
 
-    struct task task;      /* on the render thread, then on the pool to paint false colour */
-    atomic_bool abandoned; /* no client: read by other threads, which then stop early */
+    struct task task;      /* draws on the render thread, then paints false colour on the pool */
+    atomic_bool abandoned; /* true: no client waits; other threads read it and stop early */
     struct frame_work frame_work;
     enum frame_step step;
-    uint64_t step_us; /* the render thread's time */
+    uint64_t step_us; /* what the latest step took on the render thread */
     struct frame frame;
     sheen_Times times;
-    bool is_blank; /* no pixel shows any of the model */
+    bool is_blank; /* no pixel shows the model */
     struct false_colour_extremes extremes;
     bool has_light_share;
-    double light_share; /* of what is seen: where a light is met */
+    double light_share; /* of the visible surface, the share whose rays meet a light; 0 to 1 */
     uint64_t encode_start_us;
     struct metadata metadata;
-    struct needed polygons; /* from when the device lacks them until the frame ends */
-    struct encoded *held;   /* while REQUEST_HELD */
+    struct needed polygons; /* set while the frame draws polygons that the device did not have */
+    struct encoded *held;   /* set in state REQUEST_HELD */
 };
 
 /* --- request.c */
 
-/* Asks the store for an asset of the client's; assets_ready() follows when all that the request
- * needs is there. */
+/* Asks the store for an asset. assets_ready() is called when all assets of the request are
+ * there. */
 void request_acquire(struct request *request, struct needed *needed, enum asset_kind kind,
                      const uint8_t *sha256);
-/* One thing less is waited for. */
+/* Counts down what the request waits for. */
 void request_stop_awaiting(struct request *request);
-/* The request's work is over. */
+/* Frees the request. */
 void request_end(struct request *request);
 void request_fail(struct request *request, const struct error *error);
-/* Gives the reply, and goes on without a client until nobody works for the request. */
+/* Answers that a newer request of the same view, by_seq, replaces this one, and abandons it. */
 void request_reply_superseded(struct request *request, uint32_t by_seq);
 bool request_is_late(const struct request *request, uint64_t now_us);
 void request_reply_late(struct request *request);
 
 /* --- request_query.c */
 
-/* Begins to read the model's file, which lies at the daemon; request->failure says why not. */
+/* Starts to read the model's file from the folder of --models. On failure sets request->failure. */
 void request_load_file(struct request *request, const char *name);
 void request_reply_query(struct request *request);
 
 /* --- request_frame.c */
 
-/* All assets are there: the frame joins the queue. Fails the request if it cannot be drawn. */
+/* Puts the frame into the scheduler's queue once all assets are there. Ends the request if it
+ * cannot be drawn. */
 void request_queue_frame(struct request *request);
 /* Frees what is left of a frame that will not be sent. */
 void request_drop_frame(struct request *request);
 
 /* --- request_reply.c */
 
-/* All tiles are drawn, and painted: REQUEST_ENCODING follows. */
+/* Starts to encode a frame that is drawn and painted; moves to REQUEST_ENCODING. */
 void request_start_encoding(struct request *request);
 
 static inline enum pool_urgency request_urgency(const struct request *request)

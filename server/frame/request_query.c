@@ -1,4 +1,4 @@
-/* What a model is: the reply to MODEL_QUERY. */
+/* The reply to MODEL_QUERY: a model's description. */
 #include <stdio.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ static void fill_statistics(sheen_ModelInfo *info, const struct cage_statistics 
                                                       statistics->extraordinary[i].count};
 }
 
-/* The wire numbers the kinds as the cage does. */
+/* The protocol numbers the kinds of findings as the cage does. */
 static void fill_findings(sheen_ModelInfo *info, const struct model *model)
 {
     _Static_assert(N_CAGE_FINDINGS <= sizeof info->findings / sizeof *info->findings,
@@ -88,7 +88,7 @@ static void file_loaded(void *owner, const uint8_t *sha256, const struct error *
     request->host->n_file_loads--;
     if (!sha256)
         request->failure = *error;
-    else if (request->state != REQUEST_ABANDONED) /* else nobody waits: there is nothing to build */
+    else if (request->state != REQUEST_ABANDONED) /* an abandoned request needs no model */
         request_acquire(request, &request->model, ASSET_MODEL, sha256);
     request_stop_awaiting(request);
 }

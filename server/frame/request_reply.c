@@ -68,7 +68,7 @@ static void reply_frame(struct request *request, struct encoded *encoded)
     request_end(request);
 }
 
-/* Its memory goes with the encoded frame from here on. */
+/* Hands the charge for the request's memory to the encoded frame. */
 static void hand_over_charge(struct request *request, struct encoded *encoded)
 {
     memory_charge_shrink(request->charge, encoded->size);
@@ -77,7 +77,8 @@ static void hand_over_charge(struct request *request, struct encoded *encoded)
     request->charge = NULL;
 }
 
-/* An interactive frame is still on its way to the socket: this one waits, if it is the newest. */
+/* Holds a frame back while an earlier interactive frame is being sent. If a newer one was
+ * requested, this one is superseded. */
 static void hold(struct request *request, struct encoded *encoded)
 {
     request_state_move(&request->state, REQUEST_HELD);

@@ -6,10 +6,11 @@
 
 #define TO(state) (1u << REQUEST_##state)
 
-/* Every request can end, and one that another thread works for can be abandoned. */
+/* The table of transitions: every request can end, and every request that another thread works for
+ * can be abandoned. */
 static const struct {
     const char *name;
-    unsigned next; /* bits: states that may follow */
+    unsigned next; /* states that may follow, one bit each */
     bool is_busy;
 } STATES[N_REQUEST_STATES] = {
     [REQUEST_LOADING] = {"loading", TO(POLYGONS) | TO(QUEUED) | TO(ABANDONED) | TO(ENDED), false},

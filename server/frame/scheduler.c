@@ -29,7 +29,7 @@ static struct schedule_part *part_of(const struct schedule_entry *entry)
     return &entry->party->part[entry->request_class];
 }
 
-/* Books time against the entry's connection and its party. */
+/* Charges time to the entry's connection and to its party. */
 static void charge(const struct schedule_entry *entry, int64_t us)
 {
     turn_charge(&part_of(entry)->turn, us);
@@ -44,7 +44,7 @@ static bool has_begun(const struct schedule_entry *entry)
     return entry->state >= SCHEDULE_DRAWING;
 }
 
-/* Not begun yet, or done and not on its way. */
+/* True if the frame has not begun, or is finished but not being sent. */
 static bool is_replaceable(const struct schedule_entry *entry)
 {
     return entry->has_view && entry->request_class != CLASS_BATCH &&
@@ -133,17 +133,18 @@ struct schedule_entry *scheduler_hold(struct schedule_entry *entry)
 
 /* --- whose turn it is */
 
-/* May another frame of this class begin? Where as many have begun as keep the pool busy, only one of a
- * party that has hardly any: nobody is kept out by the frames of others, which may wait for sockets
- * that are not read. */
+/* May another frame of this class begin? When the class has enough frames begun to keep the pool
+ * busy, only a party with hardly any may begin another. So nobody is kept out by the frames of
+ * others, which may wait for clients that do not read. */
 static bool may_begin(const struct schedule_class *class, const struct schedule_part *part)
 {
     return class->begun < SCHEDULER_PER_CLASS || part->begun < SCHEDULER_PER_PARTY;
 }
 
-/* The flow's entry that may draw now, or NULL. It draws one frame after the other: what begins late
- * may be replaced until then. No other begins before one that waits: its answer would stand behind
- * that one's, and its memory be what the other waits for. */
+/* The flow's entry that may draw now, or NULL. A flow draws one frame at a time, because a frame
+ * that begins later can be replaced for longer. No frame begins before an older one that waits: its
+ * reply would have to wait for the older one's, while it holds memory that the older one may wait
+ * for. */
 static struct schedule_entry *drawable(const struct scheduler *scheduler,
                                        const struct schedule_flow *flow,
                                        enum request_class request_class)
@@ -168,7 +169,7 @@ static struct schedule_entry *drawable(const struct scheduler *scheduler,
     return begins ? first_ready : NULL;
 }
 
-/* What the two rings of a class are asked with. */
+/* The context with which both rings of a class are searched. */
 struct choice {
     const struct scheduler *scheduler;
     enum request_class request_class;
@@ -206,7 +207,7 @@ static bool can_draw(const struct scheduler *scheduler, enum request_class reque
     return false;
 }
 
-/* There is one that can draw: first a party has its turn, then one of its connections. */
+/* Chooses the party, then its connection. The caller knows that some entry can draw. */
 static struct schedule_entry *pick(struct scheduler *scheduler, enum request_class request_class)
 {
     struct choice choice = {scheduler, request_class};
@@ -216,8 +217,8 @@ static struct schedule_entry *pick(struct scheduler *scheduler, enum request_cla
     return drawable(scheduler, turn->of, request_class);
 }
 
-/* Books time of the device: a part of it to those that wait for their share, all of it against the
- * share of the class that used it, unless nobody else wanted it. */
+/* Books time of the device. Classes that wait are owed their share of it; the class that used it
+ * pays all of it from its share, unless no other class wanted the device. */
 static void book(struct scheduler *scheduler, enum request_class used_by, int64_t us)
 {
     bool waits[N_CLASSES], wanted = false;
@@ -236,7 +237,7 @@ static void book(struct scheduler *scheduler, enum request_class used_by, int64_
     }
 }
 
-/* Stills or batches that have waited for their share, else N_CLASSES. */
+/* The class, stills or batches, that is owed most time and can draw; else N_CLASSES. */
 static int owed_class(const struct scheduler *scheduler)
 {
     int most = N_CLASSES;

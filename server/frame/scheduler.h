@@ -1,13 +1,16 @@
-/* Which frame draws its next tile: interactive ones first, stills and batches with a fifth of the
- * device's time each as long as they want it. Within a class every party, which is a client's identity,
- * has an equal share of the time, and of its share each of its connections, whatever their frames cost
- * (turns.h).
+/* The scheduler decides which frame draws its next tile. Interactive frames come first, but while
+ * stills or batches wait, each of these two classes gets a fifth of the device's time. Within a
+ * class every party (a client's identity) has an equal share of the time, and within a party every
+ * connection, however expensive their frames are (turns.h).
  *
- * Pure bookkeeping over nodes embedded in their owners: no descriptor, no thread, no clock, no
- * allocation; times are what the owner measured. A frame is an entry: it enters when it is asked
- * for and may be replaced by a newer one of its view until it begins; then it is drawn in steps of
- * one tile, encoded, and leaves. Bounds on what has begun bound the queues of the pool and the
- * memory of finished frames. Thread: one at a time. */
+ * A frame is an entry. It enters the queue when it is requested; until it begins to be drawn, a
+ * newer frame of the same view may replace it. Then it is drawn tile by tile, encoded, and leaves.
+ * The number of frames that have begun is bounded, which bounds the pool's queue and the memory of
+ * finished frames.
+ *
+ * Plain data, embedded in the structs of its users: no file descriptor, no thread, no clock, no
+ * allocation. Times are measured by the caller.
+ * Thread: one at a time. */
 #ifndef SHEEN_FRAME_SCHEDULER_H
 #define SHEEN_FRAME_SCHEDULER_H
 
@@ -20,58 +23,60 @@
 enum request_class { CLASS_INTERACTIVE, CLASS_STILL, CLASS_BATCH };
 enum { N_CLASSES = 3 };
 
-#define SCHEDULER_PER_QUEUE 2u     /* begun, of a session and class: one draws, one is encoded */
-#define SCHEDULER_PER_PARTY 2u     /* begun, of a party and class, however many others have */
-#define SCHEDULER_PER_CLASS 8u     /* begun, of a class: keeps the pool busy, no more */
-#define SCHEDULER_SHARE_PERCENT 20 /* of the time, for stills and for batches, while they wait */
+/* Frames begun of one session and class: one is drawn while another is encoded. */
+#define SCHEDULER_PER_QUEUE 2u
+#define SCHEDULER_PER_PARTY 2u /* frames begun of one party and class that are always allowed */
+#define SCHEDULER_PER_CLASS 8u /* frames begun of one class: enough to keep the pool busy */
+/* Of the device's time for stills, and for batches, while they wait. */
+#define SCHEDULER_SHARE_PERCENT 20
 
 enum schedule_state {
     SCHEDULE_OUT,      /* in no queue */
-    SCHEDULE_WAITING,  /* for a model, an image or memory */
-    SCHEDULE_READY,    /* to begin */
+    SCHEDULE_WAITING,  /* waits for a model, an image or memory */
+    SCHEDULE_READY,    /* may begin */
     SCHEDULE_DRAWING,  /* a tile is on the device */
     SCHEDULE_BEGUN,    /* between two tiles */
     SCHEDULE_ENCODING, /* the last tile is drawn */
-    SCHEDULE_HELD,     /* encoded, until the socket can take it: may still be replaced */
+    SCHEDULE_HELD,     /* encoded; waits for the socket, and may still be replaced */
 };
 
 struct schedule_queue;
 
 struct schedule_entry {
-    /* Set before it enters. */
+    /* Set these before scheduler_enter(). */
     enum request_class request_class;
-    bool has_view; /* else it neither replaces nor is replaced */
+    bool has_view; /* false: the entry neither replaces another nor is replaced */
     uint32_t view;
     void *owner;
-    uint64_t estimate_us; /* of its next tile; may be changed between steps */
+    uint64_t estimate_us; /* expected time of the next tile; may be changed between tiles */
 
     enum schedule_state state;
-    struct schedule_queue *queue; /* NULL once it has left, or its session has */
-    struct schedule_party *party; /* its queue's, also after that: until nobody works for it */
+    struct schedule_queue *queue; /* NULL after the entry or its session has left */
+    struct schedule_party *party; /* the queue's party; valid until scheduler_finished() */
     TAILQ_ENTRY(schedule_entry) link;
-    uint64_t charged_us; /* for the tile on the device */
-    bool has_drawn;      /* a tile */
+    uint64_t charged_us; /* charged in advance for the tile on the device */
+    bool has_drawn;      /* at least one tile was drawn */
 };
 
-/* A session's part in one class. */
+/* What a session has in one class. */
 struct schedule_flow {
-    struct turn turn; /* among those of its party */
+    struct turn turn; /* its turn among the sessions of its party */
     struct schedule_queue *queue;
-    unsigned n, begun; /* entries */
-    bool held;         /* the session cannot take more output of this class: begin nothing */
+    unsigned n, begun; /* number of entries; of those, how many have begun */
+    bool held;         /* the session's socket is busy: begin no frame of this class */
 };
 
 struct schedule_queue {                                   /* one per session */
-    TAILQ_HEAD(schedule_entries, schedule_entry) entries; /* in the order in which they entered */
+    TAILQ_HEAD(schedule_entries, schedule_entry) entries; /* in order of entering */
     struct schedule_party *party;
     struct schedule_flow flow[N_CLASSES];
 };
 
-/* A party's part in one class. */
+/* What a party has in one class. */
 struct schedule_part {
-    struct turn turn;   /* among all parties */
+    struct turn turn;   /* its turn among the parties */
     struct turns flows; /* with entries */
-    unsigned begun;     /* counted as that of the class */
+    unsigned begun;     /* frames begun, as in struct schedule_class */
 };
 
 struct schedule_party { /* one for each identity; outlives its entries */
@@ -81,53 +86,56 @@ struct schedule_party { /* one for each identity; outlives its entries */
 struct schedule_class {
     struct turns parts; /* with entries */
     unsigned begun;
-    int64_t owed_us; /* of its share; the class is served before others while this is above 0 */
+    /* The part of its share that it has not had; while above 0 the class is served first. */
+    int64_t owed_us;
     uint64_t spent_us;
 };
 
 struct scheduler {
     struct schedule_class classes[N_CLASSES];
-    unsigned waiting;   /* entries that have not begun */
-    unsigned on_device; /* tiles that scheduler_next() has given out: at most 2 */
+    unsigned waiting;   /* number of entries that have not begun */
+    unsigned on_device; /* tiles being drawn: at most 2 */
 };
 
 void scheduler_add_party(struct schedule_party *party);
 void scheduler_add_queue(struct schedule_queue *queue, struct schedule_party *party);
 
-/* The entry joins its session's queue, WAITING. Returns the entry of the same view that it
- * replaces, which has left, or NULL. Batches are not replaced and replace nothing. */
+/* Adds an entry to its session's queue, in state WAITING. If it replaces an older entry of the same
+ * view, that one leaves and is returned; else NULL. Batches neither replace nor are replaced. */
 struct schedule_entry *scheduler_enter(struct scheduler *scheduler, struct schedule_queue *queue,
                                        struct schedule_entry *entry);
-void scheduler_ready(struct schedule_entry *entry); /* WAITING to READY */
+void scheduler_ready(struct schedule_entry *entry); /* moves from WAITING to READY */
 
-/* The next entry to draw a tile of, now DRAWING, or NULL when none may. While one tile is on the
- * device, a second is given out only if it is interactive and no class is owed its share. So an
- * interactive frame waits for at most one tile of another class, and for the shares that are owed. */
+/* Chooses the entry whose next tile is to be drawn, and moves it to DRAWING. NULL if none may draw.
+ * While one tile is on the device, a second one is given out only if it is interactive and no other
+ * class is owed time. So an interactive frame waits for at most one tile of another class, plus the
+ * time owed. */
 struct schedule_entry *scheduler_next(struct scheduler *scheduler);
 
-/* The tile will not be drawn: all is as before scheduler_next(), but that an entry that has not
- * begun is WAITING. */
+/* Undoes scheduler_next(), because the tile will not be drawn now. An entry that had not drawn a
+ * tile becomes WAITING. */
 void scheduler_put_back(struct scheduler *scheduler, struct schedule_entry *entry);
 
-/* The tile has been drawn and took so long. The entry is BEGUN if it has more of them, else
- * ENCODING. It may have left meanwhile. */
+/* Reports that the tile is drawn and took took_us. The entry becomes BEGUN if it has more tiles,
+ * else ENCODING. It may have left in the meantime. */
 void scheduler_stepped(struct scheduler *scheduler, struct schedule_entry *entry, uint64_t took_us,
                        bool more);
 
-/* Something had to be made before its next tile, and is: from ENCODING back to BEGUN. */
+/* Moves an entry from ENCODING back to BEGUN: the polygons that its next tile needs are there. */
 void scheduler_resume(struct schedule_entry *entry);
 
-/* ENCODING to HELD. Returns the entry that has asked for the same view since, or NULL: then the
- * frame is worth keeping. */
+/* Moves an entry from ENCODING to HELD. Returns a newer entry of the same view if there is one:
+ * then the held frame is obsolete. Else NULL. */
 struct schedule_entry *scheduler_hold(struct schedule_entry *entry);
 
-/* The entry leaves its queue, in whatever state. One that is DRAWING or ENCODING is still counted
- * as begun until scheduler_finished(). */
+/* The entry leaves its queue. If it is DRAWING or ENCODING, it still counts as begun until
+ * scheduler_finished(). */
 void scheduler_leave(struct scheduler *scheduler, struct schedule_entry *entry);
-/* Nobody works for the entry any more, which has begun. It leaves if it has not. */
+/* No thread works for the entry any more: it stops counting as begun, and leaves if it has not
+ * yet. */
 void scheduler_finished(struct scheduler *scheduler, struct schedule_entry *entry);
 
-/* Nobody works for any entry. */
+/* True if no entry is being drawn or encoded, and none is held. */
 bool scheduler_is_idle(const struct scheduler *scheduler);
 
 #endif

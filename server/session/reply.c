@@ -10,7 +10,7 @@ struct reply {
     bool ready, last;
     uint8_t *message; /* header and body */
     size_t length;
-    struct encoded *encoded; /* of a frame, or NULL */
+    struct encoded *encoded; /* a frame's DATA; NULL: none */
 };
 
 void reply_list_init(struct reply_list *list, struct block_cache *block_cache)
@@ -101,7 +101,7 @@ static void send_data_header(struct conn *conn, uint32_t seq, uint32_t length, b
     conn_send(conn, bytes, sizeof bytes);
 }
 
-/* Cuts the pieces into DATA messages. The last block gives all of them back. */
+/* Cuts the pieces into DATA messages. When the last block is sent, all pieces are freed. */
 static void send_data(struct conn *conn, uint32_t seq, struct encoded *encoded)
 {
     size_t piece = 0, offset = 0;
@@ -136,10 +136,11 @@ static void send_reply(struct reply_list *list, struct reply *reply, struct conn
         list->unsent++;
     }
     send_data(conn, reply->seq, reply->encoded);
-    reply->encoded = NULL; /* the connection's now */
+    reply->encoded = NULL; /* owned by the connection from here on */
 }
 
-/* Whether an answer may go out when those before it, of the classes in `owed`, have not. */
+/* May the reply leave now? owed[c]: a frame of class c that was asked for earlier has not left
+ * yet. */
 static bool is_due(const struct reply_list *list, const struct reply *reply,
                    const bool owed[static N_CLASSES])
 {
@@ -159,7 +160,7 @@ void reply_send_due(struct reply_list *list, struct conn *conn)
     struct reply *reply = TAILQ_FIRST(&list->replies);
     while (reply && !is_over) {
         struct reply *next = TAILQ_NEXT(reply, link);
-        is_over = reply->last; /* nothing after it */
+        is_over = reply->last; /* no reply leaves after the last */
         if (is_due(list, reply, owed)) {
             closes = reply->last;
             send_reply(list, reply, conn);
@@ -167,7 +168,7 @@ void reply_send_due(struct reply_list *list, struct conn *conn)
             sent = true;
         } else {
             owed[reply->request_class] = true;
-            is_over |= list->is_ordered; /* nothing overtakes */
+            is_over |= list->is_ordered; /* no reply may overtake this one */
         }
         reply = next;
     }

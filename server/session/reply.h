@@ -1,5 +1,7 @@
-/* The replies that one connection owes. Frames of a class go out in the order of their requests,
- * everything else as soon as it is ready; to a peer of minor version 0 all goes out in order.
+/* The replies that one connection owes to its client. Each request gets a place in the list when it
+ * comes; the reply is sent when it is ready. Frames of one class leave in the order of their
+ * requests; all other replies leave as soon as they are ready. For a peer of minor version 0 all
+ * replies leave in the order of the requests.
  * Thread: the loop's. */
 #ifndef SHEEN_SESSION_REPLY_H
 #define SHEEN_SESSION_REPLY_H
@@ -11,39 +13,43 @@
 #include "server/output/encode.h"
 #include "server/frame/scheduler.h"
 
-struct reply; /* one that is owed; lives in its list until it is sent */
+struct reply; /* a reply that is owed; the list owns it until it is sent */
 
 struct reply_list {
     TAILQ_HEAD(replies, reply) replies; /* in the order of their requests */
-    unsigned n;                         /* owed */
-    bool is_ordered;                    /* as minor version 0 has it */
-    unsigned unsent;                    /* interactive frames handed to the connection: at most 1 */
-    struct block_cache *block_cache;    /* where the replies' memory comes from, or NULL */
+    unsigned n;                         /* number of replies that are owed */
+    /* All replies leave in the order of the requests (minor version 0). */
+    bool is_ordered;
+    /* Interactive frames that the connection has not sent yet: at most 1. */
+    unsigned unsent;
+    struct block_cache *block_cache; /* memory of the replies; NULL: malloc() */
 };
 
-/* None is owed. `block_cache`: as in the struct. */
+/* Starts an empty list. Nothing is allocated. */
 void reply_list_init(struct reply_list *list, struct block_cache *block_cache);
 
-/* A request has come; `request_class` is that of its frame, CLASS_STILL for what has none. NULL
- * when memory is short: the connection cannot go on then. */
+/* Adds a reply for the request with number `seq`. `request_class` is the class of its frame, and
+ * CLASS_STILL for requests without a frame. NULL when memory is short: then the connection must
+ * end. */
 struct reply *reply_expect(struct reply_list *list, uint32_t seq, enum request_class request_class);
-/* Is a request of this number unanswered? */
+/* True if a reply to the request with this number is still owed. */
 bool reply_list_owes(const struct reply_list *list, uint32_t seq);
-/* The number of the request. */
+/* The number of the request that the reply answers. */
 uint32_t reply_seq(const struct reply *reply);
-/* Gives up all that is owed. */
+/* Frees all replies without sending them. */
 void reply_list_finish(struct reply_list *list);
 
-/* The reply is ready: `body` is the struct of `type` (message.h), encoded at once. False when it
- * breaks the schema or memory is short: the connection cannot go on then. */
+/* Fills in a reply: encodes `body`, the struct of message `type` (message.h), and copies it. False
+ * if it breaks the schema or memory is short: then the connection must end. */
 bool reply_fill(struct reply *reply, uint8_t type, const void *body);
-/* As reply_fill() for a FRAME and the DATA behind it. Takes `encoded` over in any case. */
+/* As reply_fill() for a FRAME message and the DATA messages behind it. Takes the ownership of
+ * `encoded` in any case. */
 bool reply_fill_frame(struct reply *reply, const sheen_Frame *frame, struct encoded *encoded);
-/* Nothing comes after this reply, and it comes after all others: the connection closes behind
- * it. */
+/* Marks the reply as the last: it is sent after all others, and the connection closes after it. */
 void reply_mark_last(struct reply *reply);
 
-/* Hands all answers that are due to the connection, and closes it behind the last. */
+/* Hands all replies that may leave now to the connection. After the last one (reply_mark_last())
+ * the connection is closed. */
 void reply_send_due(struct reply_list *list, struct conn *conn);
 
 #endif

@@ -40,7 +40,7 @@ void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code,
 
 static void handle_hello(struct session *session, uint32_t seq, const uint8_t *body, size_t length)
 {
-    uint8_t model_id[MODEL_ID_BYTES]; /* for balancers; here any model may be named later */
+    uint8_t model_id[MODEL_ID_BYTES]; /* for balancers only: the client may name any model later */
     sheen_Hello hello;
     char text[MESSAGE_TEXT_BYTES];
     if (!message_hello_decode(body, length, model_id, &hello)) {
@@ -101,7 +101,7 @@ static void handle_body(struct session *session, const struct message_header *he
         session_render(session, header->seq, &body.render);
 }
 
-/* Reads on only while there is room for another request and for its answer. */
+/* Reads further input only while there is room for another request and for its reply. */
 static void update_hold(struct session *session)
 {
     bool clogged = conn_unsent_bytes(&session->conn) > SESSION_MAX_UNSENT_BYTES;
@@ -131,7 +131,8 @@ static void on_message(void *owner, const struct message_header *header, const u
         session_refuse(session, header->seq, sheen_ErrorCode_ERROR_PROTOCOL,
                        "%s: more requests unanswered than HELLO_OK's credits allow",
                        message_type_name(header->type));
-        request_cancel_all(&session->requests); /* who floods is not served first */
+        /* Requests of a client that floods are not served. */
+        request_cancel_all(&session->requests);
         return;
     }
     switch (header->type) {

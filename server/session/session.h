@@ -1,36 +1,42 @@
-/* One client: its handshake, its upload, its requests, its limits.
+/* A session serves one connected client: handshake, upload, requests, limits. It knows its
+ * connection (server/net) and its requests (server/frame).
  *
- * The protocol's rules for the order of messages are held here and nowhere else. A client that
- * breaks the protocol is told so and disconnected; every other failure is an ERROR answer to one
- * request. Thread: the loop's. */
+ * Only this folder enforces the order of messages that the protocol demands. A client that breaks
+ * the protocol gets an ERROR and is disconnected; every other failure is an ERROR reply to one
+ * request.
+ * Thread: the loop's. */
 #ifndef SHEEN_SESSION_SESSION_H
 #define SHEEN_SESSION_SESSION_H
 
 #include "server/session/session_state.h"
 
-/* How long the drain has gone on beyond drain-timeout, in microseconds; 0: it has not. */
+/* How long ago drain-timeout has passed, in microseconds; 0: not draining, or not passed yet. */
 uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_us);
 
-/* A seat for one more connection of an identity. ERROR_SERVER when it has as many as it may, or
- * without memory. */
+/* Takes a seat for one more connection of an identity. False with ERROR_SERVER when the identity
+ * has as many connections as it may, or when memory is short. The caller owns the seat until
+ * session_create(). */
 bool session_take_seat(struct session_host *host, const struct identity *identity,
                        struct session_seat *seat, struct error *error);
 void session_leave_seat(struct session_seat *seat);
 
-/* Takes the socket over (closes it on failure), and the seat, which is zeroed for a client that shows
- * who it is by HELLO. */
+/* Starts a session on a connected socket. Takes over the socket and the seat, on failure too. A
+ * client that proves its identity by HELLO (CLIENT_TLS) comes with a zeroed seat. Copies *client.
+ * NULL with ERROR_SERVER on failure. */
 struct session *session_create(struct session_host *host, int fd,
                                const struct session_client *client, struct session_seat seat,
                                struct error *error);
-/* Closes at once; requests in flight end unseen. */
+/* Closes the connection at once. Requests in flight continue without a client and free
+ * themselves. */
 void session_destroy(struct session *session);
 
-/* After every batch of events: delivers what was held back, closes what is over. False when the
- * session is closed and may be destroyed. */
+/* Call it after each batch of events: sends replies that are due and delivers messages that were
+ * held back. False when the connection is closed: then destroy the session. */
 bool session_settle(struct session *session);
-/* Deadlines and progress. */
+/* Call it regularly: enforces deadlines and limits, and sends progress messages. */
 void session_tick(struct session *session, uint64_t now_us);
-/* Closes when the client may not be here any more, by rules of access that may have changed. */
+/* Closes the connection if the rules of access do not admit the client any more. `changed`: the
+ * rules were reloaded, so certificates are verified again too. */
 void session_check_access(struct session *session, bool changed);
 
 #endif

@@ -1,5 +1,5 @@
-/* The order of messages, and the room for long ones: a long message gets none before it is its turn,
- * and all that it gets is charged to --peer-memory and --memory-budget. */
+/* The order of messages, and memory for long ones. A long message gets memory only when it may come
+ * now; all of that memory is charged to --peer-memory and --memory-budget. */
 #include "server/session/session_internal.h"
 #include "server/frame/error_code.h"
 
@@ -42,7 +42,7 @@ bool session_make_room(void *owner, const struct message_header *header, size_t 
     }
     bool is_chunk = header->type == MESSAGE_UPLOAD_CHUNK;
     if (is_chunk && !session->upload)
-        return false; /* it has failed */
+        return false; /* the upload has failed already */
     size_t more = bytes - CONN_IN_BYTES - session->input_bytes;
     if (memory_charge_input(session->host->memory, session->requests.quota,
                             session->client.identity.owner, more, "a message", ERROR_REQUEST,

@@ -12,7 +12,7 @@ void session_log_disconnect(struct session *session, const char *reason)
               log_text("peer", session->client.peer), log_text("text", reason));
 }
 
-/* Closes a client that cannot be told why, or not in time; the log has the reason. */
+/* Disconnects a client without a message, because it does not read. The log gets the reason. */
 static void __attribute__((format(printf, 2, 3)))
 disconnect(struct session *session, const char *format, ...)
 {
@@ -52,7 +52,7 @@ uint64_t session_host_overdue_us(const struct session_host *host, uint64_t now_u
     return host->draining && now_us > end_us ? now_us - end_us : 0;
 }
 
-/* What the client has not read for too long, or too much of it; NULL: nothing. */
+/* The limit of unsent output that the client exceeds; NULL: none. */
 static const char *output_limit(struct session *session, uint64_t now)
 {
     const struct session_limits *limits = &session->host->limits;
@@ -74,7 +74,7 @@ static const char *output_limit(struct session *session, uint64_t now)
                : NULL;
 }
 
-/* The client has been silent for too long, and is told for how long it may be. */
+/* Ends the session of a client that was silent for too long, and tells it the limit. */
 static void refuse_late(struct session *session, enum stats_end end, const char *format,
                         uint64_t limit_s)
 {
@@ -87,7 +87,7 @@ static void refuse_late(struct session *session, enum stats_end end, const char 
                    "%s", text);
 }
 
-/* Ends a session whose client has not sent something for too long, and tells the client. */
+/* Ends a session whose client has not sent something in time, and tells the client. */
 static void check_input(struct session *session, uint64_t now)
 {
     struct conn *conn = &session->conn;
@@ -122,7 +122,7 @@ void session_check_limits(struct session *session, uint64_t now)
     if (limit)
         disconnect(session, "%zu bytes unsent: %s", conn_unsent_bytes(conn), limit);
     else if (session_host_overdue_us(session->host, now) > SESSION_LAST_WORDS_US)
-        conn_close(conn); /* it has been told, and leaves its end open */
+        conn_close(conn); /* the client was told, but has not closed its side */
     else if (conn->state == CONN_LINGERING && now - conn->last_in_us > SESSION_LINGER_US)
         conn_close(conn);
     else if (conn->state == CONN_OPEN)

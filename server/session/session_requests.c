@@ -32,7 +32,7 @@ void session_upload_begin(struct session *session, uint32_t seq, const sheen_Upl
     if (known && store_is_known_as(known, begin->name)) {
         if (begin->share)
             store_share(known);
-        session->upload_seq = 0; /* no chunk may follow */
+        session->upload_seq = 0; /* no more chunks are allowed */
         reply_upload_state(session, seq, true, begin->size_bytes);
         return;
     }
@@ -55,7 +55,7 @@ void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *
         return;
     }
     if (!session->upload)
-        return; /* sent before the client read that the upload has failed */
+        return; /* the client sent it before it read that the upload failed */
     struct error error = {0};
     enum upload_state state = upload_add(session->upload, body, length, &error);
     session->host->stats.upload_bytes += length;
@@ -74,8 +74,8 @@ void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *
     }
 }
 
-/* What a frame takes at most: its planes, what they are encoded to, and what polygons are drawn on.
- */
+/* An upper bound of a frame's memory in bytes: planes, encoded bytes, and what drawing polygons
+ * keeps. */
 static uint64_t frame_bytes(const struct session *session, const sheen_Render *render)
 {
     struct codec_layout all, sent;
@@ -86,8 +86,9 @@ static uint64_t frame_bytes(const struct session *session, const sheen_Render *r
            request_paused_bytes(session->host->requests, render);
 }
 
-/* Answers and returns false when the frame could never be made here. In a private daemon the charge
- * says what is wrong with the budget: by then it is known what the model takes beside the frame. */
+/* Refuses a frame that can never be made here: answers and returns false. A private daemon leaves
+ * this to the charge of memory, which can say how much the budget lacks, because the model's size
+ * is known by then. */
 static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render *render)
 {
     const struct session_limits *limits = &session->host->limits;
@@ -123,7 +124,7 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
     return true;
 }
 
-/* What a client of this minor version cannot have meant. */
+/* Removes fields that do not exist in the client's minor version. */
 static void drop_newer_fields(const struct session *session, sheen_Render *render)
 {
     if (session->minor < 2)

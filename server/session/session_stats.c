@@ -3,7 +3,7 @@
 #include "server/base/clock.h"
 #include "server/session/session_internal.h"
 
-/* The last minute: rates, and percentiles of each stage and of each class. */
+/* Adds the rates of the last minute, and percentiles for each stage and each class. */
 static void add_recent(sheen_Stats *body, const struct stats *stats)
 {
     struct stats_recent recent;

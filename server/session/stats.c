@@ -8,7 +8,7 @@ void stats_init(struct stats *stats)
     *stats = (struct stats){.start_us = clock_now_us()};
 }
 
-/* The slice of this moment, emptied when it held one that has become too old. */
+/* The current slice. A slice that held older figures is emptied first. */
 static struct stats_slice *slice_now(struct stats *stats, uint64_t now_us)
 {
     uint64_t number = (now_us - stats->start_us) / STATS_SLICE_US;
@@ -61,7 +61,7 @@ sheen_Times stats_mean(const struct stats *stats)
     n = n < STATS_FRAMES ? n : STATS_FRAMES;
     if (n == 0)
         return mean;
-    for (uint64_t i = 0; i < STATS_FRAMES; i++) { /* places without a frame are zeros */
+    for (uint64_t i = 0; i < STATS_FRAMES; i++) { /* unused places are zero */
         const sheen_Times *t = &stats->last[i];
         mean.tables_us += t->tables_us;
         mean.visibility_us += t->visibility_us;
@@ -100,7 +100,7 @@ void stats_recent(const struct stats *stats, uint64_t now_us, struct stats_recen
     struct histogram stage[STAGE_COUNT] = {{0}}, latency[N_CLASSES] = {{0}};
     uint64_t age = now_us - stats->start_us, number = age / STATS_SLICE_US;
     uint64_t first = number >= STATS_SLICES ? number - STATS_SLICES + 1 : 0;
-    const struct stats_slice *oldest = NULL; /* with an answer in it */
+    const struct stats_slice *oldest = NULL; /* the oldest slice that has a reply */
     *recent = (struct stats_recent){.window_us = age - first * STATS_SLICE_US};
     for (unsigned i = 0; i < STATS_SLICES; i++) {
         const struct stats_slice *slice = &stats->slices[i];
@@ -139,7 +139,7 @@ const char *stats_end_name(enum stats_end end)
 
 const char *stats_error_name(sheen_ErrorCode code)
 {
-    switch (code) { /* without a default, so that the compiler names one that is missing */
+    switch (code) { /* no default, so that the compiler warns of a missing code */
     case sheen_ErrorCode_ERROR_NONE:
         break;
     case sheen_ErrorCode_ERROR_PROTOCOL:

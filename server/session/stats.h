@@ -1,5 +1,6 @@
-/* What the daemon counts about itself: sums since its start, and the last minute. All memory is
- * fixed. Thread: the loop's. */
+/* The daemon's statistics: sums since its start, and figures of the last minute. All memory has a
+ * fixed size.
+ * Thread: the loop's. */
 #ifndef SHEEN_SESSION_STATS_H
 #define SHEEN_SESSION_STATS_H
 
@@ -7,8 +8,8 @@
 #include "server/base/histogram.h"
 #include "server/frame/scheduler.h"
 
-#define STATS_FRAMES 64 /* that the mean times are of */
-/* The last minute is kept in slices, of which the oldest is forgotten as a whole. */
+#define STATS_FRAMES 64 /* number of latest frames whose times stats_mean() averages */
+/* The last minute consists of slices; the oldest slice is dropped as a whole. */
 #define STATS_SLICES 6
 #define STATS_SLICE_US 10000000u
 
@@ -29,57 +30,58 @@ enum stats_end {
     END_LOST,     /* the connection broke */
     END_PROTOCOL, /* the client broke the protocol */
     END_HELLO,    /* no HELLO in time */
-    END_STALLED,  /* it stopped in the middle of a message */
-    END_UNREAD,   /* it did not read what it asked for */
+    END_STALLED,  /* the client stopped in the middle of a message or an upload */
+    END_UNREAD,   /* the client did not read its replies in time */
     END_IDLE,
-    END_DRAIN,       /* the daemon shuts down */
-    END_CREDENTIALS, /* it may not come in, or not any more */
+    END_DRAIN,       /* the daemon ends */
+    END_CREDENTIALS, /* the client was not admitted, or is not admitted any more */
     END_COUNT,
 };
 
 struct stats_slice {
-    uint64_t number; /* of the slice since the start */
+    uint64_t number; /* number of the slice since the start */
     uint64_t requests, frames;
     uint64_t sent_before; /* stats.sent_bytes when the slice began */
     struct histogram stage[STAGE_COUNT];
-    struct histogram latency[N_CLASSES]; /* total_us of the frames of a class */
+    struct histogram latency[N_CLASSES]; /* total_us of the frames, by class */
 };
 
 struct stats {
     uint64_t start_us;
-    uint64_t frames, errors;    /* answered with FRAME, with ERROR */
-    uint64_t disconnected;      /* clients: over a limit, or broke the protocol */
-    uint64_t upload_bytes;      /* of chunks */
-    uint64_t sent_bytes;        /* all that went out */
-    uint64_t sessions, refused; /* ever opened; turned away before they were */
+    uint64_t frames, errors;    /* replies with FRAME; replies with ERROR */
+    uint64_t disconnected;      /* clients disconnected for a limit or for breaking the protocol */
+    uint64_t upload_bytes;      /* bytes of upload chunks */
+    uint64_t sent_bytes;        /* all bytes sent */
+    uint64_t sessions, refused; /* sessions opened; clients turned away without a session */
     uint64_t ended[END_COUNT];
     uint64_t replies[UINT8_MAX + 1]; /* by message type */
     uint64_t error_codes[_sheen_ErrorCode_ARRAYSIZE];
-    struct histogram stage[STAGE_COUNT]; /* of all frames; a stage that was not needed has none */
+    struct histogram stage[STAGE_COUNT]; /* of all frames that needed the stage */
     struct stats_slice slices[STATS_SLICES];
     sheen_Times last[STATS_FRAMES];
 };
 
-/* The last minute, or less soon after the start. */
+/* The figures of the last minute, or of less time soon after the start. */
 struct stats_recent {
-    uint64_t window_us; /* what it is of */
+    uint64_t window_us; /* length of the time that the figures cover */
     uint64_t requests, frames;
-    uint64_t sent_bytes;              /* since the first of its answers */
+    uint64_t sent_bytes;              /* since the first reply in the window */
     sheen_Latency latency[N_CLASSES]; /* by enum request_class */
-    sheen_Times p50, p95, p99;        /* of each stage by itself; 0: no frame needed it */
+    sheen_Times p50, p95, p99;        /* for each stage separately; 0: no frame needed it */
 };
 
 void stats_init(struct stats *stats);
-/* An answer of this type is ready; `code` is that of an ERROR. */
+/* Counts a reply of this type; `code` is that of an ERROR. */
 void stats_reply(struct stats *stats, uint8_t type, sheen_ErrorCode code, uint64_t now_us);
-/* The times of a FRAME, which stats_reply() counts. */
+/* Counts the times of a FRAME. The FRAME itself is counted by stats_reply(). */
 void stats_frame(struct stats *stats, enum request_class request_class, const sheen_Times *times,
                  uint64_t now_us);
-/* Mean over the last frames, at most STATS_FRAMES; zeros before the first. */
+/* The mean times of the last STATS_FRAMES frames or fewer; zeros before the first frame. */
 sheen_Times stats_mean(const struct stats *stats);
+/* Computes the figures of the last minute. */
 void stats_recent(const struct stats *stats, uint64_t now_us, struct stats_recent *recent);
 
-/* Names for labels and logs. */
+/* Names for metrics' labels and for logs. Static strings. */
 const char *stats_stage_name(enum stats_stage stage);
 const char *stats_end_name(enum stats_end end);
 const char *stats_error_name(sheen_ErrorCode code);
