@@ -2,7 +2,7 @@
 
 #include "server/surface/tables.h"
 
-/* Of a model however small: its names, its buffers and their textures. */
+/* Bytes of even the smallest model: its names, buffers and textures. */
 #define OVERHEAD_BYTES ((size_t)8192)
 
 size_t build_model_bytes(const struct build_order *order, const struct limit_tables *tables)

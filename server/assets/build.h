@@ -1,6 +1,6 @@
-/* Turning an uploaded file into something on the GPU: what the builders of models and of light
- * images have in common. A build is tasks on the pool and on the render thread; it starts and
- * ends on the loop's thread. */
+/* What the builders of models (model.h) and light images (light_image.h) have in common: a build
+ * turns an uploaded file into tables or texels on the device. It consists of tasks on the pool and
+ * on the render thread; it starts and ends on the loop's thread. */
 #ifndef SHEEN_ASSETS_BUILD_H
 #define SHEEN_ASSETS_BUILD_H
 
@@ -16,40 +16,44 @@
 
 struct limit_tables;
 
-/* How far a build is; written by the build, read by the loop's thread. */
+/* The progress of a build. The build writes it; the loop's thread reads it. */
 struct build_progress {
-    const char *stage; /* "reading", "tables", "upload"; changed on the loop's thread only */
+    /* "reading", "tables" or "upload"; a static string, changed only on the loop's thread. */
+    const char *stage;
     atomic_size_t done;
-    size_t total; /* 0: cannot be counted */
+    size_t total; /* units of `done`, which depend on the stage; 0: unknown */
 };
 
-/* What a build reads and whom it tells. Everything here stays until finished() is called. */
+/* The input of a build and its callbacks. Everything here must stay valid until finished() is
+ * called. */
 struct build_order {
-    struct slices *slices; /* fill tables */
-    struct pool *readers; /* a thread for each build: waits for the workers, and does what cannot be
-                              cut */
+    struct slices *slices; /* the pool, shared with other builds */
+    /* Threads for work that cannot be cut into slices, such as waiting for worker programs; there
+     * is one for each build. */
+    struct pool *readers;
     struct render_thread *render_thread;
     struct workers *workers;
     const uint8_t *file;
     size_t file_bytes;
-    const char *name; /* the file's, for messages and to tell the format */
+    const char *name; /* the file's name: for messages, and its ending tells the format */
     struct build_progress *progress;
-    uint32_t max_image_px;        /* either way */
-    uint64_t tables_cpu_us;       /* of processors, for a model's tables */
-    const atomic_bool *cancelled; /* soon ends with a failure once this is true */
+    uint32_t max_image_px; /* largest width and height */
+    /* Limit of processor time for a model's tables, of all threads together. */
+    uint64_t tables_cpu_us;
+    const atomic_bool *cancelled; /* the build fails soon after this becomes true */
 
-    /* Can a result of at least so many bytes ever be kept? If not, *error says so. It reads what
-     * never changes: any thread, while the result is still measured. */
+    /* Can a result of at least `bytes` bytes ever be kept? False with *error if not. Any thread may
+     * call it, while the size of the result is still being computed. */
     bool (*may_need)(void *owner, size_t bytes, struct error *error);
-    /* May this much memory be kept until the result is destroyed? Called once, before it is
-     * filled. Evicts others to make room. */
+    /* Reserves `bytes` bytes until the result is destroyed; may evict other assets. Called once, on
+     * the loop's thread, before the result is filled in. */
     bool (*reserve)(void *owner, size_t bytes, struct error *error);
-    /* The result, or NULL and why. Called once, at the end. */
+    /* Called once at the end, on the loop's thread: with the result, or with NULL and the error. */
     void (*finished)(void *owner, void *result, const struct error *error);
     void *owner;
 };
 
-/* What a model with these tables takes, on the device and in main memory. */
+/* The bytes that a model with these tables takes, on the device and in main memory. */
 size_t build_model_bytes(const struct build_order *order, const struct limit_tables *tables);
 
 #endif

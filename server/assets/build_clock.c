@@ -4,7 +4,8 @@
 
 #include "server/base/clock.h"
 
-#define LOOK_US 5000u /* asking for a thread's time is a system call */
+/* Measure only this often, because reading a thread's time is a system call. */
+#define LOOK_US 5000u
 
 static uint64_t thread_cpu_us(void)
 {

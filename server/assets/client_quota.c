@@ -13,7 +13,8 @@ void client_quotas_init(struct client_quotas *quotas, struct account *daemon, ui
 
 struct client_quota *client_quota_get(struct client_quotas *quotas, const struct identity *identity)
 {
-    struct client_quota_list *bucket = &quotas->bucket[identity->owner[0]]; /* it is a hash */
+    /* An identity is a hash, so its first byte is uniform. */
+    struct client_quota_list *bucket = &quotas->bucket[identity->owner[0]];
     struct client_quota *quota;
     LIST_FOREACH (quota, bucket, link)
         if (memcmp(quota->identity, identity->owner, OWNER_BYTES) == 0)

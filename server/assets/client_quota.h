@@ -1,6 +1,7 @@
-/* What all connections of one identity (access.h) take together: how many they are, and how much
- * memory their uploads, long messages and frames take. Models and images that are stored count
- * elsewhere (store_shares.h). Thread: the loop's. */
+/* What all connections of one identity (access.h) use together: their number, and the memory of
+ * their uploads, long messages and frames. Stored models and images count elsewhere
+ * (store_shares.h).
+ * Thread: the loop's. */
 #ifndef SHEEN_ASSETS_CLIENT_QUOTA_H
 #define SHEEN_ASSETS_CLIENT_QUOTA_H
 
@@ -12,28 +13,29 @@
 
 struct client_quota {
     uint8_t identity[OWNER_BYTES];
-    char name[IDENTITY_NAME_BYTES]; /* the identity's */
+    char name[IDENTITY_NAME_BYTES]; /* name of the identity */
     uint32_t n_connections;
     struct account account;
-    unsigned references; /* the module's own, as what follows */
+    unsigned references; /* private to client_quota.c, like what follows */
     LIST_ENTRY(client_quota) link;
 };
 LIST_HEAD(client_quota_list, client_quota);
 
 #define CLIENT_QUOTA_BUCKETS 256
-/* The quotas of all that are connected, or whose frames are still being sent. */
+/* The quotas of all identities that are connected or whose frames are still being sent. */
 struct client_quotas {
-    struct account *daemon; /* the accounts' parent */
-    uint64_t limit;         /* bytes of one identity, or ACCOUNT_NO_LIMIT */
+    struct account *daemon; /* parent of the quotas' accounts */
+    uint64_t limit;         /* bytes for each identity, or ACCOUNT_NO_LIMIT */
     struct client_quota_list bucket[CLIENT_QUOTA_BUCKETS];
 };
 
 void client_quotas_init(struct client_quotas *quotas, struct account *daemon, uint64_t limit);
 
-/* The quota of an identity, with another reference. NULL when memory is short. */
+/* The quota of an identity, made if needed; adds a reference. NULL when memory is short. */
 struct client_quota *client_quota_get(struct client_quotas *quotas,
                                       const struct identity *identity);
+/* Adds a reference; returns `quota`. */
 struct client_quota *client_quota_reference(struct client_quota *quota);
-void client_quota_put(struct client_quota *quota); /* NULL is safe */
+void client_quota_put(struct client_quota *quota); /* drops a reference; NULL is safe */
 
 #endif

@@ -27,8 +27,8 @@ static bool refuse_peer(const struct client_quota *quota, const char *what, uint
                      what, bytes, quota->account.limit, quota->name, account_used(&quota->account));
 }
 
-/* Stills and batches leave room for interactive frames, and those of one peer for others': the peer
- * may read them as slowly as stall-timeout lets it. */
+/* Stills and batches must leave room for interactive frames, and those of one identity must leave
+ * room for others: a client may read its frames as slowly as stall-timeout allows. */
 static bool fits_patient(const struct memory *memory, const struct client_quota *quota,
                          uint64_t bytes)
 {
@@ -41,7 +41,7 @@ static bool take(struct memory *memory, struct client_quota *quota, const uint8_
                  enum account_class class, uint64_t bytes, struct error *error)
 {
     if (class == ACCOUNT_PATIENT && !fits_patient(memory, quota, bytes))
-        return false; /* there are others: later */
+        return false; /* other patient frames use the memory: try later */
     if (bytes > account_room(&quota->account))
         return refuse_peer(quota, "a frame", bytes, error);
     return store_reserve(memory->store, asker, &quota->account, class, bytes, "a frame",

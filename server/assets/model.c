@@ -9,16 +9,16 @@
 #include "server/surface/support.h"
 #include "server/assets/build_clock.h"
 
-#define FIRST_SLICE_FACES 16 /* then as many as take SLICE_US */
+#define FIRST_SLICE_FACES 16 /* later slices have as many as take SLICE_US */
 #define MOST_SLICE_FACES 65536
 
 struct model_build;
 
-/* Faces whose tables one task of the pool fills in. */
+/* A range of faces whose tables one task of the pool fills in. */
 struct slice {
     struct task task;
     struct model_build *build;
-    size_t first, last; /* Ptex faces; equal: free */
+    size_t first, last; /* Ptex faces first to last - 1; equal: the slice is free */
     uint64_t took_us;
     bool ok;
     struct error error;
@@ -26,16 +26,16 @@ struct slice {
 
 struct model_build {
     struct build_order order;
-    struct task task; /* reading, outlining, uploading */
+    struct task task; /* for the stages that are not cut into slices */
     struct cage cage;
     struct limit_plan *plan;
     struct model *model;
     bool ok;
     struct error error;
     struct slice_source source;
-    struct slice *slices; /* [n_slices]: as many as may run at once */
+    struct slice *slices; /* [n_slices], one for each that may run at the same time */
     size_t n_slices, n_running, next_face, slice_faces;
-    atomic_ullong cpu_us; /* that measuring and filling have taken */
+    atomic_ullong cpu_us; /* processor time of planning and filling so far */
     uint64_t start_us;
 };
 
@@ -55,7 +55,8 @@ static void drop_cage(struct model_build *build)
     cage_finish(&build->cage);
 }
 
-/* Puts the file's name before an error of a part that knows no files. Returns false. */
+/* Prefixes build->error with the file's name, for errors of code that does not know it. Returns
+ * false. */
 static bool fail_named(struct model_build *build, const struct error *found)
 {
     const struct error copy = *found;
@@ -145,7 +146,7 @@ static void support_done(struct task *task)
         end_build(build, fail_named(build, &build->error));
 }
 
-/* The next slice is as large as takes SLICE_US, by what this one took. */
+/* Chooses the size of the next slice so that it takes SLICE_US, by the time of this one. */
 static void learn_size(struct model_build *build, const struct slice *slice)
 {
     size_t n = slice->last - slice->first, most = 4 * n;
@@ -163,7 +164,7 @@ static void slice_done(struct task *task)
     if (!slice->ok && build->ok) {
         build->ok = false;
         build->error = slice->error;
-        build->next_face = build->model->tables.n_faces; /* no more */
+        build->next_face = build->model->tables.n_faces; /* start no more slices */
     }
     learn_size(build, slice);
     slice->last = slice->first;
@@ -217,12 +218,12 @@ static bool start_slices(struct model_build *build)
     return true;
 }
 
-/* In the form that the device takes. */
+/* Allocates the tables in the form that the device takes. */
 static bool init_tables(struct model_build *build, struct error *error)
 {
     const struct limit_size *size = limit_plan_size(build->plan);
     struct limit_tables *tables = &build->model->tables;
-    cage_finish(&build->cage); /* the plan has what is needed of it */
+    cage_finish(&build->cage); /* the plan holds all that is still needed of the cage */
     return renderer_takes_tables_on_demand(render_thread_device(build->order.render_thread))
                ? limit_tables_init_on_demand(tables, size, error)
                : limit_tables_init(tables, size, error);

@@ -16,7 +16,7 @@
 struct load {
     struct task task;
     struct model_file_order order;
-    char name[STORE_NAME_BYTES]; /* without folders */
+    char name[STORE_NAME_BYTES]; /* the file's name without folders */
     uint8_t holder[OWNER_BYTES];
     int fd;
     uint8_t *bytes;
@@ -34,17 +34,19 @@ int model_folder_open(const char *path, struct error *error)
     return fd;
 }
 
-/* The kernel resolves the name and keeps it below the folder, whatever changes meanwhile. */
+/* Opens a file below the folder. The kernel enforces this (openat2()), even if folders change
+ * meanwhile. */
 static int open_below(int folder_fd, const char *name)
 {
     const struct open_how how = {
-        .flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, /* a pipe must not hold the loop */
+        /* Opening a pipe must not block the loop. */
+        .flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK,
         .resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS | RESOLVE_NO_MAGICLINKS | RESOLVE_NO_XDEV,
     };
     return (int)syscall(SYS_openat2, folder_fd, name, &how, sizeof how);
 }
 
-/* NULL, or what is wrong with the file. */
+/* Opens the file. Returns NULL, or what is wrong with it. */
 static const char *open_file(struct load *load, const char *name)
 {
     struct stat file;
@@ -99,7 +101,7 @@ static void load_done(struct task *task)
     } else {
         ok = store_add(order->store, STORE_SHARED, load->holder, ASSET_MODEL, load->sha256,
                        load->name, load->bytes, load->size, store_account(order->store), &error);
-        load->bytes = NULL; /* the store's */
+        load->bytes = NULL; /* the store owns them now */
     }
     order->loaded(order->owner, ok ? load->sha256 : NULL, &error);
     load_destroy(load);

@@ -1,5 +1,6 @@
-/* A model's polygons of one level: made on the pool, since that takes up to seconds, once for all
- * frames that show them. Thread: the loop's. */
+/* Builds the polygons of one level of a model, on the pool, because that can take seconds. All
+ * frames that show them share them.
+ * Thread: the loop's. */
 #ifndef SHEEN_ASSETS_POLYGONS_H
 #define SHEEN_ASSETS_POLYGONS_H
 
@@ -8,19 +9,21 @@
 #include "server/render/renderer.h"
 #include "server/threads/pool.h"
 
-/* Everything here stays until finished() is called. */
+/* Everything here must stay valid until finished() is called. */
 struct polygons_order {
     struct pool *pool;
     const struct limit_tables *tables;
     uint32_t level;
-    const atomic_bool *cancelled;   /* of all builds: soon ends with a failure once one of these */
-    const atomic_bool *is_unwanted; /* is true */
-    /* The polygons, or NULL and why. Called once, at the end. */
+    /* The build fails soon after one of these becomes true. */
+    const atomic_bool *cancelled;   /* all builds */
+    const atomic_bool *is_unwanted; /* this build */
+    /* Called once at the end, on the loop's thread: with the polygons, which the callee owns, or
+     * with NULL and the error. */
     void (*finished)(void *owner, struct renderer_polygons *polygons, const struct error *failure);
     void *owner;
 };
 
-/* False, without finished(), when memory is short. */
+/* Starts a build. False with *error when memory is short; then finished() is not called. */
 bool polygons_build_start(const struct polygons_order *order, struct error *error);
 
 #endif

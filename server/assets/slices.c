@@ -4,7 +4,7 @@
 
 void slices_init(struct slices *slices, struct pool *pool)
 {
-    /* One runs on each thread, and one waits, so that no thread waits for the loop. */
+    /* Two for each thread: one runs and one waits, so that no thread has to wait for the loop. */
     *slices = (struct slices){.pool = pool, .most_running = 2 * pool_threads(pool)};
 }
 
@@ -44,7 +44,7 @@ void slices_start(struct slices *slices)
         source->is_dry = !slice;
         if (!slice)
             continue;
-        turn_charge(turn, SLICE_US); /* put right when it is done */
+        turn_charge(turn, SLICE_US); /* an estimate; slices_done() corrects it */
         slices->n_running++;
         pool_submit(slices->pool, slice, POOL_LATER);
     }

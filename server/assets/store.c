@@ -10,29 +10,29 @@
 LIST_HEAD(bucket, asset);
 
 struct store {
-    struct slices slices; /* of builds, on the pool */
+    struct slices slices; /* shares the pool among builds */
     struct pool *readers;
     struct render_thread *render_thread;
     struct workers *workers;
     const struct asset_limits *limits;
-    bool is_private;        /* the daemon is */
-    struct account account; /* of all that the daemon holds */
+    bool is_private;        /* the daemon is private */
+    struct account account; /* root of all accounts */
     uint32_t max_image_px;
     size_t n_assets;
     struct store_shares shares;
     uint64_t n_hits, n_misses, n_evictions;
     unsigned n_building;
-    unsigned n_polygons_made; /* polygons that the pool makes now */
+    unsigned n_polygons_made; /* builds of polygons that run now */
     const struct asset *building[STORE_MAX_BUILDS];
     atomic_bool cancelled;
-    TAILQ_HEAD(asset_builds, asset) builds; /* wait for a turn */
-    TAILQ_HEAD(asset_uses, asset) by_use;   /* the newest use first */
+    TAILQ_HEAD(asset_builds, asset) builds; /* builds that wait for their turn */
+    TAILQ_HEAD(asset_uses, asset) by_use;   /* latest use first */
     struct bucket buckets[N_BUCKETS];
 };
 
 const uint8_t STORE_SHARED[OWNER_BYTES] = {0};
 
-/* SHA-256 is its own hash. */
+/* The bucket of an asset, by the first bytes of its SHA-256. */
 static struct bucket *bucket_of(struct store *store, const uint8_t *sha256)
 {
     return &store->buckets[(sha256[0] | (size_t)sha256[1] << 8) % N_BUCKETS];
@@ -112,7 +112,7 @@ static bool is_evictable(const struct asset *asset)
 
 /* --- making room */
 
-/* What is wanted: `needed` bytes, or entries. */
+/* Room that is needed: `needed` bytes, or entries. */
 struct want {
     enum share_kind kind;
     uint64_t needed;
@@ -133,7 +133,7 @@ static bool has_room(const struct store *store, const struct want *want)
     return want->needed <= free_of(store, want->kind);
 }
 
-/* Is there room, or would there be if all were evicted that nobody uses? */
+/* Would there be room if all assets that no request uses were evicted? */
 static bool could_have_room(const struct store *store, const struct want *want)
 {
     uint64_t room = free_of(store, want->kind);
@@ -147,7 +147,7 @@ static bool could_have_room(const struct store *store, const struct want *want)
     return room >= want->needed;
 }
 
-/* Evicts what has not been used for longest, of one share or of all (NULL), until there is room or
+/* Evicts assets, least recently used first, of one share or of all (NULL), until there is room or
  * the share holds no more than `keep`. */
 static void evict(struct store *store, const struct want *want, const struct store_share *share,
                   uint64_t keep)
@@ -165,9 +165,9 @@ static void evict(struct store *store, const struct want *want, const struct sto
     }
 }
 
-/* A client that wants more than an equal share makes room by what is its own; then those do who
- * hold more than a share, the largest first; then whatever has not been used for longest goes.
- * Evicts only if that is enough. */
+/* Makes room. If the asker would hold more than an equal share, its own assets go first. Then those
+ * of clients that hold more than an equal share, the largest first; then the least recently used of
+ * all. Evicts nothing if that is not enough. */
 static bool make_room(struct store *store, const uint8_t *asker, const struct want *want)
 {
     if (has_room(store, want))
@@ -182,7 +182,7 @@ static bool make_room(struct store *store, const uint8_t *asker, const struct wa
     store_shares_begin(&store->shares);
     while (!has_room(store, want) &&
            (other = store_shares_next(&store->shares, want->kind, equal))) {
-        other->references++; /* its last asset may go */
+        other->references++; /* evict() may destroy its last asset */
         evict(store, want, other, equal);
         store_share_put(&store->shares, other);
     }
@@ -190,8 +190,9 @@ static bool make_room(struct store *store, const uint8_t *asker, const struct wa
     return true;
 }
 
-/* Of several that hold the same bytes: the lower, the better for this client. Everybody's may have been
- * brought by several clients under different names, each of whom has his own read by his. */
+/* Ranks assets with the same bytes for a client; the lowest rank is best. Several clients may have
+ * brought the same shared file under different names; each client should get the one with his
+ * name. */
 static int rank_of(const struct asset *asset, const uint8_t *asker)
 {
     bool is_own = memcmp(asset->share->id, asker, OWNER_BYTES) == 0;
@@ -200,7 +201,7 @@ static int rank_of(const struct asset *asset, const uint8_t *asker)
     return is_own ? 0 : asset->state == ASSET_READY ? 1 : 2;
 }
 
-/* Exactly this owner's: the best for the asker, and of equal ones the oldest. */
+/* Finds an asset of exactly this owner: the best for the asker, and among equals the oldest. */
 static struct asset *find_owned(struct store *store, const uint8_t *owner, const uint8_t *asker,
                                 enum asset_kind kind, const uint8_t *sha256)
 {
@@ -237,7 +238,7 @@ void store_share(struct asset *asset)
         memcpy(asset->owner, STORE_SHARED, sizeof asset->owner);
 }
 
-/* All memory is this one client's: nobody else will give any back. */
+/* Refuses in a private daemon, whose only client holds all memory: waiting would not help. */
 static bool refuse_private(const struct store *store, uint64_t bytes, const char *what,
                            enum error_kind permanent, struct error *error)
 {
@@ -272,7 +273,7 @@ bool store_reserve(struct store *store, const uint8_t asker[static OWNER_BYTES],
                      what, bytes, budget, account_used(&store->account));
 }
 
-/* Takes a file in the place of another or of none, and its charge over from another account. */
+/* Gives the asset a file, in place of the old one if any, and moves the file's charge to it. */
 static void take_file(struct asset *asset, const char *name, uint8_t *file, size_t file_bytes,
                       struct account *charged)
 {
@@ -285,7 +286,7 @@ static void take_file(struct asset *asset, const char *name, uint8_t *file, size
     account_charge(&asset->account, ACCOUNT_ASSETS, file_bytes);
 }
 
-/* An entry without a file. NULL when there is no room for another, or no memory. */
+/* Makes an asset without a file. NULL when there is no room for another or memory is short. */
 static struct asset *add_entry(struct store *store, const uint8_t *holder)
 {
     static const struct want one = {SHARE_ENTRIES, 1};
@@ -307,7 +308,7 @@ static struct asset *add_entry(struct store *store, const uint8_t *holder)
     return asset;
 }
 
-/* All but its place by use. */
+/* Enters the asset into the store, except into the list by use. */
 static void enter(struct asset *asset, enum asset_kind kind, const uint8_t *sha256,
                   const uint8_t *owner)
 {
@@ -330,7 +331,8 @@ bool store_add(struct store *store, const uint8_t owner[static OWNER_BYTES],
         return true;
     }
     if (known && !is_own && !store_is_known_as(known, name))
-        known = NULL; /* his own name must not decide how others' are read */
+        /* Another holder's asset: this client's name must not decide how the others' is read. */
+        known = NULL;
     if (!known)
         asset = add_entry(store, holder);
     if (!asset) {
@@ -355,7 +357,8 @@ static void unlink_waiter(struct asset_waiter *waiter)
     waiter->asset = NULL;
 }
 
-/* One by one: what one of them does may make others stop waiting, and room where this was. */
+/* Wakes the waiters one by one: what one of them does may make others stop waiting or evict
+ * assets. */
 static void wake_waiters(struct asset *asset, const struct error *failure)
 {
     asset->users++;
@@ -374,7 +377,7 @@ static void build_ended(struct asset *asset, const struct error *failure)
         asset->state = ASSET_READY;
         drop_file(asset);
     } else {
-        /* What the file causes stays so; what the moment causes may pass. */
+        /* A failure that the file causes is permanent; another may pass. */
         bool bad_file = failure->kind == ERROR_MODEL || failure->kind == ERROR_IMAGE;
         account_refund(&asset->account, ACCOUNT_ASSETS,
                        account_used(&asset->account) - asset->file_bytes);
@@ -400,7 +403,7 @@ static void build_finished(void *owner, void *result, const struct error *failur
     while (store->building[at] != asset)
         at++;
     store->building[at] = store->building[--store->n_building];
-    asset->users++; /* nobody woken may see it evicted */
+    asset->users++; /* the waiters that wake up must not evict it */
     build_ended(asset, failure);
     asset->users--;
     start_builds(store);
@@ -414,7 +417,8 @@ static bool build_reserve(void *owner, size_t bytes, struct error *error)
                          asset->name, permanent, error);
 }
 
-/* A private daemon's model is measured to its end: its client is told how much to give. */
+/* In a private daemon the size is computed to the end, so that the client learns how much to
+ * give. */
 static bool build_may_need(void *owner, size_t bytes, struct error *error)
 {
     const struct asset *asset = owner;
@@ -426,7 +430,7 @@ static bool build_may_need(void *owner, size_t bytes, struct error *error)
                      bytes, store->account.limit);
 }
 
-/* Does whoever asked for it have another build running? */
+/* Has the client that asked for this build another one running? */
 static bool is_served(const struct store *store, const struct asset *asset)
 {
     for (unsigned i = 0; i < store->n_building; i++)
@@ -435,9 +439,9 @@ static bool is_served(const struct store *store, const struct asset *asset)
     return false;
 }
 
-/* Takes the next build out of the queue, or NULL when none may start. The first whose asker has nothing
- * running starts at once: who asks for a hundred models that take a minute each must not hold up who
- * asks for one. One asker's second build starts only where no more than STORE_BUILDS_OF_ONE run. */
+/* Takes the next build out of the queue, or NULL if none may start. The first build whose client
+ * has none running starts at once: a client with a hundred slow models must not delay a client with
+ * one. A second build of one client starts only while no more than STORE_BUILDS_OF_ONE run. */
 static struct asset *take_next(struct store *store)
 {
     struct asset *asset;
@@ -495,7 +499,8 @@ static void queue_build(struct asset *asset, const uint8_t asker[static OWNER_BY
 
 /* --- polygons */
 
-/* Charges what they take, on the device or here, to an account of the model's holder. */
+/* Charges the memory of polygons, on the device or in main memory, to an account of the model's
+ * holder. */
 static bool reserve_polygons(struct asset *charged, struct asset *model, uint32_t level,
                              struct error *error)
 {
@@ -516,7 +521,7 @@ static void polygons_finished(void *owner, struct renderer_polygons *polygons,
     asset->state = polygons ? ASSET_READY : ASSET_STORED;
     if (!polygons)
         account_refund(&asset->account, ACCOUNT_ASSETS, account_used(&asset->account));
-    /* It was given up, and has been asked for since. */
+    /* The build was given up, but a request has asked for the polygons since. */
     if (!polygons && asset->was_unwanted && !LIST_EMPTY(&asset->waiters)) {
         if (start_polygons(asset, &again)) {
             model->users--;
@@ -528,7 +533,7 @@ static void polygons_finished(void *owner, struct renderer_polygons *polygons,
     model->users--;
 }
 
-/* The model is in use as long as its polygons are made. */
+/* The model counts as in use while its polygons are made. */
 static bool start_polygons(struct asset *asset, struct error *error)
 {
     struct store *store = asset->store;
@@ -560,8 +565,8 @@ static void add_waiter(struct asset *asset, struct asset_waiter *waiter)
     LIST_INSERT_HEAD(&asset->waiters, waiter, link);
 }
 
-/* Now it is the one used last. Polygons stand behind their model, so that they are evicted before
- * it. */
+/* Marks the asset as the latest used. Polygons are placed behind their model, so that they are
+ * evicted before it. */
 static void touch(struct asset *asset)
 {
     struct store *store = asset->store;

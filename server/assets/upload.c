@@ -11,7 +11,7 @@ struct upload {
     struct client_quota *quota;
     sheen_UploadBegin begin;
     uint8_t owner[OWNER_BYTES], holder[OWNER_BYTES];
-    uint8_t *file; /* grows, and is charged, as bytes come: announcing costs nothing */
+    uint8_t *file; /* grows, and is charged, as bytes come: an announcement alone costs nothing */
     size_t received, capacity;
     EVP_MD_CTX *hash;
 };
@@ -91,7 +91,7 @@ static enum upload_state finish(struct upload *upload, struct error *error)
         return UPLOAD_BAD;
     }
     uint8_t *file = upload->file;
-    upload->capacity = 0; /* as many as received: the store's charge from here on */
+    upload->capacity = 0; /* the store takes the file and its charge */
     upload->file = NULL;
     enum asset_kind kind = begin->kind == sheen_UploadKind_UPLOAD_MODEL ? ASSET_MODEL : ASSET_IMAGE;
     bool ok = store_add(upload->memory->store, upload->owner, upload->holder, kind, sha256,
