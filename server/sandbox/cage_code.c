@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The five settings behind one another. */
+/* Writes the five settings of a cage, one after another. */
 static void write_settings(struct sink *sink, const struct cage *cage)
 {
     sink_u32(sink, (uint32_t)cage->scheme);
@@ -44,13 +44,14 @@ void cage_write(struct sink *sink, const struct cage *cage)
     write_findings(sink, cage);
 }
 
-/* Memory that could not be had is told apart from bytes that are not there. */
+/* Distinguishes lack of memory from missing bytes. */
 struct taking {
     struct source *source;
     bool no_memory;
 };
 
-/* A malloc'd copy of the next n + extra elements, n having been read before them into *count. */
+/* Reads a count n, which is stored first, into *count, then returns a malloc'd copy of the n +
+ * extra elements that follow. */
 static void *take_array(struct taking *taking, size_t *count, size_t extra, size_t element_bytes)
 {
     struct source *source = taking->source;
@@ -93,7 +94,7 @@ static void take_warnings(struct taking *taking, struct cage *cage)
             *c = '?';
 }
 
-/* At most one of each kind, and none of nothing. */
+/* Reads the findings: at most one of each kind, each with a count above 0. */
 static void take_findings(struct source *source, struct cage *cage)
 {
     uint32_t n = source_u32(source), seen = 0;

@@ -1,10 +1,10 @@
-/* What sheend-cage does in a job's process. */
+/* The jobs that the worker program sheend-cage runs. */
 #ifndef SHEEN_SANDBOX_CAGE_TASKS_H
 #define SHEEN_SANDBOX_CAGE_TASKS_H
 
 #include "server/sandbox/zygote.h"
 
-/* JOB_READ_CAGE alone. */
+/* Only JOB_READ_CAGE. */
 extern const struct zygote_task cage_tasks[N_JOB_KINDS];
 
 #endif

@@ -22,7 +22,7 @@ bool image_take(struct source *source, struct image *image, const char *name, ui
     const uint32_t is_float = source_u32(source);
     *image = (struct image){0};
     taken.is_float = is_float != 0;
-    /* Sides first: only then their product is a number of bytes. */
+    /* Check the sides first: only then image_bytes() cannot overflow. */
     if (!source->ok || is_float > 1 || taken.width_px > IMAGE_MAX_PX ||
         taken.height_px > IMAGE_MAX_PX || source->left != image_bytes(&taken))
         return error_set(error, ERROR_IMAGE, "%s: the process that read it handed back no image",
@@ -41,7 +41,7 @@ bool image_take(struct source *source, struct image *image, const char *name, ui
     return true;
 }
 
-/* --- pictures: numbers, attributes, blocks, and at last the channels, each by its block */
+/* --- pictures: sizes, attributes, blocks, then the channels, each with the number of its block */
 
 void picture_write(struct sink *sink, const struct picture *picture,
                    const struct picture_block *blocks, size_t n_blocks)
@@ -75,7 +75,7 @@ void picture_write(struct sink *sink, const struct picture *picture,
     }
 }
 
-/* Bytes from a channel's first to behind its last, or false: more than any memory. */
+/* The number of bytes from the first to the last byte of a channel. False on overflow. */
 static bool measure_channel(const struct picture *picture, const struct image_channel *channel,
                             size_t *size)
 {

@@ -1,13 +1,14 @@
-/* Pixels, planes and texts on their way between the daemon and its worker. What is taken out of a
- * source is checked and points into nothing but the source. Any thread. */
+/* Serialises images, pictures and texts between the daemon and its worker. Everything that is read
+ * is checked; pointers in the result point into the source's bytes only. Any thread. */
 #ifndef SHEEN_SANDBOX_IMAGE_CODE_H
 #define SHEEN_SANDBOX_IMAGE_CODE_H
 
 #include "server/image/image.h"
 #include "server/sandbox/stream.h"
 
-/* A decoded image. It is copied and passes image_check(). On failure *image is empty: ERROR_IMAGE,
- * or ERROR_SERVER when memory is short; the text says `name`. */
+/* A decoded image. image_take() copies the pixels and checks them by image_check(); max_px is the
+ * largest side. On success the caller owns the image. On failure *image is empty; ERROR_IMAGE, or
+ * ERROR_SERVER when memory is short. `name` is the file's name for the error. */
 void image_write(struct sink *sink, const struct image *image);
 bool image_take(struct source *source, struct image *image, const char *name, uint32_t max_px,
                 struct error *error);
@@ -15,7 +16,7 @@ bool image_take(struct source *source, struct image *image, const char *name, ui
 #define PICTURE_MAX_CHANNELS 32
 #define PICTURE_MAX_ATTRIBUTES 32
 
-/* What image_encode() is given. Channels lie in blocks of memory that they share. */
+/* The input of image_encode(): channels that lie in a few blocks of memory, which they share. */
 struct picture_block {
     const void *bytes;
     size_t size;
@@ -28,14 +29,16 @@ struct picture {
     struct image_attribute attributes[PICTURE_MAX_ATTRIBUTES];
 };
 
-/* Every channel lies in one of the blocks. */
+/* Writes a picture. Each channel must lie in one of the blocks. */
 void picture_write(struct sink *sink, const struct picture *picture,
                    const struct picture_block *blocks, size_t n_blocks);
-/* False when it is none; its channels then are not to be read. */
+/* Reads a picture, whose pointers point into the source's bytes. False if it is malformed: then do
+ * not read its channels. */
 bool picture_take(struct source *source, struct picture *picture);
 
-/* A mask of text, which passes text_check(). It is copied to `coverage`, the caller's room for all
- * that is left of the source, to which *text refers. On failure *text is empty. */
+/* A text's mask. text_take() checks it by text_check() and copies it to `coverage`, the caller's
+ * memory, which must have room for all bytes left in the source; text->coverage points there. On
+ * failure *text is empty. */
 void text_write(struct sink *sink, const struct text *text);
 bool text_take(struct source *source, float *coverage, struct text *text);
 

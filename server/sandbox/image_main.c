@@ -4,6 +4,6 @@
 
 int main(int argc, char **argv)
 {
-    image_use_one_thread(); /* children have the threads of nobody */
+    image_use_one_thread(); /* a forked child has no other threads */
     return zygote_main(argc, argv, image_tasks);
 }

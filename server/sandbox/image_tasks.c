@@ -61,6 +61,6 @@ static void draw_text(struct source *input, struct sink *answer)
 const struct zygote_task image_tasks[N_JOB_KINDS] = {
     [JOB_READ_IMAGE] = {read_image, false},
     [JOB_WRITE_IMAGE] = {write_image, false},
-    /* OpenImageIO looks for the font each time. */
+    /* opens files, because OpenImageIO searches for the font each time */
     [JOB_DRAW_TEXT] = {draw_text, true},
 };

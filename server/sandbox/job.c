@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Byte offsets of a job: magic, kind, memory, answer, input, CPU, wall, a rest of zeros. */
+/* Byte offsets in a job's message: magic, kind, memory, answer, input, CPU, wall; zeros follow. */
 enum {
     AT_MAGIC,
     AT_KIND = 4,
@@ -14,7 +14,7 @@ enum {
 };
 enum { AT_HOW, AT_VALUE = 4 };
 
-#define JOB_MAGIC 0x6a6f6231u /* changes with the layout */
+#define JOB_MAGIC 0x6a6f6231u /* change it with the layout */
 
 static void put32(uint8_t *at, uint32_t value)
 {

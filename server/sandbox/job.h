@@ -1,9 +1,9 @@
-/* What sheend and its worker processes say to each other: a job with its limits on the way there,
- * how it ended on the way back. What a job works on and what comes of it lies in two files in
- * memory that travel with the job: its input, and the answer, which begins with its status.
+/* The messages between sheend and its worker programs: a job with its limits on the way there, and
+ * how it ended on the way back. The data travel as two files in memory: the input of the job, and
+ * its answer, which begins with a status.
  *
- * Both ends are of one build on one machine, yet a worker may have been taken over by what it read:
- * all that comes from it is checked. Pure; any thread. */
+ * Both ends are from the same build on the same machine. But a file may have taken control of a
+ * worker process, so everything that comes from a worker is checked. Pure; any thread. */
 #ifndef SHEEN_SANDBOX_JOB_H
 #define SHEEN_SANDBOX_JOB_H
 
@@ -18,14 +18,14 @@ enum job_kind {
     JOB_READ_CAGE,   /* a file to a cage */
     JOB_READ_IMAGE,  /* a file to pixels */
     JOB_WRITE_IMAGE, /* planes to a file */
-    JOB_DRAW_TEXT,   /* a line of the daemon's own words to a mask */
+    JOB_DRAW_TEXT,   /* a line of the daemon's own text to a mask */
     N_JOB_KINDS,
 };
 
-/* What the process of one job may use before it is ended. */
+/* What the process of one job may use; it is killed beyond that. */
 struct job_limits {
-    uint64_t memory_bytes; /* of its own, beyond what it starts with */
-    uint64_t answer_bytes; /* that it may write */
+    uint64_t memory_bytes; /* in addition to what the process holds at its start */
+    uint64_t answer_bytes; /* largest answer */
     uint32_t cpu_s, wall_s;
 };
 
@@ -35,24 +35,24 @@ struct job {
     uint64_t input_bytes; /* not 0 */
 };
 
-/* Descriptors that travel with a job. */
+/* The descriptors that are sent with a job. */
 enum job_fd {
     JOB_INPUT,  /* at least input_bytes long */
     JOB_ANSWER, /* empty */
-    JOB_END,    /* a pipe that the end is written to */
+    JOB_END,    /* a pipe to which the job's end is written */
     N_JOB_FDS,
 };
 
 #define JOB_MESSAGE_BYTES 48
 void job_encode(const struct job *job, uint8_t message[JOB_MESSAGE_BYTES]);
-/* False: not a job of this build. */
+/* Reads a job; false if the message is not a job of this build. */
 bool job_decode(struct job *job, const uint8_t *message, size_t size);
 
 enum job_how {
-    JOB_EXITED,    /* value: the exit code; an answer is there when it is 0 */
+    JOB_EXITED,    /* value: the exit code; 0: there is an answer */
     JOB_KILLED,    /* value: the signal */
-    JOB_TIMED_OUT, /* value: 0; ended after limits.wall_s */
-    JOB_NOT_RUN,   /* value: errno; the system gave no process */
+    JOB_TIMED_OUT, /* value: 0; killed after limits.wall_s */
+    JOB_NOT_RUN,   /* value: errno of fork() */
     N_JOB_HOWS,
 };
 
@@ -65,19 +65,20 @@ struct job_end {
 void job_end_encode(const struct job_end *end, uint8_t message[JOB_END_BYTES]);
 bool job_end_decode(struct job_end *end, const uint8_t *message, size_t size);
 
-/* The input of the jobs that read a file. The bytes are to the end of the source; NULL when there
- * is no such input. */
+/* The input of jobs that read a file. job_take_file() returns the file's bytes, which extend to the
+ * end of the source, or NULL if the input is malformed. */
 void job_write_file(struct sink *input, const char *name, const void *bytes, size_t size);
 const void *job_take_file(struct source *input, const char **name, size_t *size);
 
-/* The beginning of an answer: how a job went. On success the result follows. */
+/* An answer begins with the job's status. On success the result follows. */
 void answer_write_ok(struct sink *sink);
 void answer_write_error(struct sink *sink, const struct error *error);
 
 enum answer_status {
-    ANSWER_OK,     /* the result follows in the source */
-    ANSWER_FAILED, /* *error is what the worker found: of kind REQUEST, MODEL, IMAGE or SERVER */
-    ANSWER_BROKEN, /* no answer at all */
+    ANSWER_OK, /* the result follows in the source */
+    /* The worker failed; *error has its reason, of kind REQUEST, MODEL, IMAGE or SERVER. */
+    ANSWER_FAILED,
+    ANSWER_BROKEN, /* malformed or missing */
 };
 enum answer_status answer_read_status(struct source *source, struct error *error);
 

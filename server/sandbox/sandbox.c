@@ -21,7 +21,7 @@
 #endif
 
 #ifdef __SANITIZE_ADDRESS__
-enum { HAS_SHADOW = true }; /* it takes more memory than any limit */
+enum { HAS_SHADOW = true }; /* AddressSanitizer's shadow needs more memory than any limit */
 #else
 enum { HAS_SHADOW = false };
 #endif
@@ -39,7 +39,7 @@ bool sandbox_held_bytes(uint64_t *bytes)
     FILE *file = fopen("/proc/self/statm", "re");
     if (!file)
         return false;
-    unsigned long long pages = 0; /* the sixth number: data and stack */
+    unsigned long long pages = 0; /* the sixth number: pages of data and stack */
     bool ok = fscanf(file, "%*u %*u %*u %*u %*u %llu", &pages) == 1;
     fclose(file);
     if (!ok)
@@ -55,7 +55,7 @@ bool sandbox_limit(const struct job_limits *limits, uint64_t held_bytes)
         errno = EINVAL;
         return false;
     }
-    /* One second after SIGXCPU, which says what it was, comes SIGKILL. */
+    /* SIGXCPU reports the reason; SIGKILL follows one second later. */
     return limit(RLIMIT_CORE, 0, 0) && limit(RLIMIT_NOFILE, 0, 0) &&
            limit(RLIMIT_CPU, limits->cpu_s, (uint64_t)limits->cpu_s + 1) &&
            limit(RLIMIT_FSIZE, limits->answer_bytes, limits->answer_bytes) &&
@@ -64,16 +64,17 @@ bool sandbox_limit(const struct job_limits *limits, uint64_t held_bytes)
 
 /* --- system calls */
 
-#define ARGUMENT(i) (offsetof(struct seccomp_data, args) + 8 * (size_t)(i)) /* its low half */
+/* The low half of argument i. */
+#define ARGUMENT(i) (offsetof(struct seccomp_data, args) + 8 * (size_t)(i))
 #define LOAD(offset) BPF_STMT(BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offset))
 #define MASK(bits) BPF_STMT(BPF_ALU | BPF_AND | BPF_K, (uint32_t)(bits))
 #define RETURN(what) BPF_STMT(BPF_RET | BPF_K, (uint32_t)(what))
 #define ALLOW RETURN(SECCOMP_RET_ALLOW)
 #define KILL RETURN(SECCOMP_RET_KILL_PROCESS)
-/* Goes on if equal, else jumps over the next n. */
+/* Continues if equal, else skips the next n instructions. */
 #define IF_EQUAL(value, n) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)(value), 0, n)
 #define ALLOW_CALL(number) IF_EQUAL(number, 1), ALLOW
-/* A call that is allowed when its argument i, masked, equals the value, and kills otherwise. */
+/* Allows a system call if its argument i, masked, equals the value; kills otherwise. */
 #define ALLOW_CALL_IF(number, i, mask, value)                                                      \
     IF_EQUAL(number, 5), LOAD(ARGUMENT(i)), MASK(mask), IF_EQUAL(value, 1), ALLOW, KILL
 
@@ -85,7 +86,7 @@ bool sandbox_enter(int answer_fd)
         LOAD(offsetof(struct seccomp_data, arch)),
         BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ARCHITECTURE, 1, 0),
         KILL,
-        /* Numbers of the x32 kind are none of those below. */
+        /* Numbers of x32 system calls differ from all below, so they kill. */
         LOAD(offsetof(struct seccomp_data, nr)),
         ALLOW_CALL(SYS_brk),
         ALLOW_CALL(SYS_munmap),
@@ -94,15 +95,15 @@ bool sandbox_enter(int answer_fd)
         ALLOW_CALL(SYS_futex),
         ALLOW_CALL(SYS_getrandom),
         ALLOW_CALL(SYS_clock_gettime),
-        ALLOW_CALL(SYS_sysinfo), /* qsort() asks it how much memory there is */
+        ALLOW_CALL(SYS_sysinfo), /* qsort() calls it for the size of memory */
         ALLOW_CALL(SYS_sched_yield),
         ALLOW_CALL(SYS_exit_group),
-        /* abort() ends with its own signal; the process cannot reach any other. */
+        /* abort() raises a signal in its own process; no other process can be signalled. */
         ALLOW_CALL(SYS_rt_sigprocmask),
         ALLOW_CALL(SYS_getpid),
         ALLOW_CALL(SYS_gettid),
         ALLOW_CALL_IF(SYS_tgkill, 0, UINT32_MAX, getpid()),
-        /* The sanitizer asks where the stacks are before it lets a function end the process. */
+        /* AddressSanitizer calls it before a function ends the process. */
         ALLOW_CALL(HAS_SHADOW ? SYS_sigaltstack : SYS_brk),
         ALLOW_CALL_IF(SYS_mprotect, 2, PROT_EXEC, 0),
         IF_EQUAL(SYS_mmap, 8),

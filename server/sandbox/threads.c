@@ -11,7 +11,7 @@
 #define ATTEMPTS 50000
 #define NAP_NS 200000
 
-/* A thread that has ended meanwhile is idle as well. */
+/* A thread that has ended counts as idle. */
 static bool is_idle(const char *thread)
 {
     char path[64], line[512];

@@ -1,12 +1,12 @@
-/* Threads that libraries have started by being loaded: a process that forks must not do so while
- * one of them holds a lock, which the child would wait for in vain. */
+/* Waits until the threads that libraries have started are idle. A process must not fork while one
+ * of them holds a lock: the child would wait for that lock for ever. */
 #ifndef SHEEN_SANDBOX_THREADS_H
 #define SHEEN_SANDBOX_THREADS_H
 
 #include <stdbool.h>
 
-/* Waits until every thread but the calling one sleeps, as idle ones do; they stay so as long as
- * nobody gives them work. False with errno when they do not within ten seconds. */
+/* Waits until all threads but the calling one sleep. They sleep as long as nobody gives them work.
+ * False with errno if that does not happen within ten seconds. */
 bool threads_wait_idle(void);
 
 #endif

@@ -46,14 +46,14 @@ static uint64_t now_ms(void)
 
 /* --- the child */
 
-/* Ends the process when it cannot begin: nobody has read anything yet. */
+/* Ends a child that cannot start its job; it has read nothing yet. */
 static void fail_child(const struct zygote *zygote, const char *what, int code)
 {
     fprintf(stderr, "%s: %s: %s\n", zygote->name, what, strerror(errno));
     _exit(code);
 }
 
-/* Of all descriptors only the answer, as ANSWER_FD, and standard error stay. */
+/* Closes all descriptors except the answer, which becomes ANSWER_FD, and standard error. */
 static bool keep_answer(int answer_fd)
 {
     return (answer_fd == ANSWER_FD || dup2(answer_fd, ANSWER_FD) == ANSWER_FD) &&
@@ -74,7 +74,7 @@ static void run_child(const struct zygote *zygote, const struct job *job,
     sigprocmask(SIG_SETMASK, &none, NULL);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != zygote->pid)
-        _exit(ZYGOTE_EXIT_NO_INPUT); /* the parent had died before */
+        _exit(ZYGOTE_EXIT_NO_INPUT); /* the parent died before PR_SET_PDEATHSIG was set */
     void *bytes = mmap(NULL, job->input_bytes, PROT_READ, MAP_SHARED, fds[JOB_INPUT], 0);
     if (bytes == MAP_FAILED || !keep_answer(fds[JOB_ANSWER]))
         fail_child(zygote, "cannot take a job over", ZYGOTE_EXIT_NO_INPUT);
@@ -90,7 +90,7 @@ static void run_child(const struct zygote *zygote, const struct job *job,
 
 /* --- the parent: ends of children */
 
-/* Tells the daemon, who waits for it, and closes the pipe. */
+/* Reports the end of a job to the daemon, and closes the pipe. */
 static void report(int end_fd, enum job_how how, uint32_t value)
 {
     uint8_t message[JOB_END_BYTES];
@@ -117,7 +117,7 @@ static void reap(struct zygote *zygote)
     }
 }
 
-/* Kills what is overdue. Returns how long poll() may sleep, -1 for ever. */
+/* Kills children that are overdue. Returns how long poll() may sleep, in ms; -1: for ever. */
 static int kill_overdue(struct zygote *zygote)
 {
     uint64_t now = now_ms(), next = UINT64_MAX;
@@ -154,8 +154,8 @@ static void start_child(struct zygote *zygote, const struct job *job,
     close(fds[JOB_ANSWER]);
 }
 
-/* Returns the message's size: 0 at the end of the socket, -1 on failure. All that came along is in
- * fds, its number in *n_fds. */
+/* Receives a message and its descriptors. Returns the message's size; 0 at the end of the socket,
+ * -1 on failure. All descriptors that came are in fds, their number in *n_fds. */
 static ssize_t receive(int socket_fd, uint8_t message[static JOB_MESSAGE_BYTES],
                        int fds[static N_JOB_FDS], size_t *n_fds)
 {
@@ -181,7 +181,8 @@ static ssize_t receive(int socket_fd, uint8_t message[static JOB_MESSAGE_BYTES],
     return size;
 }
 
-/* False at the end of the socket, with errno 0, or when the daemon cannot be understood. */
+/* Takes the next job. False at the end of the socket (errno is 0), or if the message is
+ * malformed. */
 static bool take_job(struct zygote *zygote)
 {
     uint8_t message[JOB_MESSAGE_BYTES];
@@ -234,12 +235,12 @@ int zygote_main(int argc, char **argv, const struct zygote_task tasks[static N_J
     sigemptyset(&set);
     sigaddset(&set, SIGCHLD);
     sigprocmask(SIG_BLOCK, &set, NULL);
-    signal(SIGPIPE, SIG_IGN); /* nobody may wait for an end any more */
+    signal(SIGPIPE, SIG_IGN); /* the daemon may have closed the pipe for a job's end */
     zygote.signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
     bool ok = zygote.signal_fd >= 0 && threads_wait_idle() &&
               sandbox_held_bytes(&zygote.held_bytes) && serve(&zygote);
     if (!ok)
         fprintf(stderr, "%s: cannot go on: %s\n", name, strerror(errno));
     fflush(stderr);
-    _exit(ok ? 0 : 1); /* libraries that were only loaded have nothing to take down */
+    _exit(ok ? 0 : 1); /* _exit(): the libraries were only loaded and have nothing to clean up */
 }
