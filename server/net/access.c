@@ -24,7 +24,7 @@ struct access {
 
 /* --- reading */
 
-/* Whoever has the key is the daemon for its clients. */
+/* Checks the key file's permissions: whoever can read the key can pose as the daemon. */
 static bool check_key_file(const char *path, struct error *error)
 {
     struct stat file;
@@ -118,7 +118,8 @@ static void identify(struct identity *identity, const char *kind, const char *na
     SHA256((const unsigned char *)identity->name, strlen(identity->name), identity->owner);
 }
 
-/* Two authorities may certify the same name: they mean two people. */
+/* The identity includes the issuer: two authorities may certify the same name for different
+ * people. */
 static void identify_certificate(struct identity *identity, const struct tls_peer *peer)
 {
     identify(identity, "cert:", peer->subject);
@@ -138,13 +139,13 @@ static bool is_listed(const struct access_ids *ids, uint64_t id)
     return false;
 }
 
-/* A group that may be any of several is none on the list. */
+/* True if the group is on the list. An id that may stand for several groups is not. */
 static bool is_listed_group(const struct access *access, gid_t group)
 {
     return !user_namespace_hides(&access->groups, group) && is_listed(&access->options.gids, group);
 }
 
-/* Any of the groups that the peer was in when it connected. */
+/* True if any of the groups that the peer had when it connected is on the list. */
 static bool has_listed_group(const struct access *access, int fd, gid_t primary)
 {
     gid_t groups[MAX_GROUPS];

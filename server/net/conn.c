@@ -19,7 +19,7 @@ struct conn_block {
     size_t size, sent;
     void (*release)(void *);
     void *owner;
-    uint8_t copy[]; /* of conn_send() */
+    uint8_t copy[]; /* the bytes of conn_send() */
 };
 
 /* --- the plain socket */
@@ -89,8 +89,8 @@ void conn_finish(struct conn *conn)
     conn->in = NULL;
 }
 
-/* The peer must see what was sent before the end: closing a socket with unread input would reset
- * the connection and lose it. */
+/* Shuts down writing and waits for the peer to close. Closing a socket with unread input would
+ * reset the connection, and the peer would lose what was sent before. */
 static void linger(struct conn *conn)
 {
     conn->state = CONN_LINGERING;
@@ -150,7 +150,7 @@ void conn_send_block(struct conn *conn, const void *bytes, size_t size, void (*r
     }
 }
 
-/* A socket that takes nothing now, or breaks. */
+/* Fault injection: a socket that takes nothing now, or that is broken. */
 static bool fails_to_write(void)
 {
     errno = fault_at("send.full") ? EAGAIN : fault_at("send.broken") ? EPIPE : 0;
@@ -172,7 +172,7 @@ static ssize_t write_some(struct conn *conn)
     if (fails_to_write())
         return -1;
     if (pieces[0].iov_len > 1 && fault_at("send.short"))
-        pieces[0].iov_len = n = 1; /* a byte of the first */
+        pieces[0].iov_len = n = 1; /* one byte of the first block */
     return conn->transport->write(conn, pieces, n);
 }
 
@@ -242,7 +242,7 @@ static bool resize(struct conn *conn, size_t capacity)
 
 static bool read_more(struct conn *conn);
 
-/* A message of this size has begun. */
+/* A message of this size begins. */
 static void expect(struct conn *conn, const struct message_header *header, size_t size)
 {
     if (size <= conn->in_capacity)
@@ -256,7 +256,7 @@ static void expect(struct conn *conn, const struct message_header *header, size_
     }
 }
 
-/* Throws away what has come of a message without room. */
+/* Throws away bytes of a message that has no room. */
 static void skip(struct conn *conn)
 {
     size_t n = conn->in_used < conn->skipped ? conn->in_used : conn->skipped;
@@ -266,10 +266,10 @@ static void skip(struct conn *conn)
     conn->in_used -= n;
     memmove(conn->in, conn->in + n, conn->in_used);
     if (conn->skipped == 0)
-        conn->message_since_us = clock_now_us(); /* the next one's */
+        conn->message_since_us = clock_now_us(); /* for the next message */
 }
 
-/* The whole messages that are there. */
+/* Delivers the whole messages in the buffer. */
 static void deliver(struct conn *conn)
 {
     size_t used = 0, wanted = 0;
@@ -277,14 +277,14 @@ static void deliver(struct conn *conn)
     skip(conn);
     while (conn->state == CONN_OPEN && !conn->held &&
            conn->in_used - used >= MESSAGE_HEADER_BYTES) {
-        header = (struct message_header){0}; /* nothing of the message before */
+        header = (struct message_header){0}; /* forget the message before */
         enum header_error error = message_header_decode(&header, conn->in + used);
         if (error != HEADER_OK) {
             refuse_input(conn, &header, error);
             return;
         }
         size_t size = MESSAGE_HEADER_BYTES + (size_t)header.length;
-        if (size > CONN_MOST_IN_BYTES) { /* a type that only servers send */
+        if (size > CONN_MOST_IN_BYTES) { /* a type that only servers may send */
             refuse_input(conn, &header, HEADER_TOO_LONG);
             return;
         }
@@ -309,7 +309,7 @@ static void deliver(struct conn *conn)
 void conn_trim(struct conn *conn)
 {
     if (conn->state == CONN_OPEN && conn->in_used == 0 && conn->in_capacity > CONN_IN_BYTES)
-        resize(conn, CONN_IN_BYTES); /* without memory for less it keeps more */
+        resize(conn, CONN_IN_BYTES); /* if that fails, the large buffer stays */
 }
 
 void conn_deliver(struct conn *conn)
@@ -320,13 +320,13 @@ void conn_deliver(struct conn *conn)
            read_more(conn));
 }
 
-/* Reads once. True when input has come that may hold messages. */
+/* Reads once. True if input came, which may hold messages. */
 static bool read_more(struct conn *conn)
 {
     bool open = conn->state == CONN_OPEN, wanted_write = conn->read_wants_write;
     size_t room = open ? conn->in_capacity - conn->in_used : conn->in_capacity;
     if (room == 0)
-        return false; /* whole messages that wait for conn_deliver() */
+        return false; /* the buffer is full of messages that wait for conn_deliver() */
     ssize_t n = conn->transport->read(conn, conn->in + (open ? conn->in_used : 0), room);
     if (conn->read_wants_write != wanted_write)
         update_events(conn);
@@ -357,7 +357,7 @@ static void conn_ready(struct loop_source *source, uint32_t events)
         conn_deliver(conn);
     if (conn->state != CONN_CLOSED && (events & EPOLLOUT))
         conn_flush(conn);
-    /* Both directions are gone; what could be read has been, unless it was held. */
+    /* Both directions are closed. All input has been read, unless it was held. */
     if (conn->state != CONN_CLOSED && (events & (EPOLLHUP | EPOLLERR)) &&
         (!(events & EPOLLIN) || conn->peer_ended))
         conn_close(conn);

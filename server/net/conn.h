@@ -1,11 +1,13 @@
-/* One connected socket: messages in, bytes out, both bounded, neither blocking.
+/* One connected socket: it delivers incoming messages and sends outgoing bytes. Both directions are
+ * bounded, and neither blocks.
  *
- * Input lies in one buffer, which is small until a long message comes; whole messages are handed to
- * the owner. Output is a list of blocks, some of them borrowed (pixels), which are written as fast as
- * the socket takes them. The owner decides how much may wait: it asks conn_unsent_bytes() before it
+ * Input is collected in one buffer, which is small until a long message comes; whole messages go to
+ * the owner. Output is a list of blocks, some of them borrowed (pixels), written as fast as the
+ * socket takes them. The owner decides how much may wait: it looks at conn_unsent_bytes() before it
  * sends more.
- * Thread: the loop's. Callbacks come from the loop or from conn_deliver(); a callback must not
- * finish the conn, only close it. */
+ *
+ * Thread: the loop's. Callbacks are called from the loop or from conn_deliver(). A callback may
+ * close the conn, but must not finish it. */
 #ifndef SHEEN_NET_CONN_H
 #define SHEEN_NET_CONN_H
 
@@ -20,7 +22,7 @@
 #include "server/net/loop.h"
 #include "server/base/block_cache.h"
 
-#define CONN_IN_BYTES 4096u /* of the buffer at first and again when the client is idle */
+#define CONN_IN_BYTES 4096u /* size of the buffer at first, and again when the client is idle */
 #define CONN_MOST_IN_BYTES (MESSAGE_HEADER_BYTES + PROTOCOL_MAX_CHUNK_BYTES)
 
 struct conn;
@@ -28,35 +30,37 @@ struct iovec;
 struct tls_channel;
 
 struct conn_handler {
+    /* A whole message has come. `body` has header->length bytes and is valid during the call. */
     void (*message)(void *owner, const struct message_header *header, const uint8_t *body);
-    /* The input is no message. It has been thrown away, and the conn is held until the owner closes
-     * it. Only those members of *header are set that could be read before the error. */
+    /* The input is not a message. The input was thrown away, and nothing is read until the owner
+     * closes the conn. Only those members of *header are set that were read before the error. */
     void (*malformed)(void *owner, const struct message_header *header, enum header_error error);
-    /* A message begins for which the buffer is too small. May the buffer have so many bytes from now
-     * on, until conn_trim() or the end? If not, the body of the message is thrown away as it comes,
-     * unless the owner has closed the conn. */
+    /* A message begins that needs a larger buffer. May the buffer have `bytes` bytes from now on,
+     * until conn_trim() or the end? If not, the message's body is thrown away as it comes, unless
+     * the owner has closed the conn. */
     bool (*make_room)(void *owner, const struct message_header *header, size_t bytes);
 };
 
-/* How bytes move: over the plain socket, or TLS (conn_tls.h). */
+/* How bytes are transferred: over the plain socket, or by TLS (conn_tls.h). */
 struct conn_transport {
     /* Results and errno as those of read() and sendmsg(). */
     ssize_t (*read)(struct conn *conn, void *bytes, size_t size);
     ssize_t (*write)(struct conn *conn, struct iovec *pieces, size_t n);
     /* Does the transport hold bytes for read() that the socket no longer reports? */
     bool (*pending)(const struct conn *conn);
-    void (*end)(struct conn *conn);    /* nothing more is written */
-    void (*finish)(struct conn *conn); /* the socket goes */
+    void (*end)(struct conn *conn); /* announces that nothing more will be written */
+    /* Frees what belongs to the socket, which is about to be closed. */
+    void (*finish)(struct conn *conn);
 };
 
 enum conn_state {
     CONN_OPEN,
-    CONN_FLUSHING,  /* what is unsent goes out, input is thrown away */
-    CONN_LINGERING, /* all is sent; input is thrown away until the peer has seen the end */
+    CONN_FLUSHING,  /* unsent output is sent, input is thrown away */
+    CONN_LINGERING, /* all is sent; input is thrown away until the peer closes too */
     CONN_CLOSED,
 };
 
-struct conn_block; /* a piece of output */
+struct conn_block; /* a block of output */
 
 struct conn {
     enum conn_state state;
@@ -65,53 +69,59 @@ struct conn {
     const struct conn_handler *handler;
     void *owner;
     const struct conn_transport *transport;
-    struct tls_channel *channel; /* the TLS transport's; NULL: plain */
-    bool read_wants_write;       /* the transport must write before it can read */
-    char reason[160];            /* why the transport broke, "" when there is nothing to say */
+    struct tls_channel *channel; /* used by the TLS transport; NULL: plain */
+    bool read_wants_write;       /* TLS must write before it can read */
+    char reason[160];            /* why the transport failed; "": no reason known */
 
     uint8_t *in;
     size_t in_used, in_capacity;
-    size_t skipped;  /* bytes to come that are thrown away: of a message that has no room */
-    bool held;       /* no message is delivered and nothing read */
+    size_t skipped;  /* bytes still to come of a message without room, which are thrown away */
+    bool held;       /* delivers no message and reads nothing */
     bool peer_ended; /* the peer will send no more */
 
     STAILQ_HEAD(conn_blocks, conn_block) unsent;
-    struct block_cache *block_cache; /* where their memory comes from; NULL until the owner says */
+    struct block_cache *block_cache; /* memory of the blocks; set by the owner; NULL: malloc() */
     size_t unsent_bytes;
-    uint64_t *sent_bytes; /* everybody's; counted up here */
+    uint64_t *sent_bytes; /* counter of all sent bytes, shared by all conns */
 
-    uint64_t last_in_us, last_out_us; /* when bytes last moved; clock_now_us() */
-    uint64_t message_since_us; /* when the oldest byte in the buffer came, or input resumed */
+    /* When bytes were last received and sent, by clock_now_us(). */
+    uint64_t last_in_us, last_out_us;
+    uint64_t message_since_us; /* when the oldest byte in the buffer came, or when input resumed */
 };
 
-/* Takes the socket over, makes it non-blocking and watches it. On failure the fd is closed.
- * *sent_bytes is counted up by what is sent. */
+/* Takes over the socket, makes it non-blocking and watches it. Bytes sent are added to *sent_bytes.
+ * On failure closes the socket and x
+ * due. */
 bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_handler *handler,
                void *owner, uint64_t *sent_bytes, struct error *error);
 /* Closes the connection at once and releases all unsent blocks. */
 void conn_finish(struct conn *conn);
 
-/* Closes a socket that gets no conn, after up to `size` bytes: what the socket does not take at once
- * is lost. */
+/* Closes a socket without a conn, after sending up to `size` bytes. Bytes that the socket does not
+ * take at once are lost. */
 void conn_turn_away(int fd, const void *bytes, size_t size);
 
-/* Queue output; it is written by conn_flush() and then as the socket takes it. On a closed conn,
- * or without memory (which closes it), the bytes are dropped. */
-void conn_send(struct conn *conn, const void *bytes, size_t size); /* copies */
-/* Borrows: `bytes` must stay until release(owner) is called, once, sent or not. release may be
- * NULL for a piece that another, later block keeps. */
+/* conn_send() and conn_send_block() queue output; conn_flush() starts to write it, and the rest
+ * follows as the socket takes it. On a closed conn the bytes are dropped. If memory is short the
+ * conn closes. */
+void conn_send(struct conn *conn, const void *bytes, size_t size); /* copies the bytes */
+/* Borrows the bytes: they must stay valid until release(owner) is called, which happens exactly
+ * once, whether they were sent or not. release may be NULL if a later block of the same conn keeps
+ * the bytes. */
 void conn_send_block(struct conn *conn, const void *bytes, size_t size, void (*release)(void *),
                      void *owner);
 void conn_flush(struct conn *conn);
 
-/* Stops and resumes input. After resuming, messages already read wait for conn_deliver(). */
+/* Stops or resumes input. After resuming, call conn_deliver() to deliver messages that were read
+ * before. */
 void conn_hold(struct conn *conn, bool held);
 void conn_deliver(struct conn *conn);
 /* Frees the large input buffer that a long message needed, unless it still holds input. */
 void conn_trim(struct conn *conn);
 
+/* Closes the connection after all queued output is sent. */
 void conn_close_after_flush(struct conn *conn);
-void conn_close(struct conn *conn); /* now; unsent output is dropped */
+void conn_close(struct conn *conn); /* at once; unsent output is dropped */
 
 static inline size_t conn_unsent_bytes(const struct conn *conn)
 {

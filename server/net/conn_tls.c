@@ -22,7 +22,7 @@ static ssize_t socket_write(void *owner, const void *bytes, size_t size)
 
 /* --- above: the conn */
 
-/* A result as read() and sendmsg() would say it. */
+/* Translates a result of TLS to a result and errno as of read() and sendmsg(). */
 static ssize_t result_of(struct conn *conn, enum tls_result result, size_t moved)
 {
     switch (result) {

@@ -15,11 +15,11 @@ struct http_connection {
     struct loop_source source; /* fd -1: free */
     struct http *http;
     enum { HTTP_READING, HTTP_ANSWERING, HTTP_LINGERING } state;
-    uint64_t end_us; /* when it is closed at the latest */
+    uint64_t end_us; /* latest time when it is closed */
     size_t received;
     char request[HTTP_MAX_REQUEST_BYTES + 1];
     char head[HEAD_BYTES];
-    size_t head_length, sent; /* sent: of head and body together */
+    size_t head_length, sent; /* sent: bytes of head and body together */
     struct text_buffer body;
 };
 
@@ -59,8 +59,8 @@ static const char *reason_of(int status)
     }
 }
 
-/* The peer must see the answer before the end: closing a socket with unread input would reset the
- * connection, and what it has not read is lost. */
+/* Shuts down writing and waits for the peer to close. Closing a socket with unread input would
+ * reset the connection, and the peer would lose the answer. */
 static void linger(struct http_connection *connection)
 {
     uint64_t end_us = clock_now_us() + HTTP_LINGER_US;
@@ -71,7 +71,7 @@ static void linger(struct http_connection *connection)
     loop_change(connection->http->loop, &connection->source, EPOLLIN);
 }
 
-/* Throws away what comes, until the peer has closed too. */
+/* Throws away input until the peer closes too. */
 static void throw_away(struct http_connection *connection)
 {
     ssize_t n = read(connection->source.fd, connection->request, HTTP_MAX_REQUEST_BYTES);
@@ -79,7 +79,7 @@ static void throw_away(struct http_connection *connection)
         drop(connection);
 }
 
-/* Writes as much of the answer as the socket takes, and ends behind the last byte. */
+/* Writes as much of the answer as the socket takes, and shuts down after the last byte. */
 static void send_some(struct http_connection *connection)
 {
     size_t all = connection->head_length + connection->body.length;
@@ -109,7 +109,7 @@ static void answer(struct http_connection *connection, int status)
 {
     struct text_buffer *body = &connection->body;
     if (status == 200 && body->failed)
-        status = 500; /* half an answer would be a wrong one */
+        status = 500; /* do not send half an answer */
     if (status != 200 && status != 503) {
         text_buffer_finish(body);
         text_buffer_add(body, "%s\n", reason_of(status));
@@ -124,7 +124,7 @@ static void answer(struct http_connection *connection, int status)
     send_some(connection);
 }
 
-/* The request line, "GET /path HTTP/1.x"; fields behind it are not looked at. */
+/* Parses the request line, "GET /path HTTP/1.x". Header fields are ignored. */
 static int parse_line(char *line, const char **path)
 {
     line[strcspn(line, "\r\n")] = 0;
@@ -205,14 +205,15 @@ void http_destroy(struct http *http)
     free(http);
 }
 
-/* Which connection is given up for a new one, the lowest value first: 0 for one that has its answer
- * and does not close, 1 for one that has not asked yet, 2 for one that is being answered. */
+/* Ranks connections; the lowest is closed for a new one: 0 was answered but does not close, 1 has
+ * not sent its request, 2 is being answered. */
 static int value_of(const struct http_connection *connection)
 {
     return connection->state == HTTP_LINGERING ? 0 : connection->state == HTTP_READING ? 1 : 2;
 }
 
-/* A free one, or the oldest of those of least value. Idle peers must not keep a probe out. */
+/* Returns a free place, or that of the oldest connection of the lowest rank. So idle peers cannot
+ * keep a health probe out. */
 static struct http_connection *find_place(struct http *http)
 {
     struct http_connection *least = NULL;

@@ -24,9 +24,9 @@ struct listener {
     struct loop_source source;
     int fd;
     bool paused;
-    bool is_short; /* of descriptors or memory, since an accept() failed */
+    bool is_short; /* accept() failed for lack of descriptors or memory */
     struct address address;
-    struct stat file; /* of a Unix socket */
+    struct stat file; /* identifies the file of a Unix socket */
     char text[LISTENER_TEXT_BYTES];
     struct listener_handler handler;
 };
@@ -83,8 +83,8 @@ bool listener_check(const struct address *address, enum listener_reach reach, st
     return true;
 }
 
-/* Without a directory that the system made for this user, one of his own under /tmp, where anybody
- * might have put something of that name. */
+/* If the system made no runtime folder for this user, uses a folder below /tmp, where somebody else
+ * may have made something of the same name. */
 bool listener_default(struct address *address, struct error *error)
 {
     char folder[512], text[sizeof folder + 32], why[ADDRESS_TEXT_BYTES];
@@ -108,12 +108,12 @@ bool listener_default(struct address *address, struct error *error)
 
 /* --- opening */
 
-/* Does a daemon answer at this path? */
+/* True if a daemon answers at this path. */
 static bool is_alive(const struct sockaddr_un *name)
 {
     int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0)
-        return true; /* unknown: leave it alone */
+        return true; /* unknown: keep the file */
     bool alive = connect(fd, (const struct sockaddr *)name, sizeof *name) == 0 ||
                  (errno != ECONNREFUSED && errno != ENOENT);
     close(fd);
@@ -147,7 +147,7 @@ static bool open_unix(struct listener *listener, struct error *error)
     if (!remove_stale(&name, error))
         return false;
     listener->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    /* Linux gives the file the mode of the socket: it is never open to others, not for a moment. */
+    /* On Linux the file gets the mode of the socket, so it is never open to others. */
     if (listener->fd < 0 || fchmod(listener->fd, 0600) < 0 ||
         bind(listener->fd, (const struct sockaddr *)&name, sizeof name) < 0)
         return error_set(error, ERROR_SERVER, "cannot listen on %s: %s", listener->text,
@@ -206,7 +206,7 @@ static bool open_tcp(struct listener *listener, enum listener_reach reach, struc
 
 /* --- accepting */
 
-/* The connection stays in the queue and would wake the loop at once, again and again. */
+/* Pauses accepting: the connection stays in the queue and would wake the loop again and again. */
 static void pause_for(struct listener *listener, int code)
 {
     listener->paused = true;
@@ -225,7 +225,7 @@ static int accept_fd(const struct listener *listener)
     return -1;
 }
 
-/* False when there is nobody to accept now. */
+/* Accepts one connection; false if none waits. */
 static bool accept_one(struct listener *listener)
 {
     int fd = accept_fd(listener);
@@ -237,7 +237,8 @@ static bool accept_one(struct listener *listener)
     if (listener->is_short)
         log_event(LOG_INFO, "accepting clients again", log_text("listener", listener->text));
     listener->is_short = false;
-    /* What has not left for the network stays here, where a newer frame may still replace it. */
+    /* Limits the unsent bytes in the kernel: a frame that is still in the daemon can be replaced by
+     * a newer one. */
     static const int on = 1, most_unsent_bytes = 128 * 1024;
     if (listener->address.kind != ADDRESS_UNIX) {
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
@@ -284,7 +285,7 @@ static struct listener *create(struct loop *loop, int fd, const struct listener_
     return listener;
 }
 
-/* Starts to accept, or closes when what came before has failed. */
+/* Starts to accept; if an earlier step failed, closes instead. */
 static struct listener *start(struct listener *listener, bool ok, struct error *error)
 {
     if (ok) {
@@ -351,7 +352,7 @@ enum address_kind listener_kind(const struct listener *listener)
     return listener->address.kind;
 }
 
-/* Is the Unix socket's file still the one made here? */
+/* True if the Unix socket's file is still the one made here. */
 static bool has_file(const struct listener *listener)
 {
     struct stat file;

@@ -1,9 +1,9 @@
-/* The event loop of the daemon's main thread: file descriptors, one tick, signals, and a wake-up
- * from other threads. Raw epoll, level-triggered.
+/* The event loop of the daemon's main thread: file descriptors, one tick, and wake-ups from other
+ * threads. Built on epoll, level-triggered.
  *
- * Sources are embedded in their owners and not owned here. A source may unwatch itself or others
- * in its callback, but its memory must stay until the next call of `after`: events of the same
- * batch may still name it (they are not delivered once it is unwatched).
+ * A source is embedded in its owner. In its callback a source may unwatch itself and others, but
+ * its memory must stay valid until the next call of `after`: events of the same batch may still
+ * refer to it (they are not delivered).
  * Thread: the one that runs the loop. */
 #ifndef SHEEN_NET_LOOP_H
 #define SHEEN_NET_LOOP_H
@@ -20,26 +20,28 @@ struct loop_source {
     void *owner;
 };
 
-/* What the loop calls on its own account. */
+/* Functions that the loop calls between batches of events, and regularly. */
 struct loop_hooks {
-    void (*after)(void *owner); /* after every batch of events: free what was closed, start work */
-    void (*tick)(void *owner);  /* every LOOP_TICK_US while ticking is on */
+    /* After each batch of events: to free what was closed and to start work. */
+    void (*after)(void *owner);
+    void (*tick)(void *owner); /* every LOOP_TICK_US while ticking is on */
     void *owner;
 };
-#define LOOP_TICK_US 200000u /* also how often PROGRESS is sent */
+#define LOOP_TICK_US 200000u /* also the period of PROGRESS messages */
 
 struct loop;
 
 struct loop *loop_create(const struct loop_hooks *hooks, struct error *error);
 void loop_destroy(struct loop *loop); /* NULL is safe */
 
-/* Starts watching source->fd. ERROR_SERVER on failure, source->fd is then -1. */
+/* Starts to watch source->fd. On failure returns false with ERROR_SERVER, and source->fd is -1. */
 bool loop_watch(struct loop *loop, struct loop_source *source, uint32_t events,
                 struct error *error);
 void loop_change(struct loop *loop, struct loop_source *source, uint32_t events);
 void loop_unwatch(struct loop *loop, struct loop_source *source); /* safe when not watched */
 
-/* Ticks cost wake-ups: on only while somebody waits for a deadline. */
+/* Turns ticks on or off. Each tick wakes the process, so keep them on only while something has a
+ * deadline. */
 void loop_set_ticking(struct loop *loop, bool on);
 
 void loop_run(struct loop *loop); /* returns after loop_stop() */

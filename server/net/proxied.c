@@ -35,7 +35,7 @@ struct proxied *proxied_create(struct loop *loop, const struct proxied_handler *
     return proxied;
 }
 
-/* Ends the wait; the descriptor stays open. */
+/* Stops waiting; the descriptor stays open. */
 static void leave(struct waiting *waiting)
 {
     struct proxied *proxied = waiting->proxied;
@@ -83,7 +83,7 @@ static void arrived(struct waiting *waiting)
     handler.arrived(handler.owner, listener, fd, is_local ? NULL : (const struct sockaddr *)&from);
 }
 
-/* Never more than the header: what follows is the client's. */
+/* Reads no more than the header: the bytes behind it belong to the client. */
 static void ready(struct loop_source *source, uint32_t events)
 {
     (void)events;

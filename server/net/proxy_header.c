@@ -102,7 +102,7 @@ bool proxy_header_read(const uint8_t *header, size_t length, bool *is_local,
         memcpy(&in6.sin6_port, at + 32, 2);
         memcpy(from, &in6, sizeof in6);
     } else {
-        *is_local = true; /* of no address, or of another kind */
+        *is_local = true; /* no address, or one of another kind */
     }
     return true;
 }

@@ -32,7 +32,7 @@ bool strangers_admits(const struct strangers *strangers, const struct peer *peer
     return true;
 }
 
-/* The address's own, else the one that ends first, which is forgotten. */
+/* The penalty of this address, else the one that ends first, which is forgotten. */
 static struct stranger_penalty *take_penalty(struct strangers *strangers, const struct peer *peer)
 {
     struct stranger_penalty *penalty = find_penalty(strangers, peer);
@@ -46,7 +46,7 @@ static struct stranger_penalty *take_penalty(struct strangers *strangers, const 
     return penalty;
 }
 
-/* True when the address is refused from now on. */
+/* Adds to an address's penalty. True if the address is refused from now on. */
 static bool punish(struct strangers *strangers, const struct strangers_limits *limits,
                    const struct peer *peer, uint64_t us, uint64_t now_us)
 {
@@ -75,7 +75,7 @@ static uint64_t count_of(const struct strangers *strangers, const struct peer *p
     return n;
 }
 
-/* Whose address has most. There is one. */
+/* The address that has most strangers. There is at least one. */
 static const struct peer *most_common(const struct strangers *strangers)
 {
     const struct stranger *stranger;

@@ -36,12 +36,12 @@ static bool parse_day(const char *text, int64_t *end_s)
         return false;
     int month_day = day.tm_mday;
     *end_s = (int64_t)timegm(&day) + 86400;
-    return day.tm_mday == month_day; /* the 31st of April has become the 1st of May */
+    return day.tm_mday == month_day; /* false for 31 April, which timegm() makes 1 May */
 }
 
 /* --- reading */
 
-/* NULL, or what is wrong. A line of nothing but a comment adds no row. */
+/* Adds the row of a line; a line with only a comment adds none. Returns NULL, or what is wrong. */
 static const char *add_line(struct tokens *tokens, char *line)
 {
     char *rest = line, *name, *hash, *day;

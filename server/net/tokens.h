@@ -1,9 +1,10 @@
-/* Tokens that clients may show over TLS, kept as SHA-256 hashes in a file of lines
+/* The tokens by which TLS clients identify themselves. A file holds their SHA-256 hashes, one in a
+ * line:
  *
- *     NAME HASH YYYY-MM-DD        # hash in hex; good until the end of that day, UTC
+ *     NAME HASH YYYY-MM-DD        # hash in hex; valid until the end of that day, UTC
  *
- * A token is as good as a key: 32 to 255 printable characters from a random source, so that a plain
- * hash cannot be searched. Plain data after reading, no thread. */
+ * A token is as strong as a key: 32 to 255 printable characters from a random source. That is why a
+ * plain hash is enough: it cannot be found by search. Plain data after reading; any thread. */
 #ifndef SHEEN_NET_TOKENS_H
 #define SHEEN_NET_TOKENS_H
 
@@ -19,7 +20,7 @@
 
 struct tokens;
 
-/* NULL with ERROR_REQUEST that names the file and the line. */
+/* Reads the file. NULL with ERROR_REQUEST, which names the file and the line. */
 struct tokens *tokens_read(const char *path, struct error *error);
 void tokens_destroy(struct tokens *tokens); /* NULL is safe */
 
@@ -29,14 +30,14 @@ struct token {
     uint8_t hash[TOKEN_HASH_BYTES];
 };
 
-/* The token's row, expired or not; NULL when there is none. Takes the same time wherever a token
- * differs from those of the file. */
+/* Finds the row of the token `text`, expired or not; NULL if there is none. The time that it takes
+ * does not depend on where a token differs from those in the file. */
 const struct token *tokens_find(const struct tokens *tokens, const char *text);
-/* By name; NULL when it has gone from the file. */
+/* Finds a token by name; NULL if the file does not have it. */
 const struct token *tokens_find_name(const struct tokens *tokens, const char *name);
 
-/* The file's line for the token that stands on standard input: `spec` is NAME:YYYY-MM-DD. Prints it
- * on standard output. ERROR_REQUEST when a part is wrong or the token is too short. */
+/* Reads a token from standard input and prints its line for the file on standard output; `spec` is
+ * NAME:YYYY-MM-DD. False with ERROR_REQUEST if `spec` is malformed or the token is too short. */
 bool tokens_print_line(const char *spec, struct error *error);
 
 #endif

@@ -4,10 +4,10 @@
 #include <stdio.h>
 
 #define DEFAULT_OVERFLOW 65534u
-#define ALL_IDS UINT32_MAX /* from 0; the last is no id */
+#define ALL_IDS UINT32_MAX /* ids 0 to UINT32_MAX - 1; the last number is not an id */
 
-/* Lines of: the first id inside, the first outside, how many. They do not overlap, and those
- * outside are mapped in the namespace around this one: the kernel takes no others. */
+/* Reads lines of: first id inside, first id outside, count. The kernel ensures that they do not
+ * overlap and that the ids outside are mapped in the surrounding namespace. */
 static bool maps_all(const char *path)
 {
     FILE *file = fopen(path, "re");
