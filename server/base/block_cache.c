@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <sys/queue.h>
 
-/* Sixteen sizes to a power of two: a block is at most 6 % larger than asked for. The memory budget
- * does not count these 6 %. */
+/* Sixteen sizes for each power of two, so that a block is at most 6 % larger than asked for. The
+ * memory budget does not count these 6 %. */
 enum { PART_BITS = 4, PARTS = 1 << PART_BITS, N_SIZES = PARTS * 64, LEAST_BYTES = 64 };
 
-/* Stands before every block. */
+/* Precedes every block. */
 struct spare {
     SLIST_ENTRY(spare) link;
     size_t capacity; /* of the block */
@@ -18,8 +18,9 @@ struct spare {
 _Static_assert(sizeof(struct spare) % _Alignof(max_align_t) == 0, "blocks are aligned as malloc's");
 
 struct spare_list {
-    SLIST_HEAD(spares, spare) spares; /* the latest first; zeroed: empty */
-    size_t n, least_n;                /* now, and since the last trim */
+    SLIST_HEAD(spares, spare) spares; /* latest first; zeroed: empty */
+    /* Number of blocks now, and the smallest number since the last trim. */
+    size_t n, least_n;
 };
 
 struct block_cache {
@@ -38,7 +39,7 @@ struct block_cache *block_cache_create(size_t most_bytes)
     return block_cache;
 }
 
-/* A size is a number of parts of a power of two. */
+/* Rounds a size up to a multiple of 1/16 of the power of two below it. */
 static size_t round_up(size_t size)
 {
     if (size < LEAST_BYTES)
@@ -83,7 +84,7 @@ void *block_cache_take(struct block_cache *block_cache, size_t size)
     return spare ? spare + 1 : NULL;
 }
 
-/* False where that would be too much. */
+/* Keeps a block; false if that would exceed the limit. */
 static bool keep(struct block_cache *block_cache, struct spare *spare)
 {
     pthread_mutex_lock(&block_cache->lock);
@@ -137,7 +138,8 @@ void block_cache_destroy(struct block_cache *block_cache)
 {
     if (!block_cache)
         return;
-    block_cache_trim(block_cache); /* twice: what was in use since the last time is unused now */
+    /* Call it twice: what was used since the last trim is unused at the second. */
+    block_cache_trim(block_cache);
     block_cache_trim(block_cache);
     pthread_mutex_destroy(&block_cache->lock);
     free(block_cache);

@@ -1,13 +1,13 @@
-/* Places where a test may make something fail, by name.
+/* Fault injection: named places in the code where a test can make something fail.
  *
- * sheend's own fault_at() (fault.c) says no. The test build's (tests/service/faults.c) says yes as
- * its environment asks for; only what is linked with that can be made to fail. */
+ * fault_at() of sheend itself (fault.c) always returns false. That of the test build
+ * (tests/service/faults.c) returns true for the faults that its environment names. */
 #ifndef SHEEN_BASE_FAULT_H
 #define SHEEN_BASE_FAULT_H
 
 #include <stdbool.h>
 
-/* Shall the fault of this name happen here and now? Any thread. */
+/* True if the fault of this name is to happen now. Any thread. */
 bool fault_at(const char *name);
 
 #endif

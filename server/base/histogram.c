@@ -1,7 +1,7 @@
 #include "server/base/histogram.h"
 
-/* Below HISTOGRAM_SUB every microsecond has its bucket; from there each octave has
- * HISTOGRAM_SUB of them. 2^4 == HISTOGRAM_SUB. */
+/* Below HISTOGRAM_SUB us every microsecond has its own bucket; above, each octave has HISTOGRAM_SUB
+ * buckets. 2^4 == HISTOGRAM_SUB. */
 static unsigned bucket_of(uint64_t us)
 {
     if (us < HISTOGRAM_SUB)

@@ -11,16 +11,16 @@
 #include "server/base/clock.h"
 #include "server/base/quote.h"
 
-#define LINE_BYTES 16384 /* room for five values of nothing but escapes */
+#define LINE_BYTES 16384 /* enough for five values that consist of escapes */
 
 static struct {
     enum log_level level;
     enum log_format format;
     uint64_t second_us;            /* when the current second began */
-    unsigned lines[LOG_DEBUG + 1]; /* written in it, by level */
-    uint64_t left_out, unreported; /* lines: ever, and since the last that said so */
+    unsigned lines[LOG_DEBUG + 1]; /* lines written in that second, by level */
+    uint64_t left_out, unreported; /* lines dropped: in all, and since that was last reported */
 } state = {.level = LOG_WARN};
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* of state */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* protects `state` */
 
 struct line {
     char text[LINE_BYTES];
@@ -29,7 +29,7 @@ struct line {
 
 static void put(struct line *line, const char *text, size_t n)
 {
-    if (n > sizeof line->text - 1 - line->used) /* one byte stays for the newline */
+    if (n > sizeof line->text - 1 - line->used) /* keep one byte for the newline */
         n = sizeof line->text - 1 - line->used;
     memcpy(line->text + line->used, text, n);
     line->used += n;
@@ -40,7 +40,7 @@ static void put_text(struct line *line, const char *text)
     put(line, text, strlen(text));
 }
 
-/* Between quotation marks, as JSON has them; logfmt reads the same escapes. */
+/* Writes a text in quotation marks, escaped as in JSON; logfmt understands the same escapes. */
 static void put_quoted(struct line *line, const char *text)
 {
     put_text(line, "\"");
@@ -52,7 +52,7 @@ static void put_quoted(struct line *line, const char *text)
     put_text(line, "\"");
 }
 
-/* Does logfmt take it without quotes? */
+/* True if logfmt needs no quotation marks for this text. */
 static bool is_bare(const char *text)
 {
     if (!*text)
@@ -111,8 +111,9 @@ static bool write_line(enum log_level level, const char *message, const struct l
     if (state.format == LOG_JSON)
         put_text(&line, "}");
     line.text[line.used++] = '\n';
-    /* One write a line, so that lines of several processes do not mix; none while nobody reads a
-     * full pipe, or the daemon would wait for him. There is nobody to tell when it fails. */
+    /* Write each line by one call, so that lines of several processes do not mix. Write nothing
+     * while a pipe is full, because the daemon would block. A failure cannot be reported
+     * anywhere. */
     struct pollfd reader = {.fd = STDERR_FILENO, .events = POLLOUT};
     return poll(&reader, 1, 0) != 0 && write(STDERR_FILENO, line.text, line.used) > 0;
 }

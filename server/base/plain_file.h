@@ -1,5 +1,5 @@
-/* Files that an administrator names. To open a pipe could block, and after SIGHUP it would block the
- * event loop; a folder would read as if it were an empty file. So only plain files are opened.
+/* Checks files that an administrator names. Only plain files may be opened: opening a pipe could
+ * block, after SIGHUP even the event loop, and a folder would read like an empty file.
  * Thread: any. */
 #ifndef SHEEN_BASE_PLAIN_FILE_H
 #define SHEEN_BASE_PLAIN_FILE_H
@@ -8,7 +8,8 @@
 
 #include "server/base/error.h"
 
-/* May it be opened? ERROR_REQUEST with the path and why not. Symbolic links are followed. */
+/* May the file be opened? If not, ERROR_REQUEST names the path and the reason. Follows symbolic
+ * links. */
 bool plain_file_check(const char *path, struct error *error);
 
 #endif

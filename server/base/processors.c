@@ -19,7 +19,8 @@ static bool read_v2(const char *folder, uint64_t *quota, uint64_t *period)
     return read;
 }
 
-/* Processors, rounded up. In v1 a quota of -1 is none: it reads as more than any period. */
+/* The limit in processors, rounded up. In v1 a quota of -1 means none; read as unsigned it exceeds
+ * any period. */
 static uint64_t limit_processors(const char *folder, bool v2)
 {
     uint64_t quota = 0, period = 0;

@@ -6,7 +6,7 @@
 
 #include "protocol/text.h"
 
-/* The UTF-16 of a character of 2 to 4 bytes, as JSON's \u escapes have it. */
+/* Writes a character of 2 to 4 bytes in UTF-16, as JSON's \u escapes. */
 static void escape_utf16(const char *text, size_t n, char *escaped)
 {
     uint32_t code = (unsigned char)text[0] & (0xffu >> (n + 1));

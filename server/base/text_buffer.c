@@ -17,7 +17,7 @@ void text_buffer_finish(struct text_buffer *text)
     *text = (struct text_buffer){.max = text->max};
 }
 
-/* Room for n more bytes and the 0. */
+/* Makes room for n more bytes and the 0. */
 static bool make_room(struct text_buffer *text, size_t n)
 {
     size_t needed = text->length + n + 1;

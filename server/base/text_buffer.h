@@ -1,5 +1,7 @@
-/* Text that grows up to a bound. What does not fit, or finds no memory, marks it as failed, and it
- * takes no more. Owned by its user, who gives it back with text_buffer_finish(). No thread. */
+/* A text that grows up to a maximum. If an addition does not fit or memory is short, the text is
+ * marked as failed and takes no more. The caller owns the struct and frees its memory by
+ * text_buffer_finish().
+ * Thread: one at a time. */
 #ifndef SHEEN_BASE_TEXT_BUFFER_H
 #define SHEEN_BASE_TEXT_BUFFER_H
 
@@ -7,12 +9,12 @@
 #include <stddef.h>
 
 struct text_buffer {
-    char *bytes; /* with a 0 behind; NULL while empty */
+    char *bytes; /* ends with a 0; NULL while empty */
     size_t length, capacity, max;
     bool failed;
 };
 
-/* At most max_bytes long. */
+/* Starts an empty text of at most max_bytes bytes. Allocates nothing. */
 void text_buffer_init(struct text_buffer *text, size_t max_bytes);
 void text_buffer_finish(struct text_buffer *text);
 void text_buffer_add(struct text_buffer *text, const char *format, ...)

@@ -8,7 +8,7 @@ void turns_join(struct turns *turns, struct turn *turn)
         turn->next = turn->previous = turns->first = turn;
         return;
     }
-    turn->next = turns->first; /* last in the round */
+    turn->next = turns->first; /* the last of the round */
     turn->previous = turns->first->previous;
     turn->previous->next = turn;
     turn->next->previous = turn;
@@ -23,8 +23,8 @@ void turns_leave(struct turns *turns, struct turn *turn)
     turn->next = turn->previous = NULL;
 }
 
-/* Brings a member's deficit up to the ring's round. One that asks for little cannot save up; one that
- * has used ahead pays it back, also while it has nothing to ask. */
+/* Updates a member's deficit to the ring's current round. A member cannot save up unused time; one
+ * that used more than its part pays it back even while it wants nothing. */
 static void settle(const struct turns *turns, struct turn *turn)
 {
     uint64_t rounds = turns->round - turn->round;
@@ -35,8 +35,9 @@ static void settle(const struct turns *turns, struct turn *turn)
         turn->deficit_us = most;
 }
 
-/* Once round the ring: the first that has something left of its round. If none has, *rounds_short
- * says how many rounds it takes until one has; 0: nobody can use anything. */
+/* Goes once round the ring and returns the first member that can use the thing and has time left.
+ * If none has, *rounds_short is the number of rounds until one has; 0: no member can use the
+ * thing. */
 static struct turn *once_round(struct turns *turns,
                                bool (*can_use)(const struct turn *turn, void *context),
                                void *context, uint64_t *rounds_short)

@@ -1,8 +1,9 @@
-/* Who uses a thing next that many want and that is used in pieces of unequal length: each member of
- * the ring has an equal part of the time, whatever its pieces take (deficit round robin: Shreedhar
- * and Varghese, 1995).
+/* Fair turns: decides which member of a ring uses a shared thing next. The thing is used in pieces
+ * of different length, and each member that wants it gets an equal part of the time (deficit round
+ * robin: Shreedhar and Varghese, 1995).
  *
- * Plain data, embedded in its owners: no allocation, no clock; times are what the owner measured.
+ * Plain data, embedded in the structs of its users: no allocation, no clock. Times are measured by
+ * the caller.
  * Thread: one at a time. */
 #ifndef SHEEN_BASE_TURNS_H
 #define SHEEN_BASE_TURNS_H
@@ -10,32 +11,34 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define TURNS_QUANTUM_US 1000 /* a member's part of one round */
+#define TURNS_QUANTUM_US 1000 /* the time of a member in one round */
 
-/* A member. Zeroed, with `of` set, before it joins the first time. */
+/* A member. Zero it and set `of` before it joins for the first time. */
 struct turn {
-    void *of;           /* whose turn it is: the owner's */
-    int64_t deficit_us; /* what it may still use in this round; negative: has used ahead */
-    uint64_t round;     /* when deficit_us was right */
-    struct turn *next, *previous; /* ring of those that want something */
+    void *of; /* the member's owner, for the caller */
+    /* What it may still use in this round; negative if it used more than its part. */
+    int64_t deficit_us;
+    uint64_t round;               /* the round for which deficit_us is valid */
+    struct turn *next, *previous; /* neighbours in the ring */
 };
 
-/* The ring; zeroed is empty. */
+/* The ring of members that want the thing; zeroed: empty. */
 struct turns {
-    struct turn *first; /* whose turn it is; NULL: nobody wants anything */
+    struct turn *first; /* the member whose turn it is; NULL: the ring is empty */
     uint64_t round;
 };
 
-/* A member wants something, and comes last in the round; or wants nothing any more. One that has used
- * ahead pays it back also while it is away. */
+/* A member joins as the last of the round, or leaves. A member with a negative deficit pays it back
+ * while it is away, too. */
 void turns_join(struct turns *turns, struct turn *turn);
 void turns_leave(struct turns *turns, struct turn *turn);
 
-/* Whose turn it is, of those that can_use() says can use it now; NULL: nobody can. */
+/* The member whose turn it is, among those for which can_use() returns true; NULL if there is
+ * none. */
 struct turn *turns_next(struct turns *turns,
                         bool (*can_use)(const struct turn *turn, void *context), void *context);
 
-/* The member has used so much; negative gives back. */
+/* The member has used `us` microseconds; negative: gives them back. */
 static inline void turn_charge(struct turn *turn, int64_t us)
 {
     turn->deficit_us -= us;

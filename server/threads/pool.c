@@ -11,7 +11,7 @@
 struct pool_thread {
     struct pool *pool;
     pthread_t thread;
-    atomic_ullong busy_since_us; /* when its present task began or beat; 0: it has none */
+    atomic_ullong busy_since_us; /* when its task began or last called pool_beat(); 0: no task */
 };
 
 static _Thread_local struct pool_thread *this_thread; /* NULL outside of a pool */
@@ -21,16 +21,16 @@ struct pool {
     struct pool_context context;
     struct completions *completions;
     pthread_mutex_t lock;
-    pthread_cond_t changed; /* tasks, a start, the end */
+    pthread_cond_t changed; /* signalled for new tasks, started threads and the end */
     struct task_list lists[POOL_URGENCIES];
     bool ending;
-    unsigned n_urgent_threads; /* the first to start */
+    unsigned n_urgent_threads; /* the first threads are the urgent ones */
     unsigned n_threads, n_started, n_failed;
-    struct error start_error; /* the first thread's that failed */
+    struct error start_error; /* of the first context that failed */
     struct pool_thread threads[];
 };
 
-/* NULL when there is none. */
+/* Takes the first task; NULL if there is none. */
 static struct task *take_first(struct task_list *list)
 {
     struct task *task = STAILQ_FIRST(list);
@@ -54,7 +54,8 @@ static struct task *next_task(struct pool *pool, int least_urgent)
     return task;
 }
 
-/* Makes the calling thread's context; *least_urgent says which tasks the thread takes. */
+/* Makes the calling thread's context. *least_urgent: the least urgent tasks that the thread
+ * takes. */
 static bool start_context(struct pool *pool, void **context, int *least_urgent)
 {
     struct error error = {0};
@@ -176,7 +177,7 @@ void pool_submit(struct pool *pool, struct task *task, enum pool_urgency urgency
 {
     pthread_mutex_lock(&pool->lock);
     STAILQ_INSERT_TAIL(&pool->lists[urgency], task, link);
-    /* One that is woken may not take this task. */
+    /* A woken thread may be an urgent one, which cannot take this task: then wake all. */
     pool->n_urgent_threads ? pthread_cond_broadcast(&pool->changed)
                            : pthread_cond_signal(&pool->changed);
     pthread_mutex_unlock(&pool->lock);

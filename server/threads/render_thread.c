@@ -9,11 +9,11 @@
 struct render_thread {
     const struct renderer_device *kind;
     struct renderer_options options;
-    /* For the loop's thread: the renderer writes its own names anew when it opens the device again.
-     */
+    /* A copy for the loop's thread: the renderer writes its own again when it reopens the
+     * device. */
     struct renderer_info info;
     char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES];
-    struct pool *pool; /* of one thread */
+    struct pool *pool; /* a pool of one thread */
     atomic_uint losses;
 };
 

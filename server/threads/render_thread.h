@@ -1,8 +1,9 @@
-/* The one thread that owns the renderer, and with it the GL context, for the daemon's life.
- * Tasks submitted here get the `struct renderer *` as their context and run in order; nobody else
- * calls renderer_*() with a renderer. The thread opens a lost device again (renderer.h); the task
- * that fails tells the loop's thread of the loss. Thread: the functions here are for the loop's
- * thread. */
+/* The only thread that uses the renderer, and with it the GL context, as long as the daemon runs.
+ * Tasks submitted here get the `struct renderer *` as their context and run in order; no other
+ * thread calls a function with a renderer. A task that finds the device lost fails, and the
+ * renderer opens the device again (renderer.h); the loop's thread sees the loss in
+ * render_thread_losses().
+ * Thread: the loop's, for all functions here. */
 #ifndef SHEEN_THREADS_RENDER_THREAD_H
 #define SHEEN_THREADS_RENDER_THREAD_H
 
@@ -11,26 +12,27 @@
 
 struct render_thread;
 
-/* Opens the device on the new thread and waits for it. NULL with the renderer's ERROR_DEVICE. */
+/* Starts the thread and opens the device on it; waits for that. NULL with the renderer's
+ * ERROR_DEVICE. */
 struct render_thread *render_thread_create(const struct renderer_device *device,
                                            const struct renderer_options *options,
                                            struct completions *completions, struct error *error);
 
-/* Finishes every submitted task and closes the device. NULL is safe. */
+/* Runs all submitted tasks to their end and closes the device. NULL is safe. */
 void render_thread_destroy(struct render_thread *thread);
 
 void render_thread_submit(struct render_thread *thread, struct task *task);
 
-/* How often the device has been lost, or could not be opened again. */
+/* How often the device was lost, or could not be opened again. */
 uint32_t render_thread_losses(const struct render_thread *thread);
 
 /* As pool_busy_us(). */
 uint64_t render_thread_busy_us(const struct render_thread *thread, uint64_t now_us);
 
-/* As it was created with. */
+/* The device that the thread was created with. */
 const struct renderer_device *render_thread_device(const struct render_thread *thread);
 
-/* Constant while the thread lives. */
+/* Does not change while the thread lives. */
 const struct renderer_info *render_thread_info(const struct render_thread *thread);
 
 #endif

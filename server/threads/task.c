@@ -20,7 +20,7 @@ static void wake_ready(struct loop_source *source, uint32_t events)
     (void)events;
     struct completions *completions = source->owner;
     uint64_t count;
-    /* Reset first: a post from now on rings again. */
+    /* Reset the eventfd first: a later post then signals it again. */
     if (read(completions->event_fd, &count, sizeof count) < 0 && errno != EAGAIN)
         abort(); /* an eventfd cannot fail in any other way */
     completions_deliver(completions);
@@ -68,7 +68,7 @@ void completions_post(struct completions *completions, struct task *task)
     pthread_mutex_unlock(&completions->lock);
     const uint64_t one = 1;
     if (was_empty && write(completions->event_fd, &one, sizeof one) < 0 && errno != EAGAIN)
-        abort(); /* EAGAIN: the counter is full, so the bell rings already */
+        abort(); /* EAGAIN: the counter is full, so it is signalled already */
 }
 
 void completions_deliver(struct completions *completions)

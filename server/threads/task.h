@@ -1,7 +1,7 @@
-/* One piece of work for another thread, and the way back to the loop's thread.
+/* A task: one piece of work for another thread, and its way back to the loop's thread.
  *
- * A task is embedded in the object it serves and belongs to it; nothing is allocated to hand it
- * over. From pool_submit() until done() has been called it must not be touched by its owner. */
+ * A task is a member of the object that it serves, so nothing is allocated to submit it. From
+ * pool_submit() until done() is called, the owner must not touch it. */
 #ifndef SHEEN_THREADS_TASK_H
 #define SHEEN_THREADS_TASK_H
 
@@ -12,23 +12,24 @@
 #include "server/net/loop.h"
 
 struct task {
-    void (*run)(struct task *task, void *context); /* on another thread, with its context */
-    void (*done)(struct task *task);               /* on the loop's thread; may free the task */
+    void (*run)(struct task *task, void *context); /* called on another thread, with its context */
+    /* Called on the loop's thread; may free the task. */
+    void (*done)(struct task *task);
     void *owner;
-    STAILQ_ENTRY(task) link; /* of the queue that holds it */
+    STAILQ_ENTRY(task) link; /* link in the queue that holds the task */
 };
 
 STAILQ_HEAD(task_list, task);
 
-/* Finished tasks on their way to the loop's thread: a locked list and an eventfd. The list holds no
- * more tasks than were submitted, and scheduler.h and store.h bound how many are. */
+/* Finished tasks on their way to the loop's thread: a list with a lock, and an eventfd. The list
+ * has no more tasks than were submitted; scheduler.h and store.h limit those. */
 struct completions;
 
 struct completions *completions_create(struct loop *loop, struct error *error);
 void completions_destroy(struct completions *completions);                 /* NULL is safe */
 void completions_post(struct completions *completions, struct task *task); /* any thread */
-/* Calls done() of all finished tasks. The loop does this by itself; once the loop has stopped, the
- * daemon calls it a last time. */
+/* Calls done() of all finished tasks. The loop does so by itself; after the loop has stopped, the
+ * daemon calls this a last time. */
 void completions_deliver(struct completions *completions);
 
 #endif

@@ -21,8 +21,9 @@
 #include "server/sandbox/zygote.h"
 
 #define ATTEMPTS 2
-#define GRACE_S 10  /* for the program to tell of a job's end after its time */
-#define BEAT_MS 500 /* less than any thread is given before it is taken for stuck */
+#define GRACE_S 10 /* added to a job's time: for the program to report its end */
+/* Period of pool_beat(): shorter than the time after which a thread counts as stuck. */
+#define BEAT_MS 500
 
 extern char **environ;
 
@@ -31,10 +32,10 @@ struct worker {
     pthread_mutex_t lock;
     int socket_fd; /* -1: not running */
     pid_t pid;
-    unsigned starts; /* counts them: which of them a job was given to */
+    unsigned starts; /* number of starts, to know which process got a job */
     bool stopped;
     size_t n_spares;
-    int spare_fds[WORKER_MAX_SPARES]; /* inputs of ended jobs */
+    int spare_fds[WORKER_MAX_SPARES]; /* input files of ended jobs */
 };
 
 static const char *program_name(const struct worker *worker)
@@ -43,7 +44,7 @@ static const char *program_name(const struct worker *worker)
     return slash ? slash + 1 : worker->path;
 }
 
-/* --- the program; with worker->lock held, or before anybody else knows it */
+/* --- the program; call with worker->lock held, or before other threads know the worker */
 
 static int describe_child(posix_spawn_file_actions_t *files, posix_spawnattr_t *attributes,
                           int socket_fd)
@@ -110,7 +111,7 @@ static void end(struct worker *worker)
         return;
     close(worker->socket_fd);
     worker->socket_fd = -1;
-    kill(worker->pid, SIGKILL); /* its children go with it */
+    kill(worker->pid, SIGKILL); /* its children die with it */
     while (waitpid(worker->pid, NULL, 0) < 0 && errno == EINTR)
         ;
 }
@@ -167,7 +168,7 @@ static int take_spare(struct worker *worker)
     return fd >= 0 && lseek(fd, 0, SEEK_SET) == 0 ? fd : -1;
 }
 
-/* The process that read it is dead. */
+/* Keeps an input file for the next job. The process that read it is dead. */
 static void keep_spare(struct worker *worker, int fd)
 {
     bool fits = lseek(fd, 0, SEEK_CUR) <= (off_t)WORKER_MAX_SPARE_BYTES;
@@ -209,8 +210,8 @@ void worker_call_finish(struct worker_call *call)
         munmap(call->mapping, call->mapping_bytes);
 }
 
-/* The process of the job is dead. Whoever else might still hold the file cannot change it from here
- * on; sealing fails while it is mapped for writing. */
+/* Maps the answer. The job's process is dead. The file is sealed, so that nobody who may still hold
+ * it can change it; sealing fails if it is mapped for writing. */
 static bool open_answer(struct worker_call *call)
 {
     const int seals = F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
@@ -226,8 +227,8 @@ static bool open_answer(struct worker_call *call)
 
 /* --- one job */
 
-/* Gives the job to the running program, started if need be. False when it can take none. `starts`
- * tells which one has it. */
+/* Sends the job to the program, which is started if needed. False if it cannot take the job.
+ * *starts tells which process has it. */
 static bool submit(struct worker *worker, const struct job *job, const int fds[static N_JOB_FDS],
                    unsigned *starts, struct error *error)
 {
@@ -259,7 +260,7 @@ static bool submit(struct worker *worker, const struct job *job, const int fds[s
     return ok;
 }
 
-/* The program that had a job has died, or hangs: makes room for the next, once. */
+/* Cleans up after a program that died or hangs, once for each start. */
 static void bury(struct worker *worker, unsigned starts)
 {
     pthread_mutex_lock(&worker->lock);
@@ -271,7 +272,7 @@ static void bury(struct worker *worker, unsigned starts)
     pthread_mutex_unlock(&worker->lock);
 }
 
-/* Waits for the end of a job. False when the program has died or does not tell in time. */
+/* Waits for the end of a job. False if the program died or did not report in time. */
 static bool await(int end_fd, const struct job *job, struct job_end *job_end)
 {
     struct pollfd end = {end_fd, POLLIN, 0};
@@ -287,8 +288,8 @@ static bool await(int end_fd, const struct job *job, struct job_end *job_end)
     return size > 0 && job_end_decode(job_end, message, (size_t)size);
 }
 
-/* A file for the answer of one attempt: what is left of the one before might still write to its
- * own. */
+/* Makes a new file for the answer of each attempt: a process of an earlier attempt may still write
+ * to the old one. */
 static bool renew_answer(struct worker_call *call, struct error *error)
 {
     if (call->answer_fd >= 0)
@@ -298,7 +299,7 @@ static bool renew_answer(struct worker_call *call, struct error *error)
            error_set(error, ERROR_SERVER, "cannot make a file in memory: %s", strerror(errno));
 }
 
-/* Submits the job and waits for it, once. */
+/* Sends the job and waits for it, one time. */
 static bool attempt(struct worker *worker, const struct worker_call *call, const struct job *job,
                     struct job_end *job_end, struct error *error)
 {
@@ -308,7 +309,7 @@ static bool attempt(struct worker *worker, const struct worker_call *call, const
         return error_set(error, ERROR_SERVER, "cannot make a pipe: %s", strerror(errno));
     const int fds[N_JOB_FDS] = {call->input_fd, call->answer_fd, ends[1]};
     bool ok = submit(worker, job, fds, &starts, error);
-    close(ends[1]); /* the program's alone: its death closes the pipe */
+    close(ends[1]); /* only the program keeps this end: if it dies, the pipe closes */
     if (ok && !await(ends[0], job, job_end))
         ok = error_set(error, ERROR_SERVER, "%s has died: try again", program_name(worker));
     close(ends[0]);
@@ -317,7 +318,7 @@ static bool attempt(struct worker *worker, const struct worker_call *call, const
     return ok;
 }
 
-/* What has become of a job that gave no answer, in words. */
+/* Describes in *error why a job gave no answer. */
 static bool explain(const struct job_end *end, const struct job_limits *limits, const char *name,
                     enum error_kind damage, struct error *error)
 {
@@ -357,7 +358,7 @@ static bool explain(const struct job_end *end, const struct job_limits *limits, 
     }
 }
 
-/* The status of an answer. A worker's lack of memory is its limit. */
+/* Reads the status of an answer. If a worker lacked memory, its limit was the reason. */
 static bool read_status(struct worker_call *call, const struct job_limits *limits, const char *name,
                         enum error_kind damage, struct error *error)
 {

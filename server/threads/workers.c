@@ -10,7 +10,7 @@
 
 /* --- the programs */
 
-/* The folder of the running program, with its last '/'. */
+/* Gets the folder of the running program, with the last '/'. */
 static bool own_folder(char path[static WORKER_PATH_BYTES])
 {
     ssize_t n = readlink("/proc/self/exe", path, WORKER_PATH_BYTES - 1);
@@ -71,7 +71,7 @@ bool workers_init(struct workers *workers, const char *folder, const struct work
 
 void workers_expect_images(struct workers *workers)
 {
-    struct error ignored = {0}; /* the job itself will tell */
+    struct error ignored = {0}; /* the job itself will report the error */
     worker_wake(workers->images, &ignored);
 }
 
@@ -105,7 +105,7 @@ static struct job_limits limits_of(struct workers *workers, uint64_t memory_byte
     };
 }
 
-/* For what comes from a client. */
+/* The limits of a job whose input comes from a client. */
 static struct job_limits limits_within_budget(struct workers *workers, uint64_t memory_bytes)
 {
     return limits_of(workers, least(memory_bytes, workers->budget_bytes));
@@ -146,7 +146,7 @@ bool workers_read_image(struct workers *workers, struct image *image, const void
     return ok;
 }
 
-/* All that is left of an answer. */
+/* Copies the rest of an answer. */
 static bool take_file(struct source *answer, struct block_cache *block_cache, uint8_t **bytes,
                       size_t *size, struct error *error)
 {
@@ -166,7 +166,8 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
 {
     uint64_t memory_bytes = WORKERS_LEAST_MEMORY_BYTES;
     for (size_t i = 0; i < n_blocks; i++)
-        memory_bytes += 4 * (uint64_t)blocks[i].size; /* the file, as it grows, and a copy */
+        /* For the file as it grows, and a copy of it. */
+        memory_bytes += 4 * (uint64_t)blocks[i].size;
     const struct job_limits limits = limits_of(workers, memory_bytes);
     struct worker_call call;
     *bytes = NULL;
@@ -182,7 +183,7 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
     return ok;
 }
 
-/* The mask that is left of an answer. */
+/* Reads the mask from the rest of an answer. */
 static bool take_text(struct source *answer, struct block_cache *block_cache, struct text *text,
                       struct error *error)
 {

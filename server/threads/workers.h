@@ -1,8 +1,8 @@
-/* What sheend leaves to worker programs, whose processes are sandboxed: reading cages and images,
- * writing images, drawing text. Neither tinygltf nor OpenImageIO is in the daemon itself.
+/* The work that sheend does in worker programs with sandboxed processes: reading cages and images,
+ * writing images, drawing text. So tinygltf and OpenImageIO are not in the daemon itself.
  *
- * What comes back has been checked as if a stranger had sent it. Each call blocks until it is done;
- * any thread may make it. */
+ * All results are checked as if a stranger had sent them.
+ * Thread: any. Each call blocks until it is done. */
 #ifndef SHEEN_THREADS_WORKERS_H
 #define SHEEN_THREADS_WORKERS_H
 
@@ -12,51 +12,55 @@
 #include "server/base/block_cache.h"
 #include "server/sandbox/image_code.h"
 
-/* What a process may take of memory, beyond what it starts with; as much it may answer. Within the
- * memory budget, which counts for no less than the least, and within struct workers_limits. */
+/* Memory that the process of a job may use in addition to what it holds at its start; its answer
+ * may have the same size. It is limited by the memory budget, but never below the least, and by
+ * struct workers_limits. */
 #define WORKERS_LEAST_MEMORY_BYTES (256ull << 20)
-#define WORKERS_CAGE_MEMORY_PER_BYTE 24 /* of the file */
+#define WORKERS_CAGE_MEMORY_PER_BYTE 24 /* bytes for each byte of the file */
 #define WORKERS_IMAGE_MEMORY_BYTES (IMAGE_MAX_BYTES + (512ull << 20))
 
-/* What one process may take and how long; all of these are at least 1. */
+/* The limits of one process; all are at least 1. */
 struct workers_limits {
     uint64_t memory_bytes, output_bytes;
-    uint64_t cpu_s, wall_s; /* of processors, and by the clock on the wall */
+    uint64_t cpu_s, wall_s; /* processor time and elapsed time, in seconds */
 };
 
 struct workers {
     struct worker *cages, *images;
     uint64_t budget_bytes, memory_bytes, output_bytes;
-    unsigned cpu_s, wall_s; /* any thread, by __atomic_load_n() and __atomic_store_n() alone */
+    /* Read and written by any thread, only by __atomic_load_n() and __atomic_store_n(). */
+    unsigned cpu_s, wall_s;
 };
 
-/* Finds sheend-cage and sheend-image in `folder`; NULL: in the folder of the running program, or in
- * ../libexec/sheen beside it; and starts the first. budget_bytes: of memory, for all that the
- * daemon holds. ERROR_SERVER on failure; workers_finish() is due in both cases. */
+/* Finds the programs sheend-cage and sheend-image in `folder`, or, if that is NULL, in the folder
+ * of the running program or in ../libexec/sheen beside it; starts sheend-cage. budget_bytes is the
+ * daemon's memory budget. False with ERROR_SERVER on failure. Call workers_finish() in both
+ * cases. */
 bool workers_init(struct workers *workers, const char *folder, const struct workers_limits *limits,
                   uint64_t budget_bytes, struct error *error);
-/* Takes new times over, for jobs that begin from now on. */
+/* Sets new limits of time, for jobs that begin from now on. */
 void workers_set_times(struct workers *workers, const struct workers_limits *limits);
 void workers_finish(struct workers *workers);
-/* Starts the program for images and texts, of which one will come. To load its libraries keeps a
- * processor busy for 0.2 s, so a daemon that may be about to draw its first frame does not start it
- * before. */
+/* Starts the program for images and texts, because such a job will come. Loading its libraries
+ * keeps a processor busy for 0.2 s, so a daemon that is about to draw its first frame does not
+ * start it earlier. */
 void workers_expect_images(struct workers *workers);
-/* As worker_stop(), for all. */
+/* worker_stop() for both programs. */
 void workers_stop(struct workers *workers);
 
-/* As cage_read(). */
+/* cage_read() in a worker. */
 bool workers_read_cage(struct workers *workers, struct cage *cage, const void *bytes, size_t size,
                        const char *name, struct error *error);
-/* As image_decode(). */
+/* image_decode() in a worker. */
 bool workers_read_image(struct workers *workers, struct image *image, const void *bytes,
                         size_t size, const char *name, uint32_t max_px, struct error *error);
-/* As image_encode(); the picture's channels lie in the blocks. The bytes are of `block_cache`. */
+/* image_encode() in a worker. The picture's channels lie in the blocks. *bytes is from
+ * `block_cache` and owned by the caller. */
 bool workers_write_image(struct workers *workers, const struct picture *picture,
                          const struct picture_block *blocks, size_t n_blocks,
                          struct block_cache *block_cache, uint8_t **bytes, size_t *size,
                          struct error *error);
-/* As text_create(), but that the mask is of `block_cache`. */
+/* text_create() in a worker. The mask is from `block_cache`. */
 bool workers_draw_text(struct workers *workers, struct block_cache *block_cache, struct text *text,
                        const char *line, int size_px, struct error *error);
 
