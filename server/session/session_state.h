@@ -42,7 +42,7 @@ struct session_limits {
     uint64_t output_hard, output_soft, output_s; /* for stills and batches */
 
     /* Times, in seconds. */
-    uint64_t handshake_s; /* from accept() to HELLO */
+    uint64_t handshake_s; /* from connecting to HELLO */
     struct strangers_limits strangers;
     uint64_t message_s; /* from a message's first byte to its last */
     uint64_t stall_s;   /* without progress of the output, or of an upload */
