@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 #define PROTOCOL_MAJOR 1
-#define PROTOCOL_MINOR 3
+#define PROTOCOL_MINOR 4
 #define MESSAGE_HEADER_BYTES 16
 #define MODEL_ID_BYTES 32 /* SHA-256; first in HELLO's body, so at offset 16 of the stream */
 #define MESSAGE_END 1u    /* flags: last DATA of this frame */

@@ -369,7 +369,7 @@ uint32_t message_render_planes(const sheen_Render *render)
         [sheen_ShowKind_SHOW_DRAFT] = sheen_Plane_PLANE_NORMAL | sheen_Plane_PLANE_POSITION,
     };
     bool covers = render->show.kind != sheen_ShowKind_SHOW_LINES && !render->unfiltered &&
-                  render->surface == sheen_SurfaceKind_SURFACE_EXACT;
+                  !render->aliased && render->surface == sheen_SurfaceKind_SURFACE_EXACT;
     return render->planes | painted_from[render->show.kind] |
            (covers ? sheen_Plane_PLANE_COVERAGE : sheen_Plane_PLANE_NONE);
 }

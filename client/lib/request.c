@@ -38,6 +38,8 @@ enum sheen_status sheen_send(struct sheen_session *session, const struct sheen_r
     if (session->hello.minor < 2 &&
         (pending->render.has_jpeg_quality || pending->render.has_jpeg_subsampling))
         return too_old(error, "choose the quality of JPEG files");
+    if (session->hello.minor < 4 && pending->render.aliased)
+        return too_old(error, "draw frames without antialiasing");
     status = session_send(session, MESSAGE_RENDER, &pending->render, &pending->seq, error);
     session->last_sent = pending->seq;
     if (!status)

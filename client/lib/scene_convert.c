@@ -129,6 +129,8 @@ void scene_to_message(sheen_Render *render, const struct sheen_request *request)
         .base = message_colour(request->base),
         .has_unfiltered = request->unfiltered,
         .unfiltered = request->unfiltered,
+        .has_aliased = request->aliased,
+        .aliased = request->aliased,
         .planes = request->planes,
         .encoding = (sheen_Encoding)request->format,
         .has_jpeg_quality = request->jpeg_quality != 0,

@@ -285,7 +285,7 @@ enum sheen_plane {
         64,                     /* float ds/dx ds/dy dt/dx dt/dy by a pixel right and down; NaN as
                                       SHEEN_PLANE_LIGHT is */
     SHEEN_PLANE_COVERAGE = 128, /* float share of the pixel that shows surface, 0 where none is; for
-                                   the exact surface, filtered, only */
+                                   the exact surface with antialiasing only */
 };
 
 enum sheen_format {
@@ -469,7 +469,9 @@ struct sheen_request {
     float miss[4];                      /* where no light is met, RGBA in [0, 1] */
     float empty[4];                     /* where no surface is hit */
     float base[4];          /* of the surface, seen where a pattern's opacity is below 1 */
-    bool unfiltered;        /* one sample a pixel, for comparison */
+    bool unfiltered;        /* one sample a pixel, of surface and pattern; `aliased` adds nothing */
+    bool aliased;           /* one sample of the surface a pixel: no shares at edges, no coverage;
+                               patterns stay averaged. SHEEN_BAD_ARGUMENT with an older daemon */
     struct sheen_show show; /* in the colour plane; not with SHEEN_SURFACE_WIREFRAME */
     uint32_t planes;        /* enum sheen_plane bits */
     enum sheen_format format;

@@ -52,6 +52,8 @@ static void describe_lines(char *value, const struct frame_request *request)
             VEC3_OF(lines->eye));
     if (request->unfiltered)
         add(value, " unfiltered");
+    else if (request->aliased)
+        add(value, " aliased");
 }
 
 static void describe_surface(char *value, const struct surface *surface)

@@ -27,17 +27,18 @@ struct frame_request {
     float miss[4];                   /* colour where no light is met */
     float empty[4];                  /* colour where no surface is hit */
     float base[4];                   /* of the surface, seen where a pattern's opacity is below 1 */
-    bool unfiltered;                 /* one sample a pixel, for comparison */
+    bool unfiltered;                 /* one sample a pixel, of surface and pattern */
+    bool aliased;                    /* one sample of the surface; patterns stay averaged */
     bool count_light;                /* count the pixels where lights are met: frame.met_px */
     uint32_t planes;                 /* enum frame_plane bits to read back */
     struct surface surface;
 };
 
 /* Does the request need the share of each pixel that shows surface? The colours of polygons, and of
- * frames of one sample a pixel, are made without it. */
+ * frames of one sample of the surface a pixel, are made without it. */
 static inline bool request_has_coverage(const struct frame_request *request)
 {
-    return !request->unfiltered && request->surface.kind == SURFACE_EXACT;
+    return !request->unfiltered && !request->aliased && request->surface.kind == SURFACE_EXACT;
 }
 
 /* Families that need no light: the lines are at infinity and every normal meets them. */

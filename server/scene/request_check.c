@@ -150,10 +150,9 @@ static bool check_surface(const struct surface *surface, struct error *error)
 
 static bool check_planes(const struct frame_request *request, struct error *error)
 {
-    bool has_coverage = request->surface.kind == SURFACE_EXACT && !request->unfiltered;
-    return has_coverage || !(request->planes & PLANE_COVERAGE) ||
+    return request_has_coverage(request) || !(request->planes & PLANE_COVERAGE) ||
            error_set(error, ERROR_REQUEST,
-                     "planes: coverage is known for the exact surface, filtered, only");
+                     "planes: coverage is known for the exact surface with antialiasing only");
 }
 
 bool request_check(const struct frame_request *request, uint32_t max_width_px,

@@ -101,6 +101,7 @@ void scene_read_request(const sheen_Render *render, const struct scene_subject *
         .height_px = render->height_px,
         .planes = message_render_planes(render),
         .unfiltered = render->unfiltered,
+        .aliased = render->aliased,
         .n_lights = render->lights_count ? render->lights_count : 1,
         .surface = {(enum surface_kind)render->surface, render->surface_level},
     };

@@ -194,7 +194,8 @@ class Client(unittest.TestCase):
         found, _ = self.render("a.png", "--device", "software", *camera, "--ortho", "3",
                                "--surface", "polygon:2", "--show", "draft:0,1,0", "--show-range",
                                "5", "--legend", "off")
-        self.assertEqual((found["filter"], found["line_eye"]), ("exact", {"kind": "camera"}))
+        self.assertEqual((found["filter"], found["antialias"], found["line_eye"]),
+                         ("exact", "exact", {"kind": "camera"}))
         self.assertEqual((found["miss"], found["empty"], found["base"]),
                          ("#29303bff", "#808080ff", "#b3b8bfff"))
         said.update({
@@ -205,8 +206,10 @@ class Client(unittest.TestCase):
             "device": ((found["address"], found["software"]), ("private", True)),
         })
         found, _ = self.render("a.jpg", "--server", self.daemon.unix, "--jpeg-quality", "80",
-                               "--jpeg-subsampling", "420")
-        said.update({"jpeg-quality": (found["jpeg_quality"], 80),
+                               "--jpeg-subsampling", "420", "--antialias", "off")
+        self.assertEqual(found["filter"], "exact")
+        said.update({"antialias": (found["antialias"], "off"),
+                     "jpeg-quality": (found["jpeg_quality"], 80),
                      "jpeg-subsampling": (found["jpeg_subsampling"], "420")})
         for name, (value, wanted) in said.items():
             self.assertEqual(value, wanted, name)

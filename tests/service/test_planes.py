@@ -50,3 +50,26 @@ class Planes(DaemonCase):
                 self.assertGreater(min(frame.visibility_us, frame.evaluate_us), 0)
             frame = client.render(model, *SIZE, kind=STILL)
             self.assertEqual((frame.visibility_us, frame.evaluate_us), (0, 0))
+
+    def test_without_antialiasing(self):
+        """A frame of one sample of the surface has planes that no frame with edges may take; the
+        other way round they serve. Coverage is refused."""
+        aliased, one_sample = field(17, 1), field(12, 1)
+        with Client(self.daemon.unix, minor=4) as client:
+            # A model that nothing is kept of.
+            model = client.upload(self.fender + b"# aliased\n", "fender.obj")
+            frames = {}
+            for name, extra, is_kept in (("aliased", aliased, False), ("exact", b"", False),
+                                         ("aliased", aliased, True), ("exact", b"", True),
+                                         ("one sample", one_sample, True),
+                                         ("one sample", one_sample + aliased, True)):
+                with self.subTest(name=name, is_kept=is_kept):
+                    frame = client.render(model, *SIZE, extra=extra + RELIT)
+                    self.assertEqual(frame.evaluate_us == 0, is_kept)
+                    self.assertEqual(frame.data, frames.setdefault(name, frame.data))
+            self.assertEqual(len(set(frames.values())), 3)
+            for extra in (aliased, one_sample):
+                with self.assertRaises(wire.Refused) as caught:
+                    client.render(model, *SIZE, planes=128, extra=extra)
+                self.assertEqual(caught.exception.code, wire.ERROR_REQUEST)
+                self.assertIn("coverage", caught.exception.text)

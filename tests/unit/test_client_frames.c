@@ -347,13 +347,28 @@ static void serve_and_keep(int fd)
     keep_render(fd);
 }
 
-static void serve_and_keep_newer(int fd)
+static void serve_and_keep_minor(int fd, uint32_t minor)
 {
     struct message_header hello = read_message(fd, NULL, 0);
     sheen_HelloOk ok = HELLO_OK;
-    ok.minor = 2;
+    ok.minor = minor;
     send_message(fd, MESSAGE_HELLO_OK, hello.seq, &ok);
     keep_render(fd);
+}
+
+static void serve_and_keep_newer(int fd)
+{
+    serve_and_keep_minor(fd, 2);
+}
+
+static void serve_and_keep_1_3(int fd)
+{
+    serve_and_keep_minor(fd, 3);
+}
+
+static void serve_and_keep_1_4(int fd)
+{
+    serve_and_keep_minor(fd, 4);
 }
 
 static void classes_travel(void **state)
@@ -417,6 +432,38 @@ static void jpeg_options_travel(void **state)
             assert_int_equal(seen_render.jpeg_quality, 80);
             assert_int_equal(seen_render.jpeg_subsampling, sheen_JpegSubsampling_JPEG_420);
         }
+        sheen_frame_finish(&frame);
+        sheen_close(session);
+        fake_finish(&fake);
+    }
+}
+
+/* To a daemon of minor version 4 alone: another would skip it and answer shares. */
+static void no_antialiasing_travels(void **state)
+{
+    (void)state;
+    for (int is_newer = 0; is_newer < 2; is_newer++) {
+        struct fake fake;
+        struct sheen_error error;
+        struct sheen_session *session;
+        struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
+        struct sheen_request request = small_request(SHEEN_FORMAT_PNG);
+        assert_int_equal(open_session(&fake, is_newer ? serve_and_keep_1_4 : serve_and_keep_1_3,
+                                      &session, &error),
+                         SHEEN_OK);
+        request.aliased = true;
+        enum sheen_status status = sheen_send(session, &request, &error);
+        assert_int_equal(status, is_newer ? SHEEN_OK : SHEEN_BAD_ARGUMENT);
+        if (!is_newer) {
+            assert_non_null(strstr(error.text, "too old"));
+            request.aliased = false;
+            request.unfiltered = true; /* which every daemon knows */
+            assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
+        }
+        assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OVERLOADED);
+        assert_int_equal(seen_render.has_aliased, is_newer);
+        assert_int_equal(seen_render.aliased, is_newer);
+        assert_int_equal(seen_render.unfiltered, !is_newer);
         sheen_frame_finish(&frame);
         sheen_close(session);
         fake_finish(&fake);
@@ -577,6 +624,7 @@ int main(void)
         cmocka_unit_test(answers_to_nothing_are_refused),
         cmocka_unit_test(classes_travel),
         cmocka_unit_test(jpeg_options_travel),
+        cmocka_unit_test(no_antialiasing_travels),
         cmocka_unit_test(every_error_has_its_status),
         cmocka_unit_test(a_lost_frame_is_asked_for_again),
         cmocka_unit_test(a_lost_frame_gives_way_to_a_newer_one),

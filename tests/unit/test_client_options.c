@@ -49,7 +49,7 @@ static void good_command_lines(void **state)
     assert_true(!lights[0].is_placed && lights[1].is_placed && !lights[2].is_placed);
     assert_true(lights[2].kind == SHEEN_LIGHT_SPHERE &&
                 lights[2].pattern.kind == SHEEN_PATTERN_STRIPES);
-    assert_true(options.request.unfiltered);
+    assert_true(options.request.unfiltered && !options.request.aliased);
     assert_int_equal(options.request.surface, SHEEN_SURFACE_EXACT);
     assert_int_equal(parse(&COMMAND_RENDER, "m.obj -o a.png --surface wireframe:5", &options, why),
                      OPTIONS_RUN);
@@ -178,6 +178,11 @@ static void bad_command_lines_name_the_option(void **state)
          "8 lights"},
         {&COMMAND_RENDER, "m.obj -o a.png --line-eye 1,2", "--line-eye '1,2'"},
         {&COMMAND_RENDER, "m.obj -o a.png --filter on", "exact or off"},
+        {&COMMAND_RENDER, "m.obj -o a.png --antialias on",
+         "--antialias 'on': must be exact or off"},
+        {&COMMAND_STREAM, "m.obj --frames 2 --antialias", "--antialias"},
+        {&COMMAND_RENDER, "m.obj -o a.png --antialias exact --filter off", "exclude each other"},
+        {&COMMAND_STREAM, "m.obj --frames 2 --filter off --antialias exact", "exclude each other"},
         {&COMMAND_RENDER, "m.obj -o a.png --base blue", "#rrggbb"},
         {&COMMAND_RENDER, "m.obj -o a.jpg --jpeg-quality 0", "1 to 100"},
         {&COMMAND_RENDER, "m.obj -o a.jpg --jpeg-quality 101", "--jpeg-quality '101'"},

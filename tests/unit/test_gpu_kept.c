@@ -222,6 +222,7 @@ static void sequence_init(struct sequence *s)
             request[1] = request[0];
             request[1].lights[0].pattern.kind = PATTERN_CIRCLES;
             request[1].unfiltered = v == 2;
+            request[1].aliased = v == 1;
             request[1].planes = v == 2   ? PLANE_COLOUR | PLANE_PTEX
                                 : v == 1 ? PLANE_COLOUR | PLANE_LIGHT
                                          : ALL_PLANES;

@@ -299,6 +299,9 @@ static void false_colour(void **state)
     render.unfiltered = true;
     assert_false(message_render_planes(&render) & sheen_Plane_PLANE_COVERAGE);
     render.unfiltered = false;
+    render.aliased = true;
+    assert_false(message_render_planes(&render) & sheen_Plane_PLANE_COVERAGE);
+    render.aliased = false;
     render.surface = sheen_SurfaceKind_SURFACE_POLYGON;
     assert_false(message_render_planes(&render) & sheen_Plane_PLANE_COVERAGE);
     render.surface = sheen_SurfaceKind_SURFACE_EXACT;

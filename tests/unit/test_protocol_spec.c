@@ -257,6 +257,18 @@ static void check_render_jpeg(const uint8_t *bytes, size_t size)
     same_message(MESSAGE_RENDER, 10, &render, bytes, size);
 }
 
+static void check_render_aliased(const uint8_t *bytes, size_t size)
+{
+    sheen_Render render = {.width_px = 1280,
+                           .height_px = 720,
+                           .planes = sheen_Plane_PLANE_COLOUR,
+                           .encoding = sheen_Encoding_ENCODING_PNG,
+                           .has_aliased = true,
+                           .aliased = true};
+    count_id(render.model_sha256);
+    same_message(MESSAGE_RENDER, 11, &render, bytes, size);
+}
+
 static void check_superseded(const uint8_t *bytes, size_t size)
 {
     const sheen_Superseded superseded = {.by = 9};
@@ -403,6 +415,7 @@ static const struct {
     {"render-full", check_render_full},
     {"render-interactive", check_render_interactive},
     {"render-jpeg", check_render_jpeg},
+    {"render-aliased", check_render_aliased},
     {"superseded", check_superseded},
     {"cancel", check_cancel},
     {"frame", check_frame},

@@ -64,6 +64,15 @@ static bool check_show(const struct options *options, char *why)
                           show->range, range_text(range, wanted), text_show_kind(show->kind));
 }
 
+static bool check_samples(const struct options *options, char *why)
+{
+    const struct sheen_request *request = &options->request;
+    bool is_given_exact = options->given & GIVEN_ANTIALIAS && !request->aliased;
+    return !request->unfiltered || !is_given_exact ||
+           options_refuse(why, "--antialias exact and --filter off exclude each other: one sample "
+                               "of the lines a pixel leaves no edge to average");
+}
+
 static bool check_size(const struct sheen_request *request, char *why)
 {
     const struct range *range = &RANGES[RANGE_JPEG_SIDE];
@@ -90,8 +99,8 @@ bool options_check_scene(struct options *options, char *why)
     options->request.camera.auto_view = !has_eye;
     options->request.camera.has_target = options->given & GIVEN_TARGET;
     options->request.camera.auto_up = !(options->given & GIVEN_UP);
-    return check_size(&options->request, why) && check_show(options, why) &&
-           options_check_light(options, why);
+    return check_size(&options->request, why) && check_samples(options, why) &&
+           check_show(options, why) && options_check_light(options, why);
 }
 
 size_t options_rows(const struct command *command,

@@ -33,6 +33,7 @@ enum options_given {
     GIVEN_VIEW = 1 << 13,
     GIVEN_ZOOM = 1 << 14,
     GIVEN_LEGEND = 1 << 15,
+    GIVEN_ANTIALIAS = 1 << 16,
 };
 
 struct options {

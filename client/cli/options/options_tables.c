@@ -263,11 +263,21 @@ static bool apply_base(struct options *options, const char *value, char *why)
            options_refuse(why, "must be #rrggbb or #rrggbbaa");
 }
 
+static bool apply_exact_or_off(const char *value, bool *is_off, char *why)
+{
+    *is_off = strcmp(value, "off") == 0;
+    return *is_off || strcmp(value, "exact") == 0 || options_refuse(why, "must be exact or off");
+}
+
+static bool apply_antialias(struct options *options, const char *value, char *why)
+{
+    options->given |= GIVEN_ANTIALIAS;
+    return apply_exact_or_off(value, &options->request.aliased, why);
+}
+
 static bool apply_filter(struct options *options, const char *value, char *why)
 {
-    options->request.unfiltered = strcmp(value, "off") == 0;
-    return options->request.unfiltered || strcmp(value, "exact") == 0 ||
-           options_refuse(why, "must be exact or off");
+    return apply_exact_or_off(value, &options->request.unfiltered, why);
 }
 
 static bool apply_miss(struct options *options, const char *value, char *why)
@@ -521,9 +531,14 @@ const struct option_row OPTIONS_SCENE[] = {
      "the surface, shaded, seen through patterns whose opacity is below 1 (clear\n"
      "colours of a pattern leave the picture clear) (default: #b3b8bf)",
      apply_base, NULL},
+    {"antialias", 0, "KIND",
+     "exact: pixels at edges show shares of what they see, or off: each shows what\n"
+     "its centre sees, which is faster; lines stay averaged (default: exact, with\n"
+     "--filter off: off)",
+     apply_antialias, "exact off"},
     {"filter", 0, "KIND",
      "exact: lines averaged over each pixel's footprint, or off: one sample a\n"
-     "pixel (default: exact)",
+     "pixel, of lines and edges (default: exact)",
      apply_filter, "exact off"},
     {"miss", 0, "COLOUR",
      "where no light is met: #rrggbb or #rrggbbaa\n"

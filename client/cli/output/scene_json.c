@@ -183,6 +183,7 @@ void scene_json(struct json *json, const struct sheen_request *request,
         json_colour(json, "empty", frame->empty);
         json_colour(json, "base", frame->base);
     }
+    json_string(json, "antialias", request->aliased || request->unfiltered ? "off" : "exact");
     json_string(json, "filter", request->unfiltered ? "off" : "exact");
     json_string(json, "surface", surfaces[request->surface]);
     if (request->surface != SHEEN_SURFACE_EXACT)

@@ -8,7 +8,8 @@
 #include "client/lib/sheen.h"
 
 /* Keys into the object that is open: camera, lines, line_eye, light (the first), lights, colours,
- * filter, surface, show, planes. What the daemon chose is the frame's, the rest the request's. */
+ * antialias, filter, surface, show, planes. What the daemon chose is the frame's, the rest the
+ * request's. */
 void scene_json(struct json *json, const struct sheen_request *request,
                 const struct sheen_frame *frame);
 
