@@ -3,9 +3,10 @@
  *
  * Same cage, camera, size, light and stripes, two threads each; runs in turn, the camera a little
  * on in every round so that no planes are kept. Ours is visibility + evaluate + shade, filtered;
- * "wall" is the same by the clock from the request on, "all" has the picture read back, too. Theirs
- * take one sample a pixel; --device native leaves out OpenSubdiv, which draws in our GL context. The light is a
- * rectangle over the model, with 40 stripes. How alike the pictures are is printed beside the times. */
+ * "wall" is the same by the clock from the request on, "all" has the picture read back, too. "off" is
+ * ours without antialiasing, one sample of the surface a pixel, as theirs are, and filtered still.
+ * --device native leaves out OpenSubdiv, which draws in our GL context. The light is a rectangle over
+ * the model, with 40 stripes. How alike the pictures are is printed beside the times. */
 #include "tests/bench/peers.h"
 #include "tests/bench/question.h"
 
@@ -120,11 +121,24 @@ void compare_all(report *report, table *alike, const contest &contest, size size
     frame_finish(&frame);
 }
 
+/* A peer beside our frames with antialiasing, which its ratio is to, and without. */
+void add_peer(report *report, std::vector<std::string> *row, const std::string &key,
+              const std::string &peer, const turn &theirs, const turn &aliased)
+{
+    double to_aliased = theirs.ms.median() / aliased.ms.median();
+    row->insert(row->end(), {number(theirs.ms.median(), 2), number(theirs.ms.least(), 2),
+                             number(theirs.ratio.median(), 2), number(to_aliased, 2)});
+    report->figure(key + peer + "_ms", theirs.ms.median());
+    report->figure(key + "least_" + peer + "_ms", theirs.ms.least());
+    report->figure(key + peer + "/frame ratio", theirs.ratio.median());
+    report->figure(key + peer + "/aliased ratio", to_aliased);
+}
+
 /* One size of one model, all warm. */
 void measure_size(report *report, tables *tables, const contest &contest, size size)
 {
     frame_request request = request_of(contest, size);
-    auto view = [&](int run) {
+    auto view = [&](double run) {
         frame_request moved = request;
         orbit(&moved.camera, 0.1 * run);
         return moved;
@@ -141,6 +155,11 @@ void measure_size(report *report, tables *tables, const contest &contest, size s
         }
         return cost.stages_ms();
     }};
+    calls.push_back([&](int run) {
+        frame_request aliased = view(run + 0.5); /* the planes of its own view serve it */
+        aliased.aliased = true;
+        return contest.ours->cost(aliased).stages_ms();
+    });
     for (const auto &peer : contest.peers)
         calls.push_back([&](int run) { return peer->draw_ms(view(run)); });
     std::vector<turn> turns = measure_in_turn(report->given().runs, calls);
@@ -154,7 +173,9 @@ void measure_size(report *report, tables *tables, const contest &contest, size s
                                     number(turns[0].ms.median(), 2),
                                     number(turns[0].ms.least(), 2),
                                     number(wall.median(), 2),
-                                    number(all.median(), 2)};
+                                    number(all.median(), 2),
+                                    number(turns[1].ms.median(), 2),
+                                    number(turns[1].ms.least(), 2)};
     report->figure(key + "visibility_ms", visibility.median());
     report->figure(key + "evaluate_ms", evaluate.median());
     report->figure(key + "shade_ms", shade.median());
@@ -162,15 +183,10 @@ void measure_size(report *report, tables *tables, const contest &contest, size s
     report->figure(key + "least_frame_ms", turns[0].ms.least());
     report->figure(key + "wall_ms", wall.median());
     report->figure(key + "all_ms", all.median());
-    for (size_t i = 0; i < contest.peers.size(); i++) {
-        const turn &theirs = turns[i + 1];
-        row.insert(row.end(), {number(theirs.ms.median(), 2), number(theirs.ms.least(), 2),
-                               number(theirs.ratio.median(), 2)});
-        const std::string &peer = contest.kinds[i].name;
-        report->figure(key + peer + "_ms", theirs.ms.median());
-        report->figure(key + "least_" + peer + "_ms", theirs.ms.least());
-        report->figure(key + peer + "/frame ratio", theirs.ratio.median());
-    }
+    report->figure(key + "aliased_ms", turns[1].ms.median());
+    report->figure(key + "least_aliased_ms", turns[1].ms.least());
+    for (size_t i = 0; i < contest.peers.size(); i++)
+        add_peer(report, &row, key, contest.kinds[i].name, turns[i + 2], turns[1]);
     tables->warm.row(row);
     compare_all(report, &tables->alike, contest, size);
 }
@@ -208,12 +224,13 @@ void measure_cold(report *report, table *cold, contest *contest, const std::stri
 tables make_tables(const std::vector<frame_peer_kind> &kinds)
 {
     std::vector<std::string> cold = {"cold", "faces", "tables ms", "start ms", "first frame ms"};
-    std::vector<std::string> warm = {"warm, medians", "size",  "visibility", "evaluate", "shade",
-                                     "frame ms",      "least", "wall ms",    "all ms"};
+    std::vector<std::string> warm = {"warm, medians", "size",     "visibility", "evaluate",
+                                     "shade",         "frame ms", "least",      "wall ms",
+                                     "all ms",        "off ms",   "least"};
     std::vector<std::string> alike = {"same picture", "size", "covered"};
     for (const frame_peer_kind &kind : kinds) {
         cold.insert(cold.end(), {kind.name + " build ms", "first ms"});
-        warm.insert(warm.end(), {kind.name + " ms", "least", "ratio"});
+        warm.insert(warm.end(), {kind.name + " ms", "least", "ratio", "ratio off"});
     }
     if (!kinds.empty())
         alike.insert(alike.end(), {"peer", "peer's", "both", "normals apart, deg", "median"});

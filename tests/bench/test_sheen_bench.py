@@ -39,7 +39,7 @@ class Bench(unittest.TestCase):
         self.assertIn("llvmpipe", kept["device"])
         for size in "640x480", "1280x720", "1920x1080":
             self.assertGreater(figures[f"plane {size} covered pixels"], 1000)
-            for stage in "visibility", "evaluate", "shade", "frame", "all":
+            for stage in "visibility", "evaluate", "shade", "frame", "aliased", "all":
                 self.assertGreater(figures[f"plane {size} {stage}_ms"], 0)
             self.assertGreater(figures[f"plane {size} wall_ms"], figures[f"plane {size} frame_ms"])
             self.assertIn(size, ran.stdout)
