@@ -1,4 +1,4 @@
-"""python3 -m lanes NAME: writes a program of `programs` to standard output, as C++ for
+"""python3 -m lanes NAME: writes a program of `shaders/programs` to standard output, as C++ for
 server/render/native/programs/glsl.hpp: what is compiled as native_NAME_SET for each instruction set."""
 import os
 import subprocess
@@ -17,7 +17,7 @@ KINDS = "uniform int line_family, light_kind, pattern_kind;\nuniform bool is_sof
 
 def files_of(name):
     lists = {}
-    with open(os.path.join(HERE, "programs"), encoding="utf-8") as file:
+    with open(os.path.join(HERE, "..", "programs"), encoding="utf-8") as file:
         for line in file:
             if line.strip() and not line.startswith("#"):
                 first, *rest = line.split()
