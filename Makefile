@@ -108,7 +108,7 @@ SHADERS := $(sort $(wildcard shaders/*.glsl))
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(SURFACE_SRC) server/base/error.c)
 # The programs of shaders/ that run on processors, written as C++ by shaders/lanes.
-NATIVE_PROGRAMS := $(shell sed -n 's/^\([a-z][a-z_]*\) .*/\1/p' shaders/programs)
+NATIVE_PROGRAMS := $(shell sed -nE 's/^(native|both) +([a-z_]+) .*/\2/p' shaders/programs)
 LANES_OBJ := $(foreach set,$(LANE_SETS),$(patsubst %.c,$(BUILD)/obj/%.$(set).o,$(LANES_SRC)) \
              $(patsubst %,$(BUILD)/obj/gen/lanes/%.$(set).o,$(NATIVE_PROGRAMS)))
 RENDER_OBJ := $(LANES_OBJ) $(call obj,$(SCENE_SRC) $(RENDER_SRC) server/base/processors.c protocol/control_group.c protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
@@ -213,12 +213,12 @@ $(BUILD)/gen/sheen.pb.c $(BUILD)/gen/sheen.pb.h &: protocol/sheen.proto protocol
 	@mkdir -p $(@D)
 	$(Q)$(NANOPB) -I protocol -D $(BUILD)/gen sheen.proto
 .PRECIOUS: $(BUILD)/gen/lanes/%.cpp
-$(BUILD)/gen/lanes/%.cpp: $(SHADERS) shaders/programs $(wildcard shaders/lanes/*)
+$(BUILD)/gen/lanes/%.cpp: $(SHADERS) shaders/programs shaders/listed.py $(wildcard shaders/lanes/*)
 	@mkdir -p $(@D)
 	$(Q)CC="$(CC)" PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=shaders /usr/bin/python3 -m lanes $* > $@.part && mv $@.part $@
-$(BUILD)/gen/shaders.c: $(SHADERS) shaders/embed.sh
+$(BUILD)/gen/shaders.c: $(SHADERS) shaders/programs shaders/listed.py shaders/embed.py
 	@mkdir -p $(@D)
-	$(Q)sh shaders/embed.sh $(SHADERS) > $@
+	$(Q)PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 shaders/embed.py $(SHADERS) > $@.part && mv $@.part $@
 
 # sheend that fails where $SHEEN_FAULTS asks it to, and counts what its own code (no library's) takes from
 # the heap: what is installed cannot.

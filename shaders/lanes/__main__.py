@@ -1,8 +1,11 @@
 """python3 -m lanes NAME: writes a program of `shaders/programs` to standard output, as C++ for
 server/render/native/programs/glsl.hpp: what is compiled as native_NAME_SET for each instruction set."""
 import os
+import re
 import subprocess
 import sys
+
+from listed import listed_programs
 
 from .parse import Failure
 from .program import program_text
@@ -15,16 +18,6 @@ MACROS = ("MADE_PATCHES POINT_BANKS=1 NODE_BANKS=1 ADJACENCY_BANKS=1 BANK_TEXELS
 KINDS = "uniform int line_family, light_kind, pattern_kind;\nuniform bool is_soft, is_filtered;\n"
 
 
-def files_of(name):
-    lists = {}
-    with open(os.path.join(HERE, "..", "programs"), encoding="utf-8") as file:
-        for line in file:
-            if line.strip() and not line.startswith("#"):
-                first, *rest = line.split()
-                lists[first] = [part for word in rest for part in lists.get(word, [word])]
-    return lists[name]
-
-
 def path_of(file_name):
     """What no graphics card runs stands here."""
     own = os.path.join(HERE, file_name)
@@ -34,15 +27,14 @@ def path_of(file_name):
 def main():
     name = sys.argv[1]
     text = ""
-    for file_name in files_of(name):
-        if file_name == "kinds":
-            text += KINDS
-            continue
+    for file_name in listed_programs("native")[name][0]:
         with open(path_of(file_name + ".glsl"), encoding="utf-8") as file:
             text += file.read()
     text = subprocess.run(os.environ.get("CC", "cc").split() + ["-E", "-P", "-undef", "-nostdinc", "-xc"] +
                           ["-D" + macro for macro in MACROS] + ["-"],
                           input=text, capture_output=True, text=True, check=True).stdout
+    if re.search(r"\b(line_family|light_kind|pattern_kind|is_soft|is_filtered)\b", text):
+        text = KINDS + text
     try:
         sys.stdout.write('#include "server/render/native/programs/glsl.hpp"\n\n' + program_text(text, name))
     except Failure as failure:

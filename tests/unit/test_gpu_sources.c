@@ -25,17 +25,19 @@ enum {
     PATH_BYTES = 128
 };
 
-/* The shaders assembled so far, in files of one folder; and whether shader_files[k] stands in one
- * of any test's. */
+/* The shaders assembled so far, in files of one folder; and whether shader_files[k] and
+ * shader_programs[k] stand in those of any test. */
 static char folder[FOLDER_BYTES], paths[MAX_SHADERS][PATH_BYTES];
 static int n_paths;
-static bool uses[MAX_FILES];
+static bool uses[MAX_FILES], uses_program[MAX_FILES];
 
 static void note_uses(const char *const *files)
 {
     for (int i = 0; files[i]; i++)
         for (int k = 0; shader_files[k].name; k++)
             uses[k] = uses[k] || strcmp(files[i], shader_files[k].name) == 0;
+    for (int k = 0; shader_programs[k].name; k++)
+        uses_program[k] = uses_program[k] || files == shader_programs[k].files[0];
 }
 
 static void write_shader(const struct program_source *source, int k, const char *ending,
@@ -178,13 +180,17 @@ static void test_tables(void **state)
     validate_all();
 }
 
-/* A file that stands in no program has not been looked at. Runs last. */
-static void test_every_file_is_used(void **state)
+/* A file that stands in no program, or a program that nobody asks for, has not been looked at. Runs
+ * last. */
+static void test_all_are_used(void **state)
 {
     (void)state;
     for (int k = 0; shader_files[k].name; k++)
         if (!uses[k])
             fail_msg("no program is assembled from %s", shader_files[k].name);
+    for (int k = 0; shader_programs[k].name; k++)
+        if (!uses_program[k])
+            fail_msg("nobody asks for the program %s", shader_programs[k].name);
 }
 
 int main(void)
@@ -193,7 +199,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_single, begin, end),
         cmocka_unit_test_setup_teardown(test_shading, begin, end),
         cmocka_unit_test_setup_teardown(test_tables, begin, end),
-        cmocka_unit_test(test_every_file_is_used),
+        cmocka_unit_test(test_all_are_used),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,6 +20,8 @@ bool shader_text_init(struct shader_text *text, const struct program_source *sou
     text->part[0] = "#version 450 core\n";
     text->part[1] = source->defines;
     text->n = 2;
+    if (!files)
+        return error_set(error, ERROR_DEVICE, "a program is not in the list shaders/programs");
     for (int i = 0; files[i]; i++) {
         const char *file = i < PROGRAM_MAX_FILES ? file_text(files[i]) : NULL;
         if (!file)
@@ -32,74 +34,45 @@ bool shader_text_init(struct shader_text *text, const struct program_source *sou
     return true;
 }
 
+/* Without #define lines. files[0] is NULL where no program is called so. */
+static struct program_source source_of(const char *name)
+{
+    struct program_source source = {.files = {NULL, NULL}};
+    for (const struct shader_program *program = shader_programs; program->name; program++)
+        if (strcmp(program->name, name) == 0)
+            memcpy(source.files, program->files, sizeof source.files);
+    return source;
+}
+
 struct program_source source_of_single(enum single_program program)
 {
-    static const char *const gather[] = {"view.glsl",   "list.glsl",        "seen.glsl",
-                                         "groups.glsl", "gather.comp.glsl", NULL};
-    static const char *const recheck[] = {"view.glsl",   "list.glsl",         "seen.glsl",
-                                          "groups.glsl", "recheck.comp.glsl", NULL};
-    static const char *const gaps[] = {"view.glsl", "list.glsl", "seen.glsl", "gaps.comp.glsl",
-                                       NULL};
-    static const char *const edges_find[] = {
-        "view.glsl", "list.glsl",  "basis.glsl",   "hit.glsl",    "border.glsl",
-        "ends.glsl", "edges.glsl", "rounded.glsl", "groups.glsl", "edges_find.comp.glsl",
-        NULL};
-    static const char *const edges_recheck[] = {"view.glsl",
-                                                "list.glsl",
-                                                "basis.glsl",
-                                                "hit.glsl",
-                                                "coverage.glsl",
-                                                "border.glsl",
-                                                "ends.glsl",
-                                                "edges.glsl",
-                                                "rounded.glsl",
-                                                "pieces.glsl",
-                                                "edges_recheck.comp.glsl",
-                                                NULL};
-    static const char *const vertex[] = {"view.glsl", "polygon.vert.glsl", NULL};
-    static const char *const polygons[] = {"view.glsl", "basis.glsl", "polygon.glsl",
-                                           "polygon.frag.glsl", NULL};
-    static const char *const wireframe[] = {"view.glsl", "basis.glsl",     "polygon.glsl",
-                                            "srgb.glsl", "wireframe.glsl", "wireframe.frag.glsl",
-                                            NULL};
 #define NO_TABLES "#define TEXTURES_FREE 0\n"
-    static const struct program_source sources[SINGLE_PROGRAMS] = {
-        [PROGRAM_GATHER] = {NO_TABLES, {gather, NULL}},
-        [PROGRAM_RECHECK] = {NO_TABLES, {recheck, NULL}},
-        [PROGRAM_GAPS] = {NO_TABLES, {gaps, NULL}},
-        [PROGRAM_EDGES_FIND] = {"", {edges_find, NULL}},
-        [PROGRAM_EDGES_RECHECK] = {"", {edges_recheck, NULL}},
-        [PROGRAM_POLYGONS] = {"", {vertex, polygons}},
-        [PROGRAM_WIREFRAME] = {"", {vertex, wireframe}},
+    static const struct {
+        const char *name, *defines;
+    } singles[SINGLE_PROGRAMS] = {
+        [PROGRAM_GATHER] = {"gather", NO_TABLES},
+        [PROGRAM_RECHECK] = {"recheck", NO_TABLES},
+        [PROGRAM_GAPS] = {"gaps", NO_TABLES},
+        [PROGRAM_EDGES_FIND] = {"edges_find", ""},
+        [PROGRAM_EDGES_RECHECK] = {"edges_recheck", ""},
+        [PROGRAM_POLYGONS] = {"polygons", ""},
+        [PROGRAM_WIREFRAME] = {"wireframe", ""},
     };
 #undef NO_TABLES
-    return sources[program];
+    struct program_source source = source_of(singles[program].name);
+    snprintf(source.defines, sizeof source.defines, "%s", singles[program].defines);
+    return source;
 }
 
 struct program_source source_of_tables(enum table_program program,
                                        const struct table_layout *layout)
 {
-    static const char *const vertex[] = {"view.glsl", "tables.glsl", "surface.glsl",
-                                         "visibility.vert.glsl", NULL};
-    static const char *const fragment[] = {"visibility.frag.glsl", NULL};
-#define STAGE_2                                                                                    \
-    "view.glsl", "list.glsl", "tables.glsl", "surface.glsl", "basis.glsl", "neighbours.glsl",      \
-        "border.glsl", "planes.glsl", "newton.glsl", "seen.glsl"
-    static const char *const evaluate[] = {STAGE_2, "groups.glsl", "evaluate.comp.glsl", NULL};
-    static const char *const unsolved[] = {STAGE_2, "walk.glsl", "unsolved.comp.glsl", NULL};
-    static const char *const rounded[] = {STAGE_2, "walk.glsl", "rounded.glsl",
-                                          "rounded_solve.comp.glsl", NULL};
-    static const char *const ends[] = {STAGE_2, "walk.glsl", "ends.glsl", "ends_find.comp.glsl",
-                                       NULL};
-#undef STAGE_2
-    static const char *const *const files[TABLE_PROGRAMS][2] = {
-        [PROGRAM_VISIBILITY] = {vertex, fragment},
-        [PROGRAM_EVALUATE] = {evaluate, NULL},
-        [PROGRAM_UNSOLVED] = {unsolved, NULL},
-        [PROGRAM_ROUNDED] = {rounded, NULL},
-        [PROGRAM_ENDS] = {ends, NULL},
+    static const char *const names[TABLE_PROGRAMS] = {
+        [PROGRAM_VISIBILITY] = "visibility", [PROGRAM_EVALUATE] = "evaluate",
+        [PROGRAM_UNSOLVED] = "unsolved",     [PROGRAM_ROUNDED] = "rounded_solve",
+        [PROGRAM_ENDS] = "ends_find",
     };
-    struct program_source source = {.files = {files[program][0], files[program][1]}};
+    struct program_source source = source_of(names[program]);
     snprintf(source.defines, sizeof source.defines,
              "#define POINT_BANKS %d\n#define NODE_BANKS %d\n#define ADJACENCY_BANKS %d\n"
              "#define BANK_TEXELS %zu\n#define NODE_BANK_TEXELS %zu\n#define "
@@ -112,36 +85,16 @@ struct program_source source_of_tables(enum table_program program,
 
 struct program_source source_of_shading(struct shade_key key)
 {
-#define LINES "view.glsl", "list.glsl", "basis.glsl", "hit.glsl", "coverage.glsl", "lines.glsl"
-#define COMMON LINES, "srgb.glsl", "shown.glsl", "patterns.glsl"
-    static const char *const all[] = {COMMON, "groups.glsl", "shade.comp.glsl", NULL};
-    static const char *const edges[] = {
-        COMMON,          "border.glsl",           "ends.glsl",
-        "edges.glsl",    "pieces.glsl",           "piece_shade.glsl",
-        "rounding.glsl", "edges_shade.comp.glsl", NULL};
-    static const char *const high_curvature[] = {COMMON,
-                                                 "border.glsl",
-                                                 "ends.glsl",
-                                                 "edges.glsl",
-                                                 "pieces.glsl",
-                                                 "piece_shade.glsl",
-                                                 "high_curvature_shade.comp.glsl",
-                                                 NULL};
-    static const char *const rounded[] = {COMMON,
-                                          "border.glsl",
-                                          "ends.glsl",
-                                          "edges.glsl",
-                                          "pieces.glsl",
-                                          "rounded.glsl",
-                                          "rounded_shade.comp.glsl",
-                                          NULL};
-    static const char *const planes[] = {LINES, "groups.glsl", "shade_planes.comp.glsl", NULL};
-    static const char *const share[] = {LINES, "groups.glsl", "share.comp.glsl", NULL};
-#undef COMMON
-#undef LINES
-    static const char *const *const files[SHADED_KINDS] = {all,     all,    edges, high_curvature,
-                                                           rounded, planes, share};
-    struct program_source source = {.files = {files[key.which], NULL}};
+    static const char *const names[SHADED_KINDS] = {
+        [SHADED_ALL] = "shade",
+        [SHADED_UNFILTERED] = "shade",
+        [SHADED_EDGES] = "edges_shade",
+        [SHADED_HIGH_CURVATURE] = "high_curvature_shade",
+        [SHADED_ROUNDED] = "rounded_shade",
+        [SHADED_PLANES] = "shade_planes",
+        [SHADED_SHARE] = "share",
+    };
+    struct program_source source = source_of(names[key.which]);
     snprintf(source.defines, sizeof source.defines,
              "#define FAMILY %d\n#define LIGHT %d\n#define PATTERN %d\n"
              "#define IS_SOFT %s\n#define IS_FILTERED %s\n",

@@ -1,6 +1,6 @@
-/* The source text of every GPU program: #define lines, then files of shaders/ in order. No GL call
- * is made here, so the texts can be made and checked on a machine without a device. Private to
- * server/render/gl; pure functions on constant data, any thread. */
+/* The source text of every GPU program: #define lines, then the files of shaders/ that shaders/programs
+ * lists, in order. No GL call is made here, so the texts can be made and checked on a machine without
+ * a device. Private to server/render/gl; pure functions on constant data, any thread. */
 #ifndef SHEEN_RENDER_GL_PROGRAMS_SOURCES_H
 #define SHEEN_RENDER_GL_PROGRAMS_SOURCES_H
 
@@ -15,8 +15,7 @@ enum { PROGRAM_DEFINES_BYTES = 256, PROGRAM_MAX_FILES = 20 };
 /* A compute shader; or a vertex and a fragment shader. */
 struct program_source {
     char defines[PROGRAM_DEFINES_BYTES];
-    const char *const *files[2]; /* of each shader, names that end with NULL; constant data.
-                                    files[1] NULL: a compute shader */
+    const char *const *files[2]; /* of each shader, as struct shader_program has them (shaders.h) */
 };
 
 /* One shader's text as glShaderSource() takes it: part[0, n). */
