@@ -61,7 +61,7 @@ CXXFLAGS += -std=c++17 $(WARN) $(BASE) $(if $(SANITIZE),-fno-sanitize=vptr -Wno-
 LDFLAGS += $(OPT) -pthread -Wl,-z,relro,-z,now
 
 NANOPB := /usr/bin/python3 /usr/bin/nanopb_generator.py -q
-GEN := $(BUILD)/gen/sheen.pb.h $(BUILD)/gen/sheen.pb.c $(BUILD)/gen/shaders.c
+GEN := $(BUILD)/gen/sheen.pb.h $(BUILD)/gen/sheen.pb.c $(BUILD)/gen/shaders.c $(BUILD)/gen/edge_rays.inc
 
 # V=1 shows every command.
 Q := $(if $(V),,@)
@@ -75,7 +75,7 @@ SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/
 # Between messages and scenes: for those who speak to clients.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
 SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))
-RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c)
+RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/native/rays/*.c)
 # Compiled once for each instruction set: its name, its lanes, and what tells the compiler.
 LANES_SRC := $(wildcard server/render/native/lanes/*.c)
 ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
@@ -219,6 +219,10 @@ $(BUILD)/gen/lanes/%.cpp: $(SHADERS) shaders/programs shaders/listed.py $(wildca
 $(BUILD)/gen/shaders.c: $(SHADERS) shaders/programs shaders/listed.py shaders/embed.py
 	@mkdir -p $(@D)
 	$(Q)PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 shaders/embed.py $(SHADERS) > $@.part && mv $@.part $@
+# The places of EDGE_RAYS as C initialises them: rays.c reads them, too.
+$(BUILD)/gen/edge_rays.inc: shaders/rounded.glsl
+	@mkdir -p $(@D)
+	$(Q)sed -n '/^const vec2 EDGE_RAYS/,/;/{s/.*\[16\](//;s/vec2(\([^)]*\))/{\1}/g;s/);//;s/\(\.[0-9]*\)/\1f/gp}' $< > $@
 
 # sheend that fails where $SHEEN_FAULTS asks it to, and counts what its own code (no library's) takes from
 # the heap: what is installed cannot.
@@ -310,7 +314,7 @@ $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 sheen-bench: $(BUILD)/sheen-bench
 
 # The native device for another processor, compiled and not linked: the libraries of the rest are this machine's.
-native-units: $(LANES_OBJ) $(call obj,$(wildcard server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/*.c))
+native-units: $(LANES_OBJ) $(call obj,$(wildcard server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/native/rays/*.c server/render/*.c))
 arm64:
 	$(MAKE) BUILD=build/arm64 CC="$(filter ccache,$(CC)) aarch64-linux-gnu-gcc" CXX="$(filter ccache,$(CXX)) aarch64-linux-gnu-g++" \
 	    OPT=-O1 LANES_FLAGS="$(filter-out -O3,$(LANES_FLAGS)) -O1" native-units

@@ -97,10 +97,13 @@ struct native_thread {
     struct native_entry *entry;
     size_t n_entries, entry_capacity;
     struct native_tile_room *tile; /* tile.h */
+    struct native_ray_room *rays;  /* rays/rays.h; NULL until a frame needs it */
     uint32_t *gap; /* pixels that may be in gaps, x | y << 16 in the tile asked for */
     size_t n_gaps, gap_capacity;
     struct native_times times; /* nanoseconds */
 };
+/* Drops the patches that a thread keeps beside those of its model. */
+void native_forget_patches(struct native_thread *thread);
 /* Pixels in gaps that one tile may ask for. */
 enum { NATIVE_MAX_GAPS = 512 };
 

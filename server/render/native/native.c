@@ -180,6 +180,7 @@ static void finish_thread(struct native_thread *thread)
     free(thread->triangle);
     free(thread->entry);
     free(thread->gap);
+    free(thread->rays);
     if (thread->tile) {
         free(thread->tile->local);
         free(thread->tile->quad);
@@ -259,6 +260,11 @@ unsigned native_device_threads(const struct native_device *device)
     return device->n_threads;
 }
 
+struct native_thread *native_device_thread(struct native_device *device, unsigned number)
+{
+    return &device->thread[number];
+}
+
 /* --- */
 
 void native_rays_init(struct native_rays *rays, const struct view *view)
@@ -334,6 +340,12 @@ static bool has_failed(const struct native_frame *frame)
            __atomic_load_n(&frame->too_many, __ATOMIC_RELAXED);
 }
 
+void native_forget_patches(struct native_thread *thread)
+{
+    for (int i = 0; i < TILE_PATCHES; i++)
+        thread->tile->patch[i].node = UINT32_MAX;
+}
+
 struct job {
     struct native_frame frame;
     struct native_team *team;
@@ -347,8 +359,7 @@ static void work(void *owner, unsigned number)
     uint32_t n_tiles = frame->tiles_x * frame->tiles_y, k;
     thread->n_quads = thread->n_vertices = thread->n_triangles = 0;
     thread->n_entries = thread->n_gaps = 0;
-    for (int i = 0; i < TILE_PATCHES; i++) /* of another model, it may be */
-        thread->tile->patch[i].node = UINT32_MAX;
+    native_forget_patches(thread); /* they may be of another model */
     thread->times = (struct native_times){0};
     while ((k = __atomic_fetch_add(&frame->next_part, 1, __ATOMIC_RELAXED)) < frame->n_parts &&
            !has_failed(frame))

@@ -18,6 +18,7 @@
 struct native_device;
 struct native_programs; /* program.h */
 struct native_set;      /* sets.h */
+struct native_thread;   /* frame.h */
 struct native_model;    /* patches.h */
 
 struct native_options {
@@ -36,6 +37,7 @@ const char *native_device_name(const struct native_device *device);
  * more there. */
 bool native_device_left_gaps(const struct native_device *device);
 unsigned native_device_threads(const struct native_device *device);
+struct native_thread *native_device_thread(struct native_device *device, unsigned number);
 const struct native_set *native_device_set(const struct native_device *device);
 /* The programs made of shaders/, compiled for the device's instruction set. */
 const struct native_programs *native_device_programs(const struct native_device *device);

@@ -1,4 +1,4 @@
-/* What stages 1 and 2 leave of a tile, and the time that they took. */
+/* What stages 1 and 2 leave of a tile, the time that they took, and the rays of pixels that ask for more. */
 #ifndef SHEEN_RENDER_NATIVE_PLANES_H
 #define SHEEN_RENDER_NATIVE_PLANES_H
 
@@ -32,6 +32,17 @@ struct native_seen {
     float *ndc;
     bool is_perspective;
     float depth[3]; /* View.depth of shaders/view.glsl */
+};
+
+/* Words of a RoundedHit (shaders/rounded.glsl), and the most rays of a pixel. */
+enum { HIT_WORDS = 8, NATIVE_MAX_RAYS = 16 };
+
+/* Pixels as shaders/rounded.glsl lists them, and side x side rays of each. */
+struct native_rounded {
+    const uint32_t *pixel;
+    uint32_t n;
+    int side;                /* 0 to 4 */
+    float (*hit)[HIT_WORDS]; /* [n * side * side]: what each ray meets */
 };
 
 /* Processor time of each step of one frame, summed over all threads. */

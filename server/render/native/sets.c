@@ -14,19 +14,23 @@
     void native_triangles_##set(struct native_slice *, uint32_t);                                  \
     uint32_t native_groups_##set(const struct native_seen *, uint32_t, uint32_t, float *,          \
                                  uint32_t *);                                                      \
+    void native_meet_rays_##set(const struct native_frame *, struct native_tile_room *,            \
+                                struct native_ray_room *);                                         \
+    void native_describe_rays_##set(const struct native_frame *, struct native_tile_room *,        \
+                                    struct native_ray_room *, float(*)[HIT_WORDS]);                \
     native_program native_edges_find_##set, native_edges_recheck_##set, native_ends_find_##set,    \
-        native_rounded_solve_##set, native_shade_##set, native_edges_shade_##set,                  \
-        native_high_curvature_shade_##set, native_rounded_shade_##set, native_shade_planes_##set,  \
-        native_share_##set, native_polygon_planes_##set, native_polygon_edges_##set;
+        native_shade_##set, native_edges_shade_##set, native_high_curvature_shade_##set,           \
+        native_rounded_shade_##set, native_shade_planes_##set, native_share_##set,                 \
+        native_polygon_planes_##set, native_polygon_edges_##set;
 #define SET(set, in_words, n_lanes)                                                                \
     {                                                                                              \
         .name = #set, .words = in_words, .lanes = n_lanes, .pieces = native_pieces_##set,          \
         .tile = native_tile_##set, .gaps = native_gaps_##set, .groups = native_groups_##set,       \
+        .meet_rays = native_meet_rays_##set, .describe_rays = native_describe_rays_##set,          \
         .place = native_place_##set, .triangles = native_triangles_##set, .programs = {            \
             native_edges_find_##set,                                                               \
             native_edges_recheck_##set,                                                            \
             native_ends_find_##set,                                                                \
-            native_rounded_solve_##set,                                                            \
             native_shade_##set,                                                                    \
             native_edges_shade_##set,                                                              \
             native_high_curvature_shade_##set,                                                     \

@@ -4,13 +4,15 @@
 
 #include <stdint.h>
 
+#include "server/render/native/planes.h"
 #include "server/render/native/programs/program.h"
 
 struct native_frame;
 struct native_polygon_thread;
+struct native_ray_room; /* rays/rays.h */
 struct native_slice;
-struct native_seen; /* planes.h */
 struct native_thread;
+struct native_tile_room; /* tile.h */
 
 struct native_set {
     const char *name;  /* as an option says it */
@@ -26,6 +28,13 @@ struct native_set {
     /* Groups of pixels in some rows: lanes/entries.h. */
     uint32_t (*groups)(const struct native_seen *seen, uint32_t first, uint32_t end, float *columns,
                        uint32_t *groups);
+    /* Meets the rays of room->task with the surface, and leaves no task; what each meets in front of what its ray has met
+     * is kept in room->met. */
+    void (*meet_rays)(const struct native_frame *frame, struct native_tile_room *tile,
+                      struct native_ray_room *room);
+    /* Writes of every ray of room->task what lies at the place where it begins: RoundedHit of shaders/rounded.glsl. */
+    void (*describe_rays)(const struct native_frame *frame, struct native_tile_room *tile,
+                          struct native_ray_room *room, float (*hit)[HIT_WORDS]);
     /* Of polygons (polygons/fill.h): the triangles of the slice's part of that number, and the tiles that they lie in. */
     void (*place)(struct native_slice *slice, struct native_polygon_thread *thread, uint32_t part);
     /* Draws what has been placed in a tile. */

@@ -6,6 +6,7 @@
 
 #include "server/render/native/denormals.h"
 #include "server/render/native/patches.h"
+#include "server/render/native/rays/rays.h"
 
 enum { GROUPS_PER_WORKGROUP = 8 };
 /* Workgroups that a thread takes at a time, and the most pixels that one of them may list. */
@@ -131,6 +132,29 @@ static struct native_list *list_of(const struct native_drawing *d, enum native_l
 
 /* --- edges */
 
+/* Rays along a side of a pixel (shaders/rounded.glsl). */
+static int rounded_side(uint32_t n_listed, uint32_t max_rounded)
+{
+    return n_listed <= max_rounded        ? 4
+           : n_listed <= 4 * max_rounded  ? 2
+           : n_listed <= 16 * max_rounded ? 1
+                                          : 0;
+}
+
+static bool meet_rounded(const struct native_drawing *d, struct error *error)
+{
+    struct native_target *t = d->target;
+    const struct native_list *listed = list_of(d, NATIVE_ROUNDED);
+    struct native_rounded rounded = {.pixel = listed->at.words, .n = listed->n};
+    rounded.side = rounded_side(listed->n, tile_max_rounded(&d->place));
+    if (!native_target_reserve_hits(t, (size_t)rounded.n * (size_t)(rounded.side * rounded.side),
+                                    error))
+        return false;
+    rounded.hit = (float(*)[HIT_WORDS])(void *)t->hits;
+    return native_meet_rounded(d->device, d->shown->model, d->exact_view, &d->place, &t->planes,
+                               &rounded, error);
+}
+
 bool native_edges(const struct native_drawing *d, struct error *error)
 {
     const struct native_programs *programs = native_device_programs(d->device);
@@ -157,18 +181,7 @@ bool native_edges(const struct native_drawing *d, struct error *error)
     b.edges = list_of(d, NATIVE_EDGES);
     b.rounded = list_of(d, NATIVE_ROUNDED);
     run_program(d, programs->edges_recheck, &b, b.listed->n, EDGES_PER_WORKGROUP, NULL);
-
-    b = native_bindings_of(d);
-    b.listed = list_of(d, NATIVE_ROUNDED);
-    b.max_rounded = tile_max_rounded(&d->place);
-    uint32_t with_rays = b.listed->n < b.max_rounded ? b.listed->n : b.max_rounded;
-    size_t n_rays = (size_t)with_rays * NATIVE_MAX_RAYS;
-    if (!native_target_reserve_hits(t, n_rays, error))
-        return false;
-    struct native_array hits = {t->hits, (uint32_t)n_rays};
-    b.RoundedHits = &hits;
-    run_program(d, programs->rounded_solve, &b, b.listed->n, ROUNDED_PER_WORKGROUP, NULL);
-    return true;
+    return meet_rounded(d, error);
 }
 
 /* --- lights */

@@ -14,8 +14,9 @@ struct native_drawing {
     const struct native_shown *shown;
     const struct frame_request *request;
     struct view_block view;
-    struct tile place;  /* the part of the picture that the target holds */
-    struct tile inside; /* of that, the tile itself, without its margin */
+    const struct view *exact_view; /* the same in double */
+    struct tile place;             /* the part of the picture that the target holds */
+    struct tile inside;            /* of that, the tile itself, without its margin */
 };
 
 /* What every program finds. */

@@ -7,9 +7,6 @@
 #include "server/render/native/programs/program.h"
 #include "server/scene/frame_request.h"
 
-/* Words of a RoundedHit (shaders/rounded.glsl). */
-enum { HIT_WORDS = 8, NATIVE_MAX_RAYS = 16 /* of a pixel */ };
-
 /* Lists of the target: groups of pixels near what is seen, those of them that are shaded, and pixels that are looked
  * at more closely (shaders/edges.glsl). */
 enum native_list_of {

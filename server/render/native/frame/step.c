@@ -153,6 +153,7 @@ enum frame_step native_frame_step(struct renderer *renderer, struct renderer_mod
     struct view view;
     view_init(&view, &request->camera, request->width_px, request->height_px,
               model->tables->hull_min, model->tables->hull_max);
+    drawing.exact_view = &view;
     view_block_fill(&drawing.view, &view, &drawing.place);
     if (!is_kept_view)
         planes->kept.serial = 0;

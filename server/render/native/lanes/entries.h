@@ -5,6 +5,7 @@
 #include "server/render/native/frame.h"
 #include "server/render/native/lanes.h"
 #include "server/render/native/polygons/fill.h"
+#include "server/render/native/rays/rays.h"
 
 void LANE_NAME(native_pieces)(struct native_frame *frame, struct native_thread *thread,
                               uint32_t number);
@@ -14,6 +15,12 @@ void LANE_NAME(native_gaps)(struct native_frame *frame, struct native_thread *th
 void LANE_NAME(native_place)(struct native_slice *slice, struct native_polygon_thread *thread,
                              uint32_t number);
 void LANE_NAME(native_triangles)(struct native_slice *slice, uint32_t number);
+
+void LANE_NAME(native_meet_rays)(const struct native_frame *frame, struct native_tile_room *tile,
+                                 struct native_ray_room *room);
+void LANE_NAME(native_describe_rays)(const struct native_frame *frame,
+                                     struct native_tile_room *tile, struct native_ray_room *room,
+                                     float (*hit)[HIT_WORDS]);
 
 /* Fills in `seen` in the rows [first, end), of which first is a multiple of GROUP_HEIGHT, and lists their
  * groups that show surface or lie beside some: x | y << 16, in groups. Returns how many. `columns`: memory for

@@ -86,7 +86,7 @@ typedef void native_program(const struct native_bindings *bindings, uint32_t fir
 
 /* The programs of an instruction set. */
 struct native_programs {
-    native_program *edges_find, *edges_recheck, *ends_find, *rounded_solve;
+    native_program *edges_find, *edges_recheck, *ends_find;
     native_program *shade, *edges_shade, *high_curvature_shade, *rounded_shade;
     native_program *shade_planes, *share, *polygon_planes, *polygon_edges;
 };

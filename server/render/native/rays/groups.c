@@ -1,0 +1,84 @@
+/* Rays sorted by the sub-patch that they begin on. */
+#include "server/render/native/rays/rays.h"
+
+#include <assert.h>
+#include <string.h>
+
+static_assert(RAYS_AT_ONCE < UINT16_MAX, "groups are numbered by 16 bits");
+
+/* Where the search for a sub-patch begins. */
+static uint32_t hash(const struct native_ray_place *at)
+{
+    uint64_t mixed = ((uint64_t)at->node << 16 | at->index) * 0x9e3779b97f4a7c15u;
+    return (uint32_t)(mixed >> 40) & (RAY_KEYS - 1);
+}
+
+static uint32_t group_of(struct native_ray_room *room, const struct native_ray_place *at)
+{
+    for (uint32_t k = hash(at);; k = (k + 1) & (RAY_KEYS - 1)) {
+        if (!room->group_at[k]) {
+            room->group[room->n_groups++] =
+                (struct native_ray_group){.node = at->node, .index = at->index};
+            room->group_at[k] = (uint16_t)room->n_groups;
+        }
+        const struct native_ray_group *group = &room->group[room->group_at[k] - 1];
+        if (group->node == at->node && group->index == at->index)
+            return room->group_at[k] - 1u;
+    }
+}
+
+void native_group_rays(struct native_ray_room *room)
+{
+    uint32_t last = 0, first = 0;
+    memset(room->group_at, 0, sizeof room->group_at);
+    room->n_groups = 0;
+    for (uint32_t i = 0; i < room->n_tasks; i++) {
+        const struct native_ray_place *at = &room->task[i].at;
+        /* Tasks that follow each other are often on one sub-patch. */
+        if (i == 0 || room->group[last].node != at->node || room->group[last].index != at->index)
+            last = group_of(room, at);
+        room->group_of[i] = (uint16_t)last;
+        room->group[last].n++;
+    }
+    for (uint32_t k = 0; k < room->n_groups; k++) {
+        room->group[k].first = first;
+        first += room->group[k].n;
+        room->group[k].n = 0;
+    }
+    for (uint32_t i = 0; i < room->n_tasks; i++) {
+        const struct native_ray_task *task = &room->task[i];
+        struct native_ray_group *group = &room->group[room->group_of[i]];
+        uint32_t to = group->first + group->n++;
+        room->s[to] = task->at.s;
+        room->t[to] = task->at.t;
+        room->px[to] = task->px;
+        room->ray[to] = (int32_t)task->ray;
+    }
+    /* The last vector reads on. */
+    memset(room->ray + room->n_tasks, 0, RAYS_END * sizeof *room->ray);
+}
+
+void native_ray_begin(const struct limit_node *node, double x, double y,
+                      struct native_ray_place *place)
+{
+    const struct native_part_of_node part = native_patch_at(node, x, y);
+    place->index = part.at_vertex ? RAY_AT_VERTEX : (uint16_t)part.index;
+    place->s = (float)(x * native_power(part.scale_x) - part.origin_x);
+    place->t = (float)(y * native_power(part.scale_y) - part.origin_y);
+}
+
+struct native_part_of_node native_part_of_index(const struct limit_node *node, uint32_t index)
+{
+    struct native_part_of_node part = {.index = index};
+    if (node->kind == LIMIT_CORNER) {
+        unsigned square = index % 3 + 1;
+        part.scale_x = part.scale_y = (int8_t)(index / 3 + 1);
+        part.origin_x = square < 3;
+        part.origin_y = square > 1;
+    } else if (node->kind == LIMIT_STRIP) {
+        bool is_last = index == limit_levels(node); /* as wide as the one before */
+        part.scale_y = (int8_t)(index + !is_last);
+        part.origin_y = !is_last;
+    }
+    return part;
+}

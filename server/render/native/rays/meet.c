@@ -1,0 +1,45 @@
+#include "server/render/native/native.h"
+#include "server/render/native/rays/rays.h"
+
+struct rounded_job {
+    struct native_device *device;
+    struct native_frame frame;
+    const struct native_rounded *rounded;
+    uint32_t next;
+};
+
+static void meet_rounded(void *owner, unsigned number)
+{
+    struct rounded_job *job = owner;
+    struct native_thread *thread = native_device_thread(job->device, number);
+    native_forget_patches(thread);
+    for (uint32_t first;
+         (first = __atomic_fetch_add(&job->next, RAYS_PX, __ATOMIC_RELAXED)) < job->rounded->n;)
+        native_meet_pixels(&job->frame, thread, job->rounded, first);
+}
+
+bool native_meet_rounded(struct native_device *device, struct native_model *model,
+                         const struct view *view, const struct tile *tile,
+                         const struct native_planes *planes, const struct native_rounded *rounded,
+                         struct error *error)
+{
+    struct rounded_job job = {.device = device,
+                              .frame = {.model = model,
+                                        .set = native_device_set(device),
+                                        .view = view,
+                                        .tile = *tile,
+                                        .planes = planes},
+                              .rounded = rounded};
+    if (!rounded->n || !rounded->side)
+        return true;
+    for (unsigned i = 0; i < native_device_threads(device); i++) {
+        struct native_thread *thread = native_device_thread(device, i);
+        if (!thread->rays)
+            thread->rays = native_allocate(sizeof *thread->rays);
+        if (!thread->rays)
+            return error_set(error, ERROR_SERVER, "out of memory for the rays of pixels");
+    }
+    native_rays_init(&job.frame.rays, view);
+    native_device_run(device, meet_rounded, &job);
+    return true;
+}

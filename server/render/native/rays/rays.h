@@ -1,0 +1,85 @@
+/* Rays that are spread over pixels which one sample cannot tell (shaders/rounded.glsl), and the places where they meet
+ * the surface (shaders/rounded_solve.comp.glsl). Internal to the folder.
+ *
+ * A thread takes RAYS_PX pixels at a time. Their rays ask for places to begin at: tasks. Tasks of all these pixels that
+ * begin on one sub-patch form a group, and lanes solve a group together, since they read the same coefficients. What a
+ * ray meets does not depend on the rays that are asked with it. */
+#ifndef SHEEN_RENDER_NATIVE_RAYS_RAYS_H
+#define SHEEN_RENDER_NATIVE_RAYS_RAYS_H
+
+#include "server/base/error.h"
+#include "server/render/native/tile.h"
+
+struct native_device;
+
+enum { RAYS_PX = 128, RAYS_AT_ONCE = RAYS_PX * NATIVE_MAX_RAYS, RAYS_END = 16 /* a vector's */ };
+enum { RAY_KEYS = 2 * RAYS_AT_ONCE };
+
+/* A place on a sub-patch: `index` as in patches.h; RAY_AT_VERTEX: where all levels of a CORNER end. */
+enum { RAY_AT_VERTEX = 0x8000 };
+struct native_ray_place {
+    uint32_t node;
+    uint16_t index;
+    float s, t;
+};
+
+/* A ray that begins at a place, near which a pixel is px units wide. */
+struct native_ray_task {
+    struct native_ray_place at;
+    float px;
+    uint32_t ray;
+};
+
+/* Tasks on one sub-patch: [first, first + n) of the sorted ones. */
+struct native_ray_group {
+    uint32_t node, first, n;
+    uint16_t index;
+};
+
+struct native_ray_pixel {
+    uint32_t x, y; /* in the tile */
+    float front;   /* the nearest depth of the pixels beside it; FARTHEST where they show nothing */
+    unsigned asks; /* rays that go on asking */
+};
+
+/* What a thread needs for RAYS_PX pixels. */
+struct native_ray_room {
+    struct native_ray_pixel pixel[RAYS_PX];
+    uint32_t n_pixels, n_rays, rays_per_px;
+    /* Of each ray: its pixel, px of the picture, and how far it runs from that pixel's centre. */
+    float x[RAYS_AT_ONCE], y[RAYS_AT_ONCE], off_x[RAYS_AT_ONCE], off_y[RAYS_AT_ONCE];
+    /* The nearest place that it has met, and how deep that is; RAYS_FARTHEST: none. */
+    float z[RAYS_AT_ONCE];
+    struct native_ray_place met[RAYS_AT_ONCE];
+    struct native_ray_task task[RAYS_AT_ONCE];
+    uint32_t n_tasks;
+    /* The tasks sorted by sub-patch. */
+    struct native_ray_group group[RAYS_AT_ONCE];
+    uint32_t n_groups;
+    uint16_t group_of[RAYS_AT_ONCE], group_at[RAY_KEYS]; /* of a task; by hashed keys, plus one */
+    float s[RAYS_AT_ONCE + RAYS_END], t[RAYS_AT_ONCE + RAYS_END], px[RAYS_AT_ONCE + RAYS_END];
+    int32_t ray[RAYS_AT_ONCE + RAYS_END];
+};
+#define RAYS_FARTHEST 1e30f
+
+/* The place x, y of a node on its sub-patch. */
+void native_ray_begin(const struct limit_node *node, double x, double y,
+                      struct native_ray_place *place);
+/* Of the sub-patch of that index of a node. */
+struct native_part_of_node native_part_of_index(const struct limit_node *node, uint32_t index);
+
+/* Sorts room->task by sub-patch. */
+void native_group_rays(struct native_ray_room *room);
+
+/* The rays of RAYS_PX pixels at most, from the first one on; thread->rays is there. */
+void native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
+                        const struct native_rounded *rounded, uint32_t first);
+
+/* Meets the rays of pixels with the surface, by all threads. `planes`: what native_draw() found in the same view and
+ * tile, but that `node` is UINT32_MAX where nothing is met. Writes every hit. ERROR_SERVER when memory is short. */
+bool native_meet_rounded(struct native_device *device, struct native_model *model,
+                         const struct view *view, const struct tile *tile,
+                         const struct native_planes *planes, const struct native_rounded *rounded,
+                         struct error *error);
+
+#endif
