@@ -12,7 +12,7 @@
 #endif
 
 #define MAX_PIXEL_BYTES 12u
-/* One row of the widest plane may be more than a strip's usual size. */
+/* One row of the widest plane may be larger than a usual strip. */
 #define MAX_ROW_BYTES (PROTOCOL_MAX_SIZE_PX * MAX_PIXEL_BYTES)
 #define MAX_STRIP_BYTES                                                                            \
     (MAX_ROW_BYTES > PROTOCOL_STRIP_BYTES ? MAX_ROW_BYTES : PROTOCOL_STRIP_BYTES)
@@ -53,7 +53,8 @@ bool codec_layout_init(struct codec_layout *layout, uint32_t width_px, uint32_t 
         !range_holds(&RANGES[RANGE_SIDE], height_px) || planes == 0 || planes & ~CODEC_ALL_PLANES)
         return false;
     *layout = (struct codec_layout){.width_px = width_px, .height_px = height_px, .planes = planes};
-    /* Sizes are below 2^16 and a pixel's planes below 2^6 bytes: 64 bits cannot overflow. */
+    /* Width and height are at most 2^16, and a pixel's planes below 2^7 bytes: 64 bits cannot
+     * overflow. */
     for (unsigned plane = 0; plane < CODEC_PLANES; plane++)
         if (planes & 1u << plane) {
             layout->raw_bytes += (uint64_t)width_px * height_px * codec_pixel_bytes(plane);
@@ -101,14 +102,14 @@ size_t codec_strip_bound(const struct codec_strip *strip)
 
 uint64_t codec_zstd_bound(const struct codec_layout *layout)
 {
-    /* compressBound() adds at most 1/256 and 64 bytes, and the checksum is within that. */
+    /* compressBound() adds at most 1/256 and 64 bytes, which includes the checksum. */
     return layout->table_bytes + layout->raw_bytes + layout->raw_bytes / 256 +
            (uint64_t)layout->n_strips * 128;
 }
 
 static bool is_shuffled(unsigned plane)
 {
-    return plane != 0; /* colour compresses better as whole pixels */
+    return plane != 0; /* colour compresses better unshuffled */
 }
 
 struct codec_encoder *codec_encoder_create(int level)

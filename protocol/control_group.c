@@ -18,8 +18,9 @@ uint64_t control_group_number(const char *folder, const char *name)
     return number;
 }
 
-/* Of a group and those above it. Where a container shows its own group as the root, the group's
- * path is not there and its limit is at the root. `group` is cut short on the way. */
+/* The smallest limit of a group and those above it. In a container the group's path may not exist,
+ * because the container shows its own group as the root; then the root has the limit. `group` is
+ * shortened on the way up. */
 static uint64_t least_above(const char *root, const char *mount, char *group,
                             control_group_limit *limit)
 {
@@ -36,7 +37,7 @@ static uint64_t least_above(const char *root, const char *mount, char *group,
     }
 }
 
-/* "memory" in "cpu,memory". */
+/* True if a list such as "cpu,memory" contains the controller. */
 static bool has_controller(const char *list, const char *name)
 {
     size_t n = strlen(name);

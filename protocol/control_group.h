@@ -1,4 +1,4 @@
-/* Limits that Linux's control groups put on this process, v1 or v2. Any thread. */
+/* Reads the limits that Linux control groups (v1 or v2) set for this process. Any thread. */
 #ifndef SHEEN_PROTOCOL_CONTROL_GROUP_H
 #define SHEEN_PROTOCOL_CONTROL_GROUP_H
 
@@ -8,17 +8,17 @@
 #define CONTROL_GROUP_PATH_BYTES 4096
 #define CONTROL_GROUP_NO_LIMIT UINT64_MAX
 
-/* What limits a group: a group's folder in, the limit that its files hold out, or
- * CONTROL_GROUP_NO_LIMIT. */
+/* Reads the limit of one group from the files of its folder; CONTROL_GROUP_NO_LIMIT if it has
+ * none. */
 typedef uint64_t control_group_limit(const char *folder, bool v2);
 
-/* The least limit of `controller` ("memory", "cpu") over this process's group and those above it;
- * CONTROL_GROUP_NO_LIMIT where none of them has one. `root` stands before /proc and /sys: "", but
- * for tests. */
+/* The smallest limit of `controller` ("memory" or "cpu") among this process's group and those above
+ * it; CONTROL_GROUP_NO_LIMIT if none has one. `root` is a prefix of /proc and /sys: "", except in
+ * tests. */
 uint64_t control_group_least(const char *root, const char *controller, control_group_limit *limit);
 
-/* The number that a file of the folder begins with; CONTROL_GROUP_NO_LIMIT when there is none, as
- * in "max". */
+/* The number at the start of a file of the folder; CONTROL_GROUP_NO_LIMIT if there is none, as in
+ * "max". */
 uint64_t control_group_number(const char *folder, const char *file);
 
 #endif

@@ -1,13 +1,13 @@
-/* The 16-byte header in front of every message, and what may follow it.
+/* The 16-byte header of every message, and the types of messages.
  *
- *   0  u32  magic   "SHEN" (0x53 0x48 0x45 0x4e on the wire)
+ *   0  u32  magic   "SHEN" (0x53 0x48 0x45 0x4e in this order)
  *   4  u8   major   PROTOCOL_MAJOR
  *   5  u8   type    enum message_type
  *   6  u16  flags   MESSAGE_END on the last DATA of a frame, else 0
  *   8  u32  length  bytes that follow
- *   12 u32  seq     chosen by the client; answers carry the number of their request
+ *   12 u32  seq     chosen by the client; an answer has the number of its request
  *
- * All little-endian. Pure: no allocation, no state, any thread. */
+ * All numbers are little-endian. Pure: no allocation, no state, any thread. */
 #ifndef SHEEN_PROTOCOL_FRAME_H
 #define SHEEN_PROTOCOL_FRAME_H
 
@@ -18,14 +18,14 @@
 #define PROTOCOL_MAJOR 1
 #define PROTOCOL_MINOR 4
 #define MESSAGE_HEADER_BYTES 16
-#define MODEL_ID_BYTES 32 /* SHA-256; first in HELLO's body, so at offset 16 of the stream */
+#define MODEL_ID_BYTES 32 /* SHA-256; the first bytes of HELLO's body, at offset 16 of the stream */
 #define MESSAGE_END 1u    /* flags: last DATA of this frame */
 
 enum message_type {
     MESSAGE_HELLO = 1,        /* client: model id, then Hello */
     MESSAGE_HELLO_OK = 2,     /* server: HelloOk */
     MESSAGE_UPLOAD_BEGIN = 3, /* client: UploadBegin */
-    MESSAGE_UPLOAD_CHUNK = 4, /* client: raw bytes, no answer until the last */
+    MESSAGE_UPLOAD_CHUNK = 4, /* client: raw bytes; only the last one is answered */
     MESSAGE_UPLOAD_STATE = 5, /* server: UploadState */
     MESSAGE_MODEL_QUERY = 6,  /* client: ModelQuery */
     MESSAGE_MODEL_INFO = 7,   /* server: ModelInfo */
@@ -37,7 +37,8 @@ enum message_type {
     MESSAGE_STATS = 13,       /* server: Stats */
     MESSAGE_ERROR = 14,       /* server: Error, instead of the answer */
     MESSAGE_SUPERSEDED = 15,  /* server: Superseded, instead of FRAME; minor version 1 */
-    MESSAGE_CANCEL = 16,      /* client: empty, the number of a request; minor version 1 */
+    /* Client: empty, with the number of the request to cancel; minor version 1. */
+    MESSAGE_CANCEL = 16,
 };
 
 struct message_header {
@@ -59,11 +60,12 @@ enum header_error {
 void message_header_encode(const struct message_header *header,
                            uint8_t bytes[static MESSAGE_HEADER_BYTES]);
 
-/* Decodes and checks magic, major, type and the length against message_max_length(type). */
+/* Decodes a header and checks magic, major, type, and the length against
+ * message_max_length(type). */
 enum header_error message_header_decode(struct message_header *header,
                                         const uint8_t bytes[static MESSAGE_HEADER_BYTES]);
 
-/* Largest body of a message type; 0 also for unknown types. */
+/* The largest body of a message type, in bytes; 0 also for unknown types. */
 uint32_t message_max_length(uint8_t type);
 const char *message_type_name(uint8_t type);
 const char *header_error_text(enum header_error error);

@@ -48,7 +48,7 @@ const pb_msgdesc_t *message_fields(uint8_t type)
     }
 }
 
-/* Encodes `body` behind a header and `prefix` bytes that the caller fills in. */
+/* Encodes `body` behind a header and `prefix` bytes, which the caller fills in. */
 static bool encode(uint8_t type, uint32_t seq, size_t prefix, const pb_msgdesc_t *fields,
                    const void *body, uint8_t *buffer, size_t capacity, size_t *length)
 {
@@ -95,7 +95,7 @@ bool message_hello_encode(uint32_t seq, const uint8_t model_id[static MODEL_ID_B
     return true;
 }
 
-/* nanopb keeps what follows a zero byte in a text, where nobody would look. */
+/* Refuses texts with a zero byte: nanopb would keep hidden bytes behind it. */
 static bool decode(uint8_t type, const uint8_t *bytes, size_t length, size_t prefix,
                    const pb_msgdesc_t *fields, void *body)
 {

@@ -1,4 +1,4 @@
-/* The checks of message.h: what the schema cannot say. */
+/* The checks of message.h, for rules that the schema cannot express. */
 #include "protocol/message.h"
 
 #include <math.h>
@@ -54,7 +54,8 @@ static bool check_text(const char *value, const char *field, char *text)
            refuse(text, "%s is not UTF-8 text without control characters", field);
 }
 
-/* "deadline_ms (--deadline) is 0; it must be from 1 to 3600000 milliseconds". */
+/* Writes, for example: "deadline_ms (--deadline) is 0; it must be from 1 to 3600000
+ * milliseconds". */
 static bool check_named(double value, const struct range *range, const char *field, char *text)
 {
     char wanted[RANGE_TEXT_BYTES];
@@ -98,7 +99,7 @@ static bool check_colour(const sheen_Colour *colour, const char *field, char *te
     return true;
 }
 
-/* Those that are there. */
+/* Checks the colours that are present. */
 static bool check_colours(const sheen_Colour *miss, const sheen_Colour *empty,
                           const sheen_Colour *base, char *text)
 {
@@ -119,7 +120,7 @@ static bool is_parallel(const sheen_Vec3 *a, const sheen_Vec3 *b)
     return range_is_parallel(p, q);
 }
 
-/* Eye, target and up, as far as they are there. */
+/* Checks eye, target and up, as far as they are present. */
 static bool check_view(const sheen_Camera *camera, char *text)
 {
     if ((camera->has_eye && !check_vec3(&camera->eye, "camera.eye", text)) ||
@@ -160,7 +161,7 @@ static bool check_camera(const sheen_Camera *camera, char *text)
            (!camera->has_zoom_y || check_number(camera->zoom_y, RANGE_ZOOM_AT, text));
 }
 
-/* A frame says all of the camera that made it. */
+/* A FRAME must have all of the camera that was used. */
 static bool check_whole_camera(const sheen_Camera *camera, char *text)
 {
     if (!camera->has_eye || !camera->has_target || !camera->has_up ||
@@ -241,7 +242,7 @@ static bool check_light(const sheen_Light *light, char *text)
     if (!check_enum(light->kind, sheen_LightKind_LIGHT_SPHERE, "light.kind", text) ||
         (light->has_pattern && !check_pattern(&light->pattern, text)))
         return false;
-    bool is_tunnel = !light->has_kind && !light->has_centre; /* what the server chooses */
+    bool is_tunnel = !light->has_kind && !light->has_centre; /* then the server chooses a tunnel */
     bool has_sides = !is_tunnel && (light->kind == sheen_LightKind_LIGHT_RECTANGLE ||
                                     light->kind == sheen_LightKind_LIGHT_PLANE);
     if (light->one_sided && !has_sides)
@@ -267,7 +268,7 @@ static bool check_direction(const sheen_Vec3 *v, const char *field, char *text)
     return !is_zero(v) || refuse(text, "%s is 0,0,0, no direction", field);
 }
 
-/* What families say of themselves and of their lights. */
+/* Checks the fields of line families. */
 static bool check_lines(const sheen_Lines *lines, char *text)
 {
     if (!check_enum(lines->family, sheen_LineFamily_LINES_ENVIRONMENT, "lines.family", text))
@@ -285,7 +286,7 @@ static bool check_lines(const sheen_Lines *lines, char *text)
             check_direction(&lines->eye_direction, "lines.eye_direction", text));
 }
 
-/* The length of a ray has a meaning only where the light is somewhere. */
+/* Bands of distance need a light that is not at infinity, because only then a ray has a length. */
 static bool check_distances(const sheen_Lines *lines, const sheen_Light *light, char *text)
 {
     if (!light->has_pattern || light->pattern.kind != sheen_PatternKind_PATTERN_DISTANCE)
@@ -308,7 +309,7 @@ static bool check_lights(const sheen_Lines *lines, const sheen_Light *lights, si
     return true;
 }
 
-/* "" when the planes suit the encoding, else what they must be. */
+/* "" if the planes suit the encoding, else what they must be. */
 static const char *planes_wanted(uint32_t planes, unsigned encoding)
 {
     if (planes == 0)

@@ -1,4 +1,5 @@
-/* The faults of message.h: nanopb says that a body breaks the schema, this says where. */
+/* message_find_fault(): nanopb reports only that a body breaks the schema; this file finds
+ * where. */
 #include "protocol/message.h"
 
 #include <inttypes.h>
@@ -8,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The schema's own names, which nanopb's descriptors leave out. Each list ends with tag 0. */
+/* The names of the schema's fields, which nanopb's descriptors do not have. Each list ends with tag
+ * 0. */
 struct field_name {
     uint32_t tag;
     const char *name;
@@ -57,14 +59,14 @@ static const struct {
     MESSAGE(sheen_Error),
 };
 
-#define MAX_TAG 64    /* above every tag of sheen.proto */
-#define PATH_BYTES 96 /* holds the longest way to a field there */
+#define MAX_TAG 64    /* larger than every tag in sheen.proto */
+#define PATH_BYTES 96 /* room for the longest path of a field there */
 
-/* One message of the body, which may stand within others. */
+/* One message of the body, which may be nested in others. */
 struct part {
     const pb_msgdesc_t *fields;
-    const char *path; /* of the fields that it stands in, each with a '.' behind it */
-    char *text;       /* where the fault goes: MESSAGE_TEXT_BYTES */
+    const char *path; /* names of the fields that it is nested in, each followed by '.' */
+    char *text;       /* the fault is written here: MESSAGE_TEXT_BYTES */
 };
 
 static const char *name_of(const pb_msgdesc_t *fields, uint32_t tag)
@@ -110,13 +112,13 @@ static bool has_nul(pb_istream_t *stream)
     return false;
 }
 
-/* Of a string, bytes, a message, or numbers packed together. */
+/* Checks a value with a length: a string, bytes, a message, or packed numbers. */
 static bool fault_in_bytes(const struct part *part, const pb_field_iter_t *field,
                            pb_istream_t *stream, uint32_t *count)
 {
     size_t length = stream->bytes_left, size = field->data_size;
     switch (PB_LTYPE(field->type)) {
-    case PB_LTYPE_STRING: /* whose 0 does not travel */
+    case PB_LTYPE_STRING: /* without the final 0, which is not sent */
         ++*count;
         if (length >= size)
             return fault_at(part, field, "has %zu bytes; it may have at most %zu", length,
@@ -135,7 +137,7 @@ static bool fault_in_bytes(const struct part *part, const pb_field_iter_t *field
     }
 }
 
-/* Reads one value of a field; true when it has a fault. *end: it cannot be read. */
+/* Reads one value of a field. True if it has a fault. *end: the value cannot be read. */
 static bool fault_in_value(const struct part *part, const pb_field_iter_t *field,
                            pb_wire_type_t wire, pb_istream_t *stream, uint32_t *count, bool *end)
 {
@@ -159,7 +161,7 @@ static bool fault_in_value(const struct part *part, const pb_field_iter_t *field
            fault_at(part, field, "is %" PRIu64 "; it must be at most %u", number, UINT32_MAX);
 }
 
-/* The first required field that is not there, or repeated one that is there too often. */
+/* Finds the first required field that is missing, or repeated field that occurs too often. */
 static bool fault_in_counts(const struct part *part, const uint32_t counts[MAX_TAG])
 {
     pb_field_iter_t field;
@@ -175,7 +177,7 @@ static bool fault_in_counts(const struct part *part, const uint32_t counts[MAX_T
     return false;
 }
 
-/* Reads a message to its end. False also where it cannot be read: that has no field to name. */
+/* Reads a message to its end. False also if it cannot be read: then there is no field to name. */
 static bool find_fault(const struct part *part, pb_istream_t *stream)
 {
     uint32_t counts[MAX_TAG] = {0}, tag;

@@ -1,5 +1,5 @@
-/* What client and daemon fill in alike from structs of their own: vectors, colours, and the numbers
- * of patterns. Pure, any thread. */
+/* Conversions that client and daemon share: vectors, colours, and the numbers of patterns, between
+ * messages and their own structs. Pure, any thread. */
 #ifndef SHEEN_PROTOCOL_MESSAGE_VALUES_H
 #define SHEEN_PROTOCOL_MESSAGE_VALUES_H
 
@@ -30,8 +30,8 @@ static inline void message_read_colour(const sheen_Colour *from, float to[4])
     to[3] = from->a;
 }
 
-/* Initializers of a sheen_Pattern from a struct that has these numbers under the same names, and of
- * such a struct from a sheen_Pattern. A number that patterns gain comes into both. */
+/* Initializers: of a sheen_Pattern from a struct whose members have the same names, and of such a
+ * struct from a sheen_Pattern. Add a new number of patterns to both. */
 #define MESSAGE_PATTERN_NUMBERS(pattern)                                                           \
     .has_count = true, .count = (pattern)->count, .has_period = (pattern)->period != 0,            \
     .period = (pattern)->period, .has_duty = true, .duty = (pattern)->duty,                        \

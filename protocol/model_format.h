@@ -1,5 +1,5 @@
-/* Which format a model's file is in. The rule is the same on both sides: the client refuses by it
- * what the daemon would read otherwise. Pure functions, any thread. */
+/* Decides which format a model's file has. Client and daemon use the same rule, so that the client
+ * can refuse a file that the daemon would read differently. Pure, any thread. */
 #ifndef SHEEN_PROTOCOL_MODEL_FORMAT_H
 #define SHEEN_PROTOCOL_MODEL_FORMAT_H
 
@@ -8,16 +8,15 @@
 #include <string.h>
 #include <strings.h>
 
-/* Whether `name` ends in `ending`, in capitals or not. */
+/* True if `name` ends with `ending`, ignoring case. */
 static inline bool model_format_ends_with(const char *name, const char *ending)
 {
     size_t length = strlen(name), n = strlen(ending);
     return length >= n && strcasecmp(name + length - n, ending) == 0;
 }
 
-/* True: glTF, in JSON or as GLB; false: OBJ. An ending .obj, .gltf or .glb of the name decides;
- * where it has another or none the bytes[0, size) do: those of glTF begin with "glTF", or after
- * blanks with '{'. */
+/* True: glTF, as JSON or GLB; false: OBJ. If the name ends with .obj, .gltf or .glb, that decides.
+ * Else the contents decide: glTF begins with "glTF", or with '{' after white space. */
 static inline bool model_format_is_gltf(const char *name, const void *bytes, size_t size)
 {
     const char *text = bytes;

@@ -8,7 +8,7 @@
 
 #define LEAST_DIRECTION 1e-30
 #define LEAST_SINE 1e-9
-/* Squares of lengths on a light stay normal numbers in single precision. */
+/* Squares of lengths on a light must stay normal numbers in single precision. */
 #define LEAST_LENGTH 1e-18
 #define GREATEST_LENGTH 1e18
 #define GREATEST PROTOCOL_MAX_COORDINATE
@@ -52,7 +52,7 @@ bool range_holds(const struct range *range, double value)
            value <= range->greatest;
 }
 
-/* As a person writes it: 1e-6, not 1e-06. */
+/* Writes a number in the usual form: 1e-6, not 1e-06. */
 static void write_number(double value, char text[static 24])
 {
     snprintf(text, 24, "%.7g", value);
@@ -92,7 +92,8 @@ bool range_is_zero(const double v[3])
     return !(largest_of(v) >= LEAST_DIRECTION);
 }
 
-/* |a x b|^2 <= sine^2 |a|^2 |b|^2, after scaling both to size one, so that nothing overflows. */
+/* a x b|^2 <= sine^2 |a|^2 |b|^2. Both vectors are first scaled to about length 1, so that nothing
+ * overflows. */
 bool range_is_parallel(const double a[3], const double b[3])
 {
     if (range_is_zero(a) || range_is_zero(b))

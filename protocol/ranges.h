@@ -1,7 +1,6 @@
-/* The ranges of a request's numbers, each in one place: client, protocol and renderer check by this
- * table, --help prints it, and README.md repeats it for people.
- *
- * Constant data and pure functions, any thread. */
+/* The table of ranges of a request's numbers. Client, protocol and renderer check by this table,
+ * --help prints it, and README.md lists it for people. Constant data and pure functions, any
+ * thread. */
 #ifndef SHEEN_PROTOCOL_RANGES_H
 #define SHEEN_PROTOCOL_RANGES_H
 
@@ -9,7 +8,7 @@
 #include <stddef.h>
 
 enum range_name {
-    RANGE_SIDE,      /* a device's own limit is lower */
+    RANGE_SIDE,      /* the device's limit may be lower */
     RANGE_JPEG_SIDE, /* libjpeg's limit */
     RANGE_COORDINATE,
     RANGE_FOV,
@@ -17,7 +16,7 @@ enum range_name {
     RANGE_ZOOM,
     RANGE_ZOOM_AT,
     RANGE_LIGHTS,
-    RANGE_LIGHT_SIDE, /* length of a light's u and v */
+    RANGE_LIGHT_SIDE, /* length of a light's u and of its v */
     RANGE_PATTERN_COUNT,
     RANGE_PATTERN_PERIOD,
     RANGE_PATTERN_DUTY,
@@ -29,37 +28,39 @@ enum range_name {
     RANGE_PATTERN_AT,
     RANGE_PATTERN_WIDTH,
     RANGE_COLOUR,
-    RANGE_SHOW_CURVATURE, /* show.range of the curvatures */
-    RANGE_SHOW_DRAFT,     /* show.range of draft */
-    RANGE_JPEG_QUALITY,   /* as libjpeg has it */
+    RANGE_SHOW_CURVATURE, /* show.range for curvatures */
+    RANGE_SHOW_DRAFT,     /* show.range for draft */
+    RANGE_JPEG_QUALITY,   /* libjpeg's scale */
     RANGE_LEVEL,
     RANGE_DEADLINE,
     N_RANGES
 };
 
 struct range {
-    const char *field;  /* what error texts and README.md call it, mostly the field of sheen.proto;
-                           NULL: a number of the command line alone */
-    const char *option; /* of the command line; NULL: none */
+    /* Name in error texts and in README.md, usually the field of sheen.proto; NULL: only an option
+     * of the command line. */
+    const char *field;
+    const char *option; /* option of the command line; NULL: none */
     double least, greatest;
-    bool above_least; /* `least` itself is out of range */
-    const char *unit; /* what follows the numbers; "" where there is nothing to say */
+    bool above_least; /* `least` itself is not allowed */
+    const char *unit; /* unit, written behind the numbers; "": none */
 };
 extern const struct range RANGES[N_RANGES];
 
-/* False for NaN. */
+/* True if `value` is in range; false for NaN. */
 bool range_holds(const struct range *range, double value);
 
-/* Writes "from 1e-6 to 179 degrees" or "above 0 and at most 100000"; returns `text`. */
+/* Writes the range as text, such as "from 1e-6 to 179 degrees" or "above 0 and at most 100000".
+ * Returns `text`. */
 #define RANGE_TEXT_BYTES 80
 const char *range_text(const struct range *range, char text[static RANGE_TEXT_BYTES]);
 
-/* Whether v is too short to be a direction: every coordinate is smaller than 1e-30 in magnitude.
- * Squares of larger ones do not vanish. */
+/* True if v is too short to be a direction: every coordinate is below 1e-30 in magnitude. (Squares
+ * of larger coordinates do not become 0.) */
 bool range_is_zero(const double v[3]);
 /* The Euclidean length of v, for RANGE_LIGHT_SIDE. */
 double range_length(const double v[3]);
-/* Whether the sine of the angle between a and b is 1e-9 at most, or one of them is zero. */
+/* True if the sine of the angle between a and b is at most 1e-9, or if one of them is zero. */
 bool range_is_parallel(const double a[3], const double b[3]);
 
 #endif

@@ -14,9 +14,9 @@
 
 struct tls_context {
     SSL_CTX *ctx;
-    BIO_METHOD *method; /* moves bytes through a channel's tls_io */
+    BIO_METHOD *method; /* transfers bytes by a channel's tls_io */
     enum tls_side side;
-    unsigned users; /* channels, and who created it */
+    unsigned users; /* the number of channels, plus 1 for the creator */
 };
 
 struct tls_channel {
@@ -27,7 +27,7 @@ struct tls_channel {
     char reason[TLS_TEXT_BYTES];
 };
 
-/* --- the bottom: OpenSSL's own socket layer would raise SIGPIPE */
+/* --- the transport: OpenSSL's own socket layer would raise SIGPIPE */
 
 static int bio_moved(BIO *bio, ssize_t n, int retry)
 {
@@ -78,7 +78,7 @@ static bool is_set(const char *path)
     return path && *path;
 }
 
-/* The last error of OpenSSL's queue, which it empties. */
+/* Returns the last error of OpenSSL's queue, and empties the queue. */
 static const char *last_error(void)
 {
     unsigned long code = ERR_peek_last_error();
@@ -128,7 +128,8 @@ static bool load_authority(struct tls_context *context, const struct tls_files *
     return true;
 }
 
-/* Is the list by one of the authorities in the store? Else no certificate would find its list. */
+/* Is the list issued by one of the authorities in the store? If not, no certificate would find its
+ * list. */
 static bool is_by_authority(X509_CRL *crl, const STACK_OF(X509_OBJECT) * objects)
 {
     for (int i = 0; i < sk_X509_OBJECT_num(objects); i++) {
@@ -142,7 +143,7 @@ static bool is_by_authority(X509_CRL *crl, const STACK_OF(X509_OBJECT) * objects
     return false;
 }
 
-/* Behind the authorities. */
+/* Loads the revocation lists, after the authorities. */
 static bool load_revoked(SSL_CTX *ctx, const struct tls_files *files, char *text)
 {
     if (!is_set(files->crl))
@@ -169,7 +170,7 @@ static bool set_up(struct tls_context *context)
     SSL_CTX *ctx = context->ctx;
     SSL_CTX_set_mode(ctx, SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER |
                               SSL_MODE_RELEASE_BUFFERS);
-    /* Else a peer that sends KeyUpdates without end keeps one read from ever returning. */
+    /* Without this, a peer that sends KeyUpdates without end keeps a read from ever returning. */
     SSL_CTX_clear_mode(ctx, SSL_MODE_AUTO_RETRY);
     SSL_CTX_set_session_cache_mode(ctx, SSL_SESS_CACHE_OFF);
     return SSL_CTX_set_min_proto_version(ctx, TLS1_3_VERSION) == 1 &&
@@ -222,7 +223,7 @@ static bool expect_host(SSL *ssl, const char *host)
         inet_pton(AF_INET, host, address) == 1 || inet_pton(AF_INET6, host, address) == 1;
     if (is_address)
         return X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(ssl), host) == 1;
-    /* SSL_set_tlsext_host_name() is this call and a cast; OpenSSL copies the name. */
+    /* SSL_set_tlsext_host_name() is this call with a cast; OpenSSL copies the name. */
     return SSL_set1_host(ssl, host) == 1 &&
            SSL_ctrl(ssl, SSL_CTRL_SET_TLSEXT_HOSTNAME, TLSEXT_NAMETYPE_host_name,
                     (void *)(uintptr_t)host) == 1;
@@ -258,7 +259,7 @@ void tls_channel_destroy(struct tls_channel *channel)
     free(channel);
 }
 
-/* Of the last error in OpenSSL's queue, which is not emptied. */
+/* The fault of the last error in OpenSSL's queue, which is not emptied. */
 static enum tls_fault last_fault(void)
 {
     int reason = ERR_GET_REASON(ERR_peek_last_error());
@@ -268,7 +269,7 @@ static enum tls_fault last_fault(void)
     return is_alert || reason == SSL_R_UNEXPECTED_EOF_WHILE_READING ? TLS_PEER_GONE : TLS_NO_TLS;
 }
 
-/* What a call that did not return 1 has to say. */
+/* The result of an OpenSSL call that did not return 1. */
 static enum tls_result explain(struct tls_channel *channel, int code)
 {
     int number = errno;
@@ -349,7 +350,8 @@ static bool print_name(const X509_NAME *name, char text[static TLS_NAME_BYTES])
     return ok;
 }
 
-/* Of the certificate that the peer's was checked by; of itself where it is its own authority. */
+/* Hashes the public key of the certificate that issued the peer's; of the peer's own if that is
+ * self-signed. */
 static bool hash_issuer_key(const struct tls_channel *channel, uint8_t *hash)
 {
     const STACK_OF(X509) *chain = SSL_get0_verified_chain(channel->ssl);

@@ -1,7 +1,8 @@
-/* TLS 1.3 as both sides speak it: nothing older, no resumption, no early data, so that every
- * connection proves anew who it is. Bytes move through the owner's two functions: no socket call is
- * made here, nothing blocks, and no signal is raised that those do not raise.
- * Thread: a context may be shared by channels of one thread; a channel belongs to one at a time. */
+/* TLS 1.3, as both sides of the protocol use it: no older version, no resumption and no early data,
+ * so that every connection authenticates anew. Bytes are transferred by two functions of the owner;
+ * this code makes no socket call, does not block and raises no signal.
+ * Thread: a context may be shared by channels of one thread; a channel is used by one thread at a
+ * time. */
 #ifndef SHEEN_PROTOCOL_TLS_H
 #define SHEEN_PROTOCOL_TLS_H
 
@@ -11,30 +12,31 @@
 #include <sys/types.h>
 
 #define TLS_TEXT_BYTES 400
-#define TLS_NAME_BYTES 256 /* of a subject; a longer one is refused */
+#define TLS_NAME_BYTES 256 /* bytes of a subject's name; a longer one is refused */
 #define TLS_KEY_HASH_BYTES 32
 
 enum tls_side { TLS_SERVER, TLS_CLIENT };
 
-/* PEM files; NULL or "" for none. A server needs cert and key, and with `ca` it asks for client
- * certificates, which must then be by that authority. A client checks the server's against `ca`,
- * else against what the system trusts, and shows cert and key when asked. With `crl`, lists of
- * revoked certificates, a peer's certificate needs a list of its authority that has not expired and
- * that does not name it. */
+/* PEM files; NULL or "": none. A server needs cert and key; with `ca` it asks for client
+ * certificates, which must be issued by that authority. A client verifies the server's certificate
+ * against `ca`, else against the authorities that the system trusts, and presents cert and key if
+ * asked. With `crl` (lists of revoked certificates), a peer's certificate is accepted only if its
+ * authority has a list that has not expired and does not contain the certificate. */
 struct tls_files {
     const char *cert, *key, *ca, *crl;
-    bool needs_client_cert; /* server: a client without a certificate is refused by the handshake */
+    bool needs_client_cert; /* server: the handshake refuses a client without a certificate */
 };
 
 struct tls_context;
 struct tls_channel;
 
-/* Reads the files. NULL with one line in `text` that names the file. */
+/* Reads the files. NULL with one line in `text`, which names the file. */
 struct tls_context *tls_context_create(enum tls_side side, const struct tls_files *files,
                                        char text[static TLS_TEXT_BYTES]);
 void tls_context_destroy(struct tls_context *context); /* channels may outlive it; NULL is safe */
 
-/* As read(2) and write(2): -1 with errno EAGAIN when nothing moves now. */
+/* The transport of a channel: as read(2) and write(2), with -1 and EAGAIN when nothing can be
+ * transferred now. */
 struct tls_io {
     ssize_t (*read)(void *owner, void *bytes, size_t size);
     ssize_t (*write)(void *owner, const void *bytes, size_t size);
@@ -43,54 +45,57 @@ struct tls_io {
 
 enum tls_result {
     TLS_MOVED,
-    TLS_WANTS_READ, /* nothing moved: again once there is something to read */
+    TLS_WANTS_READ, /* nothing was transferred: call again when the transport can be read */
     TLS_WANTS_WRITE,
-    TLS_ENDED, /* the peer has said that it sends no more */
+    TLS_ENDED, /* the peer has announced that it sends no more */
     TLS_FAILED,
 };
 
-/* `host` is whose certificate a client expects, a name or an IP address; NULL for a server. NULL
- * without memory. The handshake happens in the first reads and writes. */
+/* Makes a channel. `host` is the name or IP address that the server's certificate must have, for
+ * clients; NULL for servers. The handshake happens during the first reads and writes. *io is
+ * copied. NULL when memory is short. */
 struct tls_channel *tls_channel_create(struct tls_context *context, const struct tls_io *io,
                                        const char *host);
 void tls_channel_destroy(struct tls_channel *channel); /* NULL is safe */
 
 enum tls_result tls_read(struct tls_channel *channel, void *bytes, size_t size, size_t *moved);
-/* After WANTS_* the same bytes must be given again, from wherever they then lie. */
+/* After WANTS_* the same bytes must be passed again; they may have moved. */
 enum tls_result tls_write(struct tls_channel *channel, const void *bytes, size_t size,
                           size_t *moved);
-/* Bytes that have been taken from the peer and that tls_read() gives without reading more. */
+/* The bytes that tls_read() can return without reading from the transport. */
 size_t tls_pending(const struct tls_channel *channel);
-/* Says that nothing more is sent, if it can be said now. */
+/* Announces to the peer that nothing more will be sent, if that can be sent now. */
 void tls_end(struct tls_channel *channel);
 
-/* The other side's certificate, which the handshake has checked. */
+/* The peer's certificate, which the handshake has verified. */
 struct tls_peer {
     char subject[TLS_NAME_BYTES],
-        issuer[TLS_NAME_BYTES];             /* names as in RFC 2253; issuer "" if it is
-                                                             too long */
-    uint8_t issuer_key[TLS_KEY_HASH_BYTES]; /* SHA-256 of its issuer's public key, which tells two
-                                               authorities of one name apart */
-    int64_t expires_s;                      /* Unix seconds */
+        /* Names in the form of RFC 2253; issuer is "" if it is too long. */
+        issuer[TLS_NAME_BYTES];
+    /* SHA-256 of the issuer's public key, which distinguishes two authorities with the same
+     * name. */
+    uint8_t issuer_key[TLS_KEY_HASH_BYTES];
+    int64_t expires_s; /* end of validity, Unix seconds */
 };
 
-/* False when it showed none, or one without a subject or with one that is too long. */
+/* Gets the peer's certificate. False if it presented none, or one whose subject is missing or too
+ * long. */
 bool tls_peer(const struct tls_channel *channel, struct tls_peer *peer);
-/* Would a handshake with this context take the peer's certificate today? True when the peer showed
- * none. If not, `text` says why. */
+/* Would a handshake with this context accept the peer's certificate today? True if the peer
+ * presented none. If not, `text` has the reason. */
 bool tls_still_trusts(const struct tls_context *context, const struct tls_channel *channel,
                       char text[static TLS_TEXT_BYTES]);
-/* Has the first message of the peer's handshake come? */
+/* True if the first message of the peer's handshake has come. */
 bool tls_has_begun(const struct tls_channel *channel);
-/* Why the channel has failed, in words; "" when it has not. */
+/* Why the channel failed, as text; "" if it has not failed. */
 const char *tls_reason(const struct tls_channel *channel);
 
-/* On whose side a failure is to be looked for. */
+/* Which side caused a failure. */
 enum tls_fault {
     TLS_NO_FAULT,
-    TLS_PEER_GONE,      /* it closed, or sent an alert: it may not take what this side shows */
-    TLS_PEER_UNTRUSTED, /* this side does not take its certificate */
-    TLS_NO_TLS,         /* what it sent is no TLS of this version */
+    TLS_PEER_GONE,      /* the peer closed or sent an alert; it may have rejected our certificate */
+    TLS_PEER_UNTRUSTED, /* this side rejected the peer's certificate */
+    TLS_NO_TLS,         /* the peer does not speak TLS 1.3 */
 };
 enum tls_fault tls_fault(const struct tls_channel *channel);
 

@@ -9,7 +9,7 @@
 #include "client/lib/sized.h"
 #include "client/lib/status.h"
 
-/* Until the daemon has greeted. */
+/* The timeout until the daemon's greeting has come. */
 static uint32_t connect_timeout_ms(const struct sheen_connect_options *options)
 {
     return options->connect_timeout_ms ? options->connect_timeout_ms : options->timeout_ms;
@@ -55,8 +55,8 @@ static enum sheen_status open_address(struct sheen_session *session,
                            error);
 }
 
-/* What to look at when a handshake came to nothing; NULL when nothing is known. A daemon does not
- * tell a stranger why it closes. */
+/* A hint about a failed handshake; NULL if there is none. A daemon does not tell a client that it
+ * has not admitted why it closes. */
 static const char *handshake_hint(const struct connection *connection)
 {
     if (connection->kind == ADDRESS_TCP)
@@ -92,7 +92,7 @@ static enum sheen_status shake_hands(struct sheen_session *session,
 {
     sheen_Hello hello = {.minor = PROTOCOL_MINOR, .client = "libsheen " SHEEN_VERSION};
     bool tls = session->connection.channel != NULL;
-    if (tls && options->token) { /* it is for nobody who could listen */
+    if (tls && options->token) { /* a token must not be readable on the way */
         hello.has_token = true;
         if (strlen(options->token) >= sizeof(hello.token))
             return status_set(error, SHEEN_BAD_ARGUMENT, "the token is longer than %zu bytes",

@@ -23,7 +23,7 @@ static int64_t now_ms(void)
     return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
-/* Waits for `events`: 1 ready, 0 the time is over, -1 errno. */
+/* Waits for `events`: 1 ready, 0 timed out, -1 failed with errno. */
 static int wait_for(const struct connection *connection, short events)
 {
     int64_t end = now_ms() + connection->timeout_ms;
@@ -96,7 +96,8 @@ static enum sheen_status open_tcp(struct connection *connection, const struct ad
         return status_set(error, SHEEN_NO_SERVER,
                           "no server at %s:%s:%s: %s; is sheend running there?",
                           address_scheme(address->kind), address->host, port, strerror(reason));
-    /* Requests are small and waited for: never hold one back to fill a packet. */
+    /* Requests are small and the client waits for answers: never delay a request to fill a
+     * packet. */
     setsockopt(connection->fd, IPPROTO_TCP, TCP_NODELAY, &(int){1}, sizeof(int));
     return SHEEN_OK;
 }
@@ -115,7 +116,7 @@ static ssize_t socket_write(void *owner, const void *bytes, size_t n_bytes)
     return send(connection->fd, bytes, n_bytes, MSG_NOSIGNAL);
 }
 
-/* As read() or write(); *events is what to wait for after EAGAIN. */
+/* Results as of read() or write(); *events: what to wait for after EAGAIN. */
 static ssize_t tls_moved(enum tls_result result, size_t moved, short *events)
 {
     *events = result == TLS_WANTS_WRITE ? POLLOUT : POLLIN;
@@ -194,7 +195,7 @@ enum sheen_status connection_pair(struct connection *connection, int *peer_fd, u
     return SHEEN_OK;
 }
 
-/* After a call that moved nothing: waits, or explains why there is nothing to wait for. */
+/* Called after a transfer of no bytes: waits, or reports why waiting is useless. */
 static enum sheen_status retry(const struct connection *connection, short events,
                                struct sheen_error *error)
 {

@@ -1,11 +1,11 @@
-/* The defaults of sheen.h's structs, for C++ and other languages. */
+/* The functions that write the defaults of sheen.h's structs, for C++ and other languages. */
 #include <string.h>
 
 #include "client/lib/sheen.h"
 
 #define LEAST_BYTES 16
 
-/* Without padding that was never written: a newer library reads it as members. */
+/* Zeroes the struct first, so that padding is zero too: a newer library may read it as members. */
 static void fill(void *theirs, size_t size, const void *defaults, size_t n_defaults)
 {
     if (!theirs || size < LEAST_BYTES)

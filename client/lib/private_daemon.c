@@ -17,15 +17,15 @@
 #include "client/lib/status.h"
 #include "protocol/limits.h"
 
-#define SESSION_FD 3 /* the first after standard error; all above are closed in the daemon */
-#define END_MS 10000 /* to finish what is in flight, once its socket is closed */
+#define SESSION_FD 3 /* the first one after standard error; higher ones are closed in the daemon */
+#define END_MS 10000 /* time for the daemon to finish after its socket is closed */
 #define TERM_MS 2000
 
 #define PATH_BYTES 4096
 
 extern char **environ;
 
-/* Writes the daemon's path, or its bare name for a search of the PATH. */
+/* Writes the daemon's path, or just its name, which is then searched on the PATH. */
 static void find_daemon(char path[static PATH_BYTES])
 {
     const char *chosen = getenv("SHEEN_DAEMON");
@@ -47,8 +47,8 @@ static void find_daemon(char path[static PATH_BYTES])
     memcpy(path, name, sizeof(name));
 }
 
-/* Says which files and signals the child begins with. Sources lie above SESSION_FD, so that no
- * dup2 overwrites one that is still needed. 0 or an errno value. */
+/* Describes the child's files and signals. Source descriptors are above SESSION_FD, so that no
+ * dup2() overwrites one that is still needed. Returns 0 or an errno value. */
 static int describe_child(posix_spawn_file_actions_t *files, posix_spawnattr_t *attributes,
                           int session_fd, int stderr_fd)
 {
@@ -70,7 +70,7 @@ static int describe_child(posix_spawn_file_actions_t *files, posix_spawnattr_t *
                                              POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 }
 
-/* 0: as the daemon has it. */
+/* The memory budget of the daemon; `asked` 0: half of the machine's memory. */
 static uint64_t budget_bytes(uint64_t asked)
 {
     uint64_t half = machine_memory_bytes("") / 2;
@@ -109,7 +109,7 @@ static int spawn(pid_t *pid, const char *path, int session_fd, int stderr_fd,
         goto finish_files;
     failed = describe_child(&files, &attributes, session_fd, stderr_fd);
     if (!failed) {
-        /* posix_spawn() takes char *const[] for history's sake and writes to none of it. */
+        /* posix_spawn() takes char *const[] for historical reasons but writes to none of it. */
         union {
             const char **in;
             char **out;
@@ -151,7 +151,7 @@ enum sheen_status private_daemon_start(struct private_daemon *daemon, int sessio
                       path, strerror(failed));
 }
 
-/* Reaps the daemon if it ends within the time. */
+/* Reaps the daemon if it ends within wait_ms. */
 static bool reap(struct private_daemon *daemon, int wait_ms, int *how)
 {
     const struct timespec nap = {.tv_nsec = 2000000};
@@ -159,7 +159,7 @@ static bool reap(struct private_daemon *daemon, int wait_ms, int *how)
         pid_t ended = waitpid(daemon->pid, how, WNOHANG);
         if (ended == daemon->pid || (ended < 0 && errno == ECHILD)) {
             if (ended < 0)
-                *how = 0; /* the program ignores SIGCHLD: the system has reaped it */
+                *how = 0; /* the program ignores SIGCHLD, so the system has reaped it */
             daemon->pid = 0;
             return true;
         }
@@ -169,7 +169,7 @@ static bool reap(struct private_daemon *daemon, int wait_ms, int *how)
     }
 }
 
-/* The last line that is not empty, without its newline; "" when there is none. */
+/* Reads the last line that is not empty, without its newline; "" if there is none. */
 static void last_line(const struct private_daemon *daemon, char *line, size_t line_bytes)
 {
     line[0] = 0;
@@ -186,7 +186,7 @@ static void last_line(const struct private_daemon *daemon, char *line, size_t li
     ssize_t first = n;
     while (first > 0 && tail[first - 1] != '\n')
         first--;
-    static const char prefix[] = "sheend: "; /* `sheen: ` will stand in front */
+    static const char prefix[] = "sheend: "; /* the caller prefixes `sheen: ` */
     if (n - first >= (ssize_t)sizeof(prefix) && strncmp(tail + first, prefix, strlen(prefix)) == 0)
         first += (ssize_t)strlen(prefix);
     snprintf(line, line_bytes, "%.*s", (int)(n - first), tail + first);

@@ -1,4 +1,5 @@
-/* Frames in: an answer is read by steps that can end anywhere and go on later. */
+/* Receives frames. An answer is read in steps, each of which can stop at any byte and continue
+ * later. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,9 +9,9 @@
 #include "client/lib/status.h"
 #include "client/lib/times.h"
 
-/* What a frame owns. */
+/* The memory that a frame owns. */
 struct sheen_frame_memory {
-    uint8_t *data; /* a file's bytes, or what planes are unpacked from */
+    uint8_t *data; /* the bytes of a file, or the data that planes are decoded from */
     size_t data_capacity;
     void *plane[SHEEN_N_PLANES];
     size_t plane_capacity[SHEEN_N_PLANES];
@@ -30,7 +31,7 @@ static enum sheen_status no_memory(struct sheen_session *session, struct sheen_e
     return session_fail(session, SHEEN_NO_MEMORY, error);
 }
 
-/* Makes a buffer hold `bytes`, keeping what is in it. */
+/* Grows a buffer to at least `bytes` bytes and keeps its contents. */
 static bool reserve(uint8_t **buffer, size_t *capacity, size_t bytes)
 {
     if (bytes <= *capacity)
@@ -43,8 +44,8 @@ static bool reserve(uint8_t **buffer, size_t *capacity, size_t bytes)
     return true;
 }
 
-/* Reads the rest of a frame's DATA. Memory grows with what has arrived, not with what was
- * announced. */
+/* Reads the rest of a frame's DATA. Memory grows with the bytes received, not with the announced
+ * size. */
 static enum sheen_status read_data(struct sheen_session *session, struct sheen_error *error)
 {
     struct session_answer *answer = &session->answer;
@@ -121,7 +122,7 @@ static enum sheen_status unpack_planes(struct sheen_session *session, struct she
     return wrong ? broken(session, error, wrong) : SHEEN_OK;
 }
 
-/* What a FRAME must be to answer its request; NULL when it is. */
+/* Checks that a FRAME answers its request. Returns NULL, or what differs. */
 static const char *frame_mismatch(const sheen_Frame *body, const struct session_pending *pending,
                                   const struct codec_layout *layout)
 {
@@ -137,7 +138,7 @@ static const char *frame_mismatch(const sheen_Frame *body, const struct session_
     return NULL;
 }
 
-/* Begins a frame: its FRAME is next. The buffer of `memory` takes the data. */
+/* Starts a frame, whose FRAME is the next message. The data goes into the buffer of `memory`. */
 static enum sheen_status open_answer(struct sheen_session *session,
                                      const struct session_pending *pending,
                                      const struct message_header *header,
@@ -163,7 +164,8 @@ static enum sheen_status open_answer(struct sheen_session *session,
     return SHEEN_OK;
 }
 
-/* Ends it, whole or not. The data goes to `memory`, of whichever frame the program gives now. */
+/* Ends the frame, complete or not. The buffer goes to `memory`, which belongs to the frame that the
+ * program passes now. */
 static void close_answer(struct sheen_session *session, struct sheen_frame_memory *memory)
 {
     struct session_answer *answer = &session->answer;
@@ -175,7 +177,7 @@ static void close_answer(struct sheen_session *session, struct sheen_frame_memor
     answer->is_open = false;
 }
 
-/* A frame whose data is all there. */
+/* Finishes a frame whose data is complete. */
 static enum sheen_status finish_frame(struct sheen_session *session,
                                       const struct session_pending *pending,
                                       struct sheen_frame *frame, struct sheen_error *error)
@@ -188,7 +190,7 @@ static enum sheen_status finish_frame(struct sheen_session *session,
     return SHEEN_OK;
 }
 
-/* An answer that is no frame, whose header has been read. */
+/* Reads an answer other than a frame; its header was read already. */
 static enum sheen_status read_refusal(struct sheen_session *session, uint32_t seq,
                                       const struct message_header *header,
                                       struct sheen_frame *frame, struct sheen_error *error)
@@ -198,7 +200,7 @@ static enum sheen_status read_refusal(struct sheen_session *session, uint32_t se
     switch (header->type) {
     case MESSAGE_ERROR:
         status = session_read_error(session, header, error);
-        if (status == SHEEN_TOO_BIG) /* of a request, not of a file */
+        if (status == SHEEN_TOO_BIG) /* the request is too big here, not a file */
             return error ? error->status = SHEEN_BAD_REQUEST : SHEEN_BAD_REQUEST;
         return status;
     case MESSAGE_SUPERSEDED:
@@ -213,8 +215,8 @@ static enum sheen_status read_refusal(struct sheen_session *session, uint32_t se
     }
 }
 
-/* The newer request of the same view that is in flight, and makes `pending` not worth another try;
- * NULL: none. Batches neither replace nor are replaced. */
+/* The newer request of the same view in flight, because of which `pending` is not sent again; NULL
+ * if there is none. Batches neither replace nor are replaced. */
 static const struct session_pending *find_newer(const struct sheen_session *session,
                                                 const struct session_pending *pending)
 {
@@ -233,7 +235,7 @@ static const struct session_pending *find_newer(const struct sheen_session *sess
     return NULL;
 }
 
-/* The daemon's GPU was lost under the frame: sends its request again, which is in flight then. */
+/* The frame was lost with the daemon's GPU: sends its request again, which is then in flight. */
 static enum sheen_status retry(struct sheen_session *session, const struct session_pending *lost,
                                struct sheen_frame *frame, struct sheen_error *error)
 {
@@ -256,7 +258,7 @@ static void remove_pending(struct sheen_session *session, size_t i)
             (session->n_pending - i) * sizeof(session->pending[0]));
 }
 
-/* Reads the next answer as far as it has come. Whose it is goes to *pending as soon as that is
+/* Reads the next answer as far as it has come. *pending is set as soon as the answered request is
  * known; a FRAME opens session->answer. */
 static enum sheen_status read_answer(struct sheen_session *session,
                                      const struct sheen_progress *progress,
@@ -287,7 +289,7 @@ static enum sheen_status read_answer(struct sheen_session *session,
     return read_data(session, error);
 }
 
-/* The next answer to any request in flight, which it ends. */
+/* Receives the next answer to any request in flight, which then is in flight no more. */
 static enum sheen_status receive_next(struct sheen_session *session,
                                       const struct sheen_progress *progress,
                                       struct session_pending *pending, struct sheen_frame *frame,
@@ -310,7 +312,7 @@ static enum sheen_status receive_next(struct sheen_session *session,
     return status;
 }
 
-/* With a frame of this library's own size. */
+/* Receives into a frame of this library's own size. */
 static enum sheen_status receive_whole(struct sheen_session *session,
                                        const struct sheen_progress *progress,
                                        struct sheen_frame *frame, struct sheen_error *error)

@@ -1,4 +1,4 @@
-/* Requests out. */
+/* Sends requests. */
 #include "client/lib/scene_convert.h"
 #include "client/lib/session.h"
 #include "client/lib/sized.h"

@@ -1,16 +1,17 @@
-/* Scenes between libsheen's structs and messages: camera, lines, lights, patterns, false colour.
- * Pure, any thread. */
+/* Converts scenes between libsheen's structs and messages: camera, lines, lights, patterns, false
+ * colour. Pure, any thread. */
 #ifndef SHEEN_CLIENT_SCENE_CONVERT_H
 #define SHEEN_CLIENT_SCENE_CONVERT_H
 
 #include "client/lib/sheen.h"
 #include "protocol/message.h"
 
-/* Fills in all of the request. More places of lines than a message carries are left out, and what
- * is left is refused by message_check_render() like any other bad number. */
+/* Fills in the whole message. If a pattern has more lines than a message can carry, the rest is
+ * dropped, and message_check_render() refuses the message by its number of lines. */
 void scene_to_message(sheen_Render *render, const struct sheen_request *request);
 
-/* Fills in what the frame shows, as used: camera, up, lines, lights, colours and false colour. */
+/* Fills in the parts of the frame that the daemon used: camera, up, lines, lights, colours and
+ * false colour. */
 void scene_from_message(struct sheen_frame *frame, const sheen_Frame *body);
 
 #endif

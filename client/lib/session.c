@@ -40,7 +40,7 @@ enum sheen_status session_bad_peer(struct sheen_session *session, struct sheen_e
     return session_fail(session, SHEEN_BAD_PEER, error);
 }
 
-/* Reads the rest of the header or body that is on its way, n_bytes in all. */
+/* Reads the rest of the current header or body, n_bytes in all. */
 static enum sheen_status fill(struct sheen_session *session, uint8_t *bytes, size_t n_bytes,
                               struct sheen_error *error)
 {
@@ -152,7 +152,7 @@ enum sheen_status session_read_error(struct sheen_session *session,
     return session_fail(session, status, error);
 }
 
-/* A write has failed: if the server said why before it hung up, that is the better text. */
+/* A write has failed. If the server sent an error before it closed, that text is better. */
 static enum sheen_status last_words(struct sheen_session *session, enum sheen_status status,
                                     struct sheen_error *error)
 {
@@ -180,7 +180,7 @@ enum sheen_status session_send(struct sheen_session *session, uint8_t type, cons
                                uint32_t *seq, struct sheen_error *error)
 {
     if (++session->last_seq == 0)
-        session->last_seq = 1; /* 0 is the number of no request */
+        session->last_seq = 1; /* no request has number 0 */
     *seq = session->last_seq;
     return session_send_again(session, type, body, *seq, error);
 }

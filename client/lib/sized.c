@@ -5,7 +5,7 @@
 #include "client/lib/status.h"
 
 #define LEAST_BYTES 16
-#define MOST_BYTES ((size_t)1 << 20) /* a size that was never set is mostly larger */
+#define MOST_BYTES ((size_t)1 << 20) /* a size that was never set is usually larger */
 
 static size_t size_of(const void *theirs)
 {

@@ -1,4 +1,4 @@
-/* Filling in a struct sheen_error. Pure, any thread. */
+/* Fills in a struct sheen_error. Pure, any thread. */
 #ifndef SHEEN_CLIENT_STATUS_H
 #define SHEEN_CLIENT_STATUS_H
 

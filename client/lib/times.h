@@ -1,4 +1,4 @@
-/* Stage times from the wire. Pure. */
+/* Converts the times of a message to those of sheen.h. Pure, any thread. */
 #ifndef SHEEN_CLIENT_TIMES_H
 #define SHEEN_CLIENT_TIMES_H
 

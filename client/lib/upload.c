@@ -1,4 +1,4 @@
-/* Files to the daemon, and what it says of them. */
+/* Uploads files, and asks the daemon about models. */
 #include <openssl/evp.h>
 #include <string.h>
 
@@ -11,8 +11,8 @@ bool sheen_file_id(const void *bytes, size_t n_bytes, uint8_t id[SHEEN_ID_BYTES]
     return EVP_Digest(bytes, n_bytes, id, NULL, EVP_sha256(), NULL) == 1;
 }
 
-/* The file's name without folders, as text of at most 255 bytes; its end is kept, which tells the
- * format. */
+/* Copies the file's name without folders, cut to 255 bytes of valid text. The end is kept, because
+ * it tells the format. */
 static void clean_name(char *clean, size_t clean_bytes, const char *name)
 {
     const char *slash = strrchr(name, '/');
@@ -21,7 +21,7 @@ static void clean_name(char *clean, size_t clean_bytes, const char *name)
     if (length >= clean_bytes) {
         base += length - (clean_bytes - 1);
         while (((unsigned char)*base & 0xc0) == 0x80)
-            base++; /* not into the middle of a character */
+            base++; /* do not begin in the middle of a character */
     }
     snprintf(clean, clean_bytes, "%s", base);
     if (message_is_text(clean, false))
@@ -97,7 +97,7 @@ broken:
     return session_fail(session, SHEEN_BAD_PEER, error);
 }
 
-/* A server may send any 32 bits; some compilers take an enum for signed. */
+/* A server may send any 32 bits, and some compilers use a signed type for an enum. */
 static enum sheen_finding_kind known_kind(sheen_FindingKind kind)
 {
     return (uint32_t)kind < (uint32_t)SHEEN_FINDING_OTHER ? (enum sheen_finding_kind)kind
