@@ -14,7 +14,7 @@
 #include "client/cli/files/weld_tag.h"
 
 #define TOKEN_BYTES 256
-#define AT_SERVER "server:" /* a MODEL that is a file below the daemon's --models */
+#define AT_SERVER "server:" /* prefix of a MODEL that is a file in the daemon's folder (--models) */
 
 static enum sheen_status upload(struct client *client, enum sheen_file_kind kind, const char *path,
                                 const uint8_t *bytes, size_t n_bytes,
@@ -32,7 +32,8 @@ static enum sheen_status identify(struct client *client, const uint8_t *bytes, s
     return failure_set(&client->error, SHEEN_NO_MEMORY, "libcrypto cannot compute a SHA-256");
 }
 
-/* A file is read again for each server: answers about two versions of it must not be mixed. */
+/* The file is read again for each server. If it has changed, fails: answers about two versions of a
+ * file must not be mixed. */
 static enum sheen_status keep_id(struct client *client, uint8_t kept[SHEEN_ID_BYTES],
                                  const uint8_t id[SHEEN_ID_BYTES], enum sheen_status status,
                                  const char *path)
@@ -54,7 +55,7 @@ static enum sheen_status take_id(struct client *client, const char *path, enum s
     return status ? status : keep_id(client, kept, id, bad, path);
 }
 
-/* The model's bytes as they are sent, which are the caller's to free, whatever the status is. */
+/* Reads the model's bytes as they are sent. The caller frees them, whatever the status is. */
 static enum sheen_status read_model(struct client *client, const struct options *options,
                                     uint8_t **bytes, size_t *n_bytes)
 {
@@ -73,8 +74,8 @@ static bool is_at_server(const char *model)
     return model && strncmp(model, AT_SERVER, strlen(AT_SERVER)) == 0;
 }
 
-/* The id that a balancer picks a node by. A file at the server has none before a server is asked:
- * its name stands for it then, and each time again, so that the choice stays the same. */
+/* The id by which a load balancer chooses a node. A file at the server has no known id before a
+ * server is asked, so its name is hashed instead, every time, so that the choice stays the same. */
 static enum sheen_status greeting_id(struct client *client, const char *model,
                                      uint8_t id[SHEEN_ID_BYTES])
 {
@@ -84,7 +85,7 @@ static enum sheen_status greeting_id(struct client *client, const char *model,
     return SHEEN_OK;
 }
 
-/* `timeout_ms` is for connecting; 0: as for everything. */
+/* Connects. `timeout_ms` is for connecting; 0: as for all calls. */
 static enum sheen_status connect_server(struct client *client, const struct options *options,
                                         uint32_t timeout_ms)
 {
@@ -156,8 +157,7 @@ enum sheen_status client_init(struct client *client, const struct options *optio
     return status;
 }
 
-/* A connection has been lost: begins the time that the next may take. False when this goes on and
- * on. */
+/* A connection was lost: starts the time for reconnecting. False if it was lost too often. */
 static bool begin_resume(struct client *client, const struct options *options)
 {
     char text[sizeof(client->error.text)];
@@ -183,7 +183,7 @@ static void nap(uint32_t ms)
 
 bool client_resume(struct client *client, const struct options *options, enum sheen_status *status)
 {
-    /* Nobody at an address that nobody was met at is no loss: it may be wrong. */
+    /* If no server ever answered at this address, the address may be wrong: that is no loss. */
     bool is_lost =
         *status == SHEEN_SHUTTING_DOWN || (*status == SHEEN_LOST_SERVER && client->session != NULL);
     bool is_new = true;

@@ -96,10 +96,10 @@ static void print_json(struct json *json, const struct sheen_model_info *info,
 
 struct count {
     uint32_t number;
-    const char *one, *many; /* what there is so much of, and what stands before the next */
+    const char *one, *many; /* the noun for one and for many, and what follows it */
 };
 
-/* The list ends with an entry without a noun. */
+/* Prints a list of counts, which ends with an entry without a noun. */
 static void print_counts(const char *title, const struct count *counts)
 {
     printf("%-16s ", title);

@@ -27,7 +27,7 @@ struct normal_error {
 struct figure {
     struct canvas canvas;
     uint32_t panel_width, panel_height, gap;
-    uint32_t scale, line; /* of captions: pixels of a letter's pixel, and from line to line */
+    uint32_t scale, line; /* captions: size of a letter's pixel, and distance of lines, px */
     struct normal_error errors[N_LEVELS];
 };
 
@@ -73,7 +73,7 @@ static struct normal_error compare(const struct sheen_frame *polygon,
     double sum = 0;
     for (size_t k = 0; k < (size_t)exact->width_px * exact->height_px; k++) {
         double deg = face_a[k][0] == face_b[k][0] ? angle_deg(a[k], b[k]) : NAN;
-        if (isnan(deg)) /* nothing is hit, or there is no normal */
+        if (isnan(deg)) /* no surface, or no normal */
             continue;
         error.max_deg = fmax(error.max_deg, deg);
         sum += deg;
@@ -85,7 +85,7 @@ static struct normal_error compare(const struct sheen_frame *polygon,
 
 static bool figure_init(struct figure *figure, const struct sheen_request *request)
 {
-    const uint32_t letters = 28; /* of the longest caption */
+    const uint32_t letters = 28; /* length of the longest caption */
     uint32_t scale = request->width_px / (letters * GLYPH_ADVANCE);
     figure->panel_width = request->width_px;
     figure->panel_height = request->height_px;
@@ -99,7 +99,7 @@ static bool figure_init(struct figure *figure, const struct sheen_request *reque
            canvas_init(&figure->canvas, (uint32_t)width, (uint32_t)height + figure->gap);
 }
 
-/* A panel at its column and level, with lines of text below. */
+/* Places a panel at its column and level, with lines of text below. */
 static void place(struct figure *figure, int column, int row, const struct sheen_frame *frame,
                   const char *const caption[N_LINES])
 {
@@ -112,7 +112,7 @@ static void place(struct figure *figure, int column, int row, const struct sheen
         canvas_text(&figure->canvas, x, below + k * figure->line, end, figure->scale, caption[k]);
 }
 
-/* The two lines below the title. */
+/* Writes the two lines below the title. */
 static void describe(const struct normal_error *error, char largest[CAPTION_BYTES],
                      char mean[CAPTION_BYTES])
 {

@@ -1,4 +1,4 @@
-/* sheen lights, sheen patterns: what there is, with ranges, defaults and an example each. */
+/* sheen lights, sheen patterns: list what exists, with ranges, defaults and an example each. */
 #include <stdio.h>
 #include <string.h>
 
@@ -6,7 +6,7 @@
 #include "client/cli/output/json.h"
 #include "client/cli/options/lights_text.h"
 
-/* Name, meaning (which may have several lines) and, indented below, the example. */
+/* Prints name, meaning (which may have several lines) and, indented below, the example. */
 static void print_rows(const char *title, const struct text_row *rows, const char *prefix)
 {
     char example[TEXT_EXAMPLE_BYTES];

@@ -83,7 +83,8 @@ static int run(const struct options *options)
         status = client_render(&client, options, &request, &frame);
     if (!status)
         status = file_write(options->output, frame.data, frame.data_bytes, &client.error);
-    /* After the frame, so that the frame's own times tell of the tables it had to wait for. */
+    /* Asked after the frame, so that the frame's times include the tables that it had to wait
+     * for. */
     if (!status)
         notices_ask(&client, options, &info);
     if (!status)

@@ -6,8 +6,8 @@
 #include "client/cli/client.h"
 #include "client/cli/options/values.h"
 
-/* What rates are counted over: of a daemon that has just started, whose one request would look like
- * a thousand a second, a second. */
+/* The time over which rates are computed: at least one second, because the single request of a
+ * daemon that has just started would look like a thousand per second. */
 static double window_s(const struct sheen_stats *stats)
 {
     return stats->window_us < 1000000 ? 1 : (double)stats->window_us / 1e6;
@@ -133,7 +133,7 @@ static void print_table(const struct sheen_stats *stats)
     print_times("p99", &stats->p99);
 }
 
-/* It is one daemon that is asked: the numbers of the next are no answer. */
+/* stats asks one particular daemon: the numbers of another are no answer. */
 static bool check(struct options *options, char *why)
 {
     (void)why;

@@ -16,24 +16,25 @@
 #include "client/cli/turntable.h"
 #include "client/cli/options/values.h"
 
-#define PROBE_PX 64     /* the longer side of the frame that only tells the camera */
-#define IN_FLIGHT 2u    /* the next request waits at the daemon while a frame travels */
-#define LIGHT_SWING 0.1 /* of the light's u edge */
+/* The longer side of the small frame that is drawn only to learn the camera. */
+#define PROBE_PX 64
+#define IN_FLIGHT 2u    /* while a frame is transferred, the next request waits at the daemon */
+#define LIGHT_SWING 0.1 /* largest shift of the light, as a share of its u edge */
 
-/* One frame's numbers; the last is ours: from request to decoded frame. */
+/* The times of one frame. All are the daemon's, except the last: from request to decoded frame. */
 enum stage { TABLES, VISIBILITY, EVALUATE, SHADE, READBACK, ENCODE, TOTAL, ROUND_TRIP, N_STAGES };
 static const char *const STAGE_NAMES[N_STAGES] = {
     "tables", "visibility", "evaluate", "shade", "readback", "encode", "total", "round_trip"};
 
 struct record {
     enum { WANTED, DRAWN, LATE } state;
-    uint32_t number; /* of the frame, from 0 */
+    uint32_t number; /* number of the frame, from 0 */
     uint64_t stage_us[N_STAGES];
     uint64_t data_bytes;
 };
 
-/* Answers may come in another order than requests: a refusal before an older frame, a frame that
- * was asked for again after a newer one. */
+/* A request that was sent. Answers may come in another order: a refusal before an older frame, or a
+ * frame that was requested again after a newer one. */
 struct sent {
     uint32_t frame;
     int64_t us;
@@ -41,26 +42,27 @@ struct sent {
 
 struct stream {
     struct sheen_request request;   /* its camera and light move */
-    bool has_camera;                /* before any frame */
-    struct sheen_camera camera;     /* of the first frame */
-    double axis[3];                 /* that it goes about: the model's up */
-    enum sheen_up_source up_source; /* where that up is from */
-    uint64_t tables_us;             /* that the first frame would have waited */
-    struct sheen_light light;       /* the first: the one that moves */
+    bool has_camera;                /* the camera is known */
+    struct sheen_camera camera;     /* camera of the first frame */
+    double axis[3];                 /* axis of the turntable: the model's up */
+    enum sheen_up_source up_source; /* where that up comes from */
+    uint64_t tables_us;             /* time that the first frame would have waited for tables */
+    struct sheen_light light;       /* the first light, which moves */
     struct sheen_frame frame;
     struct sheen_model_info info;
-    struct record *records;                /* [frames], by the frame's number */
-    uint32_t n_drawn, n_late;              /* frames that came, and that were not drawn in time */
-    uint64_t written_bytes;                /* of their files, if there are any */
-    struct sent sent[SHEEN_MAX_IN_FLIGHT]; /* by the request's number modulo its size */
-    int64_t start_us, elapsed_us; /* of all frames but the first, which may wait for tables */
+    struct record *records;   /* [frames], indexed by frame number */
+    uint32_t n_drawn, n_late; /* frames received; frames that missed their deadline */
+    uint64_t written_bytes;   /* size of all files written */
+    /* Indexed by the request's number modulo the array's size. */
+    struct sent sent[SHEEN_MAX_IN_FLIGHT];
+    int64_t start_us, elapsed_us; /* without the first frame, which may wait for tables */
 };
 
 static void move(struct stream *stream, const struct options *options, uint32_t number)
 {
     const double degree = 3.14159265358979323846 / 180;
     double angle = number * options->orbit_deg * degree;
-    /* Every frame is wanted: none may take the place of another. */
+    /* Every frame is wanted: no request may replace another. */
     stream->request.has_view = stream->request.request_class != SHEEN_CLASS_BATCH;
     stream->request.view = number;
     stream->request.camera = stream->camera;
@@ -81,8 +83,8 @@ static enum sheen_status send_one(struct client *client, struct stream *stream, 
     return status;
 }
 
-/* A frame's file. It counts as drawn when it is there: after a loss of the server what has no file
- * is asked for again, and nothing else. */
+/* Writes a frame's file. Only then the frame counts as drawn: after the loss of a server, exactly
+ * the frames without a file are requested again. */
 static enum sheen_status write_one(struct client *client, struct stream *stream,
                                    const struct options *options, uint32_t number)
 {
@@ -99,7 +101,8 @@ static enum sheen_status write_one(struct client *client, struct stream *stream,
     return status;
 }
 
-/* The first frame's colours are those of all that follow, so that a colour is one value. */
+/* Keeps the range of the first frame's false colour for all frames, so that a colour means one
+ * value. */
 static void keep_range(struct stream *stream)
 {
     struct sheen_show *show = &stream->request.show;
@@ -146,7 +149,7 @@ static void keep_axis(struct stream *stream, const struct sheen_frame *frame)
     stream->up_source = frame->up_source;
 }
 
-/* Puts the camera of a turntable by what the daemon says of its own camera and of the model. */
+/* Places the turntable's camera by the daemon's own camera and the model's box. */
 static void place_camera(struct stream *stream, const struct options *options,
                          const struct sheen_frame *frame, const struct sheen_model_info *info)
 {
@@ -170,8 +173,8 @@ static void place_camera(struct stream *stream, const struct options *options,
     stream->has_camera = true;
 }
 
-/* Where no eye is given: a small frame by the daemon's own camera tells from which side it looks
- * and which way is up, the model's info where its middle is. */
+/* If no eye is given: a small frame with the daemon's camera tells the side from which it looks and
+ * the up direction; the model's info tells its middle. */
 static enum sheen_status find_camera(struct client *client, struct stream *stream,
                                      const struct options *options)
 {
@@ -207,7 +210,8 @@ static enum sheen_status find_camera(struct client *client, struct stream *strea
     return status;
 }
 
-/* It goes alone, and has time: its answer tells the camera and the light that move. */
+/* Requests the first frame alone and without deadline: its answer tells the camera and the light
+ * that then move. */
 static enum sheen_status first_frame(struct client *client, struct stream *stream,
                                      const struct options *options)
 {
@@ -224,7 +228,7 @@ static enum sheen_status first_frame(struct client *client, struct stream *strea
         keep_axis(stream, &stream->frame);
     }
     stream->light = stream->frame.lights[0];
-    /* The camera of a turntable gives the up that the daemon itself had chosen for the probe. */
+    /* The turntable's camera has the up that the daemon had chosen for the small frame. */
     stream->frame.up_source = stream->up_source;
     notices_ask(client, options, &stream->info);
     notices_print(client, options, &stream->frame, &stream->info);
@@ -238,7 +242,7 @@ static uint32_t n_answered(const struct stream *stream)
     return stream->n_drawn + stream->n_late;
 }
 
-/* All that have no answer yet. */
+/* Requests all frames that have no answer yet. */
 static enum sheen_status run_frames(struct client *client, struct stream *stream,
                                     const struct options *options)
 {
@@ -270,7 +274,7 @@ static enum sheen_status run_frames(struct client *client, struct stream *stream
     return status;
 }
 
-/* Moves the records of drawn frames to the front, in the frames' order. */
+/* Moves the records of drawn frames to the front; keeps their order. */
 static void keep_drawn(struct stream *stream, uint32_t n_frames)
 {
     uint32_t n_kept = 0;
@@ -292,7 +296,7 @@ static int compare_us(const void *a, const void *b)
     return left < right ? -1 : left > right;
 }
 
-/* sorted[] is scratch of n_frames. */
+/* Prints the table of times. sorted[] is scratch memory for n_frames values. */
 static void print_table(const struct stream *stream, uint32_t n_frames, uint64_t *sorted,
                         const struct options *options)
 {
@@ -366,7 +370,7 @@ static void print_json(struct json *json, const struct stream *stream, uint32_t 
     json_object_end(json);
 }
 
-/* Before the work, by the first file's name. */
+/* Checks before the work, by the name of the first file. */
 static enum sheen_status check_writable(struct client *client, const struct options *options)
 {
     if (!options->output)

@@ -1,4 +1,4 @@
-/* The commands, one file each. */
+/* The table of commands. Each command is one file, command_NAME.c. */
 #ifndef SHEEN_CLIENT_COMMANDS_H
 #define SHEEN_CLIENT_COMMANDS_H
 
@@ -12,7 +12,7 @@ extern const struct command COMMAND_LIGHTS;
 extern const struct command COMMAND_PATTERNS;
 extern const struct command COMMAND_LEVELS;
 
-/* All of them, in the order in which they are listed. */
+/* All commands, in the order in which they are listed. */
 #define N_COMMANDS 7
 extern const struct command *const COMMANDS[N_COMMANDS];
 

@@ -14,7 +14,7 @@ void notices_ask(struct client *client, const struct options *options,
              options->model, error.text);
 }
 
-/* To whom little of the light is met. */
+/* Advice if few rays meet the light. */
 static const char *light_advice(const struct sheen_request *request)
 {
     bool is_placed = false;

@@ -1,5 +1,5 @@
-/* What people are told of a frame beside the picture: the warnings about the model's file, the up
- * that was guessed, a picture without surface, a light that little of what is seen meets.
+/* Notices about a frame on standard error: warnings about the model's file, an up direction that
+ * was guessed, a picture that shows no surface, a light that few rays meet.
  *
  * Thread: one. */
 #ifndef SHEEN_CLIENT_NOTICES_H
@@ -7,13 +7,13 @@
 
 #include "client/cli/client.h"
 
-/* Asks for what there is to say about the client's model; no request may be in flight. It is asked
- * for after a frame, which outlives a daemon that is lost meanwhile: the warnings then say that the
- * rest is unknown, and the counts are 0. */
+/* Asks the daemon about the client's model. No request may be in flight. It is called after a frame
+ * was received; if the daemon is lost meanwhile, info->warnings says that the rest is unknown, and
+ * all counts are 0. */
 void notices_ask(struct client *client, const struct options *options,
                  struct sheen_model_info *info);
 
-/* A line each on standard error, none with --quiet. Of several frames this is called with the
+/* Prints one line for each notice, none with --quiet. For several frames, call it with the
  * first. */
 void notices_print(struct client *client, const struct options *options,
                    const struct sheen_frame *frame, const struct sheen_model_info *info);

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define MARGIN 0.92 /* of the picture's half, as where the daemon frames a model */
+#define MARGIN 0.92 /* share of half the picture, as when the daemon frames a model */
 
 static const double DEGREE = 3.14159265358979323846 / 180;
 
@@ -30,7 +30,7 @@ static void unit(const double a[3], double out[3])
         out[i] = a[i] / length;
 }
 
-/* Rodrigues' formula; the axis is unit. */
+/* Rotates by Rodrigues' formula; the axis has length 1. */
 static void turn(const double v[3], const double axis[3], double angle, double out[3])
 {
     double along = dot(axis, v), across[3];
@@ -50,15 +50,15 @@ void turntable_turn(const struct sheen_camera *start, const double axis[3], doub
     *camera = *start;
     for (int i = 0; i < 3; i++)
         camera->eye[i] = start->target[i] + turned[i];
-    /* An up that is not the axis, as where the camera looks along it, turns with the eye. */
+    /* An up that is not the axis (the camera may look along the axis) turns with the eye. */
     unit(start->up, arm);
     if (fabs(dot(arm, upright)) < 1)
         turn(start->up, upright, angle, camera->up);
 }
 
-/* How far from `target` the eye must be for all circles of the box's corners about the axis to lie
- * inside the picture: a point p is, when |p across| <= tangent (distance + p forward), of which the
- * greatest difference on a circle is known. */
+/* The distance from `target` at which all circles of the box's corners about the axis lie inside
+ * the picture. A point p is inside if |p across| <= tangent (distance + p forward); the greatest
+ * difference on a circle has a closed form. */
 static double distance_of(const double target[3], const double forward[3], const double up[3],
                           const double axis[3], const double box_min[3], const double box_max[3],
                           const double tangent[2])

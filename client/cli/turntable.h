@@ -1,19 +1,20 @@
-/* The camera of a turntable: about one point and the model's up, from one distance.
+/* The camera of a turntable, which turns about the model's up axis through one point, at one
+ * distance.
  *
- * Lengths are the model's units, angles radians. Pure, any thread. */
+ * Lengths are in the model's units, angles in radians. Pure, any thread. */
 #ifndef SHEEN_CLIENT_TURNTABLE_H
 #define SHEEN_CLIENT_TURNTABLE_H
 
 #include "client/lib/sheen.h"
 
-/* Turns eye and up of `start` about the axis (of any length but 0) through its target. */
+/* Turns eye and up of `start` by `angle` about `axis` (of any length but 0) through its target. */
 void turntable_turn(const struct sheen_camera *start, const double axis[3], double angle,
                     struct sheen_camera *camera);
 
-/* Moves a perspective camera, which the daemon chose, along its line of sight for all of the box to
- * stay in the picture (of this width : height) however far it is turned, 4 % free at the edges that
- * are met. `target`: what to look at from then on, from the same side, as near as that allows;
- * NULL: camera's own, which it comes no nearer to. */
+/* Moves a perspective camera, which the daemon chose, along its line of sight so that the whole box
+ * stays in the picture (of aspect width / height) at every angle, with a margin of 4 %. `target` is
+ * the point to look at from then on, from the same side, as near as possible; NULL: the camera's
+ * own target, to which the camera does not come nearer. */
 void turntable_fit(struct sheen_camera *camera, const double axis[3], const double box_min[3],
                    const double box_max[3], double aspect, const double *target);
 

@@ -8,7 +8,7 @@
 
 #include <sheen.h>
 
-/* The file's bytes, the caller's to free(); NULL when it cannot be read. */
+/* Reads a file. The caller frees the bytes; NULL if it cannot be read. */
 static unsigned char *read_file(const char *path, size_t *n_bytes)
 {
     unsigned char *bytes = NULL;

@@ -47,8 +47,8 @@ session_pointer open_session(const char *address, const sheen_request &request)
     return session_pointer(session, sheen_close);
 }
 
-/* Waits for the next frame as an event loop does: the socket is one of the things that poll()
- * watches. */
+/* Waits for the next frame like an event loop, in which poll() would watch other descriptors,
+ * too. */
 void wait_for_frame(sheen_session *session, sheen_frame *frame)
 {
     sheen_error error;
@@ -61,7 +61,7 @@ void wait_for_frame(sheen_session *session, sheen_frame *frame)
     check(status, error);
 }
 
-/* The share of pixels that show surface, as a number from 0 to 1. */
+/* The share of pixels that show the surface, 0 to 1. */
 double share_of(const sheen_frame &frame)
 {
     const auto *face =
@@ -94,7 +94,7 @@ void run(const char *path, int n_frames, const char *address)
         check(sheen_send(session.get(), &request, &error), error);
         wait_for_frame(session.get(), &frame);
         std::printf("%d: %.3f\n", i, share_of(frame));
-        /* The first camera is the daemon's; from then on it goes round the z axis. */
+        /* The first camera is chosen by the daemon; then it turns about the z axis. */
         request.camera = frame.camera;
         const double angle = 2 * std::acos(-1.0) / n_frames;
         const double x = frame.camera.eye[0] - frame.camera.target[0];

@@ -1,5 +1,6 @@
-/* The files that the page writers make. A failure ends the program with one line on standard error
- * and exit code 1. Thread: one. */
+/* Creates the files of the manual pages and completions. A failure ends the program with one line
+ * on standard error and exit code 1.
+ * Thread: one. */
 #ifndef SHEEN_MANUAL_OUTPUT_H
 #define SHEEN_MANUAL_OUTPUT_H
 
@@ -7,11 +8,11 @@
 
 #include "deploy/manual/shell.h"
 
-/* A new file in the folder, to be given to output_close(). */
+/* Creates a file in the folder; close it by output_close(). */
 FILE *output_open(const char *folder, const char *name);
 void output_close(FILE *out);
 
-/* The program's completions: NAME.bash, _NAME (zsh) and NAME.fish. */
+/* Writes the program's completions: NAME.bash, _NAME (zsh) and NAME.fish. */
 void output_shells(const char *folder, const struct shell_program *program);
 
 #endif

@@ -4,9 +4,9 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define LINE_BYTES 72 /* of a page's source; mandoc holds more than 80 against it */
+#define LINE_BYTES 72 /* length of lines in a page's source; mandoc complains above 80 */
 
-/* Characters that mean something to man, or look otherwise in what it prints. */
+/* Escapes characters that have a meaning in the man language, or would be printed differently. */
 static void put_escaped(FILE *out, const char *text, size_t length)
 {
     static const struct {
@@ -25,8 +25,8 @@ static void put_escaped(FILE *out, const char *text, size_t length)
     }
 }
 
-/* One paragraph, filled into lines, of which the first has been begun up to `column`; each sentence
- * begins one. Returns what comes behind it. */
+/* Writes one paragraph, filled into lines, the first of which already has `column` characters. Each
+ * sentence begins a new line. Returns what follows the paragraph. */
 static const char *put_paragraph(FILE *out, const char *text, size_t column)
 {
     bool is_first = true;

@@ -39,7 +39,7 @@ static void write_codes(FILE *out, const struct command *command)
     }
 }
 
-/* "-o, --output" */
+/* Writes an option's item, for example "-o, --output". */
 static void write_row(FILE *out, const struct option_row *row)
 {
     char help[OPTIONS_HELP_BYTES], term[64];
@@ -59,7 +59,7 @@ static void write_synopsis(FILE *out, const char *name, const char *arguments)
     page_text(out, text);
 }
 
-/* The first sentence of the summary, which NAME repeats. */
+/* Copies the first sentence of the summary, for the section NAME. */
 static void first_sentence(const char *summary, char *text, size_t size)
 {
     const char *end = strchr(summary, '.');

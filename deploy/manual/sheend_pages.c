@@ -9,7 +9,7 @@
 
 #define RELOADS "The value is read again on SIGHUP."
 
-/* What the option means, and what can be done with it beside the command line. */
+/* Writes the meaning of an option, and whether the file and a reload take it. */
 static void write_row(FILE *out, const struct option_row *row, bool in_file)
 {
     char help[OPTION_HELP_BYTES], text[OPTION_HELP_BYTES + 128], term[64];
@@ -20,7 +20,7 @@ static void write_row(FILE *out, const struct option_row *row, bool in_file)
     page_item(out, term, value, text);
 }
 
-/* The rows that are limits, or those that are not. */
+/* Writes the rows that are limits, or those that are not. */
 static void write_rows(FILE *out, bool limits, bool in_file)
 {
     size_t n;
@@ -94,7 +94,7 @@ static void write_file(FILE *out, const char *date)
     page_see_also(out, "sheend(8)");
 }
 
-/* "auto software" of "auto|software|N": what can be typed as it stands. */
+/* Extracts the fixed words of an argument: "auto software" from "auto|software|N". */
 static const char *words_of(const char *argument, char words[static 64])
 {
     size_t used = 0;

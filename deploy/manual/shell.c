@@ -2,8 +2,9 @@
 
 #include <string.h>
 
-/* A help's first part: up to a default, an explanation or a second sentence, in one line.
- * Characters of `escaped` get a backslash, and a quote ends and begins the quoted text again. */
+/* Writes the first part of a help text, in one line: up to a default, an explanation or a second
+ * sentence. Characters in `escaped` get a backslash; a quotation mark ends and restarts the quoted
+ * text. */
 static void put_summary(FILE *out, const char *help, const char *escaped)
 {
     static const char *const ends[] = {" (", "; ", ": ", ". ", ".\n"};
@@ -29,7 +30,7 @@ static void put_summary(FILE *out, const char *help, const char *escaped)
 
 /* ---- bash ---- */
 
-/* "--size --eye ..." of a command. */
+/* Writes the option names of a command: "--size --eye ...". */
 static void bash_names(FILE *out, const struct shell_command *command)
 {
     for (size_t i = 0; i < command->n_options; i++) {

@@ -1,5 +1,5 @@
-/* What bash, zsh and fish complete of a program. Errors stay in the stream. Thread: one stream
- * belongs to one thread. */
+/* Writes a program's completions for bash, zsh and fish. Errors stay in the stream.
+ * Thread: one at a time for each stream. */
 #ifndef SHEEN_MANUAL_SHELL_H
 #define SHEEN_MANUAL_SHELL_H
 
@@ -9,7 +9,7 @@
 
 enum shell_value {
     SHELL_FLAG,  /* no value */
-    SHELL_VALUE, /* one that nobody can guess, or one of `words` */
+    SHELL_VALUE, /* a free value, or one of `words` */
     SHELL_FILE,
     SHELL_FOLDER,
 };
@@ -18,15 +18,15 @@ struct shell_option {
     const char *name; /* without "--" */
     char letter;      /* 0: none */
     enum shell_value value;
-    const char *words; /* values with blanks between; NULL: none */
-    const char *help;  /* shown as far as its first part goes */
+    const char *words; /* values, separated by blanks; NULL: none */
+    const char *help;  /* its first part is shown */
 };
 
-/* A command of the program; of a program without commands there is one, its name NULL. */
+/* A command of the program. A program without commands has one, with name NULL. */
 struct shell_command {
     const char *name;
     const char *summary; /* as `help` */
-    bool takes_files;    /* beside its options */
+    bool takes_files;    /* in addition to its options */
     size_t n_options;
     const struct shell_option *options;
 };

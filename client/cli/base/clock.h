@@ -1,4 +1,5 @@
-/* The time that only goes forward, since some moment of the system's. Any thread. */
+/* The client's monotonic clock: microseconds or milliseconds since an undefined moment. Any
+ * thread. */
 #ifndef SHEEN_CLIENT_CLOCK_H
 #define SHEEN_CLIENT_CLOCK_H
 

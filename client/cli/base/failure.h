@@ -1,4 +1,4 @@
-/* Reasons of the command's own, told as libsheen tells its own. Pure, any thread. */
+/* Reports failures of the command itself in libsheen's struct sheen_error. Pure, any thread. */
 #ifndef SHEEN_CLIENT_FAILURE_H
 #define SHEEN_CLIENT_FAILURE_H
 

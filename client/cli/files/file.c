@@ -48,9 +48,9 @@ static enum sheen_status read_open(int fd, const char *path, enum sheen_status s
     return SHEEN_OK;
 }
 
-#define READ_FLAGS (O_RDONLY | O_CLOEXEC | O_NONBLOCK) /* a FIFO must not hang */
+#define READ_FLAGS (O_RDONLY | O_CLOEXEC | O_NONBLOCK) /* opening a FIFO must not block */
 
-/* Takes the descriptor, which is -1, with errno, when the file cannot be opened. */
+/* Reads and closes the descriptor; -1, with errno: the file could not be opened. */
 static enum sheen_status read_and_close(int fd, const char *path, enum sheen_status status,
                                         uint8_t **bytes, size_t *n_bytes, struct sheen_error *error)
 {
@@ -94,7 +94,7 @@ enum sheen_status file_read_line(const char *path, char *line, size_t size,
     return SHEEN_OK;
 }
 
-/* The folder that `path` is in; the caller's to free(). NULL: no memory. */
+/* The folder of `path`; the caller frees it. NULL when memory is short. */
 static char *folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -130,8 +130,8 @@ static bool write_all(int fd, const uint8_t *bytes, size_t n_bytes)
     return true;
 }
 
-/* Opens a file that has no name yet and goes with this process, if it is killed. -1 where the file
- * system has none. */
+/* Opens a file without a name, which vanishes if this process is killed. -1 if the file system has
+ * none. */
 static int open_nameless(const char *path)
 {
     char *folder = folder_of(path);
@@ -141,8 +141,8 @@ static int open_nameless(const char *path)
     return fd;
 }
 
-/* Gives the nameless file a name beside `path`, or makes a new file there if `nameless` is -1.
- * Returns its descriptor; the name is the caller's to free(). -1 and errno on failure. */
+/* Gives the nameless file a name in the folder of `path`, or makes a new file there if `nameless`
+ * is -1. Returns its descriptor; the caller frees the name. -1 and errno on failure. */
 static int name_temporary(const char *path, int nameless, char **name)
 {
     char link[32];

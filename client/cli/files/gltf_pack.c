@@ -12,11 +12,11 @@
 #define GLB_HEADER_BYTES 12u
 #define CHUNK_HEADER_BYTES 8u
 
-/* Where the bytes of one buffer of the file are in the container. */
+/* Where the bytes of one buffer are in the GLB. */
 struct place {
     json_int_t buffer;
     json_int_t offset;
-    json_int_t bytes; /* 0: where they were before, whatever they are */
+    json_int_t bytes; /* 0: unchanged, not packed */
 };
 
 struct pack {
@@ -26,7 +26,7 @@ struct pack {
     struct place *place; /* [n_buffers] */
     uint8_t *binary;
     size_t binary_bytes;
-    size_t read_bytes; /* of all files, wholly */
+    size_t read_bytes; /* size of all files read */
     struct sheen_error *error;
 };
 
@@ -44,7 +44,7 @@ static enum sheen_status too_big(const struct pack *pack)
         pack->path, (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
 }
 
-/* The URI of a buffer that is a file, or NULL. */
+/* The URI of a buffer that names a file, or NULL. */
 static const char *file_of(const json_t *buffer)
 {
     const char *uri = json_string_value(json_object_get(buffer, "uri"));
@@ -89,7 +89,7 @@ static enum sheen_status add_file(struct pack *pack, size_t index, const json_t 
         return failure_set(pack->error, status, "%s: buffer %zu: %s", pack->path, index,
                            inner.text);
     pack->read_bytes += n_bytes;
-    if (pack->read_bytes > PROTOCOL_MAX_UPLOAD_BYTES) { /* it grew */
+    if (pack->read_bytes > PROTOCOL_MAX_UPLOAD_BYTES) { /* the file has grown */
         status = too_big(pack);
     } else if ((uint64_t)wanted > n_bytes) {
         status = failure_set(pack->error, SHEEN_BAD_MODEL,
@@ -104,7 +104,7 @@ static enum sheen_status add_file(struct pack *pack, size_t index, const json_t 
     return status;
 }
 
-/* Reads the files and replaces `buffers` by what is left of them. */
+/* Reads the files and replaces `buffers` by the buffers of the GLB. */
 static enum sheen_status pack_buffers(struct pack *pack, const json_t *buffers)
 {
     enum sheen_status status = SHEEN_OK;
@@ -130,8 +130,8 @@ static enum sheen_status pack_buffers(struct pack *pack, const json_t *buffers)
                         : failure_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
 }
 
-/* A member of a view as a whole number, 0 where it is absent. Anything else is refused: what is
- * written back would make a number of it. */
+/* Reads a member of a view as a whole number; 0 if it is absent. Refuses anything else, because the
+ * value is written back as a number. */
 static enum sheen_status whole_number(const struct pack *pack, size_t index, const json_t *view,
                                       const char *key, json_int_t *number)
 {
@@ -149,7 +149,7 @@ static enum sheen_status move_view(struct pack *pack, size_t index, json_t *view
     const json_t *buffer = json_object_get(view, "buffer");
     json_int_t of = json_integer_value(buffer), offset, bytes, end;
     if (!json_is_integer(buffer) || of < 0 || (size_t)of >= pack->n_buffers)
-        return SHEEN_OK; /* the reader says so */
+        return SHEEN_OK; /* the reader at the server reports it */
     const struct place *place = &pack->place[of];
     if (place->bytes > 0) {
         enum sheen_status status = whole_number(pack, index, view, "byteOffset", &offset);
@@ -157,7 +157,7 @@ static enum sheen_status move_view(struct pack *pack, size_t index, json_t *view
             status = whole_number(pack, index, view, "byteLength", &bytes);
         if (status)
             return status;
-        /* Behind it there are other buffers now. */
+        /* The view must lie within its buffer, because other buffers follow now. */
         if (offset < 0 || bytes < 0 || __builtin_add_overflow(offset, bytes, &end) ||
             end > place->bytes)
             return failure_set(pack->error, SHEEN_BAD_MODEL,
@@ -234,9 +234,9 @@ static bool names_files(const json_t *root)
     return false;
 }
 
-/* The file's JSON, or NULL: other models are not parsed here, and what is no JSON at all is for the
- * reader at the server to refuse. It reads integers of any length, which cannot be held here: a
- * file that names others and has one is refused. */
+/* Parses the file's JSON. NULL for other models, and for malformed JSON, which the reader at the
+ * server refuses. That reader accepts integers of any length, which cannot be stored here: a file
+ * that has one and names other files is refused. */
 static enum sheen_status parse(struct pack *pack, const uint8_t *bytes, size_t n_bytes)
 {
     size_t at = n_bytes >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0, start = at;

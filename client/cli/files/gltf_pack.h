@@ -1,11 +1,11 @@
-/* One file out of a .gltf and the files beside it that hold its geometry. Thread: any.
+/* Packs a .gltf and the files that hold its geometry into one file. Any thread.
  *
- * The container is a GLB. Its BIN chunk holds the files of the buffers in their order, each as long
- * as its buffer says and filled up with zeros to a multiple of 4. Its JSON chunk is the file's
- * JSON, members in their order and without blanks, in which buffer 0 is the BIN chunk, followed by
- * those buffers that name no file; buffer views say where their bytes are now. All else is kept as
- * it is: images are not part of a cage and are not packed. Equal files make equal bytes: a model is
- * known by their SHA-256. */
+ * The result is a GLB. Its BIN chunk holds the buffers' files in their order, each cut to the
+ * length that its buffer declares and padded with zeros to a multiple of 4. Its JSON chunk is the
+ * file's JSON, without blanks, members in their order; buffer 0 is the BIN chunk, followed by the
+ * buffers that name no file, and buffer views are adjusted. Everything else is unchanged: images
+ * are not part of a cage and are not packed. Equal files give equal bytes, because a model is
+ * identified by its SHA-256. */
 #ifndef SHEEN_CLIENT_GLTF_PACK_H
 #define SHEEN_CLIENT_GLTF_PACK_H
 
@@ -14,15 +14,15 @@
 
 #include "client/lib/sheen.h"
 
-/* *bytes[0, *n_bytes) are those of the model file `path`. If they are a glTF in JSON whose buffers
- * name files, *bytes is freed and replaced by the container, the caller's to free(). What has no
- * such buffers, or is no JSON at all, stays as it is: the reader at the server says what is wrong
- * with it. Which files are read, and how links are followed, is said at relative_file_read().
+/* *bytes has the *n_bytes bytes of the model file `path`. If they are glTF as JSON with buffers
+ * that name files, *bytes is freed and replaced by the GLB, which the caller frees. Otherwise they
+ * are unchanged: the reader at the server reports what is wrong with the file. relative_file_read()
+ * says which files are read and how links are followed.
  *
- * SHEEN_BAD_MODEL when a file cannot be read or may not be, when a view lies beyond its buffer or
- * not at a whole number, or when the JSON has an integer of more than 64 bits beside such buffers;
- * SHEEN_TOO_BIG when more than PROTOCOL_MAX_UPLOAD_BYTES were to be read or sent; SHEEN_NO_MEMORY.
- * On failure *bytes is as it was. */
+ * On failure *bytes is unchanged. SHEEN_BAD_MODEL if a file cannot or must not be read, if a view
+ * lies beyond its buffer or has a position that is not a whole number, or if the JSON has such
+ * buffers and an integer of more than 64 bits; SHEEN_TOO_BIG if more than PROTOCOL_MAX_UPLOAD_BYTES
+ * would be read or sent; SHEEN_NO_MEMORY. */
 enum sheen_status gltf_pack(const char *path, uint8_t **bytes, size_t *n_bytes,
                             struct sheen_error *error);
 

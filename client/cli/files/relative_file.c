@@ -13,7 +13,7 @@
 
 #define SHOWN_URI "%.120s"
 
-/* RFC 3986, 3.1: what stands before a colon that no slash precedes. */
+/* RFC 3986, section 3.1: a scheme is what precedes a colon, without a slash before it. */
 static bool has_scheme(const char *uri)
 {
     size_t n = strspn(uri, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
@@ -33,8 +33,8 @@ static int hex_digit(char c)
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-/* In place. Many writers encode nothing, so a '%' without two digits stands for itself. False: a
- * byte is 0. */
+/* Decodes in place. Many programs encode nothing, so a '%' without two hexadecimal digits stands
+ * for itself. False if a decoded byte is 0. */
 static bool decode_percent(char *text)
 {
     char *to = text;
@@ -60,7 +60,7 @@ static bool goes_up(const char *path)
     return false;
 }
 
-/* What is wrong with the URI, or NULL and its path, which is the caller's to free(). */
+/* Returns what is wrong with the URI; or NULL, and *path, which the caller frees. */
 static const char *relative_path(const char *uri, char **path)
 {
     if (has_scheme(uri))
@@ -83,7 +83,7 @@ static const char *relative_path(const char *uri, char **path)
     return problem;
 }
 
-/* Whether `file` is below `folder`; both are what realpath() returns. */
+/* True if `file` is below `folder`. Both must come from realpath(). */
 static bool is_below(const char *file, const char *folder)
 {
     size_t n = strlen(folder);

@@ -6,7 +6,7 @@
 #include "client/cli/base/failure.h"
 #include "protocol/model_format.h"
 
-/* Two line ends: a file may end in a backslash, which continues its line. */
+/* Begins with two newlines: a file may end in a backslash, which continues its line. */
 static const char TAG[] = "\n\nt weld 0/0/0\n";
 #define TAG_BYTES (sizeof(TAG) - 1)
 

@@ -1,6 +1,6 @@
-/* The names of numbered frames' files: a path with one %d in its last part, as FRAME_%04d.png.
+/* File names of numbered frames: a path with one %d in its last part, such as FRAME_%04d.png.
  *
- * Points into the path it was made of. Pure, any thread. */
+ * The struct points into the path that it was made of. Pure, any thread. */
 #ifndef SHEEN_CLIENT_FRAME_NAMES_H
 #define SHEEN_CLIENT_FRAME_NAMES_H
 
@@ -8,18 +8,19 @@
 #include <stdint.h>
 
 struct frame_names {
-    const char *path; /* what comes before the number: the first n_before bytes of it */
+    const char *path; /* the first n_before bytes precede the number */
     int n_before;
-    int width;         /* of the number at least, 0 to 9 */
-    bool has_zeros;    /* in front; else blanks */
-    const char *after; /* what comes behind it */
+    int width;         /* minimum width of the number, 0 to 9 */
+    bool has_zeros;    /* fill with zeros; else with blanks */
+    const char *after; /* what follows the number */
 };
 
-/* False when the path has not exactly one %d, or with a width of 1 to 9 one %Nd or %0Nd, or has
- * another % or the %d in a folder's name. */
+/* Parses a path. False unless it has exactly one %d, or %Nd or %0Nd with N from 1 to 9, in its last
+ * part, and no other %. */
 bool frame_names_parse(const char *path, struct frame_names *names);
 
-/* The caller's to free(); NULL: no memory. Different numbers have different names. */
+/* The path of frame `number`; the caller frees it. NULL when memory is short. Different numbers
+ * have different paths. */
 char *frame_names_path(const struct frame_names *names, uint32_t number);
 
 #endif

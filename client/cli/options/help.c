@@ -1,4 +1,4 @@
-/* --help of a command, and what of it the manual pages and completions say too. */
+/* --help of a command, and the parts that manual pages and completions use, too. */
 #include <string.h>
 
 #include "client/cli/options/options.h"
@@ -11,7 +11,7 @@ static bool names_option(const struct range *range, const char *name)
     return at && strncmp(at - 2, "--", 2) == 0 && strchr(", ", at[strlen(name)]);
 }
 
-/* The range of the option that is the `n`-th of it; NULL: there are fewer. */
+/* The n-th range of an option; NULL if it has fewer. */
 static const struct range *range_of_option(const char *name, size_t n)
 {
     for (size_t i = 0; i < N_RANGES + N_OPTION_RANGES; i++) {
@@ -78,7 +78,7 @@ size_t options_codes(const struct command *command,
     return n;
 }
 
-/* All in one sentence, in two lines when there are many. */
+/* Prints all exit codes in one sentence, on two lines if there are many. */
 static void help_codes(const struct command *command, FILE *out)
 {
     struct exit_code codes[OPTIONS_MAX_CODES];

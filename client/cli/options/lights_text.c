@@ -63,7 +63,7 @@ static const struct number_key {
     const char *name;
     size_t member;
     enum range_name range;
-    unsigned kinds; /* of the patterns that it means something to */
+    unsigned kinds; /* bits: the patterns for which it has a meaning */
 } NUMBERS[] = {
     {"count", offsetof(struct sheen_pattern, count), RANGE_PATTERN_COUNT, PERIODIC},
     {"period", offsetof(struct sheen_pattern, period), RANGE_PATTERN_PERIOD, PERIODIC},
@@ -94,7 +94,7 @@ const struct text_row TEXT_PATTERN_KEYS[] = {
     {0},
 };
 
-/* Of the number that a pattern's part is; NULL: it is none. */
+/* The range of a pattern's part; NULL if the part is not a number. */
 static const struct range *range_of_part(const char *name)
 {
     for (size_t i = 0; i < N_NUMBERS; i++)
@@ -145,7 +145,7 @@ static bool parse_at(char *value, struct sheen_pattern *pattern, char *why)
     return true;
 }
 
-/* A part that changes nothing is a slip: of its own name or of the pattern's. */
+/* Refuses a part that has no effect on the pattern: its name or the pattern's is probably wrong. */
 static bool check_kind(unsigned kinds, const char *part, const struct sheen_pattern *pattern,
                        char *why)
 {
@@ -225,7 +225,8 @@ bool text_pattern(const char *text, struct sheen_pattern *value, const char **im
     while ((part = strsep(&rest, ","))) {
         if (!parse_part(part, value, why))
             return false;
-        has_count = has_count || strcmp(part, "count") == 0; /* parse_part() has cut it there */
+        /* parse_part() has cut the text at '='. */
+        has_count = has_count || strcmp(part, "count") == 0;
     }
     return !(has_count && value->period > 0) || refuse(why, "count and period exclude each other");
 }

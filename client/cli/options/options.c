@@ -8,7 +8,7 @@
 #include "client/cli/options/lights_text.h"
 #include "client/cli/options/values.h"
 
-#define FIRST_LONG 256 /* getopt's number of row 0; letters are below */
+#define FIRST_LONG 256 /* getopt's number of row 0; smaller ones are letters */
 #define DEFAULT_RECONNECT_S 30
 
 const struct range OPTION_RANGES[N_OPTION_RANGES] = {
@@ -50,7 +50,7 @@ bool options_check_light(struct options *options, char *why)
     return true;
 }
 
-/* Range and legend may be given before their kind. */
+/* Checked at the end, because range and legend may be given before --show. */
 static bool check_show(const struct options *options, char *why)
 {
     const struct sheen_show *show = &options->request.show;
@@ -123,11 +123,11 @@ static const struct option_row *row_of(int chosen, const struct option_row *cons
     return NULL;
 }
 
-/* Fills getopt's own tables from ours. */
+/* Fills in getopt's tables from ours. */
 static void describe(const struct option_row *const *rows, size_t n, struct option *longs,
                      char *shorts)
 {
-    *shorts++ = ':'; /* a missing value is told from an unknown option */
+    *shorts++ = ':'; /* makes getopt distinguish a missing value from an unknown option */
     for (size_t i = 0; i < n; i++) {
         longs[i] = (struct option){.name = rows[i]->name,
                                    .has_arg = rows[i]->argument ? required_argument : no_argument,
@@ -156,7 +156,7 @@ static enum options_result parse_options(int argc, char **argv,
     char shorts[2 * OPTIONS_MAX_ROWS + 2];
     describe(rows, n, longs, shorts);
     opterr = 0;
-    optind = 0; /* begins anew */
+    optind = 0; /* restarts getopt */
     for (;;) {
         int chosen = getopt_long(argc, argv, shorts, longs, NULL);
         if (chosen == -1)

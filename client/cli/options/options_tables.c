@@ -188,7 +188,7 @@ static bool apply_ortho(struct options *options, const char *value, char *why)
                           why);
 }
 
-/* The light that options speak of: the latest. */
+/* The light that options refer to: the latest. */
 static struct sheen_light *latest(struct options *options)
 {
     return &options->request.lights[options->request.n_lights - 1];

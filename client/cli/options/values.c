@@ -11,7 +11,7 @@
 
 bool value_double(const char *text, double *value)
 {
-    /* strtod() takes more than a person means by a number: white space, hex, nan, inf. */
+    /* strtod() accepts more than people mean by a number: white space, hexadecimal, nan, inf. */
     if (strspn(text, "+-.0123456789eE") != strlen(text) || *text == 0)
         return false;
     char *end;
@@ -33,7 +33,7 @@ bool value_uint32(const char *text, uint32_t *value)
     return *text == 0;
 }
 
-/* Copies the part before `stop` (or all) and steps over it; false when it does not fit. */
+/* Copies the text before `stop` (or all of it) and steps over it. False if it does not fit. */
 static bool next_part(const char **text, char stop, char *part, size_t part_bytes)
 {
     const char *end = strchrnul(*text, stop);
@@ -58,7 +58,7 @@ bool value_vec3(const char *text, double value[static 3])
     return true;
 }
 
-/* x, y or z, with a sign as wanted. */
+/* x, y or z, with an optional sign. */
 static bool value_axis(const char *text, double value[static 3])
 {
     bool has_sign = *text == '-' || *text == '+';

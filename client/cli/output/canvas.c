@@ -32,7 +32,7 @@ static uint8_t *pixel_at(struct canvas *canvas, uint32_t x, uint32_t y)
     return canvas->rgb + 3 * ((size_t)y * canvas->width_px + x);
 }
 
-/* One channel of a picture's pixel over the canvas, mixed as linear light. */
+/* Blends one channel of a pixel over the canvas, in linear light. */
 static uint8_t over(uint8_t top, uint8_t alpha, uint8_t below)
 {
     if (alpha == 255)
@@ -54,7 +54,7 @@ void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t
         }
 }
 
-/* A square of the text's ink. */
+/* Draws one pixel of a letter, which is a square. */
 static void ink(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t x_end, uint32_t size)
 {
     for (uint32_t k = 0; k < size * size; k++) {
@@ -82,7 +82,7 @@ enum sheen_status canvas_write_png(const struct canvas *canvas, const char *path
                        .width = canvas->width_px,
                        .height = canvas->height_px,
                        .format = PNG_FORMAT_RGB};
-    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image); /* never more, for any pixels */
+    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image); /* an upper bound for any pixels */
     uint8_t *file = malloc(bytes);
     if (!file)
         return failure_set(error, SHEEN_NO_MEMORY, "no memory for a picture of %zu bytes",

@@ -1,7 +1,7 @@
-/* A picture that the client composes itself: panels and captions on white, written as PNG.
+/* A picture that the client composes: panels and captions on white, written as PNG.
  *
- * Memory is the canvas's own. Coordinates are pixels from the top left; what lies outside is cut
- * away. Thread: one canvas belongs to one thread. */
+ * The canvas owns its memory. Coordinates are pixels from the top left; parts outside are cut off.
+ * Thread: one at a time. */
 #ifndef SHEEN_CLIENT_CANVAS_H
 #define SHEEN_CLIENT_CANVAS_H
 
@@ -15,20 +15,20 @@ struct canvas {
     uint8_t *rgb;
 };
 
-/* White. False when there is no memory. */
+/* Makes a white canvas. False when memory is short. */
 bool canvas_init(struct canvas *canvas, uint32_t width_px, uint32_t height_px);
-void canvas_finish(struct canvas *canvas); /* a zeroed one is safe */
+void canvas_finish(struct canvas *canvas); /* a zeroed canvas is safe */
 
-/* Lays RGBA pixels with straight alpha over what is there. */
+/* Draws RGBA pixels with straight alpha (sRGB) over the canvas. */
 void canvas_picture(struct canvas *canvas, uint32_t x, uint32_t y, const uint8_t (*rgba)[4],
                     uint32_t width_px, uint32_t height_px);
 
-/* One line of black text in the letters of glyphs.h, each of their pixels `scale` wide; nothing is
- * drawn from column x_end on. */
+/* Draws one line of black text in the font of glyphs.h, each of its pixels `scale` wide. Nothing is
+ * drawn at column x_end and beyond. */
 void canvas_text(struct canvas *canvas, uint32_t x, uint32_t y, uint32_t x_end, uint32_t scale,
                  const char *text);
 
-/* Writes the file whole or not at all, as file_write() does. */
+/* Writes the file whole or not at all, by file_write(). */
 enum sheen_status canvas_write_png(const struct canvas *canvas, const char *path,
                                    struct sheen_error *error);
 

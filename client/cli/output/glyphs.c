@@ -2,7 +2,8 @@
 
 #include <stddef.h>
 
-/* Rows from the top, a space between two of them. The last two hang below the line. */
+/* The rows of each glyph from the top, separated by a space. The last two are below the
+ * baseline. */
 static const struct glyph {
     char c;
     char rows[GLYPH_HEIGHT * (GLYPH_WIDTH + 1)];

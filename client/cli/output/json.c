@@ -7,7 +7,8 @@
 
 #include "protocol/text.h"
 
-/* File names may hold any bytes: what is not UTF-8 becomes U+FFFD, so that the text stays JSON. */
+/* File names may hold any bytes: bytes that are not UTF-8 become U+FFFD, so that the text stays
+ * valid JSON. */
 static void write_string(FILE *out, const char *value, size_t length)
 {
     fputc('"', out);
@@ -27,7 +28,7 @@ static void write_string(FILE *out, const char *value, size_t length)
     fputc('"', out);
 }
 
-/* Comma, new line, indent and key in front of a value. */
+/* Writes the comma, new line, indent and key in front of a value. */
 static void begin_value(struct json *json, const char *key)
 {
     if (json->needs_comma)
@@ -90,7 +91,7 @@ void json_uint(struct json *json, const char *key, uint64_t value)
     fprintf(json->out, "%" PRIu64, value);
 }
 
-/* In the fewest digits that are read back as the same number. */
+/* Writes the fewest digits that give the same number back. */
 static void write_double(FILE *out, double value)
 {
     char text[32];

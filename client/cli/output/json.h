@@ -1,7 +1,8 @@
-/* A writer of one JSON value: objects and arrays in order, two-space indent, strings escaped.
+/* Writes one JSON value: objects and arrays in order, indented by two blanks, strings escaped.
  *
- * `key` is NULL inside arrays and for the outermost value. Numbers that JSON does not have (NaN,
- * infinity) become null. The stream is the caller's. Thread: one writer belongs to one thread. */
+ * `key` is NULL inside arrays and for the outermost value. NaN and infinity become null. The stream
+ * belongs to the caller.
+ * Thread: one at a time. */
 #ifndef SHEEN_CLIENT_JSON_H
 #define SHEEN_CLIENT_JSON_H
 
@@ -13,7 +14,7 @@
 struct json {
     FILE *out;
     int depth;
-    bool needs_comma; /* something stands before in this object or array */
+    bool needs_comma; /* this object or array has an element already */
 };
 
 void json_object_begin(struct json *json, const char *key);
@@ -22,13 +23,14 @@ void json_array_begin(struct json *json, const char *key);
 void json_array_end(struct json *json);
 void json_string(struct json *json, const char *key, const char *value);
 void json_uint(struct json *json, const char *key, uint64_t value);
-void json_double(struct json *json, const char *key, double value); /* reads back exactly */
+/* In the fewest digits that give the same number back. */
+void json_double(struct json *json, const char *key, double value);
 void json_bool(struct json *json, const char *key, bool value);
 void json_vec3(struct json *json, const char *key, const double value[static 3]);
 void json_hex(struct json *json, const char *key, const uint8_t *bytes, size_t n_bytes);
-/* Lines joined by '\n' as an array of strings. */
+/* Writes lines separated by '\n' as an array of strings. */
 void json_lines(struct json *json, const char *key, const char *lines);
-/* Ends the text with a newline and flushes. False when the stream took an error. */
+/* Ends the text with a newline and flushes. False if the stream had an error. */
 bool json_finish(struct json *json);
 
 #endif

@@ -1,5 +1,7 @@
-/* A progress bar on standard error: only on a terminal, at most ten times a second, in colour only
- * without NO_COLOR; and notes between, anywhere but with --quiet. Thread: one. */
+/* A progress bar and notes on standard error. The bar is shown only on a terminal, at most ten
+ * times a second, and without colour if NO_COLOR is set. Notes are shown always, except with
+ * --quiet.
+ * Thread: one. */
 #ifndef SHEEN_CLIENT_PROGRESS_H
 #define SHEEN_CLIENT_PROGRESS_H
 
@@ -9,21 +11,21 @@
 #include "client/lib/sheen.h"
 
 struct progress {
-    bool is_shown; /* a terminal, and not --quiet */
+    bool is_shown; /* on a terminal and without --quiet */
     bool is_quiet;
     bool has_colour;
-    bool is_drawn; /* a bar stands on the line */
+    bool is_drawn; /* the bar is on the current line */
     int64_t last_ms;
 };
 
-/* Fills *progress and returns what libsheen calls; *progress must outlive those calls. */
+/* Fills in *progress and returns the callback for libsheen; *progress must outlive its calls. */
 struct sheen_progress progress_init(struct progress *progress, bool quiet);
 
-/* One line on standard error, "sheen: ...", wherever that is; none with --quiet. */
+/* Prints one line "sheen: ..." on standard error; nothing with --quiet. */
 void progress_note(struct progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Wipes the bar, before anything else is written to standard error. Safe to repeat. */
+/* Removes the bar. Call it before anything else is written to standard error. Safe to repeat. */
 void progress_clear(struct progress *progress);
 
 #endif

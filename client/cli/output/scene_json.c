@@ -6,7 +6,7 @@
 #include "client/cli/options/lights_text.h"
 #include "client/cli/options/values.h"
 
-/* As options take it. */
+/* Writes a colour in the form of the options. */
 static void json_colour(struct json *json, const char *key, const float colour[4])
 {
     char text[10];
@@ -30,7 +30,7 @@ static void json_camera(struct json *json, const struct sheen_camera *camera)
     json_object_end(json);
 }
 
-/* Which way is up for the model, and who says so. */
+/* Writes the model's up direction and where it comes from. */
 static void json_up(struct json *json, const struct sheen_frame *frame)
 {
     static const char *const sources[] = {"given", "file", "guessed"};
@@ -40,7 +40,7 @@ static void json_up(struct json *json, const struct sheen_frame *frame)
     json_string(json, "up_source", sources[frame->up_source]);
 }
 
-/* What eye, target and field of view have become by. */
+/* Writes the zoom, which has changed eye, target and field of view. */
 static void json_zoom(struct json *json, const struct sheen_camera *camera)
 {
     json_object_begin(json, "zoom");
@@ -114,7 +114,7 @@ static void json_lights(struct json *json, const struct sheen_frame *frame)
 
 static void json_extreme(struct json *json, const char *key, const struct sheen_extreme *extreme)
 {
-    const double null = (double)NAN; /* as JSON has it */
+    const double null = (double)NAN; /* written as null */
     if (!extreme->has_value) {
         json_double(json, key, null);
         return;

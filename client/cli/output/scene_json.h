@@ -1,4 +1,4 @@
-/* What a frame shows, as JSON: every option that draws, as used.
+/* Writes what a frame shows as JSON: every option of drawing, as used.
  *
  * Thread: one. */
 #ifndef SHEEN_CLIENT_SCENE_JSON_H
@@ -7,9 +7,9 @@
 #include "client/cli/output/json.h"
 #include "client/lib/sheen.h"
 
-/* Keys into the object that is open: camera, lines, line_eye, light (the first), lights, colours,
- * antialias, filter, surface, show, planes. What the daemon chose is the frame's, the rest the
- * request's. */
+/* Writes these keys into the open object: camera, lines, line_eye, light (the first), lights,
+ * colours, filter, surface, show, planes. Values that the daemon chose come from the frame, all
+ * others from the request. */
 void scene_json(struct json *json, const struct sheen_request *request,
                 const struct sheen_frame *frame);
 
