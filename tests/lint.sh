@@ -71,7 +71,7 @@ room server/render/native/rays "$common|server/surface|server/render|server/rend
 room server/render/native/lanes "$common|server/surface|server/render|server/render/native|server/render/native/polygons|server/render/native/rays" 'one unit for each instruction set'
 # The rooms of the daemon itself, each above those that stand before it.
 room server/net "$common|protocol" 'connections do not know what is said over them'
-room server/threads "$common|server/cage|server/image|server/net|server/render|server/sandbox" \
+room server/threads "$common|protocol|server/cage|server/image|server/net|server/render|server/sandbox" \
     'threads run what others give them'
 room server/output "$common|protocol|server/image|server/render|server/scene|server/threads" \
     'an encoder knows pictures, no client'
@@ -97,12 +97,15 @@ no_include server/ops 'server/render/([^gn]|g[^l]|(gl|native)/[^d]|(gl|native)/d
 no_include server/render 'server/surface/(bicubic|texels)' 'of which degree patches are is the business of server/surface'
 no_include server/scene 'server/surface/(bicubic|texels|patch|evaluate|bound)' 'a request knows the size of a surface, not the surface'
 no_include server/assets 'server/surface/(bicubic|texels|patch|evaluate|bound|node|subdivision/[^b])' 'models are built and kept, not looked into'
+no_include server/threads 'protocol/([^c]|c[^h])' 'of the protocol threads know how a child is started alone'
 no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
 no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows sheen.h alone'
 no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the protocol the command knows no byte: libsheen says it'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/render/gl/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
     'socket calls' 'server client protocol' server/net/ server/ops/notify.c server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c
+only_in '\b(posix_spawnp?|fork|vfork|exec[lv][a-z]*|system|popen)\(' 'child processes' 'server client protocol' \
+    protocol/child.c server/sandbox/zygote.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
 only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol' \
     server/render/native/team.c server/surface/subdivision/maker.c

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +14,7 @@
 
 #include "client/lib/machine_memory.h"
 #include "client/lib/status.h"
+#include "protocol/child.h"
 #include "protocol/limits.h"
 
 #define SESSION_FD 3 /* the first one after standard error; higher ones are closed in the daemon */
@@ -22,8 +22,6 @@
 #define TERM_MS 2000
 
 #define PATH_BYTES 4096
-
-extern char **environ;
 
 /* Writes the daemon's path, or just its name, which is then searched on the PATH. */
 static void find_daemon(char path[static PATH_BYTES])
@@ -45,29 +43,6 @@ static void find_daemon(char path[static PATH_BYTES])
         }
     }
     memcpy(path, name, sizeof(name));
-}
-
-/* Describes the child's files and signals. Source descriptors are above SESSION_FD, so that no
- * dup2() overwrites one that is still needed. Returns 0 or an errno value. */
-static int describe_child(posix_spawn_file_actions_t *files, posix_spawnattr_t *attributes,
-                          int session_fd, int stderr_fd)
-{
-    sigset_t none, reset;
-    sigemptyset(&none);
-    sigemptyset(&reset);
-    static const int restored[] = {SIGPIPE, SIGTERM, SIGINT, SIGHUP, SIGCHLD};
-    for (size_t i = 0; i < sizeof(restored) / sizeof(*restored); i++)
-        sigaddset(&reset, restored[i]);
-    int failed = posix_spawn_file_actions_addopen(files, 0, "/dev/null", O_RDWR, 0);
-    failed = failed ? failed : posix_spawn_file_actions_addopen(files, 1, "/dev/null", O_RDWR, 0);
-    failed = failed ? failed : posix_spawn_file_actions_adddup2(files, stderr_fd, 2);
-    failed = failed ? failed : posix_spawn_file_actions_adddup2(files, session_fd, SESSION_FD);
-    failed = failed ? failed : posix_spawn_file_actions_addclosefrom_np(files, SESSION_FD + 1);
-    failed = failed ? failed : posix_spawnattr_setsigmask(attributes, &none);
-    failed = failed ? failed : posix_spawnattr_setsigdefault(attributes, &reset);
-    return failed ? failed
-                  : posix_spawnattr_setflags(attributes,
-                                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 }
 
 /* The memory budget of the daemon; `asked` 0: half of the machine's memory. */
@@ -99,27 +74,8 @@ static int spawn(pid_t *pid, const char *path, int session_fd, int stderr_fd,
             argv[n++] = more[i][0];
             argv[n++] = more[i][1];
         }
-    posix_spawn_file_actions_t files;
-    posix_spawnattr_t attributes;
-    int failed = posix_spawn_file_actions_init(&files);
-    if (failed)
-        return failed;
-    failed = posix_spawnattr_init(&attributes);
-    if (failed)
-        goto finish_files;
-    failed = describe_child(&files, &attributes, session_fd, stderr_fd);
-    if (!failed) {
-        /* posix_spawn() takes char *const[] for historical reasons but writes to none of it. */
-        union {
-            const char **in;
-            char **out;
-        } arguments = {.in = argv};
-        failed = posix_spawnp(pid, path, &files, &attributes, arguments.out, environ);
-    }
-    posix_spawnattr_destroy(&attributes);
-finish_files:
-    posix_spawn_file_actions_destroy(&files);
-    return failed;
+    const struct child_files files = {session_fd, SESSION_FD, stderr_fd};
+    return child_start(pid, path, argv, &files);
 }
 
 enum sheen_status private_daemon_start(struct private_daemon *daemon, int session_fd,

@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "protocol/child.h"
 #include "server/base/clock.h"
 #include "server/base/log.h"
 #include "server/threads/pool.h"
@@ -24,8 +24,6 @@
 #define GRACE_S 10 /* added to a job's time: for the program to report its end */
 /* Period of pool_beat(): shorter than the time after which a thread counts as stuck. */
 #define BEAT_MS 500
-
-extern char **environ;
 
 struct worker {
     char path[WORKER_PATH_BYTES];
@@ -46,41 +44,12 @@ static const char *program_name(const struct worker *worker)
 
 /* --- the program; call with worker->lock held, or before other threads know the worker */
 
-static int describe_child(posix_spawn_file_actions_t *files, posix_spawnattr_t *attributes,
-                          int socket_fd)
-{
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    int failed = posix_spawn_file_actions_addopen(files, 0, "/dev/null", O_RDWR, 0);
-    failed = failed ? failed : posix_spawn_file_actions_addopen(files, 1, "/dev/null", O_RDWR, 0);
-    failed = failed ? failed : posix_spawn_file_actions_adddup2(files, socket_fd, ZYGOTE_FD);
-    failed = failed ? failed : posix_spawn_file_actions_addclosefrom_np(files, ZYGOTE_FD + 1);
-    failed = failed ? failed : posix_spawnattr_setsigmask(attributes, &none);
-    failed = failed ? failed : posix_spawnattr_setsigdefault(attributes, &all);
-    return failed ? failed
-                  : posix_spawnattr_setflags(attributes,
-                                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-}
-
 /* 0 or an errno value. socket_fd lies above ZYGOTE_FD. */
 static int spawn(struct worker *worker, int socket_fd)
 {
-    char *argv[] = {worker->path, NULL};
-    posix_spawn_file_actions_t files;
-    posix_spawnattr_t attributes;
-    int failed = posix_spawn_file_actions_init(&files);
-    if (failed)
-        return failed;
-    failed = posix_spawnattr_init(&attributes);
-    if (!failed) {
-        failed = describe_child(&files, &attributes, socket_fd);
-        if (!failed)
-            failed = posix_spawn(&worker->pid, worker->path, &files, &attributes, argv, environ);
-        posix_spawnattr_destroy(&attributes);
-    }
-    posix_spawn_file_actions_destroy(&files);
-    return failed;
+    const char *const argv[] = {worker->path, NULL};
+    const struct child_files files = {socket_fd, ZYGOTE_FD, -1};
+    return child_start(&worker->pid, worker->path, argv, &files);
 }
 
 static bool start(struct worker *worker, struct error *error)
