@@ -15,6 +15,7 @@ struct party *party_get(struct parties *parties, const uint8_t identity[static O
     if (!party)
         return NULL;
     scheduler_add_party(&party->schedule);
+    intake_add_party(&party->intake);
     memcpy(party->identity, identity, OWNER_BYTES);
     party->references = 1;
     LIST_INSERT_HEAD(bucket, party, link);

@@ -1,5 +1,5 @@
-/* The scheduler's parties: one for each identity that has a connected client or a frame in
- * progress. Counted by references.
+/* The parties that share the device and the event loop: one for each identity that has a connected
+ * client or a frame in progress. Counted by references.
  * Thread: the loop's. */
 #ifndef SHEEN_FRAME_PARTIES_H
 #define SHEEN_FRAME_PARTIES_H
@@ -8,9 +8,11 @@
 
 #include "server/base/owner.h"
 #include "server/frame/scheduler.h"
+#include "server/base/intake.h"
 
 struct party {
     struct schedule_party schedule;
+    struct intake_party intake;
     uint8_t identity[OWNER_BYTES];
     unsigned references; /* private to parties.c, like what follows */
     LIST_ENTRY(party) link;

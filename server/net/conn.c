@@ -55,7 +55,15 @@ static void update_events(struct conn *conn)
 {
     bool reads = !conn->peer_ended && (conn->state != CONN_OPEN || !conn->held);
     bool writes = !STAILQ_EMPTY(&conn->unsent) || conn->read_wants_write;
-    loop_change(conn->loop, &conn->source, (reads ? EPOLLIN : 0u) | (writes ? EPOLLOUT : 0u));
+    uint32_t events = (reads ? EPOLLIN : 0u) | (writes ? EPOLLOUT : 0u);
+    if (events != conn->events)
+        loop_change(conn->loop, &conn->source, events);
+    conn->events = events;
+}
+
+static void ask_for_turn(struct conn *conn, bool asks)
+{
+    intake_ask(loop_intake(conn->loop), &conn->intake, asks);
 }
 
 static void drop_block(struct conn *conn)
@@ -74,6 +82,7 @@ void conn_close(struct conn *conn)
         return;
     conn->state = CONN_CLOSED;
     int fd = conn->source.fd;
+    ask_for_turn(conn, false);
     loop_unwatch(conn->loop, &conn->source);
     conn->transport->finish(conn);
     close(fd);
@@ -220,6 +229,7 @@ void conn_hold(struct conn *conn, bool held)
     conn->held = held;
     conn->message_since_us = clock_now_us();
     update_events(conn);
+    ask_for_turn(conn, conn->state != CONN_OPEN || !held);
 }
 
 static void refuse_input(struct conn *conn, const struct message_header *header,
@@ -230,6 +240,15 @@ static void refuse_input(struct conn *conn, const struct message_header *header,
     conn->handler->malformed(conn->owner, header, error);
 }
 
+/* Moves unhandled input to the start of the buffer. */
+static void make_compact(struct conn *conn)
+{
+    if (conn->in_at > 0)
+        memmove(conn->in, conn->in + conn->in_at, conn->in_used);
+    conn->in_at = 0;
+}
+
+/* The buffer must be compact. */
 static bool resize(struct conn *conn, size_t capacity)
 {
     uint8_t *in = realloc(conn->in, capacity);
@@ -240,13 +259,12 @@ static bool resize(struct conn *conn, size_t capacity)
     return true;
 }
 
-static bool read_more(struct conn *conn);
-
 /* A message of this size begins. */
 static void expect(struct conn *conn, const struct message_header *header, size_t size)
 {
     if (size <= conn->in_capacity)
         return;
+    make_compact(conn);
     if (conn->handler->make_room(conn->owner, header, size)) {
         if (!resize(conn, size))
             conn_close(conn);
@@ -264,69 +282,59 @@ static void skip(struct conn *conn)
         return;
     conn->skipped -= n;
     conn->in_used -= n;
-    memmove(conn->in, conn->in + n, conn->in_used);
+    conn->in_at += n;
     if (conn->skipped == 0)
         conn->message_since_us = clock_now_us(); /* for the next message */
 }
 
-/* Delivers the whole messages in the buffer. */
-static void deliver(struct conn *conn)
+/* Delivers the first message if it is whole. False: more input must be read first. */
+static bool deliver_one(struct conn *conn)
 {
-    size_t used = 0, wanted = 0;
     struct message_header header = {0};
     skip(conn);
-    while (conn->state == CONN_OPEN && !conn->held &&
-           conn->in_used - used >= MESSAGE_HEADER_BYTES) {
-        header = (struct message_header){0}; /* forget the message before */
-        enum header_error error = message_header_decode(&header, conn->in + used);
-        if (error != HEADER_OK) {
-            refuse_input(conn, &header, error);
-            return;
-        }
-        size_t size = MESSAGE_HEADER_BYTES + (size_t)header.length;
-        if (size > CONN_MOST_IN_BYTES) { /* a type that only servers may send */
-            refuse_input(conn, &header, HEADER_TOO_LONG);
-            return;
-        }
-        if (conn->in_used - used < size) {
-            wanted = size;
-            break;
-        }
-        conn->handler->message(conn->owner, &header, conn->in + used + MESSAGE_HEADER_BYTES);
-        used += size;
+    if (conn->in_used < MESSAGE_HEADER_BYTES)
+        return false;
+    enum header_error error = message_header_decode(&header, conn->in + conn->in_at);
+    size_t size = MESSAGE_HEADER_BYTES + (size_t)header.length;
+    if (error == HEADER_OK && size > CONN_MOST_IN_BYTES)
+        error = HEADER_TOO_LONG; /* a type that only servers may send */
+    if (error != HEADER_OK) {
+        refuse_input(conn, &header, error);
+        return true;
     }
-    if (conn->state != CONN_OPEN)
-        return;
-    conn->in_used -= used;
-    if (used > 0) {
-        memmove(conn->in, conn->in + used, conn->in_used);
-        conn->message_since_us = clock_now_us();
+    if (conn->in_used < size) {
+        expect(conn, &header, size);
+        return false;
     }
-    if (wanted > 0)
-        expect(conn, &header, wanted);
+    const uint8_t *body = conn->in + conn->in_at + MESSAGE_HEADER_BYTES;
+    conn->in_at += size;
+    conn->in_used -= size;
+    conn->message_since_us = clock_now_us();
+    conn->handler->message(conn->owner, &header, body);
+    return true;
 }
 
 void conn_trim(struct conn *conn)
 {
-    if (conn->state == CONN_OPEN && conn->in_used == 0 && conn->in_capacity > CONN_IN_BYTES)
-        resize(conn, CONN_IN_BYTES); /* if that fails, the large buffer stays */
+    if (conn->state != CONN_OPEN || conn->in_used > 0 || conn->in_capacity <= CONN_IN_BYTES)
+        return;
+    conn->in_at = 0;
+    resize(conn, CONN_IN_BYTES); /* if that fails, the large buffer stays */
 }
 
-void conn_deliver(struct conn *conn)
+void conn_join(struct conn *conn, struct intake_party *party)
 {
-    do
-        deliver(conn);
-    while (conn->state == CONN_OPEN && !conn->held && conn->transport->pending(conn) &&
-           read_more(conn));
+    intake_move(loop_intake(conn->loop), &conn->intake, party);
 }
 
 /* Reads once. True if input came, which may hold messages. */
 static bool read_more(struct conn *conn)
 {
     bool open = conn->state == CONN_OPEN, wanted_write = conn->read_wants_write;
+    make_compact(conn);
     size_t room = open ? conn->in_capacity - conn->in_used : conn->in_capacity;
     if (room == 0)
-        return false; /* the buffer is full of messages that wait for conn_deliver() */
+        return false;
     ssize_t n = conn->transport->read(conn, conn->in + (open ? conn->in_used : 0), room);
     if (conn->read_wants_write != wanted_write)
         update_events(conn);
@@ -350,11 +358,28 @@ static bool read_more(struct conn *conn)
     return open;
 }
 
+/* One turn of the intake: delivers one message, and reads once before that if no message is whole.
+ * After shutdown the turn only reads, to throw the input away. The conn asks for another turn only if
+ * the buffer may hold another message: of unread bytes epoll tells. */
+static void handle_turn(struct intake_source *source)
+{
+    struct conn *conn = source->owner;
+    bool delivered = false;
+    if (conn->state != CONN_OPEN)
+        read_more(conn);
+    else if (!conn->held)
+        delivered = deliver_one(conn) || (conn->state == CONN_OPEN && !conn->held &&
+                                          read_more(conn) && deliver_one(conn));
+    bool more = (delivered && conn->in_used >= MESSAGE_HEADER_BYTES) ||
+                (conn->state == CONN_OPEN && conn->transport->pending(conn));
+    ask_for_turn(conn, conn->state == CONN_OPEN && !conn->held && more);
+}
+
 static void conn_ready(struct loop_source *source, uint32_t events)
 {
     struct conn *conn = source->owner;
-    if ((events & EPOLLIN || (events & EPOLLOUT && conn->read_wants_write)) && read_more(conn))
-        conn_deliver(conn);
+    if (events & EPOLLIN || (events & EPOLLOUT && conn->read_wants_write))
+        ask_for_turn(conn, true);
     if (conn->state != CONN_CLOSED && (events & EPOLLOUT))
         conn_flush(conn);
     /* Both directions are closed. All input has been read, unless it was held. */
@@ -369,6 +394,7 @@ bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_h
     *conn = (struct conn){
         .loop = loop,
         .source = {fd, conn_ready, conn},
+        .events = EPOLLIN,
         .handler = handler,
         .owner = owner,
         .transport = &PLAIN,
@@ -379,6 +405,7 @@ bool conn_init(struct conn *conn, struct loop *loop, int fd, const struct conn_h
         .in_capacity = CONN_IN_BYTES,
     };
     STAILQ_INIT(&conn->unsent);
+    intake_add_source(&conn->intake, loop_strangers(loop), handle_turn, conn);
     int flags = fcntl(fd, F_GETFL);
     if (!conn->in)
         error_set(error, ERROR_SERVER, "no memory for another connection");

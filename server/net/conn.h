@@ -6,8 +6,10 @@
  * socket takes them. The owner decides how much may wait: it looks at conn_unsent_bytes() before it
  * sends more.
  *
- * Thread: the loop's. Callbacks are called from the loop or from conn_deliver(). A callback may
- * close the conn, but must not finish it. */
+ * The loop's intake (intake.h) decides which conn handles input next: one message in each turn.
+ *
+ * Thread: the loop's. Callbacks are called from the loop. A callback may close the conn, but must not
+ * finish it. */
 #ifndef SHEEN_NET_CONN_H
 #define SHEEN_NET_CONN_H
 
@@ -66,6 +68,8 @@ struct conn {
     enum conn_state state;
     struct loop *loop;
     struct loop_source source;
+    uint32_t events;             /* that the loop watches for */
+    struct intake_source intake; /* asks while there may be input to handle */
     const struct conn_handler *handler;
     void *owner;
     const struct conn_transport *transport;
@@ -74,7 +78,7 @@ struct conn {
     char reason[160];            /* why the transport failed; "": no reason known */
 
     uint8_t *in;
-    size_t in_used, in_capacity;
+    size_t in_at, in_used, in_capacity; /* where unhandled input begins, and its length */
     size_t skipped;  /* bytes still to come of a message without room, which are thrown away */
     bool held;       /* delivers no message and reads nothing */
     bool peer_ended; /* the peer will send no more */
@@ -112,10 +116,12 @@ void conn_send_block(struct conn *conn, const void *bytes, size_t size, void (*r
                      void *owner);
 void conn_flush(struct conn *conn);
 
-/* Stops or resumes input. After resuming, call conn_deliver() to deliver messages that were read
- * before. */
+/* Gives the conn's input its turns in this party, which must outlive the conn. Before this call the
+ * input has its turns in the party of strangers. */
+void conn_join(struct conn *conn, struct intake_party *party);
+
+/* Stops or resumes input. */
 void conn_hold(struct conn *conn, bool held);
-void conn_deliver(struct conn *conn);
 /* Frees the large input buffer that a long message needed, unless it still holds input. */
 void conn_trim(struct conn *conn);
 

@@ -7,7 +7,9 @@
 
 #include "server/base/clock.h"
 
-#define BATCH 64
+/* Events for each call of epoll_wait(): so many that finished work of other threads is among them even if
+ * hundreds of clients have sent something. */
+#define BATCH 512
 
 struct loop {
     int epoll_fd;
@@ -16,6 +18,8 @@ struct loop {
     int n_events; /* of the batch being delivered */
     bool ticking, stopped;
     uint64_t next_tick_us;
+    struct intake intake;
+    struct intake_party strangers;
 };
 
 struct loop *loop_create(const struct loop_hooks *hooks, struct error *error)
@@ -26,6 +30,7 @@ struct loop *loop_create(const struct loop_hooks *hooks, struct error *error)
         return NULL;
     }
     loop->hooks = *hooks;
+    intake_add_party(&loop->strangers);
     loop->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
     if (loop->epoll_fd < 0) {
         error_set(error, ERROR_SERVER, "epoll_create1: %s", strerror(errno));
@@ -70,6 +75,16 @@ void loop_unwatch(struct loop *loop, struct loop_source *source)
             loop->events[i].data.ptr = NULL;
 }
 
+struct intake *loop_intake(struct loop *loop)
+{
+    return &loop->intake;
+}
+
+struct intake_party *loop_strangers(struct loop *loop)
+{
+    return &loop->strangers;
+}
+
 void loop_set_ticking(struct loop *loop, bool on)
 {
     if (on && !loop->ticking)
@@ -79,10 +94,26 @@ void loop_set_ticking(struct loop *loop, bool on)
 
 static int wait_ms(const struct loop *loop)
 {
+    if (!intake_is_empty(&loop->intake))
+        return 0;
     if (!loop->ticking)
         return -1;
     uint64_t now = clock_now_us();
     return loop->next_tick_us <= now ? 0 : (int)((loop->next_tick_us - now + 999) / 1000);
+}
+
+static void handle_input(struct intake *intake)
+{
+    if (intake_is_empty(intake))
+        return;
+    uint64_t begin_us = clock_now_us(), now_us = begin_us;
+    struct intake_source *source;
+    while (now_us - begin_us < INTAKE_BATCH_US && (source = intake_next(intake))) {
+        uint64_t before_us = now_us;
+        source->handle(source);
+        now_us = clock_now_us();
+        intake_charge(source, now_us - before_us);
+    }
 }
 
 void loop_run(struct loop *loop)
@@ -95,6 +126,7 @@ void loop_run(struct loop *loop)
                 source->ready(source, loop->events[i].events);
         }
         loop->n_events = 0;
+        handle_input(&loop->intake);
         if (loop->ticking && clock_now_us() >= loop->next_tick_us) {
             loop->next_tick_us = clock_now_us() + LOOP_TICK_US;
             loop->hooks.tick(loop->hooks.owner);

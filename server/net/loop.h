@@ -13,6 +13,7 @@
 #include <sys/epoll.h>
 
 #include "server/base/error.h"
+#include "server/base/intake.h"
 
 struct loop_source {
     int fd;                                                     /* not owned; -1 when not watched */
@@ -39,6 +40,11 @@ bool loop_watch(struct loop *loop, struct loop_source *source, uint32_t events,
                 struct error *error);
 void loop_change(struct loop *loop, struct loop_source *source, uint32_t events);
 void loop_unwatch(struct loop *loop, struct loop_source *source); /* safe when not watched */
+
+/* The intake whose sources handle input after each batch of events, for INTAKE_BATCH_US at most. */
+struct intake *loop_intake(struct loop *loop);
+/* The party of connections that have not shown an identity yet. */
+struct intake_party *loop_strangers(struct loop *loop);
 
 /* Turns ticks on or off. Each tick wakes the process, so keep them on only while something has a
  * deadline. */

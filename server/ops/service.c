@@ -26,7 +26,8 @@
 #define SERVICE_TRIM_US 5000000u /* memory unused for so long goes back to the system */
 /* for other threads to finish, after the last client has gone while draining */
 #define SERVICE_LAST_WORK_US 3000000u
-#define SERVICE_OWN_DESCRIPTORS 128u /* for listeners, devices and libraries; more than are used */
+#define SERVICE_LAST_INPUT_US 100000u /* to take requests that came before the signal to end */
+#define SERVICE_OWN_DESCRIPTORS 128u  /* for listeners, devices and libraries; more than are used */
 
 struct service {
     struct service_options options; /* the options in force */
@@ -42,8 +43,9 @@ struct service {
     struct gpu_loss_log gpu_losses;
     uint64_t trimmed_us; /* when the block cache was last trimmed */
     enum service_end end;
-    bool overdue; /* drain-timeout has passed and is logged */
-    bool single;  /* private daemon: ends with its session */
+    uint64_t told_to_end_us; /* when a signal came; 0: none came, or drain() has been called */
+    bool overdue;            /* drain-timeout has passed and is logged */
+    bool single;             /* private daemon: ends with its session */
 };
 
 /* --- sessions */
@@ -214,12 +216,24 @@ static void leave_now(struct service *service)
     _exit(service->end);
 }
 
+/* Begins to drain when a signal has asked for it and the requests that came before it have been taken. */
+static void drain_when_told(struct service *service)
+{
+    uint64_t told_us = service->told_to_end_us;
+    if (told_us == 0 || (!intake_is_empty(loop_intake(service->daemon.loop)) &&
+                         clock_now_us() - told_us < SERVICE_LAST_INPUT_US))
+        return;
+    service->told_to_end_us = 0;
+    drain(service);
+}
+
 static void after_batch(void *owner)
 {
     struct service *service = owner;
     struct daemon *daemon = &service->daemon;
-    bool draining = daemon->sessions.draining;
     count_losses(service);
+    drain_when_told(service);
+    bool draining = daemon->sessions.draining;
     settle_sessions(service);
     request_start_next(&daemon->requests);
     bool has_sessions = !LIST_EMPTY(&service->sessions);
@@ -354,7 +368,7 @@ static void signal_ready(struct loop_source *source, uint32_t events)
     if (read(service->signal_fd, &signal, sizeof signal) != (ssize_t)sizeof signal)
         return;
     if (signal.ssi_signo != SIGHUP)
-        drain(service);
+        service->told_to_end_us = clock_now_us();
     else if (service->reloader.read && !service->daemon.sessions.draining)
         reload(service);
 }

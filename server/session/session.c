@@ -255,9 +255,8 @@ bool session_settle(struct session *session)
         reply_send_due(&session->replies, conn);
     }
     update_hold(session);
-    if (conn->state == CONN_OPEN && !conn->held)
-        conn_deliver(conn);
-    if (conn->state == CONN_OPEN && session->replies.n == 0 && conn_unsent_bytes(conn) == 0) {
+    bool is_done = session->replies.n == 0 && conn_unsent_bytes(conn) == 0 && !conn->intake.asks;
+    if (conn->state == CONN_OPEN && is_done) {
         if (conn->peer_ended)
             conn_close_after_flush(conn);
         else if (session->host->draining)

@@ -85,6 +85,7 @@ void session_sit_down(struct session *session, const struct session_seat *seat)
     session->seat = *seat;
     session->requests.quota = seat->quota;
     request_client_join(&session->requests, seat->party);
+    conn_join(&session->conn, &seat->party->intake);
 }
 
 bool session_admit(struct session *session, uint32_t seq, const sheen_Hello *hello)

@@ -1,4 +1,5 @@
 """Who is served when: classes, views, credits, cancelling and deadlines, through real sockets."""
+import signal
 import time
 
 import wire
@@ -282,6 +283,28 @@ class Schedule(DaemonCase):
         self.assertLess(self.stats()[3][0] - before, 14)
         for client, seq in asked:
             self.assertEqual(client.answer()[0], seq)
+
+    def test_messages_of_many_connections_are_handled_in_turns(self):
+        """All at once: 640 requests of 40 connections of one identity, and after them one of another.
+        Its answer says how many have been answered before."""
+        many = [Client(self.daemon.tcp, minor=1) for _ in range(40)]
+        one = Client(self.daemon.unix, minor=1)
+        for client in *many, one:
+            self.addCleanup(client.socket.close)
+        before = one.stats()[4][0]
+        self.daemon.process.send_signal(signal.SIGSTOP)
+        try:
+            for client in many:
+                client.send(b"".join(message(wire.MODEL_QUERY, client.next_seq(),
+                                             field(1, bytes(31) + b"?")) for _ in range(16)))
+            seq = one.next_seq()
+            one.send(message(wire.STATS_QUERY, seq))
+        finally:
+            self.daemon.process.send_signal(signal.SIGCONT)
+        self.assertLess(one.expect(wire.STATS, seq)[4][0] - before, 160)
+        for client in many:
+            for _ in range(16):
+                self.assert_refused_with(client.answer()[1], wire.ERROR_UNKNOWN_MODEL, "upload")
 
     def test_a_client_that_has_gone_leaves_the_device(self):
         """Eight lights over 16 million pixels, or a mesh of millions: the next client does not wait

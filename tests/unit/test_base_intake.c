@@ -1,0 +1,146 @@
+/* Whose input is handled next: shares of the loop's time by party, then by source, whatever each sends. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "server/base/intake.h"
+
+enum { PARTIES = 4, SOURCES = 40 };
+
+struct asker {
+    struct intake_source source;
+    uint64_t cost_us, used_us; /* of one message; of all that were handled */
+};
+
+static void handle(struct intake_source *source)
+{
+    struct asker *asker = source->owner;
+    asker->used_us += asker->cost_us;
+}
+
+static void handle_for(struct intake *intake, uint64_t us)
+{
+    for (uint64_t now_us = 0; now_us < us;) {
+        struct intake_source *source = intake_next(intake);
+        const struct asker *asker = source->owner;
+        source->handle(source);
+        intake_charge(source, asker->cost_us);
+        now_us += asker->cost_us;
+    }
+}
+
+static void ask(struct intake *intake, struct asker *asker, struct intake_party *party,
+                uint64_t cost_us)
+{
+    *asker = (struct asker){.cost_us = cost_us};
+    intake_add_source(&asker->source, party, handle, asker);
+    intake_ask(intake, &asker->source, true);
+}
+
+static void test_empty(void **state)
+{
+    (void)state;
+    struct intake intake = {0};
+    struct intake_party party;
+    struct asker asker;
+    assert_null(intake_next(&intake));
+    intake_add_party(&party);
+    ask(&intake, &asker, &party, 1);
+    intake_ask(&intake, &asker.source, true); /* known already */
+    assert_ptr_equal(intake_next(&intake), &asker.source);
+    intake_ask(&intake, &asker.source, false);
+    intake_ask(&intake, &asker.source, false);
+    assert_true(intake_is_empty(&intake));
+    assert_null(intake_next(&intake));
+}
+
+/* Parties of 1 to 40 sources, whose messages cost from 1 to 400 us. */
+static void test_shares(void **state)
+{
+    (void)state;
+    static struct asker asker[PARTIES][SOURCES];
+    static const unsigned n[PARTIES] = {1, 2, 7, SOURCES};
+    struct intake_party party[PARTIES];
+    struct intake intake = {0};
+    const uint64_t all_us = 4000000;
+    srand(7);
+    for (int p = 0; p < PARTIES; p++) {
+        intake_add_party(&party[p]);
+        for (unsigned s = 0; s < n[p]; s++)
+            ask(&intake, &asker[p][s], &party[p], (uint64_t)(1 + rand() % 400));
+    }
+    handle_for(&intake, all_us);
+    for (int p = 0; p < PARTIES; p++)
+        for (unsigned s = 0; s < n[p]; s++) {
+            uint64_t fair = all_us / PARTIES / n[p], used = asker[p][s].used_us;
+            assert_in_range(used, fair - 1500, fair + 1500);
+        }
+}
+
+/* One that sends a message now and then waits for a round at most, not for all that others have sent; the
+ * rounds that it did not use are not saved up. */
+static void test_rare_ones(void **state)
+{
+    (void)state;
+    static struct asker many[SOURCES];
+    struct asker rare;
+    struct intake_party greedy, other;
+    struct intake intake = {0};
+    intake_add_party(&greedy);
+    intake_add_party(&other);
+    for (int s = 0; s < SOURCES; s++)
+        ask(&intake, &many[s], &greedy, 10);
+    ask(&intake, &rare, &other, 10);
+    intake_ask(&intake, &rare.source, false);
+    for (int i = 0; i < 100; i++) {
+        uint64_t waited_us = 0;
+        handle_for(&intake, 50000);
+        for (intake_ask(&intake, &rare.source, true); rare.used_us == 0; waited_us += 10)
+            handle_for(&intake, 10);
+        assert_true(waited_us <= 130); /* with its own message */
+        intake_ask(&intake, &rare.source, false);
+        rare.used_us = 0;
+    }
+    intake_ask(&intake, &rare.source, true);
+    rare.used_us = 0;
+    handle_for(&intake, 10000);
+    assert_in_range(rare.used_us, 5000 - 150, 5000 + 150);
+}
+
+/* Of those that were strangers nobody knows who they are: then each has a place in a party. */
+static void test_moves(void **state)
+{
+    (void)state;
+    struct asker a, b;
+    struct intake_party strangers, known;
+    struct intake intake = {0};
+    intake_add_party(&strangers);
+    intake_add_party(&known);
+    ask(&intake, &a, &strangers, 10);
+    ask(&intake, &b, &strangers, 10);
+    intake_move(&intake, &b.source, &known);
+    handle_for(&intake, 10000);
+    assert_in_range(a.used_us, 4800, 5200);
+    assert_in_range(b.used_us, 4800, 5200);
+    intake_ask(&intake, &a.source, false);
+    assert_null(strangers.sources.first);
+    intake_move(&intake, &a.source, &known);
+    assert_ptr_equal(intake_next(&intake), &b.source); /* a asks no more than before */
+    intake_ask(&intake, &b.source, false);
+    assert_true(intake_is_empty(&intake));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_shares),
+        cmocka_unit_test(test_rare_ones),
+        cmocka_unit_test(test_moves),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
