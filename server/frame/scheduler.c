@@ -264,6 +264,13 @@ static int next_class(const struct scheduler *scheduler)
                                               : N_CLASSES;
 }
 
+/* Notes that an interactive tile is given to the device (+1) or leaves it (-1). */
+static void set_ahead(struct scheduler *scheduler, const struct schedule_entry *entry, int sign)
+{
+    if (entry->request_class == CLASS_INTERACTIVE)
+        scheduler->ahead_us += (uint64_t)sign * entry->charged_us;
+}
+
 struct schedule_entry *scheduler_next(struct scheduler *scheduler)
 {
     int c = scheduler->on_device < 2 ? next_class(scheduler) : N_CLASSES;
@@ -271,6 +278,8 @@ struct schedule_entry *scheduler_next(struct scheduler *scheduler)
         return NULL;
     struct schedule_entry *entry = pick(scheduler, (enum request_class)c);
     struct schedule_flow *flow = flow_of(entry);
+    if (scheduler->ahead_us > 0 && scheduler->ahead_us + entry->estimate_us > SCHEDULER_AHEAD_US)
+        return NULL; /* a request that comes meanwhile may go first */
     if (entry->state == SCHEDULE_READY) {
         flow->begun++;
         part_of(entry)->begun++;
@@ -279,6 +288,7 @@ struct schedule_entry *scheduler_next(struct scheduler *scheduler)
     }
     entry->state = SCHEDULE_DRAWING;
     entry->charged_us = entry->estimate_us;
+    set_ahead(scheduler, entry, +1);
     charge(entry, (int64_t)entry->charged_us);
     book(scheduler, entry->request_class, (int64_t)entry->charged_us);
     scheduler->on_device++;
@@ -289,6 +299,7 @@ void scheduler_put_back(struct scheduler *scheduler, struct schedule_entry *entr
 {
     struct schedule_flow *flow = flow_of(entry);
     scheduler->on_device--;
+    set_ahead(scheduler, entry, -1);
     charge(entry, -(int64_t)entry->charged_us);
     book(scheduler, entry->request_class, -(int64_t)entry->charged_us);
     entry->state = SCHEDULE_BEGUN;
@@ -306,6 +317,7 @@ void scheduler_stepped(struct scheduler *scheduler, struct schedule_entry *entry
 {
     int64_t missed = (int64_t)took_us - (int64_t)entry->charged_us;
     scheduler->on_device--;
+    set_ahead(scheduler, entry, -1);
     scheduler->classes[entry->request_class].spent_us += took_us;
     book(scheduler, entry->request_class, missed);
     charge(entry, missed);

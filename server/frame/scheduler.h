@@ -27,6 +27,9 @@ enum { N_CLASSES = 3 };
 #define SCHEDULER_PER_QUEUE 2u
 #define SCHEDULER_PER_PARTY 2u /* frames begun of one party and class that are always allowed */
 #define SCHEDULER_PER_CLASS 8u /* frames begun of one class: enough to keep the pool busy */
+/* Two interactive tiles are on the device at once only if both together take no longer than this. So a
+ * new request waits no longer, unless a single tile takes longer. */
+#define SCHEDULER_AHEAD_US 4000
 /* Of the device's time for stills, and for batches, while they wait. */
 #define SCHEDULER_SHARE_PERCENT 20
 
@@ -95,6 +98,7 @@ struct scheduler {
     struct schedule_class classes[N_CLASSES];
     unsigned waiting;   /* number of entries that have not begun */
     unsigned on_device; /* tiles being drawn: at most 2 */
+    uint64_t ahead_us;  /* expected time of the interactive tiles among them */
 };
 
 void scheduler_add_party(struct schedule_party *party);
@@ -107,9 +111,10 @@ struct schedule_entry *scheduler_enter(struct scheduler *scheduler, struct sched
 void scheduler_ready(struct schedule_entry *entry); /* moves from WAITING to READY */
 
 /* Chooses the entry whose next tile is to be drawn, and moves it to DRAWING. NULL if none may draw.
- * While one tile is on the device, a second one is given out only if it is interactive and no other
- * class is owed time. So an interactive frame waits for at most one tile of another class, plus the
- * time owed. */
+ * While one tile is on the device, a second one is given out only if it is interactive, no other class
+ * is owed time, and two interactive tiles take no longer than SCHEDULER_AHEAD_US. So an interactive
+ * frame waits for at most one tile of another class, plus the time owed, and one tile of another
+ * party. */
 struct schedule_entry *scheduler_next(struct scheduler *scheduler);
 
 /* Undoes scheduler_next(), because the tile will not be drawn now. An entry that had not drawn a

@@ -130,6 +130,37 @@ static void test_two_tiles_on_the_device(void **state)
     assert_ptr_equal(scheduler_next(&scheduler), &next_frame);
 }
 
+/* Beside an interactive tile a second one only where both are short: who comes meanwhile is next. */
+static void test_long_tiles_do_not_queue_up(void **state)
+{
+    (void)state;
+    struct scheduler scheduler = {0};
+    struct schedule_queue queue[4];
+    struct schedule_entry e[3] = {entry_of(CLASS_INTERACTIVE, SCHEDULER_AHEAD_US / 2),
+                                  entry_of(CLASS_INTERACTIVE, SCHEDULER_AHEAD_US / 2 + 1),
+                                  entry_of(CLASS_INTERACTIVE, SCHEDULER_AHEAD_US / 2 + 1)};
+    struct schedule_entry late = entry_of(CLASS_INTERACTIVE, SCHEDULER_AHEAD_US);
+    for (int q = 0; q < 4; q++)
+        add_queue(&queue[q]);
+    for (int q = 0; q < 3; q++)
+        ask(&scheduler, &queue[q], &e[q]);
+    assert_ptr_equal(scheduler_next(&scheduler), &e[0]);
+    assert_null(scheduler_next(&scheduler));
+    assert_int_equal(e[1].state, SCHEDULE_READY);
+    draw_whole(&scheduler, &e[0], 9000);
+    assert_ptr_equal(scheduler_next(&scheduler), &e[1]);
+    scheduler_put_back(&scheduler, &e[1]); /* has used nothing of what may be ahead */
+    scheduler_leave(&scheduler, &e[1]);
+    assert_ptr_equal(scheduler_next(&scheduler), &e[2]);
+    ask(&scheduler, &queue[3], &late);
+    assert_null(scheduler_next(&scheduler));
+    draw_whole(&scheduler, &e[2], 9000);
+    assert_ptr_equal(scheduler_next(&scheduler), &late); /* a long one is drawn all the same */
+    draw_whole(&scheduler, &late, 9000);
+    assert_is_empty(&scheduler);
+    assert_int_equal(scheduler.ahead_us, 0);
+}
+
 /* --- latest wins */
 
 static void test_newer_request_of_a_view_replaces(void **state)
@@ -647,6 +678,7 @@ int main(void)
         cmocka_unit_test(test_empty),
         cmocka_unit_test(test_order_and_two_begun),
         cmocka_unit_test(test_two_tiles_on_the_device),
+        cmocka_unit_test(test_long_tiles_do_not_queue_up),
         cmocka_unit_test(test_newer_request_of_a_view_replaces),
         cmocka_unit_test(test_batches_and_stills_without_a_view_stay),
         cmocka_unit_test(test_faster_than_drawn),
