@@ -15,8 +15,6 @@ from daemon import CUBE, SHEEND, Daemon, grid, run
 from test_untrusted import workers
 from wire import Client
 
-ALONE = True  # tests/run.sh runs nothing beside these tests
-
 
 class Options(unittest.TestCase):
     def assert_fails(self, code, words, *arguments, env=None):

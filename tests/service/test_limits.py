@@ -18,8 +18,6 @@ from daemon import CUBE, SANITIZED, Daemon, DaemonCase, grid, resident_kb, run
 from test_untrusted import children, image_pattern, workers
 from wire import BATCH, INTERACTIVE, Client, field, message
 
-ALONE = True  # tests/run.sh runs nothing beside these tests
-
 MIB = 1 << 20
 LONG_MESSAGE_BYTES = 16 + 262144 - 4096  # beyond the room that every client has for its messages
 
@@ -250,10 +248,10 @@ class Memory(DaemonCase):
         client = self.client()
         model = client.upload(CUBE, "cube.obj")
         polygons = field(40, 1) + field(41, 1)
-        client.render(model, 400, 400, kind=INTERACTIVE)
-        seq = client.ask(model, 400, 400, kind=INTERACTIVE, extra=polygons)
+        client.render(model, 1400, 1400, kind=INTERACTIVE)
+        seq = client.ask(model, 1400, 1400, kind=INTERACTIVE, extra=polygons)
         self.assert_refused(client, wire.ERROR_TOO_BIG, "what polygons are drawn on", seq)
-        client.render(model, 400, 400, kind=wire.STILL, extra=polygons)
+        client.render(model, 1400, 1400, kind=wire.STILL, extra=polygons)
 
     def test_max_image_side(self):
         client = self.client()

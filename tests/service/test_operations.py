@@ -17,8 +17,6 @@ from daemon import CUBE, SHEEN, SHEEND, Daemon, run
 from test_untrusted import is_alive, workers
 from wire import Client
 
-ALONE = True  # tests/run.sh runs nothing beside these tests
-
 
 def fetch(address, request="GET /metrics HTTP/1.1\r\n\r\n", timeout=10):
     """(status, body) of a request to a tcp: or unix: address; None when it just closes."""

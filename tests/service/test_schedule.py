@@ -6,8 +6,6 @@ import wire
 from daemon import CUBE, SANITIZED, DaemonCase, grid
 from wire import BATCH, INTERACTIVE, STILL, Client, field, message
 
-ALONE = True  # tests/run.sh runs nothing beside these tests
-
 LARGE = {"width": 1600, "height": 1600}  # many tiles
 
 

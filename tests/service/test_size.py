@@ -11,8 +11,6 @@ from daemon import CUBE, SANITIZED, SHEEN, Daemon, DaemonCase, grid, resident_kb
 from test_client import sheen
 from test_untrusted import image_pattern
 
-ALONE = True  # tests/run.sh runs nothing beside these tests
-
 LARGE = 200  # faces along an edge: 40,000
 MEMORY_BYTES, TABLE_BYTES = 23, 16  # fields of Stats and ModelInfo
 

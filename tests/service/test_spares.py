@@ -13,8 +13,6 @@ import unittest
 import wire
 from daemon import BUILD, MODELS, Daemon, resident_kb
 
-ALONE = True  # tests/run.sh runs nothing beside these tests
-
 P, N, PTEX, LIGHT = 2, 4, 8, 16
 COLOUR = 1
 MIB = 1 << 20
