@@ -10,7 +10,8 @@
 //   high_curvature_shade  for each of those of high curvature, shades nine parts of it.
 // Pixels that show the rounding of a crease, half a pixel to some pixels wide, and those to recheck ask
 // the surface again: rounded.glsl.
-// At the rim of a tile the pixels beyond are not known: an edge there is seen from one side only.
+// At the rim of a picture the pixels beyond are not known: what is seen there counts as at an edge, and what of it is
+// beyond its ends as empty, unless the surface goes on there (edges_recheck.comp.glsl).
 
 layout(binding = 4, r32ui) readonly uniform uimage2D border;
 

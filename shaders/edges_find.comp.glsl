@@ -1,7 +1,7 @@
 // Lists the pixels at edges, those that turn, and those that show the rounding of a crease, and writes
 // the coverage of all others. At an edge is a pixel whose border runs through it, whose neighbour to a side is not
-// where its paraboloid says, or one beside or across a corner from which shows surface where it shows none, or none
-// where it does. Those of them that show surface are listed apart, and around what is shaded too, since the pixels
+// where its paraboloid says, one beside or across a corner from which shows surface where it shows none, or none
+// where it does, and one at the rim that shows surface. Those of them that show surface are listed apart, and around what is shaded too, since the pixels
 // there ask where these end (ends_find.comp.glsl).
 
 layout(local_size_x = 64) in;
@@ -49,7 +49,8 @@ void main()
     if (any(greaterThanEqual(p, tile.zw)))
         return;
     Hit own = hit_at(p);
-    bool is_hit = own.depth > 0.0, at_edge = is_hit && border_crosses(p);
+    bool at_rim = any(lessThan(p, ivec2(1))) || any(greaterThan(p, tile.zw - 2));
+    bool is_hit = own.depth > 0.0, at_edge = is_hit && (at_rim || border_crosses(p));
     bool is_rounded = is_hit && imageLoad(border, p).x == ROUNDED, beside_rounded = false;
     for (int i = 0; i < 4; i++) {
         ivec2 q = clamp(p + AROUND[i], ivec2(0), tile.zw - 1);

@@ -58,7 +58,7 @@ void main()
     bool beside_empty = false, seen_beyond = false;
     for (int k = 0; k < 9 && n < 3; k++) {
         Hit hit = hit_at(p + AROUND[k]);
-        beside_empty = beside_empty || hit.depth == 0.0;
+        beside_empty = beside_empty || hit.depth <= 0.0;
         if (!mirrors(hit))
             continue;
         seen_beyond = seen_beyond || is_crease_seen_beyond(p, AROUND[k]);

@@ -67,7 +67,7 @@ Around pieces_around(ivec2 p)
     float before = own_depth > 0.0 ? own_depth - 0.25 * pixel_units(own_depth) : NOWHERE;
     for (int i = 0; i < 9; i++) {
         Hit hit = hit_at(p + AROUND[i]);
-        around.beside_empty = around.beside_empty || hit.depth == 0.0;
+        around.beside_empty = around.beside_empty || hit.depth <= 0.0;
         bool is_new = mirrors(hit);
         for (int k = 0; k < PIECES; k++)
             if (is_new && k < around.n && same_surface(around.piece[k].hit, hit)) {

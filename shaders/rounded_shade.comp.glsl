@@ -50,7 +50,7 @@ void main()
     // A ray for which no guess led to the surface shows nothing only where something around does.
     bool beside_empty = false;
     for (int k = 0; k < 9; k++)
-        beside_empty = beside_empty || hit_at(p + ivec2(k % 3, k / 3) - 1).depth == 0.0;
+        beside_empty = beside_empty || hit_at(p + ivec2(k % 3, k / 3) - 1).depth <= 0.0;
     float all = beside_empty ? 1.0 : covered;
     if (all == 0.0)
         return;

@@ -27,9 +27,8 @@ const uint32_t seed = 20260;
 /* Of the colours' bytes, in 1/255. */
 const double max_mean = 1, max_p99 = 8;
 const double max_border_mean = 3, max_border_p99 = 32;
-/* Where the surface ends within a pixel, as measured: 3.5 and 37, and 0.13 of the coverage. Pixels
- * at the rim of the picture, which see no edge's other side, make up a quarter of it. */
-const double max_edge_mean = 4, max_edge_p99 = 42, max_coverage_p99 = 0.16;
+/* Where the surface ends within a pixel, as asked for; and of the coverage as asked for. */
+const double max_edge_mean = 3, max_edge_p99 = 32, max_coverage_p99 = 0.1;
 /* Of patterns that change faster than this from one sample to the next, in periods, samples tell no
  * more than the mean: they scatter by a fortieth of what is between bright and dark. */
 const double max_step = 0.25, max_fine_mean = 4;
