@@ -196,7 +196,7 @@ static const struct option_row *const TABLES[] = {OPTIONS_MODEL, OPTIONS_COMMON,
 const struct command COMMAND_INFO = {
     .name = "info",
     .arguments = "MODEL [option]...",
-    .summary = "Says what a model is made of, and what its tables cost on which device.",
+    .summary = "Describes a model: its cage, probable mistakes, and the memory of its tables.",
     .tables = TABLES,
     .examples = "  sheen info hood.obj\n"
                 "  sheen info hood.obj --json\n"

@@ -237,11 +237,11 @@ static int run(const struct options *options)
 }
 
 static const struct option_row ROWS[] = {
-    {"output", 'o', "FILE", "the picture, a PNG of three rows and three columns of panels",
-     apply_output, NULL},
+    {"output", 'o', "FILE",
+     "file of the picture: a PNG with three rows and three columns of panels", apply_output, NULL},
     {"size", 0, "WxH",
      "width and height of one panel (default: 480x360),\n"
-     "each {}; a device's own limit may be lower",
+     "each {}; the device's limit may be lower",
      options_apply_size, NULL},
     {0},
 };
@@ -254,10 +254,10 @@ const struct command COMMAND_LEVELS = {
     .old_name = "figure7",
     .arguments = "MODEL -o FILE.png [option]...",
     .summary =
-        "Shows what polygons do to reflection lines: the cage subdivided 1, 2 and 3 times as a\n"
-        "wireframe and as interpolated polygons, beside the exact surface. Prints the largest\n"
-        "angle between the polygons' normals and the surface's, at pixels that show both on the\n"
-        "same face.",
+        "Shows what polygons do to reflection lines: the cage subdivided 1, 2 and 3 times, as a\n"
+        "wireframe and as interpolated polygons, beside the exact surface. Prints the largest and\n"
+        "the mean angle between the polygons' normals and those of the surface, over the pixels\n"
+        "that show both on the same face.",
     .tables = TABLES,
     .examples = "  sheen levels hood.obj -o levels.png\n"
                 "  sheen levels hood.glb -o levels.png --size 800x600 --pattern stripes:count=80\n",

@@ -59,11 +59,9 @@ static int run_lights(const struct options *options)
                "sheen render MODEL -o out.png ");
     print_rows("lights (--light KIND; placed by --light-center, --light-u and --light-v)",
                TEXT_LIGHTS, "sheen render MODEL -o out.png ");
-    printf(
-        "Each --light after the first begins another light, over which the earlier ones lie; the\n"
-        "options --light-center, --light-u, --light-v and --pattern speak of the latest.\n"
-        "Isophote, zebra and environment need no light; of those named the patterns alone "
-        "count.\n");
+    printf("Each --light after the first begins another light below the earlier ones; the options\n"
+           "--light-center, --light-u, --light-v and --pattern refer to the latest light.\n"
+           "Isophote, zebra and environment use only the patterns of the lights.\n");
     return 0;
 }
 

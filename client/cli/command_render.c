@@ -102,13 +102,14 @@ static int run(const struct options *options)
 
 static const struct option_row ROWS[] = {
     {"output", 'o', "FILE",
-     "the picture; its ending tells the format: .png .exr .jpg .jpeg .tif .tiff", apply_output,
-     NULL},
+     "file of the picture; its ending tells the format: .png .exr .jpg .jpeg .tif\n"
+     ".tiff",
+     apply_output, NULL},
     {"aov", 0, "LIST",
-     "planes beside colour, EXR only: some of P (position), N (normal), ptex,\n"
-     "light (s, t on the light), k (principal curvatures), dlight (change of s, t\n"
-     "by a pixel right and down), coverage (share of the pixel that shows surface),\n"
-     "with commas between",
+     "planes in addition to colour, for EXR files, separated by commas: P\n"
+     "(position), N (normal), ptex, light (s, t on the light), k (principal\n"
+     "curvatures), dlight (change of s, t per pixel to the right and down), coverage\n"
+     "(share of the pixel that shows the surface)",
      apply_aov, "P N ptex light k dlight coverage"},
     {0},
 };
@@ -130,7 +131,7 @@ const struct command COMMAND_RENDER = {
     .arguments = "MODEL -o FILE [option]...",
     .summary =
         "Renders the reflection lines on a model's limit surface, exact at every pixel.\n"
-        "MODEL is a control cage: OBJ, GLB, or glTF with the buffers that it names beside it.",
+        "MODEL is a control cage: OBJ, GLB, or glTF together with the buffer files that it names.",
     .tables = TABLES,
     .examples =
         "  sheen render hood.obj -o hood.png\n"

@@ -164,13 +164,12 @@ const struct command COMMAND_STATS = {
     .name = "stats",
     .arguments = "[option]...",
     .summary =
-        "Says what a daemon is doing: how much, how fast. Of the last minute: rates (over a "
-        "second\n"
-        "at least), percentiles of each stage, and by class those of a frame's way from the\n"
-        "request's last byte to the answer's first; and the mean of the last 64 frames. Without a\n"
-        "server it tells of a fresh private daemon: the device that this machine has. It gives up\n"
-        "at once when the daemon ends meanwhile: the one that takes its place has numbers of its\n"
-        "own.",
+        "Prints a daemon's statistics. For the last minute: rates, percentiles of the time of "
+        "each\n"
+        "stage, and for each class those of the time from a request's last byte to the answer's\n"
+        "first; also the mean of the last 64 frames. Without a server it describes a new private\n"
+        "daemon, that is the device of this machine. If the daemon ends meanwhile, the command\n"
+        "fails: a daemon that takes its place has different numbers.",
     .tables = TABLES,
     .examples = "  sheen stats --server unix:/run/sheen/sheen.sock\n"
                 "  sheen stats --json\n",

@@ -468,24 +468,23 @@ static bool check(struct options *options, char *why)
 }
 
 static const struct option_row ROWS[] = {
-    {"frames", 'n', "N", "how many, {}", apply_frames, NULL},
+    {"frames", 'n', "N", "number of frames, {}", apply_frames, NULL},
     {"orbit", 0, "DEG",
-     "the camera turns by so many degrees a frame, {}\n"
-     "(default: 1), about the model's up (--up, the file's, or as guessed): without\n"
-     "--eye about the middle of the model's box, from one distance from which all of\n"
-     "it stays in the picture, the first frame included; --target alone: about that\n"
-     "point, further back where that is needed; --eye: about --target, as far as it\n"
-     "is. --fov, --ortho and --zoom then look closer, each frame alike",
+     "angle that the camera turns for each frame, {}\n"
+     "(default: 1), about the model's up direction. Without --eye it turns about the\n"
+     "middle of the model's box, or about --target, at one distance from which the\n"
+     "whole model stays in every picture; with --eye about --target, at the distance\n"
+     "of the eye. --fov, --ortho and --zoom then magnify all frames alike",
      apply_orbit, NULL},
     {"output", 'o', "PATTERN",
-     "writes each frame into a file, as FRAME_%04d.png: one %d, or one like %04d\n"
-     "(a width of 1 to 9), stands for its number, from 0; the ending tells the\n"
-     "format: .png .exr .jpg .jpeg .tif .tiff (default: lossless planes are asked\n"
-     "for, and dropped). A late frame has no file",
+     "write each frame to a file, such as FRAME_%04d.png: one %d, or one %04d (with\n"
+     "a width from 1 to 9), stands for the frame's number, from 0; the ending tells\n"
+     "the format: .png .exr .jpg .jpeg .tif .tiff (default: request lossless planes\n"
+     "and drop them). A frame that missed its deadline has no file",
      apply_output, NULL},
     {"light-only", 0, NULL,
-     "the light swings along its u edge by a tenth of it instead, a full swing\n"
-     "in 360 degrees of --orbit; only the shade stage runs anew",
+     "the light moves instead of the camera: it swings along its u edge by a tenth\n"
+     "of that edge, once in 360 degrees of --orbit. Only the shading is repeated",
      apply_light_only, NULL},
     {0},
 };
@@ -505,9 +504,8 @@ static const struct option_row *const TABLES_LIST[] = {ROWS,
 const struct command COMMAND_STREAM = {
     .name = "stream",
     .arguments = "MODEL --frames N [option]...",
-    .summary = "Asks for frames back to back, at most two in flight, and prints the time of each "
-               "stage;\n"
-               "with -o writes them, as a turntable.",
+    .summary = "Requests frames back to back, at most two in flight, and prints the time of each\n"
+               "stage; with -o writes the frames to files, as a turntable.",
     .tables = TABLES_LIST,
     .examples = "  sheen stream hood.obj --frames 100\n"
                 "  sheen stream hood.obj --frames 72 --orbit 5 -o hood_%04d.png\n"

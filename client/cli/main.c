@@ -17,7 +17,7 @@ static void print_help(FILE *out)
           "  sheen COMMAND --help    options, ranges, defaults and examples\n"
           "  sheen --version\n\n"
           "Without --server ADDRESS (or SHEEN_SERVER in the environment) a command starts a\n"
-          "private sheend and ends it with itself.\n",
+          "private sheend, which ends with the command.\n",
           out);
 }
 

@@ -26,19 +26,17 @@
 
 const struct limits_row LIMITS[] = {
     {"memory-budget", UNIT_BYTES,
-     "most that files, models, images, long messages under way and frames may take\ntogether, in "
-     "main memory and on the device",
+     "memory for files, models, images, long messages and frames together, in main memory\n"
+     "and on the device",
      LEAST_MEMORY, MOST_BYTES, 4 * GIB, AT(assets.memory_budget)},
     {"peer-memory", UNIT_BYTES,
-     "most that uploads, long messages under way and frames of one user (Unix "
-     "socket),\ncertificate "
-     "or token may take; models and images that are stored are not in it: whoever holds more\nthan "
-     "an equal "
-     "share of the budget makes room first",
+     "memory for uploads, long messages and frames of one user (Unix socket), certificate or\n"
+     "token. Stored models and images do not count: if room is needed, those of clients that\n"
+     "hold more than an equal share of the budget are evicted first",
      LEAST_MEMORY, MOST_BYTES, 2 * GIB, AT(assets.peer_memory)},
     {"spare-memory", UNIT_BYTES,
-     "memory of sent frames that is kept for the next ones, at most, beside the budget;\n"
-     "what is not used for 5 s is given back",
+     "memory of sent frames that is kept for the next frames, in addition to the budget; what\n"
+     "is not used for 5 s is freed",
      0, MOST_BYTES, 256 * MIB, AT(spare_memory)},
     {"max-upload", UNIT_BYTES, "largest model or image file", LEAST_FILE, PROTOCOL_MAX_UPLOAD_BYTES,
      PROTOCOL_MAX_UPLOAD_BYTES, AT(session.max_upload)},
@@ -46,63 +44,68 @@ const struct limits_row LIMITS[] = {
      LEAST_FRAME, PROTOCOL_MAX_FRAME_BYTES, GIB, AT(session.max_frame)},
     {"max-image-side", UNIT_PX, "largest width and height of a light image", 1,
      PROTOCOL_MAX_SIZE_PX, 16384, AT(assets.max_image_side)},
-    {"max-connections", UNIT_COUNT, "clients at the same time", 1, 1000000, 4096,
-     AT(max_connections)},
+    {"max-connections", UNIT_COUNT, "connected clients", 1, 1000000, 4096, AT(max_connections)},
     {"max-peer-connections", UNIT_COUNT,
-     "of one user (Unix socket), certificate or token, and all of loopback TCP together", 1,
-     1000000, 256, AT(session.connections)},
+     "connections of one user (Unix socket), certificate or token, and of all loopback TCP\n"
+     "together",
+     1, 1000000, 256, AT(session.connections)},
     {"max-strangers", UNIT_COUNT,
-     "clients over TLS that have not shown who they are, at the same time: the oldest leaves\nfor "
-     "the "
-     "next, first of the address that has most",
+     "TLS clients that have not identified themselves yet. Beyond that the oldest one is\n"
+     "disconnected, first of the address that has most",
      1, 1000000, 64, AT(session.strangers.all)},
-    {"max-peer-strangers", UNIT_COUNT, "of one address", 1, 1000000, 16,
+    {"max-peer-strangers", UNIT_COUNT,
+     "TLS clients of one address that have not identified themselves yet", 1, 1000000, 16,
      AT(session.strangers.of_peer)},
     {"max-penalty", UNIT_SECONDS,
-     "an address whose clients come without credentials again and again is turned away for\nso "
-     "long "
-     "at most; 0: never",
+     "longest time for which an address is refused whose clients connect again and again\n"
+     "without credentials; 0: none is refused",
      0, 86400, 600, AT(session.strangers.penalty_s)},
-    {"credits", UNIT_COUNT, "requests of one client that wait for their answers", 1,
-     PROTOCOL_MAX_CREDITS, 16, AT(session.credits)},
+    {"credits", UNIT_COUNT, "unanswered requests of one client", 1, PROTOCOL_MAX_CREDITS, 16,
+     AT(session.credits)},
     {"interactive-hard", UNIT_BYTES,
-     "a client with more than this unsent when another interactive frame comes is\n"
-     "disconnected",
+     "a client is disconnected if it has more than this unsent when another interactive frame\n"
+     "is ready",
      LEAST_OUTPUT, MOST_BYTES, 32 * MIB, AT(session.interactive_hard)},
-    {"interactive-soft", UNIT_BYTES, "and so is one with more than this unsent for", LEAST_OUTPUT,
-     MOST_BYTES, 8 * MIB, AT(session.interactive_soft)},
-    {"interactive-seconds", UNIT_SECONDS, "so long", 1, MOST_SECONDS, 5, AT(session.interactive_s)},
-    {"output-hard", UNIT_BYTES, "the same for stills, batches and all else", LEAST_OUTPUT,
-     MOST_BYTES, 256 * MIB, AT(session.output_hard)},
-    {"output-soft", UNIT_BYTES, "the same for stills, batches and all else", LEAST_OUTPUT,
-     MOST_BYTES, 64 * MIB, AT(session.output_soft)},
-    {"output-seconds", UNIT_SECONDS, "the same for stills, batches and all else", 1, MOST_SECONDS,
-     60, AT(session.output_s)},
-    {"handshake-timeout", UNIT_SECONDS, "from connecting to HELLO", 1, MOST_SECONDS, 3,
+    {"interactive-soft", UNIT_BYTES,
+     "a client is disconnected if it has more than this unsent for interactive-seconds",
+     LEAST_OUTPUT, MOST_BYTES, 8 * MIB, AT(session.interactive_soft)},
+    {"interactive-seconds", UNIT_SECONDS, "time for interactive-soft", 1, MOST_SECONDS, 5,
+     AT(session.interactive_s)},
+    {"output-hard", UNIT_BYTES, "as interactive-hard, for stills, batches and all other replies",
+     LEAST_OUTPUT, MOST_BYTES, 256 * MIB, AT(session.output_hard)},
+    {"output-soft", UNIT_BYTES, "as interactive-soft, for stills, batches and all other replies",
+     LEAST_OUTPUT, MOST_BYTES, 64 * MIB, AT(session.output_soft)},
+    {"output-seconds", UNIT_SECONDS, "time for output-soft", 1, MOST_SECONDS, 60,
+     AT(session.output_s)},
+    {"handshake-timeout", UNIT_SECONDS, "time from connecting to HELLO", 1, MOST_SECONDS, 3,
      AT(session.handshake_s)},
-    {"message-timeout", UNIT_SECONDS, "from the first byte of a message to its last", 1,
+    {"message-timeout", UNIT_SECONDS, "time from the first byte of a message to its last", 1,
      MOST_SECONDS, 30, AT(session.message_s)},
-    {"stall-timeout", UNIT_SECONDS, "without a byte read of an answer, or sent of an upload", 1,
-     MOST_SECONDS, 30, AT(session.stall_s)},
-    {"idle-timeout", UNIT_SECONDS, "without a request; 0: for ever", 0, MOST_SECONDS, 900,
+    {"stall-timeout", UNIT_SECONDS,
+     "time in which a client must read part of a reply, or send part of an upload", 1, MOST_SECONDS,
+     30, AT(session.stall_s)},
+    {"idle-timeout", UNIT_SECONDS,
+     "time without a request after which a client is disconnected; 0: never", 0, MOST_SECONDS, 900,
      AT(session.idle_s)},
     {"drain-timeout", UNIT_SECONDS,
-     "after SIGTERM, to finish what has been asked and for clients to read it; the rest is\nthen "
-     "refused, and the daemon ends within 4 s more",
+     "time after SIGTERM to finish requests and for clients to read the replies. Then the\n"
+     "rest is refused, and the daemon ends within 4 s",
      0, MOST_SECONDS, 30, AT(session.drain_s)},
     {"worker-memory", UNIT_BYTES,
-     "most memory of the process that reads or writes a file; less for small files and\nwithin the "
+     "memory of the process that reads or writes a file; less for small files, and within the\n"
      "budget",
      MIB, MOST_BYTES, 8 * GIB, AT(workers.memory_bytes)},
-    {"worker-output", UNIT_BYTES, "most that comes out of it", MIB, MOST_BYTES, 8 * GIB,
-     AT(workers.output_bytes)},
-    {"worker-cpu", UNIT_SECONDS, "of a processor, for one file", 1, 86400, 60, AT(workers.cpu_s)},
-    {"worker-time", UNIT_SECONDS, "for one file", 1, 86400, 120, AT(workers.wall_s)},
-    {"tables-cpu", UNIT_SECONDS, "of processors, to build one model's tables", 1, 86400, 120,
+    {"worker-output", UNIT_BYTES, "size of the result of the process that reads or writes a file",
+     MIB, MOST_BYTES, 8 * GIB, AT(workers.output_bytes)},
+    {"worker-cpu", UNIT_SECONDS, "processor time of the process that reads or writes a file", 1,
+     86400, 60, AT(workers.cpu_s)},
+    {"worker-time", UNIT_SECONDS, "elapsed time of the process that reads or writes a file", 1,
+     86400, 120, AT(workers.wall_s)},
+    {"tables-cpu", UNIT_SECONDS, "processor time to build one model's tables", 1, 86400, 120,
      AT(assets.tables_cpu_s)},
     {"gpu-losses", UNIT_COUNT,
-     "so often may the GPU be lost in ten minutes; then the daemon ends with exit code\n75, to be "
-     "started anew; 0: as often as it likes",
+     "number of GPU losses in ten minutes after which the daemon ends with exit code 75, to be\n"
+     "started again; 0: never",
      0, GPU_LOSSES_MAX, 3, AT(gpu_losses)},
 };
 const size_t N_LIMITS = sizeof LIMITS / sizeof *LIMITS;

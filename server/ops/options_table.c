@@ -164,85 +164,88 @@ static bool set_session_fd(void *value, const char *text, struct error *error)
 
 static const struct option_row OWN_ROWS[] = {
     {"listen", "ADDRESS", OPTION_LIST, OPTION_IN_FILE, VALUE(service.listen), 0, 0, NULL, NULL,
-     "unix:PATH, tcp:HOST:PORT (loopback only) or tls:HOST:PORT; several times\n"
+     "address to listen on: unix:PATH, tcp:HOST:PORT (loopback only) or\n"
+     "tls:HOST:PORT; may be given several times\n"
      "(default: unix:$XDG_RUNTIME_DIR/sheen.sock, else unix:/tmp/sheen-UID/sheen.sock)",
      add_listen},
     {"device", "auto|software|native|N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.device), 0, 0,
      NULL, "auto",
-     "auto: a GPU if there is one, else native; software or native: processors, by\n"
-     "vector code, without OpenGL; N: the N-th EGL device, Mesa's software device among\n"
-     "them",
+     "device that draws: auto, a GPU if there is one, else the processors; software or\n"
+     "native, the processors without OpenGL; N, the EGL device of this number, which\n"
+     "includes Mesa's software device",
      set_device},
     {"native-threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_native_threads), 0, 0,
      NULL, "auto",
-     "that draw on the native device, 1 to 64; auto: one for each processor that this\n"
-     "process and its control group may use. Pictures are the same for any number",
+     "threads that draw if there is no GPU, 1 to 64; auto: one for each processor that\n"
+     "this process and its control group may use. The number does not change pictures",
      set_native_threads},
     {"native-isa", "auto|v2|v3|v4", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.native_isa), 0, 0,
      NULL, "auto",
-     "instructions that the native device draws by: v2 (SSE4.2), v3 (AVX2 and FMA), v4\n"
-     "(AVX-512) of x86-64; auto: the widest that the processor has. Pictures of two\n"
-     "sets differ by rounding; with one for all of them mixed machines make the same",
+     "x86-64 instructions to draw with if there is no GPU: v2 (SSE4.2), v3 (AVX2 and FMA)\n"
+     "or v4 (AVX-512); auto: the best that the processor has. Pictures of different sets\n"
+     "differ by rounding: give all machines the same set to get the same pictures",
      set_native_isa},
     {"threads", "N", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.n_threads), 0, 0, NULL, "auto",
-     "for building tables and encoding, 1 to 256; auto: as for native-threads", set_threads},
+     "number of threads that build tables and encode, 1 to 256; auto: as for\n"
+     "native-threads",
+     set_threads},
     {"allow-uid", "UID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.uids),
      0, 0, NULL, NULL,
-     "a user who may connect to the Unix sockets; several times, up to 64. With\n"
-     "--allow-uid or --allow-gid nobody else may, not the daemon's own user\n"
-     "(default: whoever the socket's file lets in, which is its owner)",
+     "user who may connect to the Unix sockets; may be given several times, up to 64.\n"
+     "With --allow-uid or --allow-gid nobody else may connect, not even the daemon's own\n"
+     "user (default: all users that the socket file's permissions allow: its owner)",
      add_id},
     {"allow-gid", "GID", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.gids),
-     0, 0, NULL, NULL, "a group whose members may connect to the Unix sockets; several times",
-     add_id},
+     0, 0, NULL, NULL,
+     "group whose members may connect to the Unix sockets; may be given several times", add_id},
     {"tls-cert", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.access.tls_cert), 0, 0, NULL, NULL,
-     "PEM, the certificate of tls: addresses, and of its authorities", NULL},
+     "PEM file with the certificate of tls: addresses, followed by its authorities", NULL},
     {"tls-key", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tls_key),
-     0, 0, NULL, NULL, "PEM, its key", NULL},
+     0, 0, NULL, NULL, "PEM file with the key of --tls-cert", NULL},
     {"client-ca", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.access.client_ca), 0, 0, NULL, NULL,
-     "PEM, the authority of client certificates that may come in over TLS", NULL},
+     "PEM file with the authority whose client certificates are admitted over TLS", NULL},
     {"tls-crl", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tls_crl),
      0, 0, NULL, NULL,
-     "PEM, the authority's list of revoked client certificates; one that has expired\n"
-     "lets no certificate in (default: none, every certificate holds until it expires)",
+     "PEM file with the authority's list of revoked client certificates. An expired list\n"
+     "admits no certificate (default: none; a certificate is valid until it expires)",
      NULL},
     {"tokens", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tokens),
      0, 0, NULL, NULL,
-     "lines 'NAME HASH YYYY-MM-DD': tokens that may come in over TLS, each until\n"
-     "the end of its day; with --client-ca too, one of both is enough",
+     "file with lines 'NAME HASH YYYY-MM-DD': tokens that are admitted over TLS, each\n"
+     "until the end of its day; with --client-ca, a certificate or a token is enough",
      NULL},
     {"proxy-from", "ADDRESS[/BITS]", OPTION_LIST, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.proxy_from), 0, 0, NULL, NULL,
-     "balancers, whose connections must begin with a header of PROXY protocol version 2\n"
-     "that tells the client's address; several times, up to 16. From anybody else such a\n"
-     "header is refused (default: none)",
+     "load balancer whose connections must begin with a header of PROXY protocol version 2\n"
+     "that has the client's address; may be given several times, up to 16. Such a header is\n"
+     "refused from all other addresses (default: none)",
      add_proxy_from},
     {"share-models", NULL, OPTION_FLAG, OPTION_IN_FILE, VALUE(service.share_models), 0, 0, NULL,
      NULL,
-     "whoever knows a model's SHA-256 may use it, whoever has uploaded it (default:\n"
-     "only its owner: a user, a certificate's subject and issuer, a token's name; or\n"
-     "whoever, where the owner has said --share)",
+     "every client may use every model whose SHA-256 it knows (default: only the model's\n"
+     "owner may: a user, a certificate's subject and issuer, or a token's name; others only\n"
+     "if the owner has uploaded it with --share)",
      NULL},
     {"models", "DIR", OPTION_TEXT, OPTION_IN_FILE, VALUE(service.models), 0, 0, NULL, NULL,
-     "clients may name model files below this folder, as server:NAME; no symbolic\n"
-     "links, no other mounts (default: none)",
+     "folder of model files that clients may name as server:NAME; symbolic links and other\n"
+     "mounts are not followed (default: none)",
      NULL},
     {"stuck-after", "SECONDS", OPTION_NUMBER, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.stuck_s), 1, 86400, "seconds", "60",
-     "a thread that is at one piece of work for longer is taken for stuck: /healthz\n"
-     "says so, and the service manager's watchdog is not fed any more",
+     "a thread that works on one task for longer counts as stuck: /healthz fails, and\n"
+     "the service manager's watchdog is not fed; seconds",
      NULL},
     {"metrics", "ADDRESS", OPTION_OTHER, OPTION_IN_FILE, VALUE(service.metrics), 0, 0, NULL, NULL,
-     "serve GET /metrics, /healthz and /readyz there: unix:PATH or\n"
-     "tcp:HOST:PORT, loopback only without --metrics-open (default: nowhere)",
+     "serve GET /metrics, /healthz and /readyz at this address: unix:PATH or\n"
+     "tcp:HOST:PORT, only on the loopback without --metrics-open (default: none)",
      set_metrics},
     {"metrics-open", NULL, OPTION_FLAG, OPTION_IN_FILE, VALUE(service.metrics_open), 0, 0, NULL,
      NULL,
-     "--metrics may be beyond the loopback, for probes and scrapers: whoever reaches\n"
-     "it reads counts, times, the device and the version, and no name of a model, a\n"
-     "file or a client; without TLS",
+     "--metrics may be an address beyond the loopback, without TLS: everybody who reaches it\n"
+     "can read counts, times, the device and the version, but no name of a model, a file or\n"
+     "a client",
      NULL},
     {"log-level", "LEVEL", OPTION_OTHER, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.log_level),
      0, 0, NULL, "info",
@@ -252,16 +255,16 @@ static const struct option_row OWN_ROWS[] = {
     {"log-format", "FORMAT", OPTION_OTHER, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.log_format), 0, 0, NULL, "logfmt", "logfmt or json", set_log_format},
     {"config", "FILE", OPTION_TEXT, 0, VALUE(config), 0, 0, NULL, NULL,
-     "lines 'name = value' with the names above, once each but for those that may be\n"
-     "given several times; options given here go first",
+     "file with lines 'name = value' with the names above, each once, except those that may\n"
+     "be given several times; options of the command line replace those of the file",
      NULL},
     {"check-config", NULL, OPTION_FLAG, 0, VALUE(check_config), 0, 0, NULL, NULL,
      "check the options and the file, then exit", NULL},
     {"session-fd", "N", OPTION_OTHER, 0, VALUE(service.session_fd), 0, 0, NULL, "none",
-     "serve this connected socket alone and end with it", set_session_fd},
+     "serve only this connected socket, and end with it", set_session_fd},
     {"hash-token", "NAME:DAY", OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL,
-     "print the line for --tokens of the token on standard input, good until the\n"
-     "end of YYYY-MM-DD, and exit: openssl rand -base64 32 makes a token",
+     "read a token from standard input and print its line for --tokens, valid until the end\n"
+     "of the day YYYY-MM-DD; 'openssl rand -base64 32' makes a token",
      hash_token},
     {"version", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print the version and exit", NULL},
     {"help", NULL, OPTION_ACTION, 0, 0, 0, 0, 0, NULL, NULL, "print this and exit", NULL},

@@ -8,44 +8,47 @@
 #include "client/cli/options/values.h"
 
 const struct text_row TEXT_FAMILIES[] = {
-    {"reflection", "the view ray mirrored at the surface meets the light", "--lines reflection"},
-    {"highlight", "the surface's normal meets the light; the view plays no part",
+    {"reflection", "where the view ray, mirrored at the surface, meets the light",
+     "--lines reflection"},
+    {"highlight", "where the surface's normal meets the light, whatever the view",
      "--lines highlight"},
-    {"isophote", "the angle between normal and X,Y,Z (default: the direction of the eye)",
+    {"isophote", "the angle between the normal and X,Y,Z (default: the direction to the eye)",
      "--lines isophote:0,0,1 --pattern stripes:count=36"},
-    {"zebra", "the mirrored ray's elevation about X,Y,Z (default: --up)",
+    {"zebra", "the elevation of the mirrored ray, for the axis X,Y,Z (default: --up)",
      "--lines zebra --pattern stripes:count=30"},
     {"environment",
-     "the mirrored ray finds its place on a sphere at infinity about X,Y,Z\n"
-     "(default: --up): a latitude-longitude image",
+     "the place of the mirrored ray on a sphere at infinity with axis X,Y,Z\n"
+     "(default: --up), for latitude-longitude images",
      "--lines environment --pattern image:studio.hdr"},
     {0},
 };
 
 const struct text_row TEXT_LIGHTS[] = {
     {"rectangle",
-     "centre, u and v are its middle and its edges; seen from both sides, one-sided\n"
-     "from where u x v points: here down, on a part in mm",
+     "with centre and edges u and v; seen from both sides, or, if one-sided, only from\n"
+     "the side to which u x v points (in the example: below; a part in mm)",
      "--light rectangle:one-sided --light-center 0,0,3000 --light-u 20000,0,0 "
      "--light-v 0,-20000,0"},
-    {"plane", "the same without a border", "--light plane --pattern stripes:period=100"},
-    {"tunnel", "a cylinder about the axis v through centre, u its radius; lines run along it",
+    {"plane", "a rectangle without end", "--light plane --pattern stripes:period=100"},
+    {"tunnel", "an endless cylinder with radius u about the axis v through centre",
      "--light tunnel --pattern stripes:count=24,duty=0.3"},
-    {"sphere", "at infinity, v its axis: meridians", "--light sphere --pattern stripes:count=48"},
+    {"sphere", "a sphere at infinity with axis v; stripes are meridians",
+     "--light sphere --pattern stripes:count=48"},
     {0},
 };
 
 const struct text_row TEXT_PATTERNS[] = {
     {"stripes", "bright and dark stripes along v", "--pattern stripes:count=40,duty=0.3,soft=0.1"},
-    {"lattice", "stripes both ways", "--pattern lattice:count=40,duty=0.15"},
+    {"lattice", "stripes in both directions", "--pattern lattice:count=40,duty=0.15"},
     {"circles", "rings about the light's centre", "--pattern circles:count=40"},
-    {"lines", "single lines at places across the light, 0 to 1",
+    {"lines", "single lines across the light, at places from 0 to 1",
      "--pattern lines:at=0.4/0.5/0.6,width=0.01,soft=0.3"},
-    {"rainbow", "hue instead of bright and dark", "--pattern rainbow:count=5"},
-    {"distance", "bands by the length of the ray to the light", "--pattern distance:period=50"},
+    {"rainbow", "hues instead of bright and dark stripes", "--pattern rainbow:count=5"},
+    {"distance", "bands of equal distance along the ray to the light",
+     "--pattern distance:period=50"},
     {"image",
-     "a picture on the light: PNG, JPEG, TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM;\n"
-     "floats are linear light",
+     "an image on the light: PNG, JPEG, TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM;\n"
+     "floating-point images are linear light",
      "--pattern image:grid.png"},
     {0},
 };
@@ -78,19 +81,22 @@ static const struct number_key {
 #define N_NUMBERS (sizeof(NUMBERS) / sizeof(*NUMBERS))
 
 const struct text_row TEXT_PATTERN_KEYS[] = {
-    {"count", "periods across the light (circles: to its nearer edge); not of lines", "default 40"},
-    {"period", "length of one period, instead of count; not of lines",
-     "in the model's units; degrees at infinity; default: by count"},
-    {"duty", "bright share of a period; not of lines and rainbow", "default 0.5"},
-    {"rotation", "of the pattern on the light; circles and distance stay as they are", "default 0"},
-    {"offset", "shift of the pattern, in periods; not of lines", "default 0"},
-    {"soft", "share of a period (lines: of the width) that each edge takes; not of rainbow",
+    {"count", "periods across the light (circles: to its nearer edge); not for lines",
+     "default 40"},
+    {"period", "length of one period, instead of count; not for lines",
+     "model's units, at infinity degrees; default: by count"},
+    {"duty", "bright share of a period; not for lines and rainbow", "default 0.5"},
+    {"rotation", "rotation of the pattern on the light; no effect on circles and distance",
      "default 0"},
-    {"opacity", "over the shaded base (--base)", "default 1"},
-    {"fg, bg", "colours of bright and dark; not of rainbow",
+    {"offset", "shift of the pattern in periods; not for lines", "default 0"},
+    {"soft",
+     "width of each soft edge, as a share of a period (lines: of the width); not for rainbow",
+     "default 0"},
+    {"opacity", "opacity over the shaded surface (--base)", "default 1"},
+    {"fg, bg", "bright and dark colour; not for rainbow",
      "#rrggbb or #rrggbbaa; default white and black"},
-    {"at", "lines: up to 16 places with slashes between, 0 and 1 at the edges", "default 0.5"},
-    {"width", "lines: of each, as a share of the light", "default 0.01"},
+    {"at", "lines: up to 16 places, separated by slashes; 0 and 1 are the edges", "default 0.5"},
+    {"width", "lines: width of each line, as a share of the light", "default 0.01"},
     {0},
 };
 

@@ -145,8 +145,7 @@ size_t options_codes(const struct command *command,
 
 /* Explains MODEL, for commands that take one. */
 #define OPTIONS_MODEL_TEXT                                                                         \
-    "MODEL is a file, or server:NAME for one below the folder that the daemon at --server gives\n" \
-    "with --models."
+    "MODEL is a file, or server:NAME for a file in the folder --models of the daemon at --server."
 
 /* The `apply` function of --size. */
 bool options_apply_size(struct options *options, const char *value, char *why);

@@ -355,79 +355,79 @@ bool options_check_jpeg(const struct options *options, char *why)
 
 const struct option_row OPTIONS_JPEG[] = {
     {"jpeg-quality", 0, "N",
-     "of a .jpg, as libjpeg has it: {}, the lower the\n"
-     "smaller the file (default: 95)",
+     "quality of a .jpg file on libjpeg's scale, {}; lower\n"
+     "values give smaller files (default: 95)",
      apply_jpeg_quality, NULL},
     {"jpeg-subsampling", 0, "KIND",
-     "of a .jpg's colour: 444, one sample for each pixel, 422, for two side by\n"
-     "side, or 420, for two by two: smaller files, coloured edges less sharp\n"
-     "(default: 444)",
+     "colour resolution of a .jpg file: 444, one sample for each pixel; 422, one for\n"
+     "two pixels side by side; 420, one for two by two. Less colour gives smaller\n"
+     "files and less sharp coloured edges (default: 444)",
      apply_jpeg_subsampling, "444 422 420"},
     {0},
 };
 
 const struct option_row OPTIONS_SCHEDULE[] = {
     {"class", 0, "CLASS",
-     "what the daemon puts first when it has many: interactive, then still, then\n"
-     "batch, of which the last two keep a fifth of its time each (default: still;\n"
+     "priority at a busy daemon: interactive comes first, then still, then batch;\n"
+     "each of the last two keeps a fifth of the device's time (default: still;\n"
      "stream: interactive)",
      apply_class, "interactive still batch"},
     {"deadline", 0, "MS",
-     "of no use later than this after the daemon has read the request,\n"
-     "{} (default: none)",
+     "give up the frame unless it begins to be drawn within this time after the\n"
+     "daemon has read the request, {} (default: none)",
      apply_deadline, NULL},
     {0},
 };
 
 const struct option_row OPTIONS_MODEL[] = {
     {"weld", 0, NULL,
-     "joins an OBJ file's vertices at exactly equal positions, as glTF's are inside\n"
-     "a mesh anyway; the file is sent with the line 't weld 0/0/0' behind it and is\n"
-     "named by the SHA-256 of both",
+     "join vertices of an OBJ file at exactly equal positions; glTF meshes are\n"
+     "always joined. The line 't weld 0/0/0' is appended to the file, and the model\n"
+     "is identified by the SHA-256 of both",
      apply_weld, NULL},
     {0},
 };
 
 const struct option_row OPTIONS_COMMON[] = {
     {"server", 0, "ADDRESS",
-     "a running daemon: unix:PATH, tcp:HOST:PORT or tls:HOST:PORT (default:\n"
-     "SHEEN_SERVER from the environment, else a private daemon for this command)",
+     "address of a running daemon: unix:PATH, tcp:HOST:PORT or tls:HOST:PORT\n"
+     "(default: $SHEEN_SERVER, else a private daemon for this command)",
      apply_server, NULL},
     {"ca", 0, "FILE",
-     "PEM, the authority of a tls: server's certificate (default: those the system\n"
-     "trusts)",
+     "PEM file with the authority that must have issued the certificate of a tls:\n"
+     "server (default: the authorities that the system trusts)",
      apply_ca, NULL},
-    {"cert", 0, "FILE", "PEM, the certificate to show to a tls: server; with --key", apply_cert,
-     NULL},
-    {"key", 0, "FILE", "PEM, its key", apply_key, NULL},
+    {"cert", 0, "FILE", "PEM file with the certificate to present to a tls: server; with --key",
+     apply_cert, NULL},
+    {"key", 0, "FILE", "PEM file with the key of --cert", apply_key, NULL},
     {"token-file", 0, "FILE",
-     "a file whose first line is the token to show to a tls: server (default:\n"
-     "SHEEN_TOKEN_FILE from the environment, else none)",
+     "file whose first line is the token to present to a tls: server (default:\n"
+     "$SHEEN_TOKEN_FILE, else none)",
      apply_token_file, NULL},
     {"share", 0, NULL,
-     "whoever knows the SHA-256 of what is uploaded may use it too (default: this\n"
-     "user alone)",
+     "other users may use the uploaded files, too, if they know their SHA-256\n"
+     "(default: only this user)",
      apply_share, NULL},
     {"device", 0, "DEVICE",
-     "of the private daemon: auto (default), a GPU when there is one, else native;\n"
-     "software or native, processors without OpenGL; or an EGL device's number from\n"
-     "0, Mesa's software device among them",
+     "device of the private daemon: auto (default), a GPU if there is one, else the\n"
+     "processors; software or native, the processors without OpenGL; or the number\n"
+     "of an EGL device, from 0, which includes Mesa's software device",
      apply_device, "auto software native"},
     {"native-threads", 0, "N",
-     "of the private daemon: threads that draw on the native device, 1 to 64, or\n"
-     "auto (default), one for each processor that it may use. Pictures are the same\n"
-     "for any number",
+     "threads of the private daemon that draw if there is no GPU, 1 to 64, or auto\n"
+     "(default), one for each available processor. The number does not change\n"
+     "pictures",
      apply_native_threads, "auto"},
     {"native-isa", 0, "ISA",
-     "of the private daemon: instructions that the native device draws by, v2\n"
-     "(SSE4.2), v3 (AVX2 and FMA) or v4 (AVX-512) of x86-64, or auto (default), the\n"
-     "widest that the processor has. Pictures of two sets differ by rounding",
+     "x86-64 instructions with which the private daemon draws if there is no GPU: v2\n"
+     "(SSE4.2), v3 (AVX2 and FMA), v4 (AVX-512), or auto (default), the best that the\n"
+     "processor has. Pictures of different sets differ by rounding",
      apply_native_isa, "auto v2 v3 v4"},
     {"memory-budget", 0, "BYTES",
-     "of the private daemon: most that the model, its tables, images and frames may\n"
-     "take together, in main memory and on the device, 4M or more, as 800M or 16G\n"
-     "(default: half of the memory that the machine has, or its control group may\n"
-     "take)",
+     "memory of the private daemon for the model, its tables, images and frames\n"
+     "together, in main memory and on the device, at least 4M; for example 800M or\n"
+     "16G (default: half of the memory that the machine has or that the control\n"
+     "group allows)",
      apply_memory_budget, NULL},
     {"quiet", 'q', NULL, "no progress, summary, notices or warnings on standard error", apply_quiet,
      NULL},
@@ -436,137 +436,143 @@ const struct option_row OPTIONS_COMMON[] = {
 
 const struct option_row OPTIONS_RECONNECT[] = {
     {"reconnect", 0, "SECONDS",
-     "how long to go on connecting when the server of --server shuts down or breaks\n"
-     "the connection: what has no answer is asked again of the one that takes its\n"
-     "place, {} (default: 30; 0: give up at once). A server that\n"
-     "was never there, and a private daemon, are not waited for",
+     "how long to try to connect again when the server of --server shuts down or the\n"
+     "connection breaks, {} (default: 30; 0: never).\n"
+     "Requests without an answer are then sent again. A server that never answered,\n"
+     "and a private daemon, are not waited for",
      apply_reconnect, NULL},
     {0},
 };
 
 const struct option_row OPTIONS_OUTPUT[] = {
-    {"json", 0, NULL, "one JSON object on standard output", apply_json, NULL},
-    {"help", 'h', NULL, "shows the options with their ranges and defaults", NULL, NULL},
+    {"json", 0, NULL, "print one JSON object on standard output", apply_json, NULL},
+    {"help", 'h', NULL, "print the options with their ranges and defaults", NULL, NULL},
     {0},
 };
 
 const struct option_row OPTIONS_SIZE[] = {
     {"size", 0, "WxH",
      "width and height of the picture (default: 1280x720),\n"
-     "each {} (JPEG: {}); a device's\n"
-     "own limit may be lower",
+     "each {} (JPEG: {}); the\n"
+     "device's limit may be lower",
      options_apply_size, NULL},
     {0},
 };
 
 const struct option_row OPTIONS_SCENE[] = {
     {"eye", 0, "X,Y,Z",
-     "where the camera stands, in the model's units; with --target\n"
+     "position of the camera, in the model's units; with --target\n"
      "(default: a camera that frames the model)",
      apply_eye, NULL},
     {"target", 0, "X,Y,Z",
-     "the point it looks at; without --eye the default camera stays where it is\n"
-     "and turns to it",
+     "point that the camera looks at; without --eye the default camera keeps its\n"
+     "position and turns to this point",
      apply_target, NULL},
     {"view", 0, "NAME",
-     "the model framed from the front, back, left, right, top, bottom or iso (all\n"
-     "axes alike): with z up the front is at -y and the right at x, with y up at z\n"
-     "and x; not with --eye (default: from above the front right)",
+     "frame the model from the front, back, left, right, top, bottom or iso (equal\n"
+     "angles to all axes). If up is z, the front is at -y and the right at x; if up\n"
+     "is y, at z and x. Not with --eye (default: from above the front right)",
      apply_view, "front back left right top bottom iso"},
     {"zoom", 0, "FACTOR@X,Y",
-     "a closer look from the same eye, so that lines stay on the surface: FACTOR\n"
-     "{} times as close at the place X,Y of the picture,\n"
-     "0,0 its top left and 1,1 its bottom right (default: 0.5,0.5, the middle)",
+     "magnify the picture by FACTOR, {}, with the same eye,\n"
+     "so that no line moves on the surface, around the place X,Y of the picture:\n"
+     "0,0 is its top left, 1,1 its bottom right (default: 0.5,0.5)",
      apply_zoom, NULL},
     {"up", 0, "X,Y,Z",
-     "which way is up, for the camera and for the light: a direction X,Y,Z or x, y,\n"
-     "z, -x, -y, -z, +x and so on (default: what the file says, glTF: y; else z, or y where the "
-     "model is\n"
-     "thinner in y by more than 1 %: where that is wrong, as for a door that stands,\n"
-     "say it)",
+     "up direction of the model, for camera and light: X,Y,Z, or x, y, z, -x, -y, -z\n"
+     "(default: the file's, which is y for glTF; else a guess: z, or y if the model\n"
+     "is thinner in y by more than 1 %. Give it where the guess is wrong, as for an\n"
+     "upright door)",
      apply_up, "x y z -x -y -z"},
     {"fov", 0, "DEG",
      "vertical field of view, {} (default: 35);\n"
-     "without --eye and --target it zooms from where the default camera stands",
+     "without --eye and --target the default camera keeps its position",
      apply_fov, NULL},
     {"ortho", 0, "HEIGHT",
-     "orthographic: units from top to bottom of the picture,\n"
-     "{}; without --eye and --target it looks at the\n"
-     "model as the default camera does",
+     "orthographic camera: height of the picture in the model's units,\n"
+     "{}; without --eye and --target it looks in the\n"
+     "direction of the default camera",
      apply_ortho, NULL},
     {"lines", 0, "FAMILY",
-     "reflection, highlight, isophote, zebra or environment, the last three with\n"
-     ":X,Y,Z as wanted; sheen lights explains them (default: reflection)",
+     "kind of lines: reflection, highlight, isophote, zebra or environment, the last\n"
+     "three optionally with a direction :X,Y,Z; 'sheen lights' explains them\n"
+     "(default: reflection)",
      apply_lines, "reflection highlight isophote zebra environment"},
     {"light", 0, "KIND",
-     "rectangle, plane, tunnel or sphere, the first two with :one-sided as wanted;\n"
-     "each --light after the first begins another, over which the earlier lie\n"
-     "(default: tunnel; rectangle when the light is placed)",
+     "kind of light: rectangle, plane, tunnel or sphere, the first two optionally\n"
+     "with :one-sided. Each --light after the first begins another light below the\n"
+     "earlier ones (default: tunnel; rectangle if the light is placed)",
      apply_light, "rectangle plane tunnel sphere rectangle:one-sided plane:one-sided"},
     {"light-center", 0, "X,Y,Z",
-     "the middle of the latest light; with --light-u and --light-v (default: by the\n"
-     "model and --up alone, whatever the camera: a tunnel about the longer horizontal\n"
-     "side, which every reflected ray meets; a rectangle or plane above the model)",
+     "centre of the latest light; with --light-u and --light-v (default: placed by\n"
+     "the model and --up only, not by the camera: a tunnel about the longer\n"
+     "horizontal side, which every reflected ray meets; a rectangle or plane above\n"
+     "the model)",
      apply_light_center, NULL},
     {"light-u", 0, "X,Y,Z",
-     "its edge that stripes are counted along; a tunnel's radius; its length is\n"
-     "{}",
+     "edge u of the latest light, along which stripes are counted; the radius of a\n"
+     "tunnel; its length is {}",
      apply_light_u, NULL},
     {"light-v", 0, "X,Y,Z",
-     "its other edge, not along --light-u; the axis of a tunnel or sphere; its\n"
-     "length is {}",
+     "edge v of the latest light, not parallel to --light-u; the axis of a tunnel or\n"
+     "sphere; its length is {}",
      apply_light_v, NULL},
     {"pattern", 0, "PATTERN",
-     "of the latest light: stripes, lattice, circles, lines, rainbow or distance,\n"
-     "then :count=40,duty=0.5,... as far as wanted, or image:FILE (PNG,\n"
-     "JPEG, TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM); sheen patterns lists\n"
-     "all parts (default: stripes:count=40,duty=0.5)",
+     "pattern of the latest light: stripes, lattice, circles, lines, rainbow or\n"
+     "distance, optionally with :count=40,duty=0.5,...; or image:FILE (PNG, JPEG,\n"
+     "TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM); 'sheen patterns' lists all\n"
+     "parts (default: stripes:count=40,duty=0.5)",
      apply_pattern, "stripes lattice circles rainbow distance"},
     {"line-eye", 0, "EYE",
-     "whose view the lines are computed for: camera, a point X,Y,Z, or dir:X,Y,Z\n"
-     "for an eye at infinity that looks that way; holds the lines while the\n"
-     "camera moves (default: camera)",
+     "eye for which the lines are computed: camera, a point X,Y,Z, or dir:X,Y,Z for\n"
+     "an eye at infinity that looks in this direction. A fixed eye holds the lines\n"
+     "while the camera moves (default: camera)",
      apply_line_eye, "camera"},
     {"base", 0, "COLOUR",
-     "the surface, shaded, seen through patterns whose opacity is below 1 (clear\n"
-     "colours of a pattern leave the picture clear) (default: #b3b8bf)",
+     "colour of the shaded surface, visible through patterns with an opacity below 1;\n"
+     "transparent colours of a pattern leave the picture transparent (default:\n"
+     "#b3b8bf)",
      apply_base, NULL},
     {"antialias", 0, "KIND",
-     "exact: pixels at edges show shares of what they see, or off: each shows what\n"
-     "its centre sees, which is faster; lines stay averaged (default: exact, with\n"
-     "--filter off: off)",
+     "antialiasing of edges: exact, pixels mix what they see, or off, each pixel\n"
+     "shows what its centre sees, which is faster; lines are averaged in both cases\n"
+     "(default: exact; off with --filter off)",
      apply_antialias, "exact off"},
     {"filter", 0, "KIND",
-     "exact: lines averaged over each pixel's footprint, or off: one sample a\n"
-     "pixel, of lines and edges (default: exact)",
+     "averaging of lines: exact, over each pixel, or off, one sample for each pixel,\n"
+     "of lines and edges (default: exact)",
      apply_filter, "exact off"},
     {"miss", 0, "COLOUR",
-     "where no light is met: #rrggbb or #rrggbbaa\n"
+     "colour where the ray meets no light: #rrggbb or #rrggbbaa\n"
      "(default: #29303b, a dark blue-grey)",
      apply_miss, NULL},
-    {"empty", 0, "COLOUR", "where no surface is hit: #rrggbb or #rrggbbaa (default: #808080, grey)",
+    {"empty", 0, "COLOUR",
+     "colour where no surface is visible: #rrggbb or #rrggbbaa (default: #808080, grey)",
      apply_empty, NULL},
     {0},
 };
 
 const struct option_row OPTIONS_SURFACE[] = {
     {"surface", 0, "KIND",
-     "exact (default): the limit surface; for comparison polygon:LEVEL, the cage\n"
-     "subdivided LEVEL times ({}), normals interpolated as a graphics\n"
-     "card does, or wireframe:LEVEL, the edges of those polygons",
+     "surface to draw: exact, the limit surface; or, for comparison, polygon:LEVEL,\n"
+     "the cage subdivided LEVEL times ({}) with interpolated normals, as\n"
+     "a graphics card draws it, or wireframe:LEVEL, the edges of those polygons\n"
+     "(default: exact)",
      apply_surface, "exact polygon:1 polygon:2 polygon:3 wireframe:1 wireframe:2 wireframe:3"},
     {"show", 0, "KIND",
-     "false colour with a legend: curvature (the principal curvature of larger\n"
-     "magnitude), gaussian, mean, normal, ptex, draft:X,Y,Z (degrees to the pull\n"
-     "direction X,Y,Z, or a word as for --up), or lines (default: lines)",
+     "content of the picture: lines, or false colour with a legend: curvature (the\n"
+     "principal curvature with the larger magnitude), gaussian, mean, normal, ptex,\n"
+     "or draft:X,Y,Z (draft angle in degrees for the direction of pull X,Y,Z, or a\n"
+     "word as for --up) (default: lines)",
      apply_show, "curvature gaussian mean normal ptex draft:z lines"},
     {"show-range", 0, "VALUE",
-     "where the colours of --show end, both ways: 1/unit, gaussian 1/unit^2,\n"
-     "{} (default: 98 of 100 pixels are inside,\n"
-     "stream: of the first frame's, for all frames); draft\n"
+     "value at which the colours of --show end, on both sides: 1/unit, for gaussian\n"
+     "1/unit^2, {} (default: 98 % of the pixels are\n"
+     "inside; stream: of the first frame, for all frames); for draft\n"
      "{} (default: 3)",
      apply_show_range, NULL},
-    {"legend", 0, "on|off", "of --show, over the lower right corner of the picture (default: on)",
-     apply_legend, "on off"},
+    {"legend", 0, "on|off",
+     "legend of --show in the lower right corner of the picture (default: on)", apply_legend,
+     "on off"},
     {0},
 };
