@@ -23,14 +23,15 @@ void turns_leave(struct turns *turns, struct turn *turn)
     turn->next = turn->previous = NULL;
 }
 
-/* Updates a member's deficit to the ring's current round. A member cannot save up unused time; one
- * that used more than its part pays it back even while it wants nothing. */
+/* Updates a member's deficit to the ring's current round. A member saves up no more than the ring
+ * allows; one that used more than its part pays it back even while it wants nothing. */
 static void settle(const struct turns *turns, struct turn *turn)
 {
     uint64_t rounds = turns->round - turn->round;
-    const int64_t most = TURNS_QUANTUM_US;
+    const int64_t most = TURNS_QUANTUM_US + turns->saved_us;
     turn->round = turns->round;
-    turn->deficit_us = rounds > UINT32_MAX ? most : turn->deficit_us + (int64_t)rounds * most;
+    turn->deficit_us =
+        rounds > UINT32_MAX ? most : turn->deficit_us + (int64_t)rounds * TURNS_QUANTUM_US;
     if (turn->deficit_us > most)
         turn->deficit_us = most;
 }

@@ -26,6 +26,9 @@ struct turn {
 struct turns {
     struct turn *first; /* the member whose turn it is; NULL: the ring is empty */
     uint64_t round;
+    /* Unused time that a member can save up, beside its part of the present round. A member that uses
+     * less than its share is then served at once and without a break, for so long. */
+    int64_t saved_us;
 };
 
 /* A member joins as the last of the round, or leaves. A member with a negative deficit pays it back

@@ -74,8 +74,11 @@ struct schedule_entry *scheduler_enter(struct scheduler *scheduler, struct sched
     struct schedule_flow *flow = flow_of(entry);
     struct schedule_part *part = part_of(entry);
     if (flow->n++ == 0) {
-        if (!part->flows.first)
-            turns_join(&scheduler->classes[entry->request_class].parts, &part->turn);
+        if (!part->flows.first) {
+            struct turns *parts = &scheduler->classes[entry->request_class].parts;
+            parts->saved_us = SCHEDULER_SAVED_US;
+            turns_join(parts, &part->turn);
+        }
         turns_join(&part->flows, &flow->turn);
     }
     scheduler->waiting++;

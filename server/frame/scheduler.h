@@ -30,6 +30,9 @@ enum { N_CLASSES = 3 };
 /* Two interactive tiles are on the device at once only if both together take no longer than this. So a
  * new request waits no longer, unless a single tile takes longer. */
 #define SCHEDULER_AHEAD_US 4000
+/* A party that has used less than its share draws for so long without a break: a frame of several
+ * tiles does not wait before each of them for a tile of another party. */
+#define SCHEDULER_SAVED_US 32000
 /* Of the device's time for stills, and for batches, while they wait. */
 #define SCHEDULER_SHARE_PERCENT 20
 

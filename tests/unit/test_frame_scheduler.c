@@ -631,6 +631,45 @@ static void test_rare_ones_are_served_at_once(void **state)
     free(device);
 }
 
+/* A frame of several tiles, of a client that asks rarely, is drawn without a break beside those that ask
+ * all the time; one that is longer than what can be saved up shares the rest of its time. */
+static void test_rare_frames_are_not_interrupted(void **state)
+{
+    (void)state;
+    struct device *device = calloc(1, sizeof *device);
+    for (int i = 0; i < 3; i++)
+        add_client(device, CLASS_STILL, 5000, 3);
+    struct schedule_queue queue;
+    add_queue(&queue);
+    for (int tiles = 6; tiles <= 20; tiles += 14) {
+        run_device(device, device->now_us + 1000000);
+        struct schedule_entry rare = entry_of(CLASS_STILL, 5000), *next;
+        ask(&device->scheduler, &queue, &rare);
+        int drawn = 0, others = 0;
+        while (drawn < tiles) {
+            next = scheduler_next(&device->scheduler);
+            if (next == &rare) {
+                scheduler_stepped(&device->scheduler, next, 5000, ++drawn < tiles);
+                continue;
+            }
+            struct client *client = next->owner;
+            int k = (int)(next - client->entry);
+            scheduler_stepped(&device->scheduler, next, client->tile_us, --client->tiles[k] > 0);
+            if (client->tiles[k] == 0) {
+                scheduler_finished(&device->scheduler, next);
+                client_asks(device, client, k);
+            }
+            others++;
+        }
+        scheduler_finished(&device->scheduler, &rare);
+        if (tiles == 6)
+            assert_true(others <= 3); /* a tile that had its turn already */
+        else
+            assert_in_range(others, 3 * (20 - 8), 3 * (20 - 5)); /* a quarter of the time */
+    }
+    free(device);
+}
+
 /* A wrong estimate is put right by what was measured. */
 static void test_lies_about_costs_do_not_pay(void **state)
 {
@@ -694,6 +733,7 @@ int main(void)
         cmocka_unit_test(test_shares_of_what_is_wanted),
         cmocka_unit_test(test_interactive_waits_for_one_tile),
         cmocka_unit_test(test_rare_ones_are_served_at_once),
+        cmocka_unit_test(test_rare_frames_are_not_interrupted),
         cmocka_unit_test(test_lies_about_costs_do_not_pay),
         cmocka_unit_test(test_costs),
     };
