@@ -23,54 +23,60 @@ void turns_leave(struct turns *turns, struct turn *turn)
     turn->next = turn->previous = NULL;
 }
 
-/* Updates a member's deficit to the ring's current round. A member saves up no more than the ring
- * allows; one that used more than its part pays it back even while it wants nothing. */
-static void settle(const struct turns *turns, struct turn *turn)
+/* A member's deficit in the ring's current round. A member saves up no more than the ring allows; one
+ * that used more than its part pays it back even while it wants nothing. */
+static int64_t deficit_us(const struct turns *turns, const struct turn *turn)
 {
     uint64_t rounds = turns->round - turn->round;
     const int64_t most = TURNS_QUANTUM_US + turns->saved_us;
-    turn->round = turns->round;
-    turn->deficit_us =
-        rounds > UINT32_MAX ? most : turn->deficit_us + (int64_t)rounds * TURNS_QUANTUM_US;
-    if (turn->deficit_us > most)
-        turn->deficit_us = most;
+    if (rounds > UINT32_MAX)
+        return most;
+    int64_t us = turn->deficit_us + (int64_t)rounds * TURNS_QUANTUM_US;
+    return us < most ? us : most;
 }
 
-/* Goes once round the ring and returns the first member that can use the thing and has time left.
- * If none has, *rounds_short is the number of rounds until one has; 0: no member can use the
- * thing. */
-static struct turn *once_round(struct turns *turns,
-                               bool (*can_use)(const struct turn *turn, void *context),
-                               void *context, uint64_t *rounds_short)
+/* The next member, from the one whose turn it is once round the ring: the first that has time left, or
+ * will have it first. *rounds_short is the number of rounds until then. */
+static struct turn *find(const struct turns *turns,
+                         bool (*can_use)(const struct turn *turn, void *context), void *context,
+                         uint64_t *rounds_short)
 {
-    struct turn *turn = turns->first;
+    struct turn *turn = turns->first, *found = NULL;
     *rounds_short = 0;
+    if (!turn)
+        return NULL;
     do {
-        if (can_use(turn, context)) {
-            settle(turns, turn);
-            if (turn->deficit_us > 0)
-                return turn;
-            uint64_t rounds = (uint64_t)-turn->deficit_us / TURNS_QUANTUM_US + 1;
-            if (*rounds_short == 0 || rounds < *rounds_short)
-                *rounds_short = rounds;
+        if (!can_use(turn, context))
+            continue;
+        int64_t us = deficit_us(turns, turn);
+        uint64_t rounds = us > 0 ? 0 : (uint64_t)-us / TURNS_QUANTUM_US + 1;
+        if (!found || rounds < *rounds_short) {
+            found = turn;
+            *rounds_short = rounds;
         }
-        turn = turn->next;
-    } while (turn != turns->first);
-    return NULL;
+        if (rounds == 0)
+            return found;
+    } while ((turn = turn->next) != turns->first);
+    return found;
+}
+
+struct turn *turns_peek(const struct turns *turns,
+                        bool (*can_use)(const struct turn *turn, void *context), void *context)
+{
+    uint64_t rounds_short;
+    return find(turns, can_use, context, &rounds_short);
 }
 
 struct turn *turns_next(struct turns *turns,
                         bool (*can_use)(const struct turn *turn, void *context), void *context)
 {
     uint64_t rounds_short;
-    if (!turns->first)
+    struct turn *turn = find(turns, can_use, context, &rounds_short);
+    if (!turn)
         return NULL;
-    struct turn *turn = once_round(turns, can_use, context, &rounds_short);
-    if (!turn && rounds_short > 0) {
-        turns->round += rounds_short;
-        turn = once_round(turns, can_use, context, &rounds_short);
-    }
-    if (turn)
-        turns->first = turn;
+    turns->round += rounds_short;
+    turn->deficit_us = deficit_us(turns, turn);
+    turn->round = turns->round;
+    turns->first = turn;
     return turn;
 }

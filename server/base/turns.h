@@ -40,6 +40,9 @@ void turns_leave(struct turns *turns, struct turn *turn);
  * none. */
 struct turn *turns_next(struct turns *turns,
                         bool (*can_use)(const struct turn *turn, void *context), void *context);
+/* The member that turns_next() would return now. The turn does not pass to it. */
+struct turn *turns_peek(const struct turns *turns,
+                        bool (*can_use)(const struct turn *turn, void *context), void *context);
 
 /* The member has used `us` microseconds; negative: gives them back. */
 static inline void turn_charge(struct turn *turn, int64_t us)

@@ -220,6 +220,18 @@ static struct schedule_entry *pick(struct scheduler *scheduler, enum request_cla
     return drawable(scheduler, turn->of, request_class);
 }
 
+/* The entry that pick() would choose. */
+static const struct schedule_entry *peek(const struct scheduler *scheduler,
+                                         enum request_class request_class)
+{
+    struct choice choice = {scheduler, request_class};
+    const struct turn *turn =
+        turns_peek(&scheduler->classes[request_class].parts, can_part, &choice);
+    const struct schedule_part *part = turn->of;
+    turn = turns_peek(&part->flows, can_flow, &choice);
+    return drawable(scheduler, turn->of, request_class);
+}
+
 /* Books time of the device. Classes that wait are owed their share of it; the class that used it
  * pays all of it from its share, unless no other class wanted the device. */
 static void book(struct scheduler *scheduler, enum request_class used_by, int64_t us)
@@ -279,10 +291,14 @@ struct schedule_entry *scheduler_next(struct scheduler *scheduler)
     int c = scheduler->on_device < 2 ? next_class(scheduler) : N_CLASSES;
     if (c == N_CLASSES)
         return NULL;
+    /* A request that comes meanwhile may go first, and so may the next tile of the frame that is being
+     * drawn: nobody's turn has passed. */
+    if (scheduler->ahead_us > 0 &&
+        scheduler->ahead_us + peek(scheduler, (enum request_class)c)->estimate_us >
+            SCHEDULER_AHEAD_US)
+        return NULL;
     struct schedule_entry *entry = pick(scheduler, (enum request_class)c);
     struct schedule_flow *flow = flow_of(entry);
-    if (scheduler->ahead_us > 0 && scheduler->ahead_us + entry->estimate_us > SCHEDULER_AHEAD_US)
-        return NULL; /* a request that comes meanwhile may go first */
     if (entry->state == SCHEDULE_READY) {
         flow->begun++;
         part_of(entry)->begun++;

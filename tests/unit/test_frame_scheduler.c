@@ -638,17 +638,18 @@ static void test_rare_frames_are_not_interrupted(void **state)
     (void)state;
     struct device *device = calloc(1, sizeof *device);
     for (int i = 0; i < 3; i++)
-        add_client(device, CLASS_STILL, 5000, 3);
+        add_client(device, CLASS_INTERACTIVE, 5000, 3);
     struct schedule_queue queue;
     add_queue(&queue);
     for (int tiles = 6; tiles <= 20; tiles += 14) {
         run_device(device, device->now_us + 1000000);
-        struct schedule_entry rare = entry_of(CLASS_STILL, 5000), *next;
+        struct schedule_entry rare = entry_of(CLASS_INTERACTIVE, 5000), *next;
         ask(&device->scheduler, &queue, &rare);
         int drawn = 0, others = 0;
         while (drawn < tiles) {
             next = scheduler_next(&device->scheduler);
             if (next == &rare) {
+                assert_null(scheduler_next(&device->scheduler)); /* asked again while it is drawn */
                 scheduler_stepped(&device->scheduler, next, 5000, ++drawn < tiles);
                 continue;
             }
