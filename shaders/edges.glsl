@@ -38,6 +38,52 @@ vec3 normal_at(Hit a, vec3 move)
     return normalize(a.n - e1 * turn.x - e2 * turn.y);
 }
 
+bool border_crosses(ivec2 p)
+{
+    vec2 foot = border_foot(imageLoad(border, p).x);
+    return dot(foot, foot) <= 0.5 * (abs(foot.x) + abs(foot.y));
+}
+
+const ivec2 BESIDE[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+const ivec2 DIAGONAL[4] = ivec2[4](ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
+
+// Whether the pixel's border runs through it, a neighbour to a side is not where its paraboloid says, one beside or
+// across a corner shows surface where it shows none, or none where it does, or it shows surface at the rim of what is
+// drawn.
+bool is_at_edge(ivec2 p, Hit own)
+{
+    bool at_rim = any(lessThan(p, ivec2(1))) || any(greaterThan(p, tile.zw - 2));
+    bool is_hit = own.depth > 0.0, at_edge = is_hit && (at_rim || border_crosses(p));
+    for (int i = 0; i < 4; i++) {
+        ivec2 q = clamp(p + BESIDE[i], ivec2(0), tile.zw - 1);
+        float z = imageLoad(hit_depth, q).x;
+        bool is_off = off_paraboloid(own, on_ray(pixel_offset(q), z)) > SAME_PX;
+        at_edge = at_edge || is_hit != z > 0.0 || (is_hit && is_off);
+    }
+    for (int i = 0; i < 4; i++) {
+        ivec2 q = clamp(p + DIAGONAL[i], ivec2(0), tile.zw - 1);
+        at_edge = at_edge || is_hit != imageLoad(hit_depth, q).x > 0.0;
+    }
+    return at_edge;
+}
+
+// How far the normal turns from side to side of a pixel of high curvature, rad.
+const float MOST_TURN = 0.025;
+
+float turn_over_pixel(ivec2 p, Hit hit)
+{
+    vec3 e1, e2;
+    tangent_basis(hit.n, e1, e2);
+    vec3 d = to_world(vec3(pixel_offset(p) * ray.x, 1.0));
+    mat2 h = mat2(hit.h.xy, hit.h.yz);
+    float turn = 0.0;
+    for (int i = 0; i < 2; i++) {
+        vec3 along = axis[i].xyz - d * (dot(axis[i].xyz, hit.n) / dot(d, hit.n));
+        turn = max(turn, length(h * vec2(dot(along, e1), dot(along, e2))));
+    }
+    return turn * pixel_units(hit.depth);
+}
+
 bool same_surface(Hit a, Hit b)
 {
     return off_paraboloid(a, b.x) < SAME_PX && dot(a.n, b.n) > 0.9;

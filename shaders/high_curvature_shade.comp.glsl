@@ -7,7 +7,20 @@
 
 layout(local_size_x = 64) in;
 
-const float STEP = 1.0 / 3.0;  // px: the side of a square
+const uint SIDE = 3u, SQUARES = SIDE * SIDE;
+const float STEP = 1.0 / float(SIDE);  // px: the side of a square
+
+// The squares that are shaded: all of them, or one of them light by light, the hindmost first.
+uniform uint first_square, end_square;
+
+// Of frames of several lights: the sum of what the squares show before this one.
+layout(binding = 5, rgba32f) uniform image2D square_sum;
+
+// Its middle, px from the pixel's.
+vec2 square_middle(uint i)
+{
+    return (vec2(i % SIDE, i / SIDE) + 0.5) * STEP - 0.5;
+}
 
 // Along one axis of the picture: what the normal's change a pixel, `slope`, leaves of it, and how the
 // change across, `cross_slope`, goes along with it.
@@ -50,6 +63,14 @@ Turning turning_along(Hit hit, vec3 turn[2], ivec2 p, int axis)
     return t;
 }
 
+float squares_covered(Piece piece)
+{
+    float n = 0.0;
+    for (uint i = 0u; i < SQUARES; i++)
+        n += covers(piece, square_middle(i)) ? 1.0 : 0.0;
+    return n;
+}
+
 void main()
 {
     uint index = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
@@ -63,8 +84,8 @@ void main()
     Piece piece = piece_of(hit, p, ivec2(0));
     Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
     float n = 0.0;
-    for (vec2 d = vec2(0.5 * (STEP - 1.0)); d.y < 0.5;
-         d = d.x + STEP < 0.5 ? vec2(d.x + STEP, d.y) : vec2(0.5 * (STEP - 1.0), d.y + STEP)) {
+    for (uint i = first_square; i < end_square; i++) {
+        vec2 d = square_middle(i);
         float z = depth_at(piece, d), x = d.x, y = d.y;
         if (!covers(piece, d))
             continue;
@@ -82,6 +103,16 @@ void main()
         sum = added(sum, lay_over(behind, at, meet(at), q));
         n += 1.0;
     }
-    if (n > 0.0)
-        put_shown(p, scaled(sum, 1.0 / n), 0.0);
+    bool is_whole = end_square - first_square == SQUARES;
+    if (is_whole || !is_foremost) {
+        if (n > 0.0)
+            put_shown(p, scaled(sum, 1.0 / n), 0.0);
+        return;
+    }
+    vec4 light = sum.light + sum.missed * miss;
+    if (first_square > 0u)
+        light += imageLoad(square_sum, p);
+    imageStore(square_sum, p, light);
+    if (end_square == SQUARES)
+        put_colour(p, light / max(squares_covered(piece), 1.0));
 }

@@ -32,7 +32,7 @@ layout(std140, binding = 1) uniform Light {
     float opacity, half_width;
     int n_single;
     bool is_hindmost, is_foremost, is_one_sided, has_direction;
-    ivec4 want;                        // whether to write light_st, curvature, light_change
+    ivec4 want;                        // whether to write light_st, curvature, light_change; to list parts
 };
 
 const float PI = 3.14159265358979;

@@ -282,10 +282,21 @@ vec4 mean_colour(Met met)
     return sum / weight;
 }
 
-// The pattern over the shaded base, over the lights behind; q as for sample_at.
-Shown lay_over(Shown behind, Sample at, Met met, vec2 q)
+// The pattern's mean over the shaded base; q as for sample_at.
+vec4 own_light(Sample at, vec4 mean, vec2 q)
 {
     float lit = 0.3 + 0.7 * abs(dot(at.n, normalize(to_world(vec3(q * ray.x, 1.0)))));
-    vec4 own = met.cover * mix(vec4(base.rgb * lit, base.a), mean_colour(met), opacity);
-    return Shown(own + (1.0 - own.a) * behind.light, (1.0 - met.cover) * behind.missed);
+    return mix(vec4(base.rgb * lit, base.a), mean, opacity);
+}
+
+// A light met by the share `cover` of an area, over the lights behind.
+Shown laid_over(Shown behind, vec4 own, float cover)
+{
+    own *= cover;
+    return Shown(own + (1.0 - own.a) * behind.light, (1.0 - cover) * behind.missed);
+}
+
+Shown lay_over(Shown behind, Sample at, Met met, vec2 q)
+{
+    return laid_over(behind, own_light(at, mean_colour(met), q), met.cover);
 }

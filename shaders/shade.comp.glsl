@@ -2,9 +2,20 @@
 // The formulas are in README.md; rays and lights in lines.glsl, patterns in patterns.glsl.
 //
 // Light, pattern and colours may change without stages 1 and 2. Several lights are several passes,
-// the hindmost first; each blends over what is there.
+// the hindmost first; each blends over what is there. The foremost lists the pixels that are shaded in
+// parts (uneven.glsl).
 
 layout(local_size_x = 64) in;
+
+LIST(2, Parts, parts);
+
+layout(binding = 5, r16f) writeonly uniform image2D next_uneven;
+layout(binding = 4) uniform sampler2D behind_uneven;
+
+// What lights show through each other, unless their deviations make less together.
+const float LEAST_UNEVEN = 0.01;
+// Stands in the plane of the lights' deviations for pixels to be listed.
+const float IN_PARTS = 2.0;
 
 void main()
 {
@@ -21,6 +32,16 @@ void main()
     }
     Shown behind = shown_behind(p);
     bool is_hit = hit.depth > 0.0;
-    Shown shown = mirrors(hit) ? lay_over(behind, at, met, q) : behind;
+    vec4 mean = mean_colour(met), own = own_light(at, mean, q);
+    Shown shown = mirrors(hit) ? laid_over(behind, own, met.cover) : behind;
     put_shown(p, scaled(shown, float(is_hit)), float(!is_hit));
+    if (want.w == 0)
+        return;
+    Uneven uneven = unevenness(met, mean, own);
+    float before = is_hindmost ? 0.0 : texelFetch(behind_uneven, p, 0).x;
+    bool in_parts = before >= IN_PARTS || before * uneven.alpha > LEAST_UNEVEN;
+    if (!is_foremost)
+        imageStore(next_uneven, p, vec4(in_parts ? IN_PARTS : uneven.light + (1.0 - met.cover * own.a) * before));
+    else if (in_parts && mirrors(hit) && imageLoad(border, p).x != ROUNDED && !is_at_edge(p, hit))
+        LIST_ADD(parts, p, 64u)
 }

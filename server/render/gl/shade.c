@@ -115,8 +115,20 @@ static void bind_lights(const struct target *target, uint32_t i)
 {
     glBindTextureUnit(1, target->lights[~i & 1]);
     glBindTextureUnit(2, target->missed[~i & 1]);
+    glBindTextureUnit(4, target->uneven[~i & 1]);
     glBindImageTexture(6, target->lights[i & 1], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
     glBindImageTexture(7, target->missed[i & 1], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R16F);
+}
+
+/* What differs from program to program. */
+static void bind_own(const struct target *target, uint32_t i, enum shaded which)
+{
+    if (which == SHADED_ALL || which == SHADED_UNFILTERED)
+        glBindImageTexture(5, target->uneven[i & 1], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R16F);
+    else if (which == SHADED_HIGH_CURVATURE)
+        glBindImageTexture(5, target->square_sum, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+    else
+        glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
 }
 
 static void bind_planes(const struct target *target, enum shaded which)
@@ -132,7 +144,6 @@ static void bind_planes(const struct target *target, enum shaded which)
     } else {
         glBindTextureUnit(3, target->ends);
         glBindImageTexture(4, target->border, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
-        glBindImageTexture(5, target->coverage, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
     }
 }
 
@@ -144,7 +155,10 @@ static void run_over_nothing(const struct gl_renderer *r, const struct frame_req
 {
     bind_picture(r, request, light);
     bind_planes(&r->target, (enum shaded)program->key.which);
-    bind_lights(&r->target, 0);
+    if (program->key.which != SHADED_PLANES) {
+        bind_lights(&r->target, 0);
+        bind_own(&r->target, 0, (enum shaded)program->key.which);
+    }
     glUseProgram(program->name);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->shade.no_groups);
     glDispatchComputeIndirect(0);
@@ -208,15 +222,36 @@ static void shade_planes(struct gl_renderer *r, const struct frame_request *requ
     dispatch_groups(program_of(r, request, &request->lights[0], SHADED_PLANES), r->target.groups);
 }
 
-/* The pixels that are listed, by how they are shaded. */
-static void shade_listed(struct gl_renderer *r, const struct frame_request *request,
-                         const struct light *light)
+/* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
+enum { SQUARES = 9 };
+
+/* The list of pixels whose lights are shaded in parts: one that stage 2 no longer needs. */
+static GLuint parts_of(const struct target *target)
 {
+    return target->retry_pixels;
+}
+
+/* Light i of some of them, at the pixels of a list. */
+static void shade_squares(struct gl_renderer *r, const struct frame_request *request, uint32_t i,
+                          GLuint list, GLuint first, GLuint end)
+{
+    GLuint program = program_of(r, request, &request->lights[i], SHADED_HIGH_CURVATURE);
+    bind_own(&r->target, i, SHADED_HIGH_CURVATURE);
+    glProgramUniform1ui(program, glGetUniformLocation(program, "first_square"), first);
+    glProgramUniform1ui(program, glGetUniformLocation(program, "end_square"), end);
+    dispatch_listed(program, list);
+}
+
+/* The pixels that are listed, by how they are shaded. */
+static void shade_listed(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
+{
+    const struct light *light = &request->lights[i];
     GLuint rounded = program_of(r, request, light, SHADED_ROUNDED);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_COMMAND_BARRIER_BIT);
+    shade_squares(r, request, i, r->target.high_curvature, 0, SQUARES);
+    bind_own(&r->target, i, SHADED_EDGES);
     dispatch_listed(program_of(r, request, light, SHADED_EDGES), r->target.edges);
-    dispatch_listed(program_of(r, request, light, SHADED_HIGH_CURVATURE), r->target.high_curvature);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
     glProgramUniform1ui(rounded, glGetUniformLocation(rounded, "max_rounded"),
                         tile_max_rounded(&r->drawing.drawn));
@@ -258,33 +293,57 @@ void shade_read_share(const struct gl_renderer *r, const struct frame_request *r
     frame->met_px += counts[1];
 }
 
-static void shade_light(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
+/* What the programs of light i read and write. */
+static void bind_light(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
 {
-    const struct light *light = &request->lights[i];
-    enum shaded all = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
     struct light_block block;
     light_block_fill(&block, request, i);
     glNamedBufferSubData(r->shade.light_buffer, 0, sizeof block, &block);
-    bind_picture(r, request, light);
-    bind_planes(&r->target, all);
+    bind_picture(r, request, &request->lights[i]);
     bind_lights(&r->target, i);
+}
+
+static void shade_light(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
+{
+    enum shaded all = request->unfiltered ? SHADED_UNFILTERED : SHADED_ALL;
+    bind_light(r, request, i);
+    bind_planes(&r->target, all);
+    bind_own(&r->target, i, all);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, parts_of(&r->target));
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    dispatch_groups(program_of(r, request, light, all), r->target.groups);
+    dispatch_groups(program_of(r, request, &request->lights[i], all), r->target.groups);
     if (request_has_coverage(request))
-        shade_listed(r, request, light);
+        shade_listed(r, request, i);
     if (request_may_miss_light(request))
         share_light(r, request, i);
 }
 
+/* The listed pixels anew: all lights of each square, one square after the other. */
+static void shade_parts(struct gl_renderer *r, const struct frame_request *request)
+{
+    uint32_t n_lights = request->n_lights;
+    for (uint32_t k = 0; k < SQUARES * n_lights; k++) {
+        uint32_t i = n_lights - 1 - k % n_lights, square = k / n_lights;
+        bind_light(r, request, i);
+        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                        GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+        shade_squares(r, request, i, parts_of(&r->target), square, square + 1);
+    }
+}
+
 bool stage_shade(struct gl_renderer *r, const struct frame_request *request, struct error *error)
 {
+    static const GLuint no_work[4] = {0, 1, 1, 0};
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->shade.light_buffer);
     clear_planes(r, request);
+    glNamedBufferSubData(parts_of(&r->target), 0, sizeof no_work, no_work);
     for (uint32_t i = request->n_lights; i-- > 0;) {
         if (!frame_watch_check(&r->watch, error))
             return false;
         shade_light(r, request, i);
     }
+    if (request_has_coverage(request) && request->n_lights > 1)
+        shade_parts(r, request);
     if (planes_wanted(request))
         shade_planes(r, request);
     return true;

@@ -26,8 +26,8 @@ static const struct {
     {offsetof(struct target, light_change), GL_RGBA32F, 16},
 };
 
-/* The bytes of a pixel in the planes of the lights behind others. */
-enum { LIGHTS_BYTES = 2 * (8 + 2) };
+/* The bytes of a pixel in the planes that frames of several lights take. */
+enum { LIGHTS_BYTES = 2 * (8 + 2 + 2) + 16 };
 
 /* The lists of pixels of a target. */
 enum { N_LISTS = 7 };
@@ -137,9 +137,13 @@ bool target_reserve_lights(struct target *target, struct error *error)
     GLsizei width = (GLsizei)target->width, height = (GLsizei)target->height;
     glCreateTextures(GL_TEXTURE_2D, 2, target->lights);
     glCreateTextures(GL_TEXTURE_2D, 2, target->missed);
+    glCreateTextures(GL_TEXTURE_2D, 2, target->uneven);
+    glCreateTextures(GL_TEXTURE_2D, 1, &target->square_sum);
+    glTextureStorage2D(target->square_sum, 1, GL_RGBA32F, width, height);
     for (int i = 0; i < 2; i++) {
         glTextureStorage2D(target->lights[i], 1, GL_RGBA16F, width, height);
         glTextureStorage2D(target->missed[i], 1, GL_R16F, width, height);
+        glTextureStorage2D(target->uneven[i], 1, GL_R16F, width, height);
     }
     return gpu_check("the planes of a frame's lights", error);
 }
@@ -179,5 +183,7 @@ void target_finish(struct target *target)
         glDeleteTextures(1, image_name(target, i));
     glDeleteTextures(2, target->lights);
     glDeleteTextures(2, target->missed);
+    glDeleteTextures(2, target->uneven);
+    glDeleteTextures(1, &target->square_sum);
     *target = (struct target){0};
 }

@@ -39,6 +39,8 @@ struct target {
     GLuint rounded_hits;
     GLuint lights[2];   /* colours of the lights behind the one being drawn: RGBA16F; 0: none */
     GLuint missed[2];   /* R16F */
+    GLuint uneven[2];   /* R16F: shaders/uneven.glsl */
+    GLuint square_sum;  /* RGBA32F: shaders/high_curvature_shade.comp.glsl */
     GLuint max_rounded; /* pixels of which rounded_hits has room for all rays; 0: there is none */
 };
 

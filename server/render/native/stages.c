@@ -28,12 +28,13 @@ struct run {
 };
 
 /* The lists that a program may add to. */
-enum { ADDED_LISTS = 4 };
+enum { ADDED_LISTS = 5 };
 
 static struct native_list **added_list(struct native_bindings *bindings, int k)
 {
     struct native_list **const lists[ADDED_LISTS] = {&bindings->edges, &bindings->high_curvature,
-                                                     &bindings->rounded, &bindings->rims};
+                                                     &bindings->rounded, &bindings->rims,
+                                                     &bindings->parts};
     return lists[k];
 }
 
@@ -245,14 +246,26 @@ static struct native_picture picture_of(const struct frame_request *request,
     return picture;
 }
 
+/* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
+enum { SQUARES = 9 };
+
+static void shade_squares(const struct native_drawing *d, struct native_bindings *b,
+                          enum native_list_of listed, uint32_t first, uint32_t end)
+{
+    b->listed = list_of(d, listed);
+    b->first_square = first;
+    b->end_square = end;
+    run_program(d, native_device_programs(d->device)->high_curvature_shade, b, b->listed->n,
+                LISTED_PER_WORKGROUP, NULL);
+}
+
 /* The pixels that the edges' programs have listed, anew. */
 static void shade_listed(const struct native_drawing *d, struct native_bindings *b)
 {
     const struct native_programs *programs = native_device_programs(d->device);
     b->listed = list_of(d, NATIVE_EDGES);
     run_program(d, programs->edges_shade, b, b->listed->n, EDGES_PER_WORKGROUP, NULL);
-    b->listed = list_of(d, NATIVE_HIGH_CURVATURE);
-    run_program(d, programs->high_curvature_shade, b, b->listed->n, LISTED_PER_WORKGROUP, NULL);
+    shade_squares(d, b, NATIVE_HIGH_CURVATURE, 0, SQUARES);
     b->listed = list_of(d, NATIVE_ROUNDED);
     b->max_rounded = tile_max_rounded(&d->place);
     run_program(d, programs->rounded_shade, b, b->listed->n, ROUNDED_PER_WORKGROUP, NULL);
@@ -274,19 +287,16 @@ static void count_light(const struct native_drawing *d, struct native_bindings *
                 share);
 }
 
-/* Light i of those that are shown, over those behind it. */
-static void shade_light(const struct native_drawing *d, uint32_t i, struct native_share *share)
+/* For light i of those that are shown, over those behind it. The block is filled, and referred to. */
+static struct native_bindings bindings_of_light(const struct native_drawing *d, uint32_t i,
+                                                struct light_block *block)
 {
     const struct frame_request *request = d->request;
-    const struct native_programs *programs = native_device_programs(d->device);
     const struct light *light = &request->lights[i];
     const struct native_target *t = d->target;
-    struct light_block block;
-    struct native_array hits = {t->hits, (uint32_t)(t->n_hit_words / HIT_WORDS)};
     struct native_bindings b = native_bindings_of(d);
-    b.RoundedHits = &hits;
-    light_block_fill(&block, request, i);
-    b.Light = &block;
+    light_block_fill(block, request, i);
+    b.Light = block;
     b.line_family = (int32_t)request->lines.family;
     b.light_kind = (int32_t)light->kind;
     b.pattern_kind = (int32_t)light->pattern.kind;
@@ -295,16 +305,47 @@ static void shade_light(const struct native_drawing *d, uint32_t i, struct nativ
     b.picture = picture_of(request, light);
     b.next_light = t->lights[i & 1];
     b.next_missed = t->missed[i & 1];
+    b.next_uneven = t->uneven[i & 1];
     b.behind_light = t->lights[~i & 1];
     b.behind_missed = t->missed[~i & 1];
+    b.behind_uneven = t->uneven[~i & 1];
+    b.square_sum = t->square_sum;
+    return b;
+}
+
+/* Lists the pixels that are shaded in parts when it is the foremost. */
+static void shade_light(const struct native_drawing *d, uint32_t i, struct native_share *share)
+{
+    const struct frame_request *request = d->request;
+    const struct native_programs *programs = native_device_programs(d->device);
+    const struct native_target *t = d->target;
+    struct light_block block;
+    struct native_array hits = {t->hits, (uint32_t)(t->n_hit_words / HIT_WORDS)};
+    struct native_bindings b = bindings_of_light(d, i, &block);
+    b.RoundedHits = &hits;
     b.groups = list_of(d, NATIVE_SHADED_GROUPS);
+    b.parts = list_of(d, NATIVE_PARTS);
     run_program(d, programs->shade, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
+    b.parts = NULL;
     if (request_has_coverage(request))
         shade_listed(d, &b);
     if (request_may_miss_light(request))
         count_light(d, &b, share);
     if (i == 0 && request->planes & (PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE))
         run_program(d, programs->shade_planes, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
+}
+
+/* The listed pixels anew: all lights of each square, one square after the other. */
+static void shade_parts(const struct native_drawing *d)
+{
+    uint32_t n_lights = d->request->n_lights;
+    if (list_of(d, NATIVE_PARTS)->n == 0)
+        return;
+    for (uint32_t k = 0; k < SQUARES * n_lights; k++) {
+        struct light_block block;
+        struct native_bindings b = bindings_of_light(d, n_lights - 1 - k % n_lights, &block);
+        shade_squares(d, &b, NATIVE_PARTS, k / n_lights, k / n_lights + 1);
+    }
 }
 
 bool native_shade(const struct native_drawing *d, const struct frame_watch *watch,
@@ -314,11 +355,13 @@ bool native_shade(const struct native_drawing *d, const struct frame_watch *watc
     bool any_seen = native_any_seen(d->target);
     struct native_share share = {.seen_px = any_seen, .met_px = any_seen};
     clear_planes(d);
+    list_of(d, NATIVE_PARTS)->n = 0;
     for (uint32_t i = request->n_lights; i-- > 0;) {
         if (!frame_watch_check(watch, error))
             return false;
         shade_light(d, i, &share);
     }
+    shade_parts(d);
     if (request->count_light) {
         frame->seen_px += share.seen_px;
         frame->met_px += share.met_px;

@@ -64,7 +64,7 @@ static void lay_out_lists(struct native_target *t, struct layout *layout)
 
 /* A pixel's words in what is always there, groups apart. */
 enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 4 + NATIVE_LISTS - 2 };
-enum { LIGHT_WORDS_PER_PX = 2 * 5, MEASURE_WORDS_PER_PX = 2 + 2 + 4 };
+enum { LIGHT_WORDS_PER_PX = 2 * 6 + 4, MEASURE_WORDS_PER_PX = 2 + 2 + 4 };
 
 /* What is not used any more is given back first. */
 static bool reserve(struct native_words *words, size_t n)
@@ -119,7 +119,9 @@ bool native_target_reserve_shading(struct native_target *t, const struct frame_r
     for (int i = 0; i < 2; i++) {
         t->lights[i] = take(&layout, 4);
         t->missed[i] = take(&layout, 1);
+        t->uneven[i] = take(&layout, 1);
     }
+    t->square_sum = take(&layout, 4);
     layout.next = t->of_measures.words;
     t->light_st = take(&layout, 2);
     t->curvature = take(&layout, 2);

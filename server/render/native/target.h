@@ -17,7 +17,8 @@ enum native_list_of {
     NATIVE_EDGES,
     NATIVE_HIGH_CURVATURE,
     NATIVE_ROUNDED,
-    NATIVE_LISTS
+    NATIVE_LISTS,
+    NATIVE_PARTS = NATIVE_RIMS /* once edges are found: pixels whose lights are shaded in parts */
 };
 
 /* All zero before the first use. Planes have `width` words a row. */
@@ -26,7 +27,8 @@ struct native_target {
     struct native_planes planes; /* stage 2 */
     struct native_image hit_depth, normal, shape, ptex, border, seen, seen_depth;
     struct native_image ends, colour, coverage, light_st, curvature, light_change;
-    struct native_image lights[2], missed[2]; /* of frames of several lights */
+    struct native_image lights[2], missed[2], uneven[2]; /* of frames of several lights */
+    struct native_image square_sum;                      /* of these, too */
     struct native_list list[NATIVE_LISTS];
     /* Memory of all of them but for lights, missed and what is measured: light_st, curvature, light_change. */
     struct native_words {

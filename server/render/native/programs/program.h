@@ -70,15 +70,16 @@ struct native_bindings {
     struct native_image ends, colour, coverage;
     struct native_image light_st, curvature, light_change;
     struct native_image next_light, next_missed, behind_light, behind_missed;
+    struct native_image next_uneven, behind_uneven, square_sum;
     struct native_picture picture;
-    struct native_list *groups, *listed, *edges, *high_curvature, *rounded, *rims;
+    struct native_list *groups, *listed, *edges, *high_curvature, *rounded, *rims, *parts;
     struct native_array *RoundedHits, *Corners;
     struct native_share *Share;
     float centre[3];
     int32_t shaded[4], inside[4];
     int32_t line_family, light_kind, pattern_kind;
     bool is_soft, is_filtered;
-    uint32_t max_rounded, stride;
+    uint32_t max_rounded, stride, first_square, end_square;
 };
 
 /* Runs the workgroups [first, end), numbered as shaders/list.glsl does. */

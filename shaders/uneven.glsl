@@ -1,0 +1,39 @@
+// How much of what a light shows in a pixel is not told by its mean: where two lights that lie over each other both
+// change within a pixel, what shows through depends on which parts of them meet, and where the surface or the light bends the
+// pattern, its mean over a parallelogram is off. Such pixels are listed and shaded in parts.
+
+// Standard deviations within the pixel.
+struct Uneven {
+    float light, alpha;  // of the colour, of how much hides what lies behind
+};
+
+// How far the pattern's phase reaches over the pixel, in what its edges take; hard edges take nothing.
+float reach_in_edges(Met met)
+{
+    float reach = length(reach_of(met));
+    if (PATTERN == RAINBOW)
+        return reach * turn.z * 6.0;
+    if (PATTERN == IMAGE)
+        return length(reach_of(met) / size.xy * vec2(textureSize(picture, 0)));
+    if (PATTERN == DISTANCE)
+        reach = 0.5 * (abs(met.dtau.x) + abs(met.dtau.y));
+    return reach / max(IS_SOFT ? PATTERN == LINES ? 2.0 * half_width * wave.w : wave.w / turn.z : 0.0, 1e-20);
+}
+
+// At most: of a share the deviation is what it is where the pixel shows nothing between both colours.
+Uneven unevenness(Met met, vec4 mean, vec4 own)
+{
+    float most = min(0.5, reach_in_edges(met));
+    Uneven pattern = Uneven(most, 0.0);
+    if (PATTERN == IMAGE)
+        pattern.alpha = min(most, sqrt(max(mean.a - mean.a * mean.a, 0.0)));
+    else if (PATTERN != RAINBOW) {
+        vec4 apart = foreground - background;
+        float bright = clamp(dot(mean - background, apart) / max(dot(apart, apart), 1e-20), 0.0, 1.0);
+        most = min(most, sqrt(bright - bright * bright));
+        vec3 colour = abs(apart.rgb);
+        pattern = Uneven(most * max(max(colour.r, colour.g), colour.b), most * abs(apart.a));
+    }
+    float border = sqrt(max(met.cover - met.cover * met.cover, 0.0)), share = met.cover * opacity;
+    return Uneven(share * pattern.light + border, share * pattern.alpha + border * own.a);
+}
