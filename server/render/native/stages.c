@@ -151,6 +151,8 @@ static bool meet_rounded(const struct native_drawing *d, struct error *error)
     if (!native_target_reserve_hits(t, (size_t)rounded.n * (size_t)(rounded.side * rounded.side),
                                     error))
         return false;
+    /* Of the lists, that of the edges found is not needed any more. */
+    native_sort_pixels(listed->at.words, listed->n, list_of(d, NATIVE_FOUND_EDGES)->at.words);
     rounded.hit = (float(*)[HIT_WORDS])(void *)t->hits;
     return native_meet_rounded(d->device, d->shown->model, d->exact_view, &d->place, &t->planes,
                                &rounded, error);

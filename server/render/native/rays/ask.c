@@ -35,6 +35,11 @@ static bool guess_of(const struct native_frame *frame, uint32_t x, uint32_t y,
     return true;
 }
 
+static bool is_in_front(const struct native_frame *frame, float there, float z)
+{
+    return there < z - DOUBT_PX * native_pixel_units(&frame->rays, z);
+}
+
 static uint32_t beside(uint32_t at, int by, uint32_t n)
 {
     return by < 0 ? at - (at > 0) : at + (by > 0 && at + 1 < n);
@@ -66,6 +71,13 @@ static void add_task(struct native_ray_room *room, const struct native_ray_task 
     task->ray = ray;
 }
 
+/* A ray that has met something asks on since something lies in front of that: not what lies no nearer. */
+static bool is_passed_by(const struct native_frame *frame, float z, uint32_t x, uint32_t y)
+{
+    float there = frame->planes->depth[y * frame->planes->pitch + x];
+    return z < RAYS_FARTHEST && !(there < z);
+}
+
 /* Guess k of each ray: its pixel's, then those of the pixels towards which it lies: aside, above or below, and
  * both. */
 static void ask_centres(const struct native_frame *frame, struct native_ray_room *room, int k)
@@ -82,6 +94,8 @@ static void ask_centres(const struct native_frame *frame, struct native_ray_room
             uint32_t y = beside(pixel->y, dy, frame->tile.height);
             if (k && x == pixel->x && y == pixel->y)
                 continue; /* asked already */
+            if (is_passed_by(frame, room->z[ray], x, y))
+                continue;
             if (!is_asked[dy + 1][dx + 1])
                 is_there[dy + 1][dx + 1] = guess_of(frame, x, y, from);
             is_asked[dy + 1][dx + 1] = true;
@@ -99,8 +113,7 @@ static void see_who_asks(const struct native_frame *frame, struct native_ray_roo
         for (unsigned left = pixel->asks; left; left &= left - 1) {
             int k = __builtin_ctz(left);
             float z = room->z[i * room->rays_per_px + (uint32_t)k];
-            bool is_behind = pixel->front < z - DOUBT_PX * native_pixel_units(&frame->rays, z);
-            if (z < RAYS_FARTHEST && !is_behind)
+            if (z < RAYS_FARTHEST && !is_in_front(frame, pixel->front, z))
                 pixel->asks &= ~(1u << k);
         }
     }

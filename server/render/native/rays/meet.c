@@ -1,6 +1,26 @@
 #include "server/render/native/native.h"
 #include "server/render/native/rays/rays.h"
 
+/* By 1,024 columns or rows of squares. */
+static void sort_by(const uint32_t *from, uint32_t n, int shift, uint32_t *to)
+{
+    enum { COLUMNS = 1024 };
+    uint32_t first[COLUMNS + 1] = {0};
+    for (uint32_t i = 0; i < n; i++)
+        first[(from[i] >> shift & (COLUMNS - 1)) + 1]++;
+    for (int k = 0; k < COLUMNS; k++)
+        first[k + 1] += first[k];
+    for (uint32_t i = 0; i < n; i++)
+        to[first[from[i] >> shift & (COLUMNS - 1)]++] = from[i];
+}
+
+void native_sort_pixels(uint32_t *pixel, uint32_t n, uint32_t *room)
+{
+    enum { SIDE_BITS = 6 };
+    sort_by(pixel, n, SIDE_BITS, room);
+    sort_by(room, n, 16 + SIDE_BITS, pixel); /* those at edges come last */
+}
+
 struct rounded_job {
     struct native_device *device;
     struct native_frame frame;

@@ -12,7 +12,7 @@
 
 struct native_device;
 
-enum { RAYS_PX = 128, RAYS_AT_ONCE = RAYS_PX * NATIVE_MAX_RAYS, RAYS_END = 16 /* a vector's */ };
+enum { RAYS_PX = 512, RAYS_AT_ONCE = RAYS_PX * NATIVE_MAX_RAYS, RAYS_END = 16 /* a vector's */ };
 enum { RAY_KEYS = 2 * RAYS_AT_ONCE };
 
 /* A place on a sub-patch: `index` as in patches.h; RAY_AT_VERTEX: where all levels of a CORNER end. */
@@ -70,6 +70,10 @@ struct native_part_of_node native_part_of_index(const struct limit_node *node, u
 
 /* Sorts room->task by sub-patch. */
 void native_group_rays(struct native_ray_room *room);
+
+/* Sorts pixels as they are listed by squares of the picture: those that are met together lie near each other. `room`:
+ * for as many. */
+void native_sort_pixels(uint32_t *pixel, uint32_t n, uint32_t *room);
 
 /* The rays of RAYS_PX pixels at most, from the first one on; thread->rays is there. */
 void native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
