@@ -10,6 +10,25 @@ static_assert(TILE_PATCHES == 256, "eight bits of a key's hash");
 /* Of what is left of a CORNER, about: 8 steps of native_tile_room.place. */
 static const double NEAR_VERTEX = 1.0 / 8000;
 
+/* Of numbers; those of math.h are calls. */
+static inline double least(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double largest(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* The level from 1 on whose squares reach from 2^-level to 2^(1 - level). */
+static inline int level_of(double nearest)
+{
+    uint64_t bits;
+    memcpy(&bits, &nearest, sizeof bits);
+    return 1023 - (int)(bits >> 52 & 2047);
+}
+
 static int levels_of(const struct limit_node *node)
 {
     return node->levels & ~(int)LIMIT_NO_NORMAL;
@@ -50,10 +69,9 @@ struct native_part_of_node native_patch_at(const struct limit_node *node, double
     bool is_corner = node->kind == LIMIT_CORNER;
     if (!is_corner && node->kind != LIMIT_STRIP)
         return part;
-    double nearest = is_corner ? fmax(x, y) : y;
-    int exponent, levels = levels_of(node);
-    frexp(nearest, &exponent);
-    int level = nearest > 0 ? 1 - exponent : levels + 1;
+    double nearest = is_corner ? largest(x, y) : y;
+    int levels = levels_of(node);
+    int level = nearest > 0 ? level_of(nearest) : levels + 1;
     level = level < 1 ? 1 : level;
     if (!is_corner) {
         /* The last patch begins at the crease and is as wide as the one before. */
@@ -83,8 +101,8 @@ void native_place(const struct limit_tables *tables, const struct native_piece *
         s = (double)piece->s + s * (double)piece->size + (piece->square == 1 || piece->square == 2);
         t = (double)piece->t + t * (double)piece->size + (piece->square >= 2);
     }
-    *x = fmin(fmax(s * native_power(-scale_x), 0), 1);
-    *y = fmin(fmax(t * native_power(-scale_y), 0), 1);
+    *x = least(largest(s * native_power(-scale_x), 0), 1);
+    *y = least(largest(t * native_power(-scale_y), 0), 1);
 }
 
 /* A patch is read some time after it is known which. */
@@ -99,8 +117,8 @@ uint32_t native_guess_of(const struct native_part_of_node *part, const struct li
 {
     const double steps = 8191.0 / 2;
     int level = node->kind == LIMIT_REGULAR ? 0 : part->scale_y;
-    double s = fmin(fmax(x * native_power(part->scale_x), 0), 2);
-    double t = fmin(fmax(y * native_power(part->scale_y), 0), 2);
+    double s = least(largest(x * native_power(part->scale_x), 0), 2);
+    double t = least(largest(y * native_power(part->scale_y), 0), 2);
     return (uint32_t)level | (uint32_t)(s * steps + 0.5) << 6 | (uint32_t)(t * steps + 0.5) << 19;
 }
 
@@ -123,7 +141,7 @@ void native_begin_on(const struct native_model *model, struct native_task *task,
     task->node = piece->node;
     if (piece->kind != PIECE_OF_PATCH) {
         /* What a rounded place hardly tells from the vertex begins there: no step leads to it. */
-        if (piece->kind == PIECE_REST && fmax(s, t) < NEAR_VERTEX)
+        if (piece->kind == PIECE_REST && largest(s, t) < NEAR_VERTEX)
             s = t = 0;
         native_place(model->tables, piece, s, t, &x, &y);
         native_begin_at(model, task, x, y);
@@ -186,7 +204,7 @@ void native_ptex(const struct limit_node *node, double x, double y, float uv[2])
 static struct face_place place_of(const struct limit_node *node, double x, double y)
 {
     double uv[2], ab[2];
-    if (node->kind == LIMIT_CORNER && fmax(x, y) < 0.5) /* its vertex is a corner of the face */
+    if (node->kind == LIMIT_CORNER && largest(x, y) < 0.5) /* its vertex is a corner of the face */
         return (struct face_place){node->face, node->rotation, x * native_power(-node->depth),
                                    y * native_power(-node->depth)};
     ptex_of(node, x, y, uv);
@@ -233,14 +251,14 @@ static bool cross_edge(const struct limit_tables *tables, struct face_place *pla
 
 static double within(double a)
 {
-    return fmin(fmax(a, 0), 1);
+    return least(largest(a, 0), 1);
 }
 
 /* Brings a place with a negative coordinate back inside a face, over one or two edges. At a
  * boundary the coordinate becomes 0: the nearest place that the surface has. */
 static void settle(const struct limit_tables *tables, struct face_place *place)
 {
-    for (int i = 0; i < 3 && fmin(place->a, place->b) < 0; i++) {
+    for (int i = 0; i < 3 && least(place->a, place->b) < 0; i++) {
         unsigned k = place->corner;
         double a = place->a, b = place->b;
         bool over_first = b < 0; /* edge k, which starts at corner k */

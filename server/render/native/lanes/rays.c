@@ -210,12 +210,19 @@ static void go_on(const struct native_frame *frame, struct native_ray_room *room
     }
 }
 
+static const struct native_patch *patch_of(const struct native_frame *frame,
+                                           struct native_tile_room *tile,
+                                           const struct native_ray_group *group)
+{
+    return group->patch ? group->patch : native_patch_of(frame, tile, group->node, group->index);
+}
+
 static void meet_group(const struct native_frame *frame, struct native_tile_room *tile,
                        struct native_ray_room *room, const struct native_ray_group *group,
                        const struct native_seen_node *seen, bool is_last)
 {
     struct seen_patch on;
-    see_patch(frame, seen, native_patch_of(frame, tile, group->node, group->index), &on);
+    see_patch(frame, seen, patch_of(frame, tile, group), &on);
     for (uint32_t i = group->first, end = group->first + group->n; i < end; i += LANES) {
         unsigned lanes = v_first(end - i);
         const struct lane_rays rays = rays_of(frame, room, &on, v_load_int(room->ray + i));
@@ -267,7 +274,7 @@ void LANE_NAME(native_meet_rays)(const struct native_frame *frame, struct native
 {
     struct native_seen_node seen;
     for (int i = 0; i < PATCHES && room->n_tasks; i++) {
-        native_group_rays(room);
+        native_group_rays(frame->model, room);
         room->n_tasks = 0; /* from here on: those that go on */
         for (uint32_t k = 0; k < room->n_groups; k++) {
             const struct native_ray_group *group = &room->group[k];
@@ -301,7 +308,7 @@ static void describe_group(const struct native_frame *frame, struct native_tile_
                            const struct native_seen_node *seen, float (*hit)[HIT_WORDS])
 {
     struct seen_patch on;
-    see_patch(frame, seen, native_patch_of(frame, tile, group->node, group->index), &on);
+    see_patch(frame, seen, patch_of(frame, tile, group), &on);
     for (uint32_t i = group->first, end = group->first + group->n; i < end; i += LANES) {
         struct derivatives at;
         struct described found;
@@ -324,7 +331,7 @@ void LANE_NAME(native_describe_rays)(const struct native_frame *frame,
                                      struct native_tile_room *tile, struct native_ray_room *room,
                                      float (*hit)[HIT_WORDS])
 {
-    native_group_rays(room);
+    native_group_rays(frame->model, room);
     for (uint32_t k = 0; k < room->n_groups; k++) {
         const struct native_ray_group *group = &room->group[k];
         struct native_seen_node seen;

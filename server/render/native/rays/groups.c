@@ -6,37 +6,70 @@
 
 static_assert(RAYS_AT_ONCE < UINT16_MAX, "groups are numbered by 16 bits");
 
+void native_forget_ray_patches(struct native_ray_room *room)
+{
+    memset(room->patch, 0, sizeof room->patch);
+    room->n_patches = room->sorting = 0;
+}
+
 /* Where the search for a sub-patch begins. */
 static uint32_t hash(const struct native_ray_place *at)
 {
     uint64_t mixed = ((uint64_t)at->node << 16 | at->index) * 0x9e3779b97f4a7c15u;
-    return (uint32_t)(mixed >> 40) & (RAY_KEYS - 1);
+    return (uint32_t)(mixed >> 40) & (RAY_PATCHES - 1);
 }
 
-static uint32_t group_of(struct native_ray_room *room, const struct native_ray_place *at)
+static struct native_ray_patch *patch_at(const struct native_model *model,
+                                         struct native_ray_room *room,
+                                         const struct native_ray_place *at)
 {
-    for (uint32_t k = hash(at);; k = (k + 1) & (RAY_KEYS - 1)) {
-        if (!room->group_at[k]) {
-            room->group[room->n_groups++] =
-                (struct native_ray_group){.node = at->node, .index = at->index};
-            room->group_at[k] = (uint16_t)room->n_groups;
+    for (uint32_t k = hash(at);; k = (k + 1) & (RAY_PATCHES - 1)) {
+        struct native_ray_patch *found = &room->patch[k];
+        if (!found->sorting) {
+            *found = (struct native_ray_patch){.node = at->node, .index = at->index};
+            room->n_patches++;
         }
-        const struct native_ray_group *group = &room->group[room->group_at[k] - 1];
-        if (group->node == at->node && group->index == at->index)
-            return room->group_at[k] - 1u;
+        if (found->node != at->node || found->index != at->index)
+            continue;
+        if (!found->patch && !(at->index & RAY_AT_VERTEX))
+            found->patch = native_patch_find(model, at->node, at->index);
+        return found;
     }
 }
 
-void native_group_rays(struct native_ray_room *room)
+/* A patch is read some time after it is known which. */
+static void prefetch(const struct native_patch *patch)
+{
+    for (int line = 0; patch && line < 4; line++)
+        __builtin_prefetch((const char *)patch + 64 * line);
+}
+
+static uint32_t group_of(const struct native_model *model, struct native_ray_room *room,
+                         const struct native_ray_place *at)
+{
+    struct native_ray_patch *found = patch_at(model, room, at);
+    if (found->sorting != room->sorting) {
+        found->sorting = room->sorting;
+        found->group = (uint16_t)room->n_groups;
+        prefetch(found->patch);
+        room->group[room->n_groups++] =
+            (struct native_ray_group){.node = at->node, .index = at->index, .patch = found->patch};
+    }
+    return found->group;
+}
+
+void native_group_rays(const struct native_model *model, struct native_ray_room *room)
 {
     uint32_t last = 0, first = 0;
-    memset(room->group_at, 0, sizeof room->group_at);
+    if (room->n_patches + room->n_tasks > RAY_PATCHES / 2)
+        native_forget_ray_patches(room);
+    room->sorting++;
     room->n_groups = 0;
     for (uint32_t i = 0; i < room->n_tasks; i++) {
         const struct native_ray_place *at = &room->task[i].at;
         /* Tasks that follow each other are often on one sub-patch. */
         if (i == 0 || room->group[last].node != at->node || room->group[last].index != at->index)
-            last = group_of(room, at);
+            last = group_of(model, room, at);
         room->group_of[i] = (uint16_t)last;
         room->group[last].n++;
     }

@@ -33,6 +33,7 @@ static void meet_rounded(void *owner, unsigned number)
     struct rounded_job *job = owner;
     struct native_thread *thread = native_device_thread(job->device, number);
     native_forget_patches(thread);
+    native_forget_ray_patches(thread->rays);
     for (uint32_t first;
          (first = __atomic_fetch_add(&job->next, RAYS_PX, __ATOMIC_RELAXED)) < job->rounded->n;)
         native_meet_pixels(&job->frame, thread, job->rounded, first);

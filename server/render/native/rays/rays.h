@@ -13,7 +13,7 @@
 struct native_device;
 
 enum { RAYS_PX = 512, RAYS_AT_ONCE = RAYS_PX * NATIVE_MAX_RAYS, RAYS_END = 16 /* a vector's */ };
-enum { RAY_KEYS = 2 * RAYS_AT_ONCE };
+enum { RAY_PATCHES = 4 * RAYS_AT_ONCE };
 
 /* A place on a sub-patch: `index` as in patches.h; RAY_AT_VERTEX: where all levels of a CORNER end. */
 enum { RAY_AT_VERTEX = 0x8000 };
@@ -34,12 +34,21 @@ struct native_ray_task {
 struct native_ray_group {
     uint32_t node, first, n;
     uint16_t index;
+    const struct native_patch *patch; /* NULL: the model does not keep it yet, or at a vertex */
 };
 
 struct native_ray_pixel {
     uint32_t x, y; /* in the tile */
     float front;   /* the nearest depth of the pixels beside it; FARTHEST where they show nothing */
     unsigned asks; /* rays that go on asking */
+};
+
+/* A sub-patch that rays have come to, in a hash table: which group its tasks are, when they are sorted for the
+ * `sorting`-th time. */
+struct native_ray_patch {
+    uint32_t node, sorting; /* sorting: 0 where the table has no entry */
+    uint16_t index, group;
+    const struct native_patch *patch; /* as in native_ray_group */
 };
 
 /* What a thread needs for RAYS_PX pixels. */
@@ -56,9 +65,11 @@ struct native_ray_room {
     /* The tasks sorted by sub-patch. */
     struct native_ray_group group[RAYS_AT_ONCE];
     uint32_t n_groups;
-    uint16_t group_of[RAYS_AT_ONCE], group_at[RAY_KEYS]; /* of a task; by hashed keys, plus one */
+    uint16_t group_of[RAYS_AT_ONCE]; /* of a task */
     float s[RAYS_AT_ONCE + RAYS_END], t[RAYS_AT_ONCE + RAYS_END], px[RAYS_AT_ONCE + RAYS_END];
     int32_t ray[RAYS_AT_ONCE + RAYS_END];
+    struct native_ray_patch patch[RAY_PATCHES];
+    uint32_t n_patches, sorting;
 };
 #define RAYS_FARTHEST 1e30f
 
@@ -68,8 +79,10 @@ void native_ray_begin(const struct limit_node *node, double x, double y,
 /* Of the sub-patch of that index of a node. */
 struct native_part_of_node native_part_of_index(const struct limit_node *node, uint32_t index);
 
+/* Forgets the patches of an earlier frame. */
+void native_forget_ray_patches(struct native_ray_room *room);
 /* Sorts room->task by sub-patch. */
-void native_group_rays(struct native_ray_room *room);
+void native_group_rays(const struct native_model *model, struct native_ray_room *room);
 
 /* Sorts pixels as they are listed by squares of the picture: those that are met together lie near each other. `room`:
  * for as many. */
