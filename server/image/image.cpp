@@ -29,7 +29,7 @@ extern "C" {
 namespace
 {
 
-constexpr int STRIP_ROWS = 64; // gathered at once: a multiple of EXR's 16-row blocks
+constexpr int STRIP_ROWS = 64; // rows gathered at once: a multiple of EXR's 16-row blocks
 
 struct signature {
     size_t offset;
@@ -53,7 +53,7 @@ constexpr signature SIGNATURES[] = {
     {0, {"BM", 2}, "bmp"},
 };
 
-// P1 to P6, or PF and Pf for floats, and then space.
+// PNM begins with P1 to P6, or PF or Pf for floats, then white space.
 bool is_pnm(std::string_view file)
 {
     return file.size() > 2 && file[0] == 'P' &&
@@ -61,7 +61,8 @@ bool is_pnm(std::string_view file)
            std::string_view(" \t\r\n").find(file[2]) != file.npos;
 }
 
-// TGA has no signature: its header must make sense. No text does, since its second byte is 0 or 1.
+// TGA has no signature: checks that the header makes sense. No text passes, because its second byte
+// must be 0 or 1.
 bool is_tga(std::string_view file)
 {
     auto at = [&](size_t i) { return static_cast<unsigned char>(file[i]); };
@@ -75,9 +76,9 @@ bool is_tga(std::string_view file)
            (bits == 8 || bits == 15 || bits == 16 || bits == 24 || bits == 32);
 }
 
-// OpenImageIO's name of the format, or NULL. It is asked for no other: where it has no reader it
-// looks for one among the system's files, and many of its readers are for formats that no light
-// comes in.
+// OpenImageIO's name of the format, or NULL. OpenImageIO is not asked about other formats: it would
+// search the file system for a plug-in, and many of its readers are for formats that no light image
+// has.
 const char *format_of(std::string_view file)
 {
     for (const signature &s : SIGNATURES)
@@ -86,22 +87,23 @@ const char *format_of(std::string_view file)
     return is_pnm(file) ? "pnm" : is_tga(file) ? "targa" : nullptr;
 }
 
-// libjpeg fills up a cut file with grey. In a whole one the last end marker stands behind the last
-// start of a scan, and neither can occur inside of one.
+// Detects a cut JPEG file, which libjpeg would fill with grey. In a whole file the last end marker
+// follows the last start of a scan, and neither can occur inside of a scan.
 bool is_cut_jpeg(std::string_view file)
 {
     size_t scan = file.rfind("\xff\xda"), end = file.rfind("\xff\xd9");
     return end == file.npos || scan == file.npos || end < scan;
 }
 
-// One line out of OpenImageIO's text, which may hold several and the placeholder file name.
+// Extracts one line from OpenImageIO's text, which may have several, and removes the placeholder
+// file name.
 std::string reason(std::string text)
 {
     std::string::size_type end = text.find('\n');
     return text.empty() ? "the file is damaged" : text.substr(0, end);
 }
 
-// What a reader has to say. OpenEXR puts a lack of memory into words.
+// Reports a reader's error. OpenEXR reports lack of memory as text.
 bool fail_reading(const OIIO::ImageInput &reader, const char *name, const char *what,
                   struct error *error)
 {
@@ -125,7 +127,7 @@ bool open_reader(std::unique_ptr<OIIO::ImageInput> &reader, OIIO::Filesystem::IO
                          name, format.c_str());
     }
     OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1); // values as stored, alpha not multiplied in
+    config.attribute("oiio:UnassociatedAlpha", 1); // values as stored, not premultiplied
     reader->set_ioproxy(&proxy);
     if (!reader->open("image." + format, spec, config))
         return fail_reading(*reader, name, "not a readable", error);
@@ -152,7 +154,8 @@ bool check_spec(const OIIO::ImageSpec &spec, const char *name, uint32_t max_px, 
     return true;
 }
 
-// Spreads what the file has to RGBA in place; pixels hold `channels` samples at a stride of four.
+// Spreads the file's channels to RGBA in place; `pixels` hold `channels` samples with a stride of
+// four.
 template <typename T> void spread(T *pixels, size_t n, int channels, bool has_alpha, T opaque)
 {
     for (T *p = pixels; p < pixels + 4 * n; p += 4) {
@@ -163,7 +166,7 @@ template <typename T> void spread(T *pixels, size_t n, int channels, bool has_al
     }
 }
 
-// A texture has no use for NaN or infinity, and filtering would smear them.
+// Replaces NaN and infinity, which filtering would spread over a texture.
 void make_finite(float *pixels, size_t n)
 {
     constexpr float most = std::numeric_limits<float>::max();
@@ -171,8 +174,8 @@ void make_finite(float *pixels, size_t n)
         *p = std::isnan(*p) ? 0.0f : std::clamp(*p, -most, most);
 }
 
-// What filtering takes: linear light, premultiplied by alpha. OpenImageIO says of which files alpha
-// is not in the colours yet.
+// Converts to linear light, premultiplied by alpha, for filtering. OpenImageIO tells for which
+// files alpha is not in the colours yet.
 void make_light(float *pixels, size_t n, bool is_encoded, bool is_straight)
 {
     for (float *p = pixels; p < pixels + 4 * n; p += 4) {
@@ -202,7 +205,7 @@ std::vector<float> light_of_bytes()
     return table;
 }
 
-// A transparent image of 8 bits: eight bits of premultiplied colour would be too few.
+// Converts a transparent 8-bit image to floats: 8 bits of premultiplied colour would be too few.
 void *floats_of(const uint8_t *bytes, size_t n, bool is_straight)
 {
     const std::vector<float> light = light_of_bytes();
@@ -282,8 +285,9 @@ bool decode(struct image *image, const void *bytes, size_t size, const char *nam
 // --- encoding
 
 struct file_format {
-    const char *name, *file_name; // OpenImageIO's name; the ending tells it the format
-    const char *colour;           // the 8-bit channels taken, or NULL for any
+    const char *name,
+        *file_name;     // OpenImageIO's name, and a file name whose ending tells it the format
+    const char *colour; // the 8-bit channels that it takes; NULL: any
 };
 
 constexpr file_format FORMATS[] = {
@@ -296,8 +300,8 @@ constexpr size_t sample_bytes_in(enum image_type type)
     return type == IMAGE_UINT8 ? 1 : 4;
 }
 
-// What OpenEXR's readers take colours for: linear light, premultiplied by alpha. `alpha` is the
-// pixel's own, for its colours.
+// Converts a colour to what readers of OpenEXR expect: linear light, premultiplied by alpha.
+// `alpha` is that of the pixel.
 half light_of(uint8_t value, uint8_t alpha, bool is_alpha)
 {
     static const std::vector<float> light = light_of_bytes();
@@ -307,7 +311,7 @@ half light_of(uint8_t value, uint8_t alpha, bool is_alpha)
 
 using channel_list = std::vector<const struct image_channel *>;
 
-// The channels that go into the file, in its order.
+// Chooses the channels of the file, in its order.
 bool choose_channels(channel_list &chosen, const file_format &format,
                      const struct image_channel *channels, size_t n, struct error *error)
 {
@@ -347,11 +351,11 @@ void set_channels(OIIO::ImageSpec &spec, const channel_list &channels, bool mixe
 void set_attributes(OIIO::ImageSpec &spec, enum image_format format,
                     const struct image_attribute *attributes, size_t n)
 {
-    // OpenImageIO stamps files with the time of day unless there is a DateTime already.
+    // OpenImageIO writes the time of day unless there is a DateTime.
     spec.attribute("DateTime", "");
     switch (format) {
     case IMAGE_EXR: {
-        // Rec. 709 and its white, D65: x and y of red, green, blue and white.
+        // Rec. 709 with white point D65: x and y of red, green, blue and white.
         static const float chromaticities[8] = {0.64f, 0.33f, 0.3f,    0.6f,
                                                 0.15f, 0.06f, 0.3127f, 0.329f};
         spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
@@ -366,7 +370,7 @@ void set_attributes(OIIO::ImageSpec &spec, enum image_format format,
         spec.attribute("tiff:predictor", 2); // horizontal differences
         break;
     }
-    std::string description; // TIFF has one text field
+    std::string description; // TIFF has only one text field
     for (size_t i = 0; i < n; i++) {
         if (format != IMAGE_TIFF)
             spec.attribute(attributes[i].name, attributes[i].value);
@@ -390,7 +394,7 @@ uint8_t alpha_at(const struct image_channel *alpha, uint32_t x, uint32_t y)
                  : 255;
 }
 
-// The 8-bit channel A among them, or NULL: opaque.
+// The 8-bit channel A, or NULL: opaque.
 const struct image_channel *alpha_of(const channel_list &channels)
 {
     for (const struct image_channel *channel : channels)
@@ -399,8 +403,8 @@ const struct image_channel *alpha_of(const channel_list &channels)
     return nullptr;
 }
 
-// Copies rows [first, last) of all channels, interleaved, 8-bit colours as light in HALF when
-// mixed.
+// Copies rows [first, last) of all channels, interleaved; in a mixed file 8-bit colours become
+// light in HALF.
 void gather(std::vector<uint8_t> &strip, const channel_list &channels, uint32_t width,
             uint32_t first, uint32_t last, size_t pixel_bytes, bool mixed)
 {
@@ -439,7 +443,7 @@ bool write_rows(OIIO::ImageOutput &writer, const OIIO::ImageSpec &spec,
     for (uint32_t first = 0; first < height; first += STRIP_ROWS) {
         uint32_t last = std::min<uint32_t>(first + STRIP_ROWS, height);
         gather(strip, channels, width, first, last, pixel_bytes, mixed);
-        // UNKNOWN: the samples have the types of the file already.
+        // UNKNOWN: the samples already have the file's types.
         OIIO::TypeDesc type(mixed ? OIIO::TypeDesc::UNKNOWN : OIIO::TypeDesc::UINT8);
         if (!writer.write_scanlines(static_cast<int>(first), static_cast<int>(last), 0, type,
                                     strip.data()))
@@ -495,7 +499,7 @@ bool draw_text(struct text *text, const char *line, int size, struct error *erro
 {
     OIIO::ROI box = OIIO::ImageBufAlgo::text_size(line, size, FONT);
     if (!box.defined()) {
-        OIIO::geterror(); // or it would be told with the next error of another
+        OIIO::geterror(); // removes the error, which would otherwise appear with the next one
         return error_set(error, ERROR_SERVER,
                          "the font DejaVu Sans is missing (Debian: fonts-dejavu-core)");
     }
@@ -514,7 +518,7 @@ bool draw_text(struct text *text, const char *line, int size, struct error *erro
     return true;
 }
 
-// Runs work() and turns what it throws into an error of this program.
+// Runs work() and turns exceptions into errors.
 template <typename Work> bool guarded(const char *what, struct error *error, Work work)
 {
     try {

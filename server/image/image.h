@@ -1,7 +1,7 @@
-/* Images in and out, and text, through OpenImageIO, behind a C header: the one file that includes
- * OpenImageIO is image.cpp, and sheend itself is not linked with it; its worker process
- * sheend-image is. What holds and checks results is in pixels.c and known to both. Thread: every
- * function may be called from any thread, on different data. */
+/* Reads and writes images and renders text, by OpenImageIO, behind a C header. Only image.cpp
+ * includes OpenImageIO, and only the worker program sheend-image is linked with it, not sheend.
+ * pixels.c holds and checks results, for both.
+ * Thread: any, on different data. */
 #ifndef SHEEN_IMAGE_IMAGE_H
 #define SHEEN_IMAGE_IMAGE_H
 
@@ -11,43 +11,45 @@
 
 #include "server/base/error.h"
 
-/* Of decoded pixels: a small file can hold many. */
+/* Limit of decoded pixels, because a small file can contain many. */
 #define IMAGE_MAX_BYTES (1024ull * 1024 * 1024)
-/* Width and height of a file written. */
+/* Largest width and height of a written file. */
 #define IMAGE_MAX_PX (1u << 20)
 
-/* A decoded light image: RGBA, top row first, rows contiguous. Files of integers are read as
- * sRGB-encoded, files of floats as linear light. Owned by the caller; free with image_finish(). */
+/* A decoded light image: RGBA, contiguous rows, top row first. Files with integers count as sRGB,
+ * files with floats as linear light. Owned by the caller; free it by image_finish(). */
 struct image {
     uint32_t width_px, height_px;
-    bool is_float; /* pixels are float[4], linear light, premultiplied by alpha: the file has more
-                      than 8 bits or is transparent; else uint8_t[4], sRGB-encoded and opaque */
+    /* Pixels are float[4], linear light, premultiplied by alpha (the file has more than 8 bits or
+     * is transparent); else uint8_t[4], sRGB and opaque. */
+    bool is_float;
     void *pixels;
 };
 
-/* What image_decode() takes, told by the first bytes. */
+/* The formats that image_decode() reads; it recognises them by the first bytes. */
 #define IMAGE_READ_FORMATS "PNG, JPEG, TIFF, OpenEXR, HDR, GIF, BMP, TGA, WebP, PNM"
 
-/* Decodes one of IMAGE_READ_FORMATS. Grey becomes RGB, missing alpha becomes 1. Refuses images
- * wider or higher than max_px or over IMAGE_MAX_BYTES (named in the error). `name` stands in
- * messages; it opens nothing and tells nothing. NaN becomes 0. On failure *image is empty:
- * ERROR_IMAGE, or ERROR_SERVER when memory is short. */
+/* Decodes one of IMAGE_READ_FORMATS. Grey becomes RGB, missing alpha 1, NaN 0. Refuses images wider
+ * or higher than max_px or larger than IMAGE_MAX_BYTES; the error names the limit. `name` is used
+ * in messages only: no file is opened. On failure *image is empty; ERROR_IMAGE, or ERROR_SERVER
+ * when memory is short. */
 bool image_decode(struct image *image, const void *bytes, size_t size, const char *name,
                   uint32_t max_px, struct error *error);
 void image_finish(struct image *image);
 
-/* What every decoded image keeps to: sides from 1 to max_px, at most IMAGE_MAX_BYTES, pixels there
- * and finite. ERROR_IMAGE, saying `name`. */
+/* Checks what must hold for a decoded image: sides from 1 to max_px, at most IMAGE_MAX_BYTES,
+ * pixels present and finite. False with ERROR_IMAGE and `name`. */
 bool image_check(const struct image *image, const char *name, uint32_t max_px, struct error *error);
-size_t image_bytes(const struct image *image); /* of its pixels; the sides are at most 2^20 */
+size_t image_bytes(const struct image *image); /* bytes of the pixels; sides are at most 2^20 */
 
-/* OpenImageIO from now on starts no thread of its own. Before its first use, and for good. */
+/* From now on OpenImageIO starts no thread of its own. Call it before the first use. */
 void image_use_one_thread(void);
 
 enum image_type { IMAGE_UINT8, IMAGE_FLOAT, IMAGE_UINT32 };
 
-/* One channel of an image to be written: name as in EXR ("R", "P.X", "ptex.face"), samples at
- * data + y * row_stride_bytes + x * pixel_stride_bytes, top row first. Not owned. */
+/* One channel of an image to be written. The name is as in EXR ("R", "P.X", "ptex.face"). Samples
+ * are at data + y * row_stride_bytes + x * pixel_stride_bytes, top row first. The memory is not
+ * owned. */
 struct image_channel {
     const char *name;
     enum image_type type;
@@ -56,8 +58,8 @@ struct image_channel {
     size_t row_stride_bytes;
 };
 
-/* A text attribute that goes into PNG text chunks, EXR attributes, TIFF's description or a JPEG
- * file's comment. */
+/* A text attribute, for PNG text chunks, EXR attributes, TIFF's description or the comment of a
+ * JPEG file. */
 struct image_attribute {
     const char *name;
     const char *value;
@@ -65,36 +67,37 @@ struct image_attribute {
 
 enum image_format { IMAGE_EXR, IMAGE_TIFF };
 
-/* Encodes to a malloc'd buffer that the caller frees. TIFF takes the UINT8 channels R G B
- * A only; EXR takes any mix of types, UINT8 colour written as HALF in [0,1]. The same input gives
- * the same bytes: no clock, host or path is written. A plane that the format cannot hold is
- * ERROR_REQUEST. */
+/* Encodes a file into a malloc'd buffer, which the caller frees. TIFF takes only the UINT8 channels
+ * R, G, B, A; EXR takes any mix of types, and writes UINT8 colour as HALF in [0,1]. The same input
+ * gives the same bytes: no time, host or path is written. False with ERROR_REQUEST if the format
+ * cannot hold a channel. */
 bool image_encode(enum image_format format, uint32_t width_px, uint32_t height_px,
                   const struct image_channel *channels, size_t n_channels,
                   const struct image_attribute *attributes, size_t n_attributes, uint8_t **bytes,
                   size_t *size, struct error *error);
 
-/* A line of text as a mask: its baseline begins at (0, 0), y goes down. Owned by the caller; free
- * with text_finish(). */
+/* A line of text as a mask. Its baseline begins at (0, 0); y points down. Owned by the caller; free
+ * it by text_finish(). */
 struct text {
-    int left_px, top_px; /* of the mask's first pixel */
+    int left_px, top_px; /* position of the mask's first pixel */
     uint32_t width_px, height_px;
     float *coverage; /* [height_px][width_px], 0 to 1 */
 };
-/* Sides of a mask, and its distance from the baseline's begin. */
+/* Limit of a mask's sides and of its distance from the start of the baseline. */
 #define TEXT_MAX_PX (1u << 15)
 
-/* One line of ASCII (OpenImageIO 2.4 misreads more) in DejaVu Sans of size_px. On failure *text is
- * empty: ERROR_SERVER when the font or memory is missing. */
+/* Renders one line of ASCII (OpenImageIO 2.4 misreads other characters) in DejaVu Sans of size_px.
+ * False with ERROR_SERVER if the font is missing or memory is short; *text is then empty. */
 bool text_create(struct text *text, const char *line, int size_px, struct error *error);
 void text_finish(struct text *text);
-/* True if sides and distances are within TEXT_MAX_PX and `coverage` is set, from 0 to 1. */
+/* True if sides and distances are within TEXT_MAX_PX and every coverage is from 0 to 1. */
 bool text_check(const struct text *text);
 
 enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT };
 
-/* Writes text over 8-bit RGBA pixels (straight alpha, rows contiguous, top first): its baseline
- * begins, has its middle or ends at (x_px, y_px). What lies outside of the picture is left out. */
+/* Draws text over 8-bit RGBA pixels (straight alpha, contiguous rows, top row first). Its baseline
+ * begins, has its middle or ends at (x_px, y_px), by `align`. Parts outside of the picture are left
+ * out. */
 void text_draw(const struct text *text, uint8_t *rgba, uint32_t width_px, uint32_t height_px,
                int x_px, int y_px, enum text_align align, const float colour[4]);
 

@@ -1,4 +1,4 @@
-/* What holds the results of image.cpp: no image library here. */
+/* Holds and checks the results of image.cpp, without an image library. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-/* The view and the light of a request that names none. */
+/* The camera and light of a request that leaves them out. */
 #include "server/scene/defaults.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ static struct vec box_middle(const double box_min[3], const double box_max[3])
                         0.5 * (box_min[2] + box_max[2])};
 }
 
-/* Half the box's diagonal; a point gets a sphere of some size too. */
+/* Half the box's diagonal; at least some size, for a model that is a point. */
 static double box_radius(const double box_min[3], const double box_max[3])
 {
     struct vec d = {box_max[0] - box_min[0], box_max[1] - box_min[1], box_max[2] - box_min[2]};
@@ -22,8 +22,8 @@ static double box_radius(const double box_min[3], const double box_max[3])
     return radius > 0 ? radius : 1;
 }
 
-/* Turns -0 into 0, as JSON readers do, so that a request made from the chosen numbers is the same
- * request. */
+/* Turns -0 into 0, like readers of JSON, so that a request made from the chosen numbers is the
+ * same. */
 static void put(struct vec v, double out[3])
 {
     out[0] = v.x + 0.0;
@@ -36,15 +36,15 @@ static struct vec get(const double a[3])
     return (struct vec){a[0], a[1], a[2]};
 }
 
-/* Where the eye must be for all of the model to lie inside a picture, as near as possible: from the
- * box's middle by `distance` back along the view and `side` across it. */
+/* The nearest eye from which the whole model lies inside the picture: from the middle of the box,
+ * `distance` back along the view and `side` across it. */
 struct framing {
     double distance, side;
 };
 
-/* Along one axis of the picture, `across`, of whose half angle this is the tangent. A point is
- * inside when |x - side| <= tangent (distance + depth): for each edge of the picture one point
- * decides. */
+/* Computes the framing along one axis of the picture, `across`; `tangent` is that of half the field
+ * of view. A point is inside if |x - side| <= tangent (distance + depth), so one point decides at
+ * each edge. */
 static struct framing frame_axis(const float (*points)[3], size_t n, struct vec forward,
                                  struct vec across, double tangent)
 {
@@ -58,8 +58,8 @@ static struct framing frame_axis(const float (*points)[3], size_t n, struct vec 
     return (struct framing){0.5 * (above + below), 0.5 * tangent * (above - below)};
 }
 
-/* Puts eye and target, which look along `forward`, for the model to fill a picture whose half
- * angles have these tangents: its outermost points, or where they are not known, its box. */
+/* Places eye and target, looking along `forward`, so that the model fills a picture with these
+ * tangents: by its outermost points, or, if they are not known, by its box. */
 static void frame_model(const struct limit_tables *tables, struct vec forward, struct vec up,
                         double tan_x, double tan_y, struct camera *camera)
 {
@@ -80,8 +80,8 @@ static void frame_model(const struct limit_tables *tables, struct vec forward, s
     put(vec_mad(target, distance > 0 ? -distance : -1, forward), camera->eye);
 }
 
-/* Where no file says it: Y up is most modellers' convention, Z up that of CAD, and a body is rarely
- * thinner along a horizontal axis than along its up axis, so the thinner of the two is up: clearly
+/* Most modelling programs have y up, CAD has z up, and a body is rarely thinner along a horizontal
+ * axis than along its up axis. So the axis along which it is thinner is up; it must be clearly
  * thinner, so that rounding does not turn a model. */
 void scene_guess_up(const double box_min[3], const double box_max[3], double up[3])
 {
@@ -89,7 +89,7 @@ void scene_guess_up(const double box_min[3], const double box_max[3], double up[
     put(z_up ? (struct vec){0, 0, 1} : (struct vec){0, 1, 0}, up);
 }
 
-/* The horizontal direction that azimuth is counted from: the world's x axis, or y where x is up. */
+/* The horizontal direction of azimuth 0: the world's x axis, or y if x is up. */
 static struct vec horizontal_axis(struct vec up)
 {
     bool x_up = fabs(up.x) > 1 - 1e-9;
@@ -103,8 +103,8 @@ static double extent(const double box_min[3], const double box_max[3], struct ve
            fabs(axis.z) * (box_max[2] - box_min[2]);
 }
 
-/* Of the horizontal directions e1 and e2: is the box longer along the second? Clearly longer, so
- * that neither rounding nor a small change of a model turns what is as long as wide. */
+/* Is the box longer along e2 than along e1? It must be clearly longer, so that rounding or a small
+ * change does not turn a model that is as long as wide. */
 static bool is_deeper(const double box_min[3], const double box_max[3], struct vec e1,
                       struct vec e2)
 {
@@ -119,7 +119,7 @@ static struct vec upward_of(const double box_min[3], const double box_max[3], co
     return vec_unit(get(up ? up : guessed));
 }
 
-/* Where the eye stands, seen from the model: unit. */
+/* The direction from the model to the eye; length 1. */
 static struct vec standpoint(enum default_view view, const double box_min[3],
                              const double box_max[3], struct vec up)
 {
@@ -127,10 +127,10 @@ static struct vec standpoint(enum default_view view, const double box_min[3],
     double elevation = 45 * DEGREE, azimuth = 0;
     switch (view) {
     case VIEW_AROUND:
-        /* The longer of the horizontal sides lies across the picture rather than into it. */
+        /* The longer horizontal side lies across the picture rather than into it. */
         azimuth = (is_deeper(box_min, box_max, e1, e2) ? -30 : -60) * DEGREE;
         break;
-    case VIEW_ISO: /* all three axes as long in the picture */
+    case VIEW_ISO: /* all three axes are equally long in the picture */
         azimuth = -45 * DEGREE;
         elevation = atan(sqrt(0.5));
         break;
@@ -202,9 +202,9 @@ void scene_default_light(const double box_min[3], const double box_max[3], const
     struct vec e1 = horizontal_axis(upward), e2 = vec_cross(upward, e1);
     struct vec along = is_deeper(box_min, box_max, e1, e2) ? e2 : e1;
     double radius = box_radius(box_min, box_max);
-    /* Flat: low overhead and wide, so that whatever the surface reflects from within 76 degrees of
-     * straight up is light; u x v points down. Round: so far out that lines bend with the surface
-     * rather than with the way to the light, near enough for several lines on a flat side. */
+    /* Flat lights are low above the model and wide: every direction within 76 degrees of up meets
+     * them; u x v points down. Round lights are so large that lines follow the surface's shape
+     * rather than the distance to the light, but near enough for several lines on a flat side. */
     double height = 2 * radius, size = 16 * radius, tunnel = 3 * radius;
     put(middle, light->centre);
     put(along, light->v);
@@ -217,7 +217,8 @@ void scene_default_light(const double box_min[3], const double box_max[3], const
         break;
     case LIGHT_TUNNEL:
         put(vec_scale(upward, tunnel), light->u);
-        put(vec_scale(along, 360 * DEGREE * tunnel), light->v); /* as high as it is wide */
+        /* One period of v is as long as the circumference. */
+        put(vec_scale(along, 360 * DEGREE * tunnel), light->v);
         break;
     case LIGHT_SPHERE:
         put(upward, light->u);

@@ -1,5 +1,5 @@
-/* One finished frame in main memory: its planes, and what a device says about it. Any thread, one
- * at a time. */
+/* A frame in main memory: its planes, and what the device reports about it.
+ * Thread: one at a time. */
 #ifndef SHEEN_SCENE_FRAME_H
 #define SHEEN_SCENE_FRAME_H
 
@@ -9,36 +9,36 @@
 #include "server/base/error.h"
 #include "server/scene/frame_request.h"
 
-/* The time that each stage took. Where renderer_info.timed_by_device: time of the device alone,
+/* The time of each stage in microseconds. If renderer_info.timed_by_device: the device's own time,
  * without what the processor did meanwhile; else by the clock, waiting for the device after each
- * stage. The readback is always by the clock. */
+ * stage. The readback is always measured by the clock. */
 struct frame_times {
     uint64_t visibility_us, evaluate_us, shade_us, readback_us;
 };
 
-/* Planes are rows, top row first, tightly packed; NULL when not asked for. They belong to who has
- * the frame, who gives them back by frame_finish(). */
+/* A plane consists of contiguous rows, top row first; NULL if it was not requested. The frame owns
+ * its planes until frame_finish(). */
 struct frame {
     uint32_t width_px, height_px;
     void *plane[PLANE_COUNT]; /* indexed by bit number */
     struct frame_times times;
-    bool shows_surface; /* false: no pixel shows any of the model */
-    /* With frame_request.count_light: how many pixels show surface at their centre, and on how many
-     * of these the reflected ray meets a light. They are samples for a share, met_px / seen_px: all
-     * pixels of tiles of fewer than 2^18, one in eight of larger tiles; and where no light can be
-     * missed, nothing is counted and both get 1 for each tile that shows surface. */
+    bool shows_surface; /* false: no pixel shows the model */
+    /* Only with frame_request.count_light: the number of pixels whose centre shows the surface, and
+     * the number of those whose ray meets a light. Only their ratio met_px / seen_px has a meaning:
+     * in tiles of 2^18 pixels and more, one pixel of eight is counted. If no light can be missed,
+     * nothing is counted, and each tile that shows the surface adds 1 to both. */
     uint64_t seen_px, met_px;
-    struct block_cache *block_cache; /* where the planes come from; NULL: malloc() */
+    struct block_cache *block_cache; /* memory of the planes; NULL: malloc() */
 };
 
-/* Bytes of one pixel of a plane (a single bit). */
+/* Bytes of one pixel of a plane; `plane` is a single bit. */
 size_t frame_plane_bytes(enum frame_plane plane);
 
-/* An empty frame with the planes that the request asks for, their contents undefined. ERROR_SERVER
- * when memory is short; the frame is all zero then. */
+/* Allocates the planes that the request asks for; their contents are undefined. False with
+ * ERROR_SERVER when memory is short; the frame is then all zero. */
 bool frame_init(struct frame *frame, const struct frame_request *request,
                 struct block_cache *block_cache, struct error *error);
-/* Gives the planes back; the frame is all zero then, which is safe to finish again. */
+/* Frees the planes and zeroes the frame; safe to call again. */
 void frame_finish(struct frame *frame);
 
 #endif

@@ -120,8 +120,8 @@ static bool check_lines(const struct lines *lines, struct error *error)
     return true;
 }
 
-/* An eye in the plane of a flat light sees it as a line, and so does a flat mirror: such a request
- * would show nothing. */
+/* Refuses an eye in the plane of a flat light: it sees the light as a line, also in a flat mirror,
+ * so the picture would show nothing. */
 static bool check_eye_off_light(const struct frame_request *request, const struct light *light,
                                 struct error *error)
 {

@@ -22,13 +22,13 @@ _Static_assert((int)SURFACE_EXACT == (int)sheen_SurfaceKind_SURFACE_EXACT &&
                    (int)SURFACE_POLYGON == (int)sheen_SurfaceKind_SURFACE_POLYGON &&
                    (int)SURFACE_WIREFRAME == (int)sheen_SurfaceKind_SURFACE_WIREFRAME,
                "surfaces have the same numbers on the wire");
-/* What is left out of a request. Where the reflected ray misses the light is no dark stripe: it has
- * a colour of its own. */
+/* Colours that a request leaves out. Where the reflected ray misses the light, the colour differs
+ * from a dark stripe. */
 static const sheen_Colour DEFAULT_MISS = {0.16f, 0.19f, 0.23f, 1};
 static const sheen_Colour DEFAULT_EMPTY = {0.5f, 0.5f, 0.5f, 1};
 static const sheen_Colour DEFAULT_BASE = {0.7f, 0.72f, 0.75f, 1};
 
-/* Puts what a request says of the camera over the one that frames the model. */
+/* Applies the camera of a request to the camera that frames the model. */
 static void to_camera(const sheen_Camera *from, const struct scene_subject *subject,
                       const double up[3], struct camera *to)
 {
@@ -46,7 +46,7 @@ static void to_camera(const sheen_Camera *from, const struct scene_subject *subj
     to->ortho_height = from->ortho_height;
     if (from->has_eye)
         return;
-    /* Its height is not known to fit the model: stand outside of the box, however it is seen. */
+    /* The height need not fit the model: stand outside of the box, in whatever direction. */
     double diagonal = 0, distance = 0;
     for (int i = 0; i < 3; i++) {
         diagonal = hypot(diagonal, subject->tables->box_max[i] - subject->tables->box_min[i]);

@@ -1,4 +1,4 @@
-/* Line families, lights and patterns between messages and the renderer. */
+/* Converts line families, lights and patterns between messages and the renderer's structs. */
 #include <string.h>
 
 #include "protocol/message_values.h"
@@ -53,7 +53,7 @@ static sheen_Pattern from_pattern(const struct pattern *pattern, const sheen_Pat
     return wire;
 }
 
-/* A light of which nothing is said is one that every ray meets. */
+/* The default light is one that every ray meets. */
 static enum light_kind kind_of(const sheen_Light *light)
 {
     return light->has_kind || light->has_centre ? (enum light_kind)light->kind : LIGHT_TUNNEL;
