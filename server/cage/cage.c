@@ -28,7 +28,7 @@ static bool ends_with(const char *text, const char *ending)
 void cage_warn(struct cage *cage, const char *format, ...)
 {
     if (!cage->warnings && !(cage->warnings = calloc(1, CAGE_WARNINGS_BYTES)))
-        return; /* a warning is not worth failing for */
+        return; /* no failure for the sake of a warning */
     if (ends_with(cage->warnings, MORE_WARNINGS))
         return;
     char line[512];
@@ -38,7 +38,7 @@ void cage_warn(struct cage *cage, const char *format, ...)
     va_end(args);
     for (char *c = line; *c; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?'; /* parts of the text come from files, and it goes to terminals */
+            *c = '?'; /* parts of the text come from files, and it is shown in terminals */
     size_t used = strlen(cage->warnings);
     if (used > 0)
         cage->warnings[used++] = '\n';

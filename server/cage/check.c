@@ -64,7 +64,7 @@ static bool check_positions(const struct check *check)
     return true;
 }
 
-/* `seen` holds, for each vertex, one more than the last face that had it. */
+/* seen[v] is 1 + the last face that has vertex v. */
 static bool check_face(const struct check *check, size_t face, uint32_t *seen)
 {
     const struct cage *cage = check->cage;
@@ -139,8 +139,8 @@ static bool check_tag_values(const struct check *check)
     return true;
 }
 
-/* A set of edges, open addressing; sized for the creases so that a million faces cost no more than
- * the walk over them. */
+/* A set of edges by open addressing; sized for the creases, so that a million faces cost only one
+ * pass over them. */
 struct edge_set {
     uint64_t *edge; /* low vertex << 32 | high vertex; never 0: an edge's high vertex is not 0 */
     uint8_t *found;
@@ -210,7 +210,7 @@ bool cage_find_creases(const struct cage *cage, uint8_t *is_edge)
     return ok;
 }
 
-/* Whether every crease lies on an edge of some face. Indices have been checked. */
+/* True if every crease lies on an edge of a face. Indices have been checked. */
 static bool check_crease_edges(const struct check *check)
 {
     const struct cage *cage = check->cage;

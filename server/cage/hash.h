@@ -1,6 +1,7 @@
-/* A keyed 64-bit mixer for hash tables over data that strangers send: with a secret seed nobody
- * can prepare keys that all fall into one slot. The seed changes the order of slots only, so no
- * result may depend on that order. Any thread. */
+/* A keyed 64-bit hash for tables over data from strangers. The seed is secret, so nobody can
+ * prepare keys that all fall into one slot. Results must not depend on the order of slots, which
+ * changes with the seed.
+ * Any thread. */
 #ifndef SHEEN_CAGE_HASH_H
 #define SHEEN_CAGE_HASH_H
 
@@ -10,8 +11,8 @@
 static inline uint64_t hash_seed(void)
 {
     uint64_t seed = 0x9e3779b97f4a7c15u;
-    /* Without entropy the constant is the seed: a hostile file can then make a table slow,
-     * never wrong. */
+    /* Without entropy the seed is a constant: a hostile file can then make a table slow, but never
+     * wrong. */
     if (getrandom(&seed, sizeof seed, GRND_NONBLOCK) != (ssize_t)sizeof seed)
         seed ^= 0xd1b54a32d192ed03u;
     return seed;

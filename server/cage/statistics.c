@@ -10,7 +10,8 @@ struct edges {
     const struct cage *cage;
     struct cage_statistics *statistics;
     struct cage_edges by_vertex;
-    float *sharpness;   /* [corners]: of an edge, at its first half-edge; NULL: no creases */
+    /* [corners]: sharpness of an edge, stored at its first half-edge; NULL: no creases. */
+    float *sharpness;
     uint32_t *valence;  /* [n_vertices]: faces around it */
     uint8_t *flags;     /* [n_vertices] */
     uint32_t *fan_link; /* [corners]: union-find of the corners that edges join around a vertex */
@@ -51,11 +52,11 @@ static uint32_t fan_of(struct edges *edges, uint32_t corner)
 {
     uint32_t *link = edges->fan_link;
     while (link[corner] != corner)
-        corner = link[corner] = link[link[corner]]; /* halves the path */
+        corner = link[corner] = link[link[corner]]; /* path halving */
     return corner;
 }
 
-/* Two faces that run along an edge in opposite directions are joined at both of its ends. */
+/* Two faces that traverse an edge in opposite directions are joined at both of its ends. */
 static void join_faces(struct edges *edges, const struct cage_half_edge *a,
                        const struct cage_half_edge *b)
 {
@@ -98,7 +99,7 @@ static void count_edges(const struct cage *cage, struct edges *edges,
         statistics->n_nonmanifold_vertices += (edges->flags[v] & NON_MANIFOLD) != 0;
 }
 
-/* --- tags; where two are for the same element the later one counts */
+/* --- tags; of two for the same element the later one counts */
 
 /* The first half-edge of an edge of the cage. */
 static size_t find_edge(const struct edges *edges, uint32_t a, uint32_t b)
@@ -150,7 +151,7 @@ static bool count_tags(const struct cage *cage, struct cage_statistics *statisti
 
 /* --- valences */
 
-/* Fills in the table of valences; its last entry counts all that do not fit. */
+/* Fills in the table of valences; the last entry counts all that do not fit. */
 static void count_valences(struct cage_statistics *statistics, uint32_t *by_valence,
                            uint32_t max_valence)
 {

@@ -1,5 +1,5 @@
-/* Counts that say what a cage consists of, for `sheen info`: faces by size, edges and vertices
- * at which lines may bend, tags. The cage is only read; any thread. */
+/* Counts what a cage consists of, for `sheen info`: faces by size, edges and vertices at which
+ * lines may bend, and tags. Only reads the cage. Any thread. */
 #ifndef SHEEN_CAGE_STATISTICS_H
 #define SHEEN_CAGE_STATISTICS_H
 
@@ -9,17 +9,21 @@
 
 struct cage_statistics {
     uint32_t n_triangles, n_quads, n_ngons; /* faces of 3, 4, and 5 or more corners */
-    uint32_t n_boundary_edges;              /* edges of one face */
-    uint32_t n_boundary_extraordinary;      /* vertices on such edges in other than 2 faces */
-    uint32_t n_nonmanifold_edges;    /* of 3 faces and more, or run in one direction by 2 faces */
-    uint32_t n_nonmanifold_vertices; /* on such an edge, or with faces that are not one fan */
+    uint32_t n_boundary_edges;              /* edges with one face */
+    uint32_t n_boundary_extraordinary;      /* vertices on such edges that do not have 2 faces */
+    /* Edges with 3 or more faces, or traversed in the same direction by 2. */
+    uint32_t n_nonmanifold_edges;
+    /* Vertices on such an edge, or whose faces are not a single fan. */
+    uint32_t n_nonmanifold_vertices;
 
-    uint32_t n_sharp_edges, n_semisharp_edges; /* tagged: infinitely sharp, and other creases */
-    uint32_t n_sharp_vertices;                 /* tagged, infinitely sharp or not */
-    uint32_t n_holes;                          /* faces tagged as holes */
+    /* Tagged edges: infinitely sharp; of finite sharpness. */
+    uint32_t n_sharp_edges, n_semisharp_edges;
+    uint32_t n_sharp_vertices; /* tagged vertices, of any sharpness */
+    uint32_t n_holes;          /* faces tagged as holes */
 
-    /* Vertices off the boundary in other than 4 faces, by number of faces, ascending. When there
-     * are more numbers than entries the last entry counts the rest under the smallest of them. */
+    /* Interior vertices that do not have 4 faces, by number of faces, ascending. If there are more
+     * numbers than entries, the last entry counts all the rest, under the smallest of their
+     * numbers. */
     uint32_t n_valences;
     struct {
         uint32_t valence, count;

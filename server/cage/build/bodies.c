@@ -2,14 +2,13 @@
 
 #include <stdlib.h>
 
-/* A body whose volume is below this share of the sum of its parts' magnitudes is flat within
- * rounding. */
+/* A body whose volume is below this share of the sum of its parts' magnitudes may be flat. */
 #define LEAST_VOLUME 1e-6
-/* How many bodies, the largest ones, may have hollows. */
+/* The number of bodies, the largest ones, that may have hollows. */
 #define MOST_OUTER 16
 
 struct body {
-    uint32_t first;       /* a face */
+    uint32_t first;       /* its first face */
     bool is_open;         /* the body is not closed, or to be left out */
     double volume, parts; /* six times the signed volume, and the sum of its parts' magnitudes */
     double low[3], high[3];
@@ -22,8 +21,8 @@ static void cross(double out[3], const double a[3], const double b[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* A corner's position relative to `origin`, so that volumes of bodies far from the world's
- * origin keep their digits. Volumes stay finite with coordinates of CAGE_MAX_COORDINATE. */
+/* A corner's position relative to `origin`, so that the volume of a body far from the world's
+ * origin is precise. Volumes are finite for coordinates up to CAGE_MAX_COORDINATE. */
 static void place(const struct cage *cage, uint32_t corner, const double origin[3], double out[3])
 {
     const double *position = cage->position[cage->face_vertex[corner]];
@@ -31,7 +30,7 @@ static void place(const struct cage *cage, uint32_t corner, const double origin[
         out[i] = position[i] - origin[i];
 }
 
-/* Adds what a face, as a fan of triangles from its first corner, adds to the volume. */
+/* Adds a face's part of the volume; the face is a fan of triangles from its first corner. */
 static void add_volume(struct body *body, const struct cage *cage, uint32_t face,
                        const double origin[3])
 {
@@ -72,8 +71,8 @@ static void begin_body(struct body *body, const struct cage *cage, uint32_t face
         body->low[i] = body->high[i] = origin_of(cage, body)[i];
 }
 
-/* Gives the bodies numbers in number_of[], by one face of each, in the order of their first faces.
- * Returns how many there are. */
+/* Numbers the bodies in number_of[], indexed by one face of each, in the order of their first
+ * faces. Returns their number. */
 static uint32_t number_bodies(const struct bodies *bodies, uint32_t *number_of)
 {
     uint32_t n = 0;
@@ -107,7 +106,7 @@ static bool is_inside(const struct body *body, const struct body *outer)
     return true;
 }
 
-/* Keeps the largest closed bodies whose faces turn outwards. */
+/* Finds the largest closed bodies whose normals point outwards. */
 static size_t find_outer(const struct body *body, uint32_t n, const struct body **outer)
 {
     size_t n_outer = 0;

@@ -2,11 +2,12 @@
 
 #include <stdlib.h>
 
-/* More tags than the largest cage has corners cannot be meant. */
+/* A limit of tags: the largest cage has no more corners. */
 #define MAX_TAGS CAGE_MAX_CORNERS
 
-/* Returns `array` with room for one more element after `count`, NULL (the array untouched) when
- * there is no memory. Growth by half keeps the copies linear and the waste low. */
+/* Returns `array` with room for one more element after `count`; NULL, and the array unchanged, when
+ * memory is short. It grows by half, so that copying takes linear time and little memory is
+ * wasted. */
 static void *room_for_one(void *array, size_t count, size_t capacity, size_t *new_capacity,
                           size_t element)
 {
@@ -108,7 +109,7 @@ bool cage_builder_end_face(struct cage_builder *builder, uint32_t line, struct e
     return true;
 }
 
-/* Makes room for one more tag in an array and in the lines beside it. False: no memory. */
+/* Makes room for one more tag in an array and in the array of its lines. False: no memory. */
 static bool room_for_tag(void **tags, size_t element, uint32_t **lines, size_t count,
                          size_t *capacity)
 {

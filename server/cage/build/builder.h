@@ -1,10 +1,11 @@
-/* A cage under construction: arrays that grow while a reader walks a file, and the line each part
- * came from, so that warnings made at the end can name it.
+/* A cage under construction: arrays that grow while a reader walks through a file, and the line of
+ * each element, so that later warnings can name it.
  *
- * The caller owns the struct: zero it but for the name, hand it to a reader, then either take `cage` out (and zero
- * it) or drop all with cage_builder_finish(), which must be called in both cases. Every function
- * that returns bool fails with ERROR_SERVER when memory is short and ERROR_MODEL when a count
- * passes its CAGE_MAX_ limit; the builder stays valid. Thread: one at a time. */
+ * The caller owns the struct. Zero it, set the name, pass it to a reader, then take `cage` out (and
+ * zero it) or keep nothing; in both cases call cage_builder_finish(). Functions that return bool
+ * fail with ERROR_SERVER when memory is short, and with ERROR_MODEL when a count exceeds its
+ * CAGE_MAX_ limit; the builder stays valid.
+ * Thread: one at a time. */
 #ifndef SHEEN_CAGE_BUILD_BUILDER_H
 #define SHEEN_CAGE_BUILD_BUILDER_H
 
@@ -12,17 +13,18 @@
 
 struct cage_builder {
     struct cage cage;
-    const char *name; /* of the file, for messages; the caller's */
-    /* Line in the file (from 1) of each face, crease, corner tag and hole; 0 where the file has no
-     * lines. As long as the cage's own arrays. */
+    const char *name; /* name of the file, for messages; owned by the caller */
+    /* The line in the file (from 1) of each face, crease, corner tag and hole; 0 if the file has no
+     * lines. As long as the arrays of `cage`. */
     uint32_t *face_line, *crease_line, *corner_line, *hole_line;
 
-    /* The file asks for its equal positions to be joined. */
+    /* The file asks to join vertices at equal positions. */
     bool weld;
-    /* The file has triangles, and nothing in it says that triangles are meant. */
+    /* The file has triangles, and nothing in it says that triangles are intended. */
     bool plain_triangles;
 
-    /* Length of cage.face_vertex: corners of finished faces and of the face being built. */
+    /* Length of cage.face_vertex: the corners of finished faces and of the face under
+     * construction. */
     size_t n_face_vertices;
 
     size_t vertex_capacity, face_capacity, face_vertex_capacity;
@@ -33,8 +35,8 @@ void cage_builder_finish(struct cage_builder *builder);
 
 bool cage_builder_vertex(struct cage_builder *builder, const double position[3],
                          struct error *error);
-/* Adds a corner to the face being built; cage_builder_end_face() ends the face. Only counts are
- * checked here: cage_repair() and cage_check() look at the whole cage. */
+/* Adds a corner to the face under construction; cage_builder_end_face() ends the face. Only counts
+ * are checked here; cage_repair() and cage_check() check the whole cage. */
 bool cage_builder_face_vertex(struct cage_builder *builder, uint32_t vertex, struct error *error);
 bool cage_builder_end_face(struct cage_builder *builder, uint32_t line, struct error *error);
 

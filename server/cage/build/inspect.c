@@ -7,9 +7,10 @@
 #include "server/cage/edges.h"
 
 enum {
-    TANGLED = 1,  /* on an edge of more than two faces, or of two in the same direction */
-    REPEATED = 2, /* repeats an earlier face */
-    OPEN = 4,     /* on an edge that no closed body has */
+    /* The face has an edge with more than two faces, or with two in the same direction. */
+    TANGLED = 1,
+    REPEATED = 2, /* the face repeats an earlier one */
+    OPEN = 4,     /* the face has an edge that a closed body cannot have */
 };
 
 struct inspection {
@@ -19,8 +20,9 @@ struct inspection {
     struct cage_edges edges;
     uint32_t *face_of; /* [corners] */
     uint8_t *flags;    /* [n_faces] */
-    uint32_t *against; /* [n_faces]: its edges that a neighbour runs along in the same direction */
-    uint32_t *body;    /* [n_faces]: union-find of the faces that edges join */
+    /* [n_faces]: number of edges that a neighbour traverses in the same direction. */
+    uint32_t *against;
+    uint32_t *body; /* [n_faces]: union-find of the faces that edges join */
     uint32_t n_against;
 };
 
@@ -52,7 +54,7 @@ static bool no_vertex_is_shared(const struct cage *cage, uint8_t *is_used)
     return true;
 }
 
-/* Counts the corners whose position equals that of another corner, less one for each such
+/* Counts the corners whose position equals that of another corner, minus one for each such
  * position. False: no memory. */
 static bool count_repeated_places(const struct cage *cage, uint32_t *count)
 {
@@ -113,8 +115,8 @@ struct face_key {
     uint32_t face;
 };
 
-/* The vertices of a face in an order that is the same for equal faces, whichever way round they
- * are given: from the smallest vertex on, towards its smaller neighbour. */
+/* The vertices of a face in an order that is the same for equal faces of either direction: from the
+ * smallest vertex, towards its smaller neighbour. */
 struct walk {
     const uint32_t *vertex;
     uint32_t n, start;
@@ -179,9 +181,9 @@ static void report_repeated(struct inspection *inspection, uint32_t count, uint3
                    other);
 }
 
-/* Lists the faces that can repeat another: those on a TANGLED edge. (Two faces with the same
- * vertices and opposite winding that are joined to no other face are a pillow, which is a
- * body.) With NULL it only counts them. Returns how many there are. */
+/* Lists the faces that can repeat another: those with a TANGLED edge. (Two faces with the same
+ * vertices and opposite directions that are joined to no other face are a pillow, which is a body.)
+ * With NULL it only counts. Returns the number. */
 static size_t list_keys(const struct inspection *inspection, struct face_key *key)
 {
     const struct cage *cage = inspection->cage;
@@ -199,7 +201,7 @@ static size_t list_keys(const struct inspection *inspection, struct face_key *ke
     return n;
 }
 
-/* Equal faces have equal hashes, so that after sorting they stand together, the earliest first. */
+/* Equal faces have equal hashes, so that after sorting they are adjacent, the earliest first. */
 static bool find_repeated(struct inspection *inspection)
 {
     size_t n = list_keys(inspection, NULL);
@@ -229,7 +231,7 @@ static bool find_repeated(struct inspection *inspection)
     return true;
 }
 
-/* --- how faces that share an edge are wound */
+/* --- directions of faces that share an edge */
 
 static void mark_edge(void *context, uint32_t low, const struct cage_half_edge *half_edge, size_t n)
 {
@@ -246,11 +248,11 @@ static uint32_t body_of(const struct inspection *inspection, uint32_t face)
 {
     uint32_t *body = inspection->body;
     while (body[face] != face)
-        face = body[face] = body[body[face]]; /* halves the path */
+        face = body[face] = body[body[face]]; /* path halving */
     return face;
 }
 
-/* Faces that repeat another are left out: their edges would count as wound in the same
+/* Repeated faces are left out, because their edges would count as traversed in the same
  * direction. */
 static void look_at_edge(void *context, uint32_t low, const struct cage_half_edge *half_edge,
                          size_t n)

@@ -6,14 +6,14 @@
 
 #define GONE UINT32_MAX
 
-/* How many elements of a kind there are, and where the first is. */
+/* The number of elements of a kind, and the place of the first. */
 struct tally {
     uint32_t count, line, face;
 };
 
 struct repair {
     struct cage_builder *builder;
-    uint32_t *seen; /* [n_vertices]: one more than the last face that had it */
+    uint32_t *seen; /* [n_vertices]: 1 + the last face that has the vertex */
     uint32_t *
         face_map; /* [n_faces]: the new index of a face, or GONE; NULL: the cage has no holes to renumber */
     struct tally tally[N_CAGE_FINDINGS];
@@ -39,8 +39,8 @@ static void count(struct repair *repair, enum cage_finding_kind kind, uint32_t l
         *tally = (struct tally){1, line, line ? CAGE_NO_FACE : face};
 }
 
-/* Moves the corners of a face down to `out`, without those that repeat a neighbour, and returns
- * how many stay. */
+/* Copies the corners of a face to `out`, without those equal to a neighbour. Returns how many
+ * remain. */
 static uint32_t drop_repeated(uint32_t *out, const uint32_t *corner, uint32_t n)
 {
     uint32_t kept = 0;
@@ -63,8 +63,8 @@ static bool repeats_a_vertex(const struct repair *repair, const uint32_t *corner
     return false;
 }
 
-/* Moves the corners of a face that stay down to `out` and returns how many they are. 0: the
- * face is passed over. */
+/* Copies the remaining corners of a face to `out` and returns their number; 0: the face is left
+ * out. */
 static uint32_t repair_face(struct repair *repair, uint32_t *out, const uint32_t *corner,
                             uint32_t n, uint32_t face)
 {
@@ -105,7 +105,7 @@ static void repair_faces(struct repair *repair)
     builder->n_face_vertices = kept_corners;
 }
 
-/* is_edge[] says for each crease whether it lies on an edge. */
+/* Removes the creases with is_edge[] 0. */
 static void repair_creases(struct repair *repair, const uint8_t *is_edge)
 {
     struct cage_builder *builder = repair->builder;
@@ -134,8 +134,8 @@ static void repair_corners(struct repair *repair)
     cage->n_corners = kept;
 }
 
-/* Renumbers holes; the hole of a face that is passed over is dropped without a finding.
- * n_faces: of the file. */
+/* Renumbers holes; the hole of a face that is left out is dropped without a finding. n_faces is the
+ * number of faces in the file. */
 static void repair_holes(struct repair *repair, size_t n_faces)
 {
     struct cage_builder *builder = repair->builder;
@@ -166,7 +166,7 @@ static void report(struct repair *repair, const char *name)
     }
 }
 
-/* Fails with the first face and why it is passed over. Returns false. */
+/* Fails with the first face and the reason why it is left out. Returns false. */
 static bool fail_without_faces(const struct repair *repair, const char *name, size_t n_faces,
                                struct error *error)
 {

@@ -8,7 +8,7 @@
 
 #define EMPTY UINT32_MAX
 
-/* A number that is equal for equal coordinates, for -0 and 0, and for all NaN. */
+/* The same number for equal coordinates: for -0 and 0, and for all NaN. */
 static uint64_t coordinate_bits(double value)
 {
     uint64_t bits;
@@ -34,8 +34,8 @@ static bool same_place(const double a[3], const double b[3])
            coordinate_bits(a[2]) == coordinate_bits(b[2]);
 }
 
-/* Moves the vertices from `first` on that stay to the front, and sets map[] to the new index of
- * each of the old ones. */
+/* Moves the remaining vertices from `first` on to the front, and sets map[] to the new index of
+ * each old one. */
 static bool weld_vertices(struct cage *cage, size_t first, uint32_t *map)
 {
     size_t slots = 16;

@@ -10,7 +10,7 @@
 /* Longer texts are refused: 767 digits decide the worst case of a double. */
 #define MAX_LENGTH 1000
 
-/* The text as mantissa * 10^exponent, as far as 64 bits hold it. */
+/* The number as mantissa * 10^exponent, as far as 64 bits can hold it. */
 struct decimal {
     uint64_t mantissa;
     int exponent;
@@ -23,7 +23,8 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Appends digits to the mantissa; each lowers the exponent by `shift`. Returns how many. */
+/* Appends digits to the mantissa; each reduces the exponent by `shift`. Returns the number of
+ * digits. */
 static int scan_digits(const char **at, const char *end, struct decimal *decimal, int shift)
 {
     const char *p = *at;
@@ -78,7 +79,7 @@ static bool scan(const char *text, const char *end, struct decimal *decimal)
     return p == end;
 }
 
-/* How printf() of several C libraries writes NaN and infinity. */
+/* The words that printf() writes for NaN and infinity in several C libraries. */
 static bool is_not_finite_word(const char *text, size_t length)
 {
     static const char *const words[] = {"nan", "inf", "infinity", "1.#inf", "1.#ind", "1.#qnan"};
@@ -96,7 +97,7 @@ static bool is_not_finite_word(const char *text, size_t length)
 
 enum decimal_result decimal_read(const char *text, size_t length, locale_t c_locale, double *value)
 {
-    /* Mantissa and power are exact here, so the result is rounded once (Clinger 1990). */
+    /* Mantissa and power are exact in this case, so the result is rounded once (Clinger 1990). */
     static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                    1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                    1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};

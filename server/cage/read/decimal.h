@@ -1,5 +1,4 @@
-/* Reads decimal numbers of files, correctly rounded, independent of the locale. Pure; any
- * thread. */
+/* Parses decimal numbers: correctly rounded, and independent of the locale. Pure, any thread. */
 #ifndef SHEEN_CAGE_READ_DECIMAL_H
 #define SHEEN_CAGE_READ_DECIMAL_H
 
@@ -12,8 +11,8 @@ enum decimal_result {
     DECIMAL_NOT_FINITE, /* nan, inf, or too large for a double */
 };
 
-/* Reads all of text[0, length) into *value, which is the double nearest to it and is only written
- * on DECIMAL_OK. `c_locale` is a newlocale() of "C". */
+/* Parses all `length` bytes of `text`. *value is the nearest double, and is only written for
+ * DECIMAL_OK. `c_locale` is a newlocale() of "C". */
 enum decimal_result decimal_read(const char *text, size_t length, locale_t c_locale, double *value);
 
 #endif

@@ -40,11 +40,11 @@ static bool read_vertex(struct obj_reader *reader)
             return obj_fail(reader, "coordinate %c of v is %g, beyond the largest that is read, %g",
                             axis, position[i], CAGE_MAX_COORDINATE);
     }
-    /* A weight or a colour may follow: neither moves the vertex. */
+    /* A weight or a colour may follow; neither changes the position. */
     return cage_builder_vertex(reader->builder, position, reader->error);
 }
 
-/* An integer with a sign; saturates far outside of what any index can be. */
+/* Parses an integer with a sign; saturates far beyond any valid index. */
 static bool scan_index(const char **at, const char *end, int64_t *index)
 {
     const char *p = *at;
@@ -62,8 +62,7 @@ static bool scan_index(const char **at, const char *end, int64_t *index)
     return true;
 }
 
-/* One of v, v/t, v//n, v/t/n. The texture and normal indices must be numbers, no more: nothing is
- * looked up with them. */
+/* Parses v, v/t, v//n or v/t/n. Texture and normal indices must be numbers, but are not used. */
 static bool scan_face_corner(const struct obj_field *field, int64_t *vertex)
 {
     const char *p = field->text, *end = p + field->length;
@@ -106,8 +105,8 @@ static bool read_face(struct obj_reader *reader)
                             "face corner %zu refers to vertex %lld, beyond the largest "
                             "that is read, %u",
                             corner, (long long)index, CAGE_MAX_VERTICES);
-        /* Vertices may follow the face that names them: read_all() checks the index at the end
-         * of the file. */
+        /* Vertices may follow the face that uses them: read_all() checks the index at the end of
+         * the file. */
         uint32_t vertex = (uint32_t)(index < 0 ? (int64_t)n_vertices + index : index - 1);
         if (!cage_builder_face_vertex(builder, vertex, reader->error))
             return false;
@@ -115,7 +114,7 @@ static bool read_face(struct obj_reader *reader)
     return cage_builder_end_face(builder, reader->line, reader->error);
 }
 
-/* Keywords of OBJ that say nothing about a cage. */
+/* True for keywords of OBJ that do not concern a cage. */
 static bool is_passed_over(const struct obj_field *keyword)
 {
     static const char *const words[] = {"vn", "vt",     "vp",     "o", "g",
@@ -147,8 +146,8 @@ static bool read_statement(struct obj_reader *reader)
     return true;
 }
 
-/* Whether all faces are triangles. OBJ could have held larger ones, so that triangles may not
- * be meant. */
+/* True if all faces are triangles. OBJ can hold larger faces, so the triangles may not be
+ * intended. */
 static bool has_triangles_alone(const struct cage *cage)
 {
     for (size_t f = 0; f < cage->n_faces; f++)
@@ -200,7 +199,7 @@ bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, cons
         .error = error,
     };
     if (size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0)
-        reader.text.at += 3; /* a byte order mark, as some Windows programs write */
+        reader.text.at += 3; /* a byte order mark, which some Windows programs write */
     bool ok = read_all(&reader);
     builder->plain_triangles = has_triangles_alone(&builder->cage);
     const struct cage *cage = &builder->cage;

@@ -1,4 +1,4 @@
-/* What the parts of the OBJ reader share. Internal to them: obj.c and obj_tags.c. */
+/* What the parts of the OBJ reader, obj.c and obj_tags.c, share. Internal to them. */
 #ifndef SHEEN_CAGE_READ_OBJ_READER_H
 #define SHEEN_CAGE_READ_OBJ_READER_H
 
@@ -17,16 +17,16 @@ struct obj_reader {
     struct error *error;
 };
 
-/* How much of a field a message shows. */
+/* The arguments of "%.*s" to show a field in a message, cut to 40 bytes. */
 #define OBJ_SHOWN(field) (int)((field)->length < 40 ? (field)->length : 40), (field)->text
 
-/* Fails with ERROR_MODEL and "name:line: ...". */
+/* Sets ERROR_MODEL with the text "name:line: ..." and returns false. */
 bool obj_fail(const struct obj_reader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Reads the rest of a line that began with "t": an OpenSubdiv tag. Accepted are any blanks, any
- * length, and for a crease one sharpness for all edges, one for each edge, or, as OpenSubdiv
- * counts them, one for each vertex. Stops before the line's end. */
+/* Reads the rest of a line that begins with "t": an OpenSubdiv tag. Any blanks and any length are
+ * accepted. A crease may have one sharpness for all edges, one for each edge, or, as OpenSubdiv
+ * counts them, one for each vertex. Stops before the end of the line. */
 bool obj_read_tag(struct obj_reader *reader);
 
 #endif

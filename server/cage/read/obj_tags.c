@@ -52,8 +52,8 @@ static bool missing(const struct obj_reader *reader, const struct tag *tag, cons
                     OBJ_SHOWN(&tag->name), what, tag->n_ints, tag->n_floats, tag->n_strings);
 }
 
-/* A zero-based index: tags count from 0, faces from 1. A number that can be no index, below 0
- * or too large, becomes NO_INDEX: cage_repair() passes over tags whose element does not exist. */
+/* Parses an index from 0 on (tags count from 0, faces from 1). A number that cannot be an index
+ * becomes NO_INDEX; cage_repair() then leaves the tag out, because there is no such element. */
 static bool read_index(struct obj_reader *reader, const struct tag *tag, uint32_t *index)
 {
     struct obj_field field;
@@ -108,8 +108,8 @@ static bool read_crease(struct obj_reader *reader, const struct tag *tag)
             !cage_builder_crease(reader->builder, &crease, reader->line, reader->error))
             return false;
     }
-    /* Of one sharpness for each vertex OpenSubdiv takes every other one, that of the edge's
-     * start. */
+    /* If there is one sharpness for each vertex, OpenSubdiv uses every other one: that of the
+     * edge's start. */
     uint32_t step = tag->n_floats == n_edges ? 1 : 2;
     for (uint32_t i = 0; i < tag->n_floats; i++) {
         float sharpness;
@@ -179,7 +179,7 @@ static bool read_interpolate_boundary(struct obj_reader *reader, const struct ta
     return true;
 }
 
-/* A tag that chooses between two words, of which the second sets *flag. */
+/* Reads a tag with one of two words; the second sets *flag. */
 static bool read_choice(struct obj_reader *reader, const struct tag *tag, const char *off,
                         const char *on, bool *flag)
 {
@@ -195,7 +195,7 @@ static bool read_choice(struct obj_reader *reader, const struct tag *tag, const 
     return true;
 }
 
-/* A tag of sheen's own. It names no vertices, since all equal positions are joined. */
+/* Reads sheen's own tag `weld`. It has no vertices, because all equal positions are joined. */
 static bool read_weld(struct obj_reader *reader, const struct tag *tag)
 {
     if (tag->n_ints != 0 || tag->n_floats != 0 || tag->n_strings != 0)
@@ -203,8 +203,8 @@ static bool read_weld(struct obj_reader *reader, const struct tag *tag)
     return reader->builder->weld = true;
 }
 
-/* Passes over tags that change no position, hierarchical edits, which are not evaluated, and
- * unknown names. */
+/* Ignores tags that change no position, hierarchical edits, which are not supported, and unknown
+ * names. */
 static void pass_over(struct obj_reader *reader, const struct tag *tag)
 {
     struct cage *cage = &reader->builder->cage;

@@ -1,6 +1,6 @@
 #include "server/cage/read/obj_text.h"
 
-/* Length of the line ending at `at`: 0 where there is none. */
+/* The length of the line ending at `at`; 0 if there is none. */
 static size_t ending_length(const char *at, const char *end)
 {
     if (at == end)

@@ -1,8 +1,8 @@
-/* The text of an OBJ file as lines of fields. Internal to the OBJ reader.
+/* Splits the text of an OBJ file into lines and fields. Internal to the OBJ reader.
  *
- * A line ends at LF, CR LF or CR; a backslash before the end of a line joins it with the next;
- * '#' at the start of a field begins a comment, which no backslash lengthens. Fields are slices
- * of the file: nothing is copied. Any thread; no failure but the end. */
+ * A line ends at LF, CR LF or CR. A backslash before the end of a line joins the next line; '#' at
+ * the start of a field begins a comment, which a backslash does not continue. Fields point into the
+ * file: nothing is copied. Any thread; cannot fail. */
 #ifndef SHEEN_CAGE_READ_OBJ_TEXT_H
 #define SHEEN_CAGE_READ_OBJ_TEXT_H
 
@@ -21,10 +21,10 @@ struct obj_field {
     size_t length; /* >= 1 */
 };
 
-/* The next field of the current line; false at its end. */
+/* Gets the next field of the current line; false at the line's end. */
 bool obj_text_field(struct obj_text *text, struct obj_field *field);
 
-/* Goes past the end of the current line, whatever is left on it. */
+/* Moves behind the end of the current line, whatever is left on it. */
 void obj_text_next_line(struct obj_text *text);
 
 static inline bool obj_field_is(const struct obj_field *field, const char *word)

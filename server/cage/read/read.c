@@ -10,11 +10,10 @@
 #include "server/cage/read/obj.h"
 #include "server/cage/build/weld.h"
 
-/* The most bytes of a name in a message, so that the message has room for what is wrong. */
+/* The largest length of a name in a message, so that room is left for the reason. */
 #define SHOWN_NAME_BYTES 160
 
-/* The name as messages show it: of a name that is too long, its end, which holds the file's own
- * name. */
+/* The name for messages; of a long name its end, which has the file's own name. */
 static const char *shown_name(const char *name)
 {
     if (!name || !*name)
@@ -23,7 +22,7 @@ static const char *shown_name(const char *name)
     return length > SHOWN_NAME_BYTES ? name + length - SHOWN_NAME_BYTES : name;
 }
 
-/* Repair comes after welding, since it also removes corners that welding has made equal. */
+/* Repair follows welding, because it also removes corners that welding has made equal. */
 static bool weld_and_repair(struct cage_builder *builder, const char *name, struct error *error)
 {
     const struct weld_start start = {0};

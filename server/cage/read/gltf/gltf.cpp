@@ -57,7 +57,7 @@ bool skip_image(tinygltf::Image *, const int, std::string *, std::string *, int,
     return true;
 }
 
-/* Whether the text begins like a JSON object. If not, the error says so in place of a parser's
+/* True if the text begins like a JSON object. Otherwise the error says so, instead of a parser's
  * message. */
 bool looks_like_json(const char *text, size_t size)
 {
@@ -67,8 +67,8 @@ bool looks_like_json(const char *text, size_t size)
     return at < size && text[at] == '{';
 }
 
-/* The library's message without names of its own, such as "[json.exception.parse_error.101]".
- * *broken: the JSON itself is at fault. */
+/* The library's message without its internal names, such as "[json.exception.parse_error.101]".
+ * *broken: the JSON itself is malformed. */
 std::string plain_problem(const std::string &problem, bool *broken)
 {
     std::string line = problem.substr(0, problem.find('\n'));
@@ -99,14 +99,14 @@ void parse(Reader &reader, const gltf_container &container)
                                                                container.bytes, container.size)
                                  : loader.LoadASCIIFromString(&reader.model, &problem, &warning,
                                                               text, container.size, "");
-    /* The library drops what it cannot parse and goes on, so that a part of the cage may be
-     * missing: any message of it is an error. */
+    /* The library drops what it cannot parse and continues, so that a part of the cage may be
+     * missing: any message counts as an error. */
     if (done && problem.empty())
         return;
     static const std::string absent = "File not found : ";
     bool broken;
     problem = plain_problem(problem, &broken);
-    if (reader.packing && !broken) /* what is missing is in the packed data */
+    if (reader.packing && !broken) /* the missing part is in the packed data */
         reader.need(gltf_extension_refuse_packing(reader.packing, reader.name, reader.failure));
     if (starts_with(problem, (absent + "data:").c_str()))
         reader.refuse("its '%.60s...' is no data: URI that is read: application/octet-stream in "
@@ -149,7 +149,7 @@ void add_warnings(Reader &reader)
     warn_count(reader, "nodes that KHR_node_visibility hides are passed over", passed.hidden_nodes);
 }
 
-/* Refuses a scene without faces, with the reason where one is known. */
+/* Refuses a scene without faces, with the reason if it is known. */
 void check_faces(Reader &reader)
 {
     const PassedOver &passed = reader.passed_over;

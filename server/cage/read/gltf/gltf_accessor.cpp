@@ -20,7 +20,7 @@ size_t component_bytes(int component)
     case TINYGLTF_COMPONENT_TYPE_SHORT:
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
         return 2;
-    default: /* unsigned int and float, the only others that are read */
+    default: /* unsigned int and float: no other types are read */
         return 4;
     }
 }
@@ -53,8 +53,8 @@ const std::vector<unsigned char> &buffer_of(Reader &reader, const char *place, c
     if (view.buffer < 0 || size_t(view.buffer) >= buffers.size())
         reader.refuse("%s: %s has buffer %d, but there are %zu", place, what, view.buffer,
                       buffers.size());
-    /* For each buffer without a URI the library takes the binary chunk, which belongs to the
-     * first buffer alone. */
+    /* The library uses the binary chunk for every buffer without a URI, but it belongs only to the
+     * first buffer. */
     if (reader.binary && view.buffer > 0 && buffers[size_t(view.buffer)].uri.empty()) {
         if (reader.packing)
             reader.need(gltf_extension_refuse_packing(reader.packing, reader.name, reader.failure));
@@ -90,7 +90,7 @@ Span find_span(Reader &reader, const std::string &where, const char *what, int v
     return {data.data() + view.byteOffset + offset, stride};
 }
 
-/* The numbers of the elements that a sparse accessor replaces. */
+/* The indices of the elements that a sparse accessor replaces. */
 std::vector<uint32_t> sparse_indices(Reader &reader, const std::string &where, const char *what,
                                      const tinygltf::Accessor &accessor)
 {
@@ -185,8 +185,8 @@ Elements find_elements(Reader &reader, const std::string &where, const char *wha
             reader.need(gltf_extension_refuse_packing(reader.packing, reader.name, reader.failure));
         reader.refuse("%s: %s has no buffer view, so it holds no data", where.c_str(), what);
     } else if (accessor.count > reader.file_bytes) {
-        /* Such elements are zeros, which take no room in the file: memory would not be bounded
-         * by the file's size. */
+        /* Such elements are zeros and take no room in the file, so the file's size would not limit
+         * the memory. */
         reader.refuse("%s: %s has %zu elements without a buffer view, more than the file has bytes",
                       where.c_str(), what, accessor.count);
     }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* For each buffer without a URI the library copies the binary chunk; the format allows one such
+/* The library copies the binary chunk for every buffer without a URI; the format allows one such
  * buffer. */
 #define MAX_BUFFERS_BESIDE_CHUNK 4u
 
@@ -32,7 +32,7 @@ static size_t aligned(size_t size)
 
 struct chunks {
     const unsigned char *json, *bin;
-    size_t json_size, bin_size; /* bin_size 0: there is none */
+    size_t json_size, bin_size; /* bin_size 0: no binary chunk */
 };
 
 static bool find_binary_chunk(struct chunks *chunks, const unsigned char *end, const char *name,
@@ -42,7 +42,7 @@ static bool find_binary_chunk(struct chunks *chunks, const unsigned char *end, c
     size_t left = (size_t)(end - chunk), skip = aligned(chunks->json_size) - chunks->json_size;
     if (left <= skip)
         return true;
-    /* Some writers pad the chunk without counting the padding. */
+    /* Some programs pad the chunk without counting the padding. */
     if (left >= skip + GLB_CHUNK_BYTES && read_u32(chunk + 4) != GLB_CHUNK_BIN &&
         read_u32(chunk + skip + 4) == GLB_CHUNK_BIN) {
         chunk += skip;
@@ -89,7 +89,7 @@ static bool find_chunks(struct chunks *chunks, const unsigned char *bytes, size_
     return find_binary_chunk(chunks, bytes + length, name, error);
 }
 
-/* Copies the JSON to `to` and blanks behind it. */
+/* Copies the JSON to `to`, followed by blanks. */
 static void copy_json(unsigned char *to, const struct chunks *chunks)
 {
     memcpy(to, chunks->json, chunks->json_size);

@@ -4,12 +4,12 @@
 
 enum kind {
     READ,
-    PASSED_OVER, /* about looks, motion, sound, physics or metadata: changes no cage */
-    PACKING,     /* packs vertices and faces, which cannot be read without it */
+    PASSED_OVER, /* about appearance, motion, sound, physics or metadata: cannot change a cage */
+    PACKING,     /* packs vertices and faces, which are not readable without it */
 };
 
-/* A name that ends in '*' stands for all names that begin so. An extension that is not in the
- * table is refused where a file requires it. */
+/* A name that ends with '*' stands for all names with that prefix. A required extension that is not
+ * in the table is refused. */
 static const struct {
     const char *name;
     enum kind kind;
@@ -26,7 +26,7 @@ static const struct {
     {"KHR_materials_*", PASSED_OVER},
     {"EXT_materials_*", PASSED_OVER},
     {"ADOBE_materials_*", PASSED_OVER},
-    {"MSFT_packing_*", PASSED_OVER}, /* of textures */
+    {"MSFT_packing_*", PASSED_OVER}, /* textures */
     {"NV_materials_mdl", PASSED_OVER},
     {"KHR_techniques_webgl", PASSED_OVER},
     {"KHR_texture_*", PASSED_OVER},
@@ -69,7 +69,7 @@ static bool matches(const char *pattern, const char *text, size_t length)
     return length == n && memcmp(text, pattern, n) == 0;
 }
 
-/* N_EXTENSIONS: it is not in the table. */
+/* Returns N_EXTENSIONS if it is not in the table. */
 static size_t find(const char *text, size_t length)
 {
     size_t i = 0;

@@ -19,13 +19,13 @@ enum json_part {
     PART_BUFFERS,
     PART_VIEWS,
     PART_ACCESSORS,
-    PART_PASSED_OVER, /* no cage can depend on it */
+    PART_PASSED_OVER, /* cannot change a cage */
 };
 
 static const struct {
     const char *key;
     enum json_part part;
-    const char *element; /* what messages call one of them; NULL: its keys are not looked at */
+    const char *element; /* name of one element in messages; NULL: its keys are not checked */
 } PARTS[] = {
     {"asset", PART_ASSET, NULL},
     {"extensionsUsed", PART_USED, NULL},
@@ -51,11 +51,11 @@ struct json_scan {
     int depth;
     unsigned values;
     enum json_part part; /* that `at` is in */
-    const char *element; /* of PARTS */
-    unsigned n_elements; /* of the part so far */
-    char *passed_over;   /* first byte inside the brackets of a PART_PASSED_OVER */
-    bool in_sparse;      /* the accessor's member that `at` is in */
-    bool has_uri;        /* the buffer that `at` is in */
+    const char *element; /* from PARTS */
+    unsigned n_elements; /* elements of the part so far */
+    char *passed_over;   /* first byte inside of the brackets of a PART_PASSED_OVER */
+    bool in_sparse;      /* `at` is inside of an accessor's `sparse` */
+    bool has_uri;        /* the buffer that contains `at` has a URI */
     struct gltf_json *json;
     const char *name;
     struct error *error;
@@ -72,7 +72,7 @@ static bool is_text(const struct json_text *text, const char *other)
     return text->length == strlen(other) && memcmp(text->start, other, text->length) == 0;
 }
 
-/* From the opening quote to past the closing one. */
+/* Scans a string, from the opening quote to behind the closing one. */
 static struct json_text scan_string(struct json_scan *scan)
 {
     char *start = ++scan->at;
@@ -94,15 +94,15 @@ static const char *skip_blanks(const char *at, const char *end)
     return at;
 }
 
-/* The value behind a key that has just been scanned; NULL: it was no key. */
+/* The value behind a key that was just scanned; NULL: it was not a key. */
 static const char *value_of_key(const struct json_scan *scan)
 {
     const char *at = skip_blanks(scan->at, scan->end);
     return at < scan->end && *at == ':' ? skip_blanks(at + 1, scan->end) : NULL;
 }
 
-/* Whether the value is a whole number from 0 to `most`. tinygltf makes 0 of anything else,
- * without a message. */
+/* True if the value is a whole number from 0 to `most`. tinygltf reads anything else as 0, without
+ * a message. */
 static bool is_unsigned(const char *at, const char *end, uint64_t most)
 {
     const char *first = at;
@@ -116,7 +116,7 @@ static bool is_unsigned(const char *at, const char *end, uint64_t most)
 
 static bool check_offset(const struct json_scan *scan, const struct json_text *key, const char *at)
 {
-    /* tinygltf keeps offsets of sparse accessors in an int. */
+    /* tinygltf stores offsets of sparse accessors in an int. */
     uint64_t most = scan->depth == 3 ? UINT64_MAX : INT_MAX;
     if ((!is_text(key, "byteOffset") && !is_text(key, "byteStride")) ||
         is_unsigned(at, scan->end, most))
@@ -131,7 +131,7 @@ static bool check_offset(const struct json_scan *scan, const struct json_text *k
                      shown, at);
 }
 
-/* What has been scanned may be a key of a buffer, buffer view or accessor. */
+/* Checks the scanned text, which may be a key of a buffer, buffer view or accessor. */
 static bool check_layout(struct json_scan *scan, const struct json_text *key)
 {
     const char *value = value_of_key(scan);
@@ -175,7 +175,7 @@ static bool check_extension(struct json_scan *scan, const struct json_text *text
            gltf_extension_check(text->start, text->length, scan->name, scan->error);
 }
 
-/* Keys must be spelt without escapes, so that the ones that are looked for are recognised. */
+/* Keys must be written without escapes, so that the ones searched for are recognised. */
 static bool enter_part(struct json_scan *scan, const struct json_text *key)
 {
     scan->part = PART_OTHER;

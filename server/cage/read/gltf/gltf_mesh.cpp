@@ -118,7 +118,7 @@ std::vector<uint32_t> read_indices(Reader &reader, const Primitive &primitive)
     return indices;
 }
 
-/* Three corners for each triangle, wound as glTF 2.0, 3.7.2.1 says for the mode. */
+/* Three corners for each triangle, in the direction that glTF 2.0, 3.7.2.1 defines for the mode. */
 std::vector<uint32_t> read_triangles(Reader &reader, const Primitive &primitive)
 {
     std::vector<uint32_t> indices = read_indices(reader, primitive);
@@ -140,7 +140,7 @@ std::vector<uint32_t> read_triangles(Reader &reader, const Primitive &primitive)
     return triangles;
 }
 
-/* Whether the primitive makes a surface. If not, it is counted as passed over. */
+/* True if the primitive is a surface. If not, it is counted as ignored. */
 bool is_surface(Reader &reader, const Primitive &primitive)
 {
     int mode = primitive.source->mode;
@@ -157,8 +157,8 @@ bool is_surface(Reader &reader, const Primitive &primitive)
     return true;
 }
 
-/* The primitives of one mesh often share their POSITION. This holds what was added: by accessor,
- * and by the morph targets that were applied to it. */
+/* The primitives of one mesh often share their POSITION. This map holds what was added already, by
+ * accessor and by the morph targets applied to it. */
 using Bases = std::map<std::pair<int, std::vector<Morph>>, uint32_t>;
 
 void add_primitive(Reader &reader, Primitive &primitive, const std::vector<double> &weights,

@@ -17,20 +17,20 @@ extern "C" {
 namespace gltf
 {
 
-/* Thrown once *failure says why. */
+/* Thrown after *failure was set. */
 struct Refused {
 };
 
-/* One primitive of one instance of a mesh, and where its parts stand in the builder. */
+/* One primitive of one instance of a mesh, and where its parts begin in the builder. */
 struct Primitive {
     const tinygltf::Primitive *source;
     std::string where; /* "mesh 2 primitive 0", for messages */
     size_t n_vertices;
-    uint32_t base; /* of its first vertex */
+    uint32_t base; /* index of its first vertex in the builder */
     size_t first_face, n_faces;
 };
 
-/* Parts of the file that are passed over, by why: one warning each. */
+/* Counts of ignored parts of the file, by reason: one warning each. */
 struct PassedOver {
     size_t points_and_lines = 0, without_position = 0, hidden_nodes = 0;
     bool skins = false, morph_rest = false, morph_weights = false;
@@ -44,10 +44,10 @@ struct Reader {
     size_t file_bytes;
     bool binary;              /* GLB */
     const char *packing;      /* see struct gltf_json */
-    size_t instances = 0;     /* of meshes, so far */
-    size_t vertices_read = 0; /* of all instances so far, before welding makes fewer of them */
+    size_t instances = 0;     /* instances of meshes so far */
+    size_t vertices_read = 0; /* vertices of all instances so far, before welding */
     bool has_scheme = false, has_boundary = false, has_triangle_rule = false;
-    bool warned_negative = false; /* sharpness */
+    bool warned_negative = false; /* warned of negative sharpness */
     size_t ngon_breaks = 0;
     PassedOver passed_over;
 
@@ -59,14 +59,14 @@ struct Reader {
     }
 };
 
-/* The elements of an accessor, every bound checked. They lie in the model's buffers. */
+/* The elements of an accessor, with all bounds checked. They lie in the model's buffers. */
 class Elements
 {
   public:
     size_t count = 0;
     int component = 0; /* TINYGLTF_COMPONENT_TYPE_ */
 
-    /* A component as a number: of a normalized integer, -1 to 1 or 0 to 1. */
+    /* A component as a number; for a normalized integer from -1 to 1 or from 0 to 1. */
     double number(size_t element, size_t i) const;
     /* The one component of an unsigned integer. */
     uint32_t index(size_t element) const;
@@ -75,7 +75,7 @@ class Elements
     friend Elements find_elements(Reader &, const std::string &, const char *, int, int,
                                   std::initializer_list<int>, const char *);
     const unsigned char *data = nullptr; /* null: zeros */
-    size_t stride = 0, size = 0;         /* of an element in bytes */
+    size_t stride = 0, size = 0;         /* distance and size of elements in bytes */
     bool normalized = false;
     std::vector<uint32_t> sparse_index; /* ascending */
     const unsigned char *sparse_data = nullptr;
@@ -83,20 +83,20 @@ class Elements
     const unsigned char *at(size_t element) const;
 };
 
-/* Of accessor `index`, which must have `type` and one of the `components`; `needed` says so in the
- * message. `where` and `what` say whose it is. */
+/* Finds the elements of accessor `index`, which must have `type` and one of the `components`;
+ * `needed` describes them in the message, `where` and `what` say whose accessor it is. */
 Elements find_elements(Reader &reader, const std::string &where, const char *what, int index,
                        int type, std::initializer_list<int> components, const char *needed);
 
-/* Adds a mesh as a surface of its own. `weights` are the node's, or empty. */
+/* Adds a mesh as a separate surface. `weights` are the node's, or empty. */
 void add_mesh(Reader &reader, int index, const std::vector<double> &weights,
               const transform &matrix);
 
 /* Adds the meshes of all nodes of the default scene. */
 void add_scene(Reader &reader);
 
-/* Adds the creases, corners, holes and settings that the extras of a primitive and of its mesh
- * hold, under USD's names. The primitive's faces and vertices are in the builder. */
+/* Adds the creases, corners, holes and settings in the extras of a primitive and of its mesh, with
+ * USD's names. The primitive's faces and vertices are already in the builder. */
 void read_tags(Reader &reader, const Primitive &primitive, const tinygltf::Mesh &mesh);
 
 } // namespace gltf

@@ -9,7 +9,7 @@ namespace gltf
 namespace
 {
 
-/* How often a file may show meshes: each instance is read again, however small it is. */
+/* Limit of mesh instances in a file: each instance is read again, however small it is. */
 constexpr size_t MAX_INSTANCES = 1000000;
 
 std::vector<double> node_numbers(Reader &reader, int index, const char *key,
@@ -46,7 +46,7 @@ transform node_matrix(Reader &reader, int index)
 
 /* EXT_mesh_gpu_instancing */
 
-/* One of the three attributes: its numbers, element after element, or none. */
+/* One of the three attributes: the numbers of all elements in order, or none. */
 struct Attribute {
     std::vector<double> numbers;
     size_t n_components;
@@ -59,7 +59,7 @@ struct Attribute {
     }
 };
 
-/* *count is that of the attributes before, 0 when there was none. */
+/* *count is the number of elements of the attributes before, 0 if there was none. */
 Attribute read_attribute(Reader &reader, const std::string &where, const tinygltf::Value &all,
                          const char *key, std::vector<double> standard, size_t *count)
 {
@@ -90,8 +90,8 @@ Attribute read_attribute(Reader &reader, const std::string &where, const tinyglt
     return attribute;
 }
 
-/* Where the node's mesh stands, in the node's own coordinates: once, or as often as the extension
- * says. */
+/* The transforms of the node's mesh, in the node's coordinates: one, or as many as the extension
+ * has. */
 std::vector<transform> node_instances(Reader &reader, int index)
 {
     const tinygltf::ExtensionMap &extensions = reader.model.nodes[size_t(index)].extensions;
@@ -121,9 +121,9 @@ std::vector<transform> node_instances(Reader &reader, int index)
     return instances;
 }
 
-/* Refuses a node whose instances read too many vertices. Zeros of a sparse accessor take no
- * room in a file and weld to one vertex, so that the limits of a cage do not bound what reading
- * many instances takes. `each` is what the first instance has read, `left` how many follow. */
+/* Refuses a node whose instances would read too many vertices. Zeros of a sparse accessor take no
+ * room in the file and weld to one vertex, so a cage's limits do not bound the cost of many
+ * instances. `each` is what the first instance has read, `left` the number of the others. */
 void limit_vertices(Reader &reader, int index, size_t each, size_t left)
 {
     size_t all = reader.vertices_read + each * left;
@@ -154,8 +154,8 @@ struct Visit {
     transform parent;
 };
 
-/* The nodes to start from: those of the default scene, or, where there is no scene, those that are
- * nobody's child. */
+/* The nodes to start from: those of the default scene; if there is no scene, those without a
+ * parent. */
 std::vector<int> root_nodes(Reader &reader)
 {
     const tinygltf::Model &model = reader.model;
@@ -191,8 +191,8 @@ bool is_hidden(const tinygltf::Node &node)
 
 } // namespace
 
-/* Depth first in the order of the file. glTF's nodes form trees, so one that comes up twice means
- * a cycle or a second parent; refusing it also bounds the walk. */
+/* Depth first, in the file's order. glTF's nodes form trees, so a node that occurs twice means a
+ * cycle or a second parent; refusing it also bounds the walk. */
 void add_scene(Reader &reader)
 {
     std::vector<bool> seen(reader.model.nodes.size());

@@ -11,7 +11,7 @@ namespace gltf
 namespace
 {
 
-/* The object that holds them: extras.subdiv, or extras itself. */
+/* The object with the tags: extras.subdiv, or extras itself. */
 const Value *tags_of(const Value &extras)
 {
     if (!extras.IsObject())
@@ -59,7 +59,7 @@ float tag_sharpness(Reader &reader, const Primitive &primitive, const Value::Arr
     return value > 0 ? float(value) : 0;
 }
 
-/* How many edges each crease has, from creaseLengths (vertices in each). */
+/* The number of edges of each crease, from creaseLengths (vertices of each). */
 std::vector<size_t> crease_edges(Reader &reader, const Primitive &primitive, const Value &tags,
                                  size_t n_indices)
 {
@@ -131,8 +131,8 @@ void read_corners_and_holes(Reader &reader, const Primitive &primitive, const Va
     }
 }
 
-/* Reads a setting that is one of a few words. Returns whether it is given; *choice is its index
- * in words[]. */
+/* Reads a setting whose value is one of a few words. Returns whether it is present; *choice is its
+ * index in words[]. */
 bool read_word(Reader &reader, const Primitive &primitive, const Value &tags, const char *key,
                const std::vector<const char *> &words, size_t *choice)
 {
@@ -187,8 +187,8 @@ void read_settings(Reader &reader, const Primitive &primitive, const Value &tags
 
 } // namespace
 
-/* Index arrays in the extras of a mesh are of its one primitive; with several primitives they
- * would be ambiguous. */
+/* Index arrays in a mesh's extras refer to its only primitive; with several primitives they would
+ * be ambiguous. */
 void read_tags(Reader &reader, const Primitive &primitive, const tinygltf::Mesh &mesh)
 {
     const Value *tags = tags_of(mesh.extras);

@@ -1,6 +1,6 @@
 #include "server/cage/read/gltf/ngon.h"
 
-/* How many triangles from the first on make one polygon. */
+/* The number of triangles, from the first one on, that are one polygon. */
 static size_t fan_length(const struct ngon_triangles *triangles, size_t first, size_t *n_breaks)
 {
     const uint32_t *index = triangles->index;

@@ -1,4 +1,4 @@
-/* Makes polygons of triangles by glTF's FB_ngon_encoding. Internal to the glTF reader; any
+/* Joins triangles to polygons by glTF's FB_ngon_encoding. Internal to the glTF reader. Any
  * thread. */
 #ifndef SHEEN_CAGE_READ_GLTF_NGON_H
 #define SHEEN_CAGE_READ_GLTF_NGON_H
@@ -10,17 +10,18 @@ extern "C" {
 #endif
 
 struct ngon_triangles {
-    const uint32_t *index; /* [3 * n], corner by corner, as the file has them */
+    const uint32_t *index; /* [3 * n], the corners in the file's order */
     size_t n;
-    bool encoded;  /* FB_ngon_encoding: consecutive triangles with the same first vertex are one
-                      polygon; else every triangle is a face */
-    bool mirrored; /* wind the faces the other way, first corner kept */
+    /* FB_ngon_encoding: consecutive triangles with the same first vertex are one polygon; false:
+     * every triangle is a face. */
+    bool encoded;
+    bool mirrored; /* reverse the faces, but keep their first corner */
     uint32_t base; /* added to every index */
 };
 
 /* Adds the faces to the builder. Triangles that share their first vertex but no edge, which the
- * extension does not allow, become separate faces and are counted in *n_breaks. False: the
- * builder's errors. */
+ * extension forbids, become separate faces and are counted in *n_breaks. False with the builder's
+ * errors. */
 bool ngon_add_faces(struct cage_builder *builder, const struct ngon_triangles *triangles,
                     size_t *n_breaks, struct error *error);
 

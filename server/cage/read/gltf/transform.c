@@ -27,7 +27,7 @@ struct transform transform_compose(const double translation[3], const double rot
     double q[4], norm = 0;
     for (int i = 0; i < 4; i++)
         norm += rotation[i] * rotation[i];
-    /* Files hold single precision, in which a quaternion has unit length only to 1e-7. */
+    /* Files have single precision, in which a quaternion's length is 1 only to 1e-7. */
     for (int i = 0; i < 4; i++)
         q[i] = norm > 0 ? rotation[i] / sqrt(norm) : 0;
     double x = q[0], y = q[1], z = q[2], w = q[3];

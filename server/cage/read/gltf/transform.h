@@ -1,4 +1,4 @@
-/* The 4x4 matrices of glTF's nodes, in double. Pure; any thread. */
+/* The 4x4 matrices of glTF's nodes, in double precision. Pure, any thread. */
 #ifndef SHEEN_CAGE_READ_GLTF_TRANSFORM_H
 #define SHEEN_CAGE_READ_GLTF_TRANSFORM_H
 
@@ -6,7 +6,7 @@
 extern "C" {
 #endif
 
-/* Column-major, as glTF writes it; the last row is 0 0 0 1. */
+/* Column-major, as in glTF; the last row is 0 0 0 1. */
 struct transform {
     double m[16];
 };
