@@ -53,8 +53,8 @@ void bicubic_evaluate(const struct bicubic_texels *texels, double s, double t,
     }
 }
 
-/* The control points of [a, b] of a segment on [0, 1], whose own points are `stride` apart:
- * blossoms at the finer knots (Ramshaw 1989). */
+/* The control points of the part [a, b] of a segment on [0, 1], whose own points are `stride`
+ * apart, by blossoms at the finer knots (Ramshaw 1989). */
 static void cut_segment(const struct vec *p, int stride, double a, double b, struct vec out[4])
 {
     double h = b - a;

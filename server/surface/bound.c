@@ -1,7 +1,7 @@
 #include "server/surface/bound.h"
 
-/* How much a difference inside the surface counts (README.md 6.1): the part across the surface
- * whole, the part along it a quarter. This is a norm, so that bounds hold in it. */
+/* The weight of a difference inside the surface (README.md 6.1): the part along the normal counts
+ * fully, the part along the surface a quarter. This is a norm, so bounds hold for it. */
 static double weigh(struct vec offset, struct vec normal)
 {
     const double along = 0.25;
@@ -10,13 +10,14 @@ static double weigh(struct vec offset, struct vec normal)
     return fabs(across) + (rest2 > 0 ? along * sqrt(rest2) : 0);
 }
 
-/* The normal of a cell, with twice its area as length. */
+/* The normal of a cell; its length is twice the cell's area. */
 static struct vec cell_normal(const struct vec *p, int size)
 {
     return vec_cross(vec_sub(p[size + 1], p[0]), vec_sub(p[size], p[1]));
 }
 
-/* The mean normal of a net. False where the normal of a cell is more than 45 degrees from it. */
+/* The mean normal of a net. False if the normal of a cell deviates from it by more than 45
+ * degrees. */
 static bool find_normal(const struct vec *grid, int size, bool without_first, struct vec *normal)
 {
     enum { MOST_CELLS = 16 };
@@ -36,7 +37,7 @@ static bool find_normal(const struct vec *grid, int size, bool without_first, st
     return true;
 }
 
-/* The largest differences, as plain lengths or weighed. */
+/* The largest differences, as lengths or weighed. */
 struct bends {
     double u, v, mixed;
 };
@@ -46,7 +47,7 @@ static inline struct vec second(struct vec before, struct vec at, struct vec aft
     return vec_add(vec_sub(before, at), vec_sub(after, at));
 }
 
-/* fmax() would be a call; NaN does not occur here. */
+/* fmax() would be a function call; NaN does not occur here. */
 static inline double larger(double a, double b)
 {
     return a > b ? a : b;
@@ -88,7 +89,7 @@ struct limit_bound bound_of_grid(const struct vec *grid, int size, bool without_
     }
     plain = (struct bends){sqrt(plain.u), sqrt(plain.v), sqrt(plain.mixed)};
     const struct bends *inside = by_normal ? &across : &plain;
-    const double up = 1.000001; /* more than rounding to float loses */
+    const double up = 1.000001; /* more than the rounding to float */
     return (struct limit_bound){
         .radius = (float)(sqrt(radius2) * up),
         .u = (float)(inside->u * up),

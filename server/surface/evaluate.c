@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* In the node's frame, by s and t. */
+/* Evaluates position and derivatives in the node's frame, by s and t. */
 static void evaluate_points(const struct limit_patch *patch, struct limit_point *out)
 {
     struct bicubic_point at;
@@ -36,14 +36,15 @@ static void set_normal(const struct limit_patch *patch, struct limit_point *out)
     out->n = largest > 0 ? vec_unit(vec_scale(n, 1 / largest)) : (struct vec){0, 0, 0};
 }
 
-/* Makes derivatives by s and t derivatives by the place's a and b: scales them, then turns them. */
+/* Converts derivatives by s and t to derivatives by the place's a and b: scales them, then turns
+ * them. */
 static void turn_derivatives(const struct limit_patch *patch, struct limit_point *out)
 {
     double x = ldexp(1, patch->level_x + patch->depth), y = ldexp(1, patch->level_y + patch->depth);
     struct vec sx = vec_scale(out->su, x), sy = vec_scale(out->sv, y);
     struct vec sxx = vec_scale(out->suu, x * x), sxy = vec_scale(out->suv, x * y);
     struct vec syy = vec_scale(out->svv, y * y);
-    double sign = patch->turn >= 2 ? -1 : 1; /* two corners on, both run backwards */
+    double sign = patch->turn >= 2 ? -1 : 1; /* two corners further, both are reversed */
     bool crossed = patch->turn & 1;          /* x is b and y is 1 - a */
     out->su = vec_scale(crossed ? sy : sx, crossed ? -sign : sign);
     out->sv = vec_scale(crossed ? sx : sy, sign);
@@ -65,7 +66,7 @@ void limit_patch_evaluate(const struct limit_tables *tables, const struct limit_
         out->n = (struct vec){0, 0, 1};
     } else {
         evaluate_points(patch, out);
-        set_normal(patch, out); /* in the node's own frame, as on the GPU */
+        set_normal(patch, out); /* in the node's frame, as on the GPU */
         turn_derivatives(patch, out);
     }
     struct vec *const vectors[] = {&out->s,   &out->su,  &out->sv, &out->suu,

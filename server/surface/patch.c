@@ -5,7 +5,7 @@
 #include "server/surface/bound.h"
 #include "server/surface/texels.h"
 
-/* (a,b) to what they are when seen from `turn` corners on. */
+/* Converts (a,b) to the view from `turn` corners further. */
 static void turn_place(unsigned turn, double a, double b, double *x, double *y)
 {
     const double xs[4] = {a, b, 1 - a, 1 - b}, ys[4] = {b, 1 - a, 1 - b, a};
@@ -13,7 +13,7 @@ static void turn_place(unsigned turn, double a, double b, double *x, double *y)
     *y = ys[turn & 3];
 }
 
-/* Where the texels of level n lie, the scale apart: in the tables, or in what is made now. */
+/* Finds the texels of level n and, separately, the scale: in the tables, or in what is made now. */
 static const float (*level_texels(struct limit_patch *patch, const struct limit_tables *tables,
                                   const struct limit_node *node, int n))[4]
 {
@@ -63,8 +63,8 @@ void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *
     }
 }
 
-/* Which level of a node holds (x,y). A number beyond the last level of a CORNER stands for its
- * vertex. */
+/* The level of a node that contains (x,y). A number beyond the last level of a CORNER stands for
+ * its vertex. */
 static int level_at(const struct limit_node *node, double x, double y)
 {
     if (node->kind == LIMIT_REGULAR)

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* A large segment is a huge page; the only one of a very small cache is a few pages. */
+/* A segment is a huge page; the only segment of a very small cache is a few pages. */
 enum {
     SEGMENT_BYTES = 2 << 20,
     LARGE_CACHE = 8 * SEGMENT_BYTES,
@@ -15,14 +15,14 @@ enum {
 enum { KEY_BITS = 39, NUMBER_BITS = 64 - KEY_BITS };
 
 struct segment {
-    char *records;    /* NULL: no memory taken yet */
-    uint32_t used_in; /* the last use that has found a record in it */
+    char *records;    /* NULL: not allocated yet */
+    uint32_t used_in; /* the latest use that found a record in it */
 };
 
 struct record_cache {
     size_t record_bytes, segment_bytes;
     uint32_t per_segment, n_segments, use;
-    uint64_t n_taken; /* of the records; above `most` when it is full */
+    uint64_t n_taken; /* number of records taken; above `most` when full */
     uint64_t *entry;  /* [mask + 1] */
     uint64_t mask;
     struct segment *segment;
@@ -45,7 +45,7 @@ static uint64_t segments_of(size_t record_bytes, size_t most)
     return n ? n : 1;
 }
 
-/* At least a third of them stay free. */
+/* The size of the hash table; at least a third of its entries stay free. */
 static uint64_t entries_of(uint64_t records)
 {
     uint64_t n = 64;
@@ -101,7 +101,7 @@ size_t record_cache_bytes(const struct record_cache *cache)
     return bytes;
 }
 
-/* Where the search for a key begins. */
+/* The entry at which the search for a key begins. */
 static uint64_t place_of(const struct record_cache *cache, uint64_t key)
 {
     uint64_t mixed = key * 0x9e3779b97f4a7c15u;
@@ -128,7 +128,7 @@ const void *record_cache_find(struct record_cache *cache, uint64_t key)
     }
 }
 
-/* Memory for the records of a segment, unless it has some. */
+/* Allocates the records of a segment, unless it has some. */
 static bool reserve(struct record_cache *cache, struct segment *segment)
 {
     char *none = NULL;
@@ -139,8 +139,7 @@ static bool reserve(struct record_cache *cache, struct segment *segment)
     if (!taken)
         return false;
     if (cache->segment_bytes == SEGMENT_BYTES)
-        madvise(taken, SEGMENT_BYTES,
-                MADV_HUGEPAGE); /* a wish: without huge pages all is as it was */
+        madvise(taken, SEGMENT_BYTES, MADV_HUGEPAGE); /* only a hint: it works without huge pages */
     if (!__atomic_compare_exchange_n(&segment->records, &none, taken, false, __ATOMIC_ACQ_REL,
                                      __ATOMIC_ACQUIRE))
         free(taken); /* another thread was first */
@@ -178,7 +177,7 @@ static uint32_t age_of(const struct record_cache *cache, uint32_t i)
     return cache->use - cache->segment[i].used_in;
 }
 
-/* Moves the segments that were used last to the front; `from` says where each one was. */
+/* Moves the most recently used segments to the front; `from` has the old position of each. */
 static void sort_by_age(struct record_cache *cache, uint32_t *from)
 {
     for (uint32_t i = 0; i < cache->n_segments; i++) {
@@ -193,7 +192,7 @@ static void sort_by_age(struct record_cache *cache, uint32_t *from)
     }
 }
 
-/* Keeps the entries of the first n segments, by the numbers that these had before. */
+/* Keeps the entries of the first n segments, which are given by their old numbers. */
 static void keep_entries(struct record_cache *cache, const uint32_t *from, uint32_t n,
                          uint64_t *kept)
 {

@@ -1,9 +1,10 @@
-/* Records of one size that are made when they are first wanted, found by 39-bit keys. It holds no
- * more than a number of records; what has not been used for longest goes first, a segment of
- * records at a time, but only between two uses (record_cache_turn()): while a use lasts, records
- * stay where they are. Once a use has filled the cache, its other records are not kept.
+/* A cache of records of one size, which are made when they are first needed and found by keys of 39
+ * bits. It has a limited number of records. The least recently used records are dropped, a segment
+ * at a time, but only between two uses (record_cache_turn()): during a use records do not move. If
+ * one use fills the cache, its further records are not kept.
  *
- * Threads: any number may find and add at once; create, turn, bytes and destroy are for one alone. */
+ * Thread: any number may find and add at the same time; create, turn, bytes and destroy need all
+ * others to have stopped. */
 #ifndef SHEEN_SURFACE_RECORD_CACHE_H
 #define SHEEN_SURFACE_RECORD_CACHE_H
 
@@ -13,8 +14,8 @@
 
 struct record_cache;
 
-/* For at most `most` records (at least 1 segment of them) of a multiple of 8 bytes each. Takes
- * memory as it fills. NULL when memory is short. */
+/* Makes a cache for at most `most` records (at least 1 segment) of record_bytes, a multiple of 8.
+ * Allocates as it fills. NULL when memory is short. */
 struct record_cache *record_cache_create(size_t record_bytes, size_t most);
 void record_cache_destroy(struct record_cache *cache); /* NULL is safe */
 
@@ -24,17 +25,16 @@ static inline uint64_t record_cache_key(uint32_t node, uint32_t index)
     return (uint64_t)node << 7 | index;
 }
 
-/* NULL where there is none. */
+/* Finds a record; NULL if it is not in the cache. */
 const void *record_cache_find(struct record_cache *cache, uint64_t key);
-/* Copies a record into the cache and returns the copy, or the one that another thread has added
- * meanwhile. NULL where there is no room. */
+/* Copies a record into the cache and returns the copy, or the record that another thread has added
+ * in the meantime. NULL if there is no room. */
 const void *record_cache_add(struct record_cache *cache, uint64_t key, const void *record);
 
-/* A use ends and the next one begins. Where less than a quarter of the room is left, makes half of
- * it free. */
+/* Ends a use and begins the next. If less than a quarter of the room is left, frees half of it. */
 void record_cache_turn(struct record_cache *cache);
 
-/* What it takes in main memory now, and at most. */
+/* Main memory in bytes: of a cache now, and of a full cache. */
 size_t record_cache_bytes(const struct record_cache *cache);
 size_t record_cache_most_bytes(size_t record_bytes, size_t most);
 

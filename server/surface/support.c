@@ -6,14 +6,14 @@
 #include "server/surface/bound.h"
 #include "server/surface/evaluate.h"
 
-/* A node is sampled so densely that the surface lies within this share of the box's diagonal of
- * the samples' triangles. A node smaller than that is one point. */
+/* A node is sampled so densely that the surface lies within this share of the box's diagonal from
+ * the triangles of the samples. A node smaller than that is one point. */
 #define TOLERANCE 1e-3
 
 struct cells {
-    double middle[3], half[3]; /* of the box; half is never 0 */
+    double middle[3], half[3]; /* middle and half sides of the box; half is never 0 */
     double reach2[LIMIT_MAX_SUPPORT];
-    float point[LIMIT_MAX_SUPPORT][3]; /* where reach2 is not 0 */
+    float point[LIMIT_MAX_SUPPORT][3]; /* valid if reach2 is not 0 */
 };
 
 static uint32_t step_of(double x)
@@ -22,8 +22,8 @@ static uint32_t step_of(double x)
     return step < 1 ? 0 : step >= LIMIT_SUPPORT_CELLS ? LIMIT_SUPPORT_CELLS - 1 : (uint32_t)step;
 }
 
-/* Keeps of each cell the point that lies farthest from the middle. Lengths are in units of the
- * box's sides, so that a flat model has as many points to each side as a round one. */
+/* Keeps for each cell the point that is farthest from the middle. Lengths are in units of the box's
+ * sides, so that a flat model has as many points on each side as a round one. */
 static void add_point(struct cells *cells, struct vec at)
 {
     const double world[3] = {at.x, at.y, at.z};
@@ -47,7 +47,7 @@ static void add_point(struct cells *cells, struct vec at)
         cells->point[cell][k] = (float)(world[k] - cells->middle[k]);
 }
 
-/* Steps along each side of a node; 0: it is as small as a point. */
+/* The number of steps along each side of a node; 0: it is as small as a point. */
 static int steps_of(const struct limit_tables *tables, uint32_t node, double tolerance)
 {
     const struct limit_bound *bound = &tables->whole[node];

@@ -12,7 +12,7 @@ static_assert(sizeof(struct limit_node) == 48, "three RGBA32UI texels");
 static_assert(sizeof(struct limit_adjacency) == 16, "one RGBA32UI texel");
 static_assert(sizeof(struct limit_bound) % 8 == 0, "a record of a cache");
 
-/* Bounds that tables on demand keep. */
+/* The number of bounds that tables on demand keep. */
 enum { MOST_LEVEL_BOUNDS = 1 << 19 };
 
 size_t limit_view_levels(const struct limit_tables *tables)
@@ -115,7 +115,7 @@ void limit_tables_turn(const struct limit_tables *tables)
         record_cache_turn(tables->level_bounds);
 }
 
-/* Of a node, without points. */
+/* Bytes of a node without its points. */
 static size_t whole_bytes(const struct limit_tables *tables)
 {
     return sizeof *tables->heads + sizeof *tables->whole;
@@ -133,7 +133,7 @@ size_t limit_support_room(const struct limit_tables *tables)
 {
     const size_t of_node = (LIMIT_SUPPORT_STEPS + 1) * (LIMIT_SUPPORT_STEPS + 1);
     size_t n_leaves = tables->count[LIMIT_REGULAR] + tables->count[LIMIT_CORNER] +
-                      tables->count[LIMIT_STRIP]; /* a model without surface has none */
+                      tables->count[LIMIT_STRIP]; /* 0 for a model without a surface */
     return n_leaves < LIMIT_MAX_SUPPORT / of_node ? n_leaves * of_node : LIMIT_MAX_SUPPORT;
 }
 

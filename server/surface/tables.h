@@ -1,17 +1,18 @@
-/* The limit surface as tables: what devices draw, and what everything else here evaluates.
+/* The limit surface as tables, which devices draw and other code evaluates.
  *
- * They hold what Yasui and Kanai (2004) call P_i(n,k), the control points of every sub-patch, exact
- * in single precision: computed in double, moved near zero, turned into a frame that keeps their
- * digits, divided by a power of two and rounded once at the end. README.md says how, and why that
- * is exact.
+ * Tables hold what Yasui and Kanai (2004) call P_i(n,k), the control points of every sub-patch.
+ * They are computed in double precision, moved near zero, turned into a frame that keeps their
+ * digits, divided by a power of two, and rounded to single precision once, at the end. README.md
+ * explains this and why it is exact.
  *
- * There are two forms. Stored tables hold the points of every level, as devices copy them to their own
- * memory: 10,000 bytes for each CORNER. Tables on demand hold what each node looks like as a whole, and
- * make the points of a level where they are asked for, from the cage, the same bytes (source.h): a
- * thousand levels that no view reaches cost nothing.
+ * There are two forms. Stored tables hold the points of every level, which devices copy to their
+ * own memory: 10,000 bytes for each CORNER. Tables on demand hold what each node looks like as a
+ * whole, and make the points of a level, the same bytes, from the cage when they are needed
+ * (source.h): levels that no view reaches cost nothing.
  *
- * Builders (subdivision/build.h) say how large the tables are, and fill any range of faces: several
- * threads may fill disjoint ranges. Once filled they are read only and any thread may read them. */
+ * Builders (subdivision/build.h) compute the size of the tables and then fill any range of faces;
+ * several threads may fill disjoint ranges. Filled tables are read-only, and any thread may read
+ * them. */
 #ifndef SHEEN_SURFACE_TABLES_H
 #define SHEEN_SURFACE_TABLES_H
 
@@ -25,25 +26,24 @@
 struct limit_source; /* source.h */
 struct record_cache; /* record_cache.h */
 
-/* Points of the surface that lie outermost (support.h) are looked for at so many steps along each
- * side of a node, and one is kept for each cell of a cube about the model, of so many cells along a
- * side. */
+/* Support points (support.h) are searched with LIMIT_SUPPORT_STEPS steps along each side of a node.
+ * One is kept for each cell on the sides of a cube about the model, LIMIT_SUPPORT_CELLS along each
+ * edge of it. */
 enum { LIMIT_SUPPORT_STEPS = 16, LIMIT_SUPPORT_CELLS = 16 };
 #define LIMIT_MAX_SUPPORT (6 * LIMIT_SUPPORT_CELLS * LIMIT_SUPPORT_CELLS)
 
-/* What a builder knows of a surface before any of it is filled in. */
+/* The size of a surface's tables, which a builder knows before it fills them. */
 struct limit_size {
     size_t n_faces, n_nodes, n_texels, n_bounds;
-    size_t count[LIMIT_KINDS]; /* of nodes, by kind */
-    double box_min[3],
-        box_max[3]; /* about the surface, by its limit positions: what a camera frames */
-    double hull_min[3], hull_max[3]; /* about the control points: nothing lies outside */
-    struct limit_source *source;     /* the plan's */
+    size_t count[LIMIT_KINDS];       /* number of nodes of each kind */
+    double box_min[3], box_max[3];   /* box of the limit positions, which a camera frames */
+    double hull_min[3], hull_max[3]; /* box of the control points, which contains the surface */
+    struct limit_source *source;     /* owned by the plan */
 };
 
-/* What a node looks like as a whole, from its origin: its frame as a quaternion x y z w, which turns the
- * frame's coordinates into world directions (of a CORNER); then x, y and z, world, of the surface at
- * its corners: local (0,0) (1,0) (0,1) (1,1). */
+/* A node as a whole: for a CORNER its frame, a quaternion x y z w that turns frame coordinates into
+ * world directions; and the surface's positions (world, relative to the node's origin) at local
+ * (0,0) (1,0) (0,1) (1,1): the x of all four, then y, then z. */
 struct limit_head {
     float frame[4];
     float corner[3][4];
@@ -55,65 +55,66 @@ struct limit_tables {
     size_t n_nodes;
     struct limit_node *nodes;          /* [n_nodes]; node f is the root of face f */
     struct limit_adjacency *adjacency; /* [n_faces] */
-    struct limit_head *heads;          /* [n_nodes]; nothing of SPLIT and HOLE */
+    struct limit_head *heads;          /* [n_nodes]; unused for SPLIT and HOLE */
     struct limit_bound
-        *whole; /* [n_nodes], about the node's origin: of the node's own net, one step
-                                     coarser than a CORNER's first level; radius -1: SPLIT, HOLE */
+        /* [n_nodes], about the node's origin: the bound of the node's own net, which is one step
+         * coarser than the first level of a CORNER; radius -1: SPLIT, HOLE. */
+        *whole;
 
-    /* Of stored tables; NULL: on demand. bound_first[node] indexes bounds, which are one for each
-     * level of a CORNER or patch of a STRIP. Of a CORNER's levels each also holds all that lies nearer to
-     * the vertex. */
+    /* Stored tables only, else NULL. bound_first[node] is the index in `bounds` of the node's first
+     * bound; there is one for each level of a CORNER or patch of a STRIP. The bound of a CORNER's
+     * level also contains all that is nearer to the vertex. */
     size_t n_texels;
     float (*texels)[4];    /* [n_texels], see texels.h */
     uint32_t *bound_first; /* [n_nodes] */
     struct limit_bound *bounds;
     size_t n_bounds;
-    /* Of tables on demand; NULL: stored. */
+    /* Tables on demand only, else NULL. */
     struct limit_source *source; /* makes points */
-    /* Bounds that have been asked for. */
+    /* Cache of bounds that were asked for. */
     struct record_cache *level_bounds;
 
     double box_min[3], box_max[3]; /* as in limit_size */
     double hull_min[3], hull_max[3];
-    /* Points of the surface that lie outermost, from the middle of the box (support.h); NULL until
-     * they are looked for. */
+    /* Support points (support.h), relative to the middle of the box; NULL until they are found. */
     float (*support)[3];
     size_t n_support;
 
-    size_t count[LIMIT_KINDS]; /* of nodes, by kind: for `sheen info` */
+    size_t count[LIMIT_KINDS]; /* number of nodes of each kind, for `sheen info` */
 };
 
-/* Allocates tables of a size, without contents: stored ones, or on demand. ERROR_SERVER, which names
- * the bytes, when there is no memory; there is nothing to finish then. */
+/* Allocate tables of a size, without contents: stored or on demand. False with ERROR_SERVER, which
+ * names the bytes, when memory is short; there is then nothing to finish. */
 bool limit_tables_init(struct limit_tables *tables, const struct limit_size *size,
                        struct error *error);
 bool limit_tables_init_on_demand(struct limit_tables *tables, const struct limit_size *size,
                                  struct error *error);
 void limit_tables_finish(struct limit_tables *tables);
 
-/* How far level n (from 1) of a CORNER or patch n of a STRIP reaches and bends, about the node's origin;
- * of a REGULAR node `whole` says it. Any thread. */
+/* The bound of level n (from 1) of a CORNER or patch n of a STRIP, about the node's origin; for a
+ * REGULAR node use `whole`. Any thread. */
 struct limit_bound limit_level_bound(const struct limit_tables *tables, uint32_t node, unsigned n);
-/* Between two frames, when nobody else asks for bounds: bounds that none of the last frames has
- * asked for may be dropped. */
+/* Call it between two frames, while no thread asks for bounds: bounds that the latest frames have
+ * not asked for may be dropped. */
 void limit_tables_turn(const struct limit_tables *tables);
 
-/* Bytes of nodes, adjacency and what both forms have of points: stored tables' texels, which a GPU holds a
- * copy of, or heads and bounds of nodes. */
+/* Bytes of nodes, adjacency and, for stored tables, texels (a GPU has a copy of these), or, on
+ * demand, heads and bounds of nodes. */
 size_t limit_tables_bytes(const struct limit_tables *tables);
-/* How many levels of CORNERs and patches of STRIPs a view of the whole model reaches, about: no corner
- * of a face takes more than the first LIMIT_VIEW_LEVELS, where 1,000 pixels lie along its sides. A view from
- * nearer reaches more levels of fewer faces. Caches of what is made on demand have room for so many. */
+/* About how many levels of CORNERs and patches of STRIPs a view of the whole model reaches: no
+ * corner of a face needs more than the first LIMIT_VIEW_LEVELS if the face's sides are 1,000 pixels
+ * long. A closer view reaches more levels of fewer faces. Caches of points made on demand have room
+ * for this many. */
 enum { LIMIT_VIEW_LEVELS = 10 };
 size_t limit_view_levels(const struct limit_tables *tables);
-/* How many support points there may be. */
+/* The largest number of support points. */
 size_t limit_support_room(const struct limit_tables *tables);
-/* Bytes that they take in main memory from limit_tables_init() on, at most, with room for the support
- * points and with what their source holds. Of tables that are still measured, without a source: without
- * that. */
+/* The largest number of bytes that the tables take in main memory, from limit_tables_init() on,
+ * with the support points and the source's memory. For tables that are only measured, which have no
+ * source, without the latter. */
 size_t limit_tables_host_bytes(const struct limit_tables *tables);
-/* Of that, bytes of a face of one REGULAR node, or of one CORNER node with as many levels as there can
- * be. */
+/* Of these, the bytes of a face that is one REGULAR node, or one CORNER node with the largest
+ * number of levels. */
 size_t limit_face_bytes(const struct limit_tables *tables, enum limit_kind kind);
 
 #endif

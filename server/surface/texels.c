@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-/* Exponents of scales, which stay normal numbers in single precision. */
+/* The range of a scale's exponent; the scale must be a normal number in single precision. */
 enum { EXPONENT_MIN = -120, EXPONENT_MAX = 120 };
 
 static int exponent_of(const struct vec *points, size_t n)
@@ -18,7 +18,7 @@ static int exponent_of(const struct vec *points, size_t n)
     return exponent > EXPONENT_MAX ? EXPONENT_MAX : exponent;
 }
 
-/* Four points, `stride` apart. */
+/* Writes a row: four points, `stride` apart. */
 static void write_row(const struct vec *points, size_t stride, double inverse, float (*texels)[4])
 {
     for (size_t i = 0; i < 4; i++) {

@@ -1,4 +1,4 @@
-/* Three doubles by value: points and vectors of the cage, in world units. */
+/* Three doubles by value: points and vectors, usually in world units. Pure, any thread. */
 #ifndef SHEEN_SURFACE_VEC_H
 #define SHEEN_SURFACE_VEC_H
 
@@ -44,7 +44,7 @@ static inline double vec_length(struct vec a)
     return sqrt(vec_dot(a, a));
 }
 
-/* The unit vector along a, or zero when a is zero. */
+/* The unit vector in the direction of a; zero if a is zero. */
 static inline struct vec vec_unit(struct vec a)
 {
     double length = vec_length(a);

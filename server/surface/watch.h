@@ -1,4 +1,5 @@
-/* How work on a surface's tables is stopped from outside: it takes too long, or too much memory. */
+/* Lets the caller stop work on a surface's tables when it takes too long or needs too much
+ * memory. */
 #ifndef SHEEN_SURFACE_WATCH_H
 #define SHEEN_SURFACE_WATCH_H
 
@@ -9,17 +10,17 @@
 
 struct limit_size;
 
-/* Asked at every face, which may cost milliseconds. goes_on() returns false to end the work, and
- * sets `error`, which the work then fails with. may_need() does so where tables that need at least
- * `size` cannot be kept; it is asked while tables are measured, so that nobody measures to its end
- * what will be refused, and may be NULL. Both are called in the thread that works. */
+/* goes_on() is called for every face, which may cost milliseconds. It returns false and sets *error
+ * to end the work, which then fails with that error. may_need() does the same if tables of at least
+ * `size` cannot be kept; it is called while tables are measured, so that tables that will be
+ * refused are not measured to the end; it may be NULL. Both are called by the thread that works. */
 struct limit_watch {
     bool (*goes_on)(void *owner, struct error *error);
     bool (*may_need)(void *owner, const struct limit_size *size, struct error *error);
     void *owner;
 };
 
-/* Without a watch (NULL) the work goes on to its end. */
+/* Without a watch (NULL) the work is not stopped. */
 static inline bool limit_goes_on(const struct limit_watch *watch, struct error *error)
 {
     return !watch || watch->goes_on(watch->owner, error);

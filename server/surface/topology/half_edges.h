@@ -1,10 +1,10 @@
-/* The cage's connectivity as half-edges, one per face corner.
+/* The connectivity of a cage as half-edges, one for each corner of a face.
  *
- * Corner c of face f is also the half-edge from its vertex to the face's next vertex. Edges that
- * two faces share in opposite directions have twins; all others (boundary edges, edges of three
- * and more faces, edges that two faces run along in the same direction) end a sector, as
- * OpenSubdiv makes them infinitely sharp (far/topologyRefinerFactory.cpp). Nothing here is of one
- * subdivision scheme. Built by topology.h; read only afterwards, by any thread. */
+ * Corner c of face f is also the half-edge from its vertex to the face's next vertex. Two faces
+ * that traverse an edge in opposite directions are twins there. All other edges (boundary edges,
+ * edges of three or more faces, edges that two faces traverse in the same direction) end a sector:
+ * OpenSubdiv makes them infinitely sharp (far/topologyRefinerFactory.cpp). Nothing here depends on
+ * the subdivision scheme. Built by topology.h; then read-only, for any thread. */
 #ifndef SHEEN_SURFACE_TOPOLOGY_HALF_EDGES_H
 #define SHEEN_SURFACE_TOPOLOGY_HALF_EDGES_H
 
@@ -17,28 +17,34 @@
 
 struct topology {
     const struct cage *cage;
-    uint32_t *twin;          /* [corners]: the half-edge the other way, or CORNER_NONE */
-    uint32_t *face;          /* [corners]: the face it belongs to */
-    uint8_t *vertex_flags;   /* [vertices] */
-    float *edge_sharpness;   /* [corners], twins alike; NULL: no creases in the cage */
-    float *child_sharpness;  /* [corners]: of the half at the corner after one step, by Chaikin's
-                                rule; NULL: without that, or no creases */
-    float *vertex_sharpness; /* [vertices]; NULL: no sharp vertices in the cage */
-    struct nonmanifold_vertex *nonmanifold; /* [n_nonmanifold], by vertex: nonmanifold.h */
+    /* [corners]: the half-edge in the opposite direction, or CORNER_NONE. */
+    uint32_t *twin;
+    uint32_t *face;        /* [corners]: the face of the corner */
+    uint8_t *vertex_flags; /* [vertices] */
+    float *edge_sharpness; /* [corners], the same for twins; NULL: no creases in the cage */
+    /* [corners]: sharpness of the half of the edge at the corner after one step by Chaikin's rule;
+     * NULL: not Chaikin's rule, or no creases. */
+    float *child_sharpness;
+    float *vertex_sharpness;                /* [vertices]; NULL: no sharp vertices in the cage */
+    struct nonmanifold_vertex *nonmanifold; /* [n_nonmanifold], sorted by vertex (nonmanifold.h) */
     struct vertex_creases *vertex_creases;  /* [n_vertex_creases] */
     size_t n_nonmanifold, n_vertex_creases;
     bool quads_only; /* all faces are quads */
 };
 
 enum {
-    VERTEX_SHARP = 1, /* interpolated: a one-face corner in mode EDGE_AND_CORNER, or non-manifold */
-    VERTEX_UNBOUND = 2, /* an edge of only one face ends here, not infinitely sharp by a crease */
-    VERTEX_BY_NGON = 4, /* a face that is no quad touches it */
-    VERTEX_CREASED = 8, /* an inner edge with sharpness ends here */
-    VERTEX_TAGGED = 16, /* it has sharpness of its own */
-    VERTEX_PLAIN = 32,  /* four faces, four edges, manifold. With no other flag: a regular vertex */
+    /* The surface passes through it: a corner of one face in mode EDGE_AND_CORNER, or
+     * non-manifold. */
+    VERTEX_SHARP = 1,
+    /* At the end of an edge with one face that no crease makes infinitely sharp. */
+    VERTEX_UNBOUND = 2,
+    VERTEX_BY_NGON = 4, /* at a face that is not a quad */
+    VERTEX_CREASED = 8, /* at the end of an interior edge with sharpness */
+    VERTEX_TAGGED = 16, /* has sharpness of its own */
+    /* Four faces, four edges, manifold; without any other flag a regular vertex. */
+    VERTEX_PLAIN = 32,
     VERTEX_NON_MANIFOLD =
-        64, /* its faces form several sheets, or an edge of it is not of two faces */
+        64, /* its faces form several sheets, or one of its edges does not have two faces */
 };
 
 static inline uint32_t corner_vertex(const struct topology *t, uint32_t c)
@@ -69,14 +75,14 @@ static inline uint32_t corner_ccw(const struct topology *t, uint32_t c)
     return t->twin[corner_prev(t, c)];
 }
 
-/* The same clockwise. */
+/* The corner at the same vertex in the next face clockwise, or CORNER_NONE. */
 static inline uint32_t corner_cw(const struct topology *t, uint32_t c)
 {
     uint32_t twin = t->twin[c];
     return twin == CORNER_NONE ? CORNER_NONE : corner_next(t, twin);
 }
 
-/* Sharpness of the edge of half-edge c; ends of sectors are infinitely sharp. */
+/* The sharpness of the edge of half-edge c; the ends of sectors are infinitely sharp. */
 static inline float edge_sharpness(const struct topology *t, uint32_t c)
 {
     if (t->twin[c] == CORNER_NONE)
@@ -84,7 +90,7 @@ static inline float edge_sharpness(const struct topology *t, uint32_t c)
     return t->edge_sharpness ? t->edge_sharpness[c] : 0;
 }
 
-/* Sharpness of the vertex at corner c. */
+/* The sharpness of the vertex at corner c. */
 static inline float vertex_sharpness(const struct topology *t, uint32_t c)
 {
     uint32_t v = t->cage->face_vertex[c];
@@ -93,7 +99,7 @@ static inline float vertex_sharpness(const struct topology *t, uint32_t c)
     return t->vertex_sharpness ? t->vertex_sharpness[v] : 0;
 }
 
-/* Whether all four vertices of a quad, given by a corner, are interior and regular. */
+/* True if all four vertices of a quad, given by one of its corners, are interior and regular. */
 static inline bool quad_is_plain(const struct topology *t, uint32_t c)
 {
     for (int i = 0; i < 4; i++, c = corner_next(t, c))
@@ -102,12 +108,14 @@ static inline bool quad_is_plain(const struct topology *t, uint32_t c)
     return true;
 }
 
-/* The faces around a corner's vertex that are in the corner's sector. All corners of a sector get the same
- * first face, so that sums over the sector are equal to the last bit. */
+/* The sector of a corner: the faces around the corner's vertex that are connected to it without
+ * crossing the end of a sector. All corners of a sector get the same first face, so that sums over
+ * the sector are equal to the last bit. */
 struct sector {
-    uint32_t first;   /* the clockwise-most corner; when closed, the one of lowest index */
+    /* The most clockwise corner; in a closed sector the one with the lowest index. */
+    uint32_t first;
     uint32_t n_faces; /* >= 1 */
-    uint32_t at;      /* steps counter-clockwise from first to the given corner */
+    uint32_t at;      /* number of steps counter-clockwise from `first` to the given corner */
     bool closed;
 };
 struct sector topology_sector(const struct topology *t, uint32_t corner);

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-/* One sheet at a vertex, by the first corner of its sector. */
+/* One sheet at a vertex, given by the first corner of its sector. */
 struct sheet {
     uint32_t vertex, first;
 };
@@ -12,9 +12,9 @@ struct sheet_list {
     size_t n;
 };
 
-/* The sharp edges of one vertex while they are counted. */
+/* The sharp edges of one vertex, during the count. */
 struct sharp_edges {
-    float *semisharp; /* [as many as any vertex can have] */
+    float *semisharp; /* room for the edges of any vertex */
     uint32_t n_semisharp, n_infinite;
     uint32_t end[2], n_ends;
 };
@@ -34,8 +34,8 @@ static int compare_sheets(const void *a, const void *b)
     return p->first < q->first ? -1 : p->first > q->first;
 }
 
-/* Lists every sheet once, sorted by vertex. Each sector is walked once, since a vertex may have
- * any number of faces. */
+/* Lists every sheet once, sorted by vertex. Each sector is traversed once, because a vertex may
+ * have any number of faces. */
 static bool list_sheets(const struct topology *t, size_t n_wanted, struct sheet_list *list)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];

@@ -5,15 +5,16 @@
 
 #include "server/surface/topology/nonmanifold.h"
 
-/* Edges around each vertex, counted while the half-edges are paired. */
+/* The edges around each vertex, counted while half-edges are paired. */
 struct vertex_count {
     uint32_t edges, boundary, nonmanifold, faces;
 };
 
-/* The half-edges whose lower vertex is the same, to be paired by their higher one. */
+/* A half-edge, in the list of those with the same lower vertex, in which they are paired by their
+ * higher one. */
 struct half_edge {
     uint32_t high, corner;
-    bool forward; /* runs from the lower to the higher vertex */
+    bool forward; /* goes from the lower to the higher vertex */
 };
 
 static int compare_half_edges(const void *a, const void *b)
@@ -78,8 +79,8 @@ static bool pair_half_edges(struct topology *t, struct vertex_count *count)
             else
                 start[low + 2]++;
         }
-        /* After this loop start[v + 1] is where v's bucket begins. The second pass moves it to
-         * the bucket's end, so that the bucket of v is start[v] .. start[v + 1]. */
+        /* After this loop v's bucket begins at start[v + 1]. The second pass moves that to the
+         * bucket's end, so that the bucket of v is start[v] .. start[v + 1]. */
         for (size_t v = 2; !fill && v < cage->n_vertices + 2; v++)
             start[v] += start[v - 1];
     }
@@ -96,7 +97,7 @@ static bool vertex_is_manifold(const struct topology *t, uint32_t corner,
     return count->nonmanifold == 0 && topology_sector(t, corner).n_faces == count->faces;
 }
 
-/* Which vertices the surface passes through, by OpenSubdiv's rule
+/* True if the surface passes through the vertex, by OpenSubdiv's rule
  * (far/topologyRefinerFactory.cpp). */
 static bool vertex_is_sharp(const struct topology *t, bool manifold,
                             const struct vertex_count *count)
@@ -106,7 +107,7 @@ static bool vertex_is_sharp(const struct topology *t, bool manifold,
         return true;
     if (manifold)
         return false;
-    /* A fin, two opposite edges of several faces each and no boundary, follows the crease rule. */
+    /* A fin follows the crease rule: two opposite edges of several faces each, and no boundary. */
     return !(count->nonmanifold == 2 && count->boundary == 0 && count->faces > count->edges);
 }
 
@@ -135,7 +136,7 @@ static void flag_vertices(struct topology *t, struct vertex_count *count)
     }
 }
 
-/* Half-edges from each vertex, to find the edge that a crease names. */
+/* The half-edges from each vertex, to find the edge of a crease. */
 struct outgoing {
     uint32_t *first; /* [vertices + 1] */
     uint32_t *corner;
@@ -161,7 +162,7 @@ static bool outgoing_init(struct outgoing *out, const struct topology *t)
     return true;
 }
 
-/* Gives the half-edges from a to b the sharpness. Returns how many there are. */
+/* Sets the sharpness of the half-edges from a to b. Returns their number. */
 static size_t sharpen_from(struct topology *t, const struct outgoing *out, uint32_t a, uint32_t b,
                            float sharpness)
 {
@@ -240,7 +241,8 @@ static struct sharpness_sum sum_creases(const struct topology *t, const struct s
     return sum;
 }
 
-/* The rule of each edge takes all edges around the vertex: their sum is made once for a sector. */
+/* The rule for each edge needs all edges around the vertex: their sum is computed once for a
+ * sector. */
 static bool find_child_sharpness(struct topology *t)
 {
     uint32_t n_corners = t->cage->face_start[t->cage->n_faces];
