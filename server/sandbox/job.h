@@ -52,7 +52,7 @@ enum job_how {
     JOB_EXITED,    /* value: the exit code; 0: there is an answer */
     JOB_KILLED,    /* value: the signal */
     JOB_TIMED_OUT, /* value: 0; killed after limits.wall_s */
-    JOB_NOT_RUN,   /* value: errno of fork() */
+    JOB_NOT_RUN,   /* value: errno; no process could be started */
     N_JOB_HOWS,
 };
 
