@@ -5,8 +5,8 @@ static bool is_quad(const struct topology *t, uint32_t corner)
     return face_size(t, t->face[corner]) == 4;
 }
 
-/* Ptex face and edge that hold half-edge c near its start: a quad's whole edge, or edge 0 of the
- * n-gon's Ptex face at c. */
+/* The Ptex face and edge that contain the start of half-edge c: a quad's whole edge, or edge 0 of
+ * the n-gon's Ptex face at c. */
 static uint32_t edge_at_start(const struct limit_plan *plan, uint32_t c)
 {
     const struct topology *t = &plan->topology;
@@ -14,7 +14,8 @@ static uint32_t edge_at_start(const struct limit_plan *plan, uint32_t c)
     return is_quad(t, c) ? plan->first_ptex[face] << 2 | k : (plan->first_ptex[face] + k) << 2;
 }
 
-/* The same near its end: edge 3 of the n-gon's Ptex face at the next corner. */
+/* As edge_at_start() for the end of the half-edge: edge 3 of the n-gon's Ptex face at the next
+ * corner. */
 static uint32_t edge_at_end(const struct limit_plan *plan, uint32_t c)
 {
     const struct topology *t = &plan->topology;

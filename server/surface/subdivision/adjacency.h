@@ -1,5 +1,4 @@
-/* Which Ptex face lies across each edge of a Ptex face (server/surface/node.h). Pure; any
- * thread. */
+/* Finds the Ptex face across each edge of a Ptex face (server/surface/node.h). Pure, any thread. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_ADJACENCY_H
 #define SHEEN_SURFACE_SUBDIVISION_ADJACENCY_H
 

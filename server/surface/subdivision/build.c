@@ -26,8 +26,8 @@ static void bounding_box(const struct cage *cage, double box_min[3], double box_
     }
 }
 
-/* May the tables of this cage be kept, however simple its faces are? Asked before any other work. A
- * face that has a surface takes a node of 16 points at least. */
+/* May the tables of this cage be kept, however simple its faces are? Checked before any other work.
+ * A face with a surface takes at least one node of 16 points. */
 static bool may_need_least(const struct cage *cage, const struct limit_watch *watch,
                            struct error *error)
 {
@@ -44,8 +44,8 @@ static bool may_need_least(const struct cage *cage, const struct limit_watch *wa
     return limit_may_need(watch, &least, error);
 }
 
-/* Measures every face in turn: each one's share of the tables begins where that of the one
- * before ends. */
+/* Measures all faces: each face's share of the tables begins where that of the previous one
+ * ends. */
 static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, struct error *error)
 {
     struct face_builder measure = {.plan = plan,
@@ -85,7 +85,7 @@ static bool lay_out(struct limit_plan *plan, const struct limit_watch *watch, st
     memcpy(plan->size.count, measure.count, sizeof plan->size.count);
     bounding_box(plan->cage, plan->size.hull_min, plan->size.hull_max);
     for (int k = 0; k < 3; k++) {
-        /* A cage without any surface has its box at the origin. */
+        /* The box of a cage without surface is the origin. */
         plan->size.box_min[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_min[k] : 0;
         plan->size.box_max[k] = measure.box_min[k] <= measure.box_max[k] ? measure.box_max[k] : 0;
     }

@@ -11,8 +11,8 @@
 #include "server/surface/subdivision/settle.h"
 #include "server/surface/texels.h"
 
-/* Each level makes one more edge at either end of a window wrong. A window is so wide that the
- * edges which the grid takes stay right. */
+/* Each level makes one more edge at either end of a window wrong. The window is so wide that the
+ * edges used by the grid stay right. */
 enum { WINDOW_SIDE = LIMIT_MAX_LEVELS + 3, WINDOW = 2 * WINDOW_SIDE };
 
 static bool needs_window(const struct ring *ring)
@@ -30,7 +30,7 @@ static uint32_t window_start(const struct ring *ring)
     return first < last ? first : last;
 }
 
-/* ring_limit() of the whole ring, by what has been kept beside the window. */
+/* ring_limit() of the whole ring, from what was stored with the window. */
 static struct vec window_limit(const struct net *net)
 {
     double n = net->n_faces;
@@ -126,7 +126,7 @@ static void first_net(const struct quad *quad, const struct vertex_limit *vertex
 static struct vec refine_point(struct vec grid[5][5], int i, int j)
 {
     int a = (i + 2) / 2 - 1, b = (j + 2) / 2 - 1; /* floor(i/2), floor(j/2) for i,j >= -2 */
-    enum { UP = 5 };                              /* from a row to the next */
+    enum { UP = 5 };                              /* distance of rows */
     const struct vec *g = &grid[0][0] + (b + 1) * UP + a + 1;
     if (i & 1 && j & 1)
         return vec_scale(vec_add(vec_add(g[0], g[1]), vec_add(g[UP], g[UP + 1])), 0.25);
@@ -142,7 +142,8 @@ static struct vec refine_point(struct vec grid[5][5], int i, int j)
     return vec_mad(vec_mad(vec_scale(g[0], 0.5625), 0.09375, edges), 0.015625, faces);
 }
 
-/* The points around the vertex come from its refined ring; beyond a sector's end, phantoms. */
+/* Takes the points around the vertex from its refined ring, and phantom points beyond a sector's
+ * end. */
 static void ring_points(const struct ring *ring, struct vec grid[5][5])
 {
     grid[1][1] = ring->centre;
@@ -159,7 +160,7 @@ static void ring_points(const struct ring *ring, struct vec grid[5][5])
     }
 }
 
-/* The net of the next level: refines, then moves the limit position back to zero. */
+/* Computes the net of the next level: refines, then moves the limit position back to zero. */
 static void next_net(const struct net *in, const struct dart_masks *masks, struct net *out)
 {
     struct vec coarse[5][5];
@@ -195,7 +196,7 @@ static void next_net(const struct net *in, const struct dart_masks *masks, struc
         out->ring.face[k] = vec_sub(out->ring.face[k], limit);
 }
 
-/* The rotation whose columns are the axes, as a unit quaternion (Shepperd 1978). */
+/* Writes the rotation whose columns are the axes as a unit quaternion (Shepperd 1978). */
 static void write_frame(const struct vec axis[3], float texel[4])
 {
     const double m[3][3] = {{axis[0].x, axis[1].x, axis[2].x},
@@ -221,8 +222,8 @@ static void write_frame(const struct vec axis[3], float texel[4])
         texel[n] = (float)(r[n] / length);
 }
 
-/* The vertex's frame (README.md 3.3 of server/surface): axis[2] is the normal where there is
- * one. Returns whether there is. */
+/* The vertex's frame (server/surface/README.md 3.3): axis[2] is the normal, if there is one.
+ * Returns whether there is. */
 static bool vertex_frame(const struct ring *ring, const struct dart_mask_list *known,
                          struct dart_masks *masks, struct vec axis[3], struct arena *arena)
 {
@@ -251,15 +252,15 @@ static void find_vertex_limit(struct vertex_limit *vertex, const struct ring *ri
     vertex->is_known = true;
 }
 
-/* At a vertex without one normal each quad gets a frame of its own, by its corner of the net at
- * this level. A lower level would cost the last levels digits, where single precision has the
- * fewest to spare; a higher one would cost those before it digits. */
+/* At a vertex without a single normal each quad has its own frame, by its corner of the net at this
+ * level. A lower level would cost digits in the last levels, where single precision has fewest to
+ * spare; a higher one would cost digits in the levels before. */
 enum { FRAME_LEVEL = 28 };
 
-/* axis[2] becomes the normal of that corner, axis[0] its slowest direction, the sum of its
- * edges. Deep levels of a cone or of a sector of many quads are far longer along that direction
- * than across it. With the long direction along one axis the short ones keep their own digits.
- * On entry `axis` is the vertex's frame, in which net[0] is given. */
+/* axis[2] becomes the normal of that corner, axis[0] its slowest direction, the sum of its edges.
+ * Deep levels of a cone, or of a sector of many quads, are much longer in that direction than
+ * across it. If it is an axis, the short coordinates keep their own digits. On entry `axis` is the
+ * vertex's frame, in which net[0] is given. */
 static void own_frame(struct net net[2], const struct dart_masks *masks, struct vec axis[3])
 {
     for (unsigned n = 0; n < FRAME_LEVEL; n++)
@@ -279,8 +280,8 @@ unsigned corner_levels(const struct ring *ring)
     const double pixel = 0x1p-24, pi = 3.14159265358979323846;
     /* A dart's ring counts as a sector that begins and ends at the sharp edge. */
     bool is_whole = ring->closed && !ring->creases.edge;
-    /* Where the vertex of a whole ring is held by its sharpness or by an outside crease, all
-     * points of the ring approach it alike: a wave of angle 0. */
+    /* If the vertex of a whole ring is fixed by its sharpness or by an outside crease, all points
+     * of the ring approach it alike: a wave of angle 0. */
     bool is_tip = is_whole && (ring->sharpness > 0 || ring_has_outside_crease(ring));
     double angle = is_tip ? 0 : (is_whole ? 2 : 1) * pi / ring->n_faces;
     double eigenvalue = fmax(ring_eigenvalue(angle), 0.5);
@@ -288,8 +289,8 @@ unsigned corner_levels(const struct ring *ring)
     return (unsigned)fmin(fmax(levels, LIMIT_MIN_LEVELS), LIMIT_MAX_LEVELS);
 }
 
-/* Weighed bounds take longer than the levels themselves. They are of use on levels that are
- * larger than pixels, which are the first ones. */
+/* Weighed bounds take more time than the levels themselves. They matter for levels that are larger
+ * than pixels: the first ones. */
 enum { WEIGHED_LEVELS = 6 };
 
 void corner_begin(struct corner_nets *nets, const struct quad *quad,

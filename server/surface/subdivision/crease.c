@@ -42,7 +42,8 @@ double crease_edge_weight(const struct ring *in, uint32_t k)
     return sharpness_crease_weight(sharpness, crease_child(in, k), in->creases.far[k]);
 }
 
-/* At the new vertex on an edge only its two halves are sharp: what half `own` becomes there. */
+/* At the new vertex on an edge only the edge's two halves are sharp: the sharpness of half `own`
+ * there. */
 static float child_at_edge_point(float own, float other, bool chaikin)
 {
     if (chaikin && sharpness_is_semisharp(own) && sharpness_is_semisharp(other))

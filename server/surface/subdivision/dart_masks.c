@@ -69,7 +69,7 @@ static void scale(double *a, uint32_t n, double by)
         a[i] *= by;
 }
 
-/* A flat star: where the ring's points would lie around a regular vertex of that valence. */
+/* A flat star: the ring's points around a regular vertex of that valence. */
 static void flat_ring(struct ring *ring)
 {
     double step = 2 * 3.14159265358979323846 / ring->n_faces;
@@ -80,7 +80,7 @@ static void flat_ring(struct ring *ring)
     }
 }
 
-/* Exchanges the tangents if they run against the winding. */
+/* Exchanges the tangents if their order is against the winding. */
 static void orient(struct dart_masks *masks, const struct ring *ring, struct arena *arena)
 {
     struct ring flat = ring_take(arena, ring->n_faces, true, false);
@@ -105,7 +105,7 @@ static void find_position(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int ite
     scale(position, n, 1 / sum);
 }
 
-/* Removes the part along `position` that rounding adds. Its eigenvalue is larger than that of
+/* Removes the part along `position`, which rounding adds: its eigenvalue is larger than those of
  * the tangents, so that it would grow until nothing else is left. */
 static void without_position(double *x, uint32_t n, const double *position)
 {
@@ -116,11 +116,11 @@ static void without_position(double *x, uint32_t n, const double *position)
         x[i] -= sum * position[i];
 }
 
-/* The two next left eigenvectors: a of the larger eigenvalue, b orthogonal to a. */
+/* The next two left eigenvectors: a with the larger eigenvalue, b orthogonal to a. */
 static void find_tangents(double matrix[MAX_SIZE][MAX_SIZE], uint32_t n, int iterations,
                           const double *position, double *a, double *b)
 {
-    for (uint32_t i = 0; i < n; i++) { /* any vectors that are not parallel */
+    for (uint32_t i = 0; i < n; i++) { /* start with any vectors that are not parallel */
         a[i] = sin(1.0 + 7 * i);
         b[i] = cos(2.0 + 5 * i);
     }

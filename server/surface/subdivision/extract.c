@@ -62,7 +62,7 @@ static struct ring cage_ring(const struct topology *t, uint32_t c, bool quads,
     return ring;
 }
 
-/* The sharpness, after one step, of the half of edge c that begins at its vertex. */
+/* The sharpness after one step of the half of edge c at the edge's start. */
 static float child_sharpness(const struct topology *t, uint32_t c)
 {
     return t->child_sharpness ? t->child_sharpness[c] : sharpness_child(edge_sharpness(t, c));
@@ -80,7 +80,7 @@ static void set_far_sharpness(const struct topology *t, const struct sector *sec
     }
 }
 
-/* Keeps a large ring for all the corners of its sector. */
+/* Keeps a large ring for all corners of its sector. */
 static void share(const struct topology *t, struct ring_cache *rings, enum cached_kind kind,
                   const struct sector *sector, struct ring *ring)
 {
@@ -106,7 +106,7 @@ static struct ring vertex_ring(const struct topology *t, uint32_t c, struct ring
     return ring_settle(&ring, arena);
 }
 
-/* The refined ring of corner c's vertex, by the face points of its faces. */
+/* The refined ring of corner c's vertex, from the face points of its faces. */
 static struct ring refine_cage_ring(const struct topology *t, const struct vec *face_points,
                                     uint32_t c, struct sector *sector, struct arena *arena)
 {
@@ -119,8 +119,8 @@ static struct ring refine_cage_ring(const struct topology *t, const struct vec *
     return out;
 }
 
-/* The same with edge points of the refined cage in place of the ring's own: beside smooth
- * triangles they differ. */
+/* As refine_cage_ring(), but with the edge points of the refined cage, which differ beside smooth
+ * triangles. */
 static struct ring refined_vertex_ring(const struct topology *t,
                                        const struct refined_points *points, uint32_t c,
                                        struct ring_cache *rings, struct arena *arena)
@@ -139,7 +139,8 @@ static struct ring refined_vertex_ring(const struct topology *t,
     return ring;
 }
 
-/* Around the edge point of half-edge c, listed from its far end: end, face, start, face across. */
+/* The ring around the edge point of half-edge c, in the order: far end, face, start, face
+ * across. */
 static struct ring refined_edge_ring(const struct topology *t, const struct refined_points *points,
                                      uint32_t c, uint32_t at, struct ring_cache *rings,
                                      struct arena *arena)
@@ -172,9 +173,9 @@ static struct ring refined_edge_ring(const struct topology *t, const struct refi
     return ring_settle(&ring, arena);
 }
 
-/* The ring of the face point, for the quad at cage corner c. The ring of a small face begins at
- * c, that of a large face at the face's first corner, so that all its corners share it. Each
- * quad lies between the edge points before and after its corner. */
+/* The ring of the face point, for the quad at cage corner c. The ring of a small face begins at c,
+ * that of a large face at the face's first corner, so that all its corners share it. Each quad lies
+ * between the edge points before and after its corner. */
 static struct ring refined_face_ring(const struct topology *t, const struct refined_points *points,
                                      uint32_t c, struct ring_cache *rings, struct arena *arena)
 {
@@ -247,9 +248,9 @@ static void refine_face_points(const struct topology *t, struct refined_points *
     }
 }
 
-/* Computes the points of one sector, and marks its corners as done: its vertex, and the edge
- * points of its outgoing half-edges. Each edge point is written from one of its ends only, so
- * that twins hold the same bits. */
+/* Computes the points of one sector: its vertex, and the edge points of its outgoing half-edges.
+ * Marks its corners as done. Each edge point is computed from one of its ends only, so that twins
+ * have the same bits. */
 static void refine_sector(const struct topology *t, struct refined_points *points, uint32_t c,
                           uint8_t *done, struct arena *arena)
 {
@@ -268,14 +269,14 @@ static void refine_sector(const struct topology *t, struct refined_points *point
     arena->used = mark;
 }
 
-/* The weight of the two face points, OpenSubdiv's constant for triangles (sdc/catmarkScheme.h). */
+/* The weight of the two face points: OpenSubdiv's constant for triangles (sdc/catmarkScheme.h). */
 static double smooth_triangle_weight(const struct topology *t, uint32_t corner)
 {
     return face_size(t, t->face[corner]) == 3 ? 0.470 : 0.25;
 }
 
-/* OpenSubdiv's TRI_SUB_SMOOTH: edge points beside triangles take more of the face points, in
- * the first step only. */
+/* OpenSubdiv's TRI_SUB_SMOOTH: in the first step only, face points have a larger weight in edge
+ * points beside triangles. */
 static bool refine_smooth_triangle_edges(const struct topology *t, struct refined_points *points,
                                          const struct limit_watch *watch, struct error *error)
 {
@@ -343,7 +344,7 @@ size_t extract_largest_ring(const struct topology *t)
     }
     for (uint32_t f = 0; f < cage->n_faces; f++)
         largest = face_size(t, f) > largest ? face_size(t, f) : largest;
-    /* Without memory for the counts, the number of corners is a bound. */
+    /* Without memory for counting, the number of corners is an upper bound. */
     largest = valence ? largest : n_corners;
     free(valence);
     return largest;

@@ -1,7 +1,8 @@
-/* Quads with their rings, from the cage: of the cage itself (level 0) where all faces around a quad are
- * quads, else of the once refined cage (level 1), where all faces are.
+/* Extracts quads with their rings from the cage: of the cage itself (level 0) if all faces around a
+ * quad are quads, else of the once refined cage (level 1), where all faces are quads.
  *
- * The points of level 1 are computed once for the whole cage, if it has a face that is no quad. */
+ * If the cage has a face that is not a quad, the points of level 1 are computed once for the whole
+ * cage. */
 #ifndef SHEEN_SURFACE_SUBDIVISION_EXTRACT_H
 #define SHEEN_SURFACE_SUBDIVISION_EXTRACT_H
 
@@ -12,32 +13,31 @@
 
 struct refined_points {
     struct vec *vertex; /* [vertices] */
-    struct vec *edge;   /* [corners]: of the corner's half-edge; twins hold the same */
+    struct vec *edge;   /* [corners]: the point on the corner's half-edge; the same for twins */
     struct vec *face;   /* [faces] */
 };
 
-/* Computes the points of level 1. False: ERROR_SERVER when memory is short, or the watch's error;
- * refined_points_finish() is safe in both cases. One thread. */
+/* Computes the points of level 1. False with ERROR_SERVER when memory is short, or with the watch's
+ * error; refined_points_finish() is safe in both cases. One thread. */
 bool refined_points_init(struct refined_points *points, const struct topology *topology,
                          struct arena *arena, const struct limit_watch *watch, struct error *error);
 void refined_points_finish(struct refined_points *points);
 
-/* The quad whose corner 0 is the cage corner c, at level 0, its rings settled (settle.h). Large
- * ones are kept in `rings`, where they are looked for first. */
+/* The level-0 quad whose corner 0 is cage corner c, with settled rings (settle.h). Large rings are
+ * looked up in `rings` and kept there. */
 struct quad extract_quad(const struct topology *topology, uint32_t c, struct ring_cache *rings,
                          struct arena *arena);
 
-/* The 4x4 control points of a plain quad (half_edges.h), as quad_grid() gives them, without its
- * rings. */
+/* The 4x4 control points of a plain quad (half_edges.h), like quad_grid() but without rings. */
 void extract_plain_grid(const struct topology *topology, uint32_t c, struct vec grid[4][4]);
 
-/* The level-1 quad between cage corner c (its corner 0), the edge points beside it and the face
+/* The level-1 quad between cage corner c (its corner 0), the edge points beside it, and the face
  * point (its corner 2). */
 struct quad extract_refined_quad(const struct topology *topology,
                                  const struct refined_points *points, uint32_t c,
                                  struct ring_cache *rings, struct arena *arena);
 
-/* The most faces around any vertex, or corners of any face, of the cage. */
+/* The largest number of faces around a vertex, or corners of a face, in the cage. */
 size_t extract_largest_ring(const struct topology *topology);
 
 #endif

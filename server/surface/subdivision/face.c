@@ -11,7 +11,7 @@
 #include "server/surface/subdivision/strip.h"
 #include "server/surface/texels.h"
 
-/* The surface at a corner of a bicubic patch: the middle of the 3 x 3 points about (x,y). */
+/* The surface at a corner of a bicubic patch, by the 3 x 3 points about (x,y). */
 static struct vec corner_point(const struct vec grid[16], int x, int y)
 {
     static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6};
@@ -29,7 +29,7 @@ static void write_corner(struct limit_head *head, int corner, struct vec p)
     head->corner[2][corner] = (float)p.z;
 }
 
-/* A bound's radius also holds the corners' rounded coordinates. */
+/* The radius of a bound also contains the corners' rounded coordinates. */
 static void write_head(struct face_builder *b, uint32_t node, const struct vec first[16],
                        const struct vec last[16])
 {
@@ -40,7 +40,7 @@ static void write_head(struct face_builder *b, uint32_t node, const struct vec f
         write_corner(head, k, corner_point(k < 2 ? first : last, k & 1 ? 2 : 1, k < 2 ? 1 : 2));
 }
 
-/* A REGULAR node of 16 control points. While measuring, only room for it. */
+/* Builds a REGULAR node of 16 control points; while measuring, only counts it. */
 static void build_patch(struct face_builder *b, uint32_t node, struct vec grid[4][4])
 {
     if (b->tables) {
@@ -68,16 +68,16 @@ static void build_regular(struct face_builder *b, uint32_t node, const struct qu
     build_patch(b, node, grid);
 }
 
-/* Whether the surface about a settled ring bends as its net does: no crease, boundary or sharp vertex shapes it,
- * of this sheet or of others. */
+/* True if the surface about a settled ring bends like its net: no crease, boundary or sharp vertex,
+ * of this sheet or of others, shapes it. */
 static bool bends_as_net(const struct ring *ring)
 {
     return ring->closed && !ring->creases.edge && ring->sharpness <= 0 &&
            !ring_has_outside_crease(ring);
 }
 
-/* How the surface about a corner's own net looks, from its vertex's limit position. `first` is the bound of its first
- * level, whose parameters run twice as fast, or NULL where the net tells how the surface bends. */
+/* Writes the corner as a whole, from its vertex's limit position. `first` is the bound of its first
+ * level, whose parameters change twice as fast; NULL: the net tells how the surface bends. */
 static void write_corner_whole(struct face_builder *b, uint32_t node, const struct quad *quad,
                                struct vec origin, const struct limit_bound *first)
 {
@@ -169,7 +169,7 @@ static void build_strip(struct face_builder *b, uint32_t node, const struct quad
 
 static void build_node(struct face_builder *b, uint32_t node, const struct quad *quad);
 
-/* Four children, whose quads are given in the parent's orientation. */
+/* Builds four children; their quads are in the parent's orientation. */
 static void build_split(struct face_builder *b, uint32_t node, const struct quad child[4])
 {
     uint32_t first = b->next.node;
@@ -201,8 +201,8 @@ static void extend_box(struct face_builder *b, struct vec p)
     }
 }
 
-/* While measuring, extends the box by the limit positions of a leaf's corners and by the middle
- * of a regular patch: on a coarse cage that is where the surface bulges most. */
+/* While measuring, extends the box by the limit positions of a leaf's corners, and by the middle of
+ * a regular patch, where the surface of a coarse cage bulges most. */
 static void measure_extent(struct face_builder *b, const struct quad *quad)
 {
     if (b->tables)
@@ -220,10 +220,10 @@ static void measure_extent(struct face_builder *b, const struct quad *quad)
     extend_box(b, middle);
 }
 
-/* A quad becomes a leaf when its rules change no more and at most one of its corners is
- * extraordinary, or when it lies along a plain semi-sharp crease; otherwise it is split.
- * Sharpness below 10 is gone after 10 steps, and one more step separates extraordinary corners,
- * so the depth is bounded. */
+/* A quad becomes a leaf if its rules do not change any more and at most one of its corners is
+ * extraordinary, or if it lies along a plain semi-sharp crease; otherwise it is split. Sharpness
+ * below 10 is gone after 10 steps, and one more step separates extraordinary corners, so the depth
+ * is bounded. */
 static void build_node(struct face_builder *b, uint32_t node, const struct quad *quad)
 {
     size_t mark = b->arena.used;
@@ -252,14 +252,15 @@ static void build_node(struct face_builder *b, uint32_t node, const struct quad 
     b->arena.used = mark;
 }
 
-/* A face whose four vertices are interior and regular, as most are: its points need no ring. */
+/* Builds a face whose four vertices are interior and regular, like most: its points need no
+ * ring. */
 static void build_plain(struct face_builder *b, uint32_t ptex, uint32_t c)
 {
     struct vec grid[4][4];
     if (b->tables) {
         extract_plain_grid(&b->plan->topology, c, grid);
     } else {
-        /* The box is only what a camera frames: the cage's corners are near enough. */
+        /* A camera frames the box: the cage's corners are near enough for that. */
         const struct cage *cage = b->plan->cage;
         for (unsigned i = 0; i < 4; i++) {
             const double *p = cage->position[cage->face_vertex[c + i]];
@@ -269,7 +270,7 @@ static void build_plain(struct face_builder *b, uint32_t ptex, uint32_t c)
     build_patch(b, ptex, grid);
 }
 
-/* What stands in limit_node.borders for half-edge c of a cage face. */
+/* The value in limit_node.borders for half-edge c of a cage face. */
 static unsigned border_of(const struct limit_plan *plan, uint32_t c)
 {
     const struct topology *t = &plan->topology;
@@ -279,8 +280,8 @@ static unsigned border_of(const struct limit_plan *plan, uint32_t c)
     return (unsigned)ceilf(fmaxf(sharpness, 0));
 }
 
-/* The borders of the Ptex face at cage corner c. A Ptex face of an n-gon is bordered by halves
- * of two edges of the cage, on which creases take one level less. */
+/* The borders of the Ptex face at cage corner c. A Ptex face of an n-gon is bordered by halves of
+ * two cage edges, on which creases take one level less. */
 static uint16_t borders_of(const struct limit_plan *plan, uint32_t c)
 {
     const struct topology *t = &plan->topology;

@@ -9,32 +9,33 @@
 #include "server/surface/subdivision/strip.h"
 
 enum {
-    MOST_DEPTH = 12, /* of a tree of nodes (node.h) */
-    /* After so many faces the rings of large vertices are dropped: they would pile up. */
+    MOST_DEPTH = 12, /* largest depth of a tree of nodes (node.h) */
+    /* After this many faces the rings of large vertices are dropped, because they would
+     * accumulate. */
     FACES_PER_RING_CACHE = 4096,
 };
 
-/* The quads of a split node's children, or a root's own, and which of them is meant. */
+/* The quads of a split node's children, or a root's own, and which of them is on the path. */
 struct step {
     struct quad quad[4];
     unsigned child;
-    size_t mark; /* of the arena, behind them */
+    size_t mark; /* the arena's mark behind them */
 };
 
 struct maker {
-    struct maker *next; /* of those that nobody uses */
+    struct maker *next; /* next unused maker */
     const struct limit_plan *plan;
     struct arena arena;
     struct ring_cache rings;
     uint32_t n_faces;
     uint32_t face, node;              /* UINT32_MAX: none */
     struct step step[MOST_DEPTH + 1]; /* [depth] */
-    bool begins_split;                /* there is no step[0] */
-    int n_steps;                      /* up to which depth they are right */
-    /* Of the node. */
+    bool begins_split;                /* step[0] is not used */
+    int n_steps;                      /* depth up to which the steps are valid */
+    /* Of the node: */
     struct corner_nets nets;
-    struct vec level[LIMIT_MAX_LEVELS][25];     /* those of a CORNER up to nets.level */
-    struct vec patch[STRIP_MAX_LEVELS + 1][16]; /* of a STRIP, or one of a REGULAR node */
+    struct vec level[LIMIT_MAX_LEVELS][25];     /* CORNER: the levels up to nets.level */
+    struct vec patch[STRIP_MAX_LEVELS + 1][16]; /* STRIP: its patches; REGULAR: one */
 };
 
 struct maker_pool {
@@ -92,7 +93,7 @@ void maker_pool_destroy(struct maker_pool *pool)
     free(pool);
 }
 
-/* The maker that is at that face, else any. Waits where all are in use and memory for another is
+/* The maker that is at that face, else any. Waits if all are in use and memory for another is
  * short. */
 static struct maker *take(struct maker_pool *pool, uint32_t face)
 {
@@ -108,7 +109,7 @@ static struct maker *take(struct maker_pool *pool, uint32_t face)
     struct maker **at = &pool->first, **last = at;
     for (; *at && (*at)->face != face; at = &(*at)->next)
         last = at;
-    at = *at ? at : last; /* the one that has rested longest */
+    at = *at ? at : last; /* the one unused for the longest time */
     struct maker *maker = *at;
     *at = maker->next;
     pthread_mutex_unlock(&pool->mutex);
@@ -144,18 +145,18 @@ static void begin_face(struct maker *maker, uint32_t face)
     step->child = 0;
 }
 
-/* Which child of the node above it the node above `levels` more is. */
+/* The child index, in its parent, of the node `levels` above this one. */
 static unsigned child_at(const struct limit_node *node, unsigned levels)
 {
     unsigned x = node->cell >> levels & 1, y = node->cell >> 16 >> levels & 1;
     return y ? 3 - x : x;
 }
 
-/* The quad of a node of maker->face. What lies in the arena behind its own step is dropped. */
+/* The quad of a node of maker->face. What lies in the arena behind its step is released. */
 static const struct quad *quad_of(struct maker *maker, const struct limit_node *node)
 {
     int depth = node->depth, first = maker->begins_split;
-    bool is_known = true; /* the steps so far are those of the node before */
+    bool is_known = true; /* the steps so far equal those of the previous node */
     for (int d = first; d <= depth; d++) {
         struct step *step = &maker->step[d];
         unsigned child = d > 0 ? child_at(node, (unsigned)(depth - d)) : 0;

@@ -6,7 +6,7 @@
 #include "server/surface/topology/nonmanifold.h"
 #include "server/surface/topology/topology.h"
 
-/* Boundary mode NONE: faces at a boundary are support only, unless all boundary edges at their
+/* Boundary mode NONE: faces at a boundary have no surface, unless all boundary edges at their
  * vertices are sharp by themselves (OpenSubdiv sdc/options.h). */
 static bool lacks_boundary(const struct topology *t, uint32_t face)
 {
@@ -53,7 +53,7 @@ static bool number_ptex_faces(struct limit_plan *plan)
     return true;
 }
 
-/* What sheen does not evaluate yet is refused by name, never drawn wrong. */
+/* What sheen does not support is refused by name, never drawn wrong. */
 static bool check_supported(const struct cage *cage, struct error *error)
 {
     const char *what = cage->scheme == CAGE_SCHEME_LOOP       ? "the Loop scheme"
@@ -71,9 +71,9 @@ static bool check_valence(struct limit_plan *plan, struct error *error)
                          "a vertex or face of the cage has %zu neighbours, more than the %d that "
                          "sheen evaluates",
                          largest, LIMIT_MAX_VALENCE);
-    /* Room for a face's rings, two more of each extraction, and at each of at most 12 depths
-     * the refined rings, the settled ones and those of a table's two nets. At each depth only
-     * one ring is large. */
+    /* Room for a face's rings, two more for each extraction, and for each of at most 12 depths the
+     * refined rings, the settled ones, and those of a table's two nets. At each depth only one ring
+     * is large. */
     plan->arena_bytes = 48 * ring_bytes(largest, true) + 12 * 32 * ring_bytes(4, true);
     return true;
 }
@@ -99,7 +99,7 @@ static void *copy_of(const void *from, size_t n, size_t size)
     return to;
 }
 
-/* Vertices and faces: from then on nothing else of the cage is read. */
+/* Copies vertices and faces: afterwards nothing else of the cage is read. */
 static bool keep_cage(struct limit_plan *plan, const struct cage *cage)
 {
     size_t n_corners = cage->face_start[cage->n_faces];

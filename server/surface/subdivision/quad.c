@@ -29,7 +29,7 @@ bool quad_is_semisharp(const struct quad *quad)
     return false;
 }
 
-/* The ring of the new vertex on edge i (corner i to i + 1), listed from corner i + 1. `fine` are
+/* The ring of the new vertex on edge i (corner i to i + 1), starting at corner i + 1. `fine` are
  * the refined rings of the corners. */
 static struct ring edge_ring(const struct ring fine[4], unsigned i, struct arena *arena)
 {
@@ -111,8 +111,7 @@ struct beyond {
     struct vec near, far;
 };
 
-/* The phantom point that lies beyond the end of a sector: `edge` is on the end, `inner` one row
- * inside. */
+/* The phantom point beyond the end of a sector: `edge` is on the end, `inner` one row inside. */
 static struct vec mirrored(struct vec edge, struct vec inner)
 {
     return vec_sub(vec_scale(edge, 2), inner);
@@ -150,8 +149,8 @@ void quad_grid(const struct quad *quad, struct vec grid[4][4])
         grid[y - by + ay][x - bx + ax] = first.far;
         grid[y - ay][x - ax] = second.near;
         grid[y - ay + by][x - ax + bx] = second.far;
-        /* Diagonally beyond an open corner lies a phantom: of the row beyond the second edge
-         * where only that exists, else of the row beyond the first, which may itself be
+        /* The point diagonally beyond an open corner is a phantom: of the row beyond the second
+         * edge if only that exists, else of the row beyond the first, which may itself consist of
          * phantoms. */
         bool only_second = !ring_has_face(ring, -1) && ring_has_face(ring, 1);
         struct beyond row = only_second ? second : first;

@@ -29,7 +29,7 @@ static void refine_edges(const struct ring *in, struct ring *out)
     }
 }
 
-/* The new vertex by one rule. `out` holds the new face points. */
+/* The new vertex by one rule. `out` has the new face points. */
 static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
                                  enum crease_rule rule, const uint32_t end[2])
 {
@@ -48,9 +48,9 @@ static struct vec centre_by_rule(const struct ring *in, const struct ring *out,
     return vec_mad(vec_scale(in->centre, (n - 2) / n), 1 / (n * n), sum);
 }
 
-/* The weight of the rule before the step where the rule changes in it: the mean of the
- * sharpness that runs out in this step, at most 1, in single precision as all sharpness is
- * (README.md 5 of server/surface). */
+/* The weight of the old rule if the rule changes in this step: the mean of the sharpness that runs
+ * out in the step, at most 1, in single precision like all sharpness (server/surface/README.md
+ * 5). */
 static double rule_weight(const struct ring *in, const struct ring *out)
 {
     const struct vertex_creases *sheets = in->sheets.creases;
@@ -61,7 +61,7 @@ static double rule_weight(const struct ring *in, const struct ring *out)
         if (crease_edge(out, k) <= 0)
             sharpness_add(&ending, crease_edge(in, k));
     /* Edges of other sheets count, too. The rule changes only in the step in which all have run
-     * out, so that every entry of the list runs out now. */
+     * out, so every entry of the list runs out now. */
     if (sheets) {
         ending.sum += sheets->semisharp.sum;
         ending.n += sheets->semisharp.n;

@@ -37,7 +37,7 @@ static void smooth_tangents(const struct ring *ring, struct vec *t1, struct vec 
     uint32_t n = ring->n_faces;
     double a = 16 * ring_eigenvalue(2 * PI / n) - 4;
     *t1 = *t2 = (struct vec){0, 0, 0};
-    /* Sines and cosines follow from a rotation: calling sin() and cos() would take most of a
+    /* Sines and cosines are computed by rotation: calls of sin() and cos() would take most of a
      * large ring's time. */
     double step_x = cos(2 * PI / n), step_y = sin(2 * PI / n), x = 1, y = 0;
     for (uint32_t k = 0; k < n; k++) {
@@ -99,7 +99,7 @@ static void corner_tangents(const struct ring *ring, struct vec *t1, struct vec 
     *t2 = vec_mad(mixed, 1 + LIMIT_MIN_LEVELS / 2.0, b);
 }
 
-/* The sum of the quads' own normals at the vertex, for where the tangents span no plane. */
+/* The sum of the quads' own normals at the vertex, for tangents that span no plane. */
 static struct vec mean_normal(const struct ring *ring)
 {
     struct vec sum = {0, 0, 0};
@@ -158,7 +158,7 @@ bool ring_tangents(const struct ring *ring, struct vec *t1, struct vec *t2)
 bool ring_frame(const struct ring *ring, struct vec t1, struct vec t2, struct vec axis[3])
 {
     bool has_normal = true;
-    /* Unit first: the product of two lengths may leave the range of double. */
+    /* Normalise first: the product of two lengths may leave the range of double. */
     axis[2] = vec_unit(vec_cross(vec_unit(t1), vec_unit(t2)));
     if (vec_length(axis[2]) == 0)
         axis[2] = vec_unit(mean_normal(ring));

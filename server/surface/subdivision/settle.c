@@ -5,7 +5,7 @@
 #include "server/surface/topology/nonmanifold.h"
 #include "server/surface/topology/sharpness.h"
 
-/* Edges [first, first + n_faces] of a ring as an open ring of their own. */
+/* Cuts out edges first to first + n_faces of a ring as an open ring. */
 static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t n_faces, bool sharp,
                               struct arena *arena)
 {
@@ -22,8 +22,8 @@ static struct ring cut_sector(const struct ring *ring, uint32_t first, uint32_t 
     return out;
 }
 
-/* The ring without other sheets, unless these hold a crease that does not end this one. A
- * vertex that is sharp by the edges of all sheets becomes sharp by itself. */
+/* The ring without other sheets, unless these have a crease that does not end this one. A vertex
+ * that is sharp because of the edges of all sheets becomes sharp by itself. */
 static struct ring alone(const struct ring *ring)
 {
     struct ring out = *ring;

@@ -6,8 +6,8 @@
 #include "server/surface/subdivision/settle.h"
 #include "server/surface/topology/sharpness.h"
 
-/* The sharpness of the crease that runs straight through a regular vertex along the quad's edge
- * 0 or 1 there. 0: there is none. */
+/* The sharpness of the crease that goes straight through a regular vertex along the quad's edge 0
+ * or 1; 0 if there is none. */
 static float straight_crease(const struct ring *ring, int edge)
 {
     if (!ring->closed || ring->n_faces != 4 || !ring->creases.edge || ring->sharpness > 0 ||
@@ -39,7 +39,7 @@ unsigned strip_levels(const struct quad *quad, unsigned *edge)
     return 0;
 }
 
-/* One step across: rows -1..2 become rows -1..3 of the finer net. */
+/* One step across the crease: rows -1..2 become rows -1..3 of the finer net. */
 static void refine_rows(struct vec rows[4][4], double crease, struct vec fine[5][4])
 {
     for (int i = 0; i < 4; i++) {
