@@ -5,7 +5,7 @@
 
 #include "server/surface/vec.h"
 
-/* More than rounding changes distances by. */
+/* A factor larger than the effect of rounding on distances. */
 static const double SLACK = 1 + 1e-6;
 
 /* The bound of the whole node. */
@@ -14,7 +14,7 @@ static double radius_of(const struct limit_tables *tables, size_t node)
     return tables->whole[node].radius;
 }
 
-/* About the middle of the box of the nodes' origins. */
+/* Encloses the nodes by a sphere about the middle of the box of their origins. */
 static struct cluster enclose(const struct limit_tables *tables, size_t first, size_t end)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -22,7 +22,7 @@ static struct cluster enclose(const struct limit_tables *tables, size_t first, s
     for (size_t i = first; i < end; i++) {
         const struct limit_node *node = &tables->nodes[i];
         for (int k = 0; k < 3 && limit_has_points(node); k++) {
-            double x = node->origin[k]; /* finite: no fmin(), which costs a call */
+            double x = node->origin[k]; /* finite, so no call of fmin() is needed */
             low[k] = x < low[k] ? x : low[k];
             high[k] = x > high[k] ? x : high[k];
         }

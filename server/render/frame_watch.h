@@ -1,6 +1,7 @@
-/* Who waits for a frame. A device asks between a frame's tiles and its lights, who makes polygons
- * asks between their faces: once nobody waits the work ends with ERROR_SERVER, so that a client
- * that has gone holds nobody up. Thread: is_abandoned() is called by whichever thread works. */
+/* Tells whether somebody still waits for a frame. A device asks between a frame's tiles and lights;
+ * making polygons asks between faces. When nobody waits, the work ends with ERROR_SERVER, so that a
+ * client that has gone delays nobody. Thread: the thread that does the work calls
+ * is_abandoned(). */
 #ifndef SHEEN_RENDER_FRAME_WATCH_H
 #define SHEEN_RENDER_FRAME_WATCH_H
 
@@ -11,7 +12,7 @@ struct frame_watch {
     void *owner;
 };
 
-/* False, with ERROR_SERVER, once nobody waits. */
+/* False with ERROR_SERVER when nobody waits. */
 static inline bool frame_watch_check(const struct frame_watch *watch, struct error *error)
 {
     return !watch->is_abandoned || !watch->is_abandoned(watch->owner) ||

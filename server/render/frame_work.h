@@ -1,4 +1,4 @@
-/* A frame in the making: what whoever asks for it fills in, and what each of its steps tells. */
+/* The state of a frame while it is drawn: what the caller fills in, and what each step reports. */
 #ifndef SHEEN_RENDER_FRAME_WORK_H
 #define SHEEN_RENDER_FRAME_WORK_H
 
@@ -11,32 +11,38 @@
 struct renderer_polygons;
 struct frame_state;
 
-/* One tile a step, so that the render thread can turn to other frames in
- * between; of polygons a step is a part of a tile, and the device takes them in several steps, too.
- * Fill in the first group and call renderer_begin(), then renderer_step() for as long as it says
- * FRAME_MORE or FRAME_POLYGONS. */
+/* A step draws one tile, so that the render thread can draw other frames in between; of polygons it
+ * draws a part of a tile, and putting them on the device takes several steps, too. Fill in the
+ * first group, call renderer_begin(), then renderer_step() as long as it returns FRAME_MORE or
+ * FRAME_POLYGONS. */
 struct frame_work {
-    const struct frame_request *request; /* stays until the last step, as the model does */
-    uint64_t tile_px;                    /* most pixels of one tile; 0: as many as fit at once */
-    bool in_place; /* of an exact frame in tiles: its pixels must be those of one tile, bit by bit,
-                      and its planes are kept. They are then as large as the whole picture;
-                      renderer_begin() clears in_place where the device has no such images */
+    const struct frame_request *request; /* must stay valid until the last step, like the model */
+    /* Largest number of pixels of a tile; 0: as many as possible. */
+    uint64_t tile_px;
+    /* Exact frame in tiles: the pixels must equal those of one tile, bit by bit, and the planes are
+     * kept, which are then as large as the picture. renderer_begin() clears in_place if the device
+     * does not have images of that size. */
+    bool in_place;
     struct frame_watch watch;
-    struct renderer_polygons *polygons; /* for after FRAME_POLYGONS; NULL until then */
+    struct renderer_polygons *polygons; /* set after FRAME_POLYGONS; NULL before */
 
-    /* The renderer's from here on. */
-    bool has_drawn; /* the last step drew a tile or a part of one; else it made the device ready for
-                       it, which tells nothing about the time that tiles take */
-    struct frame_state *state; /* the device's, from begin to the last step; NULL: none */
+    /* The rest belongs to the renderer. */
+    /* The last step drew a tile or a part of one; false: it prepared the device, so its time tells
+     * nothing about tiles. */
+    bool has_drawn;
+    /* The device's state, from renderer_begin() to the last step; NULL: none. */
+    struct frame_state *state;
 };
 
 enum frame_step {
-    FRAME_MORE, /* steps are left */
-    /* The device has no polygons for the request's surface, or no longer: set frame_work.polygons
-     * and go on. Making them takes as long as many tiles. */
+    FRAME_MORE, /* more steps follow */
+    /* The device does not have the polygons for the request: set frame_work.polygons and continue.
+     * Making them takes as long as many tiles. */
     FRAME_POLYGONS,
-    FRAME_DONE,   /* the frame is whole */
-    FRAME_FAILED, /* *error says why; ERROR_GPU_LOST: ask again. The frame is empty */
+    FRAME_DONE, /* the frame is complete */
+    /* *error has the reason; ERROR_GPU_LOST: the frame may be requested again. The frame is
+     * empty. */
+    FRAME_FAILED,
 };
 
 #endif

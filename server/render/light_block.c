@@ -8,7 +8,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* A number beyond the range of single precision becomes its largest. */
+/* Rounds to single precision; a number out of range becomes the largest one. */
 static float single(double value)
 {
     return (float)fmax(-(double)FLT_MAX, fmin(value, (double)FLT_MAX));
@@ -21,7 +21,7 @@ static void put(struct vec v, float out[4])
     out[2] = single(v.z);
 }
 
-/* A colour as displayed, straight alpha, as the shaders mix it: linear light (IEC 61966-2-1),
+/* Converts a colour (sRGB, straight alpha) to what the shaders mix: linear light (IEC 61966-2-1),
  * premultiplied. */
 static void put_colour(const float in[4], float out[4])
 {
@@ -42,7 +42,7 @@ static void fill_eye(struct light_block *block, const struct frame_request *requ
     switch (request->lines.eye_kind) {
     case LINE_EYE_CAMERA:
         if (camera->kind == CAMERA_PERSPECTIVE)
-            block->line_eye[3] = 1; /* at no distance from the camera's eye */
+            block->line_eye[3] = 1; /* the line eye is the camera's eye */
         else
             put(vec_unit(view), block->line_eye);
         break;
@@ -56,7 +56,7 @@ static void fill_eye(struct light_block *block, const struct frame_request *requ
     }
 }
 
-/* `eye` here and below: the camera's, from the light's centre. */
+/* `eye` here and below is the camera's eye relative to the light's centre. */
 static void fill_plane(struct light_block *block, struct vec u, struct vec v, struct vec eye)
 {
     struct vec m = vec_cross(u, v), n = vec_unit(m);
@@ -69,14 +69,13 @@ static void fill_plane(struct light_block *block, struct vec u, struct vec v, st
     put(dual_v, block->axis_v);
     block->size[0] = (float)vec_length(u);
     block->size[1] = (float)vec_length(v);
-    /* Uses the sizes after rounding, since the shaders divide by those. */
+    /* Use the rounded sizes, because the shaders divide by them. */
     double s = (double)block->size[0] * vec_dot(dual_u, eye);
     double t = (double)block->size[1] * vec_dot(dual_v, eye);
     put((struct vec){s, t, vec_dot(n, eye)}, block->origin);
 }
 
-/* An axis and where azimuth about it begins: along `start`, whose part along the axis is taken
- * away. */
+/* An axis and the direction of azimuth 0: along `start`, without its part along the axis. */
 struct axis {
     struct vec n, u, v;
 };
@@ -130,7 +129,7 @@ static void fill_light(struct light_block *block, const struct light *light, str
     }
 }
 
-/* The axis of families that need no light: the one given, or the camera's up. */
+/* The axis of families that need no light: the given one, or the camera's up. */
 static void fill_family(struct light_block *block, const struct frame_request *request)
 {
     const struct lines *lines = &request->lines;
@@ -144,7 +143,7 @@ static void fill_family(struct light_block *block, const struct frame_request *r
     block->size[1] = wide ? 180 : 360;
 }
 
-/* Phases count from the light's centre, and only their fractions matter. */
+/* Phases are measured from the light's centre, and only their fractions matter. */
 static void fill_pattern(struct light_block *block, const struct pattern *pattern)
 {
     double w = (double)block->size[0], h = (double)block->size[1];

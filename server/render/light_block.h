@@ -1,11 +1,11 @@
-/* A light, its pattern and the line family as the formulas of shaders/ take them: computed in
- * double precision relative to the camera's eye, then rounded to single. Pure, any thread. */
+/* Prepares a light, its pattern and the line family for the shaders' formulas: computed in double
+ * precision relative to the camera's eye, then rounded to single precision. Pure, any thread. */
 #ifndef SHEEN_RENDER_LIGHT_BLOCK_H
 #define SHEEN_RENDER_LIGHT_BLOCK_H
 
 #include "server/scene/frame_request.h"
 
-/* std140 block `Light` of shaders/lines.glsl. */
+/* The std140 block `Light` of shaders/lines.glsl. */
 struct light_block {
     float line_eye[4], origin[4];
     float axis_n[4], axis_u[4], axis_v[4];
@@ -18,11 +18,11 @@ struct light_block {
     _Alignas(16) int32_t want[4];
 };
 
-/* For light i of the request, which has been checked. */
+/* Fills in the block for light i of a checked request. */
 void light_block_fill(struct light_block *block, const struct frame_request *request, uint32_t i);
 
-/* Whether the image of the light's pattern goes on beyond its sides, along s and along t: round the
- * light, or again and again. Else it ends at the light's border. */
+/* True if the image of the light's pattern repeats beyond its sides along s, or along t; else it
+ * ends at the light's border. */
 bool light_image_repeats_s(const struct frame_request *request, const struct light *light);
 bool light_image_repeats_t(const struct frame_request *request, const struct light *light);
 

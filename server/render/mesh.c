@@ -108,7 +108,7 @@ static void add_vertex(struct mesh *mesh, uint32_t face, uint32_t cells, uint32_
     };
 }
 
-/* A part of its own, unless the last one of the chunk has room. */
+/* Returns a new part, unless the last one of the chunk has room. */
 static struct mesh_part *part_for(struct mesh *mesh, uint32_t n)
 {
     uint32_t chunk = (uint32_t)mesh->n_chunks - 1;
@@ -124,7 +124,7 @@ static struct mesh_part *part_for(struct mesh *mesh, uint32_t n)
     return part;
 }
 
-/* Part of a face's grid, cells and vertices. */
+/* A block: a part of a face's grid, in cells and vertices. */
 struct block {
     uint32_t x, y, end_x, end_y;
 };
@@ -151,7 +151,7 @@ static void add_block(struct mesh *mesh, uint32_t first, uint32_t row, const str
         }
 }
 
-/* The chunk of the face that comes next: another one if the last is full. */
+/* Chooses the chunk of the next face: a new one if the last is full. */
 static void choose_chunk(struct mesh *mesh)
 {
     const struct mesh_chunk *last = mesh->n_chunks ? &mesh->chunk[mesh->n_chunks - 1] : NULL;
@@ -163,7 +163,7 @@ static void choose_chunk(struct mesh *mesh)
     };
 }
 
-/* The two triangles of every cell of the grid whose vertices came last. */
+/* Adds the two triangles of every cell of the grid whose vertices were added last. */
 static void add_cells(struct mesh *mesh, uint32_t cells)
 {
     enum { BLOCK = 32 };
@@ -203,8 +203,8 @@ static struct vec halfway(struct vec a, struct vec b)
     return vec_scale(vec_add(a, b), 0.5);
 }
 
-/* A whole n-gon at level 0: `first` is the Ptex face at its corner 0. Between two corners and the
- * middle everything is linear, so the halves of a triangle lie in it. */
+/* Adds a whole n-gon at level 0; `first` is the Ptex face at its corner 0. Between two corners and
+ * the middle everything is linear, so the halves of a triangle lie in its plane. */
 static void add_fan(struct mesh *mesh, const struct limit_tables *tables, uint32_t first,
                     uint32_t n)
 {
@@ -231,7 +231,7 @@ static void add_fan(struct mesh *mesh, const struct limit_tables *tables, uint32
 static bool reserve(struct mesh *mesh, const struct mesh_size *size)
 {
     size_t most_chunks = mesh_bytes(size->vertices, 6 * size->quads) / MESH_CHUNK_BYTES + 1;
-    /* Any two parts in a row have more indices together than one part may have. */
+    /* Any two consecutive parts have more indices together than one part may have. */
     size_t most_parts = 2 * (size_t)(6 * size->quads / MESH_PART_INDICES) + 2 * most_chunks;
     mesh->vertex = malloc((size->vertices + 1) * sizeof *mesh->vertex);
     mesh->index = malloc((6 * size->quads + 1) * sizeof *mesh->index);
@@ -291,7 +291,8 @@ bool mesh_part_is_outside(const struct mesh_part *part, const double centre[3],
     }
     view_transform(view, world, camera);
     double px = view->units_per_px * (view->perspective ? fabs(camera[2]) + radius : 1);
-    /* The error of single precision in positions relative to the mesh's centre and to the eye. */
+    /* The rounding error of single precision in positions relative to the mesh's centre and to the
+     * eye. */
     double rounding = 1e-6 * radius;
     for (int k = 0; k < 3; k++)
         rounding += 1e-6 * (fabs(camera[k]) + fabs(centre[k] - view->eye[k]));

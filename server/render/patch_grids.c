@@ -9,30 +9,30 @@
 #include "server/surface/patch.h"
 #include "server/surface/vec.h"
 
-/* How far a triangle may be from the surface, px. Stage 2 solves for the exact place. */
+/* The largest distance of a triangle from the surface, px. Stage 2 solves for the exact place. */
 static const double TOLERANCE_PX = 0.5;
-/* Squares are cut in four at most this often: 2^20 squares across a face. */
+/* A square is cut into four at most this often: 2^20 squares across a face. */
 enum { MAX_DEPTH = 20 };
-/* The coordinates s and t of a guess, each from 0 to 2, are stored in so many steps. */
+/* The number of steps in which s and t of a guess, each from 0 to 2, are stored. */
 enum { GUESS_STEPS = 8191 };
 
 const uint8_t grid_cells[GRID_SIDES] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 
-/* What all steps of choosing share. */
+/* The state that all steps of the choice share. */
 struct chooser {
     struct patch_grids *out;
     const struct limit_tables *tables;
     const struct view *view;
-    struct view_sides sides; /* the tile's */
+    struct view_sides sides; /* sides of the tile */
     const struct tile *tile;
-    bool guesses;       /* guesses are asked for, not grids */
-    size_t first_guess; /* of these */
-    uint32_t blocks[2]; /* of the tile: across and down; 0: not asked for */
+    bool guesses;       /* make guesses, not grids */
+    size_t first_guess; /* index of the first new guess */
+    uint32_t blocks[2]; /* blocks of the tile across and down; 0: none wanted */
     uint64_t n_vertices;
     bool no_memory;
 };
 
-/* The part of the surface under consideration: a sphere in camera space and how much it bends. */
+/* A part of the surface: a sphere in camera space, and how much the part bends. */
 struct extent {
     double centre[3];
     struct limit_bound bound;
@@ -43,14 +43,14 @@ static bool is_outside(const struct chooser *c, const struct extent *e)
     return view_sides_exclude(&c->sides, e->centre, e->bound.radius);
 }
 
-/* How many px a length can span at the extent's nearest depth. */
+/* The number of px that a length can span at the extent's nearest depth. */
 static double in_px(const struct chooser *c, const struct extent *e, double length)
 {
     double z = fmax(e->centre[2] - e->bound.radius, c->view->near);
     return length / (c->view->perspective ? z * c->view->units_per_px : c->view->units_per_px);
 }
 
-/* A coordinate of the picture as a block of the tile, cut to it. */
+/* Converts a coordinate of the picture to a block of the tile, limited to the tile. */
 static uint32_t block_at(const struct chooser *c, int k, double px)
 {
     double origin = k ? c->tile->y : c->tile->x;
@@ -70,7 +70,7 @@ static void cover(struct chooser *c, const struct extent *e)
             low = fmin(low / nearest, low / farthest);
             high = fmax(high / nearest, high / farthest);
         }
-        /* A pixel more on either side: stage 2 looks at neighbours. */
+        /* One pixel more on either side, because stage 2 looks at neighbours. */
         low = low / c->view->units_per_px + c->view->centre_px[k] - 2;
         high = high / c->view->units_per_px + c->view->centre_px[k] + 2;
         first[k] = whole ? 0 : block_at(c, k, low);
@@ -143,7 +143,7 @@ static void emit(struct chooser *c, unsigned shape, struct patch_grid grid,
     out->first[shape + 1]++;
 }
 
-/* A counting sort of what has been chosen. */
+/* Sorts the chosen grids by counting. */
 static void sort_by_shape(struct chooser *c)
 {
     struct patch_grids *out = c->out;
@@ -163,7 +163,7 @@ static void find_patch(const struct limit_tables *tables, const struct patch_gri
     const struct limit_node *node = &tables->nodes[grid->node];
     int level = grid->where & 63;
     unsigned square = grid->where >> 6 & 3;
-    /* A place in its middle; the rest of a STRIP comes after all levels. */
+    /* A place in its middle. The rest of a STRIP follows all levels. */
     bool rest = node->kind == LIMIT_STRIP && !square;
     double x = square == 1 || square == 2 ? 1.5 : 0.5, y = square >= 2 ? 1.5 : 0.5;
     limit_patch_of_level(patch, tables, node, rest ? level + 1 : level, ldexp(x, -level),
@@ -175,7 +175,7 @@ static struct extent square_extent(const struct chooser *c, const struct patch_g
 {
     double size = ldexp(1, -(int)(grid->where >> 8)), centre[3];
     const struct limit_square part = {grid->x * size, grid->y * size, size};
-    /* What runs along the view does not show. */
+    /* What extends along the view is not visible. */
     const double *axis = c->view->axis[2];
     const struct vec forward = {axis[0], axis[1], axis[2]};
     struct extent extent;
@@ -187,7 +187,7 @@ static struct extent square_extent(const struct chooser *c, const struct patch_g
 
 static void choose_square(struct chooser *c, struct patch_grid grid, const struct extent *extent);
 
-/* Too large for the finest grid: four quarters, each with its own bounds. */
+/* Too large for the finest grid: chooses four quarters, each with its own bounds. */
 static void choose_quarters(struct chooser *c, struct patch_grid grid)
 {
     struct limit_patch patch;
@@ -200,8 +200,8 @@ static void choose_quarters(struct chooser *c, struct patch_grid grid)
     }
 }
 
-/* The grid of fewest cells whose triangles stray no more than an eighth of `allowed`. False when
- * the finest do. */
+/* Finds the grid with fewest cells whose triangles deviate at most by an eighth of `allowed`. False
+ * if even the finest deviates more. */
 static bool find_shape(const struct limit_bound *bound, double allowed, unsigned *shape)
 {
     double u = bound->u / allowed, mixed = bound->mixed / allowed, v = bound->v / allowed;
@@ -247,8 +247,8 @@ static void choose_regular(struct chooser *c, uint32_t node)
     choose_square(c, (struct patch_grid){node, 0, 0, 0}, &extent);
 }
 
-/* One quad for the whole where that is flat enough, else a grid for each patch across the crease.
- */
+/* One quad for the whole strip if that is flat enough, else a grid for each patch across the
+ * crease. */
 static void choose_strip(struct chooser *c, uint32_t node)
 {
     uint32_t levels = c->tables->nodes[node].levels;
@@ -267,9 +267,10 @@ static void choose_strip(struct chooser *c, uint32_t node)
     }
 }
 
-/* Rings from the outside in, until one quad stands for all that is left: it is as small as the
- * tolerance, or bends so little. (The ring's net spans two units each way, so its bend counts four
- * times; the rings inside it add their own, a geometric series.) */
+/* Chooses rings from the outside inwards, until one quad can represent the rest, because it is
+ * smaller than the tolerance or bends too little. (A ring's net extends two units in each
+ * direction, so its bend counts four times; the rings inside it add their own, a geometric
+ * series.) */
 static void choose_corner(struct chooser *c, uint32_t node)
 {
     struct extent extent = {.bound = c->tables->whole[node]};
@@ -277,7 +278,7 @@ static void choose_corner(struct chooser *c, uint32_t node)
     if (is_outside(c, &extent))
         return;
     uint32_t level = 0, levels = limit_levels(&c->tables->nodes[node]);
-    /* The node's own net bends four times as much as that of its first level, or somewhat less where
+    /* The node's own net bends four times as much as that of its first level, or somewhat less if
      * many faces meet. */
     bool is_small = in_px(c, &extent, extent.bound.radius) < TOLERANCE_PX ||
                     in_px(c, &extent, bound_bend(&extent.bound)) < 3 * TOLERANCE_PX;
@@ -360,7 +361,7 @@ bool patch_grids_too_many(struct error *error)
                      GRIDS_MAX_VERTICES);
 }
 
-/* What clusters [first, end) may show in the tile. False: no memory. */
+/* Chooses what clusters first to end - 1 may show in the tile. False: no memory. */
 static bool choose_clusters(struct chooser *c, const struct clusters *clusters, size_t first,
                             size_t end, struct error *error)
 {
@@ -371,7 +372,7 @@ static bool choose_clusters(struct chooser *c, const struct clusters *clusters, 
            error_set(error, ERROR_SERVER, "out of memory for the grids of a frame");
 }
 
-/* All that the tile may show. */
+/* Chooses everything that the tile may show. */
 static bool choose_all(struct chooser *c, const struct clusters *clusters, struct error *error)
 {
     return choose_clusters(c, clusters, 0, clusters->n, error) &&

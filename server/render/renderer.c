@@ -1,4 +1,4 @@
-/* What is alike for all devices; the rest goes on to the device. */
+/* The part of the renderer that all devices share; the rest goes to the device. */
 #include "server/render/renderer.h"
 
 #include "server/render/device.h"
@@ -118,7 +118,7 @@ bool renderer_render(struct renderer *renderer, struct renderer_model *model,
     do {
         next = renderer_step(renderer, model, &work, frame, error);
         if (next == FRAME_POLYGONS) {
-            renderer_polygons_destroy(polygons); /* those of a device that was lost since */
+            renderer_polygons_destroy(polygons); /* polygons made for a device that was lost */
             work.polygons = polygons =
                 renderer_polygons_create(model->tables, request->surface.level, &work.watch, error);
             next = polygons ? FRAME_MORE : FRAME_FAILED;

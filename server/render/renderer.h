@@ -1,9 +1,9 @@
-/* The renderer: limit tables in, frames out. The one header through which the service reaches a
- * device, whichever it is: each is a folder below this one, which fills in the functions of
- * device.h and gives them a name in its own device.h.
+/* The renderer: draws frames from limit tables. The service uses every device through this header.
+ * Each device is a folder below this one that implements the functions of device.h and has its name
+ * in its own device.h.
  *
- * Thread: functions that take a struct renderer are called by the thread that created it (the
- * render thread); all others by any. */
+ * Thread: functions with a struct renderer are called by the thread that created it (the render
+ * thread); all others by any thread. */
 #ifndef SHEEN_RENDER_RENDERER_H
 #define SHEEN_RENDER_RENDERER_H
 
@@ -25,80 +25,84 @@ struct renderer_model;    /* one cage's tables on the device */
 struct renderer_image;    /* one light image on the device */
 struct renderer_polygons; /* a model's polygons of one level, in main memory */
 
-/* Opens a device. NULL with ERROR_DEVICE when there is none, saying what was found.
+/* Opens a device. NULL with ERROR_DEVICE, which lists what was found, if there is none. *options is
+ * copied.
  *
- * The device may be lost. Then the tile that it was drawing fails with ERROR_GPU_LOST, and the next
- * call opens the same device again. Models and images are put on it again when they are next drawn,
- * and frames go on with their next tile. */
+ * A device can be lost. Then the current tile fails with ERROR_GPU_LOST, and the next call opens
+ * the same device again. Models and images are put on it again when they are next needed, and
+ * frames continue with their next tile. */
 struct renderer *renderer_create(const struct renderer_device *device,
                                  const struct renderer_options *options, struct error *error);
 void renderer_destroy(struct renderer *renderer); /* NULL is safe */
 const struct renderer_info *renderer_info(const struct renderer *renderer);
 
-/* Puts tables on the device. The tables must stay until the model is destroyed: their bounds choose
- * the grids every frame, and a device that was lost gets them again. */
+/* Puts tables on the device. The tables must stay valid until the model is destroyed: their bounds
+ * choose the grids of every frame, and a device that was lost gets them again. NULL on failure. */
 struct renderer_model *renderer_model_create(struct renderer *renderer,
                                              const struct limit_tables *tables,
                                              struct error *error);
 void renderer_model_destroy(struct renderer *renderer, struct renderer_model *model);
 
-/* Puts an image on the device. The image must stay as tables do. */
+/* Puts an image on the device. The image must stay valid until the renderer's is destroyed. NULL on
+ * failure. */
 struct renderer_image *renderer_image_create(struct renderer *renderer, const struct image *image,
                                              struct error *error);
 void renderer_image_destroy(struct renderer *renderer, struct renderer_image *image);
 
-/* Whether it takes tables on demand (tables.h); else they must be stored ones. Any thread. */
+/* True if the device takes tables on demand (tables.h); else tables must be stored. Any thread. */
 bool renderer_takes_tables_on_demand(const struct renderer_device *device);
-/* Memory that the device takes beside the main memory of its caller. Any thread. */
-/* For a model's tables. */
+/* The following functions return the memory in bytes that a device takes, in addition to the main
+ * memory of the caller. Any thread. */
+/* for a model's tables */
 size_t renderer_model_bytes(const struct renderer_device *device,
                             const struct limit_tables *tables);
-/* For an image and what is made of it. */
+/* for an image and its smaller copies */
 size_t renderer_image_bytes(const struct renderer_device *device, const struct image *image);
-/* For a frame of polygons between its steps, cut into such tiles. */
+/* for a frame of polygons between its steps, in tiles of this size */
 uint64_t renderer_paused_bytes(const struct renderer_device *device, uint32_t width_px,
                                uint32_t height_px, uint64_t tile_px);
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and
- * makes its planes. A frame that is given up between two steps needs frame_work_finish() and
- * frame_finish(). A device may fail a step of a frame of polygons with ERROR_SERVER where too many
- * other such frames are under way: begun, and neither whole nor given up. */
+ * allocates its planes. If a frame is given up between two steps, call frame_work_finish() and
+ * frame_finish(). A device may fail a step of a frame of polygons with ERROR_SERVER if too many
+ * such frames are in progress: begun, and neither complete nor given up. */
 bool renderer_begin(struct renderer *renderer, struct frame_work *work, struct frame *frame,
                     struct error *error);
-/* Draws the next tile, or the next part of one, or makes ready for it.
+/* Draws the next tile, or the next part of one, or prepares for it.
  *
- * Evaluated planes are kept: those of the last frame of one tile, those of the last of fewer than
- * 4,096 pixels, and those of the last in tiles in_place, if no other frame of the kind was drawn
- * between its tiles. A frame of the exact surface of the same model, size and camera takes them,
- * whatever its light, pattern, colours and tiles: it is shaded alone, in one step. (Polygons kept
- * by a frame of one tile serve such frames.)
+ * Evaluated planes are kept: those of the last frame in one tile, those of the last frame with
+ * fewer than 4,096 pixels, and those of the last frame in tiles in_place, if no other frame of that
+ * kind was drawn between its tiles. A frame of the exact surface with the same model, size and
+ * camera uses them, whatever its lights, patterns, colours and tiles: it is only shaded, in one
+ * step. (Planes of polygons from a frame in one tile serve such frames, too.)
  *
  * A frame of the exact surface is the same, bit by bit, as one tile and in tiles in_place of any
- * size, which take as much of the device's memory as one tile does. (Where more than 32,768 of its
- * pixels show the rounding of a crease these may have more rays in tiles; where more than 512 look
- * through gaps narrower than themselves these may show what lies behind in tiles alone. Planes then
- * serve frames that are cut alike alone.) In tiles that are not in_place it is the same but for
- * single precision's rounding: so tiles must depend on the request alone where equal requests shall
+ * size, which take as much memory on the device as one tile. (Exceptions: if more than 32,768
+ * pixels show the rounding of a crease, these may have more rays in tiles. If more than 512 pixels
+ * look through gaps narrower than a pixel, these show what lies behind only in tiles. Such planes
+ * serve only frames that are cut alike.) In tiles that are not in_place the frame differs by the
+ * rounding of single precision: so tiles must depend on the request alone if equal requests shall
  * give equal bytes. */
 enum frame_step renderer_step(struct renderer *renderer, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error);
 
-/* Gives back what the device keeps for the frame's next step. Any thread, also when the renderer
- * has gone; needed only by a frame that is given up, safe at any time after struct frame_work has
- * been filled in. */
+/* Frees what the device keeps for the frame's next step. Needed only for a frame that is given up;
+ * safe at any time after struct frame_work was filled in. Any thread, also after the renderer was
+ * destroyed. */
 void frame_work_finish(struct frame_work *work);
 
-/* Calls renderer_begin() and then renderer_step() until the frame is whole or has failed. */
+/* Calls renderer_begin(), then renderer_step() until the frame is complete or has failed. */
 bool renderer_render(struct renderer *renderer, struct renderer_model *model,
                      const struct frame_request *request, struct frame *frame, struct error *error);
 
-/* What the polygons of a model at a level (RANGE_LEVEL) take on the device, kept from their first
- * frame until the model goes. 0: they are too many, and their frame fails with the words for it.
- * Any thread. */
+/* The memory in bytes that the polygons of a model at a level (RANGE_LEVEL) take on the device,
+ * from their first frame until the model is destroyed. 0: there are too many, and their frame fails
+ * with the reason. Any thread. */
 size_t renderer_polygon_bytes(const struct limit_tables *tables, uint32_t level);
 
-/* Makes them for frame_work.polygons; they take as much again here. ERROR_REQUEST when they are too
- * many, ERROR_SERVER when memory is short or nobody waits (asked for every face). Any thread. */
+/* Makes the polygons for frame_work.polygons; they take the same memory again in main memory. NULL
+ * with ERROR_REQUEST if there are too many, or with ERROR_SERVER when memory is short or nobody
+ * waits (checked for every face). Any thread. */
 struct renderer_polygons *renderer_polygons_create(const struct limit_tables *tables,
                                                    uint32_t level, const struct frame_watch *watch,
                                                    struct error *error);

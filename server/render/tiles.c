@@ -1,8 +1,8 @@
 #include "server/render/tiles.h"
 
-/* The longest side of a tile: about 80 bytes a pixel live on a GPU. */
+/* The longest side of a tile: a pixel takes about 80 bytes on a GPU. */
 enum { TILE_MAX_PX = 4096 };
-/* Smaller tiles would be mostly margin. */
+/* The shortest side of a tile: smaller tiles would consist mostly of margin. */
 enum { TILE_MIN_PX = 128 };
 
 _Static_assert(TILE_MIN_PX % COVER_BLOCK_PX == 0 && TILE_MARGIN_PX % COVER_BLOCK_PX == 0,

@@ -1,6 +1,6 @@
-/* How a picture is cut into tiles, each drawn by itself: a device needs memory for one tile only,
- * and other frames wait for one tile at most. Tiles depend on the numbers given here alone, so that
- * equal requests give equal tiles on every device. Pure, any thread. */
+/* Cuts a picture into tiles, each of which is drawn separately: a device needs memory for one tile
+ * only, and other frames wait for at most one tile. Tiles depend only on the arguments here, so
+ * that equal requests give equal tiles on every device. Pure, any thread. */
 #ifndef SHEEN_RENDER_TILES_H
 #define SHEEN_RENDER_TILES_H
 
@@ -12,42 +12,45 @@ struct tile {
     uint32_t x, y, width, height;
 };
 
-/* Pixels are listed in squares of so many by so many. */
+/* The side of the squares in which pixels are listed, px. */
 enum { COVER_BLOCK_PX = 8 };
-/* Drawn around a tile and not kept: stages look at a pixel's neighbours, and at theirs. */
+/* The margin that is drawn around a tile and not kept, because stages look at a pixel's neighbours
+ * and at their neighbours. */
 enum { TILE_MARGIN_PX = COVER_BLOCK_PX };
 
-/* The size of all tiles of a picture, px; those at its right and lower end may be smaller. */
+/* The size of all tiles of a picture, px; those at its right and lower edge may be smaller. */
 struct tile_size {
     uint32_t width, height;
 };
 
-/* The whole picture where that has at most `tile_px` pixels (0: any number) and no side above
- * 4,096; else about square tiles, or wide ones where the picture is low, of about `tile_px` at
- * most, but of no side below 128 where the picture has more. whole_blocks: heights of several tiles
- * are whole blocks, so that those of a tile fall on those of the picture. */
+/* Chooses the tile size: the whole picture, if that has at most `tile_px` pixels (0: any number)
+ * and no side above 4,096; else tiles that are about square, or wide ones in a low picture, with
+ * about `tile_px` pixels at most, but no side below 128 unless the picture's is. whole_blocks: if
+ * there are several rows of tiles, their heights are whole blocks, so that blocks of a tile are
+ * blocks of the picture. */
 struct tile_size tiles_cut(uint32_t width_px, uint32_t height_px, uint64_t tile_px,
                            bool whole_blocks);
 
-/* The tile that begins at (x, y) of the picture. */
+/* The tile whose top left pixel is (x, y). */
 struct tile tile_at(uint32_t x, uint32_t y, const struct tile_size *size, uint32_t width_px,
                     uint32_t height_px);
 
-/* The tile and its margin, where the picture has one; without `before` none on the left and above.
- */
+/* The tile with its margin, as far as the picture extends; without `before` there is no margin on
+ * the left and above. */
 struct tile tile_with_margin(const struct tile *tile, bool before, uint32_t width_px,
                              uint32_t height_px);
 
-/* The largest that tile_with_margin() makes of a tile of this size. */
+/* The largest result of tile_with_margin() for tiles of this size. */
 struct tile_size tile_size_with_margin(const struct tile_size *size, uint32_t width_px,
                                        uint32_t height_px);
 
-/* A part of the picture as one of `place`, in which it lies. */
+/* Converts a part of the picture to coordinates of `place`, which contains it. */
 struct tile tile_within(const struct tile *part, const struct tile *place);
 bool tile_is_same(const struct tile *a, const struct tile *b);
 
-/* Of how many pixels of a tile all rays are met that find what the rounding of a crease shows
- * (shaders/rounded.glsl). So many or fewer, and the tile may be cut in any way. */
+/* The number of pixels of a tile for which all rays that find the rounding of a crease are computed
+ * (shaders/rounded.glsl). With at most ROUNDED_IN_ANY_CUT such pixels the result does not depend on
+ * tiles. */
 enum { ROUNDED_IN_ANY_CUT = 32768 };
 uint32_t tile_max_rounded(const struct tile *tile);
 

@@ -16,8 +16,8 @@ static void to_array(struct vec v, double a[3])
     a[2] = v.z;
 }
 
-/* Depths of the box's corners. Near stays positive for perspective: single precision depth is
- * relative (near / z), so a small near costs nothing. */
+/* Sets near and far by the box's corners. Near is positive for perspective: depth in single
+ * precision is relative (near / z), so a small near costs nothing. */
 static void set_depths(struct view *view, const double box_min[3], const double box_max[3])
 {
     double nearest = INFINITY, farthest = -INFINITY, diagonal = 0;
@@ -74,7 +74,7 @@ void view_block_fill(struct view_block *block, const struct view *view, const st
         block->clip[k] = (float)(2 / (size[k] * view->units_per_px));
         block->clip[2 + k] = (float)((view->centre_px[k] - origin[k]) * 2 / size[k] - 1);
     }
-    /* Reversed: 1 at near, 0 at far or infinity. */
+    /* Reversed depth: 1 at near, 0 at far or infinity. */
     double range = view->far - view->near;
     block->depth[0] = (float)view->near;
     block->depth[1] = (float)(view->far / range);

@@ -1,4 +1,4 @@
-/* The camera in double precision, and as the shaders see it. Pure. */
+/* The camera in double precision, and in the form that shaders read. Pure, any thread. */
 #ifndef SHEEN_RENDER_VIEW_H
 #define SHEEN_RENDER_VIEW_H
 
@@ -8,18 +8,18 @@
 #include "server/render/tiles.h"
 #include "server/scene/scene.h"
 
-/* Camera space: x right, y down, z forward from the eye (shaders/view.glsl). */
+/* A camera. Camera space has x right, y down, z forward from the eye (shaders/view.glsl). */
 struct view {
     double eye[3];
     double axis[3][3]; /* right, down, forward: orthonormal, world */
     bool perspective;
     double units_per_px; /* orthographic: everywhere; perspective: at depth 1 */
-    double centre_px[2]; /* where the axis meets the picture */
-    double near, far;    /* depths that the picture holds */
+    double centre_px[2]; /* the pixel on the forward axis */
+    double near, far;    /* range of visible depths */
     uint32_t width_px, height_px;
 };
 
-/* std140 block `View` of shaders/view.glsl. */
+/* The std140 block `View` of shaders/view.glsl. */
 struct view_block {
     double eye[4];
     float axis[3][4];
@@ -29,17 +29,17 @@ struct view_block {
     int32_t tile[4];
 };
 
-/* The request has been checked. The box bounds what is drawn and sets near and far. */
+/* Sets up a view for a checked camera. The box contains what is drawn, and sets near and far. */
 void view_init(struct view *view, const struct camera *camera, uint32_t width_px,
                uint32_t height_px, const double box_min[3], const double box_max[3]);
 void view_block_fill(struct view_block *block, const struct view *view, const struct tile *tile);
 
-/* World to camera space. */
+/* Transforms from world to camera space. */
 void view_transform(const struct view *view, const double world[3], double camera[3]);
-/* Where the ray of a pixel's centre is at a depth: world coordinates, computed in double. */
+/* The world position at depth z on the ray of a pixel's centre, computed in double precision. */
 void view_position(const struct view *view, uint32_t x, uint32_t y, double z, float world[3]);
 
-/* The part of camera space that a tile may show: between four planes, from the nearest depth on. */
+/* The part of camera space that a tile may show: between four planes, beyond the nearest depth. */
 struct view_sides {
     double side[4][3]; /* unit inward normals */
     double offset[4];  /* signed distance = side . p + offset */
@@ -47,7 +47,7 @@ struct view_sides {
 };
 
 void view_sides_init(struct view_sides *sides, const struct view *view, const struct tile *tile);
-/* Does a sphere in camera space lie outside? */
+/* True if a sphere in camera space lies outside. */
 bool view_sides_exclude(const struct view_sides *sides, const double centre[3], double radius);
 
 #endif
