@@ -104,7 +104,7 @@ no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the pro
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/render/gl/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
     'socket calls' 'server client protocol' server/net/ server/ops/notify.c server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c
-only_in '\b(posix_spawnp?|vfork|exec[lv][a-z]*|system|popen)\(|= v?fork\(' 'child processes' 'server client protocol' \
+only_in '\b(posix_spawnp?|vfork|exec[lv][a-z]*|system|popen)\(|[=?:] v?fork\(' 'child processes' 'server client protocol' \
     protocol/child.c server/sandbox/zygote.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
 only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol' \

@@ -1,4 +1,4 @@
-/* All parts of the daemon in one struct, for the files of this folder: service.c creates and
+/* All parts of the daemon in one struct, for the files of this folder: the service creates and
  * destroys the parts; the monitor and the metrics read them.
  * Thread: the loop's. */
 #ifndef SHEEN_OPS_DAEMON_H

@@ -1,0 +1,119 @@
+/* Devices and threads of the service, and what each room needs of the others. */
+#include <string.h>
+#include <sys/resource.h>
+
+#include "server/assets/model_file.h"
+#include "server/ops/device_choice.h"
+#include "server/ops/service_internal.h"
+#include "server/output/jpeg.h"
+
+#define OWN_DESCRIPTORS 128u /* for listeners, devices and libraries; more than are used */
+
+/* Raises the limit of descriptors to `n`, or as far as the system allows. */
+static void allow_descriptors(uint64_t n)
+{
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) < 0 || files.rlim_cur >= n)
+        return;
+    files.rlim_cur = files.rlim_max < n ? files.rlim_max : n;
+    setrlimit(RLIMIT_NOFILE, &files); /* if that fails, accepting pauses while all are used */
+}
+
+/* Opens the first device of the list that works. On failure *error is that of the last one. */
+static struct render_thread *open_device(struct daemon *daemon,
+                                         const struct service_options *options, struct error *error)
+{
+    struct device_try tries[DEVICE_MOST_TRIES];
+    struct render_thread *thread = NULL;
+    int n = device_tries(options->device, tries);
+    for (int i = 0; i < n && !thread; i++) {
+        const struct renderer_options renderer = {
+            .device = tries[i].device,
+            .n_threads = (unsigned)options->n_native_threads,
+            .isa = strcmp(options->native_isa, "auto") == 0 ? NULL : options->native_isa,
+            .block_cache = daemon->block_cache};
+        thread = render_thread_create(tries[i].kind, &renderer, daemon->completions, error);
+        if (!thread && i + 1 < n)
+            log_event(LOG_INFO, "no GPU: processors draw", log_text("text", error->text));
+    }
+    return thread;
+}
+
+/* Starts the worker programs and the threads. The worker program that reads cages starts up while
+ * the device opens. */
+static bool start_threads(struct service *service, struct error *error)
+{
+    struct daemon *daemon = &service->daemon;
+    const struct service_options *options = &service->options;
+    const struct limits *limits = &daemon->limits;
+    if (!(daemon->block_cache = block_cache_create((size_t)limits->spare_memory)))
+        return error_set(error, ERROR_SERVER, "no memory for the daemon");
+    return service_make_loop(service, error) &&
+           workers_init(&daemon->workers, NULL, &limits->workers, limits->assets.memory_budget,
+                        error) &&
+           (daemon->completions = completions_create(daemon->loop, error)) &&
+           (daemon->render_thread = open_device(daemon, options, error)) &&
+           (daemon->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1,
+                                       &encode_context, daemon->completions, error)) &&
+           (daemon->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0,
+                                          &(struct pool_context){0}, daemon->completions, error)) &&
+           (daemon->store =
+                store_create(daemon->pool, daemon->readers, daemon->render_thread, &daemon->workers,
+                             &daemon->limits.assets, service->single, error));
+}
+
+/* Hands to each folder's part what it needs of the others. */
+static void connect_rooms(struct service *service)
+{
+    struct daemon *daemon = &service->daemon;
+    const struct limits *limits = &daemon->limits;
+    uint64_t max_upload_bytes = limits->assets.memory_budget < limits->session.max_upload
+                                    ? limits->assets.memory_budget
+                                    : limits->session.max_upload;
+    memory_init(&daemon->memory, daemon->store, &limits->assets, service->single,
+                daemon->block_cache);
+    daemon->requests = (struct request_host){
+        .pool = daemon->pool,
+        .render_thread = daemon->render_thread,
+        .workers = &daemon->workers,
+        .block_cache = daemon->block_cache,
+        .memory = &daemon->memory,
+        .store = daemon->store,
+        .models_fd = daemon->requests.models_fd,
+        .max_file_bytes = max_upload_bytes,
+        .gpu_generation = 1,
+    };
+    struct session_host *sessions = &daemon->sessions;
+    sessions->loop = daemon->loop;
+    sessions->render_thread = daemon->render_thread;
+    sessions->workers = &daemon->workers;
+    sessions->block_cache = daemon->block_cache;
+    sessions->store = daemon->store;
+    sessions->memory = &daemon->memory;
+    sessions->requests = &daemon->requests;
+    sessions->asset_limits = &limits->assets;
+    sessions->max_upload_bytes = max_upload_bytes;
+    sessions->share_models = service->options.share_models;
+    sessions->is_private = service->single;
+    stats_init(&sessions->stats);
+    strangers_init(&sessions->strangers);
+}
+
+bool service_start(struct service *service, struct error *error)
+{
+    struct daemon *daemon = &service->daemon;
+    const struct service_options *options = &service->options;
+    jpeg_keep_defaults();
+    if (!start_threads(service, error))
+        return false;
+    connect_rooms(service);
+    if (*options->models &&
+        (daemon->requests.models_fd = model_folder_open(options->models, error)) < 0)
+        return false;
+    allow_descriptors(daemon->limits.max_connections + OWN_DESCRIPTORS);
+    if (service->single)
+        return service_open_session(service, options->session_fd, error);
+    workers_expect_images(&daemon->workers);
+    service->monitor = monitor_create(daemon, options->stuck_s * 1000000, error);
+    return service->monitor && service_open_listeners(service, error);
+}
