@@ -1,8 +1,9 @@
 """A whole program as a C++ struct: its structs, what its host must set, and its functions."""
 import re
 
-from .emit import FLOAT, Emitter, Function, Instance, PLAIN, cpp_type
-from .parse import Node, Parser, Type
+from .cpp import PLAIN, cpp_type
+from .emit import Emitter, Function, Instance
+from .parse import Node, Parser
 
 IMAGES = {"image2D": "image2D<vfloat>", "uimage2D": "image2D<vuint>", "sampler2D": "image2D<vfloat>",
           "usampler2D": "image2D<vuint>", "samplerBuffer": "buffer_texture<vfloat>",
