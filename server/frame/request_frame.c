@@ -5,44 +5,16 @@
 #include <string.h>
 
 #include "server/base/clock.h"
+#include "server/frame/cut.h"
 #include "server/frame/request.h"
 #include "server/frame/request_internal.h"
 #include "server/scene/scene_convert.h"
 
-/* Stills and batches are drawn in tiles of this many pixels, so that other frames wait for one tile
- * at most. The size depends only on the device and the request, so that equal requests give equal
- * bytes.
- *
- * Measured on llvmpipe with 2 cores shared with others, `sheen stream --class still` at 1600x1000
- * of fender.obj and of a car with 1,575 faces: a tile takes about 11 ms. In such tiles the frames
- * took 1.5 and 1.1 times as long as whole, in tiles of half a megapixel 1.4 and 1.1 times. On
- * hardware the aim is 8 ms or less; that has not been measured. */
-#define SOFTWARE_TILE_PX (256u * 256)
-#define HARDWARE_TILE_PX (512u * 512)
-#define LIGHTS_OF_A_TILE 2 /* with more lights tiles are smaller, because each light is a pass */
-/* Frames of up to this many tiles are drawn whole if interactive, and their planes are kept for all
- * classes: a still after a drag is only shaded again, in one step, which delays others no longer
- * than the frames of the drag did. Larger frames would delay others too long, and their planes
- * would take too much memory. */
-#define WHOLE_TILES 32
-
-static uint64_t device_tile_px(const struct request_host *host)
+static struct cut cut_for(const struct request_host *host, const sheen_Render *render)
 {
-    return render_thread_info(host->render_thread)->software ? SOFTWARE_TILE_PX : HARDWARE_TILE_PX;
-}
-
-static bool is_kept_whole(const struct request_host *host, const sheen_Render *render)
-{
-    return (uint64_t)render->width_px * render->height_px <= WHOLE_TILES * device_tile_px(host);
-}
-
-static uint64_t tile_px(const struct request_host *host, const sheen_Render *render)
-{
-    uint64_t px = device_tile_px(host);
-    if (request_class_of(render->request_class) == CLASS_INTERACTIVE && is_kept_whole(host, render))
-        return 0;
-    return render->lights_count > LIGHTS_OF_A_TILE ? px * LIGHTS_OF_A_TILE / render->lights_count
-                                                   : px;
+    const struct renderer_info *info = render_thread_info(host->render_thread);
+    const struct cut_device device = {info->software, info->n_threads};
+    return cut_frame(render, &device);
 }
 
 uint64_t request_paused_bytes(const struct request_host *host, const sheen_Render *render)
@@ -50,7 +22,7 @@ uint64_t request_paused_bytes(const struct request_host *host, const sheen_Rende
     return render->surface == sheen_SurfaceKind_SURFACE_EXACT
                ? 0
                : renderer_paused_bytes(render_thread_device(host->render_thread), render->width_px,
-                                       render->height_px, tile_px(host, render));
+                                       render->height_px, cut_for(host, render).tile_px);
 }
 
 /* --- into the queue */
@@ -172,9 +144,10 @@ void request_queue_frame(struct request *request)
         if (request->images[i].asset)
             asked->lights[i].pattern.image = request->images[i].asset->image->gpu;
     codec_layout_init(&request->layout, render->width_px, render->height_px, render->planes);
+    const struct cut cut = cut_for(request->host, render);
     request->frame_work = (struct frame_work){.request = asked,
-                                              .tile_px = tile_px(request->host, render),
-                                              .in_place = is_kept_whole(request->host, render),
+                                              .tile_px = cut.tile_px,
+                                              .in_place = cut.in_place,
                                               .watch = {is_abandoned, request}};
     request->cost_key = cost_key(request);
     request->entry.estimate_us =

@@ -282,6 +282,21 @@ class Schedule(DaemonCase):
         for client, seq in asked:
             self.assertEqual(client.answer()[0], seq)
 
+    def test_interactive_frames_of_many_lights_are_cut(self):
+        """Others' frames are drawn between the tiles of one that costs much."""
+        slow, other = self.client(), self.client()
+        lights = b"".join(field(5, field(4, 2) + field(6, field(1, 0) + field(2, 30.0 + i)))
+                          for i in range(8))
+        seq = slow.ask(self.model, 1600, 1200, kind=INTERACTIVE, extra=lights)
+        self.wait_until_begun(slow)
+        before = self.stats()[3][0]
+        for i in range(5):
+            other.render(self.model, kind=INTERACTIVE)
+        self.assertEqual(self.stats()[3][0] - before, 5)  # the slow frame is not among them
+        whole = slow.read_frame(seq).data
+        seq = slow.ask(self.model, 1600, 1200, kind=STILL, extra=lights)
+        self.assertEqual(slow.read_frame(seq).data, whole)
+
     def test_messages_of_many_connections_are_handled_in_turns(self):
         """All at once: 640 requests of 40 connections of one identity, and after them one of another.
         Its answer says how many have been answered before."""

@@ -66,11 +66,12 @@ static void lay_out_lists(struct native_target *t, struct layout *layout)
 enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 4 + NATIVE_LISTS - 2 };
 enum { LIGHT_WORDS_PER_PX = 2 * 6 + 4, MEASURE_WORDS_PER_PX = 2 + 2 + 4 };
 
-/* What is not used any more is given back first. */
+/* Memory of which less than half is used is given back first, unless it is small: tiles at the right and
+ * lower border are smaller than the others, and the next frame needs the whole again. */
 static bool reserve(struct native_words *words, size_t n)
 {
-    enum { ALIGN = 64 };
-    if (n <= words->n && words->n / 2 <= n)
+    enum { ALIGN = 64, SMALL_WORDS = 8 << 20 };
+    if (n <= words->n && (words->n / 2 <= n || (words->n <= SMALL_WORDS && n > 0)))
         return true;
     free(words->words);
     *words = (struct native_words){0};
