@@ -148,8 +148,8 @@ int http_parse(char *request, size_t length, const char **path)
 
 static void read_some(struct http_connection *connection)
 {
-    ssize_t n = read(connection->source.fd, connection->request + connection->received,
-                     HTTP_MAX_REQUEST_BYTES - connection->received);
+    ssize_t n = recv(connection->source.fd, connection->request + connection->received,
+                     HTTP_MAX_REQUEST_BYTES - connection->received, MSG_DONTWAIT);
     if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR))
         return;
     if (n <= 0) {
@@ -239,6 +239,9 @@ void http_accept(struct http *http, int fd)
     text_buffer_init(&connection->body, HTTP_MAX_ANSWER_BYTES);
     if (!loop_watch(http->loop, &connection->source, EPOLLIN, NULL))
         close(fd);
+    else
+        read_some(
+            connection); /* a request that has come is answered before others take the place */
 }
 
 void http_tick(struct http *http, uint64_t now_us)

@@ -14,7 +14,7 @@
 #include "server/base/text_buffer.h"
 
 #define HTTP_MAX_REQUEST_BYTES 4096
-#define HTTP_MAX_CONNECTIONS 8
+#define HTTP_MAX_CONNECTIONS 32
 #define HTTP_MAX_ANSWER_BYTES (256u * 1024)
 #define HTTP_TIMEOUT_US 5000000u
 #define HTTP_LINGER_US 2000000u
@@ -37,7 +37,8 @@ struct http *http_create(struct loop *loop, const struct http_handler *handler,
                          struct error *error);
 void http_destroy(struct http *http); /* closes all connections; NULL is safe */
 
-/* Takes over a connected socket. If there are HTTP_MAX_CONNECTIONS already, one is closed for it:
+/* Takes over a connected socket, and answers at once if the request is there already: no number of
+ * other connections can keep a health probe from its answer. If there are HTTP_MAX_CONNECTIONS already, one is closed for it:
  * the oldest one that was answered but does not close, else the oldest that has not sent its
  * request, else the oldest. */
 void http_accept(struct http *http, int fd);

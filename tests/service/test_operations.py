@@ -543,7 +543,7 @@ class Metrics(unittest.TestCase):
             connection.sendall(1000 * b"a")  # it goes on for a while
 
     def test_who_does_not_close_takes_no_place(self):
-        staying = [self.connect() for _ in range(8)]
+        staying = [self.connect() for _ in range(32)]
         for connection in staying:
             connection.sendall(b"GET /healthz HTTP/1.1\r\n\r\n")
             self.assertTrue(self.read_to_end(connection).endswith(b"ok\n"))
@@ -566,7 +566,7 @@ class Metrics(unittest.TestCase):
 
     def test_idle_peers_keep_no_probe_out(self):
         """The oldest makes room; the others have their time, and no more."""
-        silent = [self.connect() for _ in range(8)]
+        silent = [self.connect() for _ in range(32)]
         start = time.monotonic()
         time.sleep(0.2)
         self.assertEqual(get(self.address, "/healthz"), (200, "ok\n"))
@@ -579,6 +579,20 @@ class Metrics(unittest.TestCase):
             self.assertEqual(one.recv(1), b"")
         self.assertGreater(time.monotonic() - start, 4)
         self.assertEqual(get(self.address, "/healthz")[0], 200)
+
+    def test_probes_among_many_that_come_at_once(self):
+        """They lie in the queue, the probe first, and the daemon accepts many before it looks for events."""
+        for _ in range(3):
+            self.daemon.process.send_signal(signal.SIGSTOP)
+            try:
+                probe = self.connect()
+                probe.sendall(b"GET /healthz HTTP/1.1\r\n\r\n")
+                silent = [self.connect() for _ in range(100)]
+            finally:
+                self.daemon.process.send_signal(signal.SIGCONT)
+            self.assertTrue(self.read_to_end(probe).endswith(b"ok\n"))
+            for one in silent:
+                one.close()
 
     def test_not_ready_while_it_drains(self):
         daemon = Daemon("--metrics", "tcp:127.0.0.1:0")
