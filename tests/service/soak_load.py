@@ -1,15 +1,18 @@
 """What the service must show under load for a while: make soak. SHEEN_SOAK_S says how long each part
 takes (default 60). Prints the figures; judges them by ratios within the run."""
+import math
 import os
 import resource
+import subprocess
 import sys
 import time
 import unittest
 
 import test_load
-from daemon import CUBE, Daemon, grid, resident_kb
+import wire
+from daemon import BUILD, CUBE, DEVICE, Daemon, grid, resident_kb
 from load import make_clients, percentile, run_load
-from wire import INTERACTIVE, Client
+from wire import INTERACTIVE, Client, field
 
 SECONDS = int(os.environ.get("SHEEN_SOAK_S", "60"))
 
@@ -109,6 +112,60 @@ class Soak(unittest.TestCase):
         for client in idle + active + [late]:
             client.socket.close()
         self.assertEqual(daemon.stop(), 0)
+
+
+class Greedy(unittest.TestCase):
+    """One who turns a model, at 20 frames a second, alone and beside many connections of somebody else. Each
+    of their frames takes as long as his own."""
+
+    def turn(self, client, model, seconds):
+        """Latencies in seconds."""
+        times, end, due = [], time.monotonic() + seconds, time.monotonic()
+        while time.monotonic() < end:
+            self.angle += 0.01
+            eye = [6 * math.cos(self.angle), 6 * math.sin(self.angle), 3.0]
+            camera = field(4, b"".join(
+                field(number, b"".join(field(i + 1, x) for i, x in enumerate(place)))
+                for number, place in ((1, eye), (2, [0.0, 0.0, 0.0]))))
+            start = time.monotonic()
+            client.render(model, 640, 480, encoding=wire.ZSTD, kind=INTERACTIVE, extra=camera)
+            times.append(time.monotonic() - start)
+            due = max(due + 0.05, start)
+            time.sleep(max(0, due - time.monotonic()))
+        return times
+
+    def beside(self, client, model, connections, seconds):
+        greedy = subprocess.Popen(
+            [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "greedy.py"),
+             self.daemon.tcp, str(connections), "640", "480"], env={**os.environ, "SHEEN_BUILD": BUILD},
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.assertEqual(greedy.stdout.readline(), "begun\n")
+        os.setpriority(os.PRIO_PROCESS, greedy.pid, 10)  # as if it ran on another machine
+        self.turn(client, model, 1)
+        times = self.turn(client, model, seconds)
+        greedy.stdin.close()
+        frames, replaced = map(int, greedy.stdout.readline().split())
+        greedy.stdout.close()
+        self.assertEqual(greedy.wait(), 0)
+        self.assertGreater(frames, 0)
+        return times, f"{frames} frames of theirs and {replaced} replaced"
+
+    def test_connections_of_one_identity(self):
+        seconds = max(5, SECONDS // 6)
+        self.daemon, self.angle = Daemon(), 0
+        with Client(self.daemon.unix, minor=1) as client:
+            model = client.upload(CUBE, "cube.obj")
+            self.turn(client, model, 1)
+            for connections in 1, 40, 200:
+                alone = self.turn(client, model, seconds)
+                beside, theirs = self.beside(client, model, connections, seconds)
+                alone += self.turn(client, model, seconds)
+                p95 = [percentile(times, 0.95) for times in (alone, beside)]
+                say(f"one who turns a model ({DEVICE}): p95 {p95[0] * 1e3:.1f} ms alone, {p95[1] * 1e3:.1f} "
+                    f"beside {connections} greedy connections ({p95[1] / p95[0]:.2f} x; {theirs})")
+                with self.subTest(connections=connections):
+                    self.assertLessEqual(p95[1], 2 * p95[0])
+        self.assertEqual(self.daemon.stop(), 0)
 
 
 class SoakMisbehaviour(test_load.Misbehaviour):
