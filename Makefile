@@ -88,8 +88,9 @@ LANE_SETS := base
 LANES_base := -DLANES=4
 endif
 # GCC 12 takes what its own intrinsics leave undefined on purpose for an error, and warns that vectors are passed
-# in other registers than by older compilers: no function here is called from outside of its unit.
-LANES_CXXFLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),-O2) -Wno-uninitialized -Wno-maybe-uninitialized -Wno-psabi -Wno-unused -Wno-unused-parameter -Wno-shadow
+# in other registers than by older compilers: no function here is called from outside of its unit. -g1: lines and
+# functions, since names of what a translator wrote help nobody, and take a quarter of the compiler's time.
+LANES_CXXFLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),-O2) -g1 -Wno-uninitialized -Wno-maybe-uninitialized -Wno-psabi -Wno-unused -Wno-unused-parameter -Wno-shadow
 # Frames need not be the same bytes from one instruction set to the next.
 LANES_FLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-O3) -ffp-contract=fast -fno-math-errno -fno-trapping-math
 IMAGE_SRC := $(wildcard server/image/*.c)
@@ -235,6 +236,8 @@ $(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/allocati
 LIB_OBJ := $(filter-out %/server/ops/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
            $(CAGE_TASKS_OBJ) $(IMAGE_TASKS_OBJ) $(call obj,$(ZYGOTE_SRC)) $(filter-out %/client/cli/main.c.o,$(call obj,$(CLIENT_SRC)))
 TEST_LIB := $(BUILD)/libtests.a
+# 150 programs of 20 MB of symbols each take a minute to link. `make check TEST_LINK=` keeps the symbols.
+TEST_LINK := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-Wl,--strip-debug)
 $(TEST_LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && ar rcsP $@ $^
 
@@ -245,7 +248,7 @@ ORACLE_TESTS := $(patsubst tests/oracle/%.cpp,$(BUILD)/tests/%,$(wildcard tests/
 $(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST_LIB) | $(PROGRAMS)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(TEST_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(TEST_LIBS)
 # Hides libraries from the loader: tests/service/test_libraries.py.
 $(BUILD)/tests/no_library.so: tests/service/no_library.c
 	@mkdir -p $(@D)
@@ -259,7 +262,7 @@ $(BUILD)/tests/bad_worker: $(call obj,tests/worker/bad_worker.c) $(WORKER_OBJ)
 $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(TEST_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) -losdCPU $(TEST_LIBS)
 
 # Each target with libFuzzer, or with a main that replays its corpus.
 FUZZ_NAMES := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
@@ -279,7 +282,7 @@ $(FUZZ_ARCHIVE): $(filter-out %/server/ops/main.c.o,$(SERVER_OBJ)) $(CAGE_TASKS_
 $(FUZZ_TARGETS): $(BUILD)/tests/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.c.o $(FUZZ_SHARED) $(FUZZ_ARCHIVE)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) $(FUZZ_LINK) -o $@ $^ $(CAGE_WORKER_LIBS) $(SERVER_LIBS) $(CLIENT_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) $(FUZZ_LINK) -o $@ $^ $(CAGE_WORKER_LIBS) $(SERVER_LIBS) $(CLIENT_LIBS)
 $(BUILD)/tests/fuzz_config: FUZZ_LINK += -Wl,--wrap=getaddrinfo
 
 # Every question of the benchmarks is one bench_NAME.cpp, and a program with the peers it names.
@@ -298,7 +301,7 @@ $(BUILD)/tests/bench_wire: $(call obj,tests/bench/daemon.cpp)
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_MAIN) $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)
-	$(Q)$(CXX) $(LDFLAGS) -o $@ $(filter %.o,$^) $(TEST_LIB) $(BENCH_LIBS)
+	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) -o $@ $(filter %.o,$^) $(TEST_LIB) $(BENCH_LIBS)
 
 # The questions of the renderer without peers, for a machine that has EGL, libepoxy and nothing
 # else. What is in C++ brings its runtime along.

@@ -10,3 +10,28 @@ size_t build_model_bytes(const struct build_order *order, const struct limit_tab
     return renderer_model_bytes(render_thread_device(order->render_thread), tables) +
            limit_tables_host_bytes(tables) + OVERHEAD_BYTES;
 }
+
+/* Returns false. */
+static bool name_other_device(const struct build_order *order, struct error *error)
+{
+    const struct error found = *error;
+    if (found.kind != ERROR_MODEL ||
+        renderer_takes_tables_on_demand(render_thread_device(order->render_thread)))
+        return false;
+    return error_set(error, found.kind, "%s; with --device native, triangles need a twentieth",
+                     found.text);
+}
+
+bool build_may_need_model(const struct build_order *order, const struct limit_tables *tables,
+                          struct error *error)
+{
+    return order->may_need(order->owner, build_model_bytes(order, tables), error) ||
+           name_other_device(order, error);
+}
+
+bool build_reserve_model(const struct build_order *order, const struct limit_tables *tables,
+                         struct error *error)
+{
+    return order->reserve(order->owner, build_model_bytes(order, tables), error) ||
+           name_other_device(order, error);
+}

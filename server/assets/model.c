@@ -270,8 +270,7 @@ static void read_done(struct task *task)
         const struct limit_tables *tables = &build->model->tables;
         build->model->device_bytes =
             renderer_model_bytes(render_thread_device(order->render_thread), tables);
-        build->ok = order->reserve(order->owner, build_model_bytes(order, tables), &build->error) &&
-                    start_slices(build);
+        build->ok = build_reserve_model(order, tables, &build->error) && start_slices(build);
     }
     if (!build->ok)
         end_build(build, false);

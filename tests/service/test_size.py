@@ -129,10 +129,19 @@ class TooLarge(DaemonCase):
         text = caught.exception.text
         self.assertNotIn("\n", text)
         self.assertIn("--memory-budget", text)
+        self.assertNotIn("--device", text)
         found = re.search(r"needs (?:at least )?(\d+) bytes.* budget (?:is|of) (\d+)", text)
         self.assertIsNotNone(found, text)
         self.assertGreater(int(found.group(1)), int(found.group(2)))
         self.assertEqual(int(found.group(2)), 6 << 20)
+
+    @unittest.skipUnless(mesa.device(), "no Mesa here")
+    def test_stored_tables_name_the_device_that_needs_less(self):
+        daemon = Daemon("--device", mesa.device(), *self.arguments, tcp=False)
+        with wire.Client(daemon.unix) as client:
+            with self.assertRaisesRegex(wire.Refused, "--memory-budget.*; with --device native"):
+                client.render(client.upload(grid(LARGE), "large.obj"), 320, 240)
+        self.assertEqual(daemon.stop(), 0)
 
     def test_its_operator_is_to_be_asked(self):
         """A client of a shared daemon cannot start it anew."""
