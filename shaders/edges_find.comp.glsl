@@ -15,6 +15,9 @@ uniform ivec4 shaded;  // x, y, width, height: the part of what is drawn that th
 
 layout(binding = 6, rg32ui) writeonly uniform uimage2D ends;
 
+// As far as that, borders are where the first order says. Farther ones count where they are found on the surface itself.
+const float FIRST_ORDER_PX = 1.0;
+
 void main()
 {
     ivec2 p = group_pixel(gl_WorkGroupID, gl_LocalInvocationIndex);
@@ -28,7 +31,9 @@ void main()
         bool is_there = imageLoad(hit_depth, q).x > 0.0;
         beside_rounded = beside_rounded || (is_there && imageLoad(border, q).x == ROUNDED);
     }
-    imageStore(ends, p, uvec4(NO_END, end_of_border(imageLoad(border, p).x), 0u, 0u));
+    uint to_border = end_of_border(imageLoad(border, p).x);
+    bool is_known = (is_hit && at_edge) || end_off(to_border) < FIRST_ORDER_PX;
+    imageStore(ends, p, uvec4(NO_END, is_known ? to_border : NO_END, 0u, 0u));
     if (is_hit && at_edge)
         LIST_ADD(rims, p, 64u)
     if (any(lessThan(p, shaded.xy)) || any(greaterThanEqual(p, shaded.xy + shaded.zw)))

@@ -34,17 +34,21 @@ struct Piece {
     bool is_hidden;  // nothing of it shows in the pixel
 };
 
+bool is_alike(End other, End found)
+{
+    return dot(other.across, found.across) > ALIKE_COS && abs(dot(other.across, found.place) - other.reach) < ALIKE_PX;
+}
+
 // No store to a place that is computed: some devices keep such arrays in memory.
 void add_end(inout Piece piece, End found)
 {
     bool is_new = true;
     for (int k = 0; k < ENDS; k++) {
         End other = piece.end[k];
-        bool is_alike = k < piece.n_ends && dot(other.across, found.across) > ALIKE_COS &&
-                        abs(dot(other.across, found.place) - other.reach) < ALIKE_PX;
-        if (is_alike && dot(found.place, found.place) < dot(other.place, other.place))
+        bool is_known = k < piece.n_ends && is_alike(other, found);
+        if (is_known && dot(found.place, found.place) < dot(other.place, other.place))
             piece.end[k] = found;
-        is_new = is_new && !is_alike;
+        is_new = is_new && !is_known;
     }
     for (int k = 0; k < ENDS; k++)
         if (is_new && k == piece.n_ends)
@@ -65,13 +69,22 @@ bool is_in_rounding(ivec2 p)
     return packed_end != NO_END && end_off(packed_end) == 0.0;
 }
 
-// The ends that the pixel at `at` knows, which shows the same piece.
+// The ends that the pixel at `at` knows, which shows the same piece. Where its silhouette lies along a border, the nearer one
+// of the two ends the piece.
 void add_ends(inout Piece piece, ivec2 p, ivec2 at)
 {
     uvec2 packed_ends = texelFetch(ends, p + at, 0).xy;
-    for (int k = 0; k < 2; k++)
-        if (packed_ends[k] != NO_END && end_off(packed_ends[k]) > 0.0)
-            add_end(piece, end_from(packed_ends[k], vec2(at)));
+    bvec2 is_end = bvec2(packed_ends.x != NO_END && end_off(packed_ends.x) > 0.0,
+                         packed_ends.y != NO_END && end_off(packed_ends.y) > 0.0);
+    End silhouette = end_from(packed_ends.x, vec2(at)), to_border = end_from(packed_ends.y, vec2(at));
+    if (is_end.x && is_end.y && is_alike(silhouette, to_border)) {
+        bool is_border = to_border.reach < silhouette.reach;
+        is_end = bvec2(!is_border, is_border);
+    }
+    if (is_end.x)
+        add_end(piece, silhouette);
+    if (is_end.y)
+        add_end(piece, to_border);
 }
 
 Piece piece_of(Hit hit, ivec2 p, ivec2 at)
