@@ -1,4 +1,4 @@
-// What a rounded pixel shows: the mean of what its rays' parts of it show. One invocation a ray.
+// What a rounded pixel shows: the mean of what its rays' parts of it show. One invocation a pixel.
 
 layout(local_size_x = 64) in;
 
@@ -8,50 +8,57 @@ layout(std430, binding = 2) readonly buffer RoundedHits {
     RoundedHit hits[];
 };
 
-shared Shown shown[64];
-shared float seen_share[64];
+// A part of the pixel, of `side` along a side, about the ray of q.
+Shown shade_part(Shown behind, vec2 q, int side, float depth, vec3 n, vec3 h)
+{
+    Sample at = sample_at(q, 1.0 / float(side), depth, n, h, n);
+    Shown shown = behind;
+    if (dot(n, n) > 0.5)
+        shown = lay_over(behind, at, meet(at), q);
+    return shown;
+}
+
+// Whether nothing is met at the pixel or at one around it; beyond the picture nothing is.
+bool is_beside_empty(ivec2 p)
+{
+    bool is = any(lessThan(p, ivec2(1))) || any(greaterThanEqual(p + 1, tile.zw));
+    for (int k = 0; k < 9 && !is; k++)
+        is = imageLoad(hit_depth, clamp(p + ivec2(k % 3, k / 3) - 1, ivec2(0), tile.zw - 1)).x == 0.0;
+    return is;
+}
 
 void main()
 {
-    uint local = gl_LocalInvocationIndex, ray = local % MAX_RAYS;
-    uint i = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * ROUNDED_PER_GROUP + local / MAX_RAYS;
-    int side = rounded_side(listed.n);
-    uint rays = uint(side * side);
-    bool is_ray = i < listed.n && ray < rays;
-    uint listed_pixel = listed.at[min(i, listed.n - 1u)];
-    ivec2 p = rounded_pixel(listed_pixel);
-    RoundedHit hit = hits[is_ray ? i * rays + ray : 0u];
-    vec2 q = pixel_offset(p) + rounded_place(int(ray), side, rounded_at_edge(listed_pixel));
-    seen_share[local] = is_ray && hit.normal_depth.w > 0.0 ? 1.0 / float(rays) : 0.0;
-    barrier();
-    uint first = local - ray;
-    float covered = 0.0;
-    for (uint k = first; k < first + rays; k++)
-        covered += seen_share[k];
-    // A sliver that the pixel's centre sees may lie between the rays: then the centre stands for one of them.
-    Hit own = hit_at(p);
-    bool is_sliver = covered == 0.0 && mirrors(own);
-    float share = is_sliver && ray == 0u ? 1.0 / float(rays) : seen_share[local];
-    if (is_sliver) {
-        hit = RoundedHit(vec4(own.n, own.depth), vec4(own.h, 0.0));
-        q = pixel_offset(p);
-        covered = 1.0 / float(rays);
-    }
-    Shown behind = shown_behind(p);
-    vec3 n = hit.normal_depth.xyz;
-    Sample at = sample_at(q, 1.0 / float(side), hit.normal_depth.w, n, hit.shape.xyz, n);
-    shown[local] = scaled(dot(n, n) > 0.5 ? lay_over(behind, at, meet(at), q) : behind, share);
-    barrier();
-    if (!is_ray || ray != 0u)
+    // There are as many workgroups as rounded_solve takes for rays: most have no pixel.
+    uint i = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
+    int side = rounded_side(listed.n), rays = side * side;
+    if (i >= listed.n || rays == 0)
         return;
-    Shown sum = Shown(vec4(0.0), 0.0);
-    for (uint k = first; k < first + rays; k++)
-        sum = added(sum, shown[k]);
+    uint listed_pixel = listed.at[i];
+    bool at_edge = rounded_at_edge(listed_pixel);
+    ivec2 p = rounded_pixel(listed_pixel);
+    vec2 centre = pixel_offset(p);
+    Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
+    float share = 1.0 / float(rays), covered = 0.0;
+    for (int ray = 0; ray < rays; ray++) {
+        RoundedHit hit = hits[i * uint(rays) + uint(ray)];
+        if (hit.normal_depth.w == 0.0)
+            continue;
+        vec2 q = centre + rounded_place(ray, side, at_edge);
+        vec3 n = hit.normal_depth.xyz;
+        sum = added(sum, scaled(shade_part(behind, q, side, hit.normal_depth.w, n, hit.shape.xyz), share));
+        covered += share;
+    }
+    // A sliver that the pixel's centre sees may lie between the rays: then the centre stands for one of them.
+    if (covered == 0.0) {
+        Hit own = hit_at(p);
+        if (mirrors(own)) {
+            sum = scaled(shade_part(behind, centre, side, own.depth, own.n, own.h), share);
+            covered = share;
+        }
+    }
     // A ray for which no guess led to the surface shows nothing only where something around does.
-    bool beside_empty = false;
-    for (int k = 0; k < 9; k++)
-        beside_empty = beside_empty || hit_at(p + ivec2(k % 3, k / 3) - 1).depth <= 0.0;
-    float all = beside_empty ? 1.0 : covered;
+    float all = is_beside_empty(p) ? 1.0 : covered;
     if (all == 0.0)
         return;
     put_shown(p, scaled(sum, 1.0 / all), 1.0 - covered / all);

@@ -9,10 +9,10 @@
 #include "server/render/native/rays/rays.h"
 
 enum { GROUPS_PER_WORKGROUP = 8 };
-/* Workgroups that a thread takes at a time, and the most pixels that one of them may list. */
-enum { CHUNK = 32, WORKGROUP_PX = 64, CHUNK_PX = CHUNK * WORKGROUP_PX };
+/* Workgroups that a thread takes at a time at most, and the most pixels that one of them may list. */
+enum { CHUNKS_PER_THREAD = 8, CHUNK = 32, WORKGROUP_PX = 64, CHUNK_PX = CHUNK * WORKGROUP_PX };
 /* Pixels of a list that a workgroup of its program takes (shaders/edges.glsl, rounded.glsl). */
-enum { EDGES_PER_WORKGROUP = 32, ROUNDED_PER_WORKGROUP = 4, LISTED_PER_WORKGROUP = 64 };
+enum { EDGES_PER_WORKGROUP = 32, LISTED_PER_WORKGROUP = 64 };
 /* Beginning with as many, every pixel of a tile is one too many to count lights at. */
 enum { SHARE_ALL_PX = 1 << 18, SHARE_STRIDE = 8 };
 
@@ -23,8 +23,8 @@ enum { SHARE_ALL_PX = 1 << 18, SHARE_STRIDE = 8 };
 struct run {
     native_program *program;
     const struct native_bindings *bindings;
-    uint32_t n_workgroups, next;
-    struct native_share *share; /* where the program counts; NULL: it does not */
+    uint32_t n_workgroups, next, chunk; /* chunk: as many are taken at a time */
+    struct native_share *share;         /* where the program counts; NULL: it does not */
 };
 
 /* The lists that a program may add to. */
@@ -78,10 +78,10 @@ static void work(void *owner, unsigned number)
     struct run *run = owner;
     (void)number;
     denormals before = denormals_flush();
-    for (uint32_t first;
-         (first = __atomic_fetch_add(&run->next, CHUNK, __ATOMIC_RELAXED)) < run->n_workgroups;)
+    for (uint32_t first; (first = __atomic_fetch_add(&run->next, run->chunk, __ATOMIC_RELAXED)) <
+                         run->n_workgroups;)
         run_chunk(run, first,
-                  first + CHUNK < run->n_workgroups ? first + CHUNK : run->n_workgroups);
+                  first + run->chunk < run->n_workgroups ? first + run->chunk : run->n_workgroups);
     denormals_restore(before);
 }
 
@@ -89,7 +89,10 @@ static void run_program(const struct native_drawing *d, native_program *program,
                         const struct native_bindings *bindings, uint32_t n, uint32_t per_workgroup,
                         struct native_share *share)
 {
-    struct run run = {program, bindings, (n + per_workgroup - 1) / per_workgroup, 0, share};
+    struct run run = {program, bindings, (n + per_workgroup - 1) / per_workgroup, .share = share};
+    /* Small enough that no thread waits long for another's last one. */
+    run.chunk = run.n_workgroups / (CHUNKS_PER_THREAD * native_device_threads(d->device)) + 1;
+    run.chunk = run.chunk < CHUNK ? run.chunk : CHUNK;
     if (run.n_workgroups)
         native_device_run(d->device, work, &run);
 }
@@ -270,7 +273,7 @@ static void shade_listed(const struct native_drawing *d, struct native_bindings 
     shade_squares(d, b, NATIVE_HIGH_CURVATURE, 0, SQUARES);
     b->listed = list_of(d, NATIVE_ROUNDED);
     b->max_rounded = tile_max_rounded(&d->place);
-    run_program(d, programs->rounded_shade, b, b->listed->n, ROUNDED_PER_WORKGROUP, NULL);
+    run_program(d, programs->rounded_shade, b, b->listed->n, LISTED_PER_WORKGROUP, NULL);
 }
 
 /* Counts in a list that the edges' programs are done with. */

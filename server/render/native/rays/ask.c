@@ -153,11 +153,11 @@ static void ask_beside(const struct native_frame *frame, struct native_ray_room 
 /* --- pixels */
 
 static void begin_pixels(const struct native_frame *frame, struct native_ray_room *room,
-                         const struct native_rounded *rounded, uint32_t first)
+                         const struct native_rounded *rounded, uint32_t first, uint32_t n)
 {
     enum { AT_EDGE = 0x8000 }; /* added to y: rounded.glsl */
     int side = rounded->side;
-    room->n_pixels = rounded->n - first < RAYS_PX ? rounded->n - first : RAYS_PX;
+    room->n_pixels = n;
     room->rays_per_px = (uint32_t)(side * side);
     room->n_rays = room->n_pixels * room->rays_per_px;
     for (uint32_t i = 0, ray = 0; i < room->n_pixels; i++) {
@@ -207,11 +207,11 @@ static void meet_rays(const struct native_frame *frame, struct native_thread *th
 }
 
 void native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
-                        const struct native_rounded *rounded, uint32_t first)
+                        const struct native_rounded *rounded, uint32_t first, uint32_t n)
 {
     struct native_ray_room *room = thread->rays;
     denormals saved = denormals_flush();
-    begin_pixels(frame, room, rounded, first);
+    begin_pixels(frame, room, rounded, first, n);
     float(*hit)[HIT_WORDS] = rounded->hit + (size_t)first * room->rays_per_px;
     meet_rays(frame, thread, rounded->side);
     memset(hit, 0, room->n_rays * sizeof *hit);

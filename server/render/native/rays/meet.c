@@ -21,11 +21,14 @@ void native_sort_pixels(uint32_t *pixel, uint32_t n, uint32_t *room)
     sort_by(room, n, 16 + SIDE_BITS, pixel); /* those at edges come last */
 }
 
+/* Each thread takes pixels about TURNS times. */
+enum { TURNS = 8, LEAST_PX = 32 };
+
 struct rounded_job {
     struct native_device *device;
     struct native_frame frame;
     const struct native_rounded *rounded;
-    uint32_t next;
+    uint32_t next, at_once; /* pixels */
 };
 
 static void meet_rounded(void *owner, unsigned number)
@@ -34,9 +37,12 @@ static void meet_rounded(void *owner, unsigned number)
     struct native_thread *thread = native_device_thread(job->device, number);
     native_forget_patches(thread);
     native_forget_ray_patches(thread->rays);
-    for (uint32_t first;
-         (first = __atomic_fetch_add(&job->next, RAYS_PX, __ATOMIC_RELAXED)) < job->rounded->n;)
-        native_meet_pixels(&job->frame, thread, job->rounded, first);
+    for (uint32_t first, left; (first = __atomic_fetch_add(&job->next, job->at_once,
+                                                           __ATOMIC_RELAXED)) < job->rounded->n;) {
+        left = job->rounded->n - first;
+        native_meet_pixels(&job->frame, thread, job->rounded, first,
+                           left < job->at_once ? left : job->at_once);
+    }
 }
 
 bool native_meet_rounded(struct native_device *device, struct native_model *model,
@@ -60,6 +66,9 @@ bool native_meet_rounded(struct native_device *device, struct native_model *mode
         if (!thread->rays)
             return error_set(error, ERROR_SERVER, "out of memory for the rays of pixels");
     }
+    /* Few enough that no thread waits long for another's last ones. */
+    job.at_once = rounded->n / (TURNS * native_device_threads(device)) + LEAST_PX;
+    job.at_once = job.at_once < RAYS_PX ? job.at_once : RAYS_PX;
     native_rays_init(&job.frame.rays, view);
     native_device_run(device, meet_rounded, &job);
     return true;

@@ -88,9 +88,9 @@ void native_group_rays(const struct native_model *model, struct native_ray_room 
  * for as many. */
 void native_sort_pixels(uint32_t *pixel, uint32_t n, uint32_t *room);
 
-/* The rays of RAYS_PX pixels at most, from the first one on; thread->rays is there. */
+/* The rays of n pixels, at most RAYS_PX, from the first one on; thread->rays is there. */
 void native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
-                        const struct native_rounded *rounded, uint32_t first);
+                        const struct native_rounded *rounded, uint32_t first, uint32_t n);
 
 /* Meets the rays of pixels with the surface, by all threads. `planes`: what native_draw() found in the same view and
  * tile, but that `node` is UINT32_MAX where nothing is met. Writes every hit. ERROR_SERVER when memory is short. */
