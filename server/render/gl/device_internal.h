@@ -1,5 +1,5 @@
-/* A device that has been opened: what its stages share. Data, which names no function of them.
- * Private to server/render/gl; GL thread. */
+/* An opened GL device: the data that its stages share. Includes none of their functions. Private to
+ * server/render/gl; GL thread. */
 #ifndef SHEEN_RENDER_GL_DEVICE_INTERNAL_H
 #define SHEEN_RENDER_GL_DEVICE_INTERNAL_H
 
@@ -12,12 +12,14 @@
 #include "server/render/patch_grids.h"
 #include "server/render/tiles.h"
 
-/* The tile being drawn, as three rectangles of the picture. */
+/* The tile that is drawn, as three rectangles of the picture. */
 struct drawing {
-    struct tile place;  /* the part of it that the target's images hold, from their pixel (0, 0)
-                           on; contains the other two */
-    struct tile drawn;  /* what stages 1 and 2 draw: the tile, and a margin for stage 3, which reads
-                           the pixels beside each pixel */
+    /* The part that the target's images hold, from their pixel (0, 0) on; contains the other
+     * two. */
+    struct tile place;
+    /* What stages 1 and 2 draw: the tile and a margin, because stage 3 reads the pixels next to
+     * each pixel. */
+    struct tile drawn;
     struct tile shaded; /* what stage 3 shades: the tile, which is read back, or all of `drawn` */
 };
 
@@ -25,21 +27,22 @@ struct gl_renderer {
     struct renderer base;
     char device[RENDERER_NAME_BYTES], driver[RENDERER_NAME_BYTES]; /* of base.info */
     struct context context;
-    size_t max_texels; /* of a buffer texture */
-    /* The planes in use, as in struct planes. */
+    size_t max_texels; /* limit of a buffer texture */
+    /* The planes in use, like struct planes. */
     struct target target;
     struct kept kept;
     enum planes_of in_use;
-    struct planes resting[PLANES_KINDS]; /* the others */
-    struct collecting collecting;        /* into PLANES_TILED */
+    struct planes resting[PLANES_KINDS]; /* the planes not in use */
+    struct collecting collecting;        /* lists collected for PLANES_TILED */
     struct drawing drawing;
     struct stage_clock clock;
-    struct tile inside;       /* the tile being drawn, without its margin, px of the target */
-    struct frame_watch watch; /* of the frame being drawn */
-    const struct renderer_polygons *made; /* its polygons; NULL: the device has them */
+    struct tile inside;       /* the tile without its margin, in px of the target */
+    struct frame_watch watch; /* watch of the current frame */
+    /* Polygons of the current frame; NULL: the device has them. */
+    const struct renderer_polygons *made;
     struct patch_grids grids;
     struct polygon_meshes meshes;
-    struct paused_tiles *paused_tiles; /* they stay where they are when the device is lost */
+    struct paused_tiles *paused_tiles; /* they stay allocated when the device is lost */
     struct program_sets programs;
     GLuint view_buffer; /* struct view_block */
     struct visibility_stage visibility;
@@ -48,8 +51,8 @@ struct gl_renderer {
     struct edges_stage edges;
     struct polygon_stage polygons;
     struct shade_stage shade;
-    uint64_t next_serial; /* of models */
-    uint64_t n_begun;     /* frames */
+    uint64_t next_serial; /* serial number of the next model */
+    uint64_t n_begun;     /* number of frames begun */
 };
 
 static inline struct gl_renderer *gl_renderer_of(struct renderer *renderer)

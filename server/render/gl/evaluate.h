@@ -1,5 +1,5 @@
-/* Stage 2: the pixel's ray against the limit surface, in passes over fewer and fewer pixels. GL
- * thread. */
+/* Stage 2: intersects each pixel's ray with the limit surface, in passes over fewer and fewer
+ * pixels. GL thread. */
 #ifndef SHEEN_RENDER_GL_EVALUATE_H
 #define SHEEN_RENDER_GL_EVALUATE_H
 
@@ -11,20 +11,21 @@ struct gl_model;
 struct gl_renderer;
 struct table_programs;
 
-/* Pixels whose ray passes between two silhouettes (shaders/gaps.comp.glsl), of one tile: each takes
- * the processor 0.03 to 2 ms, and few pictures have more than two or three. */
+/* The largest number of pixels of a tile whose ray passes between two silhouettes
+ * (shaders/gaps.comp.glsl). Each takes the processor 0.03 to 2 ms, and few pictures have more than
+ * two or three. */
 enum { MAX_GAPS = 512 };
 
 bool stage_evaluate_init(struct evaluate_stage *stage, struct error *error);
-/* On the tile that the view block in r->view_buffer describes. */
+/* Evaluates the tile that the view block in r->view_buffer describes. */
 void stage_evaluate(struct gl_renderer *r, const struct gl_model *model,
                     const struct table_programs *programs);
-/* After stage_evaluate(): solves the pixels in gaps, where stage 1 has seen triangles beyond
- * silhouettes only. Waits for the device. Errors as patch_grids_choose(). */
+/* After stage_evaluate(): solves the pixels in gaps, where stage 1 drew only triangles beyond
+ * silhouettes. Waits for the device. Errors as patch_grids_choose(). */
 bool stage_gaps(struct gl_renderer *r, const struct gl_model *model,
                 const struct table_programs *programs, const struct view *view,
                 struct error *error);
-/* After stage_edges(): finds where the surface that the listed pixels show ends. */
+/* After stage_edges(): finds where the surface of the listed pixels ends. */
 void stage_ends(struct gl_renderer *r, const struct gl_model *model,
                 const struct table_programs *programs);
 /* After stage_edges_recheck(): intersects 16 rays of each pixel that shows the rounding of a crease

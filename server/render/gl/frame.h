@@ -1,11 +1,11 @@
-/* One frame on this device: its tiles, and the three stages of each. GL thread, where nothing else
- * is said. */
+/* Draws one frame on this device: its tiles, and the three stages of each. GL thread, except where
+ * noted. */
 #ifndef SHEEN_RENDER_GL_FRAME_H
 #define SHEEN_RENDER_GL_FRAME_H
 
 #include "server/render/device.h"
 
-/* As struct renderer_device has them. A step on a device that is lost fails. */
+/* The functions of struct renderer_device. A step on a lost device fails. */
 bool gl_frame_begin(struct renderer *renderer, struct frame_work *work, struct error *error);
 enum frame_step gl_frame_step(struct renderer *renderer, struct renderer_model *model,
                               struct frame_work *work, struct frame *frame, struct error *error);

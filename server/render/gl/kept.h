@@ -1,5 +1,5 @@
-/* Which planes a frame is drawn into, and when a later frame of the same view may take them instead
- * of drawing. GL thread. */
+/* Chooses the planes that a frame is drawn into, and decides when a later frame of the same view
+ * can use them instead of drawing. GL thread. */
 #ifndef SHEEN_RENDER_GL_KEPT_H
 #define SHEEN_RENDER_GL_KEPT_H
 
@@ -9,24 +9,25 @@ struct gl_frame;
 struct gl_model;
 struct gl_renderer;
 
-/* Do the planes hold all that stages 1 and 2 would draw for this request? */
+/* True if the planes hold everything that stages 1 and 2 would draw for this request. */
 bool is_kept(const struct kept *kept, const struct gl_model *model,
              const struct frame_request *request);
-/* The planes in use change places with others. */
+/* Exchanges the planes in use with others. */
 void planes_swap(struct gl_renderer *r, struct planes *others);
-/* Takes into use the planes that a frame's next tile is drawn into. At the first tile of a frame
- * whose view some planes hold already, these are taken, and own->tile is set to the frame's size:
- * it has only stage 3 left, in one tile. */
+/* Chooses the planes for a frame's next tile. If, at the first tile, some planes already hold the
+ * frame's view, they are used, and own->tile becomes the frame's size: only stage 3 is left, in one
+ * tile. */
 void planes_choose(struct gl_renderer *r, const struct gl_model *model, struct gl_frame *own);
-/* Before a tile is drawn into PLANES_TILED: what they hold is lost, unless it is the frame's own.
- */
+/* Call it before a tile is drawn into PLANES_TILED: their contents are lost, unless they are this
+ * frame's. */
 void collect_begin(struct gl_renderer *r, const struct gl_frame *own);
-/* After a tile: the lists of PLANES_APART join those of the tiles before, those at edges too. */
+/* Call it after a tile: appends the lists of PLANES_APART, with `edges` also those at edges, to the
+ * lists of the tiles before. */
 void collect_tile(struct gl_renderer *r, bool edges);
-/* After the last: the planes are kept if all tiles have been collected. */
+/* Call it after the last tile: keeps the planes if all tiles were collected. */
 void collect_end(struct gl_renderer *r, const struct gl_model *model,
                  const struct frame_request *request);
-/* After a frame of one tile: they are kept. */
+/* Call it after a frame in one tile: keeps the planes. */
 void planes_keep(struct gl_renderer *r, const struct gl_model *model,
                  const struct frame_request *request);
 

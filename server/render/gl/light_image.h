@@ -1,4 +1,4 @@
-/* Light images as textures, with all their smaller copies. GL thread. */
+/* Light images as textures, with all their smaller copies (mipmaps). GL thread. */
 #ifndef SHEEN_RENDER_GL_LIGHT_IMAGE_H
 #define SHEEN_RENDER_GL_LIGHT_IMAGE_H
 
@@ -15,18 +15,18 @@ struct gl_image {
     GLuint texture;
 };
 
-static inline struct gl_image *gl_image_of(struct renderer_image *image) /* NULL: NULL */
+static inline struct gl_image *gl_image_of(struct renderer_image *image) /* NULL gives NULL */
 {
     return (struct gl_image *)(void *)image;
 }
 
-/* An image that is on no device yet; NULL when memory is short. */
+/* Makes an image that is not on the device yet. NULL when memory is short. */
 struct gl_image *gl_image_create(const struct image *pixels, struct error *error);
-/* As struct renderer_device has them. */
+/* The functions of struct renderer_device. */
 void gl_image_destroy(struct renderer *renderer, struct renderer_image *image);
 size_t gl_image_bytes(const struct image *image);
 
-/* Puts the image on the device where it is not. */
+/* Puts the image on the device unless it is there. */
 bool gl_image_upload(struct gl_renderer *r, struct gl_image *image, struct error *error);
 
 #endif

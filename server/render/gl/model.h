@@ -12,10 +12,10 @@ struct table_programs;
 
 struct gl_model {
     struct renderer_model base;
-    struct clusters clusters; /* of the tables */
+    struct clusters clusters; /* of the model's tables */
     context_number context;
     struct buffer_textures points, nodes, adjacency;
-    uint64_t serial; /* never reused: tells whose planes are kept */
+    uint64_t serial; /* never reused; identifies the model whose planes are kept */
 };
 
 static inline struct gl_model *gl_model_of(struct renderer_model *model)
@@ -23,16 +23,16 @@ static inline struct gl_model *gl_model_of(struct renderer_model *model)
     return (struct gl_model *)(void *)model;
 }
 
-/* A model that is on no device yet; NULL on failure. */
+/* Makes a model that is not on the device yet. NULL on failure. */
 struct gl_model *gl_model_create(const struct limit_tables *tables, uint64_t serial,
                                  struct error *error);
-/* As struct renderer_device has it; the polygons of the model stay. */
+/* The function of struct renderer_device. The polygons of the model stay. */
 void gl_model_destroy(struct renderer *renderer, struct renderer_model *model);
 
-/* Puts the tables on the device where they are not. */
+/* Puts the tables on the device unless they are there. */
 bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error *error);
-/* The programs that read the tables of a model that is on the device, and write PLANE_PTEX or not:
- * as programs_for(). */
+/* The programs that read the tables of a model on the device, and write PLANE_PTEX if `ptex`; see
+ * programs_for(). */
 const struct table_programs *programs_of(struct gl_renderer *r, const struct gl_model *model,
                                          bool ptex, struct error *error);
 

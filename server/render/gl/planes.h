@@ -1,5 +1,5 @@
-/* The planes that frames are drawn into, and what is known of those that are kept. Data; kept.h says
- * which planes a frame takes. GL thread. */
+/* The planes that frames are drawn into, and what is known of kept planes. Data; kept.h chooses
+ * planes. GL thread. */
 #ifndef SHEEN_RENDER_GL_PLANES_H
 #define SHEEN_RENDER_GL_PLANES_H
 
@@ -9,44 +9,47 @@
 #include "server/render/gl/target.h"
 #include "server/scene/frame_request.h"
 
-/* What the planes of a target hold, so that a frame of the same view needs stage 3 alone. */
+/* Describes what the planes of a target hold, so that a frame of the same view needs only stage
+ * 3. */
 struct kept {
-    uint64_t model_serial; /* 0: nothing */
+    uint64_t model_serial; /* 0: the planes hold nothing */
     uint32_t width_px, height_px;
     struct camera camera;
     struct surface surface;
     bool ptex, edges;
-    bool any_cut; /* the planes are the same, bit by bit, for any cut into tiles, so they serve
-                    frames of any cut */
+    /* The planes are equal, bit by bit, for any cut into tiles, so they serve frames of any cut. */
+    bool any_cut;
 };
 
-/* A target, and which view its planes hold. */
+/* A target, and the view that its planes hold. */
 struct planes {
     struct target target;
     struct kept kept;
 };
 
-/* Which planes a frame is drawn into: there are several, so that a frame of one kind does not
+/* Which planes a frame is drawn into. There are several, so that a frame of one kind does not
  * overwrite planes that are kept for another. */
 enum planes_of {
-    PLANES_WHOLE, /* hold the last frame that was one tile; kept */
-    PLANES_SMALL, /* the last such frame of few pixels, which must not overwrite the planes of a
-                     larger view; kept */
-    PLANES_TILED, /* the last frame of several tiles in_place: the target stands for the whole
-                     picture, and each tile fills its part; kept if no other such frame came in
-                     between */
-    PLANES_APART, /* one tile of a frame in tiles that are not in_place, never kept; and the lists
-                     of a tile in_place until they are collected */
+    PLANES_WHOLE, /* the last frame drawn in one tile; kept */
+    /* The last such frame with few pixels, which must not overwrite a larger view; kept. */
+    PLANES_SMALL,
+    /* The last frame in several tiles in_place: the target is the whole picture, and each tile
+     * fills its part; kept if no other such frame came in between. */
+    PLANES_TILED,
+    /* One tile of a frame in tiles that are not in_place, never kept; also the lists of a tile
+     * in_place until they are collected. */
+    PLANES_APART,
     PLANES_KINDS
 };
 
-/* How far a frame in tiles in_place has come with its lists: each tile has lists of its own, which
- * are appended to those of the whole picture, and stage 3 of a later frame runs over these. */
+/* The progress of collecting lists for a frame in tiles in_place: the lists of each tile are
+ * appended to those of the whole picture, over which stage 3 of a later frame runs. */
 enum { COLLECTED_LISTS = 4 };
 struct collecting {
-    uint64_t frame; /* gl_frame.serial of the frame whose tiles have all been collected so far;
-                       0: there is none, or it was given up */
-    GLuint n[COLLECTED_LISTS]; /* entries of each list so far */
+    /* gl_frame.serial of the frame whose tiles have all been collected so far; 0: none, or it was
+     * given up. */
+    uint64_t frame;
+    GLuint n[COLLECTED_LISTS]; /* number of entries of each list so far */
 };
 
 #endif

@@ -1,5 +1,5 @@
-/* Stages 1 and 2 of polygons: the planes that they fill for the exact surface, from a mesh; and the
- * polygons' edges. GL thread. */
+/* Stages 1 and 2 for polygons: fill the same planes as for the exact surface, from a mesh; and draw
+ * the edges of polygons. GL thread. */
 #ifndef SHEEN_RENDER_GL_POLYGON_H
 #define SHEEN_RENDER_GL_POLYGON_H
 
@@ -11,21 +11,22 @@
 
 struct gl_renderer;
 
-/* A part of a tile's polygons. */
+/* A slice: a part of a tile's polygons. */
 struct slice {
     const struct polygon_mesh *mesh;
     const struct view *view;
     const struct tile *tile;
-    size_t part;      /* the next one to draw */
-    size_t left;      /* indices that may be drawn yet; the last part may exceed them */
-    size_t at_once;   /* after so many indices a flush makes the device begin with them */
-    size_t not_begun; /* indices given since the last flush */
+    size_t part;      /* next part of the mesh to draw */
+    size_t left;      /* indices that may still be drawn; the last part may exceed them */
+    size_t at_once;   /* indices after which a flush makes the device start */
+    size_t not_begun; /* indices passed since the last flush */
 };
 
-/* Clears the planes; then draws the polygons of a mesh that is whole, slice by slice. */
+/* stage_polygons_begin() clears the planes; stage_polygons() then draws the polygons of a complete
+ * mesh, slice by slice. */
 bool stage_polygons_begin(struct gl_renderer *r, const struct tile *tile, struct error *error);
 bool stage_polygons(struct gl_renderer *r, struct slice *slice, struct error *error);
-/* After stage_shade(): draws the polygons' edges over the colour, by the depths of
+/* After stage_shade(): draws the edges of the polygons over the colour, with the depths of
  * stage_polygons(), slice by slice. */
 bool stage_wireframe(struct gl_renderer *r, struct slice *slice, struct error *error);
 

@@ -1,4 +1,4 @@
-/* From the target's images to the planes of a frame in main memory. GL thread. */
+/* Copies the target's images to the planes of a frame in main memory. GL thread. */
 #ifndef SHEEN_RENDER_GL_READBACK_H
 #define SHEEN_RENDER_GL_READBACK_H
 
@@ -7,7 +7,7 @@
 
 struct gl_renderer;
 
-/* Copies the planes asked for from the target into the frame: `tile`, which lies in `drawn`. */
+/* Copies the requested planes of `tile`, which lies in `drawn`, from the target into the frame. */
 bool readback(struct gl_renderer *r, const struct frame_request *request, const struct view *view,
               const struct tile *drawn, const struct tile *tile, struct frame *frame,
               struct error *error);

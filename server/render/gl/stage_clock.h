@@ -1,5 +1,5 @@
-/* What the stages of a tile took: by timer queries on the device, so that it never stands still
- * between them, or by the clock, waiting for each. GL thread. */
+/* Measures the time of a tile's stages: by timer queries on the device, so that it does not pause
+ * between stages, or by the clock, waiting for the device after each stage. GL thread. */
 #ifndef SHEEN_RENDER_GL_STAGE_CLOCK_H
 #define SHEEN_RENDER_GL_STAGE_CLOCK_H
 
@@ -10,21 +10,20 @@
 
 struct gl_renderer;
 
-/* Has the device timer queries that hold all of its work? */
+/* True if the device has timer queries that measure all of its work. */
 bool stage_clock_by_device(const struct gl_renderer *renderer);
 void stage_clock_init(struct gl_renderer *renderer);
-/* A tile begins: by the clock, the processor's time from here on counts for the tile's first stage.
- */
+/* A tile begins. When measuring by the clock, the processor's time from here on counts for the
+ * tile's first stage. */
 void stage_clock_begin(struct gl_renderer *renderer);
-/* To be called before and after the commands of a stage. The stage's time is added to *stage: at
- * once, by the clock, after waiting for the device; or by device queries in stage_clock_read(), and
- * then the pointer must stay until that. False when the device is lost. */
+/* Call them before and after the commands of a stage. The stage's time is added to *stage: at once
+ * when measuring by the clock, after waiting for the device; else in stage_clock_read(), until
+ * which the pointer must stay valid. False when the device is lost. */
 void stage_clock_start(struct gl_renderer *renderer);
 bool stage_clock_end(struct gl_renderer *renderer, uint64_t *stage);
-/* Waits for the stages that have ended, where that has not been done, and adds their times. False
- * when the device is lost. */
+/* Waits for ended stages, if needed, and adds their times. False when the device is lost. */
 bool stage_clock_read(struct gl_renderer *renderer);
-/* Waits for the device and adds what has passed by the clock. False when it is lost. */
+/* Waits for the device and adds the elapsed time by the clock. False when the device is lost. */
 bool stage_clock_wait(struct gl_renderer *renderer, uint64_t *stage);
 
 #endif

@@ -1,5 +1,4 @@
-/* What each stage of a tile has on the device: its programs and buffers. All zero: nothing. GL
- * thread. */
+/* The programs and buffers of each stage on the device. All zero: nothing. GL thread. */
 #ifndef SHEEN_RENDER_GL_STAGES_H
 #define SHEEN_RENDER_GL_STAGES_H
 
@@ -15,22 +14,22 @@
 /* Stage 1: visibility.h. */
 struct visibility_stage {
     GLuint vertex_array;
-    GLuint index_buffer; /* element indices of an instance of each shape of grid */
+    GLuint index_buffer; /* indices of an instance, for each shape of grid */
     size_t index_first[GRID_SHAPES];
-    GLuint grid_buffer, grid_texture; /* the grids that are drawn, and a texture of them */
+    GLuint grid_buffer, grid_texture; /* the grids to draw, and a texture of them */
 };
 
 /* Between stages 1 and 2: gather.h. */
 struct gather_stage {
     GLuint program;
-    GLuint block_buffer; /* the blocks of the last tile gathered */
+    GLuint block_buffer; /* the blocks of the last tile */
 };
 
 /* Stage 2: evaluate.h. */
 struct evaluate_stage {
     GLuint recheck, gaps;         /* programs */
     GLuint gap_ends, gap_guesses; /* buffers: shaders/unsolved.comp.glsl */
-    bool too_many_gaps; /* the last tile drawn has more than MAX_GAPS: its gaps all stay empty */
+    bool too_many_gaps;           /* the last tile has more than MAX_GAPS, so its gaps stay empty */
 };
 
 /* Coverage: edges.h. */
@@ -38,7 +37,7 @@ struct edges_stage {
     GLuint find, recheck; /* programs */
 };
 
-/* Polygons, in the place of stages 1 and 2: polygon.h. Made when first used. */
+/* Polygons instead of stages 1 and 2: polygon.h. Made at first use. */
 struct polygon_stage {
     GLuint fill, edges; /* programs */
     GLuint framebuffer;
@@ -48,17 +47,17 @@ struct polygon_stage {
 struct shade_stage {
     struct shade_programs programs;
     GLuint light_buffer;
-    GLuint blank_texture; /* stands in where a pattern has no image */
-    GLuint no_groups;     /* a buffer: an indirect dispatch of no group */
+    GLuint blank_texture; /* used if a pattern has no image */
+    GLuint no_groups;     /* a buffer: an indirect dispatch of zero groups */
 };
 
-/* What the stages take: stage_clock.h. */
+/* The times of stages: stage_clock.h. */
 enum { MAX_CLOCKED_STAGES = 3 };
 struct stage_clock {
-    GLuint mark[MAX_CLOCKED_STAGES][2];  /* queries: each stage's start and end on the device */
-    uint64_t *stage[MAX_CLOCKED_STAGES]; /* where its time is added */
-    int n;                               /* stages that have ended since the last reading */
-    uint64_t since_us;                   /* when the clock was last read */
+    GLuint mark[MAX_CLOCKED_STAGES][2];  /* queries: start and end of each stage on the device */
+    uint64_t *stage[MAX_CLOCKED_STAGES]; /* where the stage's time is added */
+    int n;                               /* number of stages ended since the last reading */
+    uint64_t since_us;                   /* time of the last reading */
 };
 
 #endif

@@ -1,5 +1,4 @@
-/* The programs of stage 3 that are kept: those used last. Private to server/render/gl; GL thread
- * only. */
+/* Keeps the most recently used programs of stage 3. Private to server/render/gl; GL thread only. */
 #ifndef SHEEN_RENDER_GL_PROGRAMS_SHADE_PROGRAMS_H
 #define SHEEN_RENDER_GL_PROGRAMS_SHADE_PROGRAMS_H
 
@@ -12,7 +11,7 @@
 #include "server/scene/frame_request.h"
 
 enum {
-    /* One frame needs so many at most: five for each light, and one for its planes. */
+    /* The most programs that one frame needs: five for each light, and one for its planes. */
     MAX_FRAME_PROGRAMS = 5 * MAX_LIGHTS + 1,
     /* On Mesa's software device a program takes 3.5 MB of main memory: 170 MB for all. */
     MAX_SHADE_PROGRAMS = 48
@@ -21,26 +20,26 @@ enum {
 struct shade_program {
     struct shade_key key;
     GLuint name;
-    bool is_made;  /* it has run once: drivers generate its code then */
-    uint64_t used; /* by the clock */
+    bool is_made;  /* has run once, when drivers generate its code */
+    uint64_t used; /* time of the last use, by `clock` */
 };
 
-/* All zero: none. Deleted with its context. */
+/* All zero: no programs. The programs are deleted with their context. */
 struct shade_programs {
     struct shade_program kept[MAX_SHADE_PROGRAMS];
     int n;
     uint64_t clock;
 };
 
-/* Another frame begins, or another tile: what is asked for from here on stays until the next
- * beginning, MAX_FRAME_PROGRAMS at most. */
+/* A frame or tile begins: programs requested from here on stay until the next call, at most
+ * MAX_FRAME_PROGRAMS. */
 void shade_programs_begin(struct shade_programs *programs);
 
-/* NULL where it is not kept. */
+/* Finds a program; NULL if it is not kept. */
 struct shade_program *shade_programs_find(struct shade_programs *programs, struct shade_key key);
 
-/* Compiles one that is not kept, in place of the one not asked for for longest where there is no
- * room. NULL with ERROR_DEVICE when the driver cannot. */
+/* Compiles a program that is not kept. If there is no room, it replaces the least recently
+ * requested one. NULL with ERROR_DEVICE if the driver fails. */
 struct shade_program *shade_programs_compile(struct shade_programs *programs, struct shade_key key,
                                              struct error *error);
 

@@ -1,4 +1,4 @@
-/* The files of shaders/ and the programs of shaders/programs that a graphics card runs, embedded at
+/* The files of shaders/, and the programs of shaders/programs that the GL device runs, embedded at
  * build time (shaders/embed.py). Constant data, any thread. */
 #ifndef SHEEN_RENDER_GL_PROGRAMS_SHADERS_H
 #define SHEEN_RENDER_GL_PROGRAMS_SHADERS_H

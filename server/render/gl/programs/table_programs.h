@@ -1,5 +1,5 @@
-/* The programs that read limit tables: one set for each way in which tables are spread over buffer
- * textures, of which the sets used last are kept. GL thread. */
+/* Keeps the programs that read limit tables: one set for each way in which tables are divided into
+ * buffer textures; the most recently used sets are kept. GL thread. */
 #ifndef SHEEN_RENDER_GL_PROGRAMS_TABLE_PROGRAMS_H
 #define SHEEN_RENDER_GL_PROGRAMS_TABLE_PROGRAMS_H
 
@@ -13,22 +13,22 @@
 struct table_programs {
     struct table_layout layout;
     GLuint visibility, evaluate, unsolved, rounded, ends;
-    uint64_t used; /* by the clock of the sets */
+    uint64_t used; /* time of the last use, by the clock of struct program_sets */
 };
 
-/* Most models take one or two: their tables fill a buffer texture each. */
+/* Most models need one or two, because each of their tables fits into one buffer texture. */
 enum { MAX_PROGRAM_SETS = 4 };
 
-/* All zero: none. */
+/* All zero: no sets. */
 struct program_sets {
     struct table_programs set[MAX_PROGRAM_SETS];
     int n;
     uint64_t clock;
 };
 
-/* The programs for tables that are spread in this way, until the next call: compiled where they are
- * not kept, in place of those not asked for for longest where there is no room. NULL with
- * ERROR_DEVICE when the driver cannot. */
+/* The programs for tables with this layout, valid until the next call. They are compiled if they
+ * are not kept; if there is no room, they replace the least recently requested set. NULL with
+ * ERROR_DEVICE if the driver fails. */
 const struct table_programs *programs_for(struct program_sets *sets,
                                           const struct table_layout *layout, struct error *error);
 
