@@ -1,18 +1,18 @@
-/* Triangles that the near plane cuts, or that reach far beyond the picture: what is left of them there. In double. Pure. */
+/* Clips triangles at the near plane, and at planes far beyond the picture's sides. In double precision. Pure. */
 #ifndef SHEEN_RENDER_NATIVE_CLIP_H
 #define SHEEN_RENDER_NATIVE_CLIP_H
 
 #include "server/render/view.h"
 
-/* A corner in camera space, and two numbers that are linear over the triangle. */
+/* A corner in camera space, with two numbers that are linear over the triangle. */
 struct native_corner {
     double at[3], s, t;
 };
 
-/* Five planes cut, and each adds a corner at most. */
+/* There are five planes, and each adds at most one corner. */
 enum { CLIP_PLANES = 5, CLIP_MOST_CORNERS = 3 + CLIP_PLANES };
 
-/* Of the view: the near plane, and one beyond each side of the picture. */
+/* The clip planes of a view: the near plane, and one beyond each side of the picture. */
 struct native_clip {
     struct native_clip_plane {
         double normal[3], offset;
@@ -20,7 +20,7 @@ struct native_clip {
 };
 
 void native_clip_init(struct native_clip *clip, const struct view *view);
-/* What is left of a triangle, a convex polygon. Returns how many corners it has: 0, or 3 and more. */
+/* Clips a triangle to a convex polygon. Returns the number of its corners: 0, or 3 and more. */
 int native_clip_triangle(const struct native_clip *clip, const struct native_corner triangle[3],
                          struct native_corner left[CLIP_MOST_CORNERS]);
 

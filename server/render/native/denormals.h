@@ -1,5 +1,5 @@
-/* While lanes are at work, numbers below the normal ones are 0: they cost some processors hundreds
- * of cycles each, and mean nothing here. Of the calling thread. */
+/* Makes the calling thread treat denormal numbers as 0 while lanes work: they cost some processors hundreds of cycles
+ * each, and have no meaning here. */
 #ifndef SHEEN_RENDER_NATIVE_DENORMALS_H
 #define SHEEN_RENDER_NATIVE_DENORMALS_H
 
@@ -10,7 +10,7 @@
 
 typedef unsigned denormals;
 
-/* Returns what denormals_restore() takes. */
+/* Returns the old state, for denormals_restore(). */
 static inline denormals denormals_flush(void)
 {
     enum { FLUSH_RESULTS = 0x8000, FLUSH_OPERANDS = 0x40 };

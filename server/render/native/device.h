@@ -1,8 +1,8 @@
-/* Processors, by vector code: no GL, no shader compiler. renderer_options.device is not asked.
+/* The native device: draws on processors by vector code, without GL and without a shader compiler. It ignores
+ * renderer_options.device.
  *
- * Every instruction set that the processor has draws the same picture but for rounding; any number of
- * threads draws the same bytes. It draws no polygons and wireframes yet: their frames fail with
- * ERROR_REQUEST. For who chooses a device, and for tests. */
+ * All instruction sets draw the same picture except for rounding; any number of threads draws the same bytes.
+ * Included by server/ops, which chooses a device, and by tests. */
 #ifndef SHEEN_RENDER_NATIVE_DEVICE_H
 #define SHEEN_RENDER_NATIVE_DEVICE_H
 

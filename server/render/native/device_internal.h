@@ -1,4 +1,4 @@
-/* What the native device makes for renderer.h. Internal to the folder; render thread only. */
+/* The objects of the native device behind renderer.h. Internal to the folder; render thread only. */
 #ifndef SHEEN_RENDER_NATIVE_DEVICE_INTERNAL_H
 #define SHEEN_RENDER_NATIVE_DEVICE_INTERNAL_H
 
@@ -10,35 +10,36 @@
 #include "server/render/native/target.h"
 #include "server/render/tiles.h"
 
-/* A model, as renderer.h hands it on. */
+/* A model as renderer.h passes it. */
 struct native_shown {
     struct renderer_model base;
     struct native_model *model;
-    uint64_t serial; /* no other model of the renderer has it */
+    uint64_t serial; /* unique in the renderer */
 };
 
-/* What the planes of a target hold, so that a frame of the same view needs stage 3 alone. serial 0: nothing. */
+/* Describes what the planes of a target hold, so that a frame of the same view needs only stage 3. serial 0:
+ * nothing. */
 struct native_kept {
-    uint64_t serial; /* of the model */
+    uint64_t serial; /* the model's serial */
     uint32_t width_px, height_px;
     struct camera camera;
     struct surface surface;
-    bool edges;   /* and what edges take */
-    bool any_cut; /* the planes are the same, bit by bit, for any cut into tiles */
+    bool edges;   /* also what edges need */
+    bool any_cut; /* the planes are equal, bit by bit, for any cut into tiles */
 };
 
-/* A target, and which view its planes hold. */
+/* A target, and the view that its planes hold. */
 struct native_view_planes {
     struct native_target target;
     struct native_kept kept;
 };
 
-/* Which planes a frame is drawn into: there are several, so that a frame of one kind does not overwrite planes that are
- * kept for another. */
+/* Which planes a frame is drawn into. There are several, so that a frame of one kind does not overwrite planes that
+ * are kept for another. */
 enum native_planes_of {
-    NATIVE_WHOLE, /* the last frame that was one tile; kept */
-    NATIVE_SMALL, /* the last such frame of few pixels; kept */
-    NATIVE_TILED, /* the last frame of several tiles in_place, collected tile by tile; kept */
+    NATIVE_WHOLE, /* the last frame drawn in one tile; kept */
+    NATIVE_SMALL, /* the last such frame with few pixels; kept */
+    NATIVE_TILED, /* the last frame in several tiles in_place, collected tile by tile; kept */
     NATIVE_APART, /* one tile of several, never kept */
     NATIVE_PLANES
 };
@@ -48,14 +49,14 @@ struct native_renderer {
     char name[RENDERER_NAME_BYTES];
     struct native_device *device;
     struct native_view_planes planes[NATIVE_PLANES];
-    /* native_frame_state.serial of the frame whose tiles are all in NATIVE_TILED so far; 0: none. */
+    /* native_frame_state.serial of the frame whose tiles so far are all in NATIVE_TILED; 0: none. */
     uint64_t collecting;
     struct native_polygon_stage polygons;
     struct native_meshes meshes;
-    uint64_t next_serial, n_begun; /* models made, frames begun */
+    uint64_t next_serial, n_begun; /* serials: of the next model; number of frames begun */
 };
 
-/* A light image, as renderer.h hands it on. */
+/* A light image as renderer.h passes it. */
 struct native_light_image {
     struct renderer_image base;
     struct native_picture picture;
@@ -67,7 +68,7 @@ static inline struct native_renderer *native_renderer_of(struct renderer *render
     return (struct native_renderer *)(void *)renderer;
 }
 
-/* renderer_device's begin and step. */
+/* begin() and step() of struct renderer_device. */
 bool native_frame_begin(struct renderer *renderer, struct frame_work *work, struct error *error);
 enum frame_step native_frame_step(struct renderer *renderer, struct renderer_model *model,
                                   struct frame_work *work, struct frame *frame,

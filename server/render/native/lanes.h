@@ -1,11 +1,8 @@
-/* Vectors of LANES floats or integers, one value a lane: 4, 8 or 16 of them, as the unit that
- * includes this header is compiled for (Makefile: LANES, and LANE_SET, the name that its functions
- * end with). For C11 and C++17.
- *
- * The types are GCC's vectors: + - * / and & | ^ << >> work lane by lane, also with a scalar beside
- * them. A vmask is what comparing gives; & and | join two of them, and v_not() turns one round.
- * Where an instruction set has what generic operators do not express, its intrinsics stand here,
- * behind the same names. */
+/* Vectors of LANES floats or integers, one value in each lane. LANES is 4, 8 or 16, as the including unit is compiled
+ * (Makefile: LANES, and LANE_SET, the end of its functions' names). For C11 and C++17. The types are GCC's vectors:
+ * the operators + - * / and & | ^ << >> work lane by lane, also with a scalar operand. Comparisons give a vmask; &
+ * and | combine masks, and v_not() inverts one. Operations that generic operators do not express use the set's
+ * intrinsics, behind the same names. */
 #ifndef SHEEN_RENDER_NATIVE_LANES_H
 #define SHEEN_RENDER_NATIVE_LANES_H
 
@@ -25,7 +22,7 @@
 typedef float vfloat __attribute__((vector_size(4 * LANES)));
 typedef int32_t vint __attribute__((vector_size(4 * LANES)));
 typedef uint32_t vuint __attribute__((vector_size(4 * LANES)));
-/* As they lie in memory: at any multiple of four bytes. */
+/* Vectors in memory, at any multiple of four bytes. */
 typedef float vfloat_memory __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
 typedef int32_t vint_memory __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
 
@@ -87,23 +84,20 @@ LANE_INLINE vfloat v_to_float(vint a)
     return __builtin_convertvector(a, vfloat);
 }
 
-/* Towards zero; of numbers that an int holds. */
+/* Rounds towards zero numbers that fit in an int. */
 LANE_INLINE vint v_truncate(vfloat a)
 {
     return __builtin_convertvector(a, vint);
 }
 
-/* v_less, v_at_most: comparisons that are false where either side is no number.
- * v_min, v_max: b where either is no number.
- * v_select: a where the mask is set, else b.
- * v_bits: bit k of lane k. v_mask: the same backwards.
- * v_round: to the nearest integer, halves to even.
- * v_load_u16: of 16-bit numbers in memory. */
+/* v_less, v_at_most: comparisons, false if either side is NaN. v_min, v_max: b if either is NaN. v_select: a where
+ * the mask is set, else b. v_bits: bit k for lane k. v_mask: the reverse. v_round: to the nearest integer, halves to
+ * even. v_load_u16: 16-bit numbers from memory. */
 #if defined __x86_64__ && LANES == 16
 #include <immintrin.h>
 typedef __mmask16 vmask;
-/* Intrinsics with a mask name what the other lanes are; those without leave that undefined, of which
- * some compilers of C++ warn. */
+/* Intrinsics with a mask define the other lanes; without a mask they leave them undefined, of which some C++
+ * compilers warn. */
 #define V_ALL ((__mmask16)0xffff)
 
 LANE_INLINE vmask v_less(vfloat a, vfloat b)
@@ -369,11 +363,11 @@ LANE_INLINE vint v_gather_int(const void *p, vint at)
 #endif
 }
 
-/* A block of pixels: lanes run along BLOCK_WIDTH of a row, then on to the next row. */
+/* A block of pixels: lanes fill BLOCK_WIDTH pixels of a row, then continue in the next row. */
 #define BLOCK_WIDTH (LANES < 8 ? LANES : 8)
 #define BLOCK_HEIGHT (LANES / BLOCK_WIDTH)
 
-/* Of rows `pitch` elements apart. */
+/* Loads a block from rows `pitch` elements apart. */
 LANE_INLINE vfloat v_load_block(const float *p, int pitch)
 {
 #if LANES == 16
@@ -385,7 +379,7 @@ LANE_INLINE vfloat v_load_block(const float *p, int pitch)
 #endif
 }
 
-/* Where the mask is set. */
+/* Stores a block where the mask is set. */
 LANE_INLINE void v_store_block(float *p, int pitch, vmask m, vfloat a)
 {
 #if LANES == 16
@@ -409,7 +403,7 @@ LANE_INLINE void v_store_int_block(int32_t *p, int pitch, vmask m, vint a)
 #endif
 }
 
-/* Only the lanes of the mask are changed; those beside them must be memory of this thread's. */
+/* Changes only the lanes of the mask; the memory of the others must belong to this thread. */
 LANE_INLINE void v_store_masked(float *p, vmask m, vfloat a)
 {
 #if LANES == 16
@@ -428,7 +422,7 @@ LANE_INLINE void v_store_int_masked(int32_t *p, vmask m, vint a)
 #endif
 }
 
-/* The lanes before n, of which there may be more than LANES. */
+/* A mask of the lanes before n; n may exceed LANES. */
 LANE_INLINE unsigned v_first(uint32_t n)
 {
     return n >= LANES ? (LANES == 16 ? 0xffffu : (1u << LANES) - 1) : (1u << n) - 1;
@@ -439,7 +433,7 @@ LANE_INLINE vfloat v_clamp(vfloat a, float low, float high)
     return v_min(v_max(a, v_float(low)), v_float(high));
 }
 
-/* The least and the largest of all lanes, which must be numbers. */
+/* The smallest and the largest of all lanes, which must not be NaN. */
 LANE_INLINE float v_least(vfloat a)
 {
     float least = a[0];

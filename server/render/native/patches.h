@@ -1,10 +1,9 @@
-/* A model as the native device reads it: each sub-patch as monomials, made from the limit tables
- * when it is first seen, so that a view costs what it shows and not what the tables hold. Those that
- * have been made are kept as long as there is room for them; without room they are made again, and
- * are the same bytes.
+/* A model in the form that the native device reads: each sub-patch as monomials, made from the limit tables when it
+ * is first seen, so that a view costs what it shows and not what the tables hold. Patches are kept while there is
+ * room; otherwise they are made again, with the same bytes.
  *
- * Threads: any number may ask for patches at once, within a frame. One frame of a model may be under
- * way at a time. */
+ * Thread: any number may ask for patches at the same time, within a frame. A model is drawn by one frame at a
+ * time. */
 #ifndef SHEEN_RENDER_NATIVE_PATCHES_H
 #define SHEEN_RENDER_NATIVE_PATCHES_H
 
@@ -20,12 +19,12 @@
 
 enum { NATIVE_MAX_THREADS = RENDERER_MAX_THREADS };
 
-/* Four cache lines: the first is all that a piece of one cell needs. */
+/* Four cache lines; a piece of one cell needs only the first. */
 struct native_patch {
-    /* Its corners (0,0) (1,0) (0,1) (1,1) relative to the node's origin: x, y, z of each, world. */
+    /* The corners (0,0) (1,0) (0,1) (1,1) relative to the node's origin: all x, then y, then z, world. */
     float corner[3][4];
-    float scale, inverse_scale; /* a power of two that the coefficients are divided by */
-    /* At least |Sss| + 2 |Sst| + |Stt| anywhere on it, divided by scale. */
+    float scale, inverse_scale; /* power of two by which the coefficients are divided */
+    /* An upper bound of |Sss| + 2 |Sst| + |Stt|, divided by scale. */
     float bend;
     float unused;
     /* c[k][j][i] is the coefficient of s^i t^j of coordinate k in the node's frame. */
@@ -39,23 +38,23 @@ struct native_model {
     struct record_cache *texels;  /* struct native_patch_texels */
 };
 
-/* Memory for patches of a model, unless all that it can have take less. */
+/* Default memory for a model's patches, unless all of them take less. */
 #define NATIVE_PATCH_BYTES ((size_t)64 << 20)
 
-/* The tables must stay until the model is destroyed. `patch_bytes`: for patches, about; 0 keeps a few
- * hundred. NULL, with ERROR_SERVER, when memory is short. */
+/* The tables must outlive the model. `patch_bytes` is about the memory for patches; 0 keeps a few hundred. NULL with
+ * ERROR_SERVER when memory is short. */
 struct native_model *native_model_create(const struct limit_tables *tables, size_t patch_bytes,
                                          struct error *error);
 void native_model_destroy(struct native_model *model); /* NULL is safe */
-/* What it takes in main memory now, without the tables. Not while a frame is under way. */
+/* Main memory of the model now, without the tables. Not during a frame. */
 size_t native_model_bytes(const struct native_model *model);
-/* What a model of such tables takes at most. */
+/* The largest main memory of a model with these tables. */
 size_t native_model_most_bytes(const struct limit_tables *tables, size_t patch_bytes);
-/* Before a frame: what has not been used for longest makes room. */
+/* Call it before a frame: frees the least recently used patches if room is short. */
 void native_model_turn(struct native_model *model);
 
-/* Which of its node's sub-patches: of a STRIP, `level` 1 to levels + 1 from the far side to the
- * crease; of a CORNER, square 1 to 3 of level 1 to levels; of a REGULAR node the only one. */
+/* The index of a sub-patch in its node. STRIP: `level` 1 to levels + 1, from the far side to the crease; CORNER:
+ * square 1 to 3 of level 1 to levels; REGULAR: the only one. */
 static inline uint32_t native_patch_index(const struct limit_node *node, int level, unsigned square)
 {
     if (node->kind == LIMIT_CORNER)
@@ -63,23 +62,23 @@ static inline uint32_t native_patch_index(const struct limit_node *node, int lev
     return node->kind == LIMIT_STRIP ? (uint32_t)level - 1 : 0;
 }
 
-/* Makes it from the tables. */
+/* Makes a patch from the tables. */
 void native_patch_make(const struct limit_tables *tables, uint32_t node, uint32_t index,
                        struct native_patch *patch);
 
-/* The patch of that index, made now if it is not kept. Where there is no room to keep it, it is in
- * *room, which is returned. What is kept stays for the frame. */
+/* Gets a patch, and makes it if it is not kept. If there is no room to keep it, it is made in *room, which is
+ * returned. Kept patches stay during the frame. */
 const struct native_patch *native_patch_get(struct native_model *model, uint32_t node,
                                             uint32_t index, struct native_patch *room);
 
-/* NULL where it is not kept. */
+/* Finds a kept patch; NULL if it is not kept. */
 static inline const struct native_patch *native_patch_find(const struct native_model *model,
                                                            uint32_t node, uint32_t index)
 {
     return record_cache_find(model->patches, record_cache_key(node, index));
 }
 
-/* native_made_texels.make (programs/program.h), of a struct native_model. */
+/* The make() of native_made_texels (programs/program.h), for a struct native_model. */
 void native_patch_texels(const void *model, uint32_t node, uint32_t index, float (*texels)[4]);
 
 #endif

@@ -1,4 +1,4 @@
-/* The instruction sets that lanes/ is compiled for, and what each has to offer. */
+/* The instruction sets for which lanes/ is compiled, with the functions of each. */
 #ifndef SHEEN_RENDER_NATIVE_SETS_H
 #define SHEEN_RENDER_NATIVE_SETS_H
 
@@ -15,35 +15,36 @@ struct native_thread;
 struct native_tile_room; /* tile.h */
 
 struct native_set {
-    const char *name;  /* as an option says it */
-    const char *words; /* as people read it */
+    const char *name;  /* name in options */
+    const char *words; /* name for people */
     int lanes;
     struct native_programs programs;
-    /* The pieces of a part of the model, and the tiles that they lie in. */
+    /* Makes the pieces of a part of the model, and lists them in the tiles that they touch. */
     void (*pieces)(struct native_frame *frame, struct native_thread *thread, uint32_t part);
-    /* The planes of a tile, but for pixels in gaps. */
+    /* Computes the planes of a tile, except for pixels in gaps. */
     void (*tile)(struct native_frame *frame, struct native_thread *thread, uint32_t tile);
-    /* After all tiles, by one thread: the pixels in gaps. */
+    /* After all tiles, on one thread: computes the pixels in gaps. */
     void (*gaps)(struct native_frame *frame, struct native_thread *thread);
-    /* Groups of pixels in some rows: lanes/entries.h. */
+    /* Finds the groups of pixels in some rows: lanes/entries.h. */
     uint32_t (*groups)(const struct native_seen *seen, uint32_t first, uint32_t end, float *columns,
                        uint32_t *groups);
-    /* Meets the rays of room->task with the surface, and leaves no task; what each meets in front of what its ray has met
-     * is kept in room->met. */
+    /* Meets the rays of room->task with the surface and removes the tasks. A hit in front of a ray's earlier hit is
+     * kept in room->met. */
     void (*meet_rays)(const struct native_frame *frame, struct native_tile_room *tile,
                       struct native_ray_room *room);
-    /* Writes of every ray of room->task what lies at the place where it begins: RoundedHit of shaders/rounded.glsl. */
+    /* Writes for every ray of room->task a description of the place where it starts: RoundedHit of
+     * shaders/rounded.glsl. */
     void (*describe_rays)(const struct native_frame *frame, struct native_tile_room *tile,
                           struct native_ray_room *room, float (*hit)[HIT_WORDS]);
-    /* Of polygons (polygons/fill.h): the triangles of the slice's part of that number, and the tiles that they lie in. */
+    /* Polygons (polygons/fill.h): places the triangles of one part of the slice, and lists them in their tiles. */
     void (*place)(struct native_slice *slice, struct native_polygon_thread *thread, uint32_t part);
-    /* Draws what has been placed in a tile. */
+    /* Draws the triangles placed in a tile. */
     void (*triangles)(struct native_slice *slice, uint32_t tile);
 };
 
-/* The set of that name, or the widest that the processor has; NULL where it has not. Any thread. */
+/* The set with this name, or (NULL) the best of the processor; NULL if the processor does not have it. Any thread. */
 const struct native_set *native_set_find(const char *name);
-/* The k-th set that the processor has, narrowest first; NULL from the last one on. */
+/* The k-th set of the processor, the narrowest first; NULL after the last one. */
 const struct native_set *native_set_at(unsigned k);
 
 #endif

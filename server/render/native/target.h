@@ -1,4 +1,4 @@
-/* The planes and lists that a tile is drawn into. Internal to the folder; one owner. */
+/* A target: the planes and lists that a tile is drawn into. Internal to the folder; one owner. */
 #ifndef SHEEN_RENDER_NATIVE_TARGET_H
 #define SHEEN_RENDER_NATIVE_TARGET_H
 
@@ -7,8 +7,8 @@
 #include "server/render/native/programs/program.h"
 #include "server/scene/frame_request.h"
 
-/* Lists of the target: groups of pixels near what is seen, those of them that are shaded, and pixels that are looked
- * at more closely (shaders/edges.glsl). */
+/* The lists of a target: groups of pixels near visible surface, those of them that are shaded, and pixels that are
+ * looked at more closely (shaders/edges.glsl). */
 enum native_list_of {
     NATIVE_GROUPS,
     NATIVE_SHADED_GROUPS,
@@ -21,7 +21,7 @@ enum native_list_of {
     NATIVE_PARTS = NATIVE_RIMS /* once edges are found: pixels whose lights are shaded in parts */
 };
 
-/* All zero before the first use. Planes have `width` words a row. */
+/* Zero it before the first use. A row of a plane has `width` words. */
 struct native_target {
     uint32_t width, height;
     struct native_planes planes; /* stage 2 */
@@ -35,17 +35,18 @@ struct native_target {
         uint32_t *words;
         size_t n;
     } own, of_lights, of_measures;
-    uint32_t *hits; /* of rounded pixels' rays */
+    uint32_t *hits; /* hits of the rays of rounded pixels */
     size_t n_hit_words;
 };
 
-/* Gives the planes and empty lists the size of a tile; what they held is lost. ERROR_SERVER when memory is short. */
+/* Makes planes and empty lists for a tile of this size; their contents are lost. False with ERROR_SERVER when memory
+ * is short. */
 bool native_target_reserve(struct native_target *target, uint32_t width, uint32_t height,
                            struct error *error);
-/* The planes that stage 3 of a request takes beside: those of several lights and of what is measured. */
+/* Makes the further planes that stage 3 of a request needs: for several lights, and for measuring. */
 bool native_target_reserve_shading(struct native_target *target,
                                    const struct frame_request *request, struct error *error);
-/* Makes room for so many rays of RoundedHit (shaders/rounded.glsl). */
+/* Makes room for n_rays of RoundedHit (shaders/rounded.glsl). */
 bool native_target_reserve_hits(struct native_target *target, size_t n_rays, struct error *error);
 void native_target_finish(struct native_target *target);
 

@@ -1,4 +1,4 @@
-/* The processor's time that a thread has taken. */
+/* Measures the processor time of the calling thread. */
 #ifndef SHEEN_RENDER_NATIVE_TIMES_H
 #define SHEEN_RENDER_NATIVE_TIMES_H
 
@@ -12,7 +12,7 @@ static inline uint64_t times_now(void)
     return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
 
-/* Adds what has passed since *since, which becomes now. */
+/* Adds the time since *since to *total, and sets *since to now. Nanoseconds. */
 static inline void times_add(uint64_t *total, uint64_t *since)
 {
     uint64_t now = times_now();

@@ -1,4 +1,4 @@
-/* What the native device keeps of a frame between its steps. Internal to the folder. */
+/* The state of a frame on the native device between its steps. Internal to the folder. */
 #ifndef SHEEN_RENDER_NATIVE_FRAME_STATE_H
 #define SHEEN_RENDER_NATIVE_FRAME_STATE_H
 
@@ -8,13 +8,13 @@
 struct native_frame_state {
     struct frame_state base;
     struct block_cache *block_cache;
-    uint64_t serial; /* of all frames begun */
-    uint32_t x, y;   /* of the next tile */
+    uint64_t serial; /* serial number of the frame */
+    uint32_t x, y;   /* of the next tile, px */
     struct tile_size tile;
-    /* Of polygons: their mesh, which the frame holds, and what has been drawn of the tile. */
+    /* Polygons: the mesh, which the frame holds, and the drawn part of the tile. */
     struct renderer_polygons *polygons;
     struct native_seen_triangles seen;
-    size_t part; /* of the mesh, the next one to be drawn */
+    size_t part; /* the next part of the mesh to draw */
 };
 
 #endif

@@ -1,4 +1,4 @@
-/* What sets.h lists of an instruction set. */
+/* The functions of one instruction set that sets.h lists. */
 #ifndef SHEEN_RENDER_NATIVE_LANES_ENTRIES_H
 #define SHEEN_RENDER_NATIVE_LANES_ENTRIES_H
 
@@ -22,9 +22,9 @@ void LANE_NAME(native_describe_rays)(const struct native_frame *frame,
                                      struct native_tile_room *tile, struct native_ray_room *room,
                                      float (*hit)[HIT_WORDS]);
 
-/* Fills in `seen` in the rows [first, end), of which first is a multiple of GROUP_HEIGHT, and lists their
- * groups that show surface or lie beside some: x | y << 16, in groups. Returns how many. `columns`: memory for
- * a row. */
+/* Fills in rows first to end - 1 of `seen`, where first is a multiple of GROUP_HEIGHT, and lists the groups there
+ * that show surface or are next to some: x | y << 16, in groups. Returns their number. `columns` is memory for a
+ * row. */
 uint32_t LANE_NAME(native_groups)(const struct native_seen *seen, uint32_t first, uint32_t end,
                                   float *columns, uint32_t *groups);
 

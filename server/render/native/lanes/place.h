@@ -1,30 +1,30 @@
-/* A ray and a sub-patch: derivatives, and what stage 2 writes of the place where they meet
- * (shaders/surface.glsl, shaders/planes.glsl).
+/* A ray and a sub-patch: derivatives, and the results of stage 2 at the place where they meet (shaders/surface.glsl,
+ * shaders/planes.glsl).
  *
- * To be included twice: with T as float and NAMED giving the names of what all lanes' pixels have
- * one patch for, and with T as vfloat where each lane has its own. */
+ * This file is included twice: with T as float, for lanes that all have the same patch, and with T as vfloat, where
+ * each lane has its own; NAMED gives the two sets of names. */
 
-/* A patch in a view. Lengths in units of its scale; the ray's two planes as in newton.glsl. */
+/* A patch in a view. Lengths are in units of its scale; the ray's two planes are as in newton.glsl. */
 struct NAMED(place) {
     const T (*c)[4][4];     /* native_patch.c */
     T h[3], k[3];           /* the planes' normals in the node's frame */
-    T l[3];                 /* the view axis there */
-    T a, b;                 /* how far the node's origin is from the planes */
-    T z, before;            /* of the node's origin: along the axis, and before the far depth */
+    T l[3];                 /* the view axis in the node's frame */
+    T a, b;                 /* distances of the node's origin from the planes */
+    T z, before;            /* the node's origin: depth, and distance from the far depth */
     T scale, inverse_scale; /* units */
     T bend;                 /* native_patch.bend */
     T lost;                 /* lost_square() */
-    T axes[3][3];           /* the node's frame: its axes in the world are the columns */
+    T axes[3][3];           /* the node's frame; columns are its axes in the world */
     bool is_turned;         /* the frame is not the world's */
-    /* For the border: the parameters run up_x and up_y times faster than x and y of the node, and
-     * begin at x0, y0 there. Of each edge of the node: how many of its cells lie between it and the
-     * face's, how wide the rounding is, both in the node's size; and whether there is a border. */
+    /* For the border: the parameters change up_x and up_y times as fast as x and y of the node, and begin at x0, y0.
+     * For each edge of the node: the number of the node's cells between it and the face's edge, the width of the
+     * rounding, both in the node's size, and whether there is a border. */
     T up_x, up_y, x0, y0, beyond[4], rounding[4];
     T has_border[4]; /* 1 or 0 */
     bool any_border;
 };
 
-/* One coordinate at s, t, with its first derivatives. */
+/* One coordinate at s, t and its first derivatives. */
 LANE_INLINE struct flat_value NAMED(flat)(const T c[4][4], vfloat s, vfloat t)
 {
     vfloat b[4], d[4];
@@ -68,12 +68,12 @@ LANE_INLINE void NAMED(all)(const struct NAMED(place) * place, vfloat s, vfloat 
     }
 }
 
-/* From the derivatives at a place to those a step further, exact but for fourth ones. */
+/* Moves the derivatives from a place to one a step further; exact except for fourth derivatives. */
 LANE_INLINE void NAMED(move)(struct derivatives *at, vfloat ds, vfloat dt)
 {
     vfloat half_ds = 0.5f * ds, half_dt = 0.5f * dt;
     for (int k = 0; k < 3; k++) {
-        vfloat ss = 3 * ds * at->sixth_sss[k] + dt * at->half_sst[k]; /* half of what is gained */
+        vfloat ss = 3 * ds * at->sixth_sss[k] + dt * at->half_sst[k]; /* half of the change */
         vfloat st = ds * at->half_sst[k] + dt * at->half_stt[k];
         vfloat tt = ds * at->half_stt[k] + 3 * dt * at->sixth_ttt[k];
         vfloat s = ds * (2 * at->half_ss[k] + ss) + dt * (at->st[k] + st);
@@ -87,7 +87,7 @@ LANE_INLINE void NAMED(move)(struct derivatives *at, vfloat ds, vfloat dt)
     }
 }
 
-/* limit_normal() of surface.glsl: in the node's frame. */
+/* limit_normal() of surface.glsl, in the node's frame. */
 LANE_INLINE void NAMED(normal)(const struct NAMED(place) * place, const struct derivatives *at,
                                vfloat s, vfloat t, vfloat n[3], vfloat *area2)
 {
@@ -97,7 +97,7 @@ LANE_INLINE void NAMED(normal)(const struct NAMED(place) * place, const struct d
     vfloat most = v_max(s2, t2);
     vmask lost =
         v_less(v_min(s2, t2), place->lost * most) | v_not(v_less(1e-24f * s2 * t2, *area2));
-    /* The bound is at least what the second derivatives are. */
+    /* The bound is not below the second derivatives. */
     vmask may_vanish = v_less(most, 1e-8f * (place->bend * place->bend) + (vfloat){0});
     if (v_bits(lost | may_vanish)) {
         vfloat ss2 = 4 * v_dot(at->half_ss, at->half_ss), st2 = v_dot(at->st, at->st);
@@ -125,7 +125,7 @@ LANE_INLINE void NAMED(normal)(const struct NAMED(place) * place, const struct d
         n[k] *= to_unit;
 }
 
-/* A vector of the node's frame in the world. */
+/* Turns a vector from the node's frame into the world. */
 LANE_INLINE void NAMED(turn)(const struct NAMED(place) * place, vfloat v[3])
 {
     vfloat x = v[0], y = v[1], z = v[2];
@@ -166,7 +166,7 @@ LANE_INLINE void NAMED(shape)(const struct NAMED(place) * place, const struct de
     shape[2] = (c * along_c + d * along_d) * unit;
 }
 
-/* border_of() of planes.glsl, at (x,y) of the node. px: of a unit of scale. */
+/* border_of() of planes.glsl, at (x,y) of the node. px: pixels of a unit of scale. */
 LANE_INLINE vint NAMED(border)(const struct NAMED(place) * place, const vfloat h[3],
                                const vfloat k[3], const struct derivatives *at, vfloat x, vfloat y,
                                vfloat px)
@@ -205,8 +205,7 @@ LANE_INLINE vint NAMED(border)(const struct NAMED(place) * place, const vfloat h
     return v_select_int(is_rounded, v_int(BORDER_ROUNDED), v_pack_border(foot_x, foot_y, width));
 }
 
-/* What stage 2 writes of the place at s, t, whose derivatives these are. h and k are the ray's
- * planes. */
+/* The results of stage 2 at the place s, t with these derivatives. h and k are the ray's planes. */
 LANE_INLINE void NAMED(describe)(const struct NAMED(place) * place, const struct native_rays *rays,
                                  const vfloat h[3], const vfloat k[3], const struct derivatives *at,
                                  vfloat s, vfloat t, struct described *out)

@@ -1,11 +1,11 @@
-/* The steps of stage 2 in a tile. */
+/* The steps of stage 2 for a tile. */
 #ifndef SHEEN_RENDER_NATIVE_LANES_STAGES_H
 #define SHEEN_RENDER_NATIVE_LANES_STAGES_H
 
 #include "server/render/native/lanes/surface.h"
 #include "server/render/native/tile.h"
 
-/* What depth nearness stands for: how far before the far one. */
+/* Converts nearness to the distance from the far depth. */
 LANE_INLINE vfloat v_before(const struct native_rays *rays, vfloat nearness)
 {
     return rays->perspective ? rays->far * nearness / (1 + nearness) : nearness;
@@ -16,14 +16,14 @@ LANE_INLINE float before_of(const struct native_rays *rays, float nearness)
     return rays->perspective ? rays->far * nearness / (1 + nearness) : nearness;
 }
 
-/* Of the pixels sorted by piece: those whose guess leads to a place on its own sub-patch are
- * written; the others become strays. */
+/* Evaluates the pixels, sorted by piece: those whose guess leads to a place on its sub-patch are written; the others
+ * become strays. */
 void LANE_NAME(native_evaluate)(const struct native_frame *frame, struct native_tile_room *room);
 
-/* Where the rays of the room's tasks meet the surface. */
+/* Finds where the rays of the room's tasks meet the surface. */
 void LANE_NAME(native_meet)(const struct native_frame *frame, struct native_tile_room *room);
 
-/* Writes into the tile's planes what has been met at pixels of it. */
+/* Writes hits at some pixels into the tile's planes. */
 void LANE_NAME(native_write)(const struct native_frame *frame, struct native_tile_room *room,
                              const uint16_t *pixel, const struct native_met *const *met, size_t n);
 

@@ -1,4 +1,4 @@
-/* The limit surface as lanes evaluate it. */
+/* Evaluates the limit surface in lanes. */
 #ifndef SHEEN_RENDER_NATIVE_LANES_SURFACE_H
 #define SHEEN_RENDER_NATIVE_LANES_SURFACE_H
 
@@ -7,7 +7,7 @@
 #include "server/render/native/frame.h"
 #include "server/render/native/lanes.h"
 
-/* By the parameters of a sub-patch, in its node's frame, in units of its scale. */
+/* Position and derivatives by the parameters of a sub-patch, in its node's frame, in units of its scale. */
 struct derivatives {
     vfloat p[3], s[3], t[3], half_ss[3], st[3], half_tt[3];
     vfloat sixth_sss[3], half_sst[3], half_stt[3], sixth_ttt[3];
@@ -18,7 +18,7 @@ struct flat_value {
     vfloat f, s, t;
 };
 
-/* What stage 2 writes of a place: native.h. */
+/* The results of stage 2 at a place (native.h). */
 struct described {
     vfloat z, before, n[3], shape[3], x, y; /* x, y: on the node */
     vint border;
@@ -66,7 +66,7 @@ LANE_INLINE vint v_pack_border(vfloat foot_x, vfloat foot_y, vfloat width)
     return (x & 0xfff) | (y & 0xfff) << 12 | w << 24;
 }
 
-/* How far from the ray counts as on it, px (close_enough() of newton.glsl). */
+/* The distance from the ray, px, that counts as on it (close_enough() of newton.glsl). */
 LANE_INLINE vfloat v_close_enough(vfloat px_per_scale)
 {
     return v_max(v_float(0.0005f), 1.5e-7f * px_per_scale);
@@ -83,8 +83,8 @@ LANE_INLINE vfloat v_close_enough(vfloat px_per_scale)
 #undef T
 #undef NAMED
 
-/* A place on a node for Newton's method to begin at, as shaders/visibility.frag.glsl packs it: the
- * node's coordinates times 2^level, in [0, 2]. */
+/* Packs a start for Newton's method as in shaders/visibility.frag.glsl: the node's coordinates times 2^level, in [0,
+ * 2]. */
 LANE_INLINE vint v_guess(vfloat s, vfloat t, int32_t level)
 {
     const float steps = 8191.0f / 2;

@@ -1,8 +1,8 @@
-/* The shaders as functions of this processor: every program of shaders/ that the native device runs, compiled once
- * for each instruction set (shaders/lanes writes it as C++, glsl.hpp is what it is written in).
+/* The shaders as functions of the processor: every program of shaders/ that the native device runs, compiled once for
+ * each instruction set. shaders/lanes writes them as C++, in terms of glsl.hpp.
  *
- * A program finds what it reads and writes by the names that the shaders have for it. Thread: any; calls that share
- * what they write must not run at once. */
+ * A program finds its input and output by the names that the shaders use. Thread: any; calls that write to the same
+ * memory must not run at the same time. */
 #ifndef SHEEN_RENDER_NATIVE_PROGRAMS_PROGRAM_H
 #define SHEEN_RENDER_NATIVE_PROGRAMS_PROGRAM_H
 
@@ -10,22 +10,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Planes of pixels, one a channel and each `channel_words` after the one before: rows of `width` words
- * of 32 bits. */
+/* Planes of pixels, one for each channel, `channel_words` apart: rows of `width` words of 32 bits. */
 struct native_image {
     uint32_t *words;
     int32_t width, height, channels;
     size_t channel_words;
 };
 
-/* A light image with its smaller copies, each of half the sides rounded down and no less than 1: linear light,
- * premultiplied, four floats a texel, the first row the uppermost. */
+/* A light image with its smaller copies, each with half the sides, rounded down and at least 1: linear light,
+ * premultiplied, four floats a texel, top row first. */
 enum { NATIVE_MOST_LEVELS = 32 };
 struct native_picture {
     const float *texels;
-    uint32_t first[NATIVE_MOST_LEVELS]; /* texel of each level */
-    int32_t width, height, n_levels;    /* of level 0; n_levels 0: no image */
-    bool repeats_s, repeats_t;          /* else the outermost texels go on */
+    uint32_t first[NATIVE_MOST_LEVELS]; /* first texel of each level */
+    int32_t width, height, n_levels;    /* size of level 0; n_levels 0: no image */
+    bool repeats_s, repeats_t;          /* false: the outermost texels continue beyond the side */
 };
 
 /* A buffer texture: texels of four words. */
@@ -34,8 +33,8 @@ struct native_texels {
     uint32_t n;
 };
 
-/* The points of sub-patches, made where a program asks for them (shaders/tables.glsl): make() writes those of a
- * node's part (patches.h) as a texel whose x is the scale and four rows of three (server/surface/texels.h).
+/* The points of sub-patches, made when a program needs them (shaders/tables.glsl): make() writes those of part `part`
+ * (patches.h) of a node as one texel whose x is the scale, and four rows of three texels (server/surface/texels.h).
  * Any thread. */
 enum { NATIVE_PATCH_TEXELS = 13 };
 struct native_made_texels {
@@ -43,25 +42,25 @@ struct native_made_texels {
     void (*make)(const void *owner, uint32_t node, uint32_t part, float (*texels)[4]);
 };
 
-/* A buffer's open array, of n elements. */
+/* The open array of a buffer, of n elements. */
 struct native_array {
     uint32_t *words;
     uint32_t n;
 };
 
-/* As shaders/list.glsl has it. A program writes no more than the array holds. */
+/* A list as in shaders/list.glsl. A program writes no more than the array holds. */
 struct native_list {
     uint32_t x, y, z, n;
     struct native_array at;
 };
 
-/* shaders/share.comp.glsl. */
+/* The block of shaders/share.comp.glsl. */
 struct native_share {
     uint32_t seen_px, met_px;
     struct native_array met;
 };
 
-/* What a program does not use need not be set. */
+/* The inputs and outputs of programs; members that a program does not use need not be set. */
 struct native_bindings {
     const void *View, *Light; /* struct view_block, struct light_block */
     struct native_made_texels texels;
@@ -82,7 +81,7 @@ struct native_bindings {
     uint32_t max_rounded, stride, first_square, end_square;
 };
 
-/* Runs the workgroups [first, end), numbered as shaders/list.glsl does. */
+/* Runs workgroups first to end - 1, numbered as in shaders/list.glsl. */
 typedef void native_program(const struct native_bindings *bindings, uint32_t first, uint32_t end);
 
 /* The programs of an instruction set. */
