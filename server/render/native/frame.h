@@ -30,7 +30,7 @@ enum {
  * of drawing does not depend on it. */
 enum { MAX_PARTS = 64 };
 
-/* The camera in the form that lanes read (shaders/view.glsl). */
+/* The camera as lanes read it (shaders/view.glsl). */
 struct native_rays {
     float axis[3][3];         /* right, down, forward */
     float slope_px, start_px; /* ray at q px from the centre: (q start, 0) + z (q slope, 1) */
@@ -128,8 +128,7 @@ struct native_frame {
     uint32_t n_parts;
     size_t clusters_per_part;
     const float *const *grid_s, *const *grid_t; /* vertices of each grid (native.c) */
-    /* Counters from which threads take work, and failures. */
-    uint32_t next_part, next_tile;
+    uint32_t next_part, next_tile;              /* from which threads take work */
     uint64_t n_vertices;
     bool out_of_memory, too_many;
     bool left_gaps; /* there were more than NATIVE_MAX_GAPS */

@@ -213,9 +213,8 @@ static struct face_place place_of(const struct limit_node *node, double x, doubl
     return (struct face_place){node->face, k, ab[0], ab[1]};
 }
 
-/* The place on the other side of `edge` of its face, seen from the same vertex: at_start when that
- * is the edge's first one. `along` is measured from that vertex; the place lies `outside` beyond
- * the edge. False at a boundary. */
+/* The place on the other side of `edge` of its face, seen from the same vertex: at_start when that is the edge's
+ * first one. `along` is measured from that vertex; the place lies `outside` beyond the edge. False at a boundary. */
 static bool cross_edge(const struct limit_tables *tables, struct face_place *place, unsigned edge,
                        bool at_start, double along, double outside)
 {

@@ -29,8 +29,7 @@ struct native_patch_texels {
     float texels[NATIVE_PATCH_TEXELS][4];
 };
 
-/* How many patches, and how many of them as texels, which outlines and roundings alone ask for, are
- * kept. */
+/* How many patches, and how many of them as texels, which outlines and roundings alone ask for, are kept. */
 static void set_room(const struct limit_tables *tables, size_t patch_bytes, size_t *patches,
                      size_t *texels)
 {
@@ -122,8 +121,7 @@ static void expand(const double p[16], double c[4][4])
     }
 }
 
-/* Differences of the points bound the second derivatives: a B-spline lies in the hull of its own.
- */
+/* Differences of the points bound the second derivatives: a B-spline lies in the hull of its own. */
 static double bend_of(const struct vec p[16])
 {
     double uu = 0, uv = 0, vv = 0;

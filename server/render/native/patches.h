@@ -24,8 +24,7 @@ struct native_patch {
     /* The corners (0,0) (1,0) (0,1) (1,1) relative to the node's origin: all x, then y, then z, world. */
     float corner[3][4];
     float scale, inverse_scale; /* power of two by which the coefficients are divided */
-    /* An upper bound of |Sss| + 2 |Sst| + |Stt|, divided by scale. */
-    float bend;
+    float bend;                 /* at least |Sss| + 2 |Sst| + |Stt|, divided by scale */
     float unused;
     /* c[k][j][i] is the coefficient of s^i t^j of coordinate k in the node's frame. */
     float c[3][4][4];
@@ -62,7 +61,6 @@ static inline uint32_t native_patch_index(const struct limit_node *node, int lev
     return node->kind == LIMIT_STRIP ? (uint32_t)level - 1 : 0;
 }
 
-/* Makes a patch from the tables. */
 void native_patch_make(const struct limit_tables *tables, uint32_t node, uint32_t index,
                        struct native_patch *patch);
 

@@ -21,11 +21,10 @@ struct native_set {
     struct native_programs programs;
     /* Makes the pieces of a part of the model, and lists them in the tiles that they touch. */
     void (*pieces)(struct native_frame *frame, struct native_thread *thread, uint32_t part);
-    /* Computes the planes of a tile, except for pixels in gaps. */
+    /* tile: computes the planes of a tile, except for pixels in gaps; gaps: computes these after all tiles, on one
+     * thread. */
     void (*tile)(struct native_frame *frame, struct native_thread *thread, uint32_t tile);
-    /* After all tiles, on one thread: computes the pixels in gaps. */
     void (*gaps)(struct native_frame *frame, struct native_thread *thread);
-    /* Finds the groups of pixels in some rows: lanes/entries.h. */
     uint32_t (*groups)(const struct native_seen *seen, uint32_t first, uint32_t end, float *columns,
                        uint32_t *groups);
     /* Meets the rays of room->task with the surface and removes the tasks. A hit in front of a ray's earlier hit is
@@ -38,8 +37,7 @@ struct native_set {
                           struct native_ray_room *room, float (*hit)[HIT_WORDS]);
     /* Polygons (polygons/fill.h): places the triangles of one part of the slice, and lists them in their tiles. */
     void (*place)(struct native_slice *slice, struct native_polygon_thread *thread, uint32_t part);
-    /* Draws the triangles placed in a tile. */
-    void (*triangles)(struct native_slice *slice, uint32_t tile);
+    void (*triangles)(struct native_slice *slice, uint32_t tile); /* draws those placed in a tile */
 };
 
 /* The set with this name, or (NULL) the best of the processor; NULL if the processor does not have it. Any thread. */

@@ -19,7 +19,6 @@ struct native_drawing {
     struct tile inside;            /* in that, the tile without its margin */
 };
 
-/* The bindings that all programs use. */
 struct native_bindings native_bindings_of(const struct native_drawing *drawing);
 /* Runs a program that lists no pixels. */
 void native_run_program(const struct native_drawing *drawing, native_program *program,

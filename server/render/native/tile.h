@@ -64,8 +64,7 @@ struct native_tile_room {
     int32_t piece[SEEN_PX], place[SEEN_PX];
     struct native_tile_planes planes;
     struct native_found_patch patch[TILE_PATCHES];
-    /* The tile's pieces in the order of drawing. */
-    const struct native_piece **local;
+    const struct native_piece **local; /* the tile's pieces in the order of drawing */
     const struct native_quad **quad;
     uint32_t *count; /* [n_local + 2]: first pixel of each piece in pixel[] */
     uint32_t *order;
