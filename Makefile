@@ -332,7 +332,7 @@ oracle: all $(ORACLE_TESTS)
 	DEVICE=$(DEVICE) ISA=$(ISA) bash tests/run.sh oracle $(BUILD)
 # A unit program and a corpus are built alone, what else tests need by the kind that the name tells.
 test: all $(if $(wildcard tests/unit/$(T).c)$(filter fuzz_%,$(T)),$(BUILD)/tests/$(T),\
-          $(if $(filter service_%,$(T)),$(BUILD)/sheend-faults $(BUILD)/tests/no_library.so,$(ORACLE_TESTS)))
+          $(if $(filter lanes,$(T)),,$(if $(filter service_%,$(T)),$(BUILD)/sheend-faults $(BUILD)/tests/no_library.so,$(ORACLE_TESTS))))
 	bash tests/run.sh all $(BUILD) $(or $(T),$(error T=NAME: see tests/README.md))
 check:
 	$(MAKE) deps

@@ -97,6 +97,7 @@ unit() {
         *) beside "$name" "$build/tests/$name" ;;
         esac
     done
+    beside lanes /usr/bin/python3 tests/shaders/test_lanes.py "$build"
 }
 
 # Every input that fuzzing has left, over the code of this build.

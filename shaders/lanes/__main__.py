@@ -29,8 +29,8 @@ def main():
     text = ""
     for file_name in listed_programs("native")[name][0]:
         with open(path_of(file_name + ".glsl"), encoding="utf-8") as file:
-            text += file.read()
-    text = subprocess.run(os.environ.get("CC", "cc").split() + ["-E", "-P", "-undef", "-nostdinc", "-xc"] +
+            text += '#line 1 "%s.glsl"\n' % file_name + file.read()
+    text = subprocess.run(os.environ.get("CC", "cc").split() + ["-E", "-undef", "-nostdinc", "-xc"] +
                           ["-D" + macro for macro in MACROS] + ["-"],
                           input=text, capture_output=True, text=True, check=True).stdout
     if re.search(r"\b(line_family|light_kind|pattern_kind|is_soft|is_filtered)\b", text):

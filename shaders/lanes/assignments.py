@@ -31,7 +31,7 @@ class Assignments(Calls):
         left = self.value(node.of)
         old = self.stored(left) if is_used and node.is_post else None
         one = Value("1", INT, False)
-        self.assign(node.of, self.of_binary_of(Node("assign", node.line, op=node.op[0]), left, one))
+        self.assign(node.of, self.of_binary_of(Node("assign", node.place, op=node.op[0]), left, one))
         return old if old else self.value(node.of) if is_used else None
 
     def root(self, node):

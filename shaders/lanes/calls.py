@@ -59,6 +59,8 @@ class Calls(Expressions):
         given = [self.converted(v, self.whole.settle(p.type)) for v, p in zip(given, function.params)]
         varying = tuple(v.varying or always_varies(v.type) or p.way != "in" for v, p in zip(given, function.params))
         callee = self.whole.instance(function, varying)
+        if callee.is_open:
+            self.fail(node, "%s calls itself" % node.name)
         self.whole.emit(callee)
         codes, after = [self.region.mask], []
         for value, param, argument in zip(given, function.params, node.arguments):
@@ -91,7 +93,7 @@ class Calls(Expressions):
     def barrier(self, node):
         """Ends this part of main(); the next part begins when all of the workgroup are here. What main() has
         declared until then is kept."""
-        if self.region is not self.top or len(self.scopes) > 2 or self.may_return:
+        if self.node.name != "main" or self.region is not self.top or len(self.scopes) > 2 or self.may_return:
             self.fail(node, "a barrier stands in main() itself, before any return")
         self.parts.append(self.lines)
         self.lines = []
@@ -112,8 +114,8 @@ class Calls(Expressions):
         if name.startswith("atomic"):
             place, more = self.value(first), self.value(node.arguments[1])
             more = self.converted(more, place.type)
-            if place.memory:
-                self.fail(node, "no atomic operation on an array")
+            if place.memory or not place.variable or place.variable.region:
+                self.fail(node, "an atomic operation is on a number of a block")
             return self.stored(Value("%s(%s, %s, %s)" % (name, place.code, self.lanes(more).code, mask), UINT, True))
         image = self.value(first)
         given = [self.value(argument) for argument in node.arguments[1:]]

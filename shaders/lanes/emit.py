@@ -11,7 +11,10 @@ take lanes out of the masks around. A branch whose mask is empty is skipped.
 
 An operand of &&, || or ?: that calls one of the program's functions runs under a mask, too; any other is computed in
 all lanes, since it is cheap and changes nothing."""
-from .cpp import UINT, VOID, always_varies, cpp_type
+import operator
+import re
+
+from .cpp import TEXEL, UINT, VOID, always_varies, cpp_type
 from .parse import Failure, Type
 from .scope import Region, Variable
 from .statements import Statements
@@ -24,6 +27,7 @@ class Instance:
         self.node, self.varying, self.name = node, varying, name
         self.returns_varying, self.known = False, {}
         self.is_done = False  # in this round
+        self.is_open = False  # while it is written
         self.headers, self.text, self.kept = [], "", []
 
 
@@ -47,6 +51,7 @@ class Emitter:
     # --- globals
     def constant(self, node):
         """The number that a constant expression of integers comes to."""
+        operations = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": lambda a, b: a // max(b, 1)}
         if isinstance(node, int):
             return node
         if node.kind == "number":
@@ -55,10 +60,9 @@ class Emitter:
             for item in self.parser.items:
                 if item.kind == "global" and item.decl.name == node.name and "const" in item.qualifiers:
                     return self.constant(item.decl.value)
-        if node.kind == "binary":
-            left, right = self.constant(node.left), self.constant(node.right)
-            return {"+": left + right, "-": left - right, "*": left * right, "/": left // max(right, 1)}[node.op]
-        raise Failure("line %d: no constant" % node.line)
+        if node.kind == "binary" and node.op in operations:
+            return operations[node.op](self.constant(node.left), self.constant(node.right))
+        raise Failure("%s: no constant" % node.place)
 
     def settle(self, of):
         """The type with its size as a number."""
@@ -69,14 +73,20 @@ class Emitter:
     def add_global(self, item):
         of = self.settle(item.decl.type)
         name = item.decl.name
+        if of.base in TEXEL and of.size not in (None, 1):
+            raise Failure("%s: an array of textures has one" % item.place)
+        if re.fullmatch(r"kept|live|result|m\d+", name):
+            raise Failure("%s: %s is a name of the C++ that is written" % (item.place, name))
         self.globals[name] = Variable(name, of, False, None)
         self.globals[name].is_memory = "shared" in item.qualifiers
 
     def add_block(self, item):
+        if any(of.size == -1 for _, of in item.members[:-1]):
+            raise Failure("%s: the open array of a block is its last member" % item.place)
         for name, of in item.members:
-            self.globals[name if not item.instance else item.instance + "." + name] = Variable(
-                "%s->%s" % (item.instance or item.name, name), self.settle(of), False, None)
-            self.globals[name if not item.instance else item.instance + "." + name].is_memory = of.size == -1
+            variable = Variable("%s->%s" % (item.instance or item.name, name), self.settle(of), False, None)
+            variable.is_memory = of.size == -1
+            self.globals[item.instance + "." + name if item.instance else name] = variable
 
     # --- functions
     def instance(self, node, varying):
@@ -101,13 +111,14 @@ class Emitter:
     def emit(self, instance):
         if instance.is_done:
             return
-        instance.is_done = True
+        instance.is_done = instance.is_open = True
         while True:
             before = dict(instance.known), instance.returns_varying
             Function(self, instance).emit()
             if before == (instance.known, instance.returns_varying):
                 break
             self.changed = True
+        instance.is_open = False
         self.order.append(instance)
 
 

@@ -63,9 +63,9 @@ class Expressions(Regions):
 
     def swizzle(self, node, of):
         names = "xyzw" if node.name[0] in "xyzw" else "rgba" if node.name[0] in "rgba" else "stpq"
-        parts = [names.index(letter) for letter in node.name]
-        if of.type.rows == 1:
-            self.fail(node, "a scalar has no .%s" % node.name)
+        parts = [names.find(letter) for letter in node.name]
+        if of.type.rows == 1 or of.type.size is not None or min(parts) < 0 or max(parts) >= of.type.rows:
+            self.fail(node, "no .%s of this" % node.name)
         if len(parts) == 1:
             return Value("%s.%s" % (of.code, "xyzw"[parts[0]]), Type(of.type.base), of.varying, of.variable)
         return Value("swizzle<%s>(%s)" % (", ".join(map(str, parts)), of.code), Type(of.type.base, len(parts)),
@@ -73,6 +73,8 @@ class Expressions(Regions):
 
     def of_index(self, node):
         of, at = self.value(node.of), self.value(node.at)
+        if of.type.is_scalar or (of.type.size is None and of.type.base in self.whole.structs):
+            self.fail(node, "no element of this")
         kind = of.type.element()
         if of.type.base in TEXEL:  # an array of textures, of one
             return Value(of.code, kind, False, of.variable)

@@ -1,15 +1,17 @@
 """Reads the GLSL of shaders/, after the preprocessor, into a tree.
 
-The dialect is what shaders/ uses: no switch, no do, no preprocessor lines left; one declarator list a line
-of declarations; README.md lists it. A text outside of it is refused with its line."""
+The dialect is what shaders/ uses: no switch, no do, no preprocessor lines left but those that say where the text is
+from (# LINE "FILE"); one declarator list a line of declarations; README.md lists it. A text outside of it is refused
+with its place."""
 import re
 
 TOKEN = re.compile(r"""
-    (?P<space>\s+|//[^\n]*|/\*.*?\*/)
+    (?P<mark>^\#\ \d+\ "[^"]*"[^\n]*\n)
+  | (?P<space>\s+|//[^\n]*|/\*.*?\*/)
   | (?P<number>0[xX][0-9a-fA-F]+[uU]?|(?:\d+\.\d*|\.\d+|\d+(?=[eE]))(?:[eE][-+]?\d+)?|\d+[uU]?)
   | (?P<name>[A-Za-z_]\w*)
   | (?P<op><<=|>>=|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||\+=|-=|\*=|/=|%=|&=|\|=|\^=|[-+*/%<>=!&|^~?:;,.(){}\[\]])
-""", re.X | re.S)
+""", re.X | re.S | re.M)
 
 SCALARS = ("float", "int", "uint", "bool", "double")
 PREFIX = {"": "float", "i": "int", "u": "uint", "b": "bool", "d": "double"}
@@ -70,10 +72,10 @@ def named_type(name):
 
 
 class Node:
-    """kind, line, and what the kind says: see where each is made."""
+    """kind, place, and what the kind says: see where each is made."""
 
-    def __init__(self, kind, line, **fields):
-        self.kind, self.line = kind, line
+    def __init__(self, kind, place, **fields):
+        self.kind, self.place = kind, place
         self.__dict__.update(fields)
 
 
@@ -88,29 +90,36 @@ class Parser:
     def __init__(self, text):
         self.tokens, self.at, self.structs, self.items = [], 0, {}, []
         self.local_size = None  # invocations of a workgroup
-        at, line = 0, 1
-        while at < len(text):
-            match = TOKEN.match(text, at)
-            if not match:
-                raise Failure("line %d: %r is no token" % (line, text[at:at + 20]))
-            if match.lastgroup != "space":
-                self.tokens.append((match.lastgroup, match[0], line))
-            line += match[0].count("\n")
-            at = match.end()
-        self.tokens.append(("end", "", line))
+        self.split(text)
         while self.peek() != "":
             self.item()
+
+    def split(self, text):
+        """Into tokens with their places."""
+        at, file, line = 0, "line ", 1
+        while at < len(text):
+            match, place = TOKEN.match(text, at), "%s%d" % (file, line)
+            if not match:
+                raise Failure("%s: %r is no token" % (place, text[at:at + 20].split("\n")[0]))
+            if match.lastgroup not in ("space", "mark"):
+                self.tokens.append((match.lastgroup, match[0], place))
+            line += match[0].count("\n")
+            if match.lastgroup == "mark":
+                _, number, name = match[0].split(" ", 2)
+                file, line = name.split('"')[1] + ":", int(number)
+            at = match.end()
+        self.tokens.append(("end", "", "%s%d" % (file, line)))
 
     # --- tokens
     def peek(self, ahead=0):
         return self.tokens[min(self.at + ahead, len(self.tokens) - 1)][1]
 
     @property
-    def line(self):
+    def place(self):
         return self.tokens[self.at][2]
 
     def fail(self, what):
-        raise Failure("line %d: %s, not %r" % (self.line, what, self.peek()))
+        raise Failure("%s: %s, not %r" % (self.place, what, self.peek()))
 
     def take(self):
         self.at += 1
@@ -169,7 +178,7 @@ class Parser:
     def item(self):
         if self.accept(";"):
             return
-        line, qualifiers = self.line, self.qualifiers()
+        place, qualifiers = self.place, self.qualifiers()
         if self.accept(";"):
             return  # layout(...) in;
         if self.accept("struct"):
@@ -177,23 +186,23 @@ class Parser:
             self.structs[name] = None
             self.structs[name] = self.members()
             self.expect(";")
-            self.items.append(Node("struct", line, name=name, members=self.structs[name]))
+            self.items.append(Node("struct", place, name=name, members=self.structs[name]))
             return
         if ("uniform" in qualifiers or "buffer" in qualifiers) and self.peek(1) == "{":
-            self.block(line, qualifiers)
+            self.block(place, qualifiers)
             return
         kind, name = self.type(), self.name()
         if self.accept("("):
-            self.function(line, kind, name)
+            self.function(place, kind, name)
             return
-        for decl in self.declarators(line, kind, name):
-            self.items.append(Node("global", line, decl=decl, qualifiers=qualifiers))
+        for decl in self.declarators(place, kind, name):
+            self.items.append(Node("global", place, decl=decl, qualifiers=qualifiers))
 
-    def block(self, line, qualifiers):
+    def block(self, place, qualifiers):
         name, members = self.name(), self.members()
         instance = None if self.peek() == ";" else self.name()
         self.expect(";")
-        self.items.append(Node("block", line, name=name, members=members, instance=instance,
+        self.items.append(Node("block", place, name=name, members=members, instance=instance,
                                is_buffer="buffer" in qualifiers))
 
     def members(self):
@@ -201,55 +210,55 @@ class Parser:
         self.expect("{")
         while not self.accept("}"):
             self.qualifiers()
-            line, kind = self.line, self.type()
-            found += [(decl.name, decl.type) for decl in self.declarators(line, kind, self.name())]
+            place, kind = self.place, self.type()
+            found += [(decl.name, decl.type) for decl in self.declarators(place, kind, self.name())]
         return found
 
-    def declarators(self, line, kind, name):
+    def declarators(self, place, kind, name):
         found = []
         while True:
             whole = self.dimension(kind)
             value = self.assignment() if self.accept("=") else None
-            found.append(Node("decl", line, name=name, type=whole, value=value))
+            found.append(Node("decl", place, name=name, type=whole, value=value))
             if not self.accept(","):
                 break
             name = self.name()
         self.expect(";")
         return found
 
-    def function(self, line, kind, name):
+    def function(self, place, kind, name):
         params = []
         while not self.accept(")"):
             qualifiers, of = self.qualifiers(), self.type()
             param = self.name()
-            params.append(Node("param", line, name=param, type=self.dimension(of),
+            params.append(Node("param", place, name=param, type=self.dimension(of),
                                way="inout" if "inout" in qualifiers else "out" if "out" in qualifiers else "in"))
             self.accept(",")
         body = None if self.accept(";") else self.compound()
         if body:
-            self.items.append(Node("function", line, type=kind, name=name, params=params, body=body))
+            self.items.append(Node("function", place, type=kind, name=name, params=params, body=body))
 
     # --- statements
     def compound(self):
-        line, body = self.line, []
+        place, body = self.place, []
         self.expect("{")
         while not self.accept("}"):
             body.append(self.statement())
-        return Node("compound", line, body=body)
+        return Node("compound", place, body=body)
 
     def statement(self):
-        line = self.line
+        place = self.place
         if self.peek() == "{":
             return self.compound()
         if self.accept(";"):
-            return Node("compound", line, body=[])
+            return Node("compound", place, body=[])
         if self.accept("if"):
             self.expect("(")
             test = self.expression()
             self.expect(")")
             then = self.statement()
             other = self.statement() if self.accept("else") else None
-            return Node("if", line, test=test, then=then, other=other)
+            return Node("if", place, test=test, then=then, other=other)
         if self.accept("for"):
             self.expect("(")
             first = None if self.accept(";") else self.simple()
@@ -257,29 +266,29 @@ class Parser:
             self.expect(";")
             step = None if self.peek() == ")" else self.expression()
             self.expect(")")
-            return Node("loop", line, first=first, test=test, step=step, body=self.statement(), diverges=False)
+            return Node("loop", place, first=first, test=test, step=step, body=self.statement(), diverges=False)
         if self.accept("while"):
             self.expect("(")
             test = self.expression()
             self.expect(")")
-            return Node("loop", line, first=None, test=test, step=None, body=self.statement(), diverges=False)
+            return Node("loop", place, first=None, test=test, step=None, body=self.statement(), diverges=False)
         if self.peek() in ("return", "break", "continue"):
             kind = self.take()
             value = self.expression() if kind == "return" and self.peek() != ";" else None
             self.expect(";")
-            return Node(kind, line, value=value)
+            return Node(kind, place, value=value)
         return self.simple()
 
     def simple(self):
         """A declaration or an expression, with its semicolon."""
-        line = self.line
+        place = self.place
         self.accept("const")
         if self.type_at() and self.tokens[self.at + 1][0] == "name":
             kind = self.type()
-            return Node("declare", line, decls=self.declarators(line, kind, self.name()))
+            return Node("declare", place, decls=self.declarators(place, kind, self.name()))
         value = self.expression()
         self.expect(";")
-        return Node("expression", line, value=value)
+        return Node("expression", place, value=value)
 
     # --- expressions
     def expression(self):
@@ -289,46 +298,46 @@ class Parser:
         return value
 
     def assignment(self):
-        line, left = self.line, self.ternary()
+        place, left = self.place, self.ternary()
         if self.peek() in ASSIGN:
             op = self.take()
-            return Node("assign", line, op=op[:-1], left=left, right=self.assignment())
+            return Node("assign", place, op=op[:-1], left=left, right=self.assignment())
         return left
 
     def ternary(self):
-        line, test = self.line, self.binary(0)
+        place, test = self.place, self.binary(0)
         if not self.accept("?"):
             return test
         yes = self.assignment()
         self.expect(":")
-        return Node("ternary", line, test=test, yes=yes, no=self.assignment())
+        return Node("ternary", place, test=test, yes=yes, no=self.assignment())
 
     def binary(self, level):
         if level == len(BINARY):
             return self.unary()
         left = self.binary(level + 1)
         while self.peek() in BINARY[level]:
-            line, op = self.line, self.take()
-            left = Node("binary", line, op=op, left=left, right=self.binary(level + 1))
+            place, op = self.place, self.take()
+            left = Node("binary", place, op=op, left=left, right=self.binary(level + 1))
         return left
 
     def unary(self):
-        line = self.line
+        place = self.place
         if self.peek() in ("-", "+", "!", "~", "++", "--"):
             op = self.take()
-            return Node("step" if len(op) == 2 else "unary", line, op=op, of=self.unary(), is_post=False)
+            return Node("step" if len(op) == 2 else "unary", place, op=op, of=self.unary(), is_post=False)
         return self.postfix(self.primary())
 
     def postfix(self, value):
         while True:
-            line = self.line
+            place = self.place
             if self.accept("."):
-                value = Node("member", line, of=value, name=self.name())
+                value = Node("member", place, of=value, name=self.name())
             elif self.accept("["):
-                value = Node("index", line, of=value, at=self.expression())
+                value = Node("index", place, of=value, at=self.expression())
                 self.expect("]")
             elif self.peek() in ("++", "--"):
-                value = Node("step", line, op=self.take(), of=value, is_post=True)
+                value = Node("step", place, op=self.take(), of=value, is_post=True)
             else:
                 return value
 
@@ -340,7 +349,7 @@ class Parser:
         return found
 
     def primary(self):
-        line = self.line
+        place = self.place
         kind, text, _ = self.tokens[self.at]
         if self.accept("("):
             value = self.expression()
@@ -348,17 +357,17 @@ class Parser:
             return value
         if kind == "number":
             self.take()
-            return Node("number", line, text=text)
+            return Node("number", place, text=text)
         if kind != "name":
             self.fail("a value is wanted")
         of = self.type_at()
         if of:
             of = self.type()
             self.expect("(")
-            return Node("construct", line, type=of, arguments=self.arguments())
+            return Node("construct", place, type=of, arguments=self.arguments())
         self.take()
         if text in ("true", "false"):
-            return Node("bool", line, text=text)
+            return Node("bool", place, text=text)
         if self.accept("("):
-            return Node("call", line, name=text, arguments=self.arguments())
-        return Node("name", line, name=text)
+            return Node("call", place, name=text, arguments=self.arguments())
+        return Node("name", place, name=text)

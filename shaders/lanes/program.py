@@ -39,7 +39,7 @@ def block_text(whole, item):
 def constant_text(whole, decl):
     """Of a global constant: one that is a number for the compiler, any other as a member."""
     of = whole.settle(decl.type)
-    dummy = Function(whole, Instance(Node("function", decl.line, params=[], name=decl.name), (), decl.name))
+    dummy = Function(whole, Instance(Node("function", decl.place, params=[], name=decl.name), (), decl.name))
     dummy.region = dummy.top = None
     if of.size is not None:
         values = [dummy.converted(dummy.value(a), of.element()).code for a in decl.value.arguments]

@@ -1,5 +1,5 @@
 """Which variables a function has, and which of them vary from lane to lane."""
-from .cpp import always_varies
+from .cpp import TEXEL, always_varies
 from .writer import Writer
 
 
@@ -42,11 +42,15 @@ class Scope(Writer):
         self.instance.known[key] = varying
         return varying
 
-    def declare(self, name, of, region=None):
+    def declare(self, node, of):
+        """A variable of the region that is written."""
+        if of.base in TEXEL:
+            self.fail(node, "images and textures are global")
+        name = node.name
         self.n_keys += 1
         key = "%s %d" % (name, self.n_keys)
         varying = self.note(key, always_varies(of))
-        variable = Variable(self.fresh(name), of, varying, region or self.region, key)
+        variable = Variable(self.fresh(name), of, varying, self.region, key)
         self.scopes[-1][name] = variable
         return variable
 

@@ -30,7 +30,7 @@ class Statements(Assignments):
             value = self.value(decl.value) if decl.value else None
             if value:
                 value = self.converted(value, of)
-            variable = self.declare(decl.name, of)
+            variable = self.declare(decl, of)
             if value and value.varying and not variable.varying:
                 variable.varying = self.note(variable.key, True)
             if value:
@@ -161,7 +161,7 @@ class Statements(Assignments):
             if test.varying:
                 node.diverges = True
                 self.whole.changed = True
-                self.instance.known["loop %d %d" % (node.line, self.n_keys)] = True
+                self.instance.known["loop %s %d" % (node.place, self.n_keys)] = True
             self.line("if (!(%s))" % (test.code if not test.varying else "true"))
             self.line("    break;")
         self.loops.append(loop)

@@ -29,7 +29,7 @@ class Writer:
         return "%s_%d" % (stem, self.n_names)
 
     def fail(self, node, what):
-        raise Failure("line %d: %s" % (node.line, what))
+        raise Failure("%s: %s" % (node.place, what))
 
     def taken(self, code):
         """The expression that the last line has put into the variable `code`, in place of that line: nothing lies
