@@ -1,9 +1,7 @@
-/* What every benchmark shares: the clock, medians, tables, and figures kept from run to run.
- *
- * A question (question.h) gets a `report`, prints tables and names its figures. They go to
- * FOLDER/NAME.json, and those of the file that lay there before (or of --compare) are set beside
- * them. Figures are numbers where less is better unless their name ends in "ratio" or "per_s" or
- * "pixels" or "faces". */
+/* What benchmarks share: the clock, medians, tables, and figures that are kept between runs. A
+ * question (question.h) gets a `report`, prints tables and names its figures. They are written to
+ * FOLDER/NAME.json, and compared with those of the earlier file there (or of --compare). For
+ * figures less is better, unless their name ends in "ratio", "per_s", "pixels" or "faces". */
 #ifndef SHEEN_TESTS_BENCH_BENCH_H
 #define SHEEN_TESTS_BENCH_BENCH_H
 
@@ -14,7 +12,7 @@
 
 double now_ms();
 
-/* Measurements of one thing. */
+/* The measurements of one thing. */
 class samples
 {
   public:
@@ -38,23 +36,24 @@ class samples
     std::vector<double> sorted;
 };
 
-/* Two things measured in turn, so that what else the machine does falls on both. */
+/* Two things measured alternately, so that other load on the machine affects both. */
 struct pair_of_samples {
     samples a, b;
-    samples ratio; /* b / a of each pair */
+    samples ratio; /* b / a for each pair */
 };
-/* Each call returns its own milliseconds; `run` counts from 0. One unmeasured pair goes first. */
+/* Each call returns its milliseconds; `run` counts from 0. One pair is run first without
+ * measuring. */
 using timed_call = std::function<double(int run)>;
-/* The same for any number of things; each has its ratio to the first of its own round. */
+/* As pair_of_samples for any number of things; each has its ratio to the first one in its round. */
 struct turn {
     samples ms, ratio;
 };
 std::vector<turn> measure_in_turn(int runs, const std::vector<timed_call> &calls);
 pair_of_samples measure_pairs(int runs, const timed_call &a, const timed_call &b);
-/* The milliseconds that a call takes. */
+/* Measures a call, in milliseconds. */
 double time_ms(const std::function<void()> &call);
 
-/* Rows of text under headings, as wide as they need: the first column to the left. */
+/* A table with headings and columns as wide as needed; the first column is left-aligned. */
 class table
 {
   public:
@@ -76,9 +75,9 @@ struct options {
     std::vector<std::string> words;
     std::vector<std::pair<std::string, std::string>> others; /* --key VALUE of the question's own */
 
-    /* The value of --key, else what is given. */
+    /* The value of --key, or the given default. */
     std::string other(const std::string &key, const std::string &otherwise) const;
-    /* Of renderer_options. */
+    /* As in renderer_options. */
     std::string device() const
     {
         return other("device", "auto");
@@ -99,9 +98,9 @@ class report
         return asked;
     }
     void figure(const std::string &name, double value);
-    /* Says, once, something about where the figures come from; goes to the file, too. */
+    /* Adds a note about the origin of the figures, printed once and written to the file. */
     void note(const std::string &key, const std::string &value);
-    /* Prints the comparison and writes the file, with the figures that it compared with. */
+    /* Prints the comparison and writes the file, with the figures that were compared. */
     void finish() const;
 
   private:
@@ -111,11 +110,11 @@ class report
     std::vector<std::pair<std::string, std::string>> notes;
 };
 
-/* The model files that a question measures: those asked for, else the car and the bishop of the
- * shapes and the fender. Those that are not there are named, and left out; without any shape the
- * models of tests/models stand in. Throws std::runtime_error when none is left. */
+/* The model files that a question measures: those named, else the car and the bishop of the shared
+ * shapes, and the fender. Missing ones are named and left out; without any shared shape, the models
+ * of tests/models are used. Throws std::runtime_error if none is left. */
 std::vector<std::string> bench_models(const options &options);
-/* "catmark_car" of its path. */
+/* The model's name from its path: "catmark_car". */
 std::string model_name(const std::string &path);
 
 #endif

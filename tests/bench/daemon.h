@@ -1,4 +1,4 @@
-/* A real sheend on a Unix socket and a TCP port of its own, for as long as this lives. */
+/* Runs a real sheend on a Unix socket and a TCP port, as long as this object lives. */
 #ifndef SHEEN_TESTS_BENCH_DAEMON_H
 #define SHEEN_TESTS_BENCH_DAEMON_H
 
@@ -13,14 +13,14 @@ class daemon_process
     temporary_folder folder;
 
   public:
-    /* Throws std::runtime_error, with what the program said, when it does not start. */
+    /* Throws std::runtime_error with the program's message if it does not start. */
     daemon_process(const std::string &program, const std::string &device);
     ~daemon_process();
     daemon_process(const daemon_process &) = delete;
     daemon_process &operator=(const daemon_process &) = delete;
 
     std::string unix_address, tcp_address;
-    /* Processor time of all its threads since its start. */
+    /* The processor time of all its threads since its start. */
     double cpu_ms() const;
 
   private:

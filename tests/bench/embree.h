@@ -1,5 +1,6 @@
-/* The peer without a GPU: Embree 3 ray tracing the same cage as a subdivision surface, 8 primary
- * rays at a time, normals by rtcInterpolate, one sample of the stripes a pixel. */
+/* The peer without a GPU: Embree 3 ray-traces the same cage as a subdivision surface, with 8
+ * primary rays at a time, normals by rtcInterpolate, and one sample of the stripes for each
+ * pixel. */
 #ifndef SHEEN_TESTS_BENCH_EMBREE_H
 #define SHEEN_TESTS_BENCH_EMBREE_H
 
@@ -15,13 +16,13 @@ extern "C" {
 
 struct embree_picture {
     std::vector<uint8_t> rgba;
-    std::vector<float> normals; /* empty unless asked for; NaN where nothing is hit */
+    std::vector<float> normals; /* empty unless requested; NaN without a hit */
 };
 
 class embree_scene
 {
   public:
-    /* Builds the scene with so many threads. `rate` is the tessellation rate of every edge. */
+    /* Builds the scene with n_threads threads. `rate` is the tessellation rate of every edge. */
     embree_scene(const cage &cage, unsigned rate, int n_threads);
     ~embree_scene();
     embree_scene(const embree_scene &) = delete;
@@ -37,7 +38,7 @@ class embree_scene
     std::unique_ptr<implementation> m;
 };
 
-/* What of the cage Embree has no word for; empty: nothing. */
+/* The features of the cage that Embree does not support; empty: none. */
 std::string embree_lacks(const cage &cage);
 
 #endif

@@ -1,5 +1,5 @@
-/* A cage as OpenSubdiv's users draw it: libosd's own choices, Gregory end caps, and the points that
- * its patches index. */
+/* A cage as users of OpenSubdiv draw it: libosd's default choices, Gregory end caps, and the points
+ * that its patches refer to. */
 #ifndef SHEEN_TESTS_BENCH_OSD_PATCHES_H
 #define SHEEN_TESTS_BENCH_OSD_PATCHES_H
 
@@ -14,7 +14,7 @@ struct osd_patches {
     std::unique_ptr<OpenSubdiv::Far::PatchTable> table;
     std::vector<control_point> points;
 
-    /* `level`: how deep features are isolated. Throws as make_refiner() does. */
+    /* `level` is the isolation level of features. Throws as make_refiner() does. */
     osd_patches(const cage &cage, int level);
 };
 

@@ -1,6 +1,6 @@
-/* What a benchmark asks. Each bench_NAME.cpp says it once, at namespace scope, and so is known to
- * the program that it is linked into (main.cpp): one question by itself, or several of which the
- * command line chooses. */
+/* A question that a benchmark answers. Each bench_NAME.cpp declares one at namespace scope, which
+ * registers it in the program that it is linked into (main.cpp): one question alone, or several
+ * from which the command line chooses. */
 #ifndef SHEEN_TESTS_BENCH_QUESTION_H
 #define SHEEN_TESTS_BENCH_QUESTION_H
 
@@ -11,9 +11,9 @@
 #include "tests/bench/bench.h"
 
 struct question {
-    std::string name;              /* what the command line calls it */
-    std::string asks;              /* a line for the help */
-    std::vector<std::string> keys; /* the --keys that it knows beside everyone's */
+    std::string name;              /* name on the command line */
+    std::string asks;              /* one line for the help */
+    std::vector<std::string> keys; /* further --keys that it accepts */
     std::function<void(report *report)> ask;
 
     question(const char *name, const char *asks, std::vector<std::string> keys,

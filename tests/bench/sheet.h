@@ -1,5 +1,5 @@
-/* A rolling sheet of quads over [0, columns/rows] x [0, 1] with extraordinary vertices inside:
- * every `every`-th edge or so is turned, which makes two vertices of valence 3 and two of 5. */
+/* A wavy sheet of quads over [0, columns/rows] x [0, 1] with extraordinary vertices inside: about
+ * every `every`-th edge is turned, which makes two vertices of valence 3 and two of valence 5. */
 #ifndef SHEEN_TESTS_BENCH_SHEET_H
 #define SHEEN_TESTS_BENCH_SHEET_H
 
@@ -11,20 +11,21 @@
 class sheet
 {
   public:
-    /* every: one turned edge for so many faces; 0: none. */
+    /* every: one turned edge for this many faces; 0: none. */
     sheet(int columns, int rows, int every);
     std::shared_ptr<const struct cage> cage() const;
     void write_obj(const std::string &path) const
     {
         loose.write_obj(path);
     }
-    size_t irregular() const /* vertices inside */
+    size_t irregular() const /* interior vertices */
     {
         return 4 * turned;
     }
-    /* From so far above a vertex of valence 5 inside, or where one would be. */
+    /* Looks from this distance above an interior vertex of valence 5, or above the place where one
+     * would be. */
     void close_up(double distance, camera *camera) const;
-    /* From above, so near that the sheet covers a square picture with some to spare. */
+    /* Looks from above, so near that the sheet more than covers a square picture. */
     void fill_view(camera *camera) const;
 
   private:

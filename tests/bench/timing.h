@@ -1,4 +1,4 @@
-/* Says on which device a question was asked, and what its stage times are. */
+/* Notes the device of a question, and how its stage times are measured. */
 #ifndef SHEEN_TESTS_BENCH_TIMING_H
 #define SHEEN_TESTS_BENCH_TIMING_H
 

@@ -14,10 +14,10 @@
 extern "C" {
 #endif
 
-/* The target's. Must leave nothing allocated and no state. */
+/* Implemented by the target. Must leave no allocation and no state. */
 void fuzz_one(const uint8_t *bytes, size_t size);
 
-/* Ends the process, as a finding, when something that must hold does not. */
+/* Ends the process, which the fuzzer reports, if the condition is false. */
 #define MUST(condition)                                                                            \
     do {                                                                                           \
         if (!(condition))                                                                          \
@@ -25,10 +25,11 @@ void fuzz_one(const uint8_t *bytes, size_t size);
     } while (0)
 __attribute__((noreturn)) void fuzz_fail(const char *what, const char *file, int line);
 
-/* Has an allocation failed in this input? Then more may fail than the input says. */
+/* True if an allocation has failed for this input; further ones may fail that the input does not
+ * name. */
 bool fuzz_memory_failed(void);
 
-/* From here on, or no longer, memory does not run out: for a library that ends the process then. */
+/* Switches failing allocations off or on, for a library that would end the process. */
 void fuzz_spare_memory(bool spared);
 
 /* libFuzzer's entry: in alloc_fail.c for all targets. */

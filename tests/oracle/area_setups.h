@@ -1,4 +1,4 @@
-/* Random views, lights and patterns, for colours that are means over pixels. */
+/* Random views, lights and patterns, for tests of colours that are averages over pixels. */
 #ifndef SHEEN_TESTS_ORACLE_AREA_SETUPS_H
 #define SHEEN_TESTS_ORACLE_AREA_SETUPS_H
 
@@ -10,7 +10,7 @@
 #include "tests/oracle/lines.h"
 #include "tests/oracle/view.h"
 
-/* Numbers that are the same with every library. */
+/* A generator of random numbers that gives the same numbers with every C++ library. */
 class chance
 {
   public:
@@ -29,7 +29,7 @@ class chance
     {
         return between(0, 1) < probability;
     }
-    /* Even by its logarithm. */
+    /* A number whose logarithm is uniform. */
     double scaled(double low, double high)
     {
         return low * std::pow(high / low, between(0, 1));
@@ -48,10 +48,10 @@ struct area_setup {
     std::vector<std::string> options() const; /* of `sheen render` */
 };
 
-/* A picture of patches and of single texels, partly clear or opaque, in a file of its own. */
+/* Makes a file with a picture of patches and single texels, some of them transparent. */
 std::shared_ptr<const line_image> make_image(chance *chance, const std::string &path, bool opaque);
 
-/* The number of the setup chooses the kinds of its first light and pattern, so that all appear
+/* Makes a setup. Its number chooses the kinds of its first light and pattern, so that all occur
  * equally often. The box is the model's. */
 area_setup make_area_setup(chance *chance, int number, vec3 box_min, vec3 box_max,
                            std::shared_ptr<const line_image> image, int width_px, int height_px);

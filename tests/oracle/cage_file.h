@@ -1,4 +1,4 @@
-/* Cages read from files, taken apart, put together differently, and written as OBJ. */
+/* Reads cages from files, changes them, and writes them as OBJ. */
 #ifndef SHEEN_TESTS_ORACLE_CAGE_FILE_H
 #define SHEEN_TESTS_ORACLE_CAGE_FILE_H
 
@@ -14,10 +14,10 @@ extern "C" {
 #include "server/cage/cage.h"
 }
 
-/* Throws std::runtime_error, with the path in it, when the file cannot be read. */
+/* Throws std::runtime_error with the path if the file cannot be read. */
 std::shared_ptr<const struct cage> read_cage_file(const std::string &path);
 
-/* A cage that owns its parts and lets them be changed. */
+/* A cage whose parts can be changed. */
 struct loose_cage {
     std::vector<vec3> position;
     std::vector<std::vector<uint32_t>> faces;
@@ -29,11 +29,11 @@ struct loose_cage {
 
     loose_cage() = default;
     explicit loose_cage(const cage &cage);
-    /* Every number with 17 digits. Throws std::runtime_error when it cannot be written. */
+    /* Writes every number with 17 digits. Throws std::runtime_error on failure. */
     void write_obj(const std::string &path) const;
 };
 
-/* The same as a cage, for as long as this lives. */
+/* Provides a loose_cage as a struct cage, as long as this object lives. */
 class solid_cage
 {
   public:

@@ -1,6 +1,6 @@
-/* Which pixels of a frame are hit, by which Ptex face and at which depth, against a reference
- * picture rasterised from cells of two pixels of libosd's surface. Whatever is more than one pixel
- * from the reference's silhouette or face borders must agree. */
+/* Compares which pixels of a frame show the surface, which Ptex face and which depth, with a
+ * reference picture rasterised from cells of two pixels of libosd's surface. Pixels more than one
+ * pixel away from the reference's silhouettes and face borders must agree. */
 #ifndef SHEEN_TESTS_ORACLE_COVERAGE_H
 #define SHEEN_TESTS_ORACLE_COVERAGE_H
 
@@ -9,7 +9,7 @@
 #include "tests/oracle/verdict.h"
 #include "tests/oracle/view.h"
 
-/* The columns of the lines that judge_coverage() prints. */
+/* Prints the column heads for judge_coverage(). */
 void print_coverage_header();
 /* Needs the planes P and ptex. */
 void judge_coverage(const model &model, const view &view, const planes &planes, verdict *verdict);

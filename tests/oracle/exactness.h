@@ -1,5 +1,5 @@
-/* Every pixel of a frame against libosd in double at the pixel's own (face, u, v), and against the
- * camera alone: the point must lie on its pixel's ray. */
+/* Compares every pixel of a frame with libosd in double precision at the pixel's own (face, u, v),
+ * and with the camera: the point must lie on its pixel's ray. */
 #ifndef SHEEN_TESTS_ORACLE_EXACTNESS_H
 #define SHEEN_TESTS_ORACLE_EXACTNESS_H
 
@@ -9,7 +9,7 @@
 #include "tests/oracle/verdict.h"
 #include "tests/oracle/view.h"
 
-/* The columns of the lines that judge_exactness() prints. */
+/* Prints the column heads for judge_exactness(). */
 void print_exactness_header();
 /* Needs the planes P, N and ptex. `tables` are the model's. */
 void judge_exactness(const model &model, const table_evaluator &tables, const view &view,

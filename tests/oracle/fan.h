@@ -1,5 +1,5 @@
-/* Cages of our own about one vertex: sectors of 2 x 2 quads in a ring or an arc, rough at random.
- */
+/* Cages around one vertex, made by the test: sectors of 2 x 2 quads in a ring or an arc, with
+ * random heights. */
 #ifndef SHEEN_TESTS_ORACLE_FAN_H
 #define SHEEN_TESTS_ORACLE_FAN_H
 
@@ -21,7 +21,8 @@ struct fan_shape {
     float sharpness;                            /* of the vertex */
 };
 
-/* The vertex is vertex 0; sector k's face at it is face 4 k, and the same Ptex face. */
+/* The vertex is vertex 0. The face of sector k at the vertex is face 4 k, which is also its Ptex
+ * face. */
 class fan
 {
   public:
@@ -30,7 +31,7 @@ class fan
     fan &operator=(const fan &) = delete;
 
     struct cage cage = {};
-    /* The cage's corner at the vertex in sector k; less 16 k it is the corner of the Ptex face. */
+    /* The cage's corner at the vertex in sector k; minus 16 k it is the corner of the Ptex face. */
     uint32_t corner(int sector) const;
 
   private:

@@ -1,11 +1,11 @@
-/* Faults put in on purpose, so that self_test.sh can show that the oracles find them. */
+/* Deliberate faults, by which self_test.sh shows that the oracles find them. */
 #ifndef SHEEN_TESTS_ORACLE_FAULT_H
 #define SHEEN_TESTS_ORACLE_FAULT_H
 
 #include <cstdlib>
 #include <string>
 
-/* Whether the environment's FAKE_FAULTS (comma-separated) has this one. */
+/* True if FAKE_FAULTS in the environment (comma-separated) has this name. */
 inline bool has_fault(const char *name)
 {
     const char *faults = std::getenv("FAKE_FAULTS");

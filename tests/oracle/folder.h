@@ -3,7 +3,7 @@
 
 #include <string>
 
-/* A folder of its own under TMPDIR that is removed with everything in it. */
+/* A temporary folder under TMPDIR, removed with its contents at the end. */
 class temporary_folder
 {
   public:

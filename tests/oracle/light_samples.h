@@ -1,5 +1,6 @@
-/* Where many rays a pixel meet the light, unfiltered: from them every number of stripes can be
- * told. Drawn in this process, since pictures of that size are slow to send. */
+/* Samples where many rays of each pixel meet the light, without filtering; the result for every
+ * number of stripes follows from them. Rendered in this process, because pictures of that size are
+ * slow to send. */
 #ifndef SHEEN_TESTS_ORACLE_LIGHT_SAMPLES_H
 #define SHEEN_TESTS_ORACLE_LIGHT_SAMPLES_H
 
@@ -8,7 +9,7 @@
 
 #include "tests/oracle/scene.h"
 
-/* The middle of a frame. */
+/* The middle part of a frame. */
 struct middle_part {
     int x0_px, y0_px, width_px, height_px;
 };
@@ -25,16 +26,18 @@ class light_samples
     light_samples(const light_samples &) = delete;
     light_samples &operator=(const light_samples &) = delete;
 
-    /* Of the part's pixel i: how many samples see nothing, and how many miss the light. */
+    /* For pixel i of the part: the number of samples that see nothing, and the number that miss the
+     * light. */
     std::vector<uint16_t> n_empty, n_miss;
-    /* How many see the bright part of so many stripes, duty 1/2. */
+    /* For each pixel, the number of samples that see the bright part of this many stripes, duty
+     * 1/2. */
     std::vector<uint16_t> bright(double stripes) const;
 
   private:
     template <typename predicate> void count(std::vector<uint16_t> *n, predicate is_so) const;
 
     int width_px, height_px;
-    struct frame frame; /* rows of samples; s and t are NaN where the light is not met */
+    struct frame frame; /* rows of samples; s and t are NaN where the ray misses the light */
 };
 
 #endif

@@ -1,4 +1,4 @@
-/* The families, lights, patterns and line eyes that test_lines puts together for a view. */
+/* The families, lights, patterns and line eyes that test_lines combines for a view. */
 #ifndef SHEEN_TESTS_ORACLE_LINE_SETUPS_H
 #define SHEEN_TESTS_ORACLE_LINE_SETUPS_H
 
@@ -11,14 +11,15 @@
 struct named_setup {
     std::string name;
     line_setup setup;
-    /* Whether the lines stay on the surface when the camera moves. */
+    /* True if the lines stay on the surface when the camera moves. */
     bool locked() const
     {
         return setup.eye_kind != line_eye_kind::camera;
     }
 };
 
-/* Every family and light at least twice, every pattern, one and several lights. */
+/* All setups of a view: every family and light at least twice, every pattern, one and several
+ * lights. */
 std::vector<named_setup> line_setups(const model &model, const view &view);
 
 #endif

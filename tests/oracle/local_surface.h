@@ -1,7 +1,7 @@
-/* The limit surface near one vertex of a cage by repeated refinement of its neighbourhood, in long
+/* The limit surface near one vertex of a cage, by repeated refinement of its neighbourhood in long
  * double: the textbook's rules (Catmull and Clark 1978; DeRose, Kass and Truong 1998) on a mesh of
- * three rings, as deep as is asked for, and a bicubic B-spline where that is regular. Knows no
- * closed form of anything at the vertex, and shares nothing with server/surface. */
+ * three rings, as deep as requested, and a bicubic B-spline where the mesh is regular. Uses no
+ * closed form for the vertex, and shares nothing with server/surface. */
 #ifndef SHEEN_TESTS_ORACLE_LOCAL_SURFACE_H
 #define SHEEN_TESTS_ORACLE_LOCAL_SURFACE_H
 
@@ -32,10 +32,10 @@ class local_surface
     local_surface(const local_surface &) = delete;
     local_surface &operator=(const local_surface &) = delete;
 
-    /* At (a, b) seen from corner `corner` of the cage, whose vertex this is; a Ptex face each.
-     * False at the vertex itself, beyond the last level, outside [0,1], and where rules have not
-     * come to rest at the level where the place is looked at: where sharpness is finite there or
-     * another extraordinary vertex is as near. */
+    /* Evaluates at (a, b) seen from cage corner `corner`, which must be at this vertex; each such
+     * corner is a Ptex face. False at the vertex itself, beyond the last level, outside of [0,1],
+     * and where the rules are not constant yet at the level in question, because of finite
+     * sharpness or another extraordinary vertex nearby. */
     bool evaluate(uint32_t corner, double a, double b, local_sample *out) const;
 
   private:

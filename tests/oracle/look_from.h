@@ -1,4 +1,4 @@
-/* From the oracles' vectors and views to a request of the renderer in this process. */
+/* Converts the oracles' vectors and views to a request for the renderer in this process. */
 #ifndef SHEEN_TESTS_ORACLE_LOOK_FROM_H
 #define SHEEN_TESTS_ORACLE_LOOK_FROM_H
 
@@ -13,7 +13,7 @@ inline void put(vec3 from, double to[3])
     to[2] = from.z;
 }
 
-/* The request's camera becomes the view's; its size in pixels stays. */
+/* Sets the request's camera to the view's; its size in pixels is unchanged. */
 inline void look_from(const view &view, frame_request *request)
 {
     request->camera.kind = view.orthographic ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE;

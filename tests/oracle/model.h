@@ -1,4 +1,4 @@
-/* A cage file, its oracle, and how large its limit surface is. */
+/* A cage file, its oracle, and the size of its limit surface. */
 #ifndef SHEEN_TESTS_ORACLE_MODEL_H
 #define SHEEN_TESTS_ORACLE_MODEL_H
 
@@ -13,7 +13,7 @@ struct model {
     std::string path, name; /* name: the file without its folder */
     std::shared_ptr<const struct cage> cage;
     std::unique_ptr<osd_oracle> oracle;
-    vec3 box_min, box_max; /* of limit positions, sampled 9 x 9 on every Ptex face */
+    vec3 box_min, box_max; /* box of limit positions, sampled 9 x 9 on every Ptex face */
 
     vec3 middle() const
     {
@@ -25,16 +25,16 @@ struct model {
     }
 };
 
-/* Throws as read_cage_file(), and when the cage cannot be evaluated. */
+/* Throws as read_cage_file(), and if the cage cannot be evaluated. */
 model read_model(const std::string &path);
 
-/* The same cage under another boundary mode. Throws when that leaves no surface. */
+/* The same cage with another boundary mode. Throws if that leaves no surface. */
 model with_boundary(const model &model, cage_boundary boundary);
 
-/* The model files that a test was given: those that exist. A folder stands for its Catmull-Clark
- * cages, sorted: every .obj, .gltf and .glb but those whose names say that they are of another
- * scheme (loop_*, bilinear_*) or not manifold (*nonman*), which are counted and passed over. What
- * is missing is named on standard output and passed over too. */
+/* The existing model files among the arguments. A folder stands for its Catmull-Clark cages,
+ * sorted: every .obj, .gltf and .glb, except those whose names say that they have another scheme
+ * (loop_*, bilinear_*) or are not manifold (*nonman*); these are counted and skipped. Missing files
+ * are named on standard output and skipped. */
 std::vector<std::string> list_models(const std::vector<std::string> &arguments);
 
 #endif

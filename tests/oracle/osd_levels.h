@@ -1,4 +1,4 @@
-/* Every level of libosd's uniform refinement of a cage, in double. */
+/* Every level of libosd's uniform refinement of a cage, in double precision. */
 #ifndef SHEEN_TESTS_ORACLE_OSD_LEVELS_H
 #define SHEEN_TESTS_ORACLE_OSD_LEVELS_H
 
@@ -19,8 +19,9 @@ class osd_levels
     osd_levels(const osd_levels &) = delete;
     osd_levels &operator=(const osd_levels &) = delete;
 
-    /* Faces of level 0 are the cage's. */
-    int child(int level, int face, int corner) const; /* of the next level, at that corner */
+    /* The faces of level 0 are those of the cage. */
+    /* The face of the next level at this corner. */
+    int child(int level, int face, int corner) const;
     vec3 vertex(int level, int face, int corner) const;
 
   private:

@@ -1,11 +1,9 @@
-/* The limit surface as libosd computes it, in double: what sheen is compared with.
- *
+/* The limit surface computed by libosd in double precision: the reference for sheen.
  * Feature-adaptive refinement to isolation level 10 with infinitely sharp patches, no single-crease
  * patches (libosd's CPU evaluation ignores their crease), no legacy sharp corners, Gregory end
- * caps. Exact to rounding but inside the end caps, which reach no further than 2^-9 of a Ptex face
- * from its corners (2^-10 for quads): see osd_oracle_is_exact().
- *
- * Evaluation is read-only and may run in several threads. */
+ * caps. Exact to rounding except in the end caps, which extend at most 2^-9 of a Ptex face from its
+ * corners (2^-10 for quads): see osd_oracle_is_exact(). Evaluation is read-only and may run in
+ * several threads. */
 #ifndef SHEEN_TESTS_ORACLE_OSD_ORACLE_H
 #define SHEEN_TESTS_ORACLE_OSD_ORACLE_H
 
@@ -24,7 +22,8 @@ extern "C" {
 /* Position (file units) and derivatives by the Ptex face's own u and v. */
 struct osd_sample {
     vec3 p, du, dv, duu, duv, dvv;
-    /* Whether du and dv span a plane: they need not in cusps and folds, nor at sharp corners. */
+    /* True if du and dv span a plane, which they need not do in cusps, in folds and at sharp
+     * corners. */
     bool has_normal() const
     {
         double size = length(du) + length(dv) + length(duu) + length(duv) + length(dvv);
@@ -36,11 +35,11 @@ struct osd_sample {
     }
 };
 
-/* A vertex of the cage (or the middle of an n-gon) that is not regular, and where it is. */
+/* An irregular vertex of the cage (or the middle of an n-gon), and its place. */
 struct osd_irregular {
     uint32_t face;  /* Ptex face that has it at a corner */
     double u, v;    /* that corner, 0 or 1 each */
-    size_t valence; /* faces about it */
+    size_t valence; /* faces around it */
     bool boundary;
 };
 
@@ -55,12 +54,12 @@ class osd_oracle
     osd_oracle &operator=(const osd_oracle &) = delete;
 
     uint32_t n_ptex_faces() const;
-    bool non_manifold() const; /* an edge or a vertex of the cage is */
+    bool non_manifold() const; /* an edge or a vertex of the cage is non-manifold */
     const std::vector<osd_irregular> &irregular() const;
 
-    /* False when there is no surface (a hole) or the arguments are out of range. */
+    /* False if there is no surface (a hole), or if the arguments are out of range. */
     bool evaluate(uint32_t face, double u, double v, osd_sample *sample) const;
-    /* The same, position only, in a third of the time. */
+    /* As evaluate(), only the position, in a third of the time. */
     bool evaluate(uint32_t face, double u, double v, vec3 *position) const;
 
   private:
@@ -68,7 +67,7 @@ class osd_oracle
     std::unique_ptr<implementation> m;
 };
 
-/* Whether (u, v) is at least 1/512 from all four corners, in u or in v. */
+/* True if (u, v) is at least 1/512 away from all four corners, in u or in v. */
 bool osd_oracle_is_exact(double u, double v);
 
 #endif

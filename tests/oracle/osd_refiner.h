@@ -1,4 +1,4 @@
-/* A cage as libosd's refiner: what its patches and its levels are both made from. */
+/* A cage as libosd's refiner, from which its patches and its levels are made. */
 #ifndef SHEEN_TESTS_ORACLE_OSD_REFINER_H
 #define SHEEN_TESTS_ORACLE_OSD_REFINER_H
 
@@ -13,7 +13,7 @@ extern "C" {
 #include "server/cage/cage.h"
 }
 
-/* A point as libosd's templates want it. */
+/* A point with the interface of libosd's templates. */
 struct control_point {
     vec3 p;
     void Clear(void * = nullptr)

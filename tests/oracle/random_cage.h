@@ -1,6 +1,6 @@
-/* Cages drawn at random from all that a cage may be: sheets, bodies, fans, pages of a book, cubes
- * that share edges and vertices; with lost faces, triangles and n-gons, sheets glued to edges and
- * vertices; every tag and mode. The same seed makes the same cage. */
+/* Random cages of all kinds: sheets, bodies, fans, pages of a book, cubes that share edges and
+ * vertices; with lost faces, triangles and n-gons, sheets glued to edges and vertices; every tag
+ * and mode. The same seed makes the same cage. */
 #ifndef SHEEN_TESTS_ORACLE_RANDOM_CAGE_H
 #define SHEEN_TESTS_ORACLE_RANDOM_CAGE_H
 
@@ -11,7 +11,7 @@
 
 struct random_cage {
     loose_cage parts;
-    std::string story; /* what it was made from, in words */
+    std::string story; /* a description of how it was made */
 };
 
 random_cage make_random_cage(uint64_t seed);

@@ -1,5 +1,5 @@
-/* Random setups of lines about a model: cameras, line eyes and lights from near to 10^4 model sizes
- * away, wide, thin and fine, u not across v. The same for the same seed. */
+/* Random setups around a model: cameras, line eyes and lights from near to 10^4 model sizes away,
+ * wide, thin and fine, with u not perpendicular to v. The same seed gives the same setups. */
 #ifndef SHEEN_TESTS_ORACLE_RANDOM_SETUPS_H
 #define SHEEN_TESTS_ORACLE_RANDOM_SETUPS_H
 
@@ -10,7 +10,7 @@
 
 struct seen_setup {
     view camera;
-    line_setup setup; /* of one light, its pattern left as it is */
+    line_setup setup; /* with one light; its pattern is unchanged */
 };
 
 class random_setups
@@ -19,8 +19,8 @@ class random_setups
     /* `size`: the diagonal of the model's box. */
     random_setups(vec3 middle, double size, int width_px, int height_px, unsigned seed);
     seen_setup choose(line_family family, line_light_kind kind);
-    /* Six model sizes over the model and a sixteenth of one in radius: there squares of lengths,
-     * taken from each other, lose all that tells lines apart. */
+    /* A tunnel six model sizes above the model, with a radius of a sixteenth of a model size:
+     * differences of squared lengths there lose all digits that distinguish lines. */
     seen_setup choose_thin_tunnel();
 
   private:
@@ -31,10 +31,10 @@ class random_setups
 
     double uniform(double low, double high);
     bool chance(double share);
-    /* 10^low to 10^high model sizes. */
+    /* A length from 10^low to 10^high model sizes. */
     double sizes(double low, double high);
     vec3 direction();
-    /* By at least 6 degrees. */
+    /* A direction at least 6 degrees away from the axis. */
     vec3 direction_off(vec3 axis);
     view choose_camera();
     void choose_eye(line_setup *setup);

@@ -1,5 +1,5 @@
-/* The reference picture: libosd's surface cut into cells of two pixels or less and rasterised on
- * the CPU in double, 3 x 3 samples a pixel, the middle one at the pixel's centre. */
+/* The reference picture: libosd's surface cut into cells of at most two pixels and rasterised on
+ * the CPU in double precision, with 3 x 3 samples for each pixel, the middle one at its centre. */
 #ifndef SHEEN_TESTS_ORACLE_RASTER_H
 #define SHEEN_TESTS_ORACLE_RASTER_H
 
@@ -14,8 +14,8 @@ const int raster_factor = 3;
 struct raster {
     int width = 0, height = 0; /* samples: raster_factor times the pixels */
     struct sample {
-        double depth;  /* along the view direction, world units; infinite where nothing is hit */
-        uint32_t face; /* Ptex face of the nearest surface, no_face where none */
+        double depth;  /* along the view direction, world units; infinite without a surface */
+        uint32_t face; /* Ptex face of the nearest surface; no_face without one */
         float u, v;
     };
     std::vector<sample> samples; /* rows top first */
@@ -30,7 +30,7 @@ struct raster {
     }
 };
 
-/* Surface behind the eye's plane is left out; all else is drawn, from both sides. */
+/* Draws everything, from both sides, except surface behind the plane of the eye. */
 raster rasterize(const osd_oracle &oracle, const view &view);
 
 #endif

@@ -11,14 +11,14 @@
 
 const uint32_t no_face = 0xffffffffu;
 
-/* What a frame's file says, rows top first. Planes that were not asked for are empty. */
+/* The contents of a frame's file, top row first. Planes that were not requested are empty. */
 struct planes {
     int width_px = 0, height_px = 0;
-    /* Of the colour, displayed, straight alpha; with the light or the coverage plane only. */
+    /* The colour, sRGB with straight alpha; present only with the light or the coverage plane. */
     std::vector<float> red, green, blue, alpha;
     std::vector<float> coverage;
     std::vector<float> px, py, pz, nx, ny, nz, u, v, s, t, k_min, k_max;
-    std::vector<float> dsdx, dsdy, dtdx, dtdy; /* of the light coordinates, a pixel */
+    std::vector<float> dsdx, dsdy, dtdx, dtdy; /* changes of the light coordinates per pixel */
     std::vector<uint32_t> face;
 
     bool hit(size_t i) const
@@ -41,11 +41,11 @@ struct planes {
 planes read_planes(const std::string &path, const std::string &aov);
 
 struct program_result {
-    int exit_code = -1; /* -1: it could not be run, was killed or took too long */
+    int exit_code = -1; /* -1: could not be started, was killed or took too long */
     std::string output, errors;
 };
 
-/* Runs a program without a shell and waits for it, two minutes at most. */
+/* Runs a program without a shell and waits for at most two minutes. */
 program_result run_program(const std::vector<std::string> &arguments,
                            const temporary_folder &folder);
 

@@ -1,5 +1,5 @@
-/* server/render/renderer.h for C++, where renderer_info is a struct and a function, as it may be.
- * Its line_family and line_eye_kind are called renderer_... here: lines.h has its own. */
+/* server/render/renderer.h for C++, in which renderer_info is both a struct and a function. Its
+ * line_family and line_eye_kind are renamed to renderer_..., because lines.h has its own. */
 #ifndef SHEEN_TESTS_ORACLE_RENDERER_H
 #define SHEEN_TESTS_ORACLE_RENDERER_H
 

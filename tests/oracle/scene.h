@@ -1,5 +1,4 @@
-/* A cage, its tables, and the renderer that draws them, in this process, without
- * a daemon. */
+/* A cage, its tables, and a renderer in this process, without a daemon. */
 #ifndef SHEEN_TESTS_ORACLE_SCENE_H
 #define SHEEN_TESTS_ORACLE_SCENE_H
 
@@ -8,21 +7,21 @@
 
 #include "tests/oracle/renderer.h"
 
-/* As many threads as the daemon builds tables with on the machine of RESULTS.md, and as every peer
- * gets. */
+/* The number of threads with which the daemon builds tables on the machine of RESULTS.md, and which
+ * every peer gets. */
 const int bench_threads = 2;
 
 /* A cage's tables. */
 class scene
 {
   public:
-    /* Throws std::runtime_error when the cage is refused. */
+    /* Throws std::runtime_error if the cage is refused. */
     explicit scene(std::shared_ptr<const struct cage> whose, int n_threads = bench_threads);
     ~scene();
     scene(const scene &) = delete;
     scene &operator=(const scene &) = delete;
 
-    /* The camera and the light that sheen chooses, 40 stripes, colour only. */
+    /* A request with sheen's default camera and light, 40 stripes, colour only. */
     frame_request request(uint32_t width_px, uint32_t height_px) const;
     size_t bytes() const
     {
@@ -33,26 +32,26 @@ class scene
     limit_tables tables = {};
 };
 
-/* What a frame cost. */
+/* The cost of a frame. */
 struct frame_cost {
     frame_times stages;
-    double all_ms;  /* from the request to the planes in memory, by the clock */
-    double wall_ms; /* the same without reading back */
+    double all_ms;  /* elapsed time from the request to the planes in memory */
+    double wall_ms; /* elapsed time without the readback */
 
-    /* Visibility, evaluate and shade, in milliseconds. */
+    /* The time of visibility, evaluate and shade, in milliseconds. */
     double stages_ms() const
     {
         return (double)(stages.visibility_us + stages.evaluate_us + stages.shade_us) / 1000;
     }
 };
 
-/* The renderer with one scene's tables on its device. */
+/* A renderer with one scene's tables on its device. */
 class drawing
 {
   public:
     /* `device` as sheend's --device, `isa` as renderer_options. */
     drawing(const scene &scene, const char *device, const char *isa = nullptr);
-    /* On the device that tests are to judge, by the environment: SHEEN_TEST_DEVICE (native) and
+    /* On the device that the tests judge, from the environment: SHEEN_TEST_DEVICE (native) and
      * SHEEN_TEST_ISA. */
     explicit drawing(const scene &scene);
     ~drawing();
@@ -63,7 +62,7 @@ class drawing
     {
         return *renderer_info(renderer);
     }
-    /* The caller gives the frame back with frame_finish(). */
+    /* The caller frees the frame by frame_finish(). */
     frame render(const frame_request &request);
     /* Renders and drops the picture. */
     frame_cost cost(const frame_request &request);
@@ -73,10 +72,10 @@ class drawing
     struct renderer_model *model;
 };
 
-/* The eye goes about the target along up. Frames of different cameras share no planes. */
+/* Turns the eye around the target about up. Frames of different cameras share no planes. */
 void orbit(camera *camera, double degrees);
 
-/* Pixels that show the surface, by the frame's normals. */
+/* The number of pixels that show the surface, by the frame's normals. */
 size_t covered_pixels(const frame &frame);
 
 #endif

@@ -13,7 +13,7 @@ inline double light_of(double displayed)
     return displayed / 12.92;
 }
 
-/* And back. */
+/* The displayed value of linear light, both in [0,1]. */
 inline double displayed_of(double light)
 {
     if (light > 0.0031308)

@@ -1,6 +1,6 @@
-/* Where many rays of each pixel meet a model's surface: the exact positions and normals of an
- * enlarged frame, drawn in this process. Knows nothing of lines.h, whose names are the renderer's.
- */
+/* Finds where many rays of each pixel meet a model's surface: the exact positions and normals of an
+ * enlarged frame, rendered in this process. Does not include lines.h, whose names collide with the
+ * renderer's. */
 #ifndef SHEEN_TESTS_ORACLE_SURFACE_GRID_H
 #define SHEEN_TESTS_ORACLE_SURFACE_GRID_H
 
@@ -14,7 +14,7 @@
 struct surface_grid {
     size_t width = 0, height = 0;
     std::vector<std::array<float, 3>> positions,
-        normals; /* rows top first; NaN where none is met */
+        normals; /* top row first; NaN where the ray misses */
 
     bool hit(size_t i) const
     {
@@ -30,18 +30,18 @@ struct surface_grid {
     }
 };
 
-/* A model with a renderer of its own: one at a time, since renderers share their thread's context.
- */
+/* A model with its own renderer. Only one at a time, because renderers share their thread's
+ * context. */
 class grid_model
 {
   public:
-    /* Throws std::runtime_error when the file is no cage. */
+    /* Throws std::runtime_error if the file is not a cage. */
     explicit grid_model(const std::string &path);
     ~grid_model();
     grid_model(const grid_model &) = delete;
     grid_model &operator=(const grid_model &) = delete;
 
-    /* `side` rays a pixel, each way. */
+    /* `side` x `side` rays for each pixel. */
     surface_grid sample(const view &view, int side);
 
     std::string path;

@@ -1,4 +1,4 @@
-/* Three doubles and what the oracles do with them. Independent of server/surface on purpose. */
+/* Three doubles and the oracles' operations on them. Deliberately independent of server/surface. */
 #ifndef SHEEN_TESTS_ORACLE_VEC_H
 #define SHEEN_TESTS_ORACLE_VEC_H
 
@@ -40,7 +40,7 @@ inline bool finite(vec3 a)
 {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
-/* Radians in [0, pi], accurate for small angles, any lengths. */
+/* The angle in [0, pi] rad, accurate for small angles and any lengths. */
 inline double angle(vec3 a, vec3 b)
 {
     return std::atan2(length(cross(a, b)), dot(a, b));

@@ -1,4 +1,4 @@
-/* Counts passes and failures, prints them as they come, and ends a test program. */
+/* Counts and prints passes and failures, and ends a test program. */
 #ifndef SHEEN_TESTS_ORACLE_VERDICT_H
 #define SHEEN_TESTS_ORACLE_VERDICT_H
 
@@ -11,7 +11,7 @@
 struct verdict {
     int passed = 0, failed = 0;
 
-    /* One finding: a failure prints what was broken. Returns ok. */
+    /* Records one check; prints `what` on failure. Returns ok. */
     bool check(bool ok, const std::string &what)
     {
         ok ? passed++ : failed++;
@@ -19,14 +19,14 @@ struct verdict {
             std::printf("  FAILED: %s\n", what.c_str());
         return ok;
     }
-    /* value <= bound; a value that is not a number fails. */
+    /* Checks value <= bound; NaN fails. */
     bool at_most(double value, double bound, const std::string &what)
     {
         char text[96];
         std::snprintf(text, sizeof text, ": %.3g, at most %.3g allowed", value, bound);
         return check(value <= bound, what + text);
     }
-    /* The program's last line and its exit code. */
+    /* Prints the program's last line and returns its exit code. */
     int finish() const
     {
         std::printf("%d passed, %d failed\n", passed, failed);
@@ -34,7 +34,7 @@ struct verdict {
     }
 };
 
-/* The q-quantile (0 < q <= 1) of values, which it reorders; 0 for none. NaN sorts last. */
+/* The q-quantile (0 < q <= 1) of values, which it reorders; 0 if there are none. NaN sorts last. */
 inline double quantile(std::vector<double> &values, double q)
 {
     if (values.empty())

@@ -1,4 +1,4 @@
-/* The folder that the programs under test lie in, for tests that start them. */
+/* The folder of the programs under test, for tests that start them. */
 #ifndef SHEEN_TESTS_BUILD_FOLDER_H
 #define SHEEN_TESTS_BUILD_FOLDER_H
 
@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Tests are BUILD/tests/NAME. Of a static buffer. */
+/* Returns BUILD, because tests are BUILD/tests/NAME. A static buffer. */
 static inline const char *build_folder(void)
 {
     static char path[PATH_MAX];

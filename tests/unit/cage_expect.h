@@ -1,4 +1,4 @@
-/* What tests of the cage readers expect of a cage. */
+/* Helpers for tests of the cage readers. */
 #ifndef SHEEN_TESTS_CAGE_EXPECT_H
 #define SHEEN_TESTS_CAGE_EXPECT_H
 
@@ -13,7 +13,7 @@
 
 #include "server/cage/read/read.h"
 
-/* Reads a file that must be accepted; the caller finishes the cage. */
+/* Reads a file that must be accepted; the caller frees the cage by cage_finish(). */
 static inline void read_bytes(struct cage *cage, const void *bytes, size_t size, const char *name)
 {
     struct error error = {0};
@@ -21,7 +21,7 @@ static inline void read_bytes(struct cage *cage, const void *bytes, size_t size,
         fail_msg("refused: %s", error.text);
 }
 
-/* The same of an OBJ text, called part.obj. */
+/* As read_bytes(), for an OBJ text named part.obj. */
 static inline void read_obj(struct cage *cage, const char *text)
 {
     read_bytes(cage, text, strlen(text), "part.obj");
@@ -35,7 +35,7 @@ static inline void expect_face(const struct cage *cage, size_t face, size_t n,
     assert_memory_equal(&cage->face_vertex[cage->face_start[face]], vertex, n * sizeof *vertex);
 }
 
-/* The face has these corners, in this order. */
+/* Expects that the face has these corners, in this order. */
 #define EXPECT_FACE(cage, face, ...)                                                               \
     expect_face(cage, face, sizeof((uint32_t[]){__VA_ARGS__}) / sizeof(uint32_t),                  \
                 (uint32_t[]){__VA_ARGS__})

@@ -1,4 +1,4 @@
-/* The limit tables of an OBJ, for the tests of what is drawn or evaluated from them. */
+/* Builds the limit tables of an OBJ, for tests of drawing and evaluation. */
 #ifndef SHEEN_TESTS_CAGE_TABLES_H
 #define SHEEN_TESTS_CAGE_TABLES_H
 
@@ -53,13 +53,13 @@ static inline void build_file(const char *path, struct limit_tables *tables)
     build_file_as(path, true, tables);
 }
 
-/* Without the points of any level. */
+/* Builds tables on demand, without points. */
 static inline void build_file_on_demand(const char *path, struct limit_tables *tables)
 {
     build_file_as(path, false, tables);
 }
 
-/* A torus of n x n quads: smooth, and regular all over. */
+/* A torus of n x n quads: smooth and regular everywhere. */
 static inline void build_torus(unsigned n, struct limit_tables *tables)
 {
     size_t room = (size_t)n * n * 100, used = 0;
@@ -80,8 +80,8 @@ static inline void build_torus(unsigned n, struct limit_tables *tables)
     free(text);
 }
 
-/* One bicubic Bezier patch as a cage: its 16 B-spline points, of whose nine faces the middle one,
- * BEZIER_FACE, has a surface (boundary mode NONE). */
+/* One bicubic Bezier patch as a cage: its 16 B-spline points. Of the nine faces only the middle
+ * one, BEZIER_FACE, has a surface (boundary mode NONE). */
 enum { BEZIER_FACE = 4 };
 
 static inline void build_bezier(struct vec bezier[4][4], struct limit_tables *tables)
@@ -104,7 +104,7 @@ static inline void build_bezier(struct vec bezier[4][4], struct limit_tables *ta
     build(text, (size_t)used, tables);
 }
 
-/* An eighth of a sphere about the origin, nearly, whose last row (turned: column) is its north
+/* Nearly an eighth of a sphere about the origin, whose last row (or, turned, column) is its north
  * pole. */
 static inline void build_octant(bool turned, struct limit_tables *tables)
 {

@@ -1,4 +1,4 @@
-/* Certificates for one test run, in a folder of its own, made with the openssl command. */
+/* Certificates for one test run, in their own folder, made by the openssl command. */
 #ifndef SHEEN_TESTS_CERTIFICATES_H
 #define SHEEN_TESTS_CERTIFICATES_H
 
@@ -10,7 +10,8 @@
 
 struct certificates {
     char folder[64];
-    char ca[96], cert[96], key[96]; /* the authority; a server at localhost and 127.0.0.1 */
+    /* The authority; a certificate for a server at localhost and 127.0.0.1. */
+    char ca[96], cert[96], key[96];
     char client_cert[96], client_key[96];
 };
 
@@ -24,7 +25,7 @@ static inline int __attribute__((format(printf, 1, 2))) shell(const char *format
     return system(command);
 }
 
-/* One certificate by the authority, with `more` options. */
+/* Makes one certificate of the authority, with `more` options. */
 static inline int certificate_make(const struct certificates *c, const char *name, const char *more)
 {
     return shell("openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 "
@@ -32,7 +33,7 @@ static inline int certificate_make(const struct certificates *c, const char *nam
                  c->folder, name, c->folder, name, name, more, c->folder);
 }
 
-/* 0 when all could be made. */
+/* Makes all certificates. 0 on success. */
 static inline int certificates_init(struct certificates *c)
 {
     char by_ca[256], server[512];

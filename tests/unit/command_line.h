@@ -7,8 +7,8 @@
 
 #include "client/cli/commands.h"
 
-/* Parses the words of `line`, which have blanks between, behind the command's name. What options
- * point into holds until the next call. */
+/* Parses the words of `line`, separated by blanks, after the command's name. Strings in the options
+ * are valid until the next call. */
 static inline enum options_result parse(const struct command *command, const char *line,
                                         struct options *options, char *why)
 {

@@ -1,5 +1,5 @@
-/* Two encoders at work at the same time, each in a thread of its own: what one has done before and
- * what the other does changes no byte of a file. */
+/* Tests two encoders at the same time, each in its own thread: neither an encoder's earlier work
+ * nor the other encoder changes a byte of a file. */
 #ifndef SHEEN_TESTS_UNIT_ENCODERS_AT_ONCE_H
 #define SHEEN_TESTS_UNIT_ENCODERS_AT_ONCE_H
 
@@ -11,8 +11,8 @@
 
 enum { AT_ONCE_WIDTH = 640, AT_ONCE_HEIGHT = 480 };
 
-/* Makes n files of a picture of that size with an encoder of its own, and returns the last one,
- * which the caller frees. */
+/* Makes n files of a picture of this size with one encoder, and returns the last, which the caller
+ * frees. */
 typedef uint8_t *encode_again(const uint8_t *rgba, int n, size_t *size);
 
 struct encoding {
@@ -29,7 +29,7 @@ static void *encode_five_times(void *argument)
     return NULL;
 }
 
-/* Takes over the pictures, which are malloc'd. */
+/* Takes the ownership of the pictures, which are from malloc(). */
 static void expect_same_at_once(encode_again *encode, uint8_t *const rgba[2])
 {
     pthread_t threads[2];

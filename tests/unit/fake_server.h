@@ -1,5 +1,5 @@
-/* Fake servers for tests of libsheen: a thread on a Unix socket that serves one connection with a
- * function of the test's. Serving functions ignore a client that has gone. */
+/* Fake servers for tests of libsheen: a thread on a Unix socket serves one connection by a function
+ * of the test. Serving functions ignore a client that has gone. */
 #ifndef SHEEN_TESTS_FAKE_SERVER_H
 #define SHEEN_TESTS_FAKE_SERVER_H
 
@@ -79,7 +79,8 @@ static inline void send_header(int fd, uint8_t type, uint16_t flags, uint32_t le
     send_bytes(fd, bytes, sizeof(bytes));
 }
 
-/* Reads one message; its body, cut off at `size`, goes to `body`. The number is 0 at the end. */
+/* Reads one message; its body, cut off at `size`, goes to `body`. The number is 0 at the end of the
+ * connection. */
 static inline struct message_header read_message(int fd, uint8_t *body, size_t size)
 {
     static uint8_t scratch[PROTOCOL_MAX_CHUNK_BYTES];
@@ -209,7 +210,8 @@ static inline struct sheen_request small_request(enum sheen_format format)
     return request;
 }
 
-/* Connecting to this server ends with this status and a text that holds the word. */
+/* Expects that connecting to this server fails with this status and a text that contains the
+ * word. */
 static inline void connect_ends_with(void (*serve)(int fd), enum sheen_status status,
                                      const char *word)
 {
@@ -224,7 +226,8 @@ static inline void connect_ends_with(void (*serve)(int fd), enum sheen_status st
     fake_finish(&fake);
 }
 
-/* Connecting works, and rendering ends with this. A fatal one leaves a session that only fails. */
+/* Expects that connecting works and that rendering ends with this status. After a fatal one, the
+ * session only fails. */
 static inline void render_ends_with(void (*serve)(int fd), enum sheen_format format,
                                     enum sheen_status status, const char *word)
 {

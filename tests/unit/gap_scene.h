@@ -1,5 +1,5 @@
-/* Sheets side by side whose borders run along each other, a third of a pixel apart, before a wall: for
- * the tests of pixels that look through the gap. */
+/* Sheets side by side in front of a wall, whose borders are parallel and a third of a pixel apart,
+ * for tests of pixels that look through the gap. */
 #ifndef SHEEN_TESTS_GAP_SCENE_H
 #define SHEEN_TESTS_GAP_SCENE_H
 
@@ -9,15 +9,15 @@
 enum { SIDE_PX = 160, QUADS = 24, WALL = 14 };
 static const double STEP_RAD = 0.1, RADIUS = 6;
 
-/* The limit curve of points on a circle runs so much nearer to its middle: to 1e-6. */
+/* The factor by which the limit curve of points on a circle is smaller than the circle, to 1e-6. */
 static inline double gap_shrink(void)
 {
     return (2 + cos(STEP_RAD)) / 3;
 }
 
 /* Two rows of quads on either side of a circle about the origin at z = 0, whose borders are `gap`
- * apart, before a wall of quads that overlap and hang apart, so that a ray must be led to its own.
- * Faces: the wall, WALL x WALL of them, the inner row, the outer row. */
+ * apart, in front of a wall of quads that overlap and are not connected, so that a ray must find
+ * its own. Faces: the wall, WALL x WALL of them, the inner row, the outer row. */
 static inline void gap_tables(struct limit_tables *tables, double gap)
 {
     static char text[1 << 16];
@@ -45,7 +45,7 @@ static inline void gap_tables(struct limit_tables *tables, double gap)
     build(text, used, tables);
 }
 
-/* From above, turned by `turn_rad`; the gap's middle in the picture's. */
+/* A camera above, turned by `turn_rad`, with the gap's middle in the picture's middle. */
 static inline struct camera gap_camera(double unit_px, double turn_rad)
 {
     return (struct camera){.kind = CAMERA_ORTHOGRAPHIC,
@@ -55,9 +55,9 @@ static inline struct camera gap_camera(double unit_px, double turn_rad)
                            .ortho_height = SIDE_PX / unit_px};
 }
 
-/* Every pixel shows what its centre sees; of the faces, which are `stride` apart. Counts the pixels
- * that show the wall. The borders are circles to a thousandth of a pixel: nearer
- * than a hundredth to one, either side will do. */
+/* Expects that every pixel shows what its centre sees, by the faces, which are `stride` apart.
+ * Counts the pixels that show the wall. The borders are circles to a thousandth of a pixel: within
+ * a hundredth of a border, either side is accepted. */
 static inline size_t gap_expect_exact(const float (*position)[3], const uint32_t *faces,
                                       size_t stride, double unit_px, double gap)
 {

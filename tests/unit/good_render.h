@@ -1,4 +1,4 @@
-/* A request that nothing is wrong with, for tests that change one thing in it. */
+/* A valid request, for tests that change one thing in it. */
 #ifndef SHEEN_TESTS_UNIT_GOOD_RENDER_H
 #define SHEEN_TESTS_UNIT_GOOD_RENDER_H
 

@@ -1,4 +1,5 @@
-/* A whole JPEG file of a picture, strip by strip in the calling thread; the caller frees it. */
+/* Makes a whole JPEG file of a picture, strip by strip in the calling thread; the caller frees
+ * it. */
 #ifndef SHEEN_TESTS_UNIT_JPEG_FILE_H
 #define SHEEN_TESTS_UNIT_JPEG_FILE_H
 
@@ -19,7 +20,8 @@ static uint8_t *jpeg_file_of(struct jpeg_encoder *encoder, const struct jpeg_opt
     uint8_t *file = NULL;
     *size = 0;
     for (size_t i = 0; i < layout.strips.n; i++) {
-        uint8_t *strip = malloc(layout.strips.bound); /* a checker sees a write past the bound */
+        /* Exactly the bound, so that sanitizers find writes beyond it. */
+        uint8_t *strip = malloc(layout.strips.bound);
         size_t start, end;
         struct error error = {0};
         assert_non_null(strip);
@@ -38,7 +40,7 @@ static uint8_t *jpeg_file_of(struct jpeg_encoder *encoder, const struct jpeg_opt
     return file;
 }
 
-/* As the daemon writes them when nothing is said. */
+/* With the daemon's default options. */
 static inline uint8_t *jpeg_file(struct jpeg_encoder *encoder, const uint8_t *rgba,
                                  uint32_t width_px, uint32_t height_px,
                                  const struct image_attribute *attributes, size_t n_attributes,

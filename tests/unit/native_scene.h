@@ -1,11 +1,11 @@
-/* A model on the GL device and on the native one, and how two of their frames differ. */
+/* A model on the GL device and on the native one, and the differences of their frames. */
 #ifndef SHEEN_TESTS_NATIVE_SCENE_H
 #define SHEEN_TESTS_NATIVE_SCENE_H
 
 #include "server/render/native/device.h"
 #include "tests/unit/renderer_frames.h"
 
-/* Of renderer[] and model[]. */
+/* Indices of renderer[] and model[]. */
 enum { ON_GL, ON_NATIVE, DEVICES };
 
 struct devices {
@@ -37,8 +37,8 @@ static inline void close_devices(struct devices *devices)
     limit_tables_finish(&devices->tables);
 }
 
-/* Of two frames: pixels whose colours are further apart than one and than three steps, hits of one alone, and other
- * faces. */
+/* The differences of two frames: pixels whose colours differ by more than one and by more than
+ * three steps, hits in only one, and different faces. */
 struct difference {
     int over_one, over_three, hits, faces, lights, pixels;
 };
@@ -70,8 +70,8 @@ static inline struct difference compare(const struct frame *a, const struct fram
     return found;
 }
 
-/* Silhouettes and borders of Ptex faces may fall to either side of a pixel's centre, and a pixel at an edge may be one
- * whose rays meet the surface on one device and none on the other. */
+/* Silhouettes and borders of Ptex faces may fall on either side of a pixel's centre, and the rays
+ * of a pixel at an edge may meet the surface on one device and miss it on the other. */
 static inline void assert_alike(const struct difference *found, const char *what)
 {
     int n = found->pixels;

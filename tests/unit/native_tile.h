@@ -1,5 +1,5 @@
-/* Planes of stages 1 and 2 of the native device, the cameras that tests look with, and figures of what
- * they find. */
+/* Planes of stages 1 and 2 of the native device, the cameras of tests, and statistics of the
+ * results. */
 #ifndef SHEEN_TESTS_NATIVE_TILE_H
 #define SHEEN_TESTS_NATIVE_TILE_H
 
@@ -62,7 +62,7 @@ static inline void planes_finish(struct planes *planes)
     free(planes->where);
 }
 
-/* All that is written for a pixel is the same. */
+/* True if everything written for a pixel is equal. */
 static inline bool is_same(const struct planes *a, const struct planes *b, size_t i)
 {
     for (size_t k = 0; k < 9 && (a->at.depth[i] > 0 || k == 0); k++)
@@ -121,7 +121,7 @@ static inline void move_eye(struct camera *camera, double factor)
         camera->eye[k] = camera->target[k] + factor * (camera->eye[k] - camera->target[k]);
 }
 
-/* A place that most views show. */
+/* Looks at a place that most views show. */
 static inline void look_at_surface(const struct limit_tables *tables, struct camera *camera)
 {
     struct limit_point p = {0};
@@ -177,7 +177,7 @@ static inline int compare(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Sorts them; the value that so large a share of them are at most. 0 of none. */
+/* Sorts the values and returns the quantile for a share; 0 if there are none. */
 static inline double quantile(double *values, size_t n, double share)
 {
     qsort(values, n, sizeof *values, compare);
@@ -195,7 +195,7 @@ static inline struct vec normal_at(const struct planes *planes, size_t i)
                         (double)planes->at.normal[2][i]};
 }
 
-/* Principal curvatures of a shape operator. */
+/* The principal curvatures of a shape operator. */
 static inline void principal(double a, double b, double c, double k[2])
 {
     double mean = (a + c) / 2, apart = hypot((a - c) / 2, b);
@@ -203,7 +203,7 @@ static inline void principal(double a, double b, double c, double k[2])
     k[1] = mean + apart;
 }
 
-/* And of derivatives in double; false where they tell none. */
+/* The principal curvatures from derivatives in double precision; false if they define none. */
 static inline bool principal_at(const struct limit_point *p, double k[2])
 {
     double e = vec_dot(p->su, p->su), f = vec_dot(p->su, p->sv), g = vec_dot(p->sv, p->sv);

@@ -1,4 +1,5 @@
-/* A whole PNG file of a picture, strip by strip in the calling thread; the caller frees it. */
+/* Makes a whole PNG file of a picture, strip by strip in the calling thread; the caller frees
+ * it. */
 #ifndef SHEEN_TESTS_UNIT_PNG_FILE_H
 #define SHEEN_TESTS_UNIT_PNG_FILE_H
 
@@ -25,7 +26,8 @@ static uint8_t *png_file(struct png_encoder *encoder, const uint8_t *rgba, uint3
     assert_true(*size <= head);
     uint32_t checksum = 1;
     for (size_t i = 0; i < layout.n; i++) {
-        uint8_t *row = malloc(png_row_bytes(&layout)); /* a checker sees a write past the bounds */
+        /* Exactly the bounds, so that sanitizers find writes beyond them. */
+        uint8_t *row = malloc(png_row_bytes(&layout));
         uint8_t *strip = malloc(layout.bound);
         struct png_strip written;
         struct error error = {0};

@@ -1,4 +1,5 @@
-/* A model on a software device, and frames of it, for the tests of polygons, which both devices must pass. */
+/* A model on a software device and frames of it, for tests of polygons that both devices must
+ * pass. */
 #ifndef SHEEN_TESTS_POLYGON_SCENE_H
 #define SHEEN_TESTS_POLYGON_SCENE_H
 
@@ -8,7 +9,7 @@
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
 
-/* The device that scenes are opened on. */
+/* The device on which scenes are opened. */
 static const struct renderer_device *scene_device = &gl_device;
 
 struct scene {
@@ -17,7 +18,7 @@ struct scene {
     struct renderer_model *model;
 };
 
-/* `slice`: triangles a step; 0: the device's own. */
+/* `slice`: triangles of a step; 0: the device's default. */
 static inline void open_scene(struct scene *scene, size_t slice)
 {
     const struct renderer_options options = {.device = "software", .slice = slice};
@@ -67,7 +68,7 @@ static inline void assert_same(const struct frame *a, const struct frame *b)
                                     frame_plane_bytes((enum frame_plane)(1 << p)));
 }
 
-/* Runs the tests on one device after the other, and returns how many have failed. */
+/* Runs the tests on each device in turn, and returns the number of failures. */
 #define RETURN_FAILED_ON_BOTH_DEVICES(tests)                                                       \
     scene_device = &gl_device;                                                                     \
     int failed_on_gl = cmocka_run_group_tests_name("GL", tests, NULL, NULL);                       \

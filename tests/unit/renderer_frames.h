@@ -1,4 +1,4 @@
-/* Frames of tables by a renderer of its own, for the tests of the renderer. */
+/* Draws frames of tables by a renderer, for tests of the renderer. */
 #ifndef SHEEN_TESTS_RENDERER_FRAMES_H
 #define SHEEN_TESTS_RENDERER_FRAMES_H
 
@@ -10,7 +10,7 @@
 #include "server/scene/defaults.h"
 #include "tests/unit/cage_tables.h"
 
-/* The device that renderers are opened on. */
+/* The device on which renderers are opened. */
 static const struct renderer_device *frames_device = &gl_device;
 
 static inline struct renderer *open_renderer(size_t max_texels)
