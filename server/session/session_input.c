@@ -3,6 +3,9 @@
 #include "server/session/session_internal.h"
 #include "server/frame/error_code.h"
 
+/* From this minor version on the number of an unanswered request must not be used again. */
+enum { MINOR_OF_UNIQUE_NUMBERS = 4 };
+
 const char *session_find_disorder(const struct session *session,
                                   const struct message_header *header)
 {
@@ -16,7 +19,7 @@ const char *session_find_disorder(const struct session *session,
         return session->minor > 0 ? NULL : "a message of minor version 1";
     if (header->type == MESSAGE_UPLOAD_CHUNK && header->seq != session->upload_seq)
         return "no upload of its number is under way";
-    if (session->minor > 0 && header->type != MESSAGE_UPLOAD_CHUNK &&
+    if (session->minor >= MINOR_OF_UNIQUE_NUMBERS && header->type != MESSAGE_UPLOAD_CHUNK &&
         reply_list_owes(&session->replies, header->seq))
         return "its number is that of a request which is not answered yet";
     if (session->upload && header->type != MESSAGE_UPLOAD_CHUNK)

@@ -252,7 +252,14 @@ class Uploads(DaemonCase):
             self.assertTrue(client.at_end())
 
     def test_a_number_that_is_not_answered_yet(self):
-        with Client(self.daemon.unix, minor=1) as client:
+        """From 1.4 on it must not be used again; peers of before may."""
+        for minor in (1, 3):
+            with Client(self.daemon.unix, minor=minor) as client:
+                model = client.upload(CUBE, "cube.obj")
+                client.send(2 * wire.render(9, model, 700, 700))
+                client.read_frame(9)
+                client.read_frame(9)
+        with Client(self.daemon.unix, minor=4) as client:
             model = client.upload(CUBE, "cube.obj")
             for _ in range(2):  # answered in between
                 client.send(wire.render(9, model))
