@@ -75,20 +75,65 @@ static uint64_t count_of(const struct strangers *strangers, const struct peer *p
     return n;
 }
 
-/* The address that has most strangers. There is at least one. */
+static bool is_before(const struct stranger *a, const struct stranger *b)
+{
+    for (int i = 0; i < 2; i++)
+        if (a->peer.key[i] != b->peer.key[i])
+            return a->peer.key[i] < b->peer.key[i];
+    return a->number < b->number;
+}
+
+static struct stranger *merge(struct stranger *a, struct stranger *b)
+{
+    struct stranger *first = NULL, **end = &first;
+    while (a && b) {
+        struct stranger **from = is_before(a, b) ? &a : &b;
+        *end = *from;
+        *from = (*from)->next_sorted;
+        end = &(*end)->next_sorted;
+    }
+    *end = a ? a : b;
+    return first;
+}
+
+/* All strangers as a list in the order of addresses, those of one address in the order of their coming.
+ * Merges lists of 1, 2, 4, ... strangers: n log n steps, whatever the addresses. */
+static struct stranger *sort_by_address(const struct strangers *strangers)
+{
+    enum { LEVELS = 64 };
+    struct stranger *lists[LEVELS] = {NULL}, *stranger;
+    TAILQ_FOREACH (stranger, &strangers->list, link) {
+        struct stranger *list = stranger;
+        int level = 0;
+        list->next_sorted = NULL;
+        for (; lists[level]; level++) {
+            list = merge(lists[level], list);
+            lists[level] = NULL;
+        }
+        lists[level] = list;
+    }
+    struct stranger *all = NULL;
+    for (int level = 0; level < LEVELS; level++)
+        all = merge(lists[level], all);
+    return all;
+}
+
+/* The address with most strangers; of several such addresses that of the oldest stranger. There is at
+ * least one. */
 static const struct peer *most_common(const struct strangers *strangers)
 {
-    const struct stranger *stranger;
-    const struct peer *most = NULL;
+    const struct stranger *most = NULL, *first = sort_by_address(strangers), *next;
     uint64_t n = 0;
-    TAILQ_FOREACH (stranger, &strangers->list, link) {
-        uint64_t of_it = count_of(strangers, &stranger->peer);
-        if (of_it > n) {
-            most = &stranger->peer;
+    for (; first; first = next) {
+        uint64_t of_it = 0;
+        for (next = first; next && is_same(&next->peer, first->peer.key); next = next->next_sorted)
+            of_it++;
+        if (of_it > n || (of_it == n && first->number < most->number)) {
+            most = first;
             n = of_it;
         }
     }
-    return most;
+    return &most->peer;
 }
 
 static struct stranger *first_to_leave(struct strangers *strangers, const struct peer *peer)
@@ -113,6 +158,7 @@ struct stranger *strangers_enter(struct strangers *strangers, const struct stran
     else if (strangers->n >= limits->all)
         leaves = first_to_leave(strangers, most_common(strangers));
     stranger->since_us = now_us;
+    stranger->number = ++strangers->last_number;
     TAILQ_INSERT_TAIL(&strangers->list, stranger, link);
     strangers->n++;
     return leaves;

@@ -36,6 +36,9 @@ struct stranger { /* one connection */
     /* True while it has not sent a byte; silent strangers leave first. */
     bool (*is_silent)(const struct stranger *stranger);
     void *owner;
+    /* private to strangers.c: */
+    uint64_t number;              /* in the order of their coming */
+    struct stranger *next_sorted; /* while they are sorted by address */
     TAILQ_ENTRY(stranger) link;
 };
 
@@ -47,7 +50,7 @@ struct stranger_penalty {
 
 struct strangers {                            /* zero it, then call strangers_init() */
     TAILQ_HEAD(stranger_list, stranger) list; /* oldest first */
-    uint64_t n;
+    uint64_t n, last_number;
     struct stranger_penalty penalties[STRANGERS_MAX_PENALTIES];
 };
 

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -73,6 +74,61 @@ static void test_who_leaves(void **state)
         leave(leaves, STRANGER_GONE, 0);
     }
     assert_int_equal(strangers.n, 6);
+}
+
+/* Who leaves for a newcomer when all places are taken, by counting every address for every stranger. */
+static const struct stranger *leaves_by_counting(const struct stranger *all[], size_t n)
+{
+    const struct stranger *leaves = NULL;
+    size_t most = 0;
+    for (size_t i = 0; i < n; i++) { /* the oldest first */
+        size_t of_it = 0;
+        for (size_t k = 0; k < n; k++)
+            of_it += memcmp(all[i]->peer.key, all[k]->peer.key, sizeof all[i]->peer.key) == 0;
+        if (of_it > most) {
+            most = of_it;
+            leaves = all[i];
+        } else if (leaves && leaves->owner && !all[i]->owner &&
+                   memcmp(leaves->peer.key, all[i]->peer.key, sizeof leaves->peer.key) == 0) {
+            leaves = all[i]; /* the oldest silent one of the address */
+        }
+    }
+    return leaves;
+}
+
+static void test_who_leaves_of_many(void **state)
+{
+    (void)state;
+    enum { PLACES = 150 };
+    static const struct strangers_limits limits = {.all = PLACES, .of_peer = 1000};
+    static struct stranger many[PLACES + 1];
+    srand(11);
+    for (int addresses = 1; addresses <= 64; addresses *= 2) {
+        const struct stranger *all[PLACES + 1];
+        size_t n = 0;
+        set_up(state);
+        for (size_t i = 0; i <= PLACES; i++)
+            many[i].link.tqe_prev = NULL;
+        for (int i = 0; i < 1500; i++) {
+            struct stranger *free = many;
+            while (free->link.tqe_prev)
+                free++;
+            *free = from((uint64_t)(rand() % addresses), rand() % 3 == 0);
+            free->peer.key[0] = (uint64_t)(rand() % 2);
+            const struct stranger *expected = n == PLACES ? leaves_by_counting(all, n) : NULL;
+            struct stranger *leaves = strangers_enter(&strangers, &limits, free, 0);
+            assert_ptr_equal(leaves, expected);
+            all[n++] = free;
+            if (!leaves)
+                continue;
+            strangers_leave(&strangers, &limits, leaves, STRANGER_GONE, 0);
+            leaves->link.tqe_prev = NULL;
+            size_t at = 0;
+            while (all[at] != leaves)
+                at++;
+            memmove(all + at, all + at + 1, (--n - at) * sizeof *all);
+        }
+    }
 }
 
 static void test_hurry(void **state)
@@ -238,6 +294,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_who_leaves, set_up),
+        cmocka_unit_test_setup(test_who_leaves_of_many, set_up),
         cmocka_unit_test_setup(test_hurry, set_up),
         cmocka_unit_test_setup(test_penalties, set_up),
         cmocka_unit_test_setup(test_penalties_have_a_bound, set_up),
