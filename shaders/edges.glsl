@@ -2,12 +2,12 @@
 //
 // Around each pixel's hit the surface is known to second order: a paraboloid from position, normal
 // and shape operator. Where its own piece ends is known too: the plane `ends`.
-//   edges_find            lists the pixels whose neighbours their own paraboloid does not explain, and apart
-//                         from them those over which the normal turns so far that one footprint cannot tell;
+//   edges_find            lists the pixels whose neighbours their own paraboloid does not explain;
 //   ends_find             finds where the pieces that pixels at edges show end;
 //   edges_recheck         sorts out the pixels at edges where the pieces around contradict each other;
 //   edges_shade           for each of the others at edges, shades the share of each of the pieces around;
-//   high_curvature_shade  for each of those of high curvature, shades nine parts of it.
+//   high_curvature_shade  for each pixel without an edge that one footprint cannot tell (uneven.glsl), shades nine
+//                         parts of it.
 // Pixels that show the rounding of a crease, half a pixel to some pixels wide, and those to recheck ask
 // the surface again: rounded.glsl.
 // At the rim of a picture the pixels beyond are not known: what is seen there counts as at an edge, and what of it is

@@ -1,13 +1,12 @@
-// Lists the pixels at edges, those that turn, and those that show the rounding of a crease, and writes
-// the coverage of all others. Pixels at edges that show surface are listed apart, and around what is shaded too, since
-// the pixels there ask where these end (ends_find.comp.glsl).
+// Lists the pixels at edges and those that show the rounding of a crease, and writes the coverage of all others. Pixels at
+// edges that show surface are listed apart, and around what is shaded too, since the pixels there ask where these end
+// (ends_find.comp.glsl).
 
 layout(local_size_x = 64) in;
 
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
 
 LIST(0, Edges, edges);
-LIST(2, HighCurvature, high_curvature);
 LIST(3, Rounded, rounded);
 LIST(4, Rims, rims);
 
@@ -43,6 +42,4 @@ void main()
         LIST_ADD(rounded, p + ivec2(0, at_edge ? AT_EDGE : 0), ROUNDED_PER_GROUP)
     else if (at_edge)
         LIST_ADD(edges, p, EDGES_PER_GROUP)
-    else if (is_hit && turn_over_pixel(p, own) > MOST_TURN)
-        LIST_ADD(high_curvature, p, 64u)
 }

@@ -1,5 +1,5 @@
-// What a listed pixel without an edge shows, over which the normal turns so far that one footprint
-// cannot tell: nine squares of it, each shaded by itself.
+// What a listed pixel without an edge shows that one footprint cannot tell (uneven.glsl): nine squares of it, each
+// shaded by itself.
 //
 // How the shape operator changes within the pixel counts there as much as how it turns the normal, and
 // the pixel's own paraboloid does not know it. The pixels around do: their normals and shape operators

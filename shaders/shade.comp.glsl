@@ -12,10 +12,15 @@ LIST(2, Parts, parts);
 layout(binding = 5, r16f) writeonly uniform image2D next_uneven;
 layout(binding = 4) uniform sampler2D behind_uneven;
 
-// What lights show through each other, unless their deviations make less together.
-const float LEAST_UNEVEN = 0.01;
 // Stands in the plane of the lights' deviations for pixels to be listed.
 const float IN_PARTS = 2.0;
+
+float uneven_behind(ivec2 p)
+{
+    if (is_hindmost)
+        return 0.0;
+    return texelFetch(behind_uneven, p, 0).x;
+}
 
 void main()
 {
@@ -38,8 +43,8 @@ void main()
     if (want.w == 0)
         return;
     Uneven uneven = unevenness(met, mean, own);
-    float before = is_hindmost ? 0.0 : texelFetch(behind_uneven, p, 0).x;
-    bool in_parts = before >= IN_PARTS || before * uneven.alpha > LEAST_UNEVEN;
+    float before = uneven_behind(p);
+    bool in_parts = is_bent(at, met, p, hit, uneven) || before >= IN_PARTS || before * uneven.alpha > LEAST_UNEVEN;
     if (!is_foremost)
         imageStore(next_uneven, p, vec4(in_parts ? IN_PARTS : uneven.light + (1.0 - met.cover * own.a) * before));
     else if (in_parts && mirrors(hit) && imageLoad(border, p).x != ROUNDED && !is_at_edge(p, hit))

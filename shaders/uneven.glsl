@@ -37,3 +37,40 @@ Uneven unevenness(Met met, vec4 mean, vec4 own)
     float border = sqrt(max(met.cover - met.cover * met.cover, 0.0)), share = met.cover * opacity;
     return Uneven(share * pattern.light + border, share * pattern.alpha + border * own.a);
 }
+
+// What departs by less from its mean is even; light.
+const float LEAST_UNEVEN = 0.01;
+// Further off the parallelogram counts. Px.
+const float LEAST_BEND = 0.04;
+// Where the normal turns further, a pixel may be uneven though its parallelogram is not; at the border of a light of
+// which it knows nothing sooner. Rad.
+const float LARGE_TURN = 0.1;
+
+// How far the pattern lies off its parallelogram at the pixel's sides, px: because the normal's turning changes from pixel
+// to pixel, and because the light's coordinates bend as the ray turns.
+float bend_of(Sample at, Met met, ivec2 p)
+{
+    vec3 r, dr[2];
+    float change = 0.0, turn = 1e-6, bend = 0.0;
+    ray_from(at, r, dr);
+    for (int i = 0; i < 2; i++) {
+        ivec2 step = ivec2(1 - i, i);
+        vec3 before = imageLoad(normal, max(p - step, ivec2(0))).xyz;
+        vec3 after = imageLoad(normal, min(p + step, tile.zw - 1)).xyz;
+        change = max(change, length(0.5 * (before + after) - at.n));
+        turn = max(turn, length(dr[i]));
+        bend = max(bend, abs(met.dtau[i]) / max(met.tau, 1e-20));
+    }
+    if (FAMILY == ZEBRA || FAMILY == ENVIRONMENT || LIGHT == SPHERE)  // azimuths turn faster towards the axis
+        bend = turn / max(length(cross(r, axis_n.xyz)), 1e-3);
+    return 0.5 * change / turn + 0.25 * bend;
+}
+
+bool is_bent(Sample at, Met met, ivec2 p, Hit hit, Uneven uneven)
+{
+    float turn = turn_over_pixel(p, hit);
+    bool may_end = (FAMILY == REFLECTION || FAMILY == HIGHLIGHT) && (LIGHT == RECTANGLE || LIGHT == PLANE);
+    if (turn > MOST_TURN)
+        return uneven.light > LEAST_UNEVEN || turn > LARGE_TURN || may_end;
+    return uneven.light > LEAST_UNEVEN && bend_of(at, met, p) > LEAST_BEND;
+}

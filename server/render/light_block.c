@@ -185,7 +185,7 @@ void light_block_fill(struct light_block *block, const struct frame_request *req
     block->want[0] = (request->planes & PLANE_LIGHT) != 0;
     block->want[1] = (request->planes & PLANE_CURVATURE) != 0;
     block->want[2] = (request->planes & PLANE_LIGHT_CHANGE) != 0;
-    block->want[3] = request_has_coverage(request) && request->n_lights > 1;
+    block->want[3] = request_has_coverage(request);
 }
 
 bool light_image_repeats_s(const struct frame_request *request, const struct light *light)

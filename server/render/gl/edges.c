@@ -20,11 +20,9 @@ void stage_edges(struct gl_renderer *r, const struct tile *shaded)
     clear_shaded(r, target->coverage, GL_RED, nothing);
     glNamedBufferSubData(target->unsolved, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->edges, 0, sizeof no_work, no_work);
-    glNamedBufferSubData(target->high_curvature, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->rounded, 0, sizeof no_work, no_work);
     glNamedBufferSubData(target->retry_pixels, 0, sizeof no_work, no_work);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, target->unsolved);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, target->high_curvature);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, target->rounded);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, target->retry_pixels);
     glBindImageTexture(0, target->hit_depth, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);

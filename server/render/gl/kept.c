@@ -84,7 +84,6 @@ static const struct {
 } LISTS[COLLECTED_LISTS] = {
     {offsetof(struct target, groups), 8},
     {offsetof(struct target, edges), 32},
-    {offsetof(struct target, high_curvature), 64},
     {offsetof(struct target, rounded), 4},
 };
 enum { ROUNDED = 3 };

@@ -222,26 +222,6 @@ static void shade_planes(struct gl_renderer *r, const struct frame_request *requ
     dispatch_groups(program_of(r, request, &request->lights[0], SHADED_PLANES), r->target.groups);
 }
 
-/* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
-enum { SQUARES = 9 };
-
-/* The list of pixels whose lights are shaded in parts: one that stage 2 no longer needs. */
-static GLuint parts_of(const struct target *target)
-{
-    return target->retry_pixels;
-}
-
-/* Light i of some of them, at the pixels of a list. */
-static void shade_squares(struct gl_renderer *r, const struct frame_request *request, uint32_t i,
-                          GLuint list, GLuint first, GLuint end)
-{
-    GLuint program = program_of(r, request, &request->lights[i], SHADED_HIGH_CURVATURE);
-    bind_own(&r->target, i, SHADED_HIGH_CURVATURE);
-    glProgramUniform1ui(program, glGetUniformLocation(program, "first_square"), first);
-    glProgramUniform1ui(program, glGetUniformLocation(program, "end_square"), end);
-    dispatch_listed(program, list);
-}
-
 /* The pixels that are listed, by how they are shaded. */
 static void shade_listed(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
 {
@@ -249,7 +229,6 @@ static void shade_listed(struct gl_renderer *r, const struct frame_request *requ
     GLuint rounded = program_of(r, request, light, SHADED_ROUNDED);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_COMMAND_BARRIER_BIT);
-    shade_squares(r, request, i, r->target.high_curvature, 0, SQUARES);
     bind_own(&r->target, i, SHADED_EDGES);
     dispatch_listed(program_of(r, request, light, SHADED_EDGES), r->target.edges);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.rounded_hits);
@@ -309,7 +288,7 @@ static void shade_light(struct gl_renderer *r, const struct frame_request *reque
     bind_light(r, request, i);
     bind_planes(&r->target, all);
     bind_own(&r->target, i, all);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, parts_of(&r->target));
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, r->target.parts);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     dispatch_groups(program_of(r, request, &request->lights[i], all), r->target.groups);
     if (request_has_coverage(request))
@@ -318,17 +297,30 @@ static void shade_light(struct gl_renderer *r, const struct frame_request *reque
         share_light(r, request, i);
 }
 
-/* The listed pixels anew: all lights of each square, one square after the other. */
+/* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
+enum { SQUARES = 9 };
+
+/* Light i of some of them, at the pixels that are shaded in parts. */
+static void shade_squares(struct gl_renderer *r, const struct frame_request *request, uint32_t i,
+                          GLuint first, GLuint end)
+{
+    GLuint program = program_of(r, request, &request->lights[i], SHADED_HIGH_CURVATURE);
+    bind_light(r, request, i);
+    bind_own(&r->target, i, SHADED_HIGH_CURVATURE);
+    glProgramUniform1ui(program, glGetUniformLocation(program, "first_square"), first);
+    glProgramUniform1ui(program, glGetUniformLocation(program, "end_square"), end);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                    GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    dispatch_listed(program, r->target.parts);
+}
+
+/* These anew: all lights of each square, one square after the other; one light at once. */
 static void shade_parts(struct gl_renderer *r, const struct frame_request *request)
 {
-    uint32_t n_lights = request->n_lights;
-    for (uint32_t k = 0; k < SQUARES * n_lights; k++) {
-        uint32_t i = n_lights - 1 - k % n_lights, square = k / n_lights;
-        bind_light(r, request, i);
-        glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                        GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-        shade_squares(r, request, i, parts_of(&r->target), square, square + 1);
-    }
+    GLuint at_once = request->n_lights > 1 ? 1 : SQUARES;
+    for (GLuint first = 0; first < SQUARES; first += at_once)
+        for (uint32_t i = request->n_lights; i-- > 0;)
+            shade_squares(r, request, i, first, first + at_once);
 }
 
 bool stage_shade(struct gl_renderer *r, const struct frame_request *request, struct error *error)
@@ -336,13 +328,13 @@ bool stage_shade(struct gl_renderer *r, const struct frame_request *request, str
     static const GLuint no_work[4] = {0, 1, 1, 0};
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, r->shade.light_buffer);
     clear_planes(r, request);
-    glNamedBufferSubData(parts_of(&r->target), 0, sizeof no_work, no_work);
+    glNamedBufferSubData(r->target.parts, 0, sizeof no_work, no_work);
     for (uint32_t i = request->n_lights; i-- > 0;) {
         if (!frame_watch_check(&r->watch, error))
             return false;
         shade_light(r, request, i);
     }
-    if (request_has_coverage(request) && request->n_lights > 1)
+    if (request_has_coverage(request))
         shade_parts(r, request);
     if (planes_wanted(request))
         shade_planes(r, request);

@@ -90,8 +90,8 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
         glTextureParameteri(*name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
     GLuint *const lists[N_LISTS] = {
-        &target->groups, &target->discontinuous,  &target->retry_pixels, &target->unsolved,
-        &target->edges,  &target->high_curvature, &target->rounded};
+        &target->groups, &target->discontinuous, &target->retry_pixels, &target->unsolved,
+        &target->edges,  &target->parts,         &target->rounded};
     for (size_t i = 0; i < N_LISTS; i++) {
         glCreateBuffers(1, lists[i]);
         glNamedBufferData(*lists[i],
@@ -162,7 +162,6 @@ void target_swap_lists(struct target *a, struct target *b)
     swap_names(&a->retry_pixels, &b->retry_pixels);
     swap_names(&a->unsolved, &b->unsolved);
     swap_names(&a->edges, &b->edges);
-    swap_names(&a->high_curvature, &b->high_curvature);
     swap_names(&a->rounded, &b->rounded);
     swap_names(&a->rounded_hits, &b->rounded_hits);
     swap_names(&a->max_rounded, &b->max_rounded);
@@ -175,7 +174,7 @@ void target_finish(struct target *target)
     glDeleteBuffers(1, &target->retry_pixels);
     glDeleteBuffers(1, &target->unsolved);
     glDeleteBuffers(1, &target->edges);
-    glDeleteBuffers(1, &target->high_curvature);
+    glDeleteBuffers(1, &target->parts);
     glDeleteBuffers(1, &target->rounded);
     glDeleteBuffers(1, &target->rounded_hits);
     glDeleteFramebuffers(1, &target->framebuffer);

@@ -34,7 +34,8 @@ struct target {
     GLuint coverage;               /* R32F: share of the pixel that shows the surface */
     GLuint groups, discontinuous;  /* buffers: shaders/gather.comp.glsl */
     GLuint retry_pixels, unsolved; /* buffers: shaders/unsolved.comp.glsl */
-    GLuint edges, high_curvature;  /* buffers: shaders/edges_find.comp.glsl */
+    GLuint edges;                  /* buffer: shaders/edges_find.comp.glsl */
+    GLuint parts;                  /* buffer: shaders/uneven.glsl */
     GLuint rounded; /* a buffer; rounded_hits: what its pixels' rays meet: shaders/rounded.glsl */
     GLuint rounded_hits;
     GLuint lights[2];   /* colours of the lights behind the current one: RGBA16F; 0: none */

@@ -28,13 +28,12 @@ struct run {
 };
 
 /* The lists that a program may add to. */
-enum { ADDED_LISTS = 5 };
+enum { ADDED_LISTS = 4 };
 
 static struct native_list **added_list(struct native_bindings *bindings, int k)
 {
-    struct native_list **const lists[ADDED_LISTS] = {&bindings->edges, &bindings->high_curvature,
-                                                     &bindings->rounded, &bindings->rims,
-                                                     &bindings->parts};
+    struct native_list **const lists[ADDED_LISTS] = {&bindings->edges, &bindings->parts,
+                                                     &bindings->rounded, &bindings->rims};
     return lists[k];
 }
 
@@ -169,7 +168,6 @@ bool native_edges(const struct native_drawing *d, struct error *error)
     b.groups = list_of(d, NATIVE_GROUPS);
     b.rims = list_of(d, NATIVE_RIMS);
     b.edges = list_of(d, NATIVE_FOUND_EDGES);
-    b.high_curvature = list_of(d, NATIVE_HIGH_CURVATURE);
     b.rounded = list_of(d, NATIVE_ROUNDED);
     const int32_t shaded[4] = {(int32_t)d->inside.x, (int32_t)d->inside.y, (int32_t)d->inside.width,
                                (int32_t)d->inside.height};
@@ -251,26 +249,12 @@ static struct native_picture picture_of(const struct frame_request *request,
     return picture;
 }
 
-/* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
-enum { SQUARES = 9 };
-
-static void shade_squares(const struct native_drawing *d, struct native_bindings *b,
-                          enum native_list_of listed, uint32_t first, uint32_t end)
-{
-    b->listed = list_of(d, listed);
-    b->first_square = first;
-    b->end_square = end;
-    run_program(d, native_device_programs(d->device)->high_curvature_shade, b, b->listed->n,
-                LISTED_PER_WORKGROUP, NULL);
-}
-
 /* The pixels that the edges' programs have listed, anew. */
 static void shade_listed(const struct native_drawing *d, struct native_bindings *b)
 {
     const struct native_programs *programs = native_device_programs(d->device);
     b->listed = list_of(d, NATIVE_EDGES);
     run_program(d, programs->edges_shade, b, b->listed->n, EDGES_PER_WORKGROUP, NULL);
-    shade_squares(d, b, NATIVE_HIGH_CURVATURE, 0, SQUARES);
     b->listed = list_of(d, NATIVE_ROUNDED);
     b->max_rounded = tile_max_rounded(&d->place);
     run_program(d, programs->rounded_shade, b, b->listed->n, LISTED_PER_WORKGROUP, NULL);
@@ -340,17 +324,30 @@ static void shade_light(const struct native_drawing *d, uint32_t i, struct nativ
         run_program(d, programs->shade_planes, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
 }
 
-/* The listed pixels anew: all lights of each square, one square after the other. */
+/* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
+enum { SQUARES = 9 };
+
+/* At the pixels that are shaded in parts. */
+static void shade_squares(const struct native_drawing *d, struct native_bindings *b, uint32_t first,
+                          uint32_t end)
+{
+    b->listed = list_of(d, NATIVE_PARTS);
+    b->first_square = first;
+    b->end_square = end;
+    run_program(d, native_device_programs(d->device)->high_curvature_shade, b, b->listed->n,
+                LISTED_PER_WORKGROUP, NULL);
+}
+
+/* These anew: all lights of each square, one square after the other; one light at once. */
 static void shade_parts(const struct native_drawing *d)
 {
-    uint32_t n_lights = d->request->n_lights;
-    if (list_of(d, NATIVE_PARTS)->n == 0)
-        return;
-    for (uint32_t k = 0; k < SQUARES * n_lights; k++) {
-        struct light_block block;
-        struct native_bindings b = bindings_of_light(d, n_lights - 1 - k % n_lights, &block);
-        shade_squares(d, &b, NATIVE_PARTS, k / n_lights, k / n_lights + 1);
-    }
+    uint32_t n_lights = d->request->n_lights, at_once = n_lights > 1 ? 1 : SQUARES;
+    for (uint32_t first = 0; first < SQUARES && list_of(d, NATIVE_PARTS)->n; first += at_once)
+        for (uint32_t i = n_lights; i-- > 0;) {
+            struct light_block block;
+            struct native_bindings b = bindings_of_light(d, i, &block);
+            shade_squares(d, &b, first, first + at_once);
+        }
 }
 
 bool native_shade(const struct native_drawing *d, const struct frame_watch *watch,

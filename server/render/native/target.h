@@ -15,10 +15,9 @@ enum native_list_of {
     NATIVE_RIMS,
     NATIVE_FOUND_EDGES, /* before they are rechecked */
     NATIVE_EDGES,
-    NATIVE_HIGH_CURVATURE,
     NATIVE_ROUNDED,
-    NATIVE_LISTS,
-    NATIVE_PARTS = NATIVE_RIMS /* once edges are found: pixels whose lights are shaded in parts */
+    NATIVE_PARTS, /* of stage 3: pixels that are shaded in parts (shaders/uneven.glsl) */
+    NATIVE_LISTS
 };
 
 /* Zero it before the first use. A row of a plane has `width` words. */

@@ -122,15 +122,13 @@ static bool append_rounded(const struct native_drawing *d, struct native_target 
 /* False where the frame's planes are not to be kept. */
 static bool collect(const struct native_drawing *d, struct native_target *to)
 {
-    static const enum native_list_of pixels[] = {NATIVE_EDGES, NATIVE_HIGH_CURVATURE};
     const struct native_list *groups = &d->target->list[NATIVE_SHADED_GROUPS];
     copy_planes(d, to);
     for (int i = NATIVE_GROUPS; i <= NATIVE_SHADED_GROUPS; i++)
         append(groups, &to->list[i], d->place.x / GROUP_WIDTH, d->place.y / GROUP_HEIGHT);
     if (!request_has_coverage(d->request))
         return true;
-    for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++)
-        append(&d->target->list[pixels[i]], &to->list[pixels[i]], d->place.x, d->place.y);
+    append(&d->target->list[NATIVE_EDGES], &to->list[NATIVE_EDGES], d->place.x, d->place.y);
     return append_rounded(d, to);
 }
 

@@ -71,7 +71,7 @@ struct native_bindings {
     struct native_image next_light, next_missed, behind_light, behind_missed;
     struct native_image next_uneven, behind_uneven, square_sum;
     struct native_picture picture;
-    struct native_list *groups, *listed, *edges, *high_curvature, *rounded, *rims, *parts;
+    struct native_list *groups, *listed, *edges, *parts, *rounded, *rims;
     struct native_array *RoundedHits, *Corners;
     struct native_share *Share;
     float centre[3];
