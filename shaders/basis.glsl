@@ -1,5 +1,5 @@
-// Two unit vectors that with the unit normal n make a right-handed basis (Duff et al. 2017,
-// "Building an Orthonormal Basis, Revisited", JCGT 6(1)).
+// Two unit vectors that form a right-handed basis with the unit normal n (Duff et al. 2017, "Building an Orthonormal
+// Basis, Revisited", JCGT 6(1)).
 void tangent_basis(vec3 n, out vec3 e1, out vec3 e2)
 {
     float sign = n.z >= 0.0 ? 1.0 : -1.0;

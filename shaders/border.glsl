@@ -1,12 +1,15 @@
-// What the border plane holds: from the pixel's centre to the nearest border of the piece seen, px, in
-// 12 bits each for x and y; and how wide the rounding of a crease there is on this side, px, in 8.
-// Or ROUNDED: the pixel shows the rounding of a crease that is between THIN and WIDE.
+// Packs and unpacks what the border plane holds of a pixel, in 32 bits: the vector from the pixel's centre to the
+// nearest border of the Ptex face seen (px; 12 bits each for x and y), and the width of a crease's rounding on this
+// side of that border (px; 8 bits).
+//
+// Instead of the x of a vector it may hold ROUNDED: the pixel shows the rounding of a crease whose width is between
+// THIN and WIDE.
 
-const float BORDER_STEPS = 512.0;          // a px
+const float BORDER_STEPS = 512.0;          // steps per px
 const vec2 NO_BORDER = vec2(2047.0 / 512.0);
-const float THIN = 0.5;                    // px: what is rounded more widely is no border
-const float WIDE = 6.0;                    // px: across which the curvature hardly changes in a pixel
-const uint ROUNDED = 0x800u;               // no foot's x
+const float THIN = 0.5;                    // px: a crease with a wider rounding is no border
+const float WIDE = 6.0;                    // px: across a wider rounding the curvature hardly changes within a pixel
+const uint ROUNDED = 0x800u;               // a value that x never has
 
 uint pack_border(vec2 foot, float rounding)
 {

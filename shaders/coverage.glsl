@@ -1,6 +1,6 @@
-// Box-filtered coverage of a pixel, exact for a phase that is linear over the pixel
-// (server/surface/README.md 7.3). A phase's gradient g is its change per pixel in x and in y; the unit pixel
-// square projects to a trapezoid along the phase, whose ramps these functions integrate.
+// Box-filtered coverage of a pixel, exact for a phase that is linear over the pixel (server/surface/README.md 7.3).
+// The gradient g of a phase is its change per pixel in x and in y. Projected along the phase, the unit pixel square
+// becomes a trapezoid; the functions here integrate over it.
 
 // Share of the pixel where a linear function with value z at its centre and gradient g is positive.
 float half_plane(float z, vec2 g)
@@ -13,7 +13,7 @@ float half_plane(float z, vec2 g)
     return z > 0.0 ? 1.0 - inside : inside;
 }
 
-// Mean over the pixel of what is positive of such a function.
+// Mean over the pixel of max(f, 0), where f is linear with value z at the centre and gradient g.
 float ramp(float z, vec2 g)
 {
     g = abs(g);
@@ -24,7 +24,7 @@ float ramp(float z, vec2 g)
     return max(z, 0.0) + (t > -reach ? below : 0.0);
 }
 
-// Twice integrated square wave of period 1 and duty d, its mean removed.
+// The square wave of period 1 and duty d less its mean, integrated twice.
 float twice_integrated(float phase, float d)
 {
     float r = fract(phase);
@@ -32,16 +32,16 @@ float twice_integrated(float phase, float d)
     return s - 0.5 * d * r * r - 0.5 * d * (1.0 - d) * r;
 }
 
-// Filtered square wave: 1 where fract(phase) < d. As the pattern becomes finer than the pixel it
-// goes to its mean d.
+// The square wave that is 1 where fract(phase) < d, averaged over the pixel. As the pattern becomes finer than the
+// pixel the result approaches its mean d.
 float stripe(float phase, vec2 g, float d)
 {
-    if (d >= 1.0)  // its edges meet and cancel
+    if (d >= 1.0)  // rising and falling edges coincide
         return 1.0;
     g = abs(g);
     float reach = 0.5 * (g.x + g.y), thin = min(g.x, g.y);
     if (reach < 0.25) {
-        // At most the nearest rising and falling edges are inside: no cancellation.
+        // At most the nearest rising and falling edges lie inside, so nothing cancels.
         float rise = round(phase), fall = round(phase - d) + d;
         float wave = half_plane(phase - rise, g) - half_plane(phase - fall, g);
         return fall < rise ? wave + 1.0 : wave;
@@ -56,17 +56,17 @@ float stripe(float phase, vec2 g, float d)
     return clamp(d + sum / (g.x * g.y), 0.0, 1.0);
 }
 
-// Share of the pixel where two linear functions, both 0 at its centre, lie between low and high: the
-// area of a parallelogram within a box. By Green's theorem the sum over the parallelogram's edges of
-// the integral of clamp(p) dq over what lies between q's bounds. Neither gradient is 0.
+// Share of the pixel where two linear functions p and q, both 0 at its centre, lie between low and high: the area of
+// a parallelogram within a box. By Green's theorem it is the sum, over the parallelogram's edges, of the integral of
+// clamp(p) dq between the bounds of q. Neither gradient may be 0.
 float box_share(vec2 low, vec2 high, vec2 gp, vec2 gq)
 {
-    // A parallelogram that is next to a line is widened to a thousandth of its sides.
+    // A parallelogram that is nearly a line is widened to a thousandth of its sides.
     float area = gp.x * gq.y - gp.y * gq.x, qq = dot(gq, gq);
     float lacking = max(1e-3 * sqrt(dot(gp, gp) * qq) - abs(area), 0.0);
     gp += (area < 0.0 ? -lacking : lacking) / qq * vec2(gq.y, -gq.x);
     float reach = 0.5 * (abs(gp.x) + abs(gp.y)), sum = 0.0;
-    // p's bounds, no further than it reaches: no large numbers to cancel.
+    // The bounds of p are limited to what the pixel reaches, so that no large numbers cancel.
     float p0 = clamp(low.x, -reach, reach), p1 = clamp(high.x, -reach, reach);
     for (int i = 0; i < 2; i++) {  // the edges along x, the edges along y
         float dp = gp[i], dq = gq[i];
@@ -87,13 +87,13 @@ float box_share(vec2 low, vec2 high, vec2 gp, vec2 gq)
     return clamp(sum / (gp.x * gq.y - gp.y * gq.x), 0.0, 1.0);
 }
 
-// A linear function over the pixel: at its centre, and its change.
+// A linear function over the pixel: its value at the centre and its gradient.
 struct Border {
     float at_centre;
     vec2 change;
 };
 
-// Share of the pixel where four linear functions are positive: the square's polygon, cut by each in turn.
+// Share of the pixel where four linear functions are positive: the pixel's square, cut by each line in turn.
 float share_within(Border border[4])
 {
     bool is_outside = false, is_crossed = false;
@@ -108,7 +108,7 @@ float share_within(Border border[4])
     polygon[2] = vec2(0.5);
     polygon[3] = vec2(-0.5, 0.5);
     int n = 4;
-    // Few pixels have work here, and some devices walk through every branch but not through a loop that is over.
+    // Few pixels have work here. Some devices execute every branch, but not a loop whose end is already reached.
     for (int k = is_crossed && !is_outside ? 0 : 4; k < 4; k++) {
         vec2 cut[8], last = polygon[max(n - 1, 0)];
         float last_at = border[k].at_centre + dot(border[k].change, last);

@@ -1,23 +1,23 @@
-// Geometric antialiasing: the pixels that silhouettes, creases and open borders run through.
+// Geometric antialiasing: what the passes share that shade pixels crossed by silhouettes, creases and open borders.
 //
-// Around each pixel's hit the surface is known to second order: a paraboloid from position, normal
-// and shape operator. Where its own piece ends is known too: the plane `ends`.
-//   edges_find            lists the pixels whose neighbours their own paraboloid does not explain;
-//   ends_find             finds where the pieces that pixels at edges show end;
-//   edges_recheck         sorts out the pixels at edges where the pieces around contradict each other;
-//   edges_shade           for each of the others at edges, shades the share of each of the pieces around;
-//   high_curvature_shade  for each pixel without an edge that one footprint cannot tell (uneven.glsl), shades nine
-//                         parts of it.
-// Pixels that show the rounding of a crease, half a pixel to some pixels wide, and those to recheck ask
-// the surface again: rounded.glsl.
-// At the rim of a picture the pixels beyond are not known: what is seen there counts as at an edge, and what of it is
-// beyond its ends as empty, unless the surface goes on there (edges_recheck.comp.glsl).
+// Around each pixel's hit the surface is known to second order: a paraboloid from position, normal and shape
+// operator. The plane `ends` says where the piece of surface that a pixel shows ends. The passes, in order:
+//
+// edges_find lists the pixels at edges, that is those whose neighbours do not lie on their paraboloid. ends_find finds
+// where the pieces end that pixels at edges show. edges_recheck finds the pixels at edges where the pieces around contradict
+// each other. edges_shade shades each of the other pixels at edges from the pieces around, by the share of each.
+// high_curvature_shade shades in nine parts the pixels without an edge for which one footprint is not enough
+// (uneven.glsl). Pixels to recheck, and pixels that show the
+// rounding of a crease between half a pixel and some pixels wide, meet the surface again by rays: rounded.glsl.
+//
+// At the rim of a picture the pixels beyond are unknown: a pixel there that shows surface counts as at an edge, and
+// what lies beyond its ends counts as empty unless the surface goes on there (edges_recheck.comp.glsl).
 
 layout(binding = 4, r32ui) readonly uniform uimage2D border;
 
 const uint EDGES_PER_GROUP = 32u;  // pixels
 
-// Whether the paraboloid at `a` runs through x: how far off, px.
+// Distance of x from the paraboloid at `a`, px.
 float off_paraboloid(Hit a, vec3 x)
 {
     vec3 e1, e2, d = x - a.x;
@@ -27,9 +27,9 @@ float off_paraboloid(Hit a, vec3 x)
     return abs(dot(d, a.n) - rise) / pixel_units(a.depth);
 }
 
-const float SAME_PX = 0.25;  // as far as that, two hits are of one surface
+const float SAME_PX = 0.25;  // two hits that are no farther apart are of one surface
 
-// The paraboloid's normal at `move` from the hit.
+// The paraboloid's normal at the offset `move` from the hit.
 vec3 normal_at(Hit a, vec3 move)
 {
     vec3 e1, e2;
@@ -47,9 +47,9 @@ bool border_crosses(ivec2 p)
 const ivec2 BESIDE[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 const ivec2 DIAGONAL[4] = ivec2[4](ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
 
-// Whether the pixel's border runs through it, a neighbour to a side is not where its paraboloid says, one beside or
-// across a corner shows surface where it shows none, or none where it does, or it shows surface at the rim of what is
-// drawn.
+// Whether pixel p, whose hit is `own`, is at an edge: its nearest border runs through it; or a neighbour to a side
+// does not lie on its paraboloid; or of the pixel and one of its eight neighbours only one shows surface; or it shows
+// surface at the rim of what is drawn.
 bool is_at_edge(ivec2 p, Hit own)
 {
     bool at_rim = any(lessThan(p, ivec2(1))) || any(greaterThan(p, tile.zw - 2));
@@ -67,7 +67,7 @@ bool is_at_edge(ivec2 p, Hit own)
     return at_edge;
 }
 
-// How far the normal turns from side to side of a pixel of high curvature, rad.
+// A pixel of high curvature is one across which the normal turns by more than this, rad.
 const float MOST_TURN = 0.025;
 
 float turn_over_pixel(ivec2 p, Hit hit)

@@ -1,6 +1,6 @@
-// Lists the pixels at edges and those that show the rounding of a crease, and writes the coverage of all others. Pixels at
-// edges that show surface are listed apart, and around what is shaded too, since the pixels there ask where these end
-// (ends_find.comp.glsl).
+// Lists the pixels at edges and the pixels that show the rounding of a crease; writes
+// the coverage of all others. A further list has the pixels at edges that show surface, for ends_find.comp.glsl; it
+// also has those just outside `shaded`, since the pixels inside ask where these end.
 
 layout(local_size_x = 64) in;
 
@@ -14,7 +14,8 @@ uniform ivec4 shaded;  // x, y, width, height: the part of what is drawn that th
 
 layout(binding = 6, rg32ui) writeonly uniform uimage2D ends;
 
-// As far as that, borders are where the first order says. Farther ones count where they are found on the surface itself.
+// The first order is trusted for borders up to this distance. Farther borders count only where they are found on the
+// surface itself.
 const float FIRST_ORDER_PX = 1.0;
 
 void main()

@@ -1,12 +1,12 @@
-// Sorts the pixels at edges into two lists. Pixels to recheck join the list of rounded ones, so that rays meet the
-// surface itself there; all others are shaded from the pieces of surface around. A pixel must be rechecked where
-//   a piece contradicts what a pixel's centre around shows: the piece reaches a centre that does not show it, or ends
-//   before a centre that does, by more than OFF;
-//   three pieces are around, or two pieces and a pixel that shows nothing: each piece tells its own ends only, and
-//   between these there may be anything;
-//   beside a pixel that shows nothing, two ends of one piece run through the pixel: where they meet they may turn;
-//   beside a pixel that shows nothing, the piece ends at a crease whose other side faces the eye as well: that side
-//   is seen, if narrower than a pixel.
+// Sorts the pixels at edges into two lists. Pixels to recheck join the list of rounded pixels, so that rays meet the
+// surface itself there. All others are shaded from the pieces of surface around them.
+//
+// A pixel must be rechecked in any of these cases. A piece contradicts what the centre of a pixel around shows by
+// more than OFF: it covers a centre that does not show it, or ends before a centre that does. Three pieces are
+// around, or two pieces and a pixel that shows nothing: a piece knows only its own ends, and anything may lie between
+// these. Beside a pixel that shows nothing, two ends of one piece run through the pixel: the piece may turn where
+// they meet. Beside a pixel that shows nothing, the piece ends at a crease whose other side faces the eye too: that
+// side may be visible, though narrower than a pixel.
 
 layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 
@@ -15,7 +15,7 @@ LIST(3, Rounded, rounded);
 
 const float OFF = 0.07, CREASE_NEAR = 0.7;  // px
 
-// The pixel itself first.
+// The pixel itself comes first.
 const ivec2 AROUND[9] = ivec2[9](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1), ivec2(-1, -1),
                                  ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
 
@@ -28,7 +28,7 @@ bool disagrees(Piece piece, vec2 place, Hit there)
     return inside > OFF && z > 0.0 && (there.depth == 0.0 || there.depth > z + pixel_units(z));
 }
 
-// How many of the piece's ends run through the pixel.
+// Number of the piece's ends that run through the pixel.
 int ends_in_pixel(Piece piece)
 {
     int n = 0;
@@ -39,7 +39,7 @@ int ends_in_pixel(Piece piece)
     return n;
 }
 
-// Whether the pixel at `at` knows a crease within the pixel looked at whose other side faces the eye.
+// Whether the pixel at `at` knows a crease that lies within pixel p and whose other side faces the eye.
 bool is_crease_seen_beyond(ivec2 p, ivec2 at)
 {
     uint crease = texelFetch(ends, p + at, 0).y;

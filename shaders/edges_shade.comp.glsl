@@ -1,5 +1,5 @@
-// What each pixel listed at an edge shows. Its quarters are told one by one: how much of a quarter each of the pieces
-// of surface around covers, and each piece is shaded for its share of the quarter.
+// Shades the pixels listed at an edge. For each quarter of a pixel it finds the share that each piece of surface
+// around covers, and shades each piece for its share.
 layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 
 layout(binding = 5, r32f) writeonly uniform image2D coverage;
@@ -7,11 +7,11 @@ layout(binding = 5, r32f) writeonly uniform image2D coverage;
 const int PIECES = 4;
 const int QUARTERS = 4, PARTS = QUARTERS * PIECES;
 const uint ALL_STRIPS = (1u << ROUNDING_PARTS) - 1u;
-const int SIDE = 2;  // SIDE x SIDE squares a quarter
+const int SIDE = 2;  // SIDE x SIDE squares per quarter
 const int SQUARES = SIDE * SIDE;
 const float SIZE = 0.5 / float(SIDE);
 
-// The pixel itself first, then by distance.
+// The pixel itself comes first, then the others by distance.
 const ivec2 AROUND[9] = ivec2[9](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1),
                                  ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
 
@@ -20,10 +20,10 @@ vec2 square_of(vec2 middle, int i)
     return middle + (vec2(i % SIDE, i / SIDE) - 0.5 * float(SIDE - 1)) * SIZE;
 }
 
-// Less of a square is not shaded.
+// A smaller share of a square is not shaded.
 const float LEAST_SEEN = 1e-4;
 
-// As far off the paraboloid of one side, the other side of a crease may be a pixel from it.
+// A pixel away from a crease, its other side is at most this far off the paraboloid of this side.
 const float MEETS_PX = 6.0;
 
 struct Around {
@@ -41,7 +41,7 @@ Piece piece_at(Around around, int k)
     return piece;
 }
 
-// Which way the other side of the crease faces where piece k is rounded towards; 0 where it is not around.
+// The normal beyond the crease towards which piece k is rounded; 0 where no pixel around shows that side.
 vec3 beyond_crease(Around around, int k)
 {
     vec3 beyond = vec3(0.0);
@@ -79,12 +79,12 @@ Around pieces_around(ivec2 p)
         if (is_in_rounding(p + AROUND[i]))
             continue;
         Piece piece = piece_of(hit, p, AROUND[i]);
-        for (int k = 0; k < PIECES; k++)  // no store to a place that is computed: some devices keep such arrays in memory
+        for (int k = 0; k < PIECES; k++)  // no store at a computed index: some devices then keep the array in memory
             if (k == around.n)
                 around.piece[k] = piece;
         around.n++;
     }
-    // A piece that would hide what the pixel's centre shows ends before it.
+    // A piece that would hide what the pixel's centre shows must end before the centre.
     for (int k = 0; k < PIECES; k++)
         if (k < around.n && around.piece[k].at != vec2(0.0) && depth_at(around.piece[k], vec2(0.0)) < before &&
             !end_at(around.piece[k], vec2(0.0)))
@@ -92,8 +92,8 @@ Around pieces_around(ivec2 p)
     return around;
 }
 
-// How much of each piece the quarter's squares show, and the sum of these squares' middles. Of a square a piece
-// gets no more than those in front of it leave: pieces that meet at a crease share a square between them.
+// Writes how much of each piece the quarter's squares show, and the sum of these squares' middles. In each square a
+// piece gets at most what the pieces in front of it leave: pieces that meet at a crease share a square.
 void share_quarter(Around around, int quarter, inout vec3 seen[PARTS])
 {
     vec2 middle = (vec2(quarter & 1, quarter >> 1) - 0.5) * 0.5;
@@ -136,7 +136,7 @@ void main()
         squares[i % PIECES] += seen[i].z > LEAST_SEEN ? seen[i].z : 0.0;
     }
 
-    // What of it is the rounding of a crease.
+    // The part of that which is the rounding of a crease.
     vec4 rounded = vec4(0.0);
     vec3 beyond[PIECES];
     uint creases = 0u;
@@ -154,8 +154,8 @@ void main()
             }
     }
 
-    // A part each turn, of whatever piece has one left, then the strips of roundings. All in one loop: the light's
-    // and the pattern's code is long, and stands here once.
+    // Each turn shades one part, of any piece that has one left; the strips of roundings follow. All of it is one
+    // loop because the code of light and pattern is long, and so is compiled once.
     Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
     for (; left != 0u; left &= left - 1u) {
         int i = findLSB(left), strip = i - PARTS;
@@ -174,7 +174,7 @@ void main()
         sum = added(sum, scaled(lay_over(behind, at, meet(at), q), n));
     }
 
-    // What is between pieces: nothing lies behind, unless something beside is empty.
+    // What no piece covers: nothing is behind it only if something beside the pixel is empty.
     float covered = dot(squares, vec4(1.0));
     float open = around.beside_empty ? max(float(QUARTERS * SQUARES) - covered, 0.0) : 0.0;
     float all = covered + open;

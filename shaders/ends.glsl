@@ -1,14 +1,15 @@
-// What the plane of ends holds of a pixel that shows surface: where that piece of surface ends at a silhouette (x), and
-// where at the nearest border of its Ptex face that counts (y; border.glsl). An end is a line in the picture, the nearest
-// to the pixel's centre: which way it lies in 11 bits, how far in 12, how wide a crease there is rounded on this side
-// in 8, and whether the surface on a crease's other side shows the same face to the eye.
+// Packs and unpacks what the plane `ends` holds of a pixel that shows surface: x, where that piece of surface ends at
+// a silhouette; y, where it ends at the nearest border of its Ptex face that counts (border.glsl). An end is a line
+// in the picture, of several the one nearest to the pixel's centre: its direction (11 bits), its distance (12 bits),
+// the width of a crease's rounding on this side (8 bits), and whether the surface on the other side of a crease shows
+// the same face to the eye (1 bit).
 
 const uint NO_END = 0xffffffffu;
-const float END_STEPS = 1024.0;  // a px
+const float END_STEPS = 1024.0;  // steps per px
 const float NEAREST_END = 1.0 / END_STEPS;
 const uint END_GOES_ON = 0x80000000u;
 
-// across: unit, towards the line. Its angle is kept as a place on the square |x| + |y| = 1.
+// across: the unit vector towards the line. Its angle is stored as a position on the square |x| + |y| = 1.
 uint pack_end(vec2 across, float off, float rounding)
 {
     float t = across.y / (abs(across.x) + abs(across.y));
@@ -34,7 +35,7 @@ float end_rounding(uint end)
     return float(end >> 23 & 0xffu) * (THIN / 255.0);
 }
 
-// Of stage 2's border: to first order.
+// The end that stage 2's border gives, exact to first order.
 uint end_of_border(uint packed_border)
 {
     vec2 foot = border_foot(packed_border);

@@ -1,10 +1,10 @@
-// Where the pieces that listed pixels show end (ends.glsl), by Newton's method on the surface itself. (The paraboloid at
-// the pixel has a silhouette too, but where the surface bends within pixels it is far off; and stage 2 knows borders to
-// first order.)
+// Finds where the pieces end that listed pixels show (ends.glsl), by Newton's method on the surface itself. (The
+// paraboloid at the pixel has a silhouette too, but it is far off where the surface bends within pixels; and stage 2
+// knows borders only to first order.)
 //
-// With f(s,t) how far the surface is from the pixel's ray, across it (newton.glsl), the silhouette is where
-// fs x ft = 0; there all that f moves is along one direction, and the nearest place is where f is across that. On a border
-// the nearest place is where f is across the border's own direction.
+// Let f(s,t) be the distance of the surface from the pixel's ray, perpendicular to it (newton.glsl). The silhouette
+// is where fs x ft = 0: there f moves along one direction only, and the nearest place is where f is perpendicular to
+// it. On a border the nearest place is where f is perpendicular to the border's own direction.
 
 layout(local_size_x = 64) in;
 
@@ -13,10 +13,10 @@ layout(binding = 5, rg32ui) uniform uimage2D ends;
 LIST(0, Listed, listed);
 
 const float FARTHEST_PX = 3.0;
-const float MOST_BEYOND_PX = 0.25;  // a hit may lie so far outside its own silhouette, by rounding and by the guess
+const float MOST_BEYOND_PX = 0.25;  // a hit may lie so far outside its silhouette
 const int SILHOUETTE_STEPS = 6, SILHOUETTE_PATCHES = 3;
-// The step of a sub-patch below which Newton's method has come to its end, and how far beyond a sub-patch's
-// border its polynomials tell enough.
+// Newton's method ends at a step smaller than LAST_STEP of a sub-patch; a sub-patch's polynomials are used up to
+// BEYOND outside its border.
 const float LAST_STEP = 0.01, BEYOND = 0.1;
 
 struct Derivatives {
@@ -48,7 +48,8 @@ Derivatives derivatives_at(FlatNet net, vec2 st)
     return at;
 }
 
-// How far apart pixels' rays are where the place at st lies: ends may be much deeper than the pixel's hit.
+// Distance between neighbouring pixels' rays at the depth of the place st: ends may be much deeper than the pixel's
+// hit.
 float pixel_units_at(Node node, mat3 frame, Net p, float scale, vec2 st)
 {
     vec4 bu, bv;
@@ -66,7 +67,7 @@ float turn(vec2 a, vec2 b)
     return a.x * b.y - a.y * b.x;
 }
 
-// Towards where fs x ft = 0 and f is across what is left of the two.
+// A step towards the place where fs x ft = 0 and f is perpendicular to the direction that remains.
 vec2 silhouette_step(Derivatives at)
 {
     vec2 along = dot(at.fu, at.fu) > dot(at.fv, at.fv) ? at.fu : at.fv;
@@ -79,7 +80,7 @@ vec2 silhouette_step(Derivatives at)
     return move * min(1.0, 0.5 / max(longest, 1e-30));
 }
 
-// Outwards: the surface lies where it bends to.
+// The outward direction at a silhouette: away from the side to which the surface bends.
 vec2 outwards(Derivatives at)
 {
     vec2 along = dot(at.fu, at.fu) > dot(at.fv, at.fv) ? at.fu : at.fv;
@@ -89,8 +90,8 @@ vec2 outwards(Derivatives at)
     return dot(bend, across) > 0.0 ? -across : across;
 }
 
-// NO_END where there is none near. A pixel in a gap (gaps.comp.glsl) shows another piece than stage 1 saw there,
-// so nothing leads to the silhouette of what it shows.
+// The silhouette's end, or NO_END if none is near. A pixel in a gap (gaps.comp.glsl) shows another piece than stage 1
+// saw there, so its guess does not lead to the silhouette of the piece it shows.
 uint silhouette_end(ivec2 p)
 {
     Guess guess = guess_of(p);
@@ -130,7 +131,7 @@ uint silhouette_end(ivec2 p)
     return NO_END;
 }
 
-// The place at t along edge e of a face, and which way the node's coordinates go along t and away from the edge.
+// The place at t along edge e of a face, and the directions in the node's coordinates along t and away from the edge.
 void edge_place(uint face, uint e, float t, out Node node, out vec2 xy, out vec2 along, out vec2 inwards)
 {
     node_under(Place(face, e, vec2(t, 0.0)), node, xy);
@@ -141,8 +142,8 @@ void edge_place(uint face, uint e, float t, out Node node, out vec2 xy, out vec2
 
 const int BORDER_PATCHES = 4, BORDER_NEWTON_STEPS = 4;
 
-// The line of edge e of a face, nearest to the pixel's centre, from the place at t on: how it lies, and how far, px.
-// False where there is none near.
+// The line of edge e of a face, at the place nearest to the pixel's centre; the search starts at t. Writes the line's
+// direction and its distance, px. False if there is none near.
 bool border_end(ivec2 p, uint face, uint e, inout float t, out vec2 across, out float off)
 {
     bool found = false;
@@ -190,7 +191,7 @@ bool border_end(ivec2 p, uint face, uint e, inout float t, out vec2 across, out 
     return found;
 }
 
-// Which side the surface shows there: the sign.
+// The sign of the side that the surface shows at a place.
 float facing_at(ivec2 p, Node node, vec2 xy)
 {
     if (node.kind == HOLE)
@@ -203,7 +204,7 @@ float facing_at(ivec2 p, Node node, vec2 xy)
     return turn(at.fu, at.fv);
 }
 
-// Whether the other side of a crease, beyond its rounding, shows the same face.
+// Whether the other side of a crease, beyond its rounding, shows the same face to the eye.
 bool goes_on(ivec2 p, uint face, uint e, float t, float rounding, float own_facing)
 {
     Place place = Place(face, e, vec2(t, 0.0));
@@ -216,7 +217,7 @@ bool goes_on(ivec2 p, uint face, uint e, float t, float rounding, float own_faci
     return facing_at(p, node, xy) * own_facing > 0.0;
 }
 
-// NO_END where it is not found: then what stage 2 says stands.
+// The border's end, or NO_END if it is not found; then the border of stage 2 stands.
 uint border_end_of(ivec2 p, float rounding_px)
 {
     Guess guess = guess_of(p);

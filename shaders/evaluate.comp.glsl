@@ -1,9 +1,9 @@
-// Stage 2, evaluate, first pass: where each pixel's own ray meets the limit surface.
+// Stage 2, evaluate, first pass: finds where each pixel's own ray meets the limit surface.
 //
-// The rasterised parameters belong to the triangle and would cost up to 0.2 degrees; Newton's method
-// from there makes them the pixel's (server/surface/README.md 7.1). This pass stays inside the guessed
-// sub-patch, which serves nearly all pixels; the others, next to borders of sub-patches, are listed for
-// unsolved.comp.glsl. So no pixel pays for the rare cases, on devices whose lanes all walk through every
+// The rasterised parameters belong to the triangle; used as they are they would cost up to 0.2 degrees. Newton's
+// method starts from them and finds those of the pixel's ray (server/surface/README.md 7.1). This pass stays inside
+// the guessed sub-patch, which is enough for nearly all pixels. The others, next to borders of sub-patches, are
+// listed for unsolved.comp.glsl, so that no pixel pays for rare cases on devices whose lanes all execute every
 // branch.
 
 layout(local_size_x = 64) in;

@@ -1,16 +1,16 @@
-// Stage 2, evaluate, fourth pass, over the pixels that asked those around them: lists those where triangles
-// hid what the pixel shows.
+// Stage 2, evaluate, fourth pass, over the pixels that asked their neighbours: lists those where triangles of stage 1
+// may have hidden what the pixel shows.
 //
-// The triangles of stage 1 reach up to half a pixel beyond the surface's silhouettes and borders. Where a pixel
-// sees between two of these, through a gap narrower than itself, stage 1 may have seen the triangles alone, there
-// and all around. Then the ray meets nothing, and no pixel beside this one has seen what lies behind. Such a
-// pixel has hits on two opposite sides. Hits of pixels in gaps do not count: the result must not depend on
-// which tile was drawn first.
+// These triangles reach up to half a pixel beyond the surface's silhouettes and borders. Where two of them leave a
+// gap narrower than the pixel, stage 1 may have seen only the triangles, in this pixel and in all around it. Then the
+// pixel's ray meets nothing, and no neighbour has seen what lies behind the gap. Such a pixel has hits on two
+// opposite sides. Hits of other pixels in gaps do not count, so that the result does not depend on which tile was
+// drawn first.
 
 layout(local_size_x = 64) in;
 
 layout(binding = 0, r32f) readonly uniform image2D hit_depth;
-layout(binding = 1, rg32ui) uniform uimage2D seen_here;  // seen, to write IN_GAP
+layout(binding = 1, rg32ui) uniform uimage2D seen_here;  // the plane `seen` again, to write IN_GAP
 
 LIST(0, Listed, listed);
 LIST(3, Gaps, gaps);

@@ -1,7 +1,8 @@
-// After stage 1: lists the groups of 4 x 2 pixels that show surface, or have a pixel beside them that does;
-// and in a second list those of these groups whose depths are discontinuous: not calm (seen.glsl).
-// An invocation for each group of the blocks of 8 x 8 pixels that the grids may cover, x | y << 16 in
-// blocks (server/render/patch_grids.h).
+// Runs after stage 1. First list: the groups of 4 x 2 pixels in which a pixel shows surface, or lies beside one that
+// does. Second list: those of these groups that are not calm (seen.glsl), because depths are discontinuous there.
+//
+// One invocation for each group of the blocks of 8 x 8 pixels that the grids may cover; a block is given as x | y <<
+// 16 in blocks (server/render/patch_grids.h).
 
 layout(local_size_x = 64) in;
 
@@ -21,7 +22,7 @@ void main()
     uint block = blocks[min(i / 8u, n_blocks - 1u)];
     ivec2 group = list_place(block) * ivec2(2, 4) + ivec2(i % 2u, i / 2u % 4u);
     ivec2 first = group * ivec2(WIDTH, HEIGHT);
-    // Of the group and what is around it; its first pixel at [1][1].
+    // Depths of the group and of the pixels around it; the group's first pixel is at [1][1].
     float ndc[HEIGHT + 2][WIDTH + 2];
     for (int y = 0; y < HEIGHT + 2; y++)
         for (int x = 0; x < WIDTH + 2; x++)

@@ -1,9 +1,9 @@
-// Groups of 4 x 2 pixels that show surface or lie beside some (gather.comp.glsl), x | y << 16 in groups:
-// a pass over pixels takes eight groups a workgroup, so that what is empty costs nothing.
+// Groups of 4 x 2 pixels in which a pixel shows surface or lies beside one that does (gather.comp.glsl), as x | y <<
+// 16 in groups. A pass over pixels takes eight groups per workgroup, so empty parts of a tile cost nothing.
 
 LIST(1, Groups, groups);
 
-// The pixel of this invocation; outside the tile where there is none.
+// The pixel of this invocation; a pixel outside the tile if the invocation has none.
 ivec2 group_pixel(uvec3 workgroup, uint local)
 {
     uint i = 8u * (workgroup.y * ROW + workgroup.x) + local / 8u;

@@ -1,29 +1,29 @@
-// What a listed pixel without an edge shows that one footprint cannot tell (uneven.glsl): nine squares of it, each
-// shaded by itself.
+// Shades the listed pixels: those without an edge for which one footprint is not enough (uneven.glsl). Nine squares of
+// each pixel are shaded separately.
 //
-// How the shape operator changes within the pixel counts there as much as how it turns the normal, and
-// the pixel's own paraboloid does not know it. The pixels around do: their normals and shape operators
-// are the surface's own. Between them and the pixel's the normal is a cubic function of the place.
+// How the shape operator changes within such a pixel counts as much as how it turns the normal, and the pixel's own
+// paraboloid does not know that change. The pixels around know it: their normals and shape operators are the
+// surface's own. Between them and this pixel the normal is taken as a cubic function of the place.
 
 layout(local_size_x = 64) in;
 
 const uint SIDE = 3u, SQUARES = SIDE * SIDE;
 const float STEP = 1.0 / float(SIDE);  // px: the side of a square
 
-// The squares that are shaded: all of them, or one of them light by light, the hindmost first.
+// The squares to shade: all of them, or one of them for one light after another, the hindmost light first.
 uniform uint first_square, end_square;
 
-// Of frames of several lights: the sum of what the squares show before this one.
+// With several lights: the sum of what the squares before this one show.
 layout(binding = 5, rgba32f) uniform image2D square_sum;
 
-// Its middle, px from the pixel's.
+// The square's middle, px from the pixel's centre.
 vec2 square_middle(uint i)
 {
     return (vec2(i % SIDE, i / SIDE) + 0.5) * STEP - 0.5;
 }
 
-// Along one axis of the picture: what the normal's change a pixel, `slope`, leaves of it, and how the
-// change across, `cross_slope`, goes along with it.
+// Along one axis of the picture: what remains of the normal's change per pixel beyond `slope`, and how the change
+// across the axis, `cross_slope`, varies with it.
 struct Turning {
     vec3 slope, square, cube;
     vec3 cross_slope, cross_change, cross_square;
@@ -34,7 +34,7 @@ vec3[2] turn_a_pixel(Hit hit, ivec2 p)
     return sample_at(pixel_offset(p), 1.0, hit.depth, hit.n, hit.h, hit.n).dn;
 }
 
-// axis: 0 to the right, 1 down. A side that shows another surface says nothing.
+// axis: 0 is right, 1 is down. A neighbour that shows another surface is not used.
 Turning turning_along(Hit hit, vec3 turn[2], ivec2 p, int axis)
 {
     Turning t = Turning(turn[axis], vec3(0.0), vec3(0.0), turn[1 - axis], vec3(0.0), vec3(0.0));

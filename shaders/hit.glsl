@@ -1,4 +1,4 @@
-// What stage 2 found at each pixel (planes.glsl), as stage 3 and the passes for edges read it.
+// Reads what stage 2 wrote for each pixel (planes.glsl), for stage 3 and the passes for edges.
 
 layout(binding = 0, r32f) readonly uniform image2D hit_depth;
 layout(binding = 1, rgba32f) readonly uniform image2D normal;
@@ -11,7 +11,7 @@ struct Hit {
     vec3 h;      // shape operator in tangent_basis(n): (1,1), (1,2), (2,2)
 };
 
-// Beyond the tile the depth is -1: nobody knows.
+// Outside the tile the depth is -1: unknown.
 Hit hit_at(ivec2 p)
 {
     if (any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, tile.zw)))
@@ -21,7 +21,7 @@ Hit hit_at(ivec2 p)
     return Hit(on_ray(pixel_offset(p), z), z, facing.xyz, vec3(imageLoad(shape, p).xy, facing.w));
 }
 
-// A place without a normal mirrors nothing.
+// Whether the surface reflects here: a place without a normal does not.
 bool mirrors(Hit hit)
 {
     return hit.depth > 0.0 && dot(hit.n, hit.n) > 0.5;

@@ -1,8 +1,6 @@
-// From a surface point to the light: the ray of the line family, where it meets the light, and how
-// both change over the pixel (server/surface/README.md 7.2; Igehy 1999).
-//
-// Defined before this file: FAMILY, LIGHT. Where these are constants, a compiler drops what other families and
-// lights need.
+// Finds, for a surface point, the ray of the line family, where it meets the light, and how both change over the
+// pixel (server/surface/README.md 7.2; Igehy 1999). The including program defines FAMILY and LIGHT. Where these are
+// constants, a compiler drops what other families and lights need.
 
 #define REFLECTION 0
 #define HIGHLIGHT 1
@@ -16,49 +14,50 @@
 #define SPHERE 3
 
 layout(std140, binding = 1) uniform Light {
-    vec4 line_eye;  // relative to the camera's, world axes; w = 0: a unit direction of view
-    // The camera's eye as the light sees it, from its centre: no sum of large numbers that cancel is left
-    // to single precision. Rectangle and plane: its coordinates q, and its height over the plane.
-    // Tunnel: along axis_u, axis_v, axis_n; and radius^2 less the squared distance from the axis.
+    vec4 line_eye;  // relative to the camera's eye, world axes; w = 0: a unit direction of view
+    // The camera's eye relative to the light's centre, computed by the caller in double precision, so that single
+    // precision never has to cancel large numbers. Rectangle and plane: the eye's coordinates q, and its height over
+    // the plane. Tunnel: its coordinates along axis_u, axis_v, axis_n; w: radius^2 less its squared distance from the
+    // axis.
     vec4 origin;
-    // Rectangle and plane: u x v, unit, and the dual basis: q = size * (dual . (x - centre)).
-    // Else the axis, unit, w: the tunnel's radius; and where azimuth begins, and a quarter later.
+    // Rectangle and plane: unit u x v, and the dual basis: q = size * (dual . (x - centre)). Otherwise: the unit axis
+    // (w: the tunnel's radius), the direction of azimuth 0, and the direction a quarter turn later.
     vec4 axis_n, axis_u, axis_v;
     vec4 size;                         // width, height of the light
     vec4 foreground, background, miss, empty, base;  // linear, premultiplied by alpha
     vec4 turn;                         // cosine and sine of the rotation; 1 / period; offset
     vec4 wave;                         // phases at the centre along both ways; duty; soft
-    vec4 single[4];                    // places of single lines, from the centre
+    vec4 single[4];                    // positions of single lines, from the centre
     float opacity, half_width;
     int n_single;
     bool is_hindmost, is_foremost, is_one_sided, has_direction;
-    ivec4 want;                        // whether to write light_st, curvature, light_change; to list parts
+    ivec4 want;                        // whether to write light_st, curvature, light_change; whether to list parts
 };
 
 const float PI = 3.14159265358979;
 
-// What single precision cannot tell from 0: of a sum of products, as a share of their sizes; and the sine
-// between a unit vector that was computed from N and a plane or an axis. README.md, "Where rounding
-// decides", says what is shown there.
+// What counts as 0 in single precision: a sum of products whose share of the products' sizes is at most ROUNDING, and
+// a sine of at most LEAST_SINE between a computed unit vector and a plane or an axis. README.md, "Where rounding
+// decides", says what is shown in these cases.
 const float ROUNDING = 1.0 / 2097152.0, LEAST_SINE = 1e-6;
 
 struct Sample {
     vec3 x, n, h;  // place relative to the eye, unit normal, shape operator
     vec3 v;        // unit view direction of the line eye
-    vec3 dx[2], dn[2], dv[2];  // by a pixel to the right and a pixel down
+    vec3 dx[2], dn[2], dv[2];  // change by a pixel to the right and by a pixel down
 };
 
-// What the pattern gets to know.
+// What the pattern is given.
 struct Met {
     vec2 q;        // coordinates on the light from its centre, in its units
     vec2 ds, dt;   // change of q.x and of q.y by a pixel to the right and down
     float tau;     // length of the ray
     vec2 dtau;
     float cover;   // how much of the pixel falls on the light
-    bool inside;   // its centre does
+    bool inside;   // whether the pixel's centre meets the light
 };
 
-// -dN along a tangent vector, by the shape operator.
+// -dN along a tangent vector, from the shape operator.
 vec3 normal_change(vec3 along, vec3 n, vec3 h)
 {
     vec3 e1, e2;
@@ -67,14 +66,14 @@ vec3 normal_change(vec3 along, vec3 n, vec3 h)
     return -(e1 * (h.x * a.x + h.y * a.y) + e2 * (h.y * a.x + h.z * a.y));
 }
 
-// How far from the line eye single precision places x.
+// The error of the distance of x from the line eye in single precision.
 float eye_noise(vec3 x)
 {
     return ROUNDING * (length(x) + length(line_eye.xyz));
 }
 
-// Steps 1 to 3 of server/surface/README.md 7.2, at depth z on the ray of q (view.glsl), over the parallelogram
-// of the columns of `sides`, px. The shape operator is that at a normal nearby.
+// Steps 1 to 3 of server/surface/README.md 7.2, at depth z on the ray of q (view.glsl), over the parallelogram of the
+// columns of `sides`, px. The shape operator h belongs to h_normal, a normal nearby.
 Sample sample_over(vec2 q, mat2 sides, float z, vec3 n, vec3 h, vec3 h_normal)
 {
     Sample at;
@@ -96,13 +95,13 @@ Sample sample_over(vec2 q, mat2 sides, float z, vec3 n, vec3 h, vec3 h_normal)
     return at;
 }
 
-// Over a square of size_px.
+// The same over a square of side size_px.
 Sample sample_at(vec2 q, float size_px, float z, vec3 n, vec3 h, vec3 h_normal)
 {
     return sample_over(q, mat2(size_px), z, n, h, h_normal);
 }
 
-// The family's ray and its change: step 4.
+// Step 4: the family's ray and its change.
 void ray_from(Sample at, out vec3 r, out vec3 dr[2])
 {
     if (FAMILY == HIGHLIGHT) {
@@ -121,9 +120,9 @@ void ray_from(Sample at, out vec3 r, out vec3 dr[2])
                 2.0 * ((dot(at.dv[i], at.n) + dot(at.v, at.dn[i])) * at.n + approach * at.dn[i]);
 }
 
-// atan(y, x), to the last digits: a device's own may be off by far more than single precision's rounding.
-// Not both 0. The polynomial is (atan(t) / t - 1) / t^2 in z = t^2, interpolated at Chebyshev's nodes for
-// |t| <= tan(pi / 8); larger t are brought there by pi / 4 and pi / 2.
+// atan(y, x) to the last digits of single precision; a device's own function may be far less exact. Not both
+// arguments may be 0. The polynomial is (atan(t) / t - 1) / t^2 in z = t^2, interpolated at Chebyshev's nodes for |t|
+// <= tan(pi / 8); larger t are reduced to that range by pi / 4 and pi / 2.
 float angle_of(float y, float x)
 {
     float low = min(abs(x), abs(y)), high = max(abs(x), abs(y));
@@ -157,14 +156,15 @@ Angles angles_of(vec3 r, vec3 dr[2])
     return a;
 }
 
-// A ray that turns further over the pixel, as close to a silhouette, does not turn in proportion to the place in
-// the pixel: then its centre tells whether the light is met. Rad.
+// Where the ray turns by more than this over the pixel (rad), as close to a silhouette, it does not turn in
+// proportion to the place in the pixel. Then the pixel's centre alone decides whether the light is met.
 const float MOST_TURN_OF_RAY = 0.5;
 
-// How much of the pixel falls on the rectangle, on the side of the plane where the ray's approach times
-// `side` is positive. Where the ray runs along the light's plane the place it meets is a quotient, far from linear
-// in the pixel; but over and under it are, so each of the rectangle's four borders is a straight line through the
-// pixel, however thin the light. (Above all four the ray goes ahead too.)
+// Share of the pixel that falls on the rectangle, on the side of the plane where the ray's approach times `side` is
+// positive. The place that the ray meets is a quotient, far from linear over the pixel where the ray is nearly
+// parallel to the light's plane. Numerator and denominator are linear, so each of the rectangle's four borders is a
+// straight line through the pixel, however thin the light. (A place inside all four borders also lies ahead on the
+// ray.)
 float rectangle_share(Sample at, vec3 r, vec3 dr[2], float ahead, float side)
 {
     vec3 m = axis_n.xyz;
@@ -190,8 +190,8 @@ float rectangle_share(Sample at, vec3 r, vec3 dr[2], float ahead, float side)
 
 const Met NOT_MET = Met(vec2(0.0), vec2(0.0), vec2(0.0), 0.0, vec2(0.0), 0.0, false);
 
-// Step 5: where x + tau r meets the light's plane, and its change. No ray meets it that runs along it,
-// nor one that starts in it.
+// Step 5: where x + tau r meets the light's plane, and how that changes. A ray along the plane does not meet it, nor
+// does one that starts in it.
 Met meet_plane(Sample at, vec3 r, vec3 dr[2])
 {
     Met met;
@@ -238,9 +238,9 @@ vec2 across_axis(vec3 v)
     return vec2(dot(axis_u.xyz, v), dot(axis_v.xyz, v));
 }
 
-// The far side of the cylinder: its inside, for what stands in the tunnel. In the plane across the axis
-// the ray is a line that passes the axis at the distance `pass` and is inside the circle for `half_chord`
-// on either side of the point nearest to the axis. No ray meets it that runs along the axis.
+// Where the ray meets the far side of the cylinder, which is its inside for an object in the tunnel. In the plane
+// perpendicular to the axis the ray is a line that passes the axis at the distance `pass`; it is inside the circle
+// for `half_chord` on either side of the point nearest to the axis. A ray along the axis meets nothing.
 Met meet_tunnel(Sample at, vec3 r, vec3 dr[2])
 {
     Met met;
@@ -251,14 +251,15 @@ Met meet_tunnel(Sample at, vec3 r, vec3 dr[2])
         return NOT_MET;
     vec2 along = across / sine;
     float pass = along.x * from.y - along.y * from.x, gone = dot(from, along);
-    // radius^2 - away^2. From the eye's where the eye is no further off than x can be inside: so a wide
-    // tunnel is met where x is told from its wall; and half_chord^2 from that where no larger squares cancel.
+    // radius^2 - away^2. It is computed from the eye's value where the eye is no farther from the axis than x inside
+    // the tunnel can be: then the distance of x from the wall of a wide tunnel is exact. half_chord^2 follows from it
+    // where no larger squares cancel.
     bool is_eye_near = abs(origin.w) < 3.0 * radius * radius;
     float power = is_eye_near ? origin.w - dot(x, origin.xy + from) : (radius - away) * (radius + away);
     bool is_near = away < (is_eye_near ? 2.0 : 1.0) * radius;
     float chord2 = is_near ? gone * gone + power : (radius - abs(pass)) * (radius + abs(pass));
     float half_chord = sqrt(max(chord2, 0.0));
-    // Of the two ends the far one, which is half_chord - gone from x.
+    // The far one of the two intersections, which is half_chord - gone from x.
     met.tau = (gone > 0.0 ? power / (half_chord + gone) : half_chord - gone) / sine;
     if (!(chord2 > 0.0 && met.tau > 0.0))
         return NOT_MET;
@@ -278,7 +279,7 @@ Met meet_tunnel(Sample at, vec3 r, vec3 dr[2])
     return met;
 }
 
-// What is at infinity is met by direction alone; q in degrees.
+// A light at infinity is met by direction alone; q is in degrees.
 Met meet_infinity(vec2 q, vec2 ds, vec2 dt)
 {
     const float degrees = 180.0 / PI;

@@ -1,11 +1,12 @@
-// Lists that one pass makes for another: a buffer each, which begins with the other's dispatch.
+// Lists that one pass makes for another. Each is a buffer that begins with the arguments of the other pass's
+// dispatch.
 
 #define LIST(index, block, name)                                                                   \
     layout(std430, binding = index) buffer block { uint x, y, z, n, at[]; } name
 
-const uint ROW = 32768u;  // workgroups: a dimension may have 65,535
+const uint ROW = 32768u;  // workgroups in a row: a dispatch allows at most 65,535 in one dimension
 
-// What is added is x | y << 16; each workgroup of the other pass takes per_group.
+// Adds pixel p, as x | y << 16, to a list whose pass takes per_group entries per workgroup.
 #define LIST_ADD(list, p, per_group)                                                               \
     {                                                                                              \
         uint slot = atomicAdd(list.n, 1u);                                                         \

@@ -1,9 +1,9 @@
-// Walking over the edges of nodes and Ptex faces, so that a pixel's solution may lie in another
-// node than its first guess.
+// Walks across edges of nodes and Ptex faces, so that the solution for a pixel may lie in another node than its first
+// guess.
 //
-// A place is given from a Ptex face's corner k: `ab.x` along edge k (towards corner k + 1), `ab.y`
-// along edge k - 1 backwards. Near an extraordinary vertex these keep full relative precision,
-// where face-wide (u,v) would not.
+// A place is given from corner k of a Ptex face: `ab.x` along edge k (towards corner k + 1), `ab.y` along edge k - 1
+// backwards. Near an extraordinary vertex these coordinates keep full relative precision; (u,v) of the whole face
+// would not.
 
 struct Place {
     uint face;
@@ -11,7 +11,7 @@ struct Place {
     vec2 ab;
 };
 
-// From (u,v) seen from corner k to (u,v) seen from corner 0, and back.
+// Converts coordinates given from corner k to those given from corner 0, and back.
 vec2 unturned(vec2 ab, uint k)
 {
     return k == 0u ? ab : k == 1u ? vec2(1.0 - ab.y, ab.x) : k == 2u ? 1.0 - ab
@@ -40,9 +40,9 @@ Place place_of(Node node, vec2 xy)
     return Place(node.face, k, turned(uv, k));
 }
 
-// The place on the other side of `edge` of its face, seen from the same vertex: `at_start` when
-// that is the edge's first one. `along` is measured from that vertex, `outside` is how far beyond
-// the edge the place lies. False at a boundary.
+// Moves a place across `edge` of its face; it stays relative to the same vertex, which is the edge's first one if
+// `at_start`. `along` is the distance from that vertex, `outside` how far beyond the edge the place lies. False at a
+// boundary.
 bool across_edge(inout Place place, uint edge, bool at_start, float along, float outside)
 {
     uint other = adjacency_of(place.face)[edge];
@@ -56,27 +56,28 @@ bool across_edge(inout Place place, uint edge, bool at_start, float along, float
     float unit = 1.0;
     if (from_half && !to_half) {
         unit = 0.5;
-        // The vertex in the middle of the other's edge is no corner of it.
+        // The vertex in the middle of the other face's edge is not one of its corners.
         if (at_start == (edge == 3u))
             along = 1.0 - along;
     } else if (!from_half && to_half) {
         unit = 2.0;
-        if (at_start) {  // the n-gon's next Ptex face is the one there
+        if (at_start) {  // the next Ptex face of the n-gon is there
             uint next = to.ngon_corner + 1u;
             face = face - to.ngon_corner + (next == to.ngon_size ? 0u : next);
             e = 3u;
         }
     }
     place.face = face;
-    // Edges run in opposite directions on both sides. With halves, the shared vertex is the cage's.
+    // The two faces run along a shared edge in opposite directions. Where halves of an edge meet, the shared vertex
+    // is the cage's.
     bool to_end = from_half != to_half ? (from_half ? edge == 0u : e == 3u) : at_start;
     place.corner = to_end ? (e + 1u) & 3u : e;
     place.ab = to_end ? vec2(outside, along) * unit : vec2(along, outside) * unit;
     return true;
 }
 
-// Brings a place with a negative coordinate back inside a face, over one or two edges. At a
-// boundary the coordinate becomes 0: the nearest place that the surface has.
+// Brings a place with a negative coordinate back inside a face, across one edge or two. At a boundary the coordinate
+// becomes 0: the nearest place on the surface.
 void settle(inout Place place)
 {
     for (int i = 0; i < 3 && min(place.ab.x, place.ab.y) < 0.0; i++) {
@@ -92,7 +93,7 @@ void settle(inout Place place)
     place.ab = clamp(place.ab, 0.0, 1.0);
 }
 
-// The node under a settled place, and its local coordinates there. HOLE nodes are found too.
+// The node at a settled place, and the local coordinates there. HOLE nodes are found too.
 uint node_under(Place place, out Node node, out vec2 xy)
 {
     uint i = place.face;

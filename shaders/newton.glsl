@@ -1,8 +1,6 @@
-// The pixel's ray as two planes through it, and Newton's method on the distances from them
-// (server/surface/README.md 7.1): f(s,t) = 0 where the surface meets the ray.
-//
-// Distances are measured in the patch's own frame and scale, so a patch is projected once, to a
-// net of 2-D points, and steps cost little.
+// The pixel's ray as the intersection of two planes, and Newton's method on the distances from them
+// (server/surface/README.md 7.1): f(s,t) = 0 where the surface meets the ray. Distances are measured in the patch's
+// own frame and scale, so a patch is projected only once, to a net of 2-D points, and each step is cheap.
 
 struct Ray {
     vec2 slope;  // camera space: the ray is (start, 0) + z (slope, 1)
@@ -19,7 +17,7 @@ Ray ray_of(ivec2 pixel)
     return ray_through(pixel_offset(pixel));
 }
 
-// The 16 points' distances from the two planes, in units of scale, as rows like those of a Net.
+// Distances of the 16 points from the two planes, in units of scale, as rows like those of a Net.
 struct FlatNet {
     vec4 x[4], y[4];
 };
@@ -36,8 +34,8 @@ FlatNet project(Node node, mat3 frame, Net p, float scale, Ray r)
     return net;
 }
 
-// One step from st, cut at `most` sub-patches; returns f there. Where the ray touches the surface (no
-// inverse) the step is 0.
+// One step from st, limited to `most` sub-patches; returns f at st. Where the ray touches the surface (no inverse)
+// the step is 0.
 vec2 newton_step(FlatNet net, vec2 st, float most, out vec2 step_st)
 {
     vec4 bu, bv;
@@ -60,22 +58,23 @@ vec2 newton_step(FlatNet net, vec2 st, float most, out vec2 step_st)
     return f;
 }
 
-// How far from the ray counts as on it, px: far below what a pixel can show, unless the patch is so
-// much larger than a pixel that single precision cannot tell.
+// A place counts as on the ray up to this distance, px: far below what a pixel can show, except for a patch so much
+// larger than a pixel that single precision cannot resolve it.
 float close_enough(float px_per_scale)
 {
     return max(0.0005, 1.5e-7 * px_per_scale);
 }
 
-// Newton's method inside one sub-patch, whose polynomials also hold a little beyond it. Returns
-// how far from the ray, px, the surface was before the last step, which squares it: what is close enough
-// then lies on the ray. (But for places so near the sub-patch's border that the step leaves it: they stay.)
+// Newton's method inside one sub-patch, whose polynomials hold a little beyond its border too. Returns the distance
+// of the surface from the ray before the last step, px. The last step squares that distance, so a result that is
+// close enough means that st lies on the ray; the exception is a place so near the border that the step leaves the
+// sub-patch, which then stays where it is.
 float solve_patch(FlatNet net, float px_per_scale, inout vec2 st)
 {
     float residual = 1e30, enough = close_enough(px_per_scale);
     for (int i = 0; i < 5; i++) {
         vec2 step_st;
-        // Beyond half a sub-patch the linear model says little.
+        // Farther than half a sub-patch the linear model tells little.
         residual = length(newton_step(net, st, 0.5, step_st)) * px_per_scale;
         vec2 next = st + step_st;
         bool leaves = any(lessThan(next, vec2(0.0))) || any(greaterThan(next, vec2(1.0)));
@@ -88,7 +87,7 @@ float solve_patch(FlatNet net, float px_per_scale, inout vec2 st)
     return residual;
 }
 
-// The visibility buffer's guess as local coordinates of its node.
+// The visibility buffer's guess, as local coordinates of its node.
 vec2 guess_xy(Node node, uint packed_guess)
 {
     vec2 st = vec2(packed_guess >> 6 & 8191u, packed_guess >> 19) * (2.0 / 8191.0);

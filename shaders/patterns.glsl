@@ -1,9 +1,8 @@
-// What the light shows at a place, averaged over the pixel's footprint there. Colours here are linear
-// light, premultiplied by their alpha, so that their mean over a pixel is what the pixel shows.
+// What the light shows at a place, averaged over the pixel's footprint there. Colours here are linear light,
+// premultiplied by their alpha, so that their mean over a pixel is what the pixel shows.
 //
-// Defined before this file: PATTERN; IS_SOFT, whether edges are soft; IS_FILTERED, whether a pixel shows a mean or
-// what its centre meets. Some devices walk through every branch: for these they are constants, in a program for each
-// kind.
+// The including program defines PATTERN; IS_SOFT, whether edges are soft; IS_FILTERED, whether a pixel shows a mean
+// or what its centre meets. For devices that execute every branch these are constants, in one program for each kind.
 
 #define STRIPES 0
 #define LATTICE 1
@@ -15,9 +14,9 @@
 
 layout(binding = 0) uniform sampler2D picture;
 
-// Soft edges are one more box that the pattern is convolved with. The two widest boxes are integrated
-// in closed form, the narrowest by Gauss's rule of three points, under which the result is a
-// piecewise quadratic function: points and weights.
+// A soft edge is one more box that the pattern is convolved with. The two widest boxes are integrated in closed form,
+// the narrowest by Gauss's rule of three points; with it the result is a piecewise quadratic function. Points and
+// weights of the rule:
 const vec3 GAUSS = vec3(-0.387298335, 0.0, 0.387298335), WEIGHT = vec3(5.0, 8.0, 5.0) / 18.0;
 
 void sort_boxes(vec2 g, float soft, out vec2 wide, out float narrow)
@@ -28,12 +27,13 @@ void sort_boxes(vec2 g, float soft, out vec2 wide, out float narrow)
     wide.y = g.x + g.y + soft - narrow - wide.x;
 }
 
-// Edges softer than this share of what they lie in are as good as hard, and have no digits left.
+// Edges whose softness is less than this share of the distance over which they are integrated count as hard: single
+// precision has no digits left for them.
 const float LEAST_SOFT = 1e-3;
 
-// The wave of duty d, its edges as wide as `soft`. Where the pixel takes less than a period it is
-// the sum of the waves in reach, each between four ramps, taken on the side where they vanish: what
-// is dark is dark to all digits, as the sRGB curve needs.
+// The wave of duty d with edges as wide as `soft`. Where the pixel takes less than a period, the result is the sum of
+// the waves in reach. Each lies between four ramps, taken on the side where they vanish, so that dark values keep all
+// their digits, as the sRGB curve needs.
 float soft_stripe(float phase, vec2 g, float d, float soft)
 {
     float reach = 0.5 * (abs(g.x) + abs(g.y)), sum = 0.0;
@@ -55,7 +55,7 @@ float soft_stripe(float phase, vec2 g, float d, float soft)
     return sum;
 }
 
-// half_plane with an edge as wide as `soft`, in units of z.
+// half_plane() with an edge as wide as `soft`, in units of z.
 float soft_half_plane(float z, vec2 g, float soft)
 {
     float reach = 0.5 * (abs(g.x) + abs(g.y));
@@ -71,8 +71,8 @@ float wave_at(float phase, vec2 g)
     return stripe(phase, g, wave.z);
 }
 
-// Where neither wave has a bright part: the pixel's share of it. The product of both is exact where
-// one wave is constant over the pixel, or neither changes along what the other changes along.
+// Share of the pixel in which neither wave is bright. The product of the two dark shares is exact where one wave is
+// constant over the pixel, or where only one wave changes along each axis of the pixel.
 float lattice_dark(vec2 phase, vec2 da, vec2 db)
 {
     vec2 dark = 1.0 - vec2(wave_at(phase.x, da), wave_at(phase.y, db));
@@ -82,7 +82,7 @@ float lattice_dark(vec2 phase, vec2 da, vec2 db)
     vec2 reach = 0.5 * (abs(vec2(da.x, db.x)) + abs(vec2(da.y, db.y)));
     float sum = 0.0;
     if (IS_SOFT) {
-        // Over parts of the pixel the product is good enough.
+        // The product is exact enough over parts of the pixel.
         int side = max(reach.x, reach.y) > 0.75 ? 8 : 4, n = is_turned ? side * side : 0;
         for (int i = 0; i < n; i++) {
             vec2 at = (vec2(i % side, i / side) + 0.5) / float(side) - 0.5;
@@ -91,7 +91,7 @@ float lattice_dark(vec2 phase, vec2 da, vec2 db)
         }
         return n > 0 ? sum / float(side * side) : dark.x * dark.y;
     }
-    // The dark cells that the pixel may touch. Past so many of them the product is good enough.
+    // The dark cells that the pixel may touch. Beyond this number of cells the product is exact enough.
     const float most_cells = 64.0;
     vec2 first = floor(phase - reach), cells = ceil(phase + reach - wave.z) - first;
     int n = is_turned && cells.x * cells.y <= most_cells ? int(cells.x * cells.y) : 0;
@@ -102,10 +102,10 @@ float lattice_dark(vec2 phase, vec2 da, vec2 db)
     return n > 0 ? sum : dark.x * dark.y;
 }
 
-// The image over the pixel's parallelogram, by samples on a grid of its two sides, a texel of the
-// chosen level apart, so that every texel counts alike. The level is as fine as it may be for about
-// so many samples: what a texel of it blurs beyond the footprint is small beside the shorter side.
-// (Not textureGrad: software devices take one footprint for neighbouring pixels together.)
+// The mean of the image over the pixel's parallelogram, from samples on a grid along its two sides. The samples are
+// one texel of the chosen level apart, so that every texel counts alike. The level is the finest for which about the
+// allowed number of samples is enough; what one of its texels blurs beyond the footprint is small compared with the
+// shorter side. (textureGrad() is not used: software devices use one footprint for neighbouring pixels together.)
 vec4 image_colour(vec2 st, vec2 right, vec2 down)
 {
     const float few = 5.0, many = 40.0, most = 64.0;
@@ -117,7 +117,7 @@ vec4 image_colour(vec2 st, vec2 right, vec2 down)
     float length_u = max(length(u), 1e-6), height = abs(u.x * v.y - u.y * v.x) / length_u;
     float step = max(height / few, sqrt(length_u * max(height, length_u / many) / many));
     float lod = max(round(log2(max(step, 1.0))), 0.0), texel = exp2(lod);
-    // Rows that are shifted against each other add to what lies along them.
+    // Rows that are shifted against each other add to the samples along them.
     float shift = abs(dot(u, v)) / (length_u * length_u);
     vec2 n = clamp(ceil(vec2(length_u / texel, max(height / texel, few * shift)) + 1.0), 2.0, most);
     vec4 sum = vec4(0.0);
@@ -129,7 +129,7 @@ vec4 image_colour(vec2 st, vec2 right, vec2 down)
     return clamp(sum / (n.x * n.y), 0.0, 1.0);
 }
 
-// A coordinate turned on the light, and its change over the pixel.
+// A coordinate on the light after the pattern's rotation, and its change over the pixel.
 void turned(Met met, vec2 along, out float a, out vec2 da)
 {
     a = dot(along, met.q);
@@ -141,7 +141,7 @@ float line_edge(float z, vec2 g)
     return IS_SOFT ? soft_half_plane(z, g, wave.w * 2.0 * half_width) : half_plane(z, g);
 }
 
-// Single lines: how much of the pixel they cover.
+// Pattern `lines`: share of the pixel that they cover.
 float lines_at(float a, vec2 da)
 {
     float bright = 0.0;
@@ -152,7 +152,7 @@ float lines_at(float a, vec2 da)
     return min(bright, 1.0);
 }
 
-// Each channel of a turn of hue is a wave whose edges take a sixth.
+// Over a turn of hue each channel is a wave whose edges take a sixth of the turn.
 vec4 rainbow(float a, vec2 da)
 {
     vec3 rgb;
@@ -165,7 +165,7 @@ float circles_at(Met met)
 {
     float rho = length(met.q);
     vec2 radial = met.q / max(rho, 1e-20) * turn.z, g = radial.x * met.ds + radial.y * met.dt;
-    g *= min(1.0, rho * turn.z / max(0.5 * (abs(g.x) + abs(g.y)), 1e-20));  // no ring is beyond the centre
+    g *= min(1.0, rho * turn.z / max(0.5 * (abs(g.x) + abs(g.y)), 1e-20));  // there is no ring beyond the centre
     return wave_at(rho * turn.z + turn.w, g);
 }
 
@@ -194,11 +194,11 @@ vec4 pattern_colour(Met met)
     return mix(background, foreground, bright);
 }
 
-// Where a footprint cannot be taken whole it is cut into parts: at the border of a light, at the seam
-// of one that goes round, where a pattern whose periods do not close meets itself, and where rings
-// bend. What the first two leave of a part is its weight.
+// A footprint that cannot be averaged as a whole is cut into parts: at the border of a light, at the seam of a light
+// that closes on itself, where a pattern whose periods do not close meets itself, and where rings bend. A part's
+// weight is the share that border and seam leave of it.
 
-// Whether the light goes round, and along which coordinate it does.
+// Whether the light closes on itself, and along which coordinate.
 bool has_seam()
 {
     return FAMILY == ZEBRA || FAMILY == ENVIRONMENT || (FAMILY != ISOPHOTE && (LIGHT == TUNNEL || LIGHT == SPHERE));
@@ -214,7 +214,7 @@ bool has_border()
     return LIGHT == RECTANGLE && (FAMILY == REFLECTION || FAMILY == HIGHLIGHT);
 }
 
-// How far the footprint reaches to the sides, in q.
+// How far the footprint extends to the sides, in q.
 vec2 reach_of(Met met)
 {
     return 0.5 * vec2(abs(met.ds.x) + abs(met.ds.y), abs(met.dt.x) + abs(met.dt.y));
@@ -225,15 +225,15 @@ bool is_at_seam(Met met)
     return has_seam() && abs(met.q[around()]) + reach_of(met)[around()] > 0.5 * size[around()];
 }
 
-// Into how many parts, each way.
+// Into how many parts the footprint is cut in each direction.
 float parts_across(Met met, bool at_seam)
 {
     bool at_border = has_border() && abs(met.cover - 0.5) < 0.499;
     float n = at_border || at_seam ? 4.0 : 1.0;
     if (PATTERN != CIRCLES)
         return n;
-    // How far a ring bends away from a straight line over half of the footprint, in periods. Where
-    // so many rings lie within it that the mean is all that is left, only their middle tells more.
+    // How far a ring bends away from a straight line over half of the footprint, in periods. Where so many rings lie
+    // in the footprint that only the mean is left, only the rings at its middle show more.
     const float straight = 0.01, most = 8.0, many = 12.0;
     vec2 right = 0.5 * vec2(met.ds.x, met.dt.x), down = 0.5 * vec2(met.ds.y, met.dt.y);
     float reach = max(length(right + down), length(right - down));
@@ -243,7 +243,7 @@ float parts_across(Met met, bool at_seam)
     return n;
 }
 
-// About how much of a part lies on the light; more than nothing, so that some part counts.
+// Approximate share of a part that lies on the light; more than 0, so that some part counts.
 float part_share(Met part)
 {
     vec2 inside = (0.5 * size.xy - abs(part.q)) / max(2.0 * reach_of(part), 1e-20);
@@ -251,7 +251,7 @@ float part_share(Met part)
     return has_border() ? share.x * share.y : has_seam() ? share[around()] : 1.0;
 }
 
-// The pattern's mean over what of the footprint lies on the light.
+// The pattern's mean over the part of the footprint that lies on the light.
 vec4 mean_colour(Met met)
 {
     if (!IS_FILTERED || !(has_border() || has_seam() || PATTERN == CIRCLES))
@@ -264,7 +264,7 @@ vec4 mean_colour(Met met)
     part.dtau *= step;
     vec2 q = met.q, first = vec2(0.5 * (step - 1.0)), at = first;
     vec4 sum = vec4(0.0);
-    // At a seam once more from the other end of the light.
+    // At a seam a second time, from the other end of the light.
     for (int ends = at_seam ? 2 : 1; ends > 0;) {
         part.q = q + at.x * vec2(met.ds.x, met.dt.x) + at.y * vec2(met.ds.y, met.dt.y);
         part.tau = met.tau + dot(met.dtau, at);
@@ -282,14 +282,14 @@ vec4 mean_colour(Met met)
     return sum / weight;
 }
 
-// The pattern's mean over the shaded base; q as for sample_at.
+// The pattern's mean laid over the shaded base; q as in sample_at().
 vec4 own_light(Sample at, vec4 mean, vec2 q)
 {
     float lit = 0.3 + 0.7 * abs(dot(at.n, normalize(to_world(vec3(q * ray.x, 1.0)))));
     return mix(vec4(base.rgb * lit, base.a), mean, opacity);
 }
 
-// A light met by the share `cover` of an area, over the lights behind.
+// Lays a light that is met by the share `cover` of an area over the lights behind it.
 Shown laid_over(Shown behind, vec4 own, float cover)
 {
     own *= cover;

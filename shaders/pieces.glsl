@@ -1,37 +1,38 @@
 layout(binding = 3) uniform usampler2D ends;
 
-// The pieces of surface that a pixel looked at more closely may show (edges.glsl): a paraboloid each,
-// clipped by the lines where it ends, and shaded away from the pixel it was seen at.
+// The pieces of surface that may show in a pixel at an edge (edges.glsl). Each is a paraboloid made from the hit of a
+// pixel around, clipped by the lines where the piece ends.
 
 LIST(0, Listed, listed);  // the pixels to shade
 
-// A line where a piece ends: it lies where dot(across, place) < reach, in px from the middle of the pixel looked at.
+// A line where a piece ends: the piece lies where dot(across, place) < reach, in px from the middle of the pixel
+// looked at.
 struct End {
     vec2 across;  // unit, outwards
     float reach;
-    vec2 place;   // for which the line was found
+    vec2 place;   // the place on the surface for which the line was found
 };
 
-// Each pixel that shows a piece knows the nearest places of its ends, so several know one end: of their lines the one
-// counts that was found nearest to the pixel looked at. Lines are of one end if one passes the other's place by less than
-// ALIKE_PX, and the cosine of the angle between them is above ALIKE_COS.
+// Each pixel that shows a piece knows the nearest places of its ends, so several pixels may know the same end; then
+// the line found nearest to the pixel looked at counts. Two lines are of the same end if one passes the other's place
+// by less than ALIKE_PX and the cosine of the angle between them is above ALIKE_COS.
 const int ENDS = 3;
 const float ALIKE_PX = 0.35, ALIKE_COS = 0.8;
 
-// Along the ray through the place where it was met plus d px, z units beyond its depth, a piece is where
-// a z^2 + b z + c = 0.
+// On the ray that passes d px from the place where the piece was met, the piece lies z units beyond that place's
+// depth, where a z^2 + b z + c = 0.
 struct Piece {
     Hit hit;
-    vec2 at;     // where it was met, px from the middle of the pixel looked at
+    vec2 at;     // where the piece was met, px from the middle of the pixel looked at
     float a;
     vec3 b;      // b.x + dot(b.yz, d)
     vec2 c;      // dot(c, d) + dot(cc, (dx dx, dx dy, dy dy))
     vec3 cc;
     End end[ENDS];   // where it ends
     int n_ends;
-    End crease;      // where the nearest border is, as the pixel at `at` knows it
-    float rounding;  // how wide it is rounded towards there, px
-    bool is_hidden;  // nothing of it shows in the pixel
+    End crease;      // the nearest border, as the pixel at `at` knows it
+    float rounding;  // width of its rounding towards that border, px
+    bool is_hidden;  // nothing of the piece shows in the pixel
 };
 
 bool is_alike(End other, End found)
@@ -39,7 +40,7 @@ bool is_alike(End other, End found)
     return dot(other.across, found.across) > ALIKE_COS && abs(dot(other.across, found.place) - other.reach) < ALIKE_PX;
 }
 
-// No store to a place that is computed: some devices keep such arrays in memory.
+// No store at a computed index: some devices then keep the array in memory.
 void add_end(inout Piece piece, End found)
 {
     bool is_new = true;
@@ -62,15 +63,15 @@ End end_from(uint packed_end, vec2 at)
     return End(across, dot(across, place), place);
 }
 
-// Whether the pixel's centre lies in the rounding of a crease: the paraboloid there holds for less than a pixel.
+// Whether the pixel's centre lies in the rounding of a crease; there the paraboloid holds for less than a pixel.
 bool is_in_rounding(ivec2 p)
 {
     uint packed_end = texelFetch(ends, p, 0).y;
     return packed_end != NO_END && end_off(packed_end) == 0.0;
 }
 
-// The ends that the pixel at `at` knows, which shows the same piece. Where its silhouette lies along a border, the nearer one
-// of the two ends the piece.
+// Adds the ends that the pixel at `at` knows, which shows the same piece. Where its silhouette lies along a border,
+// the nearer of the two ends the piece.
 void add_ends(inout Piece piece, ivec2 p, ivec2 at)
 {
     uvec2 packed_ends = texelFetch(ends, p + at, 0).xy;
@@ -114,19 +115,19 @@ Piece piece_of(Hit hit, ivec2 p, ivec2 at)
     return piece;
 }
 
-// Depth at `place`, px from the middle of the pixel looked at, also beyond the piece's ends.
+// Depth of the piece at `place`, px from the middle of the pixel looked at; also defined beyond the piece's ends.
 float depth_at(Piece piece, vec2 place)
 {
     vec2 d = place - piece.at;
     float b = piece.b.x + dot(piece.b.yz, d);
     float c = dot(piece.c, d) + dot(piece.cc, vec3(d.x * d.x, d.x * d.y, d.y * d.y));
-    // Of the two solutions the one that is 0 at d = 0.
+    // Of the two solutions this one is 0 at d = 0.
     float root = sqrt(max(b * b - 4.0 * piece.a * c, 0.0));
     float below = b + (piece.b.x < 0.0 ? -root : root);
     return piece.hit.depth - 2.0 * c / (below == 0.0 ? 1e-30 : below);
 }
 
-// How much of a square the piece covers.
+// Share of a square that the piece covers.
 float piece_share(Piece piece, vec2 middle, float size)
 {
     float share = 1.0;
@@ -139,7 +140,7 @@ float piece_share(Piece piece, vec2 middle, float size)
 
 const float FAR_INSIDE = 1e3;  // px
 
-// How far inside the piece's ends a place is, px: less than 0 outside.
+// Distance of a place from the piece's ends, px: positive inside, negative outside.
 float inside_px(Piece piece, vec2 place)
 {
     float inside = FAR_INSIDE;
@@ -155,8 +156,8 @@ bool covers(Piece piece, vec2 place)
     return inside_px(piece, place) >= 0.0 && depth_at(piece, place) > 0.0;
 }
 
-// Where a piece reaches a place that it does not show, one of its ends is a little off: moves the nearest to there.
-// False where that is too far away.
+// Makes the piece end before a place that it reaches although the pixel there does not show it: the end nearest to
+// that place is a little off, and moves there. False if it would have to move farther than MOST_OFF.
 const float MOST_OFF = 0.5;  // px
 
 bool end_at(inout Piece piece, vec2 place)
@@ -172,4 +173,4 @@ bool end_at(inout Piece piece, vec2 place)
     return true;
 }
 
-const float NOWHERE = 1e30;  // a depth that nothing has
+const float NOWHERE = 1e30;  // a depth that no surface has

@@ -1,11 +1,9 @@
-// What stage 2 writes for each pixel that is hit, for stage 3 and for the caller. Stage 1 clears
-// hit_depth and ptex.
-//
-// Defined before this file: PTEX for the caller's plane of that name.
+// The planes that stage 2 writes for each pixel that is hit, for stage 3 and for the caller. Stage 1 clears hit_depth
+// and ptex. The including program defines PTEX if the caller asked for that plane.
 
-// Along the view axis; 0 where nothing is hit.
+// Depth along the view axis; 0 where nothing is hit.
 layout(binding = 0, r32f) writeonly uniform image2D hit_depth;
-// Unit, along the winding; w: shape operator entry (2,2).
+// Unit normal, oriented by the winding; w: shape operator entry (2,2).
 layout(binding = 1, rgba32f) writeonly uniform image2D normal;
 // Shape operator entries (1,1) and (1,2) in the basis tangent_basis(normal), 1/unit.
 layout(binding = 2, rg32f) writeonly uniform image2D shape;
@@ -15,8 +13,8 @@ layout(binding = 3, rgba32ui) writeonly uniform uimage2D ptex;
 // border.glsl
 layout(binding = 4, r32ui) writeonly uniform uimage2D border;
 
-// Second fundamental form over first, in the basis of basis.glsl: a and b are the steps in the surface's
-// parameters that go one unit along e1 and e2.
+// The shape operator, second fundamental form over first, in the basis of basis.glsl: a and b are the steps in the
+// surface's parameters that move one unit along e1 and e2.
 vec3 shape_operator(Surface s, vec3 n_world)
 {
     if (!(s.area2 > 0.0))
@@ -32,22 +30,21 @@ vec3 shape_operator(Surface s, vec3 n_world)
 
 const float HALF_PIXEL = 0.71;  // from its centre to its corners
 
-// From the pixel's centre to the nearest border of the Ptex face, px: the foot of the perpendicular on
-// the border's line in the picture, to first order. A crease counts where its rounding is narrower
-// than THIN px; inside the rounding the foot is 0. ROUNDED where the pixel reaches into a rounding up to
-// WIDE px.
+// The vector from the pixel's centre to the nearest border of the Ptex face, px: to the foot of the perpendicular on
+// the border's line in the picture, exact to first order. A crease counts as a border if its rounding is narrower
+// than THIN px; inside the rounding the vector is 0. ROUNDED if the pixel reaches into a rounding up to WIDE px wide.
 uint border_of(Node node, vec2 xy, ivec2 steps, Surface s)
 {
-    // How the picture moves along x and y, px.
+    // How the place in the picture changes with x and y, px.
     vec2 slope = is_perspective() ? s.s.xy / s.s.z : vec2(0.0);
     float px = s.scale / pixel_units(s.s.z);
     vec2 along_x = ldexp((s.su.xy - slope * s.su.z) * px, ivec2(steps.x));
     vec2 along_y = ldexp((s.sv.xy - slope * s.sv.z) * px, ivec2(steps.y));
     float area = along_x.x * along_y.y - along_x.y * along_y.x;
-    // One unit of x further, across the lines of equal x; y alike.
+    // The step that raises x by one, perpendicular to the lines of equal x; the same for y.
     vec2 to_x = vec2(along_y.y, -along_y.x) * (area / max(dot(along_y, along_y), 1e-30));
     vec2 to_y = vec2(-along_x.y, along_x.x) * (area / max(dot(along_x, along_x), 1e-30));
-    // How many cells lie between the node's edges and the face's.
+    // Number of cells between the node's edges and the face's.
     vec2 last = vec2((1u << node.depth) - 1u), cell = vec2(node.cell);
     vec4 cells = vec4(cell.y, last.x - cell.x, last.y - cell.y, cell.x);
     uint k = node.rotation;
@@ -73,7 +70,7 @@ uint border_of(Node node, vec2 xy, ivec2 steps, Surface s)
     return is_rounded ? ROUNDED : pack_border(nearest, width);
 }
 
-// steps: the surface's parameters run 2^steps faster than the node's x,y.
+// steps: the surface's parameters grow 2^steps times as fast as the node's x,y.
 void store_hit(ivec2 p, Node node, vec2 xy, ivec2 steps, Surface s)
 {
     vec3 n = dot(s.n, s.n) > 0.0 ? normalize(to_world(s.n)) : vec3(0.0);

@@ -1,4 +1,4 @@
-// What stages 1 and 2 would write, from position and normal interpolated over the triangle. See planes.glsl for the planes.
+// Writes the planes of stages 1 and 2 (planes.glsl) from position and normal interpolated over the triangle.
 
 in vec3 seen_at;
 in vec3 facing;

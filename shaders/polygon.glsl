@@ -1,11 +1,12 @@
-// Polygons instead of the surface (--surface polygon:LEVEL): what their interpolated normals say of curvature.
+// Polygons in place of the surface (--surface polygon:LEVEL): the curvature that their interpolated normals imply.
 
-// Of mesh_vertex.face (server/render/mesh.h): only the edges at the n-gon's corner are edges.
+// A bit of mesh_vertex.face (server/render/mesh.h): only the edges at the n-gon's corner are edges of the mesh.
 const uint FAN = 0x80000000u;
 
-// How the interpolated normal n = N / size turns from pixel to pixel, as the shape operator that would turn it so: for both
-// pixel steps h . dx = -dn, dx being the step in the plane across n that stage 3 takes. N changes by change_x with a pixel
-// to the right and by change_y with a pixel down. The normal of no surface, so h need not be symmetric: its symmetric part.
+// The shape operator that turns the interpolated normal n = N / size from pixel to pixel as interpolation does: h .
+// dx = -dn for both pixel steps, dx being the step in the plane perpendicular to n that stage 3 takes. N changes by
+// change_x with a pixel to the right and by change_y with a pixel down. n is the normal of no surface, so h need not
+// be symmetric; its symmetric part is returned.
 vec3 polygon_shape(vec3 n, float size, float z, vec2 q, vec3 change_x, vec3 change_y)
 {
     vec3 e1, e2;

@@ -1,7 +1,7 @@
-// The polygons of server/render/mesh.h, for polygon.frag.glsl and wireframe.frag.glsl.
+// Projects the polygons of server/render/mesh.h, for polygon.frag.glsl and wireframe.frag.glsl.
 
 layout(location = 0) in vec3 position;  // relative to the mesh's centre, world axes
-layout(location = 1) in vec3 normal;    // unit, zero where there is none
+layout(location = 1) in vec3 normal;    // unit; zero where there is no normal
 layout(location = 2) in uint face;      // Ptex face, plus the fan's bit
 layout(location = 3) in uvec4 cell;     // x, y, cells along an edge
 
@@ -12,7 +12,7 @@ out vec3 facing;    // normals as a graphics card interpolates them: not unit
 out vec2 grid;      // in cells
 flat out uvec2 where;  // face, cells
 
-invariant gl_Position;  // the wireframe is drawn over the depths of the polygons
+invariant gl_Position;  // the wireframe is drawn over depths that the same vertices left
 
 void main()
 {

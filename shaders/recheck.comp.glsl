@@ -1,7 +1,7 @@
-// Stage 2, evaluate, third pass, over the groups whose depths are discontinuous: lists the pixels that must ask those
-// around them, since they are empty beside some that are not, or lie behind one by more than a slope, or
-// behind two opposite ones.
-// (Those that are seen and still unsolved are listed already, by the pass before.)
+// Stage 2, evaluate, third pass, over the groups whose depths are discontinuous: lists the pixels that must ask their
+// neighbours. These are empty pixels beside ones that are not, pixels that lie behind a neighbour by more than a
+// slope, and pixels that lie behind two opposite neighbours. (Pixels that show surface and are still unsolved are
+// already listed by the pass before.)
 
 layout(local_size_x = 64) in;
 

@@ -1,4 +1,4 @@
-// What a rounded pixel shows: the mean of what its rays' parts of it show. One invocation a pixel.
+// Shades the pixels of rounded.glsl: each shows the mean of its rays' parts. One invocation per pixel.
 
 layout(local_size_x = 64) in;
 
@@ -8,7 +8,7 @@ layout(std430, binding = 2) readonly buffer RoundedHits {
     RoundedHit hits[];
 };
 
-// A part of the pixel, of `side` along a side, about the ray of q.
+// One of side x side parts of the pixel, around the ray of q.
 Shown shade_part(Shown behind, vec2 q, int side, float depth, vec3 n, vec3 h)
 {
     Sample at = sample_at(q, 1.0 / float(side), depth, n, h, n);
@@ -18,7 +18,7 @@ Shown shade_part(Shown behind, vec2 q, int side, float depth, vec3 n, vec3 h)
     return shown;
 }
 
-// Whether nothing is met at the pixel or at one around it; beyond the picture nothing is.
+// Whether the pixel or one around it meets nothing; beyond the picture nothing is met.
 bool is_beside_empty(ivec2 p)
 {
     bool is = any(lessThan(p, ivec2(1))) || any(greaterThanEqual(p + 1, tile.zw));
@@ -29,7 +29,7 @@ bool is_beside_empty(ivec2 p)
 
 void main()
 {
-    // There are as many workgroups as rounded_solve takes for rays: most have no pixel.
+    // There are as many workgroups as rounded_solve needs for rays, so most have no pixel.
     uint i = (gl_WorkGroupID.y * ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
     int side = rounded_side(listed.n), rays = side * side;
     if (i >= listed.n || rays == 0)
@@ -49,7 +49,7 @@ void main()
         sum = added(sum, scaled(shade_part(behind, q, side, hit.normal_depth.w, n, hit.shape.xyz), share));
         covered += share;
     }
-    // A sliver that the pixel's centre sees may lie between the rays: then the centre stands for one of them.
+    // A sliver that the pixel's centre sees may lie between the rays; then the centre takes the place of one ray.
     if (covered == 0.0) {
         Hit own = hit_at(p);
         if (mirrors(own)) {
@@ -57,7 +57,7 @@ void main()
             covered = share;
         }
     }
-    // A ray for which no guess led to the surface shows nothing only where something around does.
+    // A ray for which no guess led to the surface counts as empty only if some pixel around is empty.
     float all = is_beside_empty(p) ? 1.0 : covered;
     if (all == 0.0)
         return;

@@ -1,8 +1,9 @@
-// Meets the rays of the pixels that edges_find.comp.glsl listed as rounded with the surface: with the piece
-// that the pixel itself shows, and with those of the pixels towards which the ray lies where it meets
-// none or one lies in front. A ray that meets none so begins again from where the rays beside it in the pixel have met the
-// surface, twice: Newton's method from a whole pixel away may not come over creases and small sub-patches. One invocation
-// a ray.
+// Finds where the rays of rounded pixels (rounded.glsl) meet the surface. One invocation per ray.
+//
+// A ray starts from the piece that the pixel itself shows. Where it meets none, or a neighbouring pixel's piece lies
+// in front, it also starts from the pixels on the side to which the ray lies. A ray that still meets nothing starts
+// again, up to twice, from where the rays beside it in the same pixel have met the surface: Newton's method that
+// starts a whole pixel away may not get across creases and small sub-patches.
 
 layout(local_size_x = 64) in;
 
@@ -12,7 +13,7 @@ layout(std430, binding = 2) writeonly buffer RoundedHits {
     RoundedHit hits[];
 };
 
-// Where the rays of this workgroup have met the surface.
+// The hits of this workgroup's rays.
 shared bool is_met[64];
 shared Place met_at[64];
 shared float met_depth[64];
@@ -46,7 +47,7 @@ Solution solve_from_beside(uint local, int part, int side, Ray r)
     return result;
 }
 
-// Of what the pixels' centres show.
+// The nearest solution that starts from what the centres of pixels show.
 Solution solve_from_centres(ivec2 p, vec2 place, Ray r)
 {
     float front = nearest_around(p);

@@ -1,13 +1,13 @@
-// The rounding of a semi-sharp crease that is narrower than a pixel: too narrow for rays, but its normals
-// turn from one side's to the other's and may show most of the light.
+// The rounding of a semi-sharp crease that is narrower than a pixel: too narrow for rays, yet its normals turn from
+// one side's normal to the other's and may show most of the light.
 //
-// Across a crease of sharpness s the surface is a cubic B-spline whose control polygon is straight on
-// both sides, so at a distance of t widths from the crease (a width is 2^-s of the face) its tangent is
-// (1 - w) b + w a with w = (1 - t)^2 / 2, b this side's and a the other's; normals turn alike.
+// Across a crease of sharpness s the surface is a cubic B-spline whose control polygon is straight on both sides. A
+// width is 2^-s of the face. At a distance of t widths from the crease the tangent is (1 - w) b + w a with w = (1 -
+// t)^2 / 2, where b is this side's tangent and a the other side's. Normals turn in the same way.
 
 const int ROUNDING_PARTS = 3;
 
-// How much of the pixel the rounding takes, on the piece's own side.
+// Share of the pixel that the rounding takes, on the piece's own side.
 float rounding_share(Piece piece)
 {
     vec2 g = piece.crease.across;
@@ -24,11 +24,11 @@ vec2 rounding_place(Piece piece)
     return clamp(piece.crease.across * (piece.crease.reach - 0.5 * piece.rounding), -0.5, 0.5);
 }
 
-// A part that lies along the crease, averaged over all that its normal turns.
+// A part of the pixel along the crease, to be averaged over all directions of its normal.
 struct Strip {
     mat2 sides;  // px
     vec3 n;
-    vec3 turn;   // of the normal across it
+    vec3 turn;   // how the normal turns across the strip
 };
 
 Strip rounding_strip(Piece piece, vec3 side, vec3 other, int i)

@@ -1,9 +1,9 @@
-// What stage 1 left for each pixel, and what the depths beside it say.
+// Reads what stage 1 wrote for each pixel, and decides from the depths around a pixel whether it needs a recheck.
 
 layout(binding = TEXTURES_FREE) uniform usampler2D seen;  // visibility.frag.glsl
 layout(binding = TEXTURES_FREE + 1) uniform sampler2D seen_depth;  // 0 where nothing is seen
 
-// Of seen.x: nothing is seen; beside a node, the pixel is one of gaps.comp.glsl.
+// Values of seen.x: UNSEEN, nothing is seen; the bit IN_GAP beside a node, the pixel is in a gap (gaps.comp.glsl).
 const uint UNSEEN = 0xffffffffu, IN_GAP = 0x80000000u;
 
 bool is_in_gap(uint seen_node)
@@ -29,7 +29,7 @@ float front_of(float ndc)
     return ndc > 0.0 ? depth_of(ndc) : FARTHEST;
 }
 
-// The nearest depth of the four pixels around, or FARTHEST.
+// The nearest depth of the four neighbours, or FARTHEST.
 float nearest_around(ivec2 p)
 {
     float ndc = 0.0;
@@ -38,15 +38,15 @@ float nearest_around(ivec2 p)
     return front_of(ndc);
 }
 
-// In front by more than a slope of four pixels of depth a pixel: another sheet, or a crack that shows
-// what lies behind.
+// Whether `front` is in front of z by more than a slope of four pixels of depth per pixel: then it is another sheet,
+// or this pixel sees through a crack in it.
 bool needs_recheck(float front, float z)
 {
     return front < z - 4.0 * pixel_units(z);
 }
 
-// Behind what lies on both sides of it by a pixel's depth: a crack may show a sheet that is nearer than needs_recheck()
-// asks for.
+// Whether the pixel lies behind two opposite neighbours by more than a pixel's depth. Then a crack between grids may
+// show a sheet that is too close behind the first one for needs_recheck() to notice.
 bool is_between(ivec2 p, float z)
 {
     float behind = z - pixel_units(z);
@@ -56,6 +56,6 @@ bool is_between(ivec2 p, float z)
     return false;
 }
 
-// Where depths slope less than CALM by what stage 1 saw, nothing needs a recheck that lies within STRAY of
-// what it saw: so the pixels of whole groups (gather.comp.glsl) need not ask their neighbours.
+// Where the depths of stage 1 slope by less than CALM, a solution within STRAY of the depth of stage 1 needs no
+// recheck. So the pixels of calm groups (gather.comp.glsl) need not ask their neighbours.
 const float CALM = 1.0, STRAY = 2.0;

@@ -1,9 +1,9 @@
-// Stage 3, shade: what the light shows where the line family's ray meets it, averaged over the pixel.
-// The formulas are in README.md; rays and lights in lines.glsl, patterns in patterns.glsl.
+// Stage 3, shade: what the light shows where the line family's ray meets it, averaged over the pixel. README.md has
+// the formulas, lines.glsl the rays and lights, patterns.glsl the patterns.
 //
-// Light, pattern and colours may change without stages 1 and 2. Several lights are several passes,
-// the hindmost first; each blends over what is there. The foremost lists the pixels that are shaded in
-// parts (uneven.glsl).
+// Light, pattern and colours may change without a new stage 1 or 2. Several lights take several passes, the hindmost
+// first; each blends over the result of the pass before. The pass of the foremost light lists the pixels that are
+// shaded in parts (uneven.glsl).
 
 layout(local_size_x = 64) in;
 
@@ -12,7 +12,7 @@ LIST(2, Parts, parts);
 layout(binding = 5, r16f) writeonly uniform image2D next_uneven;
 layout(binding = 4) uniform sampler2D behind_uneven;
 
-// Stands in the plane of the lights' deviations for pixels to be listed.
+// In the plane of deviations, this value marks a pixel as one to list.
 const float IN_PARTS = 2.0;
 
 float uneven_behind(ivec2 p)
@@ -31,7 +31,7 @@ void main()
     vec2 q = pixel_offset(p);
     Sample at = sample_at(q, 1.0, hit.depth, hit.n, hit.h, hit.n);
     Met met = meet(at);
-    if (!IS_FILTERED) {  // one sample a pixel
+    if (!IS_FILTERED) {  // one sample per pixel
         met.ds = met.dt = met.dtau = vec2(0.0);
         met.cover = float(met.inside);
     }

@@ -1,6 +1,6 @@
-// Stage 3 for those who measure: at the pixel's centre, where the foremost light is met, how that changes
-// from pixel to pixel, and the surface's principal curvatures. Apart from shade.comp.glsl, since
-// pictures seldom come with these and some devices take as long for stores that they skip.
+// Stage 3 for callers who measure: writes, at the pixel's centre, where the foremost light is met, how that changes
+// from pixel to pixel, and the surface's principal curvatures. It is a pass apart from shade.comp.glsl because few
+// pictures need these planes, and some devices take as long for a skipped store as for a real one.
 
 layout(local_size_x = 64) in;
 
@@ -8,7 +8,7 @@ layout(binding = 4, rg32f) writeonly uniform image2D light_st;
 layout(binding = 5, rg32f) writeonly uniform image2D curvature;
 layout(binding = 6, rgba32f) writeonly uniform image2D light_change;
 
-// No global constant: not every compiler takes uintBitsToFloat() for a constant expression.
+// This is a function and no global constant: not every compiler accepts uintBitsToFloat() in a constant expression.
 vec4 nothing()
 {
     return vec4(uintBitsToFloat(0x7fc00000u));

@@ -1,12 +1,12 @@
-// Counts pixels that show surface, and those of them whose reflected ray meets a light. There is one pass for
-// each light, from the hindmost; the foremost adds up. An invocation takes a group of eight pixels, of which
-// it looks at one in `stride`.
+// Counts the pixels that show surface, and those of them whose reflected ray meets a light. There is one pass for
+// each light, from the hindmost; the pass of the foremost adds up. An invocation takes a group of eight pixels and
+// looks at one in `stride`.
 
 layout(local_size_x = 8) in;
 
 layout(std430, binding = 3) buffer Share {
     uint seen_px, met_px;
-    uint met[];  // by group: a bit for each pixel on which a light is met
+    uint met[];  // per group: one bit for each pixel on which a light is met
 };
 
 uniform uint stride;

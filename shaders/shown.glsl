@@ -1,8 +1,8 @@
-// What the lights show of a pixel, or of a part of it, and how that becomes the pixel's colour.
+// What the lights show of a pixel or a part of it, and how that becomes the pixel's colour.
 //
-// Lights are shaded one after the other, the hindmost first. What those behind show stands in two planes
-// as linear light, and each light but the foremost writes the next such two (shade.c takes turns with
-// them, since the passes over edges read again what lies behind). The foremost writes the colour.
+// Lights are shaded one after the other, the hindmost first. Two planes hold, as linear light, what the lights behind
+// show; each light but the foremost writes the next two (the host alternates between two pairs, since the passes over
+// edges read again what lies behind). The foremost light writes the colour.
 
 layout(binding = 3, rgba8) writeonly uniform image2D colour;  // straight alpha, sRGB-encoded
 layout(binding = 6, rgba16f) writeonly uniform image2D next_light;
@@ -35,7 +35,7 @@ Shown shown_behind(ivec2 p)
     return Shown(texelFetch(behind_light, p, 0), texelFetch(behind_missed, p, 0).x);
 }
 
-// The least alpha that eight bits hold: a colour of less has no digits and is 0.
+// The smallest alpha that eight bits can hold; a colour with less becomes 0.
 const float LEAST_ALPHA = 0.5 / 255.0;
 
 void put_colour(ivec2 p, vec4 light)
@@ -44,7 +44,8 @@ void put_colour(ivec2 p, vec4 light)
     imageStore(colour, p, vec4(srgb_encoded(straight), light.a));
 }
 
-// Where no light is met `miss` shows, where no surface is seen `empty`: `open` is the latter's share.
+// Writes the pixel. `miss` shows where no light is met, `empty` where no surface is seen; `open` is the share without
+// surface.
 void put_shown(ivec2 p, Shown shown, float open)
 {
     if (is_foremost) {

@@ -1,7 +1,6 @@
-// The limit surface of one node: Stam's exact evaluation as Yasui and Kanai (2004) put it,
-// s(u,v) = sum P_i(n,k) b_i(t_kn(u,v)), with uniform cubic B-spline blends b_i.
-//
-// Local coordinates x,y in [0,1] run over the node; a CORNER has its extraordinary vertex at (0,0).
+// Evaluates the limit surface of one node: Stam's exact evaluation in the form of Yasui and Kanai (2004), s(u,v) =
+// sum P_i(n,k) b_i(t_kn(u,v)), with uniform cubic B-spline blends b_i. Local coordinates x,y in [0,1] cover the node;
+// a CORNER has its extraordinary vertex at (0,0).
 
 struct Surface {
     vec3 s;               // position relative to the eye, camera space, world units
@@ -14,9 +13,9 @@ struct Surface {
     float scale;          // power of two
 };
 
-// The values of the four at t; and the blends of the three differences of neighbouring points that make
-// the first derivative. (The second is that of their differences, linear in t. Differences first: in
-// single precision they keep what sums of points lose where the surface is flat.)
+// The four blends at t, and the blends of the three differences of neighbouring points that give the first
+// derivative. (The second derivative is that of those differences, linear in t.) Differences come first: where the
+// surface is flat they keep digits that single precision loses in sums of points.
 void blends(float t, out vec4 value, out vec3 first)
 {
     float r = 1.0 - t;
@@ -25,13 +24,14 @@ void blends(float t, out vec4 value, out vec3 first)
     first = vec3(0.5 * r * r, 0.5 + r * t, 0.5 * t * t);
 }
 
-// For limit_normal(). In a CORNER's frame what lies across a cone keeps its digits, however thin it is.
+// The `lost` of limit_normal(). In a CORNER's frame the coordinates across a cone keep their digits, however thin it
+// is.
 float lost_square(Node node)
 {
     return node.kind == CORNER ? 1e-13 : 1e-8;
 }
 
-// Columns: the frame's axes in camera space.
+// The columns are the frame's axes in camera space.
 mat3 frame_of(Node node)
 {
     mat3 camera = transpose(mat3(axis[0].xyz, axis[1].xyz, axis[2].xyz));
@@ -50,7 +50,7 @@ mat3 frame_of(Node node)
                          xz + wy, yz - wx, 1.0 - (xx + yy));
 }
 
-// How much faster than the node's x,y the parameters of its level n run: 2^this.
+// The parameters of the node's level n grow 2^result times as fast as the node's x,y.
 ivec2 level_scale(Node node, int level)
 {
     return ivec2(node.kind == STRIP ? 0 : level, level);
@@ -58,11 +58,11 @@ ivec2 level_scale(Node node, int level)
 
 // The sub-patch of a node that holds a place (server/surface/README.md 3.2 and 5).
 struct SubPatch {
-    ivec2 scale;   // its parameters run 2^scale times faster than the node's x,y
-    vec2 origin;   // where it begins, in those parameters
+    ivec2 scale;   // its parameters grow 2^scale times as fast as the node's x,y
+    vec2 origin;   // its origin, in those parameters
     vec2 st;       // the place, in [0,1]
     uint scale_at; // the texel of its points' scale
-    uint scale_of; // and which of the four there
+    uint scale_of; // index of the scale among the texel's four numbers
     uint rows;     // its points: 4 rows of 3 texels (server/surface/texels.h)
     uint column;   // not NONE: these points come first in the rows, whose last drop out
     bool limit;    // beyond the last level of a CORNER: the extraordinary vertex itself
@@ -77,7 +77,7 @@ SubPatch sub_patch_at(Node node, vec2 xy)
     int level = nearest > 0.0 ? max(1, 1 - e) : 1000;
     bool limit = corner && level > node.levels;
     level = corner ? min(level, node.levels) : strip ? min(level, node.levels + 1) : 0;
-    // The last patch of a strip begins at the crease and is as wide as the one before.
+    // The last patch of a strip begins at the crease and is as wide as the patch before it.
     bool last = strip && level > node.levels;
     ivec2 scale = level_scale(node, last ? level - 1 : level);
     vec2 st = ldexp(xy, scale);
@@ -144,7 +144,7 @@ vec3 limit_normal(vec3 su, vec3 sv, vec3 suu, vec3 suv, vec3 svv, vec2 st, float
     return largest > 0.0 ? normalize(n / largest) : vec3(0.0);
 }
 
-// A row of points along s: the curve at s with its first two derivatives.
+// One row of points along s: the curve at s with its first two derivatives.
 void along_row(Net p, int j, float s, vec4 value, vec3 first, out vec3 c, out vec3 d, out vec3 e)
 {
     vec4 x = p.x[j], y = p.y[j], z = p.z[j];
@@ -176,8 +176,8 @@ Surface patch_at(Node node, mat3 frame, Net p, float scale, vec2 st)
     vec3 suv = dv.x * (d[1] - d[0]) + dv.y * (d[2] - d[1]) + dv.z * (d[3] - d[2]);
     float area2;
     vec3 n = limit_normal(su, sv, suu, suv, svv, st, lost_square(node), area2);
-    // Before any rotation as well: the gradients, since near extraordinary vertices su and sv are nearly
-    // parallel, and what is along n, since there it is far smaller than what is across.
+    // The gradients are computed before any rotation too, since near extraordinary vertices su and sv are nearly
+    // parallel; so is the part along n, which is far smaller there than the part across it.
     float to_unit = inversesqrt(area2);
     vec3 to_u = cross(sv, n) * to_unit, to_v = cross(n, su) * to_unit;
     return Surface(node.origin + frame * (s * scale), frame * su, frame * sv, frame * to_u,
@@ -185,8 +185,9 @@ Surface patch_at(Node node, mat3 frame, Net p, float scale, vec2 st)
                    scale);
 }
 
-// The extraordinary vertex itself, where all levels end: the origin and axes of its frame. A cone's tip
-// has no tangents, nor has a crease sector of many faces one normal (server/surface/subdivision/ring_limit.h).
+// The limit at the extraordinary vertex itself, where all levels end: the origin and axes of the node's frame. The
+// tip of a cone has no tangents, and a crease sector of many faces has no single normal
+// (server/surface/subdivision/ring_limit.h).
 Surface limit_of(Node node, mat3 frame, float scale)
 {
     return Surface(node.origin, frame[0], frame[1], frame[0], frame[1], vec3(0.0),

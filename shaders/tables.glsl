@@ -1,11 +1,11 @@
-// The limit tables (server/surface/tables.h) as buffer textures. A table larger than one buffer
-// texture is spread over several banks of BANK_TEXELS texels.
+// Reads the limit tables (server/surface/tables.h) from buffer textures. A table larger than one buffer texture is
+// spread over several banks of BANK_TEXELS texels.
 //
-// On processors (MADE_PATCHES) `texels` holds no table: makeTexels(texels, node, part) makes the points of a
-// node's sub-patch and returns where they are until it is called again; `heads` holds the nodes' frames.
+// On processors (MADE_PATCHES) `texels` holds no table: makeTexels(texels, node, part) computes the points of a
+// node's sub-patch and returns their index, valid until the next call; `heads` holds the nodes' frames.
 //
-// Defined before this file: POINT_BANKS, NODE_BANKS, ADJACENCY_BANKS, BANK_TEXELS, and
-// NODE_BANK_TEXELS, which keeps the three texels of a node together.
+// The including program defines POINT_BANKS, NODE_BANKS, ADJACENCY_BANKS, BANK_TEXELS, and NODE_BANK_TEXELS, which
+// keeps the three texels of a node in one bank.
 
 const uint NONE = 0xffffffffu;
 const uint REGULAR = 0u, CORNER = 1u, SPLIT = 2u, HOLE = 3u, STRIP = 4u;
@@ -20,7 +20,7 @@ uniform samplerBuffer heads;
 layout(binding = POINT_BANKS) uniform usamplerBuffer nodes[NODE_BANKS];
 layout(binding = POINT_BANKS + NODE_BANKS) uniform usamplerBuffer adjacency[ADJACENCY_BANKS];
 
-// Samplers may not be indexed by a value that differs between invocations: hence the ladders.
+// Samplers may not be indexed by a value that differs between invocations, hence these chains of conditions.
 #define LADDER(i, size)                                                                            \
     uint bank = (i) / uint(size);                                                                  \
     int at = int((i) - bank * uint(size));
@@ -102,7 +102,7 @@ struct Node {
     uint depth;
     uint rotation;
     uint borders;     // four bits a local edge of the cell's Ptex face: BORDER_SHARP
-    int levels;       // STRIP: patches but one; CORNER: rings towards the vertex
+    int levels;       // STRIP: number of patches less one; CORNER: number of rings towards the vertex
     bool has_normal;  // CORNER: at the vertex itself
     uint ngon_size, ngon_corner;
     vec3 origin;  // relative to the eye, in camera space
@@ -115,7 +115,7 @@ Node node_load(uint i)
 #ifdef MADE_PATCHES
     node.index = i;
 #endif
-    // The difference is taken in double: far from the world's origin nothing is lost.
+    // The difference is computed in double precision, so that nothing is lost far from the world's origin.
     dvec3 origin = dvec3(packDouble2x32(a.xy), packDouble2x32(a.zw), packDouble2x32(b.xy));
     node.origin = to_camera(vec3(origin - eye.xyz));
     node.first = b.z;

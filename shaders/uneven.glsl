@@ -1,13 +1,16 @@
-// How much of what a light shows in a pixel is not told by its mean: where two lights that lie over each other both
-// change within a pixel, what shows through depends on which parts of them meet, and where the surface or the light bends the
-// pattern, its mean over a parallelogram is off. Such pixels are listed and shaded in parts.
+// Estimates how much a light's colour varies within a pixel, to list the pixels that their mean does not describe;
+// those are shaded in parts.
+//
+// There are two causes. Where two lights lie over each other and both vary within the pixel, what shows through
+// depends on which of their parts coincide. Where the surface or the light bends the pattern, its mean over a
+// parallelogram is not exact.
 
 // Standard deviations within the pixel.
 struct Uneven {
-    float light, alpha;  // of the colour, of how much hides what lies behind
+    float light, alpha;  // of the colour; of the alpha, which hides what lies behind
 };
 
-// How far the pattern's phase reaches over the pixel, in what its edges take; hard edges take nothing.
+// How far the pattern's phase extends over the pixel, in widths of the pattern's edges; a hard edge has no width.
 float reach_in_edges(Met met)
 {
     float reach = length(reach_of(met));
@@ -20,7 +23,8 @@ float reach_in_edges(Met met)
     return reach / max(IS_SOFT ? PATTERN == LINES ? 2.0 * half_width * wave.w : wave.w / turn.z : 0.0, 1e-20);
 }
 
-// At most: of a share the deviation is what it is where the pixel shows nothing between both colours.
+// An upper bound. For a share it is the deviation of a pixel that shows only the two colours and nothing between
+// them.
 Uneven unevenness(Met met, vec4 mean, vec4 own)
 {
     float most = min(0.5, reach_in_edges(met));

@@ -1,19 +1,18 @@
-// Stage 2, evaluate, three passes over listed pixels: those of evaluate.comp.glsl, those of recheck.comp.glsl,
-// those of gaps.comp.glsl.
+// Stage 2, evaluate, three passes over listed pixels: those that evaluate.comp.glsl lists, then recheck.comp.glsl,
+// then gaps.comp.glsl.
 //
-// First those whose guess may lead to another sub-patch: they ask their own. Then what is left, where
-// the ray decides coverage: guesses of the pixels around are tried where the pixel has none, where its
-// own fails, and where a neighbour lies in front; the nearest solution wins. So a silhouette is where
-// the surface ends, and a crack between grids of different fineness cannot show.
-//
-// At last those in gaps, which ask whatever piece of the surface may lie on their ray.
+// First pass: pixels whose guess may lead to another sub-patch; each uses its own guess only. Second pass: the pixels
+// that remain, where the ray decides coverage. Guesses of the pixels around are tried where the pixel has no guess,
+// where its own fails, and where a neighbour lies in front; the nearest solution wins. So a silhouette is where the
+// surface ends, and a crack between grids of different fineness cannot show. Third pass: pixels in gaps, which try
+// every piece of the surface that may lie on their ray.
 
 layout(local_size_x = 64) in;
 
-LIST(0, Listed, listed);      // this pass's pixels
-LIST(3, Unsolved, unsolved);  // the first pass adds those for the second
+LIST(0, Listed, listed);      // the pixels of this pass
+LIST(3, Unsolved, unsolved);  // the first pass adds the pixels of the second
 
-// The i-th pixel in a gap has the guesses from guess_ends[i - 1] (the first one from 0) up to guess_ends[i].
+// The guesses of the i-th pixel in a gap are guess_ends[i - 1] (0 for the first pixel) up to guess_ends[i].
 layout(std430, binding = 1) readonly buffer GuessEnds {
     uint guess_ends[];
 };
@@ -21,9 +20,9 @@ layout(std430, binding = 2) readonly buffer Guesses {
     Guess guesses[];
 };
 
-uniform int n_asked;  // how many of ASKED; 0: the guesses above
+uniform int n_asked;  // how many of ASKED to try; 0: the guesses above instead
 
-// The pixel itself first: the first of these passes asks no other.
+// The pixel itself comes first; the first pass tries no other.
 const ivec2 ASKED[5] =
     ivec2[5](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 

@@ -41,7 +41,7 @@ vec3 to_world(vec3 camera_direction)
            axis[2].xyz * camera_direction.z;
 }
 
-// Where the ray of q is at depth z, relative to the eye, world axes.
+// The point at depth z on the ray of q, relative to the eye, world axes.
 vec3 on_ray(vec2 q, float z)
 {
     return to_world(vec3(q * pixel_units(z), z));

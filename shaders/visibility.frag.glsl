@@ -1,5 +1,5 @@
-// Writes where the surface is seen: node, and level with the rasterised parameters. Those belong to
-// the triangle, not to the pixel's ray: stage 2 takes them for a first guess only, so 13 bits do.
+// Writes which place of the surface is seen: node, level, and the rasterised parameters. Those belong to the
+// triangle, not to the pixel's ray: stage 2 uses them only as a first guess, so 13 bits are enough.
 
 flat in uvec2 where;
 in vec2 st;

@@ -1,6 +1,6 @@
-// Stage 1, visibility: grids over the parts of the surface that the CPU chose
-// (server/render/patch_grids.h), each of as many cells along u and v as `grid` says. One instance draws several
-// grids, since some devices take longer to start an instance than to draw a small grid.
+// Stage 1, visibility: draws grids over the parts of the surface that the CPU chose (server/render/patch_grids.h);
+// `grid` gives their cells along u and v. One instance draws several grids, since some devices take longer to start
+// an instance than to draw a small grid.
 
 layout(binding = TEXTURES_FREE) uniform usamplerBuffer patch_grids;  // node, level | k << 6 | depth << 8, x, y
 
@@ -42,6 +42,6 @@ void main()
     where = uvec2(own.x, uint(level));
     float w = is_perspective() ? s.z : 1.0;
     float z = is_perspective() ? depth.x : depth.y + s.z * depth.z;
-    // The last instance may have grids too many: all their vertices fall in one point.
+    // The last instance may have more grids than are left; all vertices of the extra ones fall on one point.
     gl_Position = index < n_grids ? vec4(s.xy * clip.xy + w * clip.zw, z, w) : vec4(0, 0, 0, 1);
 }

@@ -1,20 +1,19 @@
-// Newton's method over the borders of sub-patches, nodes and faces, for the passes of stage 2 that look
-// more closely.
+// Newton's method across the borders of sub-patches, nodes and faces, for the passes of stage 2 over listed pixels.
 
-// Sub-patches looked at on the way, and how far the tangent plane of one may lead.
+// Number of sub-patches tried on the way, and how many sub-patches far the tangent plane of one may lead.
 const int PATCHES = 4;
 const float MOST_SUB_PATCHES = 16.0;
-// Newton's method that is still so far from the ray inside a sub-patch will not meet it there.
+// If Newton's method is still this far from the ray inside a sub-patch, it will not meet the ray there.
 const float STUCK_PX = 0.5;
 
 struct Hit {
     Node node;
     vec2 xy;
-    ivec2 steps;  // the surface's parameters run 2^steps faster
+    ivec2 steps;  // the surface's parameters grow 2^steps times as fast as xy
     Surface surface;
 };
 
-// A place on the surface near a ray, as visibility.frag.glsl packs it, and how deep that is.
+// A place on the surface near a ray, packed as by visibility.frag.glsl, and its depth.
 struct Guess {
     uint node, where;
     float depth;
@@ -25,8 +24,8 @@ struct Solution {
     Hit hit;
 };
 
-// Inside the last ring of an extraordinary vertex (2^-32 of the node) the surface is its tangent
-// plane there; at a cone's tip, a plane across the view.
+// Inside the last ring of an extraordinary vertex (2^-32 of the node) the surface counts as its tangent plane there;
+// at a cone's tip, as a plane perpendicular to the view. Returns whether the ray meets it.
 bool meet_limit(Node node, Ray r, inout Surface s)
 {
     vec3 o = vec3(r.start, 0.0), d = vec3(r.slope, 1.0);
@@ -36,8 +35,8 @@ bool meet_limit(Node node, Ray r, inout Surface s)
     return z > 0.0 && distance(s.s, node.origin) < 2.0 * s.scale;
 }
 
-// The node and its coordinates where a step from `xy` leads, over borders if need be. False where it
-// leads into a hole.
+// Moves to the node and coordinates that a step to `xy` leads to, across borders if need be. False if it leads into a
+// hole.
 bool walk(inout Node node, inout vec2 xy)
 {
     if (all(greaterThanEqual(xy, vec2(0.0))) && all(lessThanEqual(xy, vec2(1.0))))
@@ -55,10 +54,10 @@ Guess guess_of(ivec2 pixel)
                  depth_of(texelFetch(seen_depth, pixel, 0).x));
 }
 
-// From a guess to the place on the ray; not found when there is none near, or no guess.
+// From a guess to the place on the ray; not found if there is no guess, or no place near it.
 //
-// A sub-patch is fetched and projected once and left only when Newton's method has settled in it or
-// runs out of it: then what the border says of places beyond is a guess for the next.
+// A sub-patch is fetched and projected once, and left only when Newton's method has settled in it or leaves it: then
+// the step from the border gives the guess for the next sub-patch.
 Solution solve_from(Node node, vec2 xy, float depth, Ray r)
 {
     Solution result;
@@ -74,7 +73,7 @@ Solution solve_from(Node node, vec2 xy, float depth, Ray r)
         vec2 st = own.st;
         float residual = solve_patch(net, scale / px, st);
         bool inside = all(greaterThanEqual(st, vec2(0.0))) && all(lessThanEqual(st, vec2(1.0)));
-        // Where the ray touches the surface, steps get shorter slowly; where it passes by, they do not.
+        // Where the ray touches the surface, steps shrink slowly; where it passes by, they do not shrink.
         bool settled = inside && (residual < close_enough(scale / px) || residual > STUCK_PX);
         if (settled || own.limit || i == PATCHES - 1) {
             Surface s = own.limit ? limit_of(node, frame, scale)
@@ -85,7 +84,7 @@ Solution solve_from(Node node, vec2 xy, float depth, Ray r)
             result.hit = Hit(node, ldexp(own.origin + st, -own.scale), own.scale, s);
             break;
         }
-        // From the border the tangent plane leads on, over many sub-patches where they are small.
+        // The tangent plane at the border leads on, across many sub-patches where they are small.
         vec2 onwards;
         st = clamp(st, 0.0, 1.0);
         newton_step(net, st, MOST_SUB_PATCHES, onwards);

@@ -1,4 +1,4 @@
-// The edges of the polygons over the picture that was shaded.
+// Draws the edges of the polygons over the shaded picture.
 
 in vec3 seen_at;
 in vec3 facing;

@@ -1,13 +1,15 @@
-// The edges of polygons (--surface wireframe:LEVEL): lines of WIDTH px in all, half of it on either side, by the distance
-// in the picture to the nearest edge. The grid's coordinates are linear over a triangle, so the diagonal of a quad is no
-// edge. Where lines come close they grow thinner, so that those of one direction take at most MOST of the surface, and
-// where the pixels cannot show them they fade to that mean: a fine mesh is a grey, not a noise.
+// The edges of polygons (--surface wireframe:LEVEL): lines WIDTH px wide, half of it on either side, from the
+// distance in the picture to the nearest edge. The grid's coordinates are linear over a triangle, so the diagonal of
+// a quad is no edge.
+//
+// Where lines come close they become thinner, so that those of one direction take at most MOST of the surface. Where
+// the pixels cannot resolve them they fade to that mean: a fine mesh becomes a grey, not noise.
 
 const float WIDTH = 1.0, MOST = 0.2;
 const vec3 LINE = vec3(0.010), FILL = vec3(0.71);  // linear light
 
-// Share of the pixel under the lines of one of the grid's directions, of which `change` is the change by a pixel to the
-// right and by a pixel down.
+// Share of the pixel under the lines of one of the grid's directions. `change` is the change of `at` by a pixel to
+// the right and by a pixel down.
 float line(float at, vec2 change, bool is_fan)
 {
     float nearest = round(at);
@@ -16,7 +18,7 @@ float line(float at, vec2 change, bool is_fan)
     float px = abs(at - nearest) / per_px;
     float sharp = clamp(0.5 + 0.5 * width - px, 0.0, min(width, 1.0));
     float mean = width * per_px;
-    // Of a fan's part only the edges at the n-gon's corner are edges.
+    // In a triangle of a fan only the edges at the n-gon's corner are edges.
     return is_fan && nearest > 0.0 ? 0.0 : mix(sharp, mean, smoothstep(0.4, 0.8, per_px));
 }
 

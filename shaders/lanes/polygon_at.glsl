@@ -1,5 +1,5 @@
-// The triangle that a pixel shows, interpolated without a rasteriser: for processors, which have told which one it is
-// (server/render/native/lanes/triangles.c).
+// Interpolates over the triangle that a pixel shows, without a rasteriser: for processors, which have determined the
+// triangle before (server/render/native/lanes/triangles.c).
 
 layout(binding = 0, rg32ui) readonly uniform uimage2D seen;  // x: the triangle
 uniform samplerBuffer vertices;                              // mesh_vertex of server/render/mesh.h, two texels each
@@ -10,7 +10,7 @@ uniform vec3 centre;                                         // of the mesh, cam
 
 const uint NOTHING = 0xffffffffu;
 
-// A workgroup takes 64 pixels of a row. Beyond the tile's right end there are none.
+// A workgroup takes 64 pixels of a row. A pixel beyond the tile's right end is not drawn.
 ivec2 row_pixel(uvec3 workgroup, uint local)
 {
     uint per_row = (uint(tile.z) + 63u) / 64u, i = workgroup.y * 32768u + workgroup.x;
@@ -44,8 +44,8 @@ float across(vec2 a, vec2 b)
     return a.x * b.y - a.y * b.x;
 }
 
-// What each corner's values count where the ray of q meets the triangle's plane: the mean of the corners so weighed lies on
-// the ray. So it does for corners behind the eye.
+// The weight of each corner's values where the ray of q meets the triangle's plane: the mean of the corners with
+// these weights lies on the ray. This also holds for corners behind the eye.
 vec3 shares_at(Triangle t, vec2 q)
 {
     vec2 a = t.at[0].xy - q * pixel_units(t.at[0].z), b = t.at[1].xy - q * pixel_units(t.at[1].z);
@@ -55,7 +55,7 @@ vec3 shares_at(Triangle t, vec2 q)
     return all != 0.0 ? share / all : vec3(1.0 / 3.0);
 }
 
-// A ray that passes an edge by rounding meets it.
+// A ray that misses the triangle only by rounding counts as meeting it.
 vec3 inside(vec3 shares)
 {
     vec3 share = max(shares, 0.0);
@@ -72,8 +72,8 @@ vec2 grid_at(Triangle t, vec3 share)
     return share.x * t.grid[0] + share.y * t.grid[1] + share.z * t.grid[2];
 }
 
-// How shares change by a pixel to the right and a pixel down: from or to the other pixel of the same pair, as dFdxFine()
-// and dFdyFine() have it.
+// How the shares change by a pixel to the right and a pixel down: the difference from the other pixel of the same
+// pair, as by dFdxFine() and dFdyFine().
 void share_changes(Triangle t, ivec2 p, vec3 share, out vec3 change_x, out vec3 change_y)
 {
     vec2 q = pixel_offset(p), to = 1.0 - 2.0 * vec2((p + tile.xy) & 1);

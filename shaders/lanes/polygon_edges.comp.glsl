@@ -1,4 +1,4 @@
-// What wireframe.frag.glsl writes, for processors.
+// The counterpart of wireframe.frag.glsl for processors.
 
 layout(local_size_x = 64) in;
 

@@ -1,4 +1,4 @@
-// What polygon.frag.glsl writes, for processors.
+// The counterpart of polygon.frag.glsl for processors.
 
 layout(local_size_x = 64) in;
 
