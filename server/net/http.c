@@ -26,6 +26,7 @@ struct http_connection {
 struct http {
     struct loop *loop;
     struct http_handler handler;
+    int most; /* connections used */
     struct http_connection connections[HTTP_MAX_CONNECTIONS];
 };
 
@@ -189,6 +190,7 @@ struct http *http_create(struct loop *loop, const struct http_handler *handler, 
     }
     http->loop = loop;
     http->handler = *handler;
+    http->most = HTTP_MAX_CONNECTIONS;
     for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++) {
         http->connections[i].http = http;
         http->connections[i].source.fd = -1;
@@ -216,17 +218,22 @@ static int value_of(const struct http_connection *connection)
  * keep a health probe out. */
 static struct http_connection *find_place(struct http *http)
 {
-    struct http_connection *least = NULL;
-    for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++) {
+    struct http_connection *least = &http->connections[0];
+    for (int i = 0; i < http->most; i++) {
         struct http_connection *connection = &http->connections[i];
         if (connection->source.fd < 0)
             return connection;
-        int below = least ? value_of(connection) - value_of(least) : -1;
+        int below = value_of(connection) - value_of(least);
         if (below < 0 || (below == 0 && connection->end_us < least->end_us))
             least = connection;
     }
     drop(least);
     return least;
+}
+
+void http_limit(struct http *http, unsigned most)
+{
+    http->most = (int)most;
 }
 
 void http_accept(struct http *http, int fd)

@@ -37,8 +37,10 @@ struct http *http_create(struct loop *loop, const struct http_handler *handler,
                          struct error *error);
 void http_destroy(struct http *http); /* closes all connections; NULL is safe */
 
+/* From now on there are at most `most` connections, 1 to HTTP_MAX_CONNECTIONS. Call it before the first. */
+void http_limit(struct http *http, unsigned most);
 /* Takes over a connected socket, and answers at once if the request is there already: no number of
- * other connections can keep a health probe from its answer. If there are HTTP_MAX_CONNECTIONS already, one is closed for it:
+ * other connections can keep a health probe from its answer. If there are too many already, one is closed for it:
  * the oldest one that was answered but does not close, else the oldest that has not sent its
  * request, else the oldest. */
 void http_accept(struct http *http, int fd);

@@ -10,7 +10,8 @@
 #include "server/threads/render_thread.h"
 
 struct daemon {
-    struct limits limits; /* the limits in force */
+    uint64_t most_clients; /* that there are descriptors for */
+    struct limits limits;  /* the limits in force */
     struct loop *loop;
     struct completions *completions;
     struct block_cache *block_cache;

@@ -44,7 +44,8 @@ const struct limits_row LIMITS[] = {
      LEAST_FRAME, PROTOCOL_MAX_FRAME_BYTES, GIB, AT(session.max_frame)},
     {"max-image-side", UNIT_PX, "largest width and height of a light image", 1,
      PROTOCOL_MAX_SIZE_PX, 16384, AT(assets.max_image_side)},
-    {"max-connections", UNIT_COUNT, "connected clients", 1, 1000000, 4096, AT(max_connections)},
+    {"max-connections", UNIT_COUNT, "connected clients, as far as there are descriptors", 1,
+     1000000, 4096, AT(max_connections)},
     {"max-peer-connections", UNIT_COUNT,
      "connections of one user (Unix socket), certificate or token, and of all loopback TCP\n"
      "together",

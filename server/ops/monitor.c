@@ -185,6 +185,12 @@ const char *monitor_address(const struct monitor *monitor)
     return monitor->listener ? listener_text(monitor->listener) : "";
 }
 
+void monitor_limit(struct monitor *monitor, unsigned most)
+{
+    if (monitor->http)
+        http_limit(monitor->http, most);
+}
+
 void monitor_set_stuck(struct monitor *monitor, uint64_t stuck_us)
 {
     monitor->stuck_us = stuck_us;

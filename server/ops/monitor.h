@@ -25,6 +25,8 @@ bool monitor_adopt(struct monitor *monitor, int fd, enum listener_reach reach, s
 /* The address that is served; "" if none is. */
 const char *monitor_address(const struct monitor *monitor);
 
+/* http_limit(), if there is an address. */
+void monitor_limit(struct monitor *monitor, unsigned most);
 void monitor_set_stuck(struct monitor *monitor, uint64_t stuck_us);
 
 #endif

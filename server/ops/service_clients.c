@@ -24,7 +24,8 @@ static void turn_away(int fd, const char *text)
 /* False with *error when there are as many clients as allowed. */
 static bool has_room(const struct daemon *daemon, struct error *error)
 {
-    return daemon->sessions.n_sessions < daemon->limits.max_connections ||
+    uint64_t n = daemon->sessions.n_sessions;
+    return (n < daemon->limits.max_connections && n < daemon->most_clients) ||
            error_set(error, ERROR_SERVER,
                      "the daemon has as many clients as it takes: try again later");
 }

@@ -1,22 +1,29 @@
 /* Devices and threads of the service, and what each room needs of the others. */
 #include <string.h>
-#include <sys/resource.h>
 
 #include "server/assets/model_file.h"
+#include "server/net/http.h"
+#include "server/ops/descriptors.h"
 #include "server/ops/device_choice.h"
 #include "server/ops/service_internal.h"
 #include "server/output/jpeg.h"
 
-#define OWN_DESCRIPTORS 128u /* for listeners, devices and libraries; more than are used */
-
-/* Raises the limit of descriptors to `n`, or as far as the system allows. */
-static void allow_descriptors(uint64_t n)
+/* Divides the descriptors that are left. Listeners and programs must be open. */
+static void share_descriptors(struct service *service)
 {
-    struct rlimit files;
-    if (getrlimit(RLIMIT_NOFILE, &files) < 0 || files.rlim_cur >= n)
-        return;
-    files.rlim_cur = files.rlim_max < n ? files.rlim_max : n;
-    setrlimit(RLIMIT_NOFILE, &files); /* if that fails, accepting pauses while all are used */
+    struct daemon *daemon = &service->daemon;
+    const struct descriptors wanted = {.clients = daemon->limits.max_connections,
+                                       .jobs = pool_threads(daemon->pool) + 1 + STORE_MAX_BUILDS,
+                                       .probes = HTTP_MAX_CONNECTIONS};
+    const struct descriptors shares = descriptors_divide(&wanted);
+    bool is_scarce = shares.clients < wanted.clients;
+    daemon->most_clients = is_scarce ? shares.clients : UINT64_MAX;
+    workers_limit_jobs(&daemon->workers, shares.jobs);
+    if (service->monitor)
+        monitor_limit(service->monitor, shares.probes);
+    if (!service->single && is_scarce)
+        log_event(LOG_WARN, "few descriptors: fewer clients than max-connections are taken",
+                  log_number("clients", shares.clients), log_number("jobs", shares.jobs));
 }
 
 /* Opens the first device of the list that works. On failure *error is that of the last one. */
@@ -110,10 +117,15 @@ bool service_start(struct service *service, struct error *error)
     if (*options->models &&
         (daemon->requests.models_fd = model_folder_open(options->models, error)) < 0)
         return false;
-    allow_descriptors(daemon->limits.max_connections + OWN_DESCRIPTORS);
-    if (service->single)
+    daemon->most_clients = 1;
+    if (service->single) {
+        share_descriptors(service);
         return service_open_session(service, options->session_fd, error);
+    }
     workers_expect_images(&daemon->workers);
     service->monitor = monitor_create(daemon, options->stuck_s * 1000000, error);
-    return service->monitor && service_open_listeners(service, error);
+    if (!service->monitor || !service_open_listeners(service, error))
+        return false;
+    share_descriptors(service);
+    return true;
 }

@@ -1,12 +1,15 @@
 #include "server/threads/workers.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "server/sandbox/cage_code.h"
+#include "server/threads/pool.h"
 
 /* --- the programs */
 
@@ -59,6 +62,9 @@ bool workers_init(struct workers *workers, const char *folder, const struct work
                   uint64_t budget_bytes, struct error *error)
 {
     workers->images = NULL;
+    pthread_mutex_init(&workers->lock, NULL);
+    pthread_cond_init(&workers->ended, NULL);
+    workers->most_jobs = UINT_MAX;
     workers->budget_bytes =
         budget_bytes > WORKERS_LEAST_MEMORY_BYTES ? budget_bytes : WORKERS_LEAST_MEMORY_BYTES;
     workers->memory_bytes = limits->memory_bytes;
@@ -88,7 +94,40 @@ void workers_stop(struct workers *workers)
     worker_stop(workers->images);
 }
 
+void workers_limit_jobs(struct workers *workers, unsigned most)
+{
+    pthread_mutex_lock(&workers->lock);
+    workers->most_jobs = most;
+    pthread_mutex_unlock(&workers->lock);
+}
+
 /* --- the jobs */
+
+/* Waits until the job may run, and makes its files. Call end_job() in any case. */
+static bool begin_job(struct workers *workers, struct worker_call *call, struct worker *lender,
+                      struct error *error)
+{
+    pthread_mutex_lock(&workers->lock);
+    while (workers->n_jobs >= workers->most_jobs) {
+        struct timespec until;
+        clock_gettime(CLOCK_REALTIME, &until);
+        until.tv_sec++;
+        pool_beat(); /* the thread waits, and is not stuck */
+        pthread_cond_timedwait(&workers->ended, &workers->lock, &until);
+    }
+    workers->n_jobs++;
+    pthread_mutex_unlock(&workers->lock);
+    return lender ? worker_call_init_lent(call, lender, error) : worker_call_init(call, error);
+}
+
+static void end_job(struct workers *workers, struct worker_call *call)
+{
+    worker_call_finish(call);
+    pthread_mutex_lock(&workers->lock);
+    workers->n_jobs--;
+    pthread_cond_signal(&workers->ended);
+    pthread_mutex_unlock(&workers->lock);
+}
 
 static uint64_t least(uint64_t a, uint64_t b)
 {
@@ -118,13 +157,13 @@ bool workers_read_cage(struct workers *workers, struct cage *cage, const void *b
         workers, WORKERS_LEAST_MEMORY_BYTES + (uint64_t)size * WORKERS_CAGE_MEMORY_PER_BYTE);
     struct worker_call call;
     *cage = (struct cage){0};
-    bool ok = worker_call_init(&call, error);
+    bool ok = begin_job(workers, &call, NULL, error);
     if (ok)
         job_write_file(&call.input, name, bytes, size);
     ok = ok &&
          worker_run(workers->cages, &call, JOB_READ_CAGE, &limits, name, ERROR_MODEL, error) &&
          cage_take(&call.answer, cage, name, error);
-    worker_call_finish(&call);
+    end_job(workers, &call);
     return ok;
 }
 
@@ -134,7 +173,7 @@ bool workers_read_image(struct workers *workers, struct image *image, const void
     const struct job_limits limits = limits_within_budget(workers, WORKERS_IMAGE_MEMORY_BYTES);
     struct worker_call call;
     *image = (struct image){0};
-    bool ok = worker_call_init(&call, error);
+    bool ok = begin_job(workers, &call, NULL, error);
     if (ok) {
         sink_u32(&call.input, max_px);
         job_write_file(&call.input, name, bytes, size);
@@ -142,7 +181,7 @@ bool workers_read_image(struct workers *workers, struct image *image, const void
     ok = ok &&
          worker_run(workers->images, &call, JOB_READ_IMAGE, &limits, name, ERROR_IMAGE, error) &&
          image_take(&call.answer, image, name, max_px, error);
-    worker_call_finish(&call);
+    end_job(workers, &call);
     return ok;
 }
 
@@ -172,14 +211,14 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
     struct worker_call call;
     *bytes = NULL;
     *size = 0;
-    bool ok = worker_call_init_lent(&call, workers->images, error);
+    bool ok = begin_job(workers, &call, workers->images, error);
     if (ok)
         picture_write(&call.input, picture, blocks, n_blocks);
     ok = ok &&
          worker_run(workers->images, &call, JOB_WRITE_IMAGE, &limits, "the picture", ERROR_IMAGE,
                     error) &&
          take_file(&call.answer, block_cache, bytes, size, error);
-    worker_call_finish(&call);
+    end_job(workers, &call);
     return ok;
 }
 
@@ -202,7 +241,7 @@ bool workers_draw_text(struct workers *workers, struct block_cache *block_cache,
     const struct job_limits limits = limits_within_budget(workers, WORKERS_LEAST_MEMORY_BYTES);
     struct worker_call call;
     *text = (struct text){0};
-    bool ok = worker_call_init(&call, error);
+    bool ok = begin_job(workers, &call, NULL, error);
     if (ok) {
         sink_u32(&call.input, (uint32_t)size_px);
         sink_text(&call.input, line);
@@ -211,6 +250,6 @@ bool workers_draw_text(struct workers *workers, struct block_cache *block_cache,
          worker_run(workers->images, &call, JOB_DRAW_TEXT, &limits, "a line of text", ERROR_SERVER,
                     error) &&
          take_text(&call.answer, block_cache, text, error);
-    worker_call_finish(&call);
+    end_job(workers, &call);
     return ok;
 }

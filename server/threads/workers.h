@@ -6,6 +6,8 @@
 #ifndef SHEEN_THREADS_WORKERS_H
 #define SHEEN_THREADS_WORKERS_H
 
+#include <pthread.h>
+
 #include "server/cage/cage.h"
 #include "server/image/image.h"
 #include "server/threads/worker.h"
@@ -27,6 +29,9 @@ struct workers_limits {
 
 struct workers {
     struct worker *cages, *images;
+    pthread_mutex_t lock; /* of the next three */
+    pthread_cond_t ended; /* a job has */
+    unsigned n_jobs, most_jobs;
     uint64_t budget_bytes, memory_bytes, output_bytes;
     /* Read and written by any thread, only by __atomic_load_n() and __atomic_store_n(). */
     unsigned cpu_s, wall_s;
@@ -45,6 +50,8 @@ void workers_finish(struct workers *workers);
  * keeps a processor busy for 0.2 s, so a daemon that is about to draw its first frame does not
  * start it earlier. */
 void workers_expect_images(struct workers *workers);
+/* At most so many jobs run at once from now on (at least 1); others wait. */
+void workers_limit_jobs(struct workers *workers, unsigned most);
 /* worker_stop() for both programs. */
 void workers_stop(struct workers *workers);
 

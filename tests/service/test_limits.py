@@ -71,6 +71,38 @@ class Table(unittest.TestCase):
                 self.assertIn(f"{file.name}:{len(rows)}: {words}", done.stderr)
 
 
+
+class Descriptors(unittest.TestCase):
+    def test_who_is_connected_is_served(self):
+        """With 48 descriptors: fewer clients are taken, and none of the work for them fails."""
+        daemon = Daemon("--metrics", "tcp:127.0.0.1:0", under=("prlimit", "--nofile=48:48"))
+        daemon.wait_for("few descriptors")
+        with Client(daemon.unix, minor=1) as first, contextlib.ExitStack() as others:
+            model = first.upload(CUBE, "cube.obj")
+            taken = []
+            for _ in range(40):
+                try:
+                    taken.append(others.enter_context(Client(daemon.unix, minor=1)))
+                except (wire.Refused, EOFError, OSError):
+                    pass
+            self.assertGreater(len(taken), 3)
+            self.assertLess(len(taken), 30)
+            for encoding in (wire.PNG, wire.EXR, wire.TIFF):
+                asked = [client.ask(model, encoding=encoding) for client in (first, first)]
+                for seq in asked:
+                    self.assertEqual(first.answer()[0], seq)
+            models = []
+            for number, client in enumerate(taken):
+                cube = CUBE + b"# %d\n" % number
+                models.append((client, client.upload(cube, "cube.obj")))
+            asked = [(client, client.ask(own, encoding=wire.TIFF)) for client, own in models]
+            for client, seq in asked:
+                got, what = client.answer()
+                self.assertEqual(got, seq)
+                self.assertIsInstance(what, wire.Frame, what)
+        self.assertEqual(daemon.stop(), 0)
+
+
 class Workers(unittest.TestCase):
     """What the process that reads a file may take: its sender is told which limit it was."""
 
