@@ -120,6 +120,17 @@ static bool is_alive(const struct sockaddr_un *name)
     return alive;
 }
 
+/* Waits longer each time, 1.3 s altogether, for a predecessor that has been killed and still has the address
+ * while it dies. False once that time is over. */
+static bool wait_for_predecessor(unsigned *n_waits)
+{
+    enum { FIRST_WAIT_US = 20000, MOST_WAITS = 6 };
+    if (*n_waits == MOST_WAITS)
+        return false;
+    usleep(FIRST_WAIT_US << (*n_waits)++);
+    return true;
+}
+
 static bool remove_stale(const struct sockaddr_un *name, struct error *error)
 {
     struct stat file;
@@ -130,9 +141,12 @@ static bool remove_stale(const struct sockaddr_un *name, struct error *error)
         return error_set(error, ERROR_SERVER,
                          "cannot listen on unix:%s: there is a file that is no socket",
                          name->sun_path);
-    if (is_alive(name))
-        return error_set(error, ERROR_SERVER,
-                         "cannot listen on unix:%s: another daemon answers there", name->sun_path);
+    unsigned n_waits = 0;
+    while (is_alive(name))
+        if (!wait_for_predecessor(&n_waits))
+            return error_set(error, ERROR_SERVER,
+                             "cannot listen on unix:%s: another daemon answers there",
+                             name->sun_path);
     if (unlink(name->sun_path) < 0 && errno != ENOENT)
         return error_set(error, ERROR_SERVER, "cannot remove the old socket %s: %s", name->sun_path,
                          strerror(errno));
@@ -190,8 +204,11 @@ static bool open_tcp(struct listener *listener, enum listener_reach reach, struc
     if (!resolve(&listener->address, reach, &found, error))
         return false;
     bool ok = false;
-    for (const struct addrinfo *a = found; a && !ok; a = a->ai_next)
-        ok = bind_tcp(listener, a);
+    unsigned n_waits = 0;
+    do
+        for (const struct addrinfo *a = found; a && !ok; a = a->ai_next)
+            ok = bind_tcp(listener, a);
+    while (!ok && errno == EADDRINUSE && wait_for_predecessor(&n_waits));
     struct sockaddr_storage name = {0};
     socklen_t size = sizeof name;
     if (ok && getsockname(listener->fd, (struct sockaddr *)&name, &size) == 0)

@@ -156,6 +156,28 @@ class Sockets(unittest.TestCase):
             client.stats()
         self.assertEqual(daemon.stop(), 0)
 
+    def test_waits_for_a_predecessor_that_dies(self):
+        """Its sockets answer for a moment yet."""
+        unix, tcp = socket.socket(socket.AF_UNIX), socket.create_server(("127.0.0.1", 0))
+        unix.bind(self.path)
+        unix.listen()
+        port = tcp.getsockname()[1]
+
+        def die():
+            time.sleep(0.3)
+            unix.close()
+            time.sleep(0.3)
+            tcp.close()
+
+        dying = threading.Thread(target=die)
+        dying.start()
+        daemon = Daemon("--listen", f"tcp:127.0.0.1:{port}", path=self.path, tcp=False)
+        dying.join()
+        for address in daemon.unix, f"tcp:127.0.0.1:{port}":
+            with Client(address) as client:
+                client.stats()
+        self.assertEqual(daemon.stop(), 0)
+
     def test_other_files_are_not(self):
         with open(self.path, "w", encoding="ascii") as file:
             file.write("precious")
