@@ -8,17 +8,7 @@ layout(std430, binding = 2) readonly buffer RoundedHits {
     RoundedHit hits[];
 };
 
-// One of side x side parts of the pixel, around the ray of q.
-Shown shade_part(Shown behind, vec2 q, int side, float depth, vec3 n, vec3 h)
-{
-    Sample at = sample_at(q, 1.0 / float(side), depth, n, h, n);
-    Shown shown = behind;
-    if (dot(n, n) > 0.5)
-        shown = lay_over(behind, at, meet(at), q);
-    return shown;
-}
-
-// Whether the pixel or one around it meets nothing; beyond the picture nothing is met.
+// Whether nothing is met at the pixel or at one around it; beyond the picture nothing is met.
 bool is_beside_empty(ivec2 p)
 {
     bool is = any(lessThan(p, ivec2(1))) || any(greaterThanEqual(p + 1, tile.zw));
@@ -40,22 +30,25 @@ void main()
     vec2 centre = pixel_offset(p);
     Shown behind = shown_behind(p), sum = Shown(vec4(0.0), 0.0);
     float share = 1.0 / float(rays), covered = 0.0;
-    for (int ray = 0; ray < rays; ray++) {
-        RoundedHit hit = hits[i * uint(rays) + uint(ray)];
-        if (hit.normal_depth.w == 0.0)
-            continue;
-        vec2 q = centre + rounded_place(ray, side, at_edge);
-        vec3 n = hit.normal_depth.xyz;
-        sum = added(sum, scaled(shade_part(behind, q, side, hit.normal_depth.w, n, hit.shape.xyz), share));
-        covered += share;
-    }
-    // A sliver that the pixel's centre sees may lie between the rays; then the centre takes the place of one ray.
-    if (covered == 0.0) {
-        Hit own = hit_at(p);
-        if (mirrors(own)) {
-            sum = scaled(shade_part(behind, centre, side, own.depth, own.n, own.h), share);
-            covered = share;
+    for (int ray = 0; ray <= rays; ray++) {
+        RoundedHit hit = hits[i * uint(rays) + uint(min(ray, rays - 1))];
+        vec2 q = centre;
+        if (ray < rays)
+            q += rounded_place(ray, side, at_edge);
+        else if (covered == 0.0) {
+            // A sliver that the pixel's centre sees may lie between the rays: then the centre takes the place of one of them.
+            Hit own = hit_at(p);
+            hit = RoundedHit(vec4(own.n, mirrors(own) ? own.depth : 0.0), vec4(own.h, 0.0));
         }
+        if (hit.normal_depth.w == 0.0 || (ray == rays && covered > 0.0))
+            continue;
+        vec3 n = hit.normal_depth.xyz;
+        Sample at = sample_at(q, 1.0 / float(side), hit.normal_depth.w, n, hit.shape.xyz, n);
+        Shown shown = behind;
+        if (dot(n, n) > 0.5)
+            shown = lay_over(behind, at, meet(at), q);
+        sum = added(sum, scaled(shown, share));
+        covered += share;
     }
     // A ray for which no guess led to the surface counts as empty only if some pixel around is empty.
     float all = is_beside_empty(p) ? 1.0 : covered;
