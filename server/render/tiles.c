@@ -79,3 +79,9 @@ uint32_t tile_max_rounded(const struct tile *tile)
     most = most < ROUNDED_IN_ANY_CUT ? ROUNDED_IN_ANY_CUT : most;
     return (uint32_t)(most < pixels ? most : pixels);
 }
+
+uint32_t tile_share_stride(const struct tile *tile)
+{
+    enum { ALL_PX = 1 << 18, STRIDE = 8 };
+    return (uint64_t)tile->width * tile->height < ALL_PX ? 1 : STRIDE;
+}

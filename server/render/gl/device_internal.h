@@ -30,7 +30,7 @@ struct gl_renderer {
     size_t max_texels; /* limit of a buffer texture */
     /* The planes in use, like struct planes. */
     struct target target;
-    struct kept kept;
+    struct kept_view kept;
     enum planes_of in_use;
     struct planes resting[PLANES_KINDS]; /* the planes not in use */
     struct collecting collecting;        /* lists collected for PLANES_TILED */

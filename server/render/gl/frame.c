@@ -27,7 +27,7 @@ static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
     const struct tile *drawn = &r->drawing.drawn, *shaded = &r->drawing.shaded;
     const struct tile at = tile_within(drawn, &r->drawing.place);
     const struct tile cut = tile_within(shaded, &r->drawing.place);
-    if (is_kept(&r->kept, model, request))
+    if (kept_view_serves(&r->kept, model->serial, request))
         return true;
     if (!patch_grids_choose(&r->grids, model->base.tables, &model->clusters, view, drawn, error))
         return false;

@@ -7,21 +7,6 @@
 #include "server/render/gl/frame_state.h"
 #include "server/render/gl/model.h"
 
-/* Frames of fewer pixels, thumbnails and probes, have planes of their own. */
-enum { SMALL_PX = 4096 };
-
-bool is_kept(const struct kept *kept, const struct gl_model *model,
-             const struct frame_request *request)
-{
-    return kept->model_serial == model->serial && kept->width_px == request->width_px &&
-           kept->height_px == request->height_px &&
-           camera_is_same(&kept->camera, &request->camera) &&
-           kept->surface.kind == request->surface.kind &&
-           kept->surface.level == request->surface.level &&
-           (kept->ptex || !(request->planes & PLANE_PTEX)) &&
-           (kept->edges || !request_has_coverage(request));
-}
-
 void planes_swap(struct gl_renderer *r, struct planes *others)
 {
     const struct planes used = {r->target, r->kept};
@@ -45,10 +30,11 @@ static enum planes_of find_kept(const struct gl_renderer *r, const struct gl_mod
                                 const struct gl_frame *own, bool is_single)
 {
     for (int i = PLANES_WHOLE; i <= PLANES_TILED; i++) {
-        const struct kept *kept = r->in_use == (enum planes_of)i ? &r->kept : &r->resting[i].kept;
+        const struct kept_view *kept =
+            r->in_use == (enum planes_of)i ? &r->kept : &r->resting[i].kept;
         bool same_cut = is_single == (i != PLANES_TILED);
         bool serves = same_cut || (kept->any_cut && (is_single || own->work->in_place));
-        if (serves && is_kept(kept, model, own->work->request))
+        if (serves && kept_view_serves(kept, model->serial, own->work->request))
             return (enum planes_of)i;
     }
     return PLANES_KINDS;
@@ -69,8 +55,7 @@ void planes_choose(struct gl_renderer *r, const struct gl_model *model, struct g
             return;
         }
     }
-    bool is_small = (uint64_t)request->width_px * request->height_px < SMALL_PX;
-    use(r, is_single  ? is_small ? PLANES_SMALL : PLANES_WHOLE
+    use(r, is_single  ? kept_view_is_small(request) ? PLANES_SMALL : PLANES_WHOLE
            : in_place ? PLANES_TILED
                       : PLANES_APART);
 }
@@ -146,27 +131,12 @@ void collect_tile(struct gl_renderer *r, bool edges)
     }
 }
 
-static struct kept view_of(const struct gl_model *model, const struct frame_request *request)
-{
-    bool is_exact = request->surface.kind == SURFACE_EXACT;
-    return (struct kept){
-        .model_serial = model->serial,
-        .width_px = request->width_px,
-        .height_px = request->height_px,
-        .camera = request->camera,
-        .surface = request->surface,
-        .ptex = request->planes & PLANE_PTEX || !is_exact, /* polygons always write it */
-        .edges = request_has_coverage(request),
-        .any_cut = is_exact,
-    };
-}
-
 void collect_end(struct gl_renderer *r, const struct gl_model *model,
                  const struct frame_request *request)
 {
     if (!r->collecting.frame)
         return;
-    r->kept = view_of(model, request);
+    r->kept = kept_view_of(model->serial, request);
     for (int k = 0; k < (r->kept.edges ? COLLECTED_LISTS : 1); k++)
         write_head(list_of(&r->target, k), r->collecting.n[k], LISTS[k].per_group);
     r->collecting.frame = 0;
@@ -175,9 +145,9 @@ void collect_end(struct gl_renderer *r, const struct gl_model *model,
 void planes_keep(struct gl_renderer *r, const struct gl_model *model,
                  const struct frame_request *request)
 {
-    if (is_kept(&r->kept, model, request))
+    if (kept_view_serves(&r->kept, model->serial, request))
         return;
-    r->kept = view_of(model, request);
+    r->kept = kept_view_of(model->serial, request);
     if (r->evaluate.too_many_gaps ||
         (r->kept.edges && list_length(r->target.rounded) > ROUNDED_IN_ANY_CUT))
         r->kept.any_cut = false;

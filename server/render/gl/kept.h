@@ -9,9 +9,6 @@ struct gl_frame;
 struct gl_model;
 struct gl_renderer;
 
-/* True if the planes hold everything that stages 1 and 2 would draw for this request. */
-bool is_kept(const struct kept *kept, const struct gl_model *model,
-             const struct frame_request *request);
 /* Exchanges the planes in use with others. */
 void planes_swap(struct gl_renderer *r, struct planes *others);
 /* Chooses the planes for a frame's next tile. If, at the first tile, some planes already hold the

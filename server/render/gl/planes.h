@@ -7,24 +7,12 @@
 #include <stdint.h>
 
 #include "server/render/gl/target.h"
-#include "server/scene/frame_request.h"
-
-/* Describes what the planes of a target hold, so that a frame of the same view needs only stage
- * 3. */
-struct kept {
-    uint64_t model_serial; /* 0: the planes hold nothing */
-    uint32_t width_px, height_px;
-    struct camera camera;
-    struct surface surface;
-    bool ptex, edges;
-    /* The planes are equal, bit by bit, for any cut into tiles, so they serve frames of any cut. */
-    bool any_cut;
-};
+#include "server/render/kept_view.h"
 
 /* A target, and the view that its planes hold. */
 struct planes {
     struct target target;
-    struct kept kept;
+    struct kept_view kept;
 };
 
 /* Which planes a frame is drawn into. There are several, so that a frame of one kind does not

@@ -98,7 +98,7 @@ bool draw_polygons(struct gl_renderer *r, const struct gl_model *model, struct g
         return false;
     if (!polygons_are_whole(mesh))
         return stage_clock_end(r, &frame->times.visibility_us) && stage_clock_read(r);
-    if (is_kept(&r->kept, model, own->work->request))
+    if (kept_view_serves(&r->kept, model->serial, own->work->request))
         own->stage = TILE_SHADE;
     struct slice slice = {
         .mesh = mesh,

@@ -237,20 +237,16 @@ static void shade_listed(struct gl_renderer *r, const struct frame_request *requ
     dispatch_listed(rounded, r->target.rounded);
 }
 
-/* In tiles of so many pixels or more, only one pixel in SHARE_STRIDE is counted. */
-#define SHARE_ALL_PX (1u << 18)
-enum { SHARE_STRIDE = 8 };
-
 /* Counts into the list `unsolved`, which stage 2 no longer needs. */
 static void share_light(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
 {
     static const GLuint nothing[2] = {0, 0};
     const struct tile *inside = &r->inside;
     GLuint program = program_of(r, request, &request->lights[i], SHADED_SHARE);
-    bool all = (uint64_t)inside->width * inside->height < SHARE_ALL_PX;
     if (i + 1 == request->n_lights)
         glNamedBufferSubData(r->target.unsolved, 0, sizeof nothing, nothing);
-    glProgramUniform1ui(program, glGetUniformLocation(program, "stride"), all ? 1 : SHARE_STRIDE);
+    glProgramUniform1ui(program, glGetUniformLocation(program, "stride"),
+                        tile_share_stride(inside));
     glProgramUniform4i(program, glGetUniformLocation(program, "inside"), (GLint)inside->x,
                        (GLint)inside->y, (GLint)inside->width, (GLint)inside->height);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.unsolved);

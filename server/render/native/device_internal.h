@@ -3,6 +3,7 @@
 #define SHEEN_RENDER_NATIVE_DEVICE_INTERNAL_H
 
 #include "server/render/device.h"
+#include "server/render/kept_view.h"
 #include "server/render/native/native.h"
 #include "server/render/native/polygons/meshes.h"
 #include "server/render/native/polygons/fill.h"
@@ -17,21 +18,10 @@ struct native_shown {
     uint64_t serial; /* unique in the renderer */
 };
 
-/* Describes what the planes of a target hold, so that a frame of the same view needs only stage 3. serial 0:
- * nothing. */
-struct native_kept {
-    uint64_t serial; /* the model's serial */
-    uint32_t width_px, height_px;
-    struct camera camera;
-    struct surface surface;
-    bool edges;   /* also what edges need */
-    bool any_cut; /* the planes are equal, bit by bit, for any cut into tiles */
-};
-
 /* A target, and the view that its planes hold. */
 struct native_view_planes {
     struct native_target target;
-    struct native_kept kept;
+    struct kept_view kept;
 };
 
 /* Which planes a frame is drawn into. There are several, so that a frame of one kind does not overwrite planes that

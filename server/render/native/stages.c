@@ -13,8 +13,6 @@ enum { GROUPS_PER_WORKGROUP = 8 };
 enum { CHUNKS_PER_THREAD = 8, CHUNK = 32, WORKGROUP_PX = 64, CHUNK_PX = CHUNK * WORKGROUP_PX };
 /* Pixels of a list that a workgroup of its program takes (shaders/edges.glsl, rounded.glsl). */
 enum { EDGES_PER_WORKGROUP = 32, LISTED_PER_WORKGROUP = 64 };
-/* Beginning with as many, every pixel of a tile is one too many to count lights at. */
-enum { SHARE_ALL_PX = 1 << 18, SHARE_STRIDE = 8 };
 
 /* --- programs */
 
@@ -265,11 +263,10 @@ static void count_light(const struct native_drawing *d, struct native_bindings *
                         struct native_share *share)
 {
     const struct tile *in = &d->inside;
-    bool all = (uint64_t)in->width * in->height < SHARE_ALL_PX;
     const int32_t inside[4] = {(int32_t)in->x, (int32_t)in->y, (int32_t)in->width,
                                (int32_t)in->height};
     memcpy(b->inside, inside, sizeof inside);
-    b->stride = all ? 1 : SHARE_STRIDE;
+    b->stride = tile_share_stride(in);
     share->seen_px = share->met_px = 0;
     share->met = list_of(d, NATIVE_FOUND_EDGES)->at;
     run_program(d, native_device_programs(d->device)->share, b, b->groups->n, GROUPS_PER_WORKGROUP,

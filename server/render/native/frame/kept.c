@@ -2,20 +2,6 @@
 
 #include <string.h>
 
-/* Frames of fewer pixels, thumbnails and probes, have planes of their own. */
-enum { SMALL_PX = 4096 };
-
-static bool is_kept(const struct native_kept *kept, const struct native_shown *shown,
-                    const struct frame_request *request)
-{
-    return kept->serial == shown->serial && kept->width_px == request->width_px &&
-           kept->height_px == request->height_px &&
-           camera_is_same(&kept->camera, &request->camera) &&
-           kept->surface.kind == request->surface.kind &&
-           kept->surface.level == request->surface.level &&
-           (kept->edges || !request_has_coverage(request));
-}
-
 /* The planes that hold the frame's view, equal bit by bit to planes drawn anew; NULL: there are none. */
 static struct native_view_planes *find_kept(struct native_renderer *r,
                                             const struct native_shown *shown,
@@ -24,7 +10,8 @@ static struct native_view_planes *find_kept(struct native_renderer *r,
     for (int i = NATIVE_WHOLE; i <= NATIVE_TILED; i++) {
         struct native_view_planes *planes = &r->planes[i];
         bool same_cut = is_single == (i != NATIVE_TILED);
-        if ((same_cut || planes->kept.any_cut) && is_kept(&planes->kept, shown, work->request))
+        if ((same_cut || planes->kept.any_cut) &&
+            kept_view_serves(&planes->kept, shown->serial, work->request))
             return planes;
     }
     return NULL;
@@ -49,20 +36,18 @@ struct native_view_planes *native_planes_choose(struct native_renderer *r,
         own->tile = (struct tile_size){request->width_px, request->height_px};
         return kept;
     }
-    bool is_small = (uint64_t)request->width_px * request->height_px < SMALL_PX;
-    return &r->planes[single ? is_small ? NATIVE_SMALL : NATIVE_WHOLE : NATIVE_APART];
+    return &r->planes[single ? kept_view_is_small(request) ? NATIVE_SMALL : NATIVE_WHOLE
+                             : NATIVE_APART];
 }
 
-static struct native_kept view_of(const struct native_shown *shown,
-                                  const struct frame_request *request, bool any_cut)
+/* The Ptex plane is always drawn here. */
+static struct kept_view view_of(const struct native_shown *shown,
+                                const struct frame_request *request, bool any_cut)
 {
-    return (struct native_kept){.serial = shown->serial,
-                                .width_px = request->width_px,
-                                .height_px = request->height_px,
-                                .camera = request->camera,
-                                .surface = request->surface,
-                                .edges = request_has_coverage(request),
-                                .any_cut = any_cut && request->surface.kind == SURFACE_EXACT};
+    struct kept_view view = kept_view_of(shown->serial, request);
+    view.ptex = true;
+    view.any_cut = view.any_cut && any_cut;
+    return view;
 }
 
 /* --- tiles into one */
@@ -148,7 +133,7 @@ bool native_planes_keep(struct native_renderer *r, const struct native_frame_sta
     if (!work->in_place || request->surface.kind != SURFACE_EXACT)
         return true;
     if (own->x == 0 && own->y == 0) {
-        all->kept.serial = 0;
+        all->kept.model_serial = 0;
         r->collecting = own->serial;
         if (!native_target_reserve(&all->target, request->width_px, request->height_px, error))
             return false;

@@ -156,7 +156,7 @@ enum frame_step native_frame_step(struct renderer *renderer, struct renderer_mod
     drawing.exact_view = &view;
     view_block_fill(&drawing.view, &view, &drawing.place);
     if (!is_kept_view)
-        planes->kept.serial = 0;
+        planes->kept.model_serial = 0;
     work->has_drawn = true;
     if (!frame_watch_check(&work->watch, error) ||
         !draw_tile(r, own, &drawing, &view, &work->watch, is_kept_view, frame, &is_whole, error))
