@@ -6,7 +6,7 @@
 /* The buffer is never written again, and its padding is never read. */
 static void store(GLuint buffer, const void *texels, size_t n, size_t texel_bytes)
 {
-    size_t room = no_power_of_two(n); /* the bytes of a texel are a power of two */
+    size_t room = no_power_of_two(n); /* texel_bytes is a power of two */
     if (room == n) {
         glNamedBufferStorage(buffer, (GLsizeiptr)(n * texel_bytes), texels, 0);
         return;

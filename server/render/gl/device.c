@@ -56,7 +56,7 @@ static bool begin_context(struct gl_renderer *r, struct error *error)
 static void destroy(struct renderer *renderer)
 {
     struct gl_renderer *r = gl_renderer_of(renderer);
-    /* GL objects go with their context. */
+    /* GL objects end with their context. */
     egl_finish(&r->context.egl);
     patch_grids_finish(&r->grids);
     polygons_lose(&r->meshes);
@@ -94,13 +94,13 @@ static struct renderer *create(const struct renderer_options *options, struct er
     return &r->base;
 }
 
-/* Makes sure that there is a context: opens another one in place of one that is lost. ERROR_GPU_LOST
- * when the device gives none yet. */
+/* Makes sure that a context exists: opens another in place of a lost one. ERROR_GPU_LOST if the
+ * device does not give one yet. */
 static bool make_ready(struct gl_renderer *r, struct error *error)
 {
     if (!r->context.is_lost)
         return true;
-    /* Only what is in main memory stays; every GL name went with the context. */
+    /* Only the copies in main memory remain; every GL name ended with the context. */
     polygons_lose(&r->meshes);
     const struct gl_renderer old = *r;
     *r = (struct gl_renderer){.base = old.base,
@@ -121,7 +121,7 @@ static bool make_ready(struct gl_renderer *r, struct error *error)
                      "the GPU was lost and does not come back yet: try again later");
 }
 
-/* A model or image that is made while the device is lost comes to it with its first frame. */
+/* A model or image that is created while the device is lost is uploaded with its first frame. */
 static struct renderer_model *create_model(struct renderer *renderer,
                                            const struct limit_tables *tables, struct error *error)
 {

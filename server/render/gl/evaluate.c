@@ -39,7 +39,7 @@ static void bind_planes(const struct gl_renderer *r, const struct gl_model *mode
     glBindImageTexture(4, r->target.border, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
 }
 
-/* Runs the program in use over the pixels of a list, once the list is complete. */
+/* Runs the current program over the pixels of a list, once the list is complete. */
 static void solve_listed(GLuint list)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
@@ -48,7 +48,7 @@ static void solve_listed(GLuint list)
     glDispatchComputeIndirect(0);
 }
 
-/* Adds the pixels to the unsolved ones whose depth does not agree with the depths beside it. */
+/* Adds to the unsolved pixels those whose depth does not agree with the depths beside it. */
 static void recheck(const struct gl_renderer *r)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
@@ -102,7 +102,8 @@ static GLuint find_gaps(const struct gl_renderer *r)
     return head[3];
 }
 
-/* Guesses for each of the listed pixels, x | y << 16; *end: where they end among all of them. */
+/* Finds the guesses for each of the listed pixels, x | y << 16. end[i]: end of pixel i's guesses in
+ * the list of all. */
 static bool guess_gaps(struct gl_renderer *r, const struct gl_model *model, const struct view *view,
                        const uint32_t *at, size_t n, uint32_t *end, struct error *error)
 {

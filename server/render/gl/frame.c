@@ -18,8 +18,8 @@
 #include "server/render/gl/model.h"
 #include "server/render/gl/readback.h"
 
-/* Stages 1 and 2, unless the target holds their planes already. Margins are evaluated; where they
- * are not shaded, later stages leave them out. */
+/* Runs stages 1 and 2, unless the target already holds their planes. Margins are evaluated too;
+ * later stages leave out the margins that are not shaded. */
 static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
                          const struct frame_request *request, const struct view *view,
                          struct frame *frame, struct error *error)
@@ -58,7 +58,7 @@ static bool draw_surface(struct gl_renderer *r, const struct gl_model *model,
     return stage_clock_end(r, &frame->times.evaluate_us);
 }
 
-/* The three stages of the exact surface. */
+/* Runs the three stages of the exact surface. */
 static bool draw_exact(struct gl_renderer *r, const struct gl_model *model,
                        const struct frame_request *request, const struct view *view,
                        struct frame *frame, struct error *error)
@@ -75,7 +75,7 @@ static bool is_of_polygons(const struct frame_request *request)
     return request->surface.kind != SURFACE_EXACT;
 }
 
-/* *is_whole: the tile stands in the frame. */
+/* *is_whole: set when the frame holds the finished tile. */
 static bool render_tile(struct gl_renderer *r, const struct gl_model *model, struct gl_frame *own,
                         const struct view *view, const struct tile *tile, struct frame *frame,
                         bool *is_whole, struct error *error)
@@ -122,9 +122,9 @@ static bool is_single(const struct gl_frame *own)
            own->tile.height == own->work->request->height_px;
 }
 
-/* The next tile, in planes that have been chosen, and what must be drawn for it. Where the tiles
- * before stand in the same planes they are its margin; the part of it that they evaluated as their
- * own margin is evaluated anew. */
+/* Returns the next tile, in the chosen planes, and which part of it must be drawn. If the tiles
+ * before it are in the same planes, they are its margin; the part that those evaluated as their own
+ * margin is evaluated again. */
 static struct tile place_tile(struct gl_renderer *r, const struct gl_frame *own)
 {
     const struct frame_request *request = own->work->request;
@@ -154,7 +154,7 @@ static bool reserve(struct gl_renderer *r, const struct gl_frame *own, struct er
              target_reserve_rounded(lists, error)));
 }
 
-/* Draws one of several tiles that share the target. Its lists of pixels are its own. */
+/* Draws one of several tiles that share the target. Each tile has its own lists of pixels. */
 static bool render_in_place(struct gl_renderer *r, const struct gl_model *model,
                             struct gl_frame *own, const struct view *view, const struct tile *tile,
                             struct frame *frame, struct error *error)
@@ -196,8 +196,8 @@ bool gl_frame_begin(struct renderer *renderer, struct frame_work *work, struct e
     return true;
 }
 
-/* Puts the model and the images on the device where they are not: because they are new, or the
- * device was lost. */
+/* Uploads the model and the images that are not on the device, because they are new or the device
+ * was lost. */
 static bool upload_all(struct gl_renderer *r, struct gl_model *model,
                        const struct frame_request *request, struct error *error)
 {
@@ -209,9 +209,9 @@ static bool upload_all(struct gl_renderer *r, struct gl_model *model,
     return ok;
 }
 
-/* Makes one of the programs that the next tile needs and that is missing. Frames that are drawn in
- * turn may push each other's programs out; so a frame that has made as many as one frame can need
- * gets all the missing ones in one step. */
+/* Makes one of the missing programs that the next tile needs. Frames drawn in turn may evict each
+ * other's programs; so a frame that has already made as many as one frame can need gets all the
+ * missing ones in one step. */
 static bool prepare(struct gl_renderer *r, struct gl_frame *own, bool *is_ready,
                     struct error *error)
 {
@@ -223,8 +223,8 @@ static bool prepare(struct gl_renderer *r, struct gl_frame *own, bool *is_ready,
     return ok;
 }
 
-/* *has_drawn: else a program was made, which may take as long as several tiles. *is_whole: the
- * frame has the tile now. */
+/* *has_drawn: false if the step made a program instead, which may take as long as several tiles.
+ * *is_whole: the frame now holds the tile. */
 static bool step(struct gl_renderer *r, struct gl_model *model, struct gl_frame *own,
                  struct frame *frame, bool *has_drawn, bool *is_whole, struct error *error)
 {
@@ -277,7 +277,7 @@ enum frame_step gl_frame_step(struct renderer *renderer, struct renderer_model *
         return FRAME_POLYGONS;
     bool is_whole = false;
     if (!ready || !step(r, shown, own, frame, &work->has_drawn, &is_whole, error)) {
-        /* The loss is the reason, whatever else failed. */
+        /* If the device is lost, that is the error to report, whatever else failed. */
         if (context_check_lost(&r->context))
             error_set(error, ERROR_GPU_LOST,
                       "the GPU was lost while it drew this frame: ask again");

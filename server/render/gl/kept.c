@@ -24,8 +24,8 @@ static void use(struct gl_renderer *r, enum planes_of which)
     r->in_use = which;
 }
 
-/* The planes that hold the frame's view, equal bit by bit to planes drawn anew; PLANES_KINDS: there
- * are none. */
+/* Finds the planes that hold the frame's view, equal bit by bit to planes drawn anew. PLANES_KINDS
+ * if there are none. */
 static enum planes_of find_kept(const struct gl_renderer *r, const struct gl_model *model,
                                 const struct gl_frame *own, bool is_single)
 {

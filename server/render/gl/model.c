@@ -4,7 +4,7 @@
 
 #include "server/render/gl/device_internal.h"
 
-/* Drops the tables that have come to the device. */
+/* Deletes the tables that were uploaded. */
 static void take_down(struct gl_model *model)
 {
     buffer_textures_finish(&model->points);
@@ -31,7 +31,7 @@ bool gl_model_upload(struct gl_renderer *r, struct gl_model *model, struct error
     const struct texels adjacency = {tables->adjacency, tables->n_faces, 16, GL_RGBA32UI,
                                      "adjacency"};
     size_t max = r->max_texels;
-    /* A node's three texels stay in one buffer texture. */
+    /* A node's three texels must lie in one buffer texture. */
     size_t node_max = max / 3 * 3;
     model->points = model->nodes = model->adjacency = (struct buffer_textures){0};
     if (!buffer_textures_init(&model->points, &points, MAX_POINT_TEXTURES, max, error) ||

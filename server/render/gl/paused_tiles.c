@@ -36,7 +36,7 @@ bool mesh_is_needed(const struct gl_renderer *r, const struct polygon_mesh *mesh
     return false;
 }
 
-/* Takes the largest that is free, and frees the planes of the other free ones. */
+/* Takes the largest free target, and frees the planes of the other free ones. */
 static struct paused_tile *take(struct gl_renderer *r)
 {
     struct paused_tile *taken = NULL;
@@ -56,7 +56,7 @@ static struct paused_tile *take(struct gl_renderer *r)
     }
     if (!taken)
         return NULL;
-    /* The frame before may have been one tile, or several. */
+    /* The previous frame may have been one tile or several. */
     taken->planes.kept.model_serial = 0;
     atomic_fetch_add(&taken->set->holders, 1);
     atomic_store(&taken->is_taken, true);

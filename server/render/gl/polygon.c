@@ -28,7 +28,7 @@ static void attach(struct gl_renderer *r, const GLuint *planes, GLsizei n)
     glNamedFramebufferDrawBuffers(framebuffer, n, all);
 }
 
-/* Indices of one chunk. */
+/* Draws a range of indices of one chunk. */
 static void draw_run(struct slice *slice, uint32_t number, size_t first, size_t n)
 {
     if (n == 0)
@@ -45,7 +45,8 @@ static void draw_run(struct slice *slice, uint32_t number, size_t first, size_t 
     slice->not_begun = 0;
 }
 
-/* The parts that the tile may show, those that follow each other in a chunk at once. */
+/* Draws the parts that the tile may show; parts that follow each other in a chunk are drawn at
+ * once. */
 static void draw(struct slice *slice, GLuint program)
 {
     const struct polygon_mesh *mesh = slice->mesh;

@@ -9,7 +9,7 @@
 #include "server/render/gl/paused_tiles.h"
 #include "server/render/gl/model.h"
 
-/* All meshes that are not in use may take so much memory of the device. */
+/* Upper limit on the device memory of all meshes that are not in use. */
 static const size_t MAX_CACHED_BYTES = (size_t)512 << 20;
 
 static void drop(struct polygon_meshes *p, struct polygon_mesh *mesh)
@@ -40,11 +40,12 @@ void polygons_lose(struct polygon_meshes *p)
     *p = (struct polygon_meshes){0};
 }
 
-/* A free place for a mesh of so many bytes: the meshes not used for longest make room, except those
- * that frames under way are drawn of (their memory is charged to the models' owners). */
+/* Returns a free place for a mesh of so many bytes. The least recently used meshes are freed for
+ * it, except those that frames under way are drawn from (their memory is charged to the models'
+ * owners). */
 static struct polygon_mesh *make_room(struct gl_renderer *r, size_t bytes)
 {
-    /* At least one mesh is of no frame under way. */
+    /* At least one mesh belongs to no frame under way. */
     _Static_assert((int)MAX_PAUSED_TILES < (int)MAX_POLYGON_MESHES, "there is one to drop");
     struct polygon_meshes *p = &r->meshes;
     for (;;) {
@@ -80,7 +81,7 @@ static void describe_vertices(const struct polygon_chunk *chunk)
     }
 }
 
-/* A place for it, with nothing in it yet. */
+/* Returns an empty place for the mesh. */
 static struct polygon_mesh *begin(struct gl_renderer *r, const struct mesh *made,
                                   const struct gl_model *model, uint32_t level, struct error *error)
 {
@@ -111,7 +112,7 @@ static struct polygon_mesh *begin(struct gl_renderer *r, const struct mesh *made
     return mesh;
 }
 
-/* The next chunk; returns its bytes. */
+/* Uploads the next chunk; returns its size in bytes. */
 static size_t put(struct polygon_mesh *mesh, const struct mesh *made)
 {
     struct polygon_chunk *chunk = &mesh->chunk[mesh->n_put++];

@@ -13,9 +13,9 @@
 #include "server/render/gl/model.h"
 #include "server/render/gl/context/quirks.h"
 
-/* How much a step draws, and how much it puts on the device. On a software device a step takes no
- * longer than a tile of the exact surface (server/frame/request_frame.c). On hardware the aim is
- * the same; that has not been measured. */
+/* How much one step draws, and how much it uploads. On a software device a step takes no longer
+ * than a tile of the exact surface (server/frame/request_frame.c). On hardware the aim is the same;
+ * that has not been measured. */
 static const size_t SOFTWARE_TRIANGLES = 65536, HARDWARE_TRIANGLES = (size_t)1 << 21;
 static const size_t SOFTWARE_BYTES = (size_t)4 << 20, HARDWARE_BYTES = (size_t)32 << 20;
 
@@ -28,7 +28,7 @@ static size_t triangles_a_step(const struct gl_renderer *r)
 
 static size_t bytes_a_step(const struct gl_renderer *r)
 {
-    enum { BYTES_A_TRIANGLE = 28 }; /* of a fine mesh: half a vertex, three indices */
+    enum { BYTES_A_TRIANGLE = 28 }; /* in a fine mesh: half a vertex and three indices */
     return r->base.options.slice   ? r->base.options.slice * BYTES_A_TRIANGLE
            : r->base.info.software ? SOFTWARE_BYTES
                                    : HARDWARE_BYTES;
@@ -74,7 +74,7 @@ static bool draw_edges(struct gl_renderer *r, struct gl_frame *own, struct slice
     return true;
 }
 
-/* One stage, or a slice of it. */
+/* Draws one stage, or a slice of it. */
 static bool draw_stage(struct gl_renderer *r, struct gl_frame *own, struct slice *slice,
                        struct frame *frame, struct error *error)
 {
@@ -107,7 +107,7 @@ bool draw_polygons(struct gl_renderer *r, const struct gl_model *model, struct g
         .left = 3 * triangles_a_step(r),
         .at_once = r->base.info.software ? 3 * SOFTWARE_TRIANGLES_AT_ONCE : SIZE_MAX,
     };
-    /* A small mesh is drawn in one step; else each stage takes its own steps. */
+    /* A small mesh is drawn in one step; otherwise each stage takes steps of its own. */
     do {
         if (!draw_stage(r, own, &slice, frame, error))
             return false;

@@ -19,7 +19,7 @@ static struct rows tile_rows(const struct frame *frame, int plane, const struct 
     return (struct rows){first, stride, pixel};
 }
 
-/* A part of a texture, px of the tile that was drawn. */
+/* Reads a part of a texture; px of the drawn tile. */
 static void read_part(GLuint texture, GLenum format, GLenum type, const struct tile *part,
                       size_t bytes, void *texels)
 {
@@ -27,7 +27,7 @@ static void read_part(GLuint texture, GLenum format, GLenum type, const struct t
                          (GLsizei)part->height, 1, format, type, (GLsizei)bytes, texels);
 }
 
-/* Planes that the target holds as they are read. */
+/* Reads planes that the target holds in the form in which they are returned. */
 static void read_direct(GLuint texture, GLenum format, GLenum type, const struct rows *rows,
                         uint32_t frame_width, const struct tile *part)
 {
@@ -43,8 +43,8 @@ static void read_four(GLuint texture, GLenum format, GLenum type, const struct t
     read_part(texture, format, type, part, (size_t)part->width * part->height * 16, texels);
 }
 
-/* The place on the ray of each pixel's centre at its depth: world coordinates, computed in double.
- */
+/* The point at each pixel's depth on the ray of its centre: world coordinates, computed in double
+ * precision. */
 static void pack_position(const float *depth, const struct view *view, const struct rows *rows,
                           const struct tile *tile)
 {
@@ -59,7 +59,7 @@ static void pack_position(const float *depth, const struct view *view, const str
     }
 }
 
-/* Zero stands for a place without a normal (a cone's tip). */
+/* A normal of 0 marks a place without one (a cone's tip). */
 static bool has_normal(const float n[4])
 {
     return n[0] != 0 || n[1] != 0 || n[2] != 0;

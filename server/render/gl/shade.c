@@ -16,7 +16,7 @@ static struct shade_key key_of(const struct frame_request *request, const struct
     const struct pattern *pattern = &light->pattern;
     const struct gl_image *image =
         pattern->kind == PATTERN_IMAGE ? gl_image_of(pattern->image) : NULL;
-    if (which == SHADED_SHARE) /* whatever the light shows */
+    if (which == SHADED_SHARE) /* the same program for every pattern */
         return (struct shade_key){
             .family = (uint8_t)family, .light = (uint8_t)light->kind, .which = (uint8_t)which};
     return (struct shade_key){.family = (uint8_t)family,
@@ -29,7 +29,7 @@ static struct shade_key key_of(const struct frame_request *request, const struct
                               .which = (uint8_t)which};
 }
 
-/* What each of the frame's lights takes, in the order of use. */
+/* The programs that each of the frame's lights needs, in the order of use. */
 static int kinds_of(const struct frame_request *request, enum shaded kinds[SHADED_KINDS])
 {
     static const enum shaded closer[] = {SHADED_EDGES, SHADED_HIGH_CURVATURE, SHADED_ROUNDED};
@@ -75,12 +75,12 @@ void clear_shaded(const struct gl_renderer *r, GLuint texture, GLenum format, co
                        (GLsizei)part.height, 1, format, GL_FLOAT, texel);
 }
 
-/* What lies outside the groups shows no surface. */
+/* Pixels outside the groups show no surface. */
 static void clear_planes(const struct gl_renderer *r, const struct frame_request *request)
 {
     static const GLfloat none[4] = {NAN, NAN, NAN, NAN};
     static const GLfloat clear[4] = {0};
-    /* As shaders/shown.glsl has it: a clear colour is 0. */
+    /* The same rule as in shaders/shown.glsl: a clear colour is 0. */
     bool is_clear = request->empty[3] < 0.5f / 255;
     clear_shaded(r, r->target.colour, GL_RGBA, is_clear ? clear : request->empty);
     if (request->planes & PLANE_LIGHT)
@@ -91,7 +91,7 @@ static void clear_planes(const struct gl_renderer *r, const struct frame_request
         clear_shaded(r, r->target.light_change, GL_RGBA, none);
 }
 
-/* Images end at the light's border, or go on round it, or repeat. */
+/* An image ends at the light's border, continues around the light, or repeats. */
 static GLint wrapping(bool goes_on)
 {
     return goes_on ? GL_REPEAT : GL_CLAMP_TO_EDGE;
@@ -110,7 +110,7 @@ static void bind_picture(const struct gl_renderer *r, const struct frame_request
                         wrapping(light_image_repeats_t(request, light)));
 }
 
-/* For light i of those that are drawn. */
+/* Binds the lights behind light i of those that are drawn, and the planes that it writes. */
 static void bind_lights(const struct target *target, uint32_t i)
 {
     glBindTextureUnit(1, target->lights[~i & 1]);
@@ -120,7 +120,7 @@ static void bind_lights(const struct target *target, uint32_t i)
     glBindImageTexture(7, target->missed[i & 1], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R16F);
 }
 
-/* What differs from program to program. */
+/* Sets what differs from program to program. */
 static void bind_own(const struct target *target, uint32_t i, enum shaded which)
 {
     if (which == SHADED_ALL || which == SHADED_UNFILTERED)
@@ -173,8 +173,8 @@ bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *requ
     enum shaded kinds[SHADED_KINDS];
     int n_kinds = kinds_of(request, kinds);
     shade_programs_begin(&r->shade.programs);
-    /* The last one is the planes', of the foremost light. Every program is looked for, so that none
-     * of them makes room for another. */
+    /* The last program is for the planes of the foremost light. Every program is looked up before
+     * any is made, so that none evicts another of them. */
     for (uint32_t i = 0; i < request->n_lights * (uint32_t)n_kinds + planes_wanted(request); i++) {
         uint32_t of = i / (uint32_t)n_kinds;
         bool is_planes = of == request->n_lights;
@@ -198,8 +198,8 @@ bool stage_shade_prepare(struct gl_renderer *r, const struct frame_request *requ
     return program;
 }
 
-/* After the colours of all covered pixels: runs a program that writes the listed pixels' colours
- * anew. */
+/* Called after all covered pixels have their colours: runs a program that writes the listed pixels'
+ * colours again. */
 static void dispatch_listed(GLuint program, GLuint list)
 {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list);
@@ -208,21 +208,21 @@ static void dispatch_listed(GLuint program, GLuint list)
     glDispatchComputeIndirect(0);
 }
 
-/* One that stage_shade_prepare() has made. */
+/* Returns a program that stage_shade_prepare() has made. */
 static GLuint program_of(struct gl_renderer *r, const struct frame_request *request,
                          const struct light *light, enum shaded which)
 {
     return shade_programs_find(&r->shade.programs, key_of(request, light, which))->name;
 }
 
-/* Of the foremost light, whose block is in place. */
+/* Writes the planes of the foremost light, whose block is bound. */
 static void shade_planes(struct gl_renderer *r, const struct frame_request *request)
 {
     bind_planes(&r->target, SHADED_PLANES);
     dispatch_groups(program_of(r, request, &request->lights[0], SHADED_PLANES), r->target.groups);
 }
 
-/* The pixels that are listed, by how they are shaded. */
+/* Shades the listed pixels, each list in its own way. */
 static void shade_listed(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
 {
     const struct light *light = &request->lights[i];
@@ -268,7 +268,7 @@ void shade_read_share(const struct gl_renderer *r, const struct frame_request *r
     frame->met_px += counts[1];
 }
 
-/* What the programs of light i read and write. */
+/* Binds what the programs of light i read and write. */
 static void bind_light(struct gl_renderer *r, const struct frame_request *request, uint32_t i)
 {
     struct light_block block;
@@ -293,10 +293,10 @@ static void shade_light(struct gl_renderer *r, const struct frame_request *reque
         share_light(r, request, i);
 }
 
-/* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
+/* Number of squares of a pixel that are shaded separately (shaders/high_curvature_shade.comp.glsl). */
 enum { SQUARES = 9 };
 
-/* Light i of some of them, at the pixels that are shaded in parts. */
+/* Shades some of the squares with light i, at the pixels that are shaded in parts. */
 static void shade_squares(struct gl_renderer *r, const struct frame_request *request, uint32_t i,
                           GLuint first, GLuint end)
 {
@@ -310,7 +310,8 @@ static void shade_squares(struct gl_renderer *r, const struct frame_request *req
     dispatch_listed(program, r->target.parts);
 }
 
-/* These anew: all lights of each square, one square after the other; one light at once. */
+/* Shades these pixels again: all lights of each square, one square after the other; a single light shades all squares
+ * at once. */
 static void shade_parts(struct gl_renderer *r, const struct frame_request *request)
 {
     GLuint at_once = request->n_lights > 1 ? 1 : SQUARES;

@@ -59,7 +59,7 @@ bool stage_clock_read(struct gl_renderer *r)
         GLuint64 ns[2] = {0, 0};
         for (int k = 0; k < 2; k++)
             glGetQueryObjectui64v(r->clock.mark[i][k], GL_QUERY_RESULT, &ns[k]);
-        /* To the next microsecond: a stage that ran took time. */
+        /* Rounded up to a microsecond: a stage that ran took time. */
         if (ns[1] > ns[0])
             *r->clock.stage[i] += (ns[1] - ns[0] + 999) / 1000;
     }

@@ -5,7 +5,7 @@
 #include "server/render/gl/context/check.h"
 #include "server/render/gl/context/quirks.h"
 
-/* Every image of a target: where its name is kept, its format, and what a pixel takes. */
+/* Every image of a target: the member that holds its name, its format, and its bytes per pixel. */
 static const struct {
     size_t member;
     GLenum format;
@@ -26,7 +26,7 @@ static const struct {
     {offsetof(struct target, light_change), GL_RGBA32F, 16},
 };
 
-/* The bytes of a pixel in the planes that frames of several lights take. */
+/* Bytes per pixel of the planes that only frames of several lights need. */
 enum { LIGHTS_BYTES = 2 * (8 + 2 + 2) + 16 };
 
 /* The lists of pixels of a target. */
@@ -50,10 +50,10 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* Makes the size hold what is asked for and, where that wastes little, all that was asked for
- * before. A high picture after a wide one must not make a square of both. The waste is measured by
- * what was asked for, not by what is held: else thin pictures, each a little longer than the last,
- * would double the target for ever. */
+/* Enlarges the size to what is asked for and, where that wastes little, to all that was asked for
+ * before: a high picture after a wide one must not make a square of both. The waste is measured
+ * against the sizes asked for, not against the size held; otherwise thin pictures, each a little
+ * longer than the one before, would double the target without end. */
 static void choose_size(const struct target *target, uint32_t *width, uint32_t *height)
 {
     uint32_t both[2] = {larger(*width, target->width), larger(*height, target->height)};
@@ -85,7 +85,7 @@ bool target_reserve(struct target *target, uint32_t width, uint32_t height, stru
         GLuint *name = image_name(target, i);
         glCreateTextures(GL_TEXTURE_2D, 1, name);
         glTextureStorage2D(*name, 1, images[i].format, (GLsizei)width, (GLsizei)height);
-        /* Integer textures are incomplete with any other filter. */
+        /* An integer texture is incomplete with any other filter. */
         glTextureParameteri(*name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTextureParameteri(*name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }

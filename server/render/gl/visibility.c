@@ -7,13 +7,13 @@
 #include "server/render/gl/model.h"
 #include "server/render/gl/context/quirks.h"
 
-/* A grid's cells along u and v. */
+/* Number of a grid's cells along u and v. */
 static uint32_t cells_along(int shape, int side)
 {
     return grid_cells[side ? shape % GRID_SIDES : shape / GRID_SIDES];
 }
 
-/* How many grids one instance draws: about as many cells for each shape. */
+/* Number of grids that one instance draws: about the same number of cells for each shape. */
 static uint32_t grids_per_instance(int shape)
 {
     uint32_t cells = cells_along(shape, 0) * cells_along(shape, 1);
@@ -25,7 +25,7 @@ static uint32_t indices_per_instance(int shape)
     return 6 * cells_along(shape, 0) * cells_along(shape, 1) * grids_per_instance(shape);
 }
 
-/* Two triangles for each cell of a grid, whose vertices start at `first`. */
+/* Writes the indices of two triangles for each cell of a grid whose vertices start at `first`. */
 static uint32_t *fill_indices(uint32_t *index, int shape, uint32_t first)
 {
     uint32_t across = cells_along(shape, 0), down = cells_along(shape, 1);
@@ -63,7 +63,7 @@ bool stage_visibility_init(struct visibility_stage *stage, struct error *error)
     return gpu_check("the grids", error);
 }
 
-/* Grids [first, first + n) of those on the device, all of one shape. */
+/* Draws the grids [first, first + n) of those on the device, all of one shape. */
 static void draw_grids(const struct gl_renderer *r, GLuint program, int shape, size_t first,
                        size_t n)
 {
@@ -83,7 +83,7 @@ static size_t cut(size_t i, size_t low, size_t high)
     return i < low ? low : i < high ? i : high;
 }
 
-/* Grids [begin, end), at most as many as a buffer texture holds. */
+/* Draws the grids [begin, end), at most as many as a buffer texture holds. */
 static void draw_range(struct gl_renderer *r, GLuint program, size_t begin, size_t end)
 {
     const struct patch_grids *grids = &r->grids;
@@ -121,14 +121,14 @@ void raster_begin(GLuint framebuffer, const struct tile *place, const struct til
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
 }
 
-/* Clears what stage 1 draws into, and the planes that stage 2 does not write where nothing is seen.
- * A framebuffer clear is used for both, since a software device does it on all its threads. */
+/* Clears the planes that stage 1 draws into, and those that stage 2 does not write where nothing is
+ * seen. Both use a framebuffer clear, which a software device does on all its threads. */
 static void clear(const struct gl_renderer *r, bool want_ptex)
 {
     static const GLenum planes[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
                                      GL_COLOR_ATTACHMENT2};
     static const GLuint none[4] = {UINT32_MAX, 0, 0, 0};
-    static const GLfloat nothing[4] = {0, 0, 0, 0}; /* a depth of 0 is farthest: reversed */
+    static const GLfloat nothing[4] = {0, 0, 0, 0}; /* depths are reversed: 0 is farthest */
     GLuint framebuffer = r->target.framebuffer;
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
     glNamedFramebufferDrawBuffers(framebuffer, want_ptex ? 3 : 2, planes);

@@ -4,7 +4,8 @@
 
 #include "server/base/fault.h"
 
-/* How long the device may take for the stages of a tile; those are made for a hundredth of that. */
+/* The device counts as lost if the stages of a tile take longer than this. Tiles are sized for a
+ * hundredth of it. */
 #define LOST_AFTER_NS 2000000000u
 
 void context_lose(struct context *context)

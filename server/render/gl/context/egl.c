@@ -24,7 +24,7 @@ static bool is_software(EGLDeviceEXT device)
 
 static bool open_context(struct egl *egl)
 {
-    /* All tries have the last three pairs in common, so these come at the end. */
+    /* All attempts share the last three pairs, so these come at the end. */
     static const EGLint attributes[] = {EGL_CONTEXT_OPENGL_ROBUST_ACCESS,
                                         EGL_TRUE,
                                         EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
@@ -38,7 +38,7 @@ static bool open_context(struct egl *egl)
                                         EGL_NONE};
     if (!eglBindAPI(EGL_OPENGL_API))
         return false;
-    /* Tried in turn: robust access with notification of resets, notification alone, neither. */
+    /* Attempts in order: robust access with notification of resets, notification alone, neither. */
     for (int from = 0; from <= 4 && egl->context == EGL_NO_CONTEXT; from += 2)
         egl->context =
             eglCreateContext(egl->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes + from);
@@ -61,7 +61,7 @@ static bool open_device(struct egl *egl, EGLDeviceEXT device)
     return false;
 }
 
-/* The devices to try, in order of preference. Returns how many. */
+/* Writes the devices to try, in order of preference. Returns their number. */
 static int choose_devices(const char *wanted, const EGLDeviceEXT *all, int n, EGLDeviceEXT *chosen,
                           struct error *error)
 {

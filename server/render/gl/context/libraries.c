@@ -3,8 +3,8 @@
 #include <dlfcn.h>
 #include <stddef.h>
 
-/* In the order in which libepoxy opens them: EGL at the first egl call; at the first gl call
- * libGL, and where that is missing libOpenGL. */
+/* In the order in which libepoxy opens them: EGL at the first egl call; at the first gl call libGL
+ * or, where it is missing, libOpenGL. */
 static const struct {
     const char *name, *other; /* either will do; NULL: there is no other */
     const char *package;      /* Debian's, without X11 */

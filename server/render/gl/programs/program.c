@@ -1,6 +1,6 @@
 #include "server/render/gl/programs/program.h"
 
-/* The source's k-th shader. */
+/* Compiles the source's k-th shader. */
 static GLuint compile(GLenum type, const struct program_source *source, int k, struct error *error)
 {
     struct shader_text text;

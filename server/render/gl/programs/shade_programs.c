@@ -25,7 +25,7 @@ struct shade_program *shade_programs_find(struct shade_programs *programs, struc
     return NULL;
 }
 
-/* A free place, made free if need be. */
+/* Returns a free place; evicts a program if there is none. */
 static struct shade_program *make_room(struct shade_programs *programs)
 {
     if (programs->n < MAX_SHADE_PROGRAMS)

@@ -26,7 +26,7 @@ bool shader_text_init(struct shader_text *text, const struct program_source *sou
         const char *file = i < PROGRAM_MAX_FILES ? file_text(files[i]) : NULL;
         if (!file)
             return error_set(error, ERROR_DEVICE, "shader file %s is not built in", files[i]);
-        /* Errors name the number of the file in the list. */
+        /* The compiler's messages name a file by its number in the list. */
         snprintf(text->line[i], sizeof text->line[i], "#line 1 %d\n", i);
         text->part[text->n++] = text->line[i];
         text->part[text->n++] = file;
@@ -34,7 +34,8 @@ bool shader_text_init(struct shader_text *text, const struct program_source *sou
     return true;
 }
 
-/* Without #define lines. files[0] is NULL where no program is called so. */
+/* The program's source without #define lines. files[0] is NULL if there is no program of this
+ * name. */
 static struct program_source source_of(const char *name)
 {
     struct program_source source = {.files = {NULL, NULL}};

@@ -11,7 +11,7 @@ static void delete_all(const struct table_programs *programs)
     glDeleteProgram(programs->ends);
 }
 
-/* A free place, made free if need be. */
+/* Returns a free place; evicts a set of programs if there is none. */
 static struct table_programs *make_room(struct program_sets *sets)
 {
     if (sets->n < MAX_PROGRAM_SETS)
