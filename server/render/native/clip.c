@@ -2,17 +2,17 @@
 
 #include <string.h>
 
-/* Beyond the picture triangles are cut off. */
+/* Triangles are cut off this far outside the picture. */
 static const double MARGIN_PX = 64;
 
-/* What lies on a plane's inner side is at least 0. */
+/* At least 0 on the plane's inner side. */
 static double above(const struct native_clip_plane *plane, const struct native_corner *c)
 {
     return plane->normal[0] * c->at[0] + plane->normal[1] * c->at[1] + plane->normal[2] * c->at[2] +
            plane->offset;
 }
 
-/* The near plane first: what is left of it has a place in the picture. */
+/* The near plane comes first: only what is in front of it has a place in the picture. */
 void native_clip_init(struct native_clip *clip, const struct view *view)
 {
     const double size[2] = {view->width_px, view->height_px};
@@ -39,7 +39,7 @@ static struct native_corner between(const struct native_corner *a, const struct 
     return c;
 }
 
-/* What a plane leaves of a convex polygon. */
+/* Writes the part of a convex polygon on the inner side of a plane. */
 static int cut(const struct native_clip_plane *plane, const struct native_corner *in, int n,
                struct native_corner *out)
 {

@@ -1,5 +1,5 @@
-/* Pieces that the near plane cuts, or that reach far beyond the picture: their triangles, cut in
- * double to what can be drawn. */
+/* Draws pieces that the near plane cuts or that reach far beyond the picture: cuts their triangles in double
+ * precision to what can be drawn. */
 #include "server/render/native/clip.h"
 #include "server/render/native/frame.h"
 #include "server/render/native/tile.h"
@@ -23,7 +23,7 @@ static void set_corner(const struct native_frame *frame, const struct native_cor
     triangle->t[k] = (float)c->t;
 }
 
-/* Box of pixels' centres, x0, y0, x1, y1, of what has been added so far. */
+/* Widens the box of pixels' centres, x0, y0, x1, y1, by a triangle. */
 static void widen(const struct native_triangle *t, int box[4], float *nearest)
 {
     for (int k = 0; k < 3; k++) {
@@ -35,7 +35,7 @@ static void widen(const struct native_triangle *t, int box[4], float *nearest)
     }
 }
 
-/* What is left of a triangle. Returns how many; -1: no memory. */
+/* Adds what remains of a triangle. Returns the number of triangles; -1: no memory. */
 static int add_triangle(const struct native_frame *frame, struct native_thread *thread,
                         const struct native_clip *clip, const struct native_corner corners[3],
                         int box[4], float *nearest)
@@ -57,7 +57,7 @@ static int add_triangle(const struct native_frame *frame, struct native_thread *
     return n - 2;
 }
 
-/* A place of the piece in camera space; s, t in [0,1]. */
+/* A point of the piece in camera space; s, t in [0,1]. */
 static struct native_corner corner_at(const struct native_frame *frame,
                                       const struct native_piece *piece, double s, double t)
 {

@@ -6,7 +6,7 @@
 #include "server/render/native/device_internal.h"
 #include "server/render/native/patches.h"
 
-/* A picture's side: no table of the device is as long. */
+/* Largest side of a picture: no table of the device is longer. */
 enum { MAX_SIDE_PX = 32768 };
 
 static void destroy(struct renderer *renderer)

@@ -1,10 +1,10 @@
-/* Groups of pixels near what is seen: a band of rows a thread, listed in the order of the rows. */
+/* Finds the groups of pixels near what is seen, in a band of rows per thread; lists them in order of rows. */
 #include <string.h>
 
 #include "server/render/native/sets.h"
 #include "server/render/native/stages.h"
 
-/* While groups are found, other lists have room for what threads need. */
+/* Threads store what they find in lists that are unused at that time. */
 enum { FOUND_IN_BANDS = NATIVE_FOUND_EDGES, COLUMNS = NATIVE_RIMS };
 
 struct search {
@@ -33,7 +33,7 @@ static void search_rows(void *owner, uint32_t first, uint32_t end)
                             words_of(t, NATIVE_GROUPS) + groups_before(t, first));
 }
 
-/* Of all groups, those that the tile itself reaches into. */
+/* Lists those of all groups that the tile itself reaches into. */
 static void list_shaded(const struct native_list *all, const struct tile *in,
                         struct native_list *shaded)
 {

@@ -9,7 +9,7 @@ static uint32_t half(uint32_t side)
     return side > 1 ? side / 2 : 1;
 }
 
-/* Texels of all levels; *n_levels may be NULL. */
+/* Number of texels of all levels; n_levels may be NULL. */
 static size_t texels_of(uint32_t width, uint32_t height, uint32_t *first, int *n_levels)
 {
     size_t n = 0;
@@ -32,7 +32,7 @@ size_t native_image_bytes(const struct image *image)
     return texels_of(image->width_px, image->height_px, NULL, NULL) * 4 * sizeof(float);
 }
 
-/* Bytes are sRGB-encoded but for alpha, floats are linear. */
+/* Bytes are sRGB-encoded except alpha; floats are linear. */
 static void fill_first(float *texels, const struct image *image)
 {
     size_t n = (size_t)image->width_px * image->height_px * 4;
@@ -47,7 +47,7 @@ static void fill_first(float *texels, const struct image *image)
         texels[i] = i % 4 == 3 ? (float)from[i] / 255 : (float)srgb_to_linear(from[i] / 255.0);
 }
 
-/* A level from the one before: the mean of the texels under each, two ways two, or three where a side is odd. */
+/* Makes a level: each texel is the mean of 2 x 2 texels of the level before (3 where a side is odd). */
 static void fill_level(const float *from, uint32_t width, uint32_t height, float *to)
 {
     uint32_t across = half(width), down = half(height);

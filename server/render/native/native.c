@@ -17,10 +17,10 @@ struct native_device {
     struct native_team *team;
     struct native_thread *thread; /* [n_threads] */
     unsigned n_threads;
-    /* Of each grid: where its vertices lie on a piece, row by row; a vector more than there are. */
+    /* For each grid: positions of its vertices on a piece, row by row, and one vector more. */
     float *grid_places;
     const float *grid_s[GRID_SHAPES], *grid_t[GRID_SHAPES];
-    uint32_t *first_entry; /* of all parts */
+    uint32_t *first_entry; /* per part: where each tile's entries begin */
     size_t first_entry_capacity;
     bool left_gaps;
 };
@@ -31,7 +31,7 @@ void *native_allocate(size_t bytes)
     bytes = (bytes + align - 1) & ~(align - 1);
     void *memory = aligned_alloc(align, bytes);
     if (memory && align == HUGE_PAGE)
-        madvise(memory, bytes, MADV_HUGEPAGE); /* a wish */
+        madvise(memory, bytes, MADV_HUGEPAGE); /* a hint */
     return memory;
 }
 
@@ -283,7 +283,7 @@ void native_rays_init(struct native_rays *rays, const struct view *view)
     rays->farthest = 0;
 }
 
-/* The tile and a pixel around it, inside the picture; which tiles of the picture it takes. */
+/* Sets the tile with a pixel around it, inside the picture, and which tiles of the picture it takes. */
 static void set_tiles(struct native_frame *frame)
 {
     const struct tile *tile = &frame->tile;
@@ -299,7 +299,7 @@ static void set_tiles(struct native_frame *frame)
     frame->tiles_y = (bottom - 1) / TILE_HEIGHT - frame->first_y + 1;
 }
 
-/* The parts of the model, and room for where each tile's entries begin. */
+/* Sets the parts of the model, and reserves room for the start of each tile's entries. */
 static bool set_parts(struct native_frame *frame, struct native_device *device)
 {
     size_t n = frame->model->clusters.n, per_part = (n + MAX_PARTS - 1) / MAX_PARTS;
@@ -359,7 +359,7 @@ static void work(void *owner, unsigned number)
     uint32_t n_tiles = frame->tiles_x * frame->tiles_y, k;
     thread->n_quads = thread->n_vertices = thread->n_triangles = 0;
     thread->n_entries = thread->n_gaps = 0;
-    native_forget_patches(thread); /* they may be of another model */
+    native_forget_patches(thread); /* they may belong to another model */
     thread->times = (struct native_times){0};
     while ((k = __atomic_fetch_add(&frame->next_part, 1, __ATOMIC_RELAXED)) < frame->n_parts &&
            !has_failed(frame))
@@ -375,12 +375,12 @@ static int compare(const void *a, const void *b)
     uint32_t p, q;
     memcpy(&p, a, sizeof p);
     memcpy(&q, b, sizeof q);
-    p = p << 16 | p >> 16; /* by rows */
+    p = p << 16 | p >> 16; /* compares rows first */
     q = q << 16 | q >> 16;
     return p < q ? -1 : p > q;
 }
 
-/* All threads' pixels that may be in gaps, in one order. */
+/* Solves all threads' pixels that may be in gaps, in one order. */
 static bool solve_gaps(struct native_frame *frame)
 {
     struct native_thread *first = &frame->thread[0];

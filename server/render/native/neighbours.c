@@ -1,5 +1,5 @@
-/* Places on nodes: which sub-patch holds one, and where steps over a node's borders lead. What
- * shaders/neighbours.glsl and surface.glsl say, in double. */
+/* Places on nodes: which sub-patch holds one, and where steps across a node's borders lead. The same as
+ * shaders/neighbours.glsl and surface.glsl, in double precision. */
 #include "server/render/native/tile.h"
 
 #include <assert.h>
@@ -7,10 +7,10 @@
 
 static_assert(TILE_PATCHES == 256, "eight bits of a key's hash");
 
-/* Of what is left of a CORNER, about: 8 steps of native_tile_room.place. */
+/* A share of what remains of a CORNER, about 8 steps of native_tile_room.place. */
 static const double NEAR_VERTEX = 1.0 / 8000;
 
-/* Of numbers; those of math.h are calls. */
+/* For numbers, never NaN; the functions of math.h are calls. */
 static inline double least(double a, double b)
 {
     return a < b ? a : b;
@@ -74,7 +74,7 @@ struct native_part_of_node native_patch_at(const struct limit_node *node, double
     int level = nearest > 0 ? level_of(nearest) : levels + 1;
     level = level < 1 ? 1 : level;
     if (!is_corner) {
-        /* The last patch begins at the crease and is as wide as the one before. */
+        /* The last patch begins at the crease and is as wide as the patch before it. */
         bool is_last = level > levels;
         level = is_last ? levels + 1 : level;
         part.scale_y = (int8_t)(level - is_last);
@@ -105,7 +105,7 @@ void native_place(const struct limit_tables *tables, const struct native_piece *
     *y = least(largest(t * native_power(-scale_y), 0), 1);
 }
 
-/* A patch is read some time after it is known which. */
+/* A patch is read only some time after its number is known. */
 static void prefetch(const struct native_patch *patch)
 {
     for (int line = 0; line < 4; line++)
@@ -140,7 +140,7 @@ void native_begin_on(const struct native_model *model, struct native_task *task,
     double s = ((uint32_t)place & 0xffff) / 65535.0, t = ((uint32_t)place >> 16) / 65535.0, x, y;
     task->node = piece->node;
     if (piece->kind != PIECE_OF_PATCH) {
-        /* What a rounded place hardly tells from the vertex begins there: no step leads to it. */
+        /* Here begins what a rounded place cannot tell from the vertex: no step leads to it. */
         if (piece->kind == PIECE_REST && largest(s, t) < NEAR_VERTEX)
             s = t = 0;
         native_place(model->tables, piece, s, t, &x, &y);
@@ -163,15 +163,15 @@ void native_begin_on(const struct native_model *model, struct native_task *task,
 
 /* --- */
 
-/* A place from a Ptex face's corner: a along the edge that begins there, b along the one that ends
- * there, backwards. Near an extraordinary vertex these keep their digits. */
+/* A place relative to a Ptex face's corner: a along the edge that begins there, b backwards along the edge that ends
+ * there. Near an extraordinary vertex these keep their digits. */
 struct face_place {
     uint32_t face;
     unsigned corner;
     double a, b;
 };
 
-/* From (u,v) seen from corner k to (u,v) seen from corner 0, and back. */
+/* Converts coordinates given from corner k to those given from corner 0, and back. */
 static void unturn(double a, double b, unsigned k, double uv[2])
 {
     const double us[4] = {a, 1 - b, 1 - a, b}, vs[4] = {b, a, 1 - b, 1 - a};
@@ -213,8 +213,8 @@ static struct face_place place_of(const struct limit_node *node, double x, doubl
     return (struct face_place){node->face, k, ab[0], ab[1]};
 }
 
-/* The place on the other side of `edge` of its face, seen from the same vertex: at_start when that is the edge's
- * first one. `along` is measured from that vertex; the place lies `outside` beyond the edge. False at a boundary. */
+/* Moves a place across `edge` of its face; its vertex stays the same: the edge's first if at_start. `along` is the
+ * distance from it, `outside` how far beyond the edge the place lies. False at a boundary. */
 static bool cross_edge(const struct limit_tables *tables, struct face_place *place, unsigned edge,
                        bool at_start, double along, double outside)
 {
@@ -230,18 +230,17 @@ static bool cross_edge(const struct limit_tables *tables, struct face_place *pla
     if (from_half && !to_half) {
         unit = 0.5;
         if (at_start ==
-            (edge == 3)) /* the vertex in the middle of the other's edge is no corner of it */
+            (edge == 3)) /* the vertex in the middle of the other face's edge is not its corner */
             along = 1 - along;
     } else if (!from_half && to_half) {
         unit = 2;
-        if (at_start) { /* the n-gon's next Ptex face is the one there */
+        if (at_start) { /* the next Ptex face of the n-gon is there */
             uint32_t next = to->ngon_corner + 1u;
             face = face - to->ngon_corner + (next == to->ngon_size ? 0 : next);
             e = 3;
         }
     }
-    /* Edges run in opposite directions on both sides. With halves, the shared vertex is the cage's.
-     */
+    /* The faces run along an edge in opposite directions. Where halves meet, the shared vertex is the cage's. */
     bool to_end = from_half != to_half ? (from_half ? edge == 0 : e == 3) : at_start;
     *place = (struct face_place){face, to_end ? (e + 1) & 3 : e, (to_end ? outside : along) * unit,
                                  (to_end ? along : outside) * unit};
@@ -253,8 +252,8 @@ static double within(double a)
     return least(largest(a, 0), 1);
 }
 
-/* Brings a place with a negative coordinate back inside a face, over one or two edges. At a
- * boundary the coordinate becomes 0: the nearest place that the surface has. */
+/* Brings a place with a negative coordinate back inside a face, across one edge or two. At a boundary the coordinate
+ * becomes 0: the nearest place on the surface. */
 static void settle(const struct limit_tables *tables, struct face_place *place)
 {
     for (int i = 0; i < 3 && least(place->a, place->b) < 0; i++) {

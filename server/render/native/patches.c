@@ -24,12 +24,12 @@ static uint32_t patches_of(const struct limit_node *node)
     return 0;
 }
 
-/* As programs read them. */
+/* A patch in the form that programs read. */
 struct native_patch_texels {
     float texels[NATIVE_PATCH_TEXELS][4];
 };
 
-/* How many patches, and how many of them as texels, which outlines and roundings alone ask for, are kept. */
+/* Sets how many patches are kept, and how many of them as texels, which only outlines and roundings need. */
 static void set_room(const struct limit_tables *tables, size_t patch_bytes, size_t *patches,
                      size_t *texels)
 {
@@ -98,7 +98,7 @@ void native_model_turn(struct native_model *model)
 
 /* --- */
 
-/* The four B-spline points of a segment as the coefficients of 1, t, t^2, t^3. */
+/* Converts the four B-spline points of a segment to the coefficients of 1, t, t^2, t^3. */
 static void monomials_of(const double p[4], double c[4])
 {
     c[0] = (p[0] + 4 * p[1] + p[2]) / 6;
@@ -107,7 +107,7 @@ static void monomials_of(const double p[4], double c[4])
     c[3] = ((p[3] - p[0]) + 3 * (p[1] - p[2])) / 6;
 }
 
-/* One coordinate: points 4 j + i to coefficients [j][i]. */
+/* Converts one coordinate: points 4 j + i to coefficients [j][i]. */
 static void expand(const double p[16], double c[4][4])
 {
     double row[4][4];
@@ -121,7 +121,7 @@ static void expand(const double p[16], double c[4][4])
     }
 }
 
-/* Differences of the points bound the second derivatives: a B-spline lies in the hull of its own. */
+/* Differences of the points bound the second derivatives, since a B-spline lies in the hull of its points. */
 static double bend_of(const struct vec p[16])
 {
     double uu = 0, uv = 0, vv = 0;
@@ -139,7 +139,7 @@ static double bend_of(const struct vec p[16])
     return uu + 2 * uv + vv;
 }
 
-/* A sum of the coefficients of some powers is the value at s or t of 1. */
+/* With s or t equal to 1 the value is a sum of coefficients. */
 static double corner_value(double c[4][4], int corner)
 {
     double sum = 0;
@@ -210,7 +210,7 @@ void native_patch_texels(const void *owner, uint32_t node, uint32_t index, float
     const struct native_model *model = owner;
     const struct limit_tables *tables = model->tables;
     struct native_patch_texels made = {0};
-    /* Lanes that have lost their way may name anything. */
+    /* Lanes without a valid result may ask for any number. */
     if (node >= tables->n_nodes || index >= patches_of(&tables->nodes[node])) {
         memset(texels, 0, sizeof made.texels);
         return;

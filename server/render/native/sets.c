@@ -50,8 +50,8 @@ DECLARE(v4)
 static const struct native_set sets[] = {SET(v2, "SSE4.2", 4), SET(v3, "AVX2", 8),
                                          SET(v4, "AVX-512", 16)};
 
-/* Has the processor what the levels of x86-64 say? Those instructions of a level that no processor
- * lacks which has the others are not asked for. */
+/* Whether the processor has what a level of x86-64 requires. Instructions that every processor with the others has
+ * are not checked. */
 static bool has(size_t k)
 {
     __builtin_cpu_init();

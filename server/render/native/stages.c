@@ -9,20 +9,25 @@
 #include "server/render/native/rays/rays.h"
 
 enum { GROUPS_PER_WORKGROUP = 8 };
-/* Workgroups that a thread takes at a time at most, and the most pixels that one of them may list. */
+/* The most workgroups that a thread takes at a time, and the most pixels that one of them may list. */
 enum { CHUNKS_PER_THREAD = 8, CHUNK = 32, WORKGROUP_PX = 64, CHUNK_PX = CHUNK * WORKGROUP_PX };
 /* Pixels of a list that a workgroup of its program takes (shaders/edges.glsl, rounded.glsl). */
 enum { EDGES_PER_WORKGROUP = 32, LISTED_PER_WORKGROUP = 64 };
+<<<<<<< HEAD
+=======
+/* From this many pixels on, counting lights at every pixel is too much. */
+enum { SHARE_ALL_PX = 1 << 18, SHARE_STRIDE = 8 };
+>>>>>>> d668c38 (render/native: say in plain words what functions of the device do)
 
 /* --- programs */
 
-/* A program over workgroups, in chunks that threads take one after the other. What it lists goes to a thread's own
+/* A program run over workgroups, in chunks that threads take one after another. What it lists goes to a thread's own
  * list first. */
 struct run {
     native_program *program;
     const struct native_bindings *bindings;
-    uint32_t n_workgroups, next, chunk; /* chunk: as many are taken at a time */
-    struct native_share *share;         /* where the program counts; NULL: it does not */
+    uint32_t n_workgroups, next, chunk; /* chunk: number taken at a time */
+    struct native_share *share;         /* where the program counts; NULL if it does not */
 };
 
 /* The lists that a program may add to. */
@@ -42,7 +47,7 @@ static void append(struct native_list *to, const struct native_list *from)
         memcpy(to->at.words + at, from->at.words, from->n * sizeof *from->at.words);
 }
 
-/* One chunk, with lists that nobody else adds to. */
+/* Runs one chunk, with lists that no other thread adds to. */
 static void run_chunk(struct run *run, uint32_t first, uint32_t end)
 {
     uint32_t words[ADDED_LISTS][CHUNK_PX]; /* programs fill it */
@@ -87,7 +92,7 @@ static void run_program(const struct native_drawing *d, native_program *program,
                         struct native_share *share)
 {
     struct run run = {program, bindings, (n + per_workgroup - 1) / per_workgroup, .share = share};
-    /* Small enough that no thread waits long for another's last one. */
+    /* Small enough that no thread waits long for the last chunk of another. */
     run.chunk = run.n_workgroups / (CHUNKS_PER_THREAD * native_device_threads(d->device)) + 1;
     run.chunk = run.chunk < CHUNK ? run.chunk : CHUNK;
     if (run.n_workgroups)
@@ -133,7 +138,7 @@ static struct native_list *list_of(const struct native_drawing *d, enum native_l
 
 /* --- edges */
 
-/* Rays along a side of a pixel (shaders/rounded.glsl). */
+/* Number of rays along a side of a pixel (shaders/rounded.glsl). */
 static int rounded_side(uint32_t n_listed, uint32_t max_rounded)
 {
     return n_listed <= max_rounded        ? 4
@@ -151,7 +156,7 @@ static bool meet_rounded(const struct native_drawing *d, struct error *error)
     if (!native_target_reserve_hits(t, (size_t)rounded.n * (size_t)(rounded.side * rounded.side),
                                     error))
         return false;
-    /* Of the lists, that of the edges found is not needed any more. */
+    /* The list of edges found is no longer needed. */
     native_sort_pixels(listed->at.words, listed->n, list_of(d, NATIVE_FOUND_EDGES)->at.words);
     rounded.hit = (float(*)[HIT_WORDS])(void *)t->hits;
     return native_meet_rounded(d->device, d->shown->model, d->exact_view, &d->place, &t->planes,
@@ -193,7 +198,7 @@ static uint8_t byte_of(float a)
     return (uint8_t)lrintf(255 * fminf(fmaxf(a, 0), 1));
 }
 
-/* What lies outside of the groups shows no surface. */
+/* Pixels outside the groups show no surface. */
 struct cleared {
     const struct native_target *target;
     uint32_t colour, planes;
@@ -228,7 +233,7 @@ static void clear_planes(const struct native_drawing *d)
 {
     const struct frame_request *request = d->request;
     struct cleared cleared = {d->target, 0, request->planes};
-    /* As shaders/shown.glsl has it: a clear colour is 0. */
+    /* The same rule as in shaders/shown.glsl: a clear colour is 0. */
     for (int k = 0; k < 4 && !(request->empty[3] < 0.5f / 255); k++)
         cleared.colour |= (uint32_t)byte_of(request->empty[k]) << (8 * k);
     native_device_rows(d->device, d->target->height, clear_rows, &cleared);
@@ -247,7 +252,24 @@ static struct native_picture picture_of(const struct frame_request *request,
     return picture;
 }
 
+<<<<<<< HEAD
 /* The pixels that the edges' programs have listed, anew. */
+=======
+/* Number of squares of a pixel that are shaded separately (shaders/high_curvature_shade.comp.glsl). */
+enum { SQUARES = 9 };
+
+static void shade_squares(const struct native_drawing *d, struct native_bindings *b,
+                          enum native_list_of listed, uint32_t first, uint32_t end)
+{
+    b->listed = list_of(d, listed);
+    b->first_square = first;
+    b->end_square = end;
+    run_program(d, native_device_programs(d->device)->high_curvature_shade, b, b->listed->n,
+                LISTED_PER_WORKGROUP, NULL);
+}
+
+/* Shades again the pixels that the programs for edges have listed. */
+>>>>>>> d668c38 (render/native: say in plain words what functions of the device do)
 static void shade_listed(const struct native_drawing *d, struct native_bindings *b)
 {
     const struct native_programs *programs = native_device_programs(d->device);
@@ -258,7 +280,7 @@ static void shade_listed(const struct native_drawing *d, struct native_bindings 
     run_program(d, programs->rounded_shade, b, b->listed->n, LISTED_PER_WORKGROUP, NULL);
 }
 
-/* Counts in a list that the edges' programs are done with. */
+/* Counts in a list that the programs for edges no longer need. */
 static void count_light(const struct native_drawing *d, struct native_bindings *b,
                         struct native_share *share)
 {
@@ -273,7 +295,7 @@ static void count_light(const struct native_drawing *d, struct native_bindings *
                 share);
 }
 
-/* For light i of those that are shown, over those behind it. The block is filled, and referred to. */
+/* Bindings for light i of those shown, over those behind it. Fills the block, which the bindings refer to. */
 static struct native_bindings bindings_of_light(const struct native_drawing *d, uint32_t i,
                                                 struct light_block *block)
 {
@@ -299,7 +321,7 @@ static struct native_bindings bindings_of_light(const struct native_drawing *d, 
     return b;
 }
 
-/* Lists the pixels that are shaded in parts when it is the foremost. */
+/* The pass of the foremost light also lists the pixels to shade in parts. */
 static void shade_light(const struct native_drawing *d, uint32_t i, struct native_share *share)
 {
     const struct frame_request *request = d->request;
@@ -321,6 +343,7 @@ static void shade_light(const struct native_drawing *d, uint32_t i, struct nativ
         run_program(d, programs->shade_planes, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
 }
 
+<<<<<<< HEAD
 /* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
 enum { SQUARES = 9 };
 
@@ -336,6 +359,9 @@ static void shade_squares(const struct native_drawing *d, struct native_bindings
 }
 
 /* These anew: all lights of each square, one square after the other; one light at once. */
+=======
+/* Shades the listed pixels again: all lights of each square, one square after the other. */
+>>>>>>> d668c38 (render/native: say in plain words what functions of the device do)
 static void shade_parts(const struct native_drawing *d)
 {
     uint32_t n_lights = d->request->n_lights, at_once = n_lights > 1 ? 1 : SQUARES;

@@ -4,7 +4,7 @@
 
 #include "server/render/native/frame.h"
 
-/* Planes one after the other. */
+/* Lays out planes one after the other. */
 struct layout {
     uint32_t *next;
     uint32_t width, height;
@@ -25,7 +25,7 @@ static float *floats(const struct native_image *image, int channel)
     return (float *)(void *)(image->words + (size_t)channel * image->channel_words);
 }
 
-/* Of stage 2, where stage 3 finds them. */
+/* Lays out the planes of stage 2, where stage 3 finds them. */
 static void lay_out_surface(struct native_target *t, struct layout *layout)
 {
     t->hit_depth = take(layout, 1);
@@ -49,7 +49,7 @@ static void lay_out_surface(struct native_target *t, struct layout *layout)
     };
 }
 
-/* Groups need a word each; of pixels any list may hold all. */
+/* Groups need a word each; a list of pixels may hold all of them. */
 static void lay_out_lists(struct native_target *t, struct layout *layout)
 {
     uint32_t pixels = layout->width * layout->height;
@@ -62,12 +62,12 @@ static void lay_out_lists(struct native_target *t, struct layout *layout)
     }
 }
 
-/* A pixel's words in what is always there, groups apart. */
+/* Words per pixel of what always exists, without groups. */
 enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 4 + NATIVE_LISTS - 2 };
 enum { LIGHT_WORDS_PER_PX = 2 * 6 + 4, MEASURE_WORDS_PER_PX = 2 + 2 + 4 };
 
-/* Memory of which less than half is used is given back first, unless it is small: tiles at the right and
- * lower border are smaller than the others, and the next frame needs the whole again. */
+/* Memory of which less than half is used is freed first, unless it is small: tiles at the right and lower border are
+ * smaller than the others, and the next frame needs the whole again. */
 static bool reserve(struct native_words *words, size_t n)
 {
     enum { ALIGN = 64, SMALL_WORDS = 8 << 20 };

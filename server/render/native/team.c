@@ -17,12 +17,12 @@ struct native_team {
     pthread_cond_t begins, all_here;
     void (*work)(void *owner, unsigned number);
     void *owner;
-    unsigned long n_runs, n_meetings; /* begun; come to an end */
+    unsigned long n_runs, n_meetings; /* runs begun; meetings ended */
     unsigned n_here;                  /* threads that wait for the others */
     bool breaks_up;
 };
 
-/* With the mutex held: the last one to come wakes all others. */
+/* Called with the mutex held: the last thread to arrive wakes all others. */
 static void meet(struct native_team *team)
 {
     unsigned long meeting = team->n_meetings;
@@ -55,7 +55,7 @@ static void *serve(void *argument)
     return NULL;
 }
 
-/* Signals are for the program's other threads. */
+/* Signals are handled by the program's other threads. */
 static bool start_member(struct member *member)
 {
     sigset_t all, before;

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* The planes that hold the frame's view, equal bit by bit to planes drawn anew; NULL: there are none. */
+/* Finds the planes that hold the frame's view, equal bit by bit to planes drawn anew. NULL if there are none. */
 static struct native_view_planes *find_kept(struct native_renderer *r,
                                             const struct native_shown *shown,
                                             const struct frame_work *work, bool is_single)
@@ -52,7 +52,7 @@ static struct kept_view view_of(const struct native_shown *shown,
 
 /* --- tiles into one */
 
-/* Rows of the tile itself. */
+/* Copies the rows of the tile itself. */
 static void copy_image(const struct native_drawing *d, const struct native_image *from,
                        const struct native_image *to)
 {
@@ -88,7 +88,7 @@ static void append(const struct native_list *from, struct native_list *to, uint3
 /* The y of a listed rounded pixel has 15 bits (AT_EDGE in shaders/rounded.glsl). */
 enum { MOST_LISTED_ROWS = 0x8000 };
 
-/* False where the picture's planes cannot serve another cut, or memory is short. */
+/* False if the picture's planes cannot serve another division into tiles, or memory is short. */
 static bool append_rounded(const struct native_drawing *d, struct native_target *to)
 {
     struct error error;
@@ -104,7 +104,7 @@ static bool append_rounded(const struct native_drawing *d, struct native_target 
     return true;
 }
 
-/* False where the frame's planes are not to be kept. */
+/* False if the frame's planes are not to be kept. */
 static bool collect(const struct native_drawing *d, struct native_target *to)
 {
     const struct native_list *groups = &d->target->list[NATIVE_SHADED_GROUPS];

@@ -35,7 +35,7 @@ static void put_position(void *plane, const float *depth, const struct view *vie
     }
 }
 
-/* Zero stands for a place without a normal (a cone's tip). */
+/* A normal of 0 marks a place without one (a cone's tip). */
 static void put_normal(void *plane, const struct native_planes *planes, const struct row *row)
 {
     float(*to)[3] = (float(*)[3])plane + row->to;
@@ -48,7 +48,7 @@ static void put_normal(void *plane, const struct native_planes *planes, const st
     }
 }
 
-/* No face where nothing is met. */
+/* Pixels that show nothing get no face. */
 static void put_ptex(void *plane, const struct native_planes *planes, const struct row *row)
 {
     uint32_t(*to)[3] = (uint32_t(*)[3])plane + row->to;

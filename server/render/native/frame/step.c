@@ -1,4 +1,4 @@
-/* The steps of a frame: a tile each. */
+/* The steps of a frame: each draws one tile. */
 #include "server/base/clock.h"
 #include "server/base/fault.h"
 #include "server/render/native/frame/state.h"
@@ -7,7 +7,7 @@
 #include "server/render/native/frame/readback.h"
 #include "server/render/native/stages.h"
 
-/* So many triangles are drawn a step, which takes about as long as a tile of the exact surface. */
+/* A step draws this many triangles, which takes about as long as a tile of the exact surface. */
 static const size_t TRIANGLES_A_STEP = (size_t)1 << 18;
 
 static void destroy_state(struct frame_state *state)
@@ -34,17 +34,17 @@ bool native_frame_begin(struct renderer *renderer, struct frame_work *work, stru
     return true;
 }
 
-/* What two clocks tell of the time of both stages together: theirs, and the processors' of each. */
+/* Adds the time of both stages, and the processors' time in each, from two clocks. */
 static void add_times(struct frame_times *times, const struct native_times *parts, uint64_t all_us)
 {
     uint64_t first = parts->choose_us + parts->quads_us + parts->raster_us + parts->sort_us;
     uint64_t both = first + parts->evaluate_us + parts->retry_us + parts->copy_us + parts->gaps_us;
     uint64_t visibility_us = both ? all_us * first / both : 0;
-    times->visibility_us += visibility_us + 1; /* 0 is for planes that were there */
+    times->visibility_us += visibility_us + 1; /* 0 means that the planes were there already */
     times->evaluate_us += all_us - visibility_us + 1;
 }
 
-/* Stages 1 and 2. */
+/* Runs stages 1 and 2. */
 static bool draw_surface(struct native_renderer *r, const struct native_drawing *d,
                          const struct view *view, struct frame *frame, struct error *error)
 {
@@ -67,7 +67,7 @@ static bool is_of_polygons(const struct frame_request *request)
     return request->surface.kind != SURFACE_EXACT;
 }
 
-/* The frame's polygons, which it holds from now on. False: the device has none. */
+/* Finds the frame's polygons, which the frame holds from now on. False if the device has none. */
 static bool find_polygons(struct native_renderer *r, struct native_frame_state *own,
                           const struct native_shown *shown, const struct frame_work *work)
 {
@@ -82,8 +82,8 @@ static bool find_polygons(struct native_renderer *r, struct native_frame_state *
     return own->polygons;
 }
 
-/* Stages 1 and 2 of polygons, as much as a step may draw. *is_whole: all of the tile. Planes follow in a step of their own
- * if drawing took several. */
+/* Runs stages 1 and 2 of polygons as far as one step may draw. *is_whole: the whole tile is drawn. If drawing took
+ * several steps, the planes take one more. */
 static bool draw_polygons(struct native_renderer *r, struct native_frame_state *own,
                           const struct native_drawing *d, const struct view *view,
                           struct frame *frame, bool *is_whole, struct error *error)
@@ -106,7 +106,7 @@ static bool draw_polygons(struct native_renderer *r, struct native_frame_state *
     return true;
 }
 
-/* *is_whole: the tile stands in the frame; else there is more to draw of it. */
+/* *is_whole: the frame holds the finished tile; otherwise more of it remains to be drawn. */
 static bool draw_tile(struct native_renderer *r, struct native_frame_state *own,
                       const struct native_drawing *d, const struct view *view,
                       const struct frame_watch *watch, bool is_kept_view, struct frame *frame,

@@ -1,23 +1,23 @@
-/* Stage 2, first pass (shaders/evaluate.comp.glsl): each pixel's ray against the sub-patch of its
- * guess. All pixels of a piece have one patch, whose coefficients are the same for all lanes. */
+/* Stage 2, first pass (shaders/evaluate.comp.glsl): solves each pixel's ray on the sub-patch of its guess. All pixels
+ * of a piece share one patch, whose coefficients are the same in all lanes. */
 #include "server/render/native/lanes/stages.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Beyond such a step derivatives are taken anew. */
+/* After a larger step derivatives are computed again. */
 static const float MOST_STEP = 1.0f / 512;
 static const float STRAY_PX = 2; /* seen.glsl */
 enum { MOST_STEPS = 5 };
 
-/* A piece in the tile that is drawn. */
+/* A piece in the tile being drawn. */
 struct piece_view {
     struct one_place place;
     const struct limit_node *node;
-    float flat_x[4][4], flat_y[4][4]; /* the patch's distances from the place's ray */
-    float at_x, at_y;                 /* px of the tile where the place's ray runs */
+    float flat_x[4][4], flat_y[4][4]; /* the patch's distances from the ray of (at_x, at_y) */
+    float at_x, at_y;                 /* a place in the tile, px */
     float start;                      /* the rays' start_px, in units of scale */
-    float s, t, step;                 /* where its guesses begin on the patch, and their unit */
+    float s, t, step;                 /* origin of its guesses on the patch, and their unit */
     float cell_x, cell_y, size;       /* of the node in its Ptex face */
     int32_t number, level;            /* of the node, and of its sub-patch */
 };
@@ -34,7 +34,7 @@ static void place_borders(const struct limit_node *node, struct one_place *place
     memcpy(place->rounding, borders.rounding, sizeof borders.rounding);
 }
 
-/* The piece's patch as the ray through the middle of its box sees it. */
+/* Sets the piece's patch as seen from the ray through the middle of its box. */
 static void place_piece(const struct native_frame *frame, struct native_tile_room *room,
                         const struct native_piece *piece, struct piece_view *view)
 {
@@ -116,7 +116,7 @@ LANE_INLINE void write(struct native_tile_room *room, const struct piece_view *v
     vint guess = v_guess(found->x * view->place.up_x, found->y * view->place.up_y, view->level);
     u = (u + view->cell_x) * view->size;
     v = (v + view->cell_y) * view->size;
-    /* Pixels that lie side by side have the same base: they are written together. */
+    /* Neighbouring pixels with the same base are written together. */
     int32_t bases[LANES];
     v_store_int(bases, base);
     vmask asked = v_mask(lanes);
@@ -139,7 +139,7 @@ LANE_INLINE void write(struct native_tile_room *room, const struct piece_view *v
     }
 }
 
-/* The rays of pixels, as two planes in the node's frame (newton.glsl). */
+/* The pixels' rays, as two planes in the node's frame (newton.glsl). */
 struct pixel_rays {
     vfloat h[3], k[3], a, b;
 };
@@ -161,11 +161,11 @@ LANE_INLINE struct pixel_rays rays_of(const struct native_rays *rays, const stru
 }
 
 struct step {
-    vfloat s, t, f_x, f_y; /* f: how far from the ray, before it */
+    vfloat s, t, f_x, f_y; /* f: distance from the ray before the step */
     vmask touches;
 };
 
-/* A step of Newton's method, cut at half a sub-patch. */
+/* One step of Newton's method, limited to half a sub-patch. */
 LANE_INLINE struct step step_of(const struct flat_value *x, const struct flat_value *y)
 {
     struct step step = {.f_x = x->f, .f_y = y->f};
@@ -191,7 +191,7 @@ LANE_INLINE vmask is_inside(vfloat s, vfloat t)
     return v_at_most(v_float(0), v_min(s, t)) & v_at_most(v_max(s, t), v_float(1));
 }
 
-/* Some pixels of a piece. Returns those that stray. */
+/* Solves LANES pixels of a piece. Returns those that stray. */
 LANE_INLINE unsigned solve(const struct native_frame *frame, struct native_tile_room *room,
                            const struct piece_view *view, vint pixel, vint guess, unsigned lanes)
 {
@@ -229,11 +229,11 @@ LANE_INLINE unsigned solve(const struct native_frame *frame, struct native_tile_
         is_far = v_not(v_at_most(longest * longest, most2));
         if (!(v_bits(is_far) & lanes) || i == MOST_STEPS)
             break;
-        /* Those that are near stay: no pixel may depend on those beside it. */
+        /* Lanes that are near stay as they are: no pixel may depend on its neighbours. */
         s = v_select(is_far, v_clamp(s + step.s, -1, 2), s);
         t = v_select(is_far, v_clamp(t + step.t, -1, 2), t);
     }
-    /* What lies on the ray and would leave the sub-patch by its last step stays. */
+    /* A place on the ray that would leave the sub-patch by its last step stays. */
     vfloat off2 = step.f_x * step.f_x + step.f_y * step.f_y;
     vmask stays = v_less(off2 * (px_per_scale * px_per_scale), enough * enough) & is_inside(s, t) &
                   v_not(is_inside(s + step.s, t + step.t));
@@ -251,7 +251,7 @@ LANE_INLINE unsigned solve(const struct native_frame *frame, struct native_tile_
     return lanes & ~good;
 }
 
-/* Lists the pieces that some pixel shows, in the place of `order`. Returns how many. */
+/* Lists in `order` the pieces that some pixel shows. Returns their number. */
 static size_t list_shown(struct native_tile_room *room)
 {
     size_t n = 0;
@@ -261,7 +261,7 @@ static size_t list_shown(struct native_tile_room *room)
     return n;
 }
 
-/* Pieces and their patches lie anywhere in memory: they are fetched some time before. */
+/* Pieces and their patches are scattered in memory, so they are fetched some time before use. */
 static void fetch_ahead(const struct native_tile_room *room, size_t i, size_t n)
 {
     enum { PIECE_AHEAD = 8, PATCH_AHEAD = 3 };
@@ -282,7 +282,7 @@ void LANE_NAME(native_evaluate)(const struct native_frame *frame, struct native_
         uint32_t l = room->order[k], i = room->count[l], end = room->count[l + 1];
         const struct native_piece *piece = room->local[l];
         fetch_ahead(room, k, n);
-        if (piece->kind != PIECE_OF_PATCH) { /* each pixel has a sub-patch of its own */
+        if (piece->kind != PIECE_OF_PATCH) { /* each pixel has its own sub-patch */
             for (; i < end; i++)
                 room->stray[room->n_strays++] = room->pixel[i];
             continue;

@@ -1,10 +1,10 @@
-/* What the shaders' programs read of stage 2 beside its planes: shaders/seen.glsl, shaders/groups.glsl. */
+/* Prepares what the shaders' programs read of stage 1 beside planes: shaders/seen.glsl, shaders/groups.glsl. */
 #include "server/render/native/lanes/entries.h"
 #include "server/render/native/planes.h"
 
 #include <string.h>
 
-/* Depths as the rasteriser of a graphics card would have left them, and no guess where nothing is met. */
+/* Fills in depths as a graphics card's rasteriser would leave them, and no guess where nothing is met. */
 static void fill_row(const struct native_seen *seen, size_t first)
 {
     const float *depth = seen->planes->depth + first;
@@ -21,8 +21,8 @@ static void fill_row(const struct native_seen *seen, size_t first)
         node[i] = depth[i] > 0 ? node[i] : UINT32_MAX;
 }
 
-/* For each pixel of a row of groups: more than 0 where one of its column, or one above or below the
- * group, shows surface. */
+/* For each pixel of a row of groups: more than 0 if a pixel of its column, or one above or below the group, shows
+ * surface. */
 static void find_columns(const struct native_seen *seen, uint32_t y, float *columns)
 {
     uint32_t first = y ? y - 1 : 0, last = y + GROUP_HEIGHT;

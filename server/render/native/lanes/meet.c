@@ -1,14 +1,14 @@
-/* Newton's method from a guess over the borders of sub-patches, nodes and faces (shaders/walk.glsl,
- * newton.glsl), for rays and patches that differ from lane to lane. */
+/* Newton's method from a guess across borders of sub-patches, nodes and faces (shaders/walk.glsl, newton.glsl), for
+ * rays and patches that differ from lane to lane. */
 #include "server/render/native/lanes/stages.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Sub-patches looked at on the way, and how far the tangent plane of one may lead. */
+/* Number of sub-patches tried on the way, and how many sub-patches far the tangent plane of one may lead. */
 enum { PATCHES = 4, MOST_STEPS = 5 };
 static const float MOST_SUB_PATCHES = 16;
-/* What is still so far from the ray inside a sub-patch will not meet it there. */
+/* A ray still this far off inside a sub-patch will not meet it there. */
 static const float STUCK_PX = 0.5f;
 
 /* A patch for each lane, and its lanes' coefficients. */
@@ -32,8 +32,8 @@ static void set_coefficients(struct lanes *lanes, int lane, const struct native_
     set(&lanes->place.bend, lane, (double)patch->bend);
 }
 
-/* At the vertex of a CORNER the surface is its tangent plane; where it has none, a plane across the
- * view. `turned`: the view's axes in the node's frame. */
+/* At the vertex of a CORNER the surface is its tangent plane, or a plane perpendicular to the view if it has none.
+ * `turned`: the view's axes in the node's frame. */
 static void set_vertex(const struct native_frame *frame, struct native_tile_room *room,
                        struct lanes *lanes, int lane, uint32_t node_index, const float turned[3][3])
 {
@@ -52,7 +52,7 @@ static void set_vertex(const struct native_frame *frame, struct native_tile_room
     set(&lanes->place.bend, lane, 0);
 }
 
-/* The sub-patch of a node as the ray through a place of the picture sees it. */
+/* Sets a lane to the sub-patch of a node, seen from the ray through a place of the picture. */
 static void set_lane(const struct native_frame *frame, struct native_tile_room *room,
                      struct lanes *lanes, int lane, uint32_t node_index,
                      const struct native_part_of_node *part, const struct native_patch *patch,
@@ -82,7 +82,7 @@ static void set_lane(const struct native_frame *frame, struct native_tile_room *
     set(&place->before, lane, seen->before * inverse);
 }
 
-/* What is needed to describe the place that has been met, too. */
+/* Sets what is needed to describe the place that was met. */
 static void set_met(const struct native_frame *frame, struct native_tile_room *room,
                     struct lanes *lanes, int lane, const struct native_met *met,
                     const double at_px[2])
@@ -115,7 +115,7 @@ static void set_met(const struct native_frame *frame, struct native_tile_room *r
 
 /* --- */
 
-/* The points' distances from the ray's two planes, and along the axis. */
+/* The points' distances from the ray's two planes, and along the view axis. */
 struct flat {
     vfloat x[4][4], y[4][4], z[4][4];
 };
@@ -135,8 +135,8 @@ static void project(const struct lanes *lanes, struct flat *flat)
     flat->y[0][0] += place->b;
 }
 
-/* A step from (s,t), cut at `most` sub-patches; 0 where the ray touches the surface. Returns how
- * far from the ray the surface is there. */
+/* One step from (s,t), limited to `most` sub-patches; 0 where the ray touches the surface. Returns the surface's
+ * distance from the ray at (s,t). */
 LANE_INLINE vfloat newton_step(const struct flat *flat, vfloat s, vfloat t, float most, vfloat *ds,
                                vfloat *dt)
 {
@@ -159,9 +159,9 @@ LANE_INLINE vmask is_within(vfloat s, vfloat t, float low, float high)
     return v_at_most(v_float(low), v_min(s, t)) & v_at_most(v_max(s, t), v_float(high));
 }
 
-/* What Newton's method inside each lane's sub-patch comes to. */
+/* The result of Newton's method inside each lane's sub-patch. */
 struct outcome {
-    vfloat s, t, on_s, on_t; /* and where the tangent plane leads from its border */
+    vfloat s, t, on_s, on_t; /* on_s, on_t: where the tangent plane leads from the border */
     vfloat before;
     vmask inside, settled, near;
 };
@@ -176,7 +176,7 @@ static void solve(const struct native_rays *rays, const struct lanes *lanes, vfl
     vfloat residual = v_float(1e30f), ds, dt;
     vmask active = v_less(v_float(0), residual);
     for (int i = 0; i < MOST_STEPS && v_bits(active); i++) {
-        /* Beyond half a sub-patch the linear model says little. */
+        /* Farther than half a sub-patch the linear model tells little. */
         vfloat off = newton_step(&flat, s, t, 0.5f, &ds, &dt) * px_per_scale;
         vmask close = v_less(off, enough), leaves = v_not(is_within(s + ds, t + dt, 0, 1));
         vmask moves = active & v_not(close & leaves);
@@ -203,7 +203,7 @@ static void solve(const struct native_rays *rays, const struct lanes *lanes, vfl
 
 /* --- */
 
-/* What of a task's outcome is told from lane k. True where it is to go on, from another place. */
+/* Stores lane k's result in its task. True if the task must go on from another place. */
 static bool conclude(const struct native_frame *frame, struct native_task *task,
                      struct native_met *met, const struct outcome *at, int k, bool is_last)
 {
@@ -233,7 +233,7 @@ static bool conclude(const struct native_frame *frame, struct native_task *task,
     return true;
 }
 
-/* Up to LANES tasks; fills those that go on into `onwards` and returns how many. */
+/* Solves up to LANES tasks. Writes those that must go on to `onwards`; returns their number. */
 static uint32_t meet_lanes(const struct native_frame *frame, struct native_tile_room *room,
                            const uint32_t *which, int n, bool is_last, uint32_t *onwards)
 {
@@ -243,7 +243,7 @@ static uint32_t meet_lanes(const struct native_frame *frame, struct native_tile_
     float s[LANES], t[LANES], px[LANES];
     struct native_seen_node seen;
     uint32_t seen_node = UINT32_MAX;  /* tasks that follow each other often have one node */
-    for (int k = 0; k < LANES; k++) { /* lanes without a task do what the last one does */
+    for (int k = 0; k < LANES; k++) { /* lanes without a task repeat the last one */
         const struct native_task *task = &room->task[which[k < n ? k : n - 1]];
         if (task->node != seen_node)
             native_see_node(frame, &frame->model->tables->nodes[task->node], &seen);
@@ -319,7 +319,7 @@ void LANE_NAME(native_write)(const struct native_frame *frame, struct native_til
         struct derivatives at;
         struct described found;
         lanes.place.c = (const vfloat(*)[4][4])lanes.c;
-        /* No lane may depend on what the others are. */
+        /* No lane may depend on the other lanes. */
         lanes.place.is_turned = lanes.place.any_border = true;
         each_all(&lanes.place, v_load(s), v_load(t), &at);
         each_describe(&lanes.place, &frame->rays, lanes.place.h, lanes.place.k, &at, v_load(s),

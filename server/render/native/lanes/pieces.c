@@ -1,4 +1,4 @@
-/* Pieces of the surface as quads and grids in the picture, and the tiles that they lie in. */
+/* Projects pieces of the surface to quads and grids in the picture, and finds the tiles they lie in. */
 #include "server/render/native/lanes/entries.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 #include "server/render/native/denormals.h"
 
-/* Beyond so many px from the picture's top left corner single precision tells places too badly. */
+/* Farther from the picture's top left corner, px, single precision is not exact enough. */
 static const float FARTHEST_PX = 30000;
 /* Rounding may move an edge over a pixel's centre. */
 static const float SLACK_PX = 1.0f / 512;
@@ -14,7 +14,7 @@ static const float SLACK_PX = 1.0f / 512;
 /* Always four, whatever LANES is. */
 typedef float four __attribute__((vector_size(16)));
 
-/* Of what has been placed: the picture's box and the nearnesses. */
+/* The extent of what was placed: box in the picture, and depths as nearness. */
 struct reach {
     float x0, x1, y0, y1, farthest, nearest;
 };
@@ -47,8 +47,7 @@ static float largest(four a)
     return x > y ? x : y;
 }
 
-/* The corners of a quad, relative to the node's origin. False where they reach before the near
- * depth. */
+/* Projects a quad's corners, given relative to the node's origin. False if one lies behind the eye. */
 static bool project_corners(const struct native_rays *rays, const struct placed *node,
                             const float corner[3][4], struct native_quad *quad, struct reach *reach)
 {
@@ -74,7 +73,7 @@ static bool project_corners(const struct native_rays *rays, const struct placed 
     return !rays->perspective || least(z) > 0;
 }
 
-/* The vertices of a grid over a piece. False where they reach before the eye. */
+/* Projects the vertices of a grid over a piece. False if one lies behind the eye. */
 static bool project_grid(const struct native_frame *frame, const struct native_patch *patch,
                          const struct native_piece *piece, const struct placed *node, uint32_t grid,
                          float *vertex, struct reach *reach)
@@ -124,7 +123,7 @@ static bool project_grid(const struct native_frame *frame, const struct native_p
     return !rays->perspective || v_least(z0) > 0;
 }
 
-/* Whether the near plane leaves all of it, and single precision tells it well enough. */
+/* Whether the near plane cuts nothing of it and single precision is exact enough for it. */
 static bool is_plain(const struct native_rays *rays, const struct reach *r)
 {
     return r->nearest <= rays->nearest && r->x0 > -FARTHEST_PX && r->x1 < FARTHEST_PX &&
@@ -138,8 +137,7 @@ static bool is_looked_at(const struct tile *around, const int box[4])
            box[1] < (int)(around->y + around->height);
 }
 
-/* The pixels whose centres a box may hold, cut to the picture's. False where it holds none of those
- * that are looked at. */
+/* Finds the pixels whose centres a box may hold, inside the picture. False if none of them is looked at. */
 static bool pixels_of(const struct native_frame *frame, const struct reach *r, int box[4])
 {
     const struct tile *around = &frame->around;
@@ -155,8 +153,8 @@ static bool pixels_of(const struct native_frame *frame, const struct reach *r, i
 
 /* --- */
 
-/* The corners of all that is left of a CORNER below a level: the vertex, and the inner corners of that
- * level's squares. */
+/* The corners of what remains of a CORNER below a level: the vertex, and the inner corners of that level's
+ * squares. */
 static void rest_corners(const struct native_frame *frame, uint32_t node, int level,
                          float corner[3][4])
 {
@@ -173,8 +171,8 @@ static void rest_corners(const struct native_frame *frame, uint32_t node, int le
         corner[k][0] = 0;
 }
 
-/* What patch_grids.c has chosen, as a piece; and its sub-patch, which is in *room if it is not kept, or
- * NULL where the corners of its node tell where it lies. */
+/* Describes a grid that patch_grids.c has chosen as a piece. Returns its sub-patch, computed in *room if it is not
+ * kept; NULL if the corners of its node are enough to place it. */
 static const struct native_patch *understand(const struct native_frame *frame,
                                              const struct patch_grid *chosen,
                                              struct native_piece *piece, struct native_patch *room)
@@ -196,15 +194,14 @@ static const struct native_patch *understand(const struct native_frame *frame,
     bool is_whole = node->kind == LIMIT_REGULAR && chosen->where >> 8 == 0;
     if (piece->kind != PIECE_OF_PATCH || is_whole)
         return NULL;
-    bool is_last = node->kind == LIMIT_STRIP && !square; /* comes after all levels */
+    bool is_last = node->kind == LIMIT_STRIP && !square; /* follows all levels */
     const struct native_patch *patch = native_patch_get(
         frame->model, chosen->node, native_patch_index(node, level + is_last, square), room);
     piece->patch = patch == room ? NULL : patch;
     return patch;
 }
 
-/* Where a piece comes to lie: as a cell, a grid or triangles. 0: nowhere that is looked at; -1: no
- * memory. */
+/* Places a piece as a cell, a grid or triangles. 0: not in a place that is looked at; -1: no memory. */
 static int draw_piece(const struct native_frame *frame, struct native_thread *thread,
                       const struct placed *node, uint32_t grid, const struct native_patch *patch,
                       struct native_piece *piece, struct native_quad *quad, float *nearest)
@@ -252,7 +249,7 @@ static uint32_t vertices_of(uint32_t grid)
     return (3 * (n + LANES) + 15) & ~15u;
 }
 
-/* Room for what the chosen pieces may need. */
+/* Reserves room for what the chosen pieces may need. */
 static bool reserve(struct native_thread *thread, size_t n_chosen)
 {
     size_t n_vertices = 0, n = thread->n_quads + n_chosen, most = thread->quad_capacity;
@@ -272,7 +269,7 @@ static bool reserve(struct native_thread *thread, size_t n_chosen)
                        sizeof *thread->vertex);
 }
 
-/* The chosen pieces that cover pixels' centres. False: no memory. */
+/* Draws the chosen pieces that cover pixels' centres. False: no memory. */
 static bool draw_chosen(const struct native_frame *frame, struct native_thread *thread,
                         size_t n_chosen)
 {
@@ -303,7 +300,7 @@ struct tiles {
     uint32_t x0, y0, x1, y1;
 };
 
-/* The frame's tiles that a quad may be seen in, aprons included. */
+/* The frame's tiles in which a quad may be visible, aprons included. */
 static struct tiles tiles_under(const struct native_frame *frame, const struct native_quad *quad)
 {
     int x0 = (quad->x0 - APRON) / TILE_WIDTH - (int)frame->first_x;
@@ -316,7 +313,7 @@ static struct tiles tiles_under(const struct native_frame *frame, const struct n
                           (uint32_t)(y1 > last_y ? last_y : y1)};
 }
 
-/* A counting sort of the thread's quads from `first` on by the tiles that they lie in. */
+/* Sorts the thread's quads from `first` on by the tiles they lie in (counting sort). */
 static bool sort_by_tile(const struct native_frame *frame, struct native_thread *thread,
                          struct native_part *part, size_t first)
 {

@@ -2,22 +2,22 @@
 
 #include <math.h>
 
-/* How far beyond its edges a triangle covers pixels: neighbours round shared vertices apart. */
+/* A triangle covers pixels this far beyond its edges, since neighbours round shared vertices differently. */
 static const float SLACK_PX = 1.0f / 512;
-static const float STEPS = 65535; /* of a place along a piece */
+static const float STEPS = 65535; /* of a position along a piece */
 
 /* Pixels of the room, inclusive. */
 struct box {
     int x0, y0, x1, y1;
 };
 
-/* One of the two triangles of a cell: with p its first vertex, q and r the others, a place is
- * p + b (q - p) + c (r - p). Pixels of the room, whose centres are whole numbers. */
+/* One of a cell's two triangles: with p its first vertex, q and r the others, a point is p + b (q - p) + c (r - p).
+ * Unit: pixels of the room, whose centres are whole numbers. */
 struct half {
-    float bx, by, b0, cx, cy, c0; /* b = bx x + by y + b0 + least_b, and c alike */
-    float least_b, least_c;       /* inside: b is larger, and c alike, and b + c is smaller than */
-    float most;                   /* most + least_b + least_c */
-    float rise_b, rise_c;         /* of the nearness */
+    float bx, by, b0, cx, cy, c0; /* b = bx x + by y + b0 + least_b; the same for c */
+    float least_b, least_c; /* inside: b and c exceed these, b + c is below the sum of all three */
+    float most;
+    float rise_b, rise_c; /* of the nearness */
 };
 
 LANE_INLINE struct half half_of(const struct native_tile_room *room, const float x[4],
@@ -41,7 +41,7 @@ LANE_INLINE struct half half_of(const struct native_tile_room *room, const float
     return h;
 }
 
-/* Where lanes lie in a block. */
+/* Column of each lane in a block. */
 LANE_INLINE vfloat block_x(void)
 {
     return v_to_float(v_count() & (BLOCK_WIDTH - 1));
@@ -52,13 +52,13 @@ LANE_INLINE vfloat block_y(void)
     return v_to_float(v_count() / BLOCK_WIDTH);
 }
 
-/* Above 0 inside; b and c lack their least. */
+/* Positive inside; b and c without their least. */
 LANE_INLINE vfloat inside(const struct half *h, vfloat b, vfloat c)
 {
     return v_min(v_min(b, c), h->most - (b + c));
 }
 
-/* Is anything there farther than the nearest of the cell? */
+/* Whether anything there is farther than the nearest corner of the cell. */
 LANE_INLINE bool may_show(const struct native_tile_room *room, const struct box *box,
                           const float nearness[4])
 {
@@ -71,15 +71,15 @@ LANE_INLINE bool may_show(const struct native_tile_room *room, const struct box 
     return any;
 }
 
-/* Both triangles of a cell whose first corner is at (s,t) of STEPS and which is (ds,dt) large. */
+/* Draws both triangles of a cell whose first corner is at (s,t), in STEPS, and whose size is (ds,dt). */
 LANE_INLINE void draw_cell(struct native_tile_room *room, const float x[4], const float y[4],
                            const float nearness[4], const struct box *box, float s, float t,
                            float ds, float dt, int piece)
 {
     if (!may_show(room, box, nearness))
         return;
-    /* What a pixel gets depends on its own place alone, not on where boxes begin: so tiles may be
-     * cut in any way. */
+    /* A pixel's result depends on its own place only, not on where boxes begin, so any division into tiles gives the
+     * same picture. */
     const struct half first = half_of(room, x, y, nearness, 0, 1, 2);
     const struct half second = half_of(room, x, y, nearness, 3, 2, 1);
     for (int px = box->x0; px <= box->x1; px += BLOCK_WIDTH) {
@@ -114,7 +114,7 @@ LANE_INLINE void draw_cell(struct native_tile_room *room, const float x[4], cons
     }
 }
 
-/* Cuts a box to what the tile looks at. False where nothing is left. */
+/* Cuts a box to the pixels that the tile needs. False if nothing remains. */
 LANE_INLINE bool cut_box(const struct native_tile_room *room, struct box *box)
 {
     box->x0 = box->x0 < room->x0 ? room->x0 : box->x0;
@@ -162,7 +162,7 @@ static void draw_grid(struct native_tile_room *room, const float *vertex,
     }
 }
 
-/* Over such a triangle the depth may change so much that places do so in perspective. */
+/* Depth may change so much over such a triangle that positions need perspective. */
 static void draw_triangle(struct native_tile_room *room, const struct native_triangle *t, int piece)
 {
     struct box box = box_of(room, t->x, t->y, 3);

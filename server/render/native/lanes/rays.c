@@ -1,25 +1,26 @@
-/* Newton's method for rays of pixels that begin on the same sub-patch (rays/rays.h; shaders/walk.glsl, newton.glsl). */
+/* Newton's method for rays of pixels that start on the same sub-patch (rays/rays.h; shaders/walk.glsl,
+ * newton.glsl). */
 #include "server/render/native/lanes/entries.h"
 #include "server/render/native/lanes/stages.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Sub-patches looked at on the way, and how far the tangent plane of one may lead. */
+/* Number of sub-patches tried on the way, and how many sub-patches far the tangent plane of one may lead. */
 enum { PATCHES = 4, MOST_STEPS = 5 };
 static const float MOST_SUB_PATCHES = 16;
-/* What is still so far from the ray inside a sub-patch will not meet it there. */
+/* A ray still this far off inside a sub-patch will not meet it there. */
 static const float STUCK_PX = 0.5f;
-/* A place of the picture is not looked at from further away, px. */
+/* A place of the picture farther away than this is not tried, px. */
 static const double MOST_PX = 65536;
 
-/* A sub-patch as the ray through the middle of pixel x, y sees it. */
+/* A sub-patch as seen from the ray through the middle of pixel x, y. */
 struct seen_patch {
     struct one_place place;
     float x, y, start;
 };
 
-/* The pixel is that in which the node's origin is seen: it does not depend on the rays. */
+/* The pixel is the one in which the node's origin is seen, so it does not depend on the rays. */
 static void see_patch(const struct native_frame *frame, const struct native_seen_node *seen,
                       const struct native_patch *patch, struct seen_patch *on)
 {
@@ -79,7 +80,7 @@ LANE_INLINE struct lane_rays rays_of(const struct native_frame *frame,
     return rays;
 }
 
-/* How far the rays are from the surface at s, t, in units of the scale, and how deep the surface is there. */
+/* Distance of the rays from the surface at s, t, in units of the scale, and the depth of the surface there. */
 struct distance {
     struct flat_value x, y, z;
 };
@@ -109,7 +110,7 @@ LANE_INLINE vfloat off_of(const struct distance *at)
     return v_sqrt(at->x.f * at->x.f + at->y.f * at->y.f);
 }
 
-/* A step of Newton's method, cut at `most` sub-patches; 0 where the ray touches the surface. */
+/* One step of Newton's method, limited to `most` sub-patches; 0 where the ray touches the surface. */
 LANE_INLINE vmask step_of(const struct distance *at, float most, vfloat *ds, vfloat *dt)
 {
     const struct flat_value *x = &at->x, *y = &at->y;
@@ -131,13 +132,13 @@ LANE_INLINE vmask is_within(vfloat s, vfloat t, float low, float high)
     return v_at_most(v_float(low), v_min(s, t)) & v_at_most(v_max(s, t), v_float(high));
 }
 
-/* What Newton's method inside a sub-patch comes to. */
+/* The result of Newton's method inside a sub-patch. */
 struct outcome {
-    vfloat s, t, z;  /* z: units */
-    vmask met, ends; /* on the ray; nothing is to be met elsewhere */
+    vfloat s, t, z;  /* z: world units */
+    vmask met, ends; /* met: on the ray; ends: no other sub-patch need be tried */
 };
 
-/* solve_patch() of newton.glsl. A step whose square, times what the patch bends, is close enough is the last one. */
+/* solve_patch() of newton.glsl. A step is the last one if its square times the patch's bend is close enough. */
 LANE_INLINE struct outcome solve(const struct native_frame *frame, const struct seen_patch *on,
                                  const struct lane_rays *rays, vfloat px, vfloat s, vfloat t,
                                  unsigned lanes)
@@ -149,7 +150,7 @@ LANE_INLINE struct outcome solve(const struct native_frame *frame, const struct 
     for (int i = 0; i < MOST_STEPS && v_bits(active); i++) {
         struct distance at = distance_at(on, rays, s, t);
         vfloat ds, dt, off = off_of(&at) * px_per_scale;
-        /* Beyond half a sub-patch the linear model says little. */
+        /* Farther than half a sub-patch the linear model tells little. */
         vmask touches = step_of(&at, 0.5f, &ds, &dt);
         vmask close = v_less(off, enough), leaves = v_not(is_within(s + ds, t + dt, 0, 1));
         vmask stays = close & leaves, moves = active & v_not(stays);
@@ -165,14 +166,14 @@ LANE_INLINE struct outcome solve(const struct native_frame *frame, const struct 
     }
     z *= place->scale;
     vmask inside = is_within(s, t, 0, 1);
-    /* How near it is by the pixel's size where it has been met. */
+    /* Its distance in pixels at the depth where it was met. */
     vfloat own_scale = place->scale / (z * frame->rays.slope_px + frame->rays.start_px);
     vmask near = v_less(left * own_scale, 4 * v_close_enough(own_scale)) & v_less(v_float(0), z);
     vmask stuck = v_not(there) & v_less(v_float(STUCK_PX), residual);
     return (struct outcome){s, t, z, there & inside & near, inside & (there | stuck)};
 }
 
-/* Keeps what is met if it lies in front of what its ray has met before. */
+/* Keeps a hit if it is in front of what its ray has met before. */
 static void keep(struct native_ray_room *room, uint32_t ray, float z,
                  const struct native_ray_place *at)
 {
@@ -182,7 +183,7 @@ static void keep(struct native_ray_room *room, uint32_t ray, float z,
     room->met[ray] = *at;
 }
 
-/* From a sub-patch's border its tangent plane leads on, over many sub-patches where they are small. */
+/* The tangent plane at a sub-patch's border leads on, across many sub-patches where they are small. */
 static void go_on(const struct native_frame *frame, struct native_ray_room *room,
                   const struct native_ray_group *group, const struct seen_patch *on,
                   const struct lane_rays *rays, const struct outcome *out, uint32_t first,
@@ -239,8 +240,8 @@ static void meet_group(const struct native_frame *frame, struct native_tile_room
     }
 }
 
-/* Inside the last ring of an extraordinary vertex the surface is its tangent plane there; where it has none, a plane
- * across the view (meet_limit() of walk.glsl). */
+/* Inside the last ring of an extraordinary vertex the surface is its tangent plane, or a plane perpendicular to the
+ * view if it has none (meet_limit() of walk.glsl). */
 static void meet_at_vertex(const struct native_frame *frame, struct native_tile_room *tile,
                            struct native_ray_room *room, const struct native_ray_group *group,
                            const struct native_seen_node *seen)
@@ -275,7 +276,7 @@ void LANE_NAME(native_meet_rays)(const struct native_frame *frame, struct native
     struct native_seen_node seen;
     for (int i = 0; i < PATCHES && room->n_tasks; i++) {
         native_group_rays(frame->model, room);
-        room->n_tasks = 0; /* from here on: those that go on */
+        room->n_tasks = 0; /* from here on: the tasks that go on */
         for (uint32_t k = 0; k < room->n_groups; k++) {
             const struct native_ray_group *group = &room->group[k];
             native_see_node(frame, &frame->model->tables->nodes[group->node], &seen);
@@ -289,7 +290,7 @@ void LANE_NAME(native_meet_rays)(const struct native_frame *frame, struct native
 
 /* --- */
 
-/* The vertex itself, where the surface does not bend. */
+/* Describes the vertex itself, where the surface does not bend. */
 static void describe_vertex(const struct native_frame *frame, const struct native_ray_room *room,
                             const struct native_ray_group *group,
                             const struct native_seen_node *seen, float (*hit)[HIT_WORDS])
@@ -313,7 +314,7 @@ static void describe_group(const struct native_frame *frame, struct native_tile_
         struct derivatives at;
         struct described found;
         vfloat s = v_load(room->s + i), t = v_load(room->t + i);
-        const vfloat no_planes[3] = {s, s, s}; /* for borders alone */
+        const vfloat no_planes[3] = {s, s, s}; /* only borders need them */
         one_all(&on.place, s, t, &at);
         one_describe(&on.place, &frame->rays, no_planes, no_planes, &at, s, t, &found);
         for (int k = 0; k < LANES && i + (uint32_t)k < end; k++) {

@@ -1,5 +1,5 @@
-/* A tile: what it sees, and what the rays of its pixels meet (shaders/unsolved.comp.glsl says in
- * which order who is asked). */
+/* Draws a tile: which piece each pixel sees, and where its ray meets the surface (shaders/unsolved.comp.glsl says in
+ * which order guesses are tried). */
 #include "server/render/native/lanes/entries.h"
 #include "server/render/native/lanes/raster.h"
 #include "server/render/native/lanes/stages.h"
@@ -10,9 +10,9 @@
 #include "server/render/native/denormals.h"
 #include "server/render/native/times.h"
 
-/* Depths are sorted by so many steps before pieces are drawn. */
+/* Number of depth steps by which pieces are sorted before they are drawn. */
 enum { DEPTH_STEPS = 1024 };
-/* seen.glsl: in front by more than a slope of so many px of depth a px. */
+/* seen.glsl: a slope of this many px of depth per px. */
 static const float DOUBT_PX = 4;
 static const int BESIDE[4] = {-1, 1, -SEEN_PITCH, SEEN_PITCH};
 
@@ -26,7 +26,7 @@ static uint32_t cut_to(uint32_t value, uint32_t low, uint32_t high)
     return value < low ? 0 : value > high ? high - low : value - low;
 }
 
-/* Of the tile's px, those of a rectangle of the picture's. */
+/* The pixels of a rectangle of the picture, in px of the tile. */
 static struct wanted part_of(const struct tile *tile, const struct tile *rectangle)
 {
     uint32_t right = tile->x + tile->width, bottom = tile->y + tile->height;
@@ -53,7 +53,7 @@ static void begin(const struct native_frame *frame, struct native_tile_room *roo
     room->n_tasks = room->n_local = 0;
 }
 
-/* What a row of the caller's planes gets of the tile's: px [first, end). */
+/* Copies px [first, end) of a row of the tile to a row of the caller's planes. */
 static void copy_row(const struct native_planes *to, size_t at,
                      const struct native_tile_planes *from, uint32_t first, uint32_t n)
 {
@@ -71,7 +71,7 @@ static void copy_row(const struct native_planes *to, size_t at,
     memcpy(to->where + at, from->where + first, bytes);
 }
 
-/* Gives the caller what has been met; a depth of 0 where nothing has. */
+/* Copies to the caller what was met; depth 0 where nothing was. */
 static void copy_out(const struct native_frame *frame, const struct native_tile_room *room,
                      const struct wanted *wanted, bool is_empty)
 {
@@ -94,8 +94,8 @@ static void copy_out(const struct native_frame *frame, const struct native_tile_
 
 /* --- stage 1 */
 
-/* Steps of depth, the nearest first, that depend on the view alone: so pieces are drawn in the same
- * order whatever else is in the list. In perspective steps of the logarithm, about. */
+/* Steps of depth, the nearest first. They depend on the view alone, so pieces are drawn in the same order whatever
+ * else is in the list. In perspective the steps are about logarithmic. */
 struct depth_steps {
     bool by_bits;
     float first, per_step;
@@ -113,7 +113,7 @@ static struct depth_steps depth_steps_of(const struct native_rays *rays)
 {
     struct depth_steps steps = {.first = rays->nearest};
     steps.per_step = (DEPTH_STEPS - 1) / (rays->nearest - rays->farthest);
-    /* Where near and far are far apart equal steps would leave all in the last of them. */
+    /* With near and far far apart, equal steps would put all pieces into the last one. */
     steps.by_bits = rays->perspective && rays->nearest > 16;
     steps.first_bits = bits_of(rays->nearest);
     uint32_t range = steps.first_bits - bits_of(1.0f / 16);
@@ -144,7 +144,7 @@ static bool reserve_local(struct native_tile_room *room, size_t n)
     return true;
 }
 
-/* Lists the tile's quads, roughly front to back. order[k] holds whose they are. */
+/* Lists the tile's quads, roughly front to back. order[k]: the thread that placed quad k. */
 static bool list_local(const struct native_frame *frame, struct native_tile_room *room,
                        uint32_t number)
 {
@@ -183,14 +183,14 @@ static void see(const struct native_frame *frame, struct native_tile_room *room)
 {
     memset(room->nearness, 0, sizeof room->nearness);
     for (size_t k = 0; k < room->n_local; k++) {
-        enum { AHEAD = 10 }; /* quads lie anywhere in memory */
+        enum { AHEAD = 10 }; /* quads are scattered in memory */
         if (k + AHEAD < room->n_local)
             __builtin_prefetch(room->quad[k + AHEAD]);
         LANE_NAME(native_raster)(room, &frame->thread[room->order[k]], room->quad[k], (int)k);
     }
 }
 
-/* A counting sort of the wanted pixels that show something by their pieces. */
+/* Sorts the wanted pixels that show something by their pieces (counting sort). */
 static void sort_by_piece(struct native_tile_room *room, const struct wanted *wanted)
 {
     uint32_t *count = room->count;
@@ -230,7 +230,7 @@ static bool reserve_tasks(struct native_tile_room *room, size_t n)
     return true;
 }
 
-/* Asks the guess of what is seen at `at` for a pixel. */
+/* Adds a task for a pixel: to start from what is seen at `at`. */
 static void add_task(const struct native_frame *frame, struct native_tile_room *room,
                      uint32_t asker, uint32_t pixel, int at)
 {
@@ -243,8 +243,8 @@ static void add_task(const struct native_frame *frame, struct native_tile_room *
     native_begin_on(frame->model, task, piece, room->place[at]);
 }
 
-/* Does something lie in front of a hit by more than a slope, or on both sides of it by a pixel's
- * depth? (seen.glsl) */
+/* Whether nothing lies in front of a hit by more than a slope, nor on both sides of it by a pixel's depth
+ * (seen.glsl). */
 static bool is_settled(const struct native_rays *rays, const struct native_tile_room *room, int at,
                        float before)
 {
@@ -259,7 +259,7 @@ static bool is_settled(const struct native_rays *rays, const struct native_tile_
            !(beside[2] > on_both && beside[3] > on_both);
 }
 
-/* Writes what the askers have found. */
+/* Writes what the tasks have found. */
 static void write_asking(const struct native_frame *frame, struct native_tile_room *room)
 {
     enum { AT_ONCE = 256 };
@@ -280,7 +280,7 @@ static void write_asking(const struct native_frame *frame, struct native_tile_ro
     LANE_NAME(native_write)(frame, room, pixel, met, n);
 }
 
-/* Strays ask their own guess; those that are not settled then will ask again. */
+/* Solves strays from their own guess; those that are not settled then are tried again. */
 static bool solve_strays(const struct native_frame *frame, struct native_tile_room *room)
 {
     if (!reserve_tasks(room, room->n_strays))
@@ -310,8 +310,8 @@ static bool solve_strays(const struct native_frame *frame, struct native_tile_ro
     return true;
 }
 
-/* Adds the pixels that are empty beside some that are not, and those whose hit lies behind what is
- * seen beside it (doubt.comp.glsl). */
+/* Adds empty pixels beside ones that are not, and pixels whose hit lies behind what is seen beside it
+ * (recheck.comp.glsl). */
 static void find_doubtful(const struct native_frame *frame, struct native_tile_room *room,
                           const struct wanted *wanted)
 {
@@ -344,7 +344,7 @@ static void find_doubtful(const struct native_frame *frame, struct native_tile_r
     }
 }
 
-/* Asks the guesses beside a pixel: those that may lead to what is nearer than what it has. */
+/* Tries those guesses beside a pixel that may lead to something nearer than its hit. */
 static void ask_beside(const struct native_frame *frame, struct native_tile_room *room, uint32_t i)
 {
     const struct native_asking *asking = &room->asking[i];
@@ -357,7 +357,7 @@ static void ask_beside(const struct native_frame *frame, struct native_tile_room
     }
 }
 
-/* Asks the guesses around each pixel; the nearest place wins. */
+/* Tries the guesses around each pixel; the nearest place wins. */
 static bool ask_around(const struct native_frame *frame, struct native_tile_room *room)
 {
     if (!reserve_tasks(room, 4 * (size_t)room->n_asking))
@@ -378,7 +378,7 @@ static bool ask_around(const struct native_frame *frame, struct native_tile_room
     return true;
 }
 
-/* What is seen and met nowhere may be in a gap. */
+/* Lists pixels that see a piece but have met nothing: they may be in gaps. */
 static bool list_gaps(const struct native_frame *frame, struct native_thread *thread)
 {
     const struct native_tile_room *room = thread->tile;
@@ -441,14 +441,13 @@ void LANE_NAME(native_tile)(struct native_frame *frame, struct native_thread *th
 
 /* --- stage 2, pixels in gaps */
 
-/* Are there hits on two opposite sides? Those of pixels in gaps do not count, and are not there
- * yet. */
+/* Whether there are hits on two opposite sides. Pixels in gaps do not count; they have no hit yet. */
 static bool is_between(const struct native_frame *frame, uint32_t x, uint32_t y)
 {
     static const int aside[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
     const struct native_planes *planes = frame->planes;
     if (x == 0 || y == 0 || x + 1 >= frame->tile.width || y + 1 >= frame->tile.height) {
-        /* At the rim one of both sides may be missing. */
+        /* At the rim one of the two sides may be missing. */
         bool across = x > 0 && x + 1 < frame->tile.width,
              down = y > 0 && y + 1 < frame->tile.height;
         const float *at = planes->depth + y * planes->pitch + x;
@@ -464,7 +463,7 @@ static bool is_between(const struct native_frame *frame, uint32_t x, uint32_t y)
     return false;
 }
 
-/* Asks all the surface that may lie on the pixel's ray. False: no memory. */
+/* Tries all of the surface that may lie on the pixel's ray. False: no memory. */
 static bool solve_gap(const struct native_frame *frame, struct native_thread *thread, uint32_t at,
                       struct error *error)
 {

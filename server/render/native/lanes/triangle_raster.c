@@ -1,12 +1,12 @@
-/* What the pixels of a tile show of the triangles that lie in it (polygons/fill.h). */
+/* Finds which of a tile's triangles each of its pixels shows (polygons/fill.h). */
 #include "server/render/native/lanes/entries.h"
 
 #include <math.h>
 
 #include "server/render/native/denormals.h"
 
-/* Shares of the second and the third corner: with (x,y) px from the first one b = bx x + by y, and c alike. Inside, b
- * and c are larger than their least, and their sum is smaller than `most`. */
+/* Shares of the second and third corner: (x,y) px from the first corner, b = bx x + by y, and the same for c. Inside,
+ * b and c exceed their minimum, and their sum is below `most`. */
 struct edges {
     float bx, by, least_b, cx, cy, least_c, most;
 };
@@ -33,7 +33,7 @@ struct box {
     int x0, y0, x1, y1;
 };
 
-/* Of lanes in a block, the pixels of the box. */
+/* The lanes of a block whose pixels lie in the box. */
 LANE_INLINE vmask in_box(const struct box *box, vint x, vint y)
 {
     vfloat fx = v_to_float(x), fy = v_to_float(y);
@@ -41,7 +41,8 @@ LANE_INLINE vmask in_box(const struct box *box, vint x, vint y)
            v_at_most(v_float((float)box->y0), fy) & v_at_most(fy, v_float((float)box->y1));
 }
 
-/* What a pixel gets depends on its own place in the picture alone: so tiles may be cut in any way. */
+/* A pixel's result depends on its own place in the picture only, so any division into tiles gives the same
+ * picture. */
 static void draw(const struct native_slice *slice, const struct native_placed_triangle *t,
                  const struct box *box)
 {
@@ -73,7 +74,7 @@ static void draw(const struct native_slice *slice, const struct native_placed_tr
     }
 }
 
-/* Nothing is seen. */
+/* Marks all pixels as empty. */
 static void clear(struct native_seen_triangles *seen, const struct box *tile)
 {
     for (int y = tile->y0; y <= tile->y1; y++) {

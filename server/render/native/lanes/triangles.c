@@ -1,14 +1,14 @@
-/* Triangles of a mesh in the picture, and the tiles that they lie in (polygons/fill.h). */
+/* Projects the triangles of a mesh, and finds the tiles they lie in (polygons/fill.h). */
 #include "server/render/native/lanes/entries.h"
 
 #include <string.h>
 
 #include "server/render/native/denormals.h"
 
-/* Beyond so many px from the picture's top left corner single precision tells places too badly. */
+/* Farther from the picture's top left corner, px, single precision is not exact enough. */
 static const float FARTHEST_PX = 30000;
 
-/* LANES triangles, the corners of each. */
+/* The corners of LANES triangles. */
 struct corners {
     vfloat at[3][3]; /* camera space */
     vfloat x[3], y[3], nearness[3];
@@ -54,7 +54,7 @@ LANE_INLINE void load_corners(const struct native_slice *slice, vint triangle, s
     }
 }
 
-/* The triangles that the near plane leaves whole, and whose places single precision tells well enough. */
+/* The triangles that the near plane does not cut and for which single precision is exact enough. */
 LANE_INLINE vmask plain_ones(const struct native_slice *slice, const struct corners *c)
 {
     const struct native_rays *rays = &slice->rays;
@@ -95,7 +95,7 @@ static bool add(struct native_polygon_thread *thread, const struct native_placed
     return true;
 }
 
-/* Those of the mask, which cover pixels' centres. False: no memory. */
+/* Adds the triangles of the mask that cover pixels' centres. False: no memory. */
 static bool add_plain(struct native_polygon_thread *thread, const struct corners *c,
                       const struct range *x, const struct range *y, unsigned bits, int32_t first)
 {
@@ -119,7 +119,7 @@ static bool add_plain(struct native_polygon_thread *thread, const struct corners
     return true;
 }
 
-/* A triangle of what is left of one that has been cut. */
+/* Adds a triangle that remains of one that was cut. */
 static bool add_cut(const struct native_slice *slice, struct native_polygon_thread *thread,
                     const struct native_corner *const corners[3], int32_t number)
 {
@@ -147,7 +147,7 @@ static bool add_cut(const struct native_slice *slice, struct native_polygon_thre
     return add(thread, &triangle);
 }
 
-/* Those of the mask, in double. False: no memory. */
+/* Cuts the triangles of the mask, in double precision. False: no memory. */
 static bool cut(const struct native_slice *slice, struct native_polygon_thread *thread,
                 const struct corners *c, unsigned bits, int32_t first)
 {
@@ -183,7 +183,7 @@ static struct tiles tiles_under(const struct native_placed_triangle *triangle)
                           triangle->x1 / TILE_WIDTH, triangle->y1 / TILE_HEIGHT};
 }
 
-/* A counting sort of the thread's triangles from `first` on by the tiles that they lie in. */
+/* Sorts the thread's triangles from `first` on by the tiles they lie in (counting sort). */
 static bool sort_by_tile(const struct native_slice *slice, struct native_polygon_thread *thread,
                          uint32_t *count, size_t first)
 {

@@ -4,7 +4,7 @@
 
 #include "server/render/native/native.h"
 
-/* Rows begin at multiples of so many pixels, and there are whole blocks of them (lanes.h). */
+/* Rows begin at multiples of PITCH_PX, and there are whole blocks of them (lanes.h). */
 enum { PITCH_PX = 16, BLOCK_ROWS = 2 };
 
 static size_t pitch_of(uint32_t width)
@@ -51,7 +51,7 @@ void native_polygon_stage_finish(struct native_polygon_stage *stage)
     *stage = (struct native_polygon_stage){0};
 }
 
-/* The parts from *part on that the tile may show, as many as a slice takes. */
+/* Chooses the parts from *part on that the tile may show, as many as a slice takes. */
 static bool choose_parts(struct native_slice *slice, size_t *part, size_t most)
 {
     struct native_polygon_stage *stage = slice->stage;
@@ -110,7 +110,7 @@ static void draw(void *owner, unsigned number)
         slice->set->triangles(slice, k);
 }
 
-/* Two roundings of the picture's largest coordinate, and as much again as places may round apart. */
+/* Two roundings of the picture's largest coordinate, and as much again for how differently neighbours may round. */
 static float slack_of(const struct view *view)
 {
     uint32_t side = view->width_px > view->height_px ? view->width_px : view->height_px;

@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-/* All meshes together may take so much memory. */
+/* Upper limit on the memory of all meshes together. */
 static const size_t MAX_KEPT_BYTES = (size_t)512 << 20;
 
 static void drop(struct native_kept_mesh *kept)

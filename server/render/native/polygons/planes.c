@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Runs a program that takes 64 pixels of a row a workgroup (shaders/lanes/polygon_at.glsl). */
+/* Runs a program whose workgroups take 64 pixels of a row (shaders/lanes/polygon_at.glsl). */
 static void run(const struct native_drawing *d, native_program *program, struct native_bindings b,
                 const struct view *view, const struct mesh *mesh)
 {

@@ -1,4 +1,4 @@
-/* Where rays of pixels begin: shaders/rounded_solve.comp.glsl says in which order who is asked. */
+/* Chooses where rays of pixels start: shaders/rounded_solve.comp.glsl gives the order of guesses. */
 #include "server/render/native/rays/rays.h"
 
 #include <math.h>
@@ -6,16 +6,16 @@
 
 #include "server/render/native/denormals.h"
 
-/* Newton's method begins at one place for all rays of a pixel, or for those on one side of it. */
+/* Newton's method starts at one place for all rays of a pixel, or for those on one side of it. */
 enum { GUESSES = 4, BESIDE_ROUNDS = 2, BESIDE = 4 };
-/* seen.glsl: in front by more than a slope of so many px of depth a px. */
+/* seen.glsl: a slope of this many px of depth per px. */
 static const float DOUBT_PX = 4;
 
 static const float EDGE_RAYS[NATIVE_MAX_RAYS][2] = {
 #include "edge_rays.inc" /* of shaders/rounded.glsl */
 };
 
-/* The place at which a pixel of the tile meets the surface. False where it meets none. */
+/* Finds the place where a pixel of the tile meets the surface. False if it meets none. */
 static bool guess_of(const struct native_frame *frame, uint32_t x, uint32_t y,
                      struct native_ray_task *task)
 {
@@ -71,15 +71,16 @@ static void add_task(struct native_ray_room *room, const struct native_ray_task 
     task->ray = ray;
 }
 
-/* A ray that has met something asks on since something lies in front of that: not what lies no nearer. */
+/* A ray that has a hit goes on only because something lies in front of it, so guesses that are no nearer are
+ * skipped. */
 static bool is_passed_by(const struct native_frame *frame, float z, uint32_t x, uint32_t y)
 {
     float there = frame->planes->depth[y * frame->planes->pitch + x];
     return z < RAYS_FARTHEST && !(there < z);
 }
 
-/* Guess k of each ray: its pixel's, then those of the pixels towards which it lies: aside, above or below, and
- * both. */
+/* Guess k of each ray: its own pixel's, then those of the pixels on the side to which it lies: beside, above or
+ * below, and diagonal. */
 static void ask_centres(const struct native_frame *frame, struct native_ray_room *room, int k)
 {
     for (uint32_t i = 0; i < room->n_pixels; i++) {
@@ -93,7 +94,7 @@ static void ask_centres(const struct native_frame *frame, struct native_ray_room
             uint32_t x = beside(pixel->x, dx, frame->tile.width);
             uint32_t y = beside(pixel->y, dy, frame->tile.height);
             if (k && x == pixel->x && y == pixel->y)
-                continue; /* asked already */
+                continue; /* already tried */
             if (is_passed_by(frame, room->z[ray], x, y))
                 continue;
             if (!is_asked[dy + 1][dx + 1])
@@ -105,7 +106,7 @@ static void ask_centres(const struct native_frame *frame, struct native_ray_room
     }
 }
 
-/* Rays that have met something, unless something lies in front of it, ask no more. */
+/* Rays that have a hit stop, unless something lies in front of it. */
 static void see_who_asks(const struct native_frame *frame, struct native_ray_room *room)
 {
     for (uint32_t i = 0; i < room->n_pixels; i++) {
@@ -119,7 +120,7 @@ static void see_who_asks(const struct native_frame *frame, struct native_ray_roo
     }
 }
 
-/* Rays that have met nothing. */
+/* The rays that have met nothing. */
 static unsigned unmet_of(const struct native_ray_room *room, uint32_t pixel)
 {
     const float *z = room->z + pixel * room->rays_per_px;
@@ -129,8 +130,7 @@ static unsigned unmet_of(const struct native_ray_room *room, uint32_t pixel)
     return unmet;
 }
 
-/* Of rays that have met nothing, those begin from the k-th ray beside them that had met something when pixel->asks
- * was set. */
+/* Rays without a hit start from the k-th ray beside them that had a hit when pixel->asks was set. */
 static void ask_beside(const struct native_frame *frame, struct native_ray_room *room, int side,
                        int k)
 {

@@ -1,4 +1,4 @@
-/* Rays sorted by the sub-patch that they begin on. */
+/* Sorts rays by the sub-patch that they start on. */
 #include "server/render/native/rays/rays.h"
 
 #include <assert.h>
@@ -12,7 +12,7 @@ void native_forget_ray_patches(struct native_ray_room *room)
     room->n_patches = room->sorting = 0;
 }
 
-/* Where the search for a sub-patch begins. */
+/* The index at which the search for a sub-patch begins. */
 static uint32_t hash(const struct native_ray_place *at)
 {
     uint64_t mixed = ((uint64_t)at->node << 16 | at->index) * 0x9e3779b97f4a7c15u;
@@ -37,7 +37,7 @@ static struct native_ray_patch *patch_at(const struct native_model *model,
     }
 }
 
-/* A patch is read some time after it is known which. */
+/* A patch is read only some time after its number is known. */
 static void prefetch(const struct native_patch *patch)
 {
     for (int line = 0; patch && line < 4; line++)
@@ -67,7 +67,7 @@ void native_group_rays(const struct native_model *model, struct native_ray_room 
     room->n_groups = 0;
     for (uint32_t i = 0; i < room->n_tasks; i++) {
         const struct native_ray_place *at = &room->task[i].at;
-        /* Tasks that follow each other are often on one sub-patch. */
+        /* Consecutive tasks are often on the same sub-patch. */
         if (i == 0 || room->group[last].node != at->node || room->group[last].index != at->index)
             last = group_of(model, room, at);
         room->group_of[i] = (uint16_t)last;
@@ -87,7 +87,7 @@ void native_group_rays(const struct native_model *model, struct native_ray_room 
         room->px[to] = task->px;
         room->ray[to] = (int32_t)task->ray;
     }
-    /* The last vector reads on. */
+    /* The last vector reads beyond the last ray. */
     memset(room->ray + room->n_tasks, 0, RAYS_END * sizeof *room->ray);
 }
 
@@ -109,7 +109,7 @@ struct native_part_of_node native_part_of_index(const struct limit_node *node, u
         part.origin_x = square < 3;
         part.origin_y = square > 1;
     } else if (node->kind == LIMIT_STRIP) {
-        bool is_last = index == limit_levels(node); /* as wide as the one before */
+        bool is_last = index == limit_levels(node); /* as wide as the patch before it */
         part.scale_y = (int8_t)(index + !is_last);
         part.origin_y = !is_last;
     }

@@ -1,7 +1,7 @@
 #include "server/render/native/native.h"
 #include "server/render/native/rays/rays.h"
 
-/* By 1,024 columns or rows of squares. */
+/* Sorts by columns or rows of squares, of which there are 1,024. */
 static void sort_by(const uint32_t *from, uint32_t n, int shift, uint32_t *to)
 {
     enum { COLUMNS = 1024 };
@@ -18,10 +18,10 @@ void native_sort_pixels(uint32_t *pixel, uint32_t n, uint32_t *room)
 {
     enum { SIDE_BITS = 6 };
     sort_by(pixel, n, SIDE_BITS, room);
-    sort_by(room, n, 16 + SIDE_BITS, pixel); /* those at edges come last */
+    sort_by(room, n, 16 + SIDE_BITS, pixel); /* pixels at edges come last */
 }
 
-/* Each thread takes pixels about TURNS times. */
+/* Each thread takes pixels about TURNS times, at least LEAST_PX. */
 enum { TURNS = 8, LEAST_PX = 32 };
 
 struct rounded_job {
@@ -66,7 +66,7 @@ bool native_meet_rounded(struct native_device *device, struct native_model *mode
         if (!thread->rays)
             return error_set(error, ERROR_SERVER, "out of memory for the rays of pixels");
     }
-    /* Few enough that no thread waits long for another's last ones. */
+    /* Few enough that no thread waits long for the last pixels of another. */
     job.at_once = rounded->n / (TURNS * native_device_threads(device)) + LEAST_PX;
     job.at_once = job.at_once < RAYS_PX ? job.at_once : RAYS_PX;
     native_rays_init(&job.frame.rays, view);
