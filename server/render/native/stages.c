@@ -13,11 +13,6 @@ enum { GROUPS_PER_WORKGROUP = 8 };
 enum { CHUNKS_PER_THREAD = 8, CHUNK = 32, WORKGROUP_PX = 64, CHUNK_PX = CHUNK * WORKGROUP_PX };
 /* Pixels of a list that a workgroup of its program takes (shaders/edges.glsl, rounded.glsl). */
 enum { EDGES_PER_WORKGROUP = 32, LISTED_PER_WORKGROUP = 64 };
-<<<<<<< HEAD
-=======
-/* From this many pixels on, counting lights at every pixel is too much. */
-enum { SHARE_ALL_PX = 1 << 18, SHARE_STRIDE = 8 };
->>>>>>> d668c38 (render/native: say in plain words what functions of the device do)
 
 /* --- programs */
 
@@ -252,24 +247,7 @@ static struct native_picture picture_of(const struct frame_request *request,
     return picture;
 }
 
-<<<<<<< HEAD
-/* The pixels that the edges' programs have listed, anew. */
-=======
-/* Number of squares of a pixel that are shaded separately (shaders/high_curvature_shade.comp.glsl). */
-enum { SQUARES = 9 };
-
-static void shade_squares(const struct native_drawing *d, struct native_bindings *b,
-                          enum native_list_of listed, uint32_t first, uint32_t end)
-{
-    b->listed = list_of(d, listed);
-    b->first_square = first;
-    b->end_square = end;
-    run_program(d, native_device_programs(d->device)->high_curvature_shade, b, b->listed->n,
-                LISTED_PER_WORKGROUP, NULL);
-}
-
 /* Shades again the pixels that the programs for edges have listed. */
->>>>>>> d668c38 (render/native: say in plain words what functions of the device do)
 static void shade_listed(const struct native_drawing *d, struct native_bindings *b)
 {
     const struct native_programs *programs = native_device_programs(d->device);
@@ -343,11 +321,10 @@ static void shade_light(const struct native_drawing *d, uint32_t i, struct nativ
         run_program(d, programs->shade_planes, &b, b.groups->n, GROUPS_PER_WORKGROUP, NULL);
 }
 
-<<<<<<< HEAD
-/* Squares of a pixel that are shaded by themselves (shaders/high_curvature_shade.comp.glsl). */
+/* Number of squares of a pixel that are shaded separately (shaders/high_curvature_shade.comp.glsl). */
 enum { SQUARES = 9 };
 
-/* At the pixels that are shaded in parts. */
+/* Shades some squares of the pixels that are shaded in parts. */
 static void shade_squares(const struct native_drawing *d, struct native_bindings *b, uint32_t first,
                           uint32_t end)
 {
@@ -358,10 +335,7 @@ static void shade_squares(const struct native_drawing *d, struct native_bindings
                 LISTED_PER_WORKGROUP, NULL);
 }
 
-/* These anew: all lights of each square, one square after the other; one light at once. */
-=======
-/* Shades the listed pixels again: all lights of each square, one square after the other. */
->>>>>>> d668c38 (render/native: say in plain words what functions of the device do)
+/* Shades them again, square by square with all lights of each; a single light shades all squares at once. */
 static void shade_parts(const struct native_drawing *d)
 {
     uint32_t n_lights = d->request->n_lights, at_once = n_lights > 1 ? 1 : SQUARES;
