@@ -42,16 +42,16 @@ Uneven unevenness(Met met, vec4 mean, vec4 own)
     return Uneven(share * pattern.light + border, share * pattern.alpha + border * own.a);
 }
 
-// What departs by less from its mean is even; light.
+// A smaller deviation from the mean counts as even; in light.
 const float LEAST_UNEVEN = 0.01;
-// Further off the parallelogram counts. Px.
+// A pattern farther off its parallelogram than this counts as bent, px.
 const float LEAST_BEND = 0.04;
-// Where the normal turns further, a pixel may be uneven though its parallelogram is not; at the border of a light of
-// which it knows nothing sooner. Rad.
+// Where the normal turns by more than this, rad, a pixel may be uneven although its parallelogram is not. With a
+// light that has a border, MOST_TURN is enough, since the parallelogram may not reach the border.
 const float LARGE_TURN = 0.1;
 
-// How far the pattern lies off its parallelogram at the pixel's sides, px: because the normal's turning changes from pixel
-// to pixel, and because the light's coordinates bend as the ray turns.
+// Distance of the pattern from its parallelogram at the pixel's sides, px. There are two causes: the turning of the
+// normal changes from pixel to pixel, and the light's coordinates bend as the ray turns.
 float bend_of(Sample at, Met met, ivec2 p)
 {
     vec3 r, dr[2];
