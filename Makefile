@@ -5,7 +5,8 @@
 #   make unit | oracle | service    one kind of test
 #   make oracle     DEVICE=native|mesa|N ISA=v2|v3|v4: what the oracles judge (native, the widest)
 #   make test       T=NAME: one row of what `make check` prints; tests/README.md says which there are
-#   make fuzz       SECONDS=60: fuzz each target of tests/fuzz so long (needs clang-14: sh deploy/deps.sh fuzz)
+#   make fuzz       SECONDS=60: fuzz each target of tests/fuzz so long (needs clang-14: sh deploy/deps.sh fuzz), and a
+#                   daemon with AddressSanitizer by sequences of messages
 #   make fuzz-coverage   lines of protocol/, the readers and the workers' messages that the corpora reach
 #   make soak       the service under load, SECONDS of each part (60), and 102 processes killed; prints
 #                   figures, judges ratios
@@ -344,6 +345,8 @@ fuzz:
 	sh deploy/deps.sh fuzz
 	$(MAKE) FUZZ=1 fuzz-targets
 	sh tests/fuzz/fuzz.sh build/fuzz $(SECONDS) $(FUZZ_NAMES)
+	$(MAKE) SANITIZE=1 all
+	SHEEN_FUZZ_S=$(SECONDS) /usr/bin/python3 tests/service/run.py build/sanitize test_sequences
 fuzz-coverage:
 	$(MAKE) COVERAGE=1 fuzz-targets
 	sh tests/fuzz/coverage.sh build/coverage $(FUZZ_NAMES)

@@ -40,9 +40,10 @@ float soft_stripe(float phase, vec2 g, float d, float soft)
     if (reach < 0.5) {
         soft = max(soft, LEAST_SOFT * max(reach, 0.1));
         float x = phase - 0.5 * d, outer = 0.5 * (d + soft), inner = 0.5 * (d - soft);
-        float last = floor(x + outer + reach);
-        for (float k = ceil(x - outer - reach); k <= last; k += 1.0) {
-            float y = -abs(x - k);
+        // Counted from the first, at most five: beyond 2^24 a number and its successor are the same.
+        float first = ceil(x - outer - reach), n = min(floor(x + outer + reach) - first, 4.0);
+        for (float i = 0.0; i <= n; i += 1.0) {
+            float y = -abs(x - (first + i));
             sum += ramp(y + outer, g) - ramp(y + inner, g) - ramp(y - inner, g) + ramp(y - outer, g);
         }
         return sum / soft;
