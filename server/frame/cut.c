@@ -1,8 +1,8 @@
 #include "server/frame/cut.h"
 
-/* Weights of a pixel: a light of stripes counts 2. They were measured on the native device with two
- * threads at 640x480 and 800x600, the surface filling the picture, by the processors' time: the surface
- * itself 60 to 110 ns a pixel, each light of stripes 12 to 16, of a lattice or circles 20 to 25, of a
+/* Weights of a pixel: a light of stripes counts 2. They come from the processors' time on the native device with
+ * two threads at 640x480 and 800x600, the surface filling the picture, while other programs took most of the machine:
+ * the surface itself 60 to 110 ns a pixel, each light of stripes 12 to 16, of a lattice or circles 20 to 25, of a
  * rainbow 36 to 40. Families of lines and kinds of lights differ by a tenth, so that they have no weight.
  * Mesa's software device takes 2.4 times as much for all of these. */
 enum { SURFACE_WEIGHT = 8 };
@@ -13,8 +13,8 @@ static const unsigned PATTERN_WEIGHT[] = {
     [sheen_PatternKind_PATTERN_DISTANCE] = 3};
 enum { N_PATTERNS = sizeof PATTERN_WEIGHT / sizeof *PATTERN_WEIGHT };
 
-/* The cost of an interactive tile: about 12 ms where two processors draw and have nothing else to do. A
- * GPU draws so much in a few milliseconds; that has not been measured. */
+/* The cost of an interactive tile: by these weights about 12 ms where two processors draw and have nothing else to
+ * do. Neither that time nor a GPU's has been measured on an idle machine. */
 #define NATIVE_TILE_COST 1600000u /* for two threads */
 #define MESA_TILE_COST 667000u
 #define GPU_TILE_COST 64000000u

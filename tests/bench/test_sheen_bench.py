@@ -36,7 +36,7 @@ class Bench(unittest.TestCase):
             self.assertEqual((ran.returncode, ran.stderr), (0, ""))
             kept = json.loads(pathlib.Path(folder, "sheen-bench_frame.json").read_text())
         figures = kept["figures"]
-        self.assertIn("llvmpipe", kept["device"])
+        self.assertIn("native", kept["device"])
         for size in "640x480", "1280x720", "1920x1080":
             self.assertGreater(figures[f"plane {size} covered pixels"], 1000)
             for stage in "visibility", "evaluate", "shade", "frame", "aliased", "all":
