@@ -1,5 +1,6 @@
 #include "server/render/gl/kept.h"
 
+#include <assert.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -63,15 +64,16 @@ void planes_choose(struct gl_renderer *r, const struct gl_model *model, struct g
 /* --- tiles into one */
 
 /* The lists that are collected, and how many of their entries a workgroup takes (list.glsl). */
+enum { GROUPS, EDGES, ROUNDED };
 static const struct {
     size_t member;
     GLuint per_group;
-} LISTS[COLLECTED_LISTS] = {
-    {offsetof(struct target, groups), 8},
-    {offsetof(struct target, edges), 32},
-    {offsetof(struct target, rounded), 4},
+} LISTS[] = {
+    [GROUPS] = {offsetof(struct target, groups), 8},
+    [EDGES] = {offsetof(struct target, edges), 32},
+    [ROUNDED] = {offsetof(struct target, rounded), 4},
 };
-enum { ROUNDED = 3 };
+static_assert(sizeof LISTS / sizeof *LISTS == COLLECTED_LISTS, "no list without an entry");
 
 void collect_begin(struct gl_renderer *r, const struct gl_frame *own)
 {

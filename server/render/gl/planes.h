@@ -32,7 +32,7 @@ enum planes_of {
 
 /* The progress of collecting lists for a frame in tiles in_place: the lists of each tile are
  * appended to those of the whole picture, over which stage 3 of a later frame runs. */
-enum { COLLECTED_LISTS = 4 };
+enum { COLLECTED_LISTS = 3 };
 struct collecting {
     /* gl_frame.serial of the frame whose tiles have all been collected so far; 0: none, or it was
      * given up. */
