@@ -84,17 +84,24 @@ class Misbehaviour(unittest.TestCase):
                 client.socket.recv(1000)
 
     def is_stopped(self):
-        """By SIGSTOP, while a frame larger than any socket's buffer is due."""
+        """By SIGSTOP, while a frame larger than any socket's buffer is due: from the first frame on there always
+        is one."""
         ask = ("import wire; client = wire.Client({!r}, minor=1)\n"
-               "while True: client.render({!r}, 1000, 1000, kind=wire.INTERACTIVE)")
+               "ask = lambda: client.ask({!r}, 1000, 1000, kind=wire.STILL)\n"
+               "due = ask()\n"
+               "while True:\n"
+               "    seq, due = due, ask()\n"
+               "    client.read_frame(seq)\n"
+               "    print(flush=True)")
         process = subprocess.Popen(
             [sys.executable, "-c", ask.format(self.daemon.unix, self.model)],
-            cwd=os.path.dirname(os.path.abspath(__file__)), stderr=subprocess.DEVNULL)
-        time.sleep(1)
+            cwd=os.path.dirname(os.path.abspath(__file__)), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        process.stdout.readline()
         process.send_signal(signal.SIGSTOP)
         self.gone.wait()
         process.kill()
         process.wait()
+        process.stdout.close()
 
     def wait_for_log(self, reason, n):
         """n lines hold these words, soon."""
