@@ -27,6 +27,10 @@ files=$(git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' 2>/dev/n
 # shellcheck disable=SC2086
 clang-format --dry-run -Werror $files 2>&1 | grep -m 20 'error:' && fail "run make format"
 
+marked=$(git grep -nE '^(<<<<<<<|>>>>>>>)( |$)' -- . 2>/dev/null)
+[ -z "$marked" ] || fail "a merge is not finished:
+$marked"
+
 # Who may know whom: what a folder's files may include, from the lowest room to the highest, and why. A room
 # that stands in nobody's list is known by nobody.
 room() { # folder, folders it may include, why

@@ -21,10 +21,11 @@ const int side = 20, per_pixel = side * side;
 const uint32_t width_px = 160, height_px = 120;
 const uint32_t seed = 5;
 const int n_views = 5; /* the default camera, and others at random */
-/* Of each model's pixels that an edge runs through, so many are within most_off of their share. Of
- * the car's 0.971 were measured: many of its parts are narrower than such a pixel, so that the
- * centre of none sees them. */
-const double most_off = 0.1, least_good = 0.99, least_good_car = 0.965;
+/* Of each model's pixels that an edge runs through, so many are within most_off of their share. Many
+ * of the car's parts are narrower than such a pixel, so that the centre of none sees them: 0.990
+ * were measured in its first n_first views, and 0.971 in all. */
+const int n_first = 3;
+const double most_off = 0.1, least_good = 0.99, least_good_car_first = 0.98, least_good_car = 0.965;
 
 /* White before what is clear. */
 frame_request request_for(const scene &scene, int view, std::mt19937 *random)
@@ -97,9 +98,16 @@ tally compare(drawing *drawing, frame_request request, const std::string &name, 
     return tally;
 }
 
-/* The views of a model do not depend on which models are judged before it. */
-tally judge(const std::string &path, verdict *verdict)
+void judge_share(const tally &all, double least, const std::string &what, verdict *verdict)
 {
+    double bad = 1 - (double)all.good / (double)all.edges;
+    verdict->at_most(bad, 1 - least, what + ", share of the pixels at edges that are off");
+}
+
+/* The views of a model do not depend on which models are judged before it. */
+void judge(const std::string &path, verdict *verdict)
+{
+    bool is_car = path.find("catmark_car") != std::string::npos;
     std::mt19937 random(seed);
     scene scene(read_cage_file(path));
     drawing drawing(scene);
@@ -111,17 +119,13 @@ tally judge(const std::string &path, verdict *verdict)
         all.edges += one.edges;
         all.good += one.good;
         all.sum += one.sum;
+        if (is_car && view + 1 == n_first)
+            judge_share(all, least_good_car_first, name + ", first views", verdict);
     }
+    judge_share(all, is_car ? least_good_car : least_good, name, verdict);
     std::printf("%-28s %6zu px at edges, mean off %.4f, %.2f %% within %.1f\n", name.c_str(),
                 all.edges, all.sum / (double)all.edges, 100 * (double)all.good / (double)all.edges,
                 most_off);
-    return all;
-}
-
-void judge_share(const tally &all, double least, const std::string &what, verdict *verdict)
-{
-    double bad = 1 - (double)all.good / (double)all.edges;
-    verdict->at_most(bad, 1 - least, what + ", share of the pixels at edges that are off");
 }
 
 } // namespace
@@ -131,10 +135,7 @@ int main(int argc, char **argv)
     verdict verdict;
     for (int i = 1; i < argc; i++)
         try {
-            std::string path = argv[i];
-            bool is_car = path.find("catmark_car") != std::string::npos;
-            judge_share(judge(path, &verdict), is_car ? least_good_car : least_good, path,
-                        &verdict);
+            judge(argv[i], &verdict);
         } catch (const std::exception &failure) {
             verdict.check(false, failure.what());
         }

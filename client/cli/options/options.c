@@ -69,8 +69,9 @@ static bool check_samples(const struct options *options, char *why)
     const struct sheen_request *request = &options->request;
     bool is_given_exact = options->given & GIVEN_ANTIALIAS && !request->aliased;
     return !request->unfiltered || !is_given_exact ||
-           options_refuse(why, "--antialias exact and --filter off exclude each other: one sample "
-                               "of the lines a pixel leaves no edge to average");
+           options_refuse(why,
+                          "--antialias exact and --filter off exclude each other: --filter off "
+                          "takes one sample for each pixel, edges included");
 }
 
 static bool check_size(const struct sheen_request *request, char *why)

@@ -1,6 +1,7 @@
 /* Chooses where rays of pixels start: shaders/rounded_solve.comp.glsl gives the order of guesses. */
 #include "server/render/native/rays/rays.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -11,9 +12,10 @@ enum { GUESSES = 4, BESIDE_ROUNDS = 2, BESIDE = 4 };
 /* seen.glsl: a slope of this many px of depth per px. */
 static const float DOUBT_PX = 4;
 
-static const float EDGE_RAYS[NATIVE_MAX_RAYS][2] = {
+static const float EDGE_RAYS[][2] = {
 #include "edge_rays.inc" /* of shaders/rounded.glsl */
 };
+static_assert(sizeof EDGE_RAYS / sizeof *EDGE_RAYS == NATIVE_MAX_RAYS, "a place for each ray");
 
 /* Finds the place where a pixel of the tile meets the surface. False if it meets none. */
 static bool guess_of(const struct native_frame *frame, uint32_t x, uint32_t y,
