@@ -51,9 +51,12 @@ OPT += -fsanitize=fuzzer-no-link
 endif
 WARN := -Wall -Wextra -Werror -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-qual
 CWARN := $(WARN) -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
+# Guards of the stack and of jumps, as far as the compiler has them for its processor.
+GUARDS := $(foreach flag,-fstack-clash-protection -fcf-protection,\
+            $(shell $(CC) -Werror $(flag) -x c -S -o /dev/null /dev/null 2>/dev/null && echo $(flag)))
 # No contraction: the tables must not depend on the processor that built them.
 # Two folders give equal programs.
-BASE := $(OPT) -g $(if $(COVERAGE),,-ffile-prefix-map=$(CURDIR)=.) -ffp-contract=off -fstack-protector-strong -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
+BASE := $(OPT) -g $(if $(COVERAGE),,-ffile-prefix-map=$(CURDIR)=.) -ffp-contract=off -fstack-protector-strong $(GUARDS) -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
         -I. -I$(BUILD)/gen -MMD -MP -DSHEEN_VERSION=\"$(VERSION)\" -pthread
 CFLAGS += -std=c11 -D_GNU_SOURCE $(CWARN) $(BASE)
 # The check of vptr makes a pipe, which workers may not.
