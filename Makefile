@@ -100,8 +100,8 @@ LANES_FLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-O3) -ffp-contract=fast -fno-
 IMAGE_SRC := $(wildcard server/image/*.c)
 IMAGE_LIBRARY_SRC := $(wildcard server/image/*.cpp)
 # What sheend shares with its workers, and what is theirs alone: each has a main and tasks.
-WORKER_SHARED_SRC := server/sandbox/stream.c server/sandbox/job.c server/sandbox/cage_code.c \
-                     server/sandbox/image_code.c
+WORKER_SHARED_SRC := server/sandbox/stream.c server/sandbox/job.c server/sandbox/pass.c server/sandbox/filter.c \
+                     server/sandbox/cage_code.c server/sandbox/image_code.c
 ZYGOTE_SRC := server/sandbox/zygote.c server/sandbox/sandbox.c server/sandbox/threads.c
 # The rooms of the daemon alone.
 SERVICE_SRC := $(foreach room,net session frame assets output threads ops,$(wildcard server/$(room)/*.c))
@@ -118,14 +118,14 @@ LANES_OBJ := $(foreach set,$(LANE_SETS),$(patsubst %.c,$(BUILD)/obj/%.$(set).o,$
              $(patsubst %,$(BUILD)/obj/gen/lanes/%.$(set).o,$(NATIVE_PROGRAMS)))
 RENDER_OBJ := $(LANES_OBJ) $(call obj,$(SCENE_SRC) $(RENDER_SRC) server/base/processors.c protocol/control_group.c protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,$(filter-out server/base/error.c,$(wildcard server/base/*.c)) $(SERVICE_SRC) $(CONVERT_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
-              $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC)) $(PROTOCOL_OBJ)
+              $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC) server/sandbox/confine.c) $(PROTOCOL_OBJ)
 # With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
 KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
 SERVER_OBJ += $(KEEP_MODULES)
 # What parses files from strangers: linked into the workers alone.
 CAGE_TASKS_OBJ := $(call obj,$(CAGE_READ_SRC) server/sandbox/cage_tasks.c)
 IMAGE_TASKS_OBJ := $(call obj,$(IMAGE_LIBRARY_SRC) server/sandbox/image_tasks.c)
-WORKER_OBJ := $(call obj,server/base/error.c server/sandbox/stream.c server/sandbox/job.c $(ZYGOTE_SRC))
+WORKER_OBJ := $(call obj,server/base/error.c server/sandbox/stream.c server/sandbox/job.c server/sandbox/pass.c server/sandbox/filter.c $(ZYGOTE_SRC))
 CAGE_WORKER_OBJ := $(call obj,server/sandbox/cage_main.c $(CAGE_SRC) server/sandbox/cage_code.c) \
                    $(CAGE_TASKS_OBJ) $(WORKER_OBJ)
 IMAGE_WORKER_OBJ := $(call obj,server/sandbox/image_main.c $(IMAGE_SRC) server/sandbox/image_code.c) \
@@ -231,7 +231,7 @@ $(BUILD)/gen/edge_rays.inc: shaders/rounded.glsl
 
 # sheend that fails where $SHEEN_FAULTS asks it to, and counts what its own code (no library's) takes from
 # the heap: what is installed cannot.
-$(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/allocations.c) $(filter-out %/server/base/fault.c.o,$(SERVER_OBJ))
+$(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/taken_over.c tests/service/allocations.c) $(filter-out %/server/base/fault.c.o,$(SERVER_OBJ))
 	$(call say,LD $@)
 	$(Q)$(CC) $(LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup,--wrap=limit_build_faces -o $@ $^ $(SERVER_LIBS)
 

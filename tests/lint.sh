@@ -85,7 +85,7 @@ room server/frame "$common|protocol|server/assets|server/output|server/scene" \
     'a frame tells its session by events (request.h), so it includes none'
 room server/session "$common|protocol|server/assets|server/frame|server/net|server/output|server/threads" \
     'a session is one client'"'"'s messages; the main service hands it what it needs'
-room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/render/gl|server/render/native|server/session|server/threads" \
+room server/ops "$common|protocol|server/assets|server/frame|server/net|server/output|server/render/gl|server/render/native|server/sandbox|server/session|server/threads" \
     'the daemon as a whole: nobody includes it'
 
 no_include() { # folder, pattern of what it must not include, why
@@ -107,9 +107,9 @@ no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows s
 no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the protocol the command knows no byte: libsheen says it'
 only_in '\bgl[A-Z][A-Za-z0-9]*\(|epoxy' 'GL' 'server client protocol' server/render/gl/
 only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfrom|recvmsg|setsockopt|socketpair)\(' \
-    'socket calls' 'server client protocol' server/net/ server/ops/notify.c server/threads/worker.c server/sandbox/zygote.c client/lib/connection.c client/lib/private_daemon.c
+    'socket calls' 'server client protocol' server/net/ server/ops/notify.c server/threads/starter.c server/threads/worker.c server/sandbox/pass.c client/lib/connection.c client/lib/private_daemon.c
 only_in '\b(posix_spawnp?|vfork|exec[lv][a-z]*|system|popen)\(|[=?:] v?fork\(' 'child processes' 'server client protocol' \
-    protocol/child.c server/sandbox/zygote.c
+    protocol/child.c server/sandbox/zygote.c server/threads/starter.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
 only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol' \
     server/render/native/team.c server/surface/subdivision/maker.c

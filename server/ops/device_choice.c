@@ -9,11 +9,11 @@
 
 int device_tries(const char *words, struct device_try tries[DEVICE_MOST_TRIES])
 {
-    const struct device_try hardware = {&gl_device, "hardware"},
-                            native = {&native_renderer_device, NULL};
+    const struct device_try hardware = {&gl_device, "hardware", true},
+                            native = {&native_renderer_device, NULL, false};
     uint64_t number;
     if (number_parse(words, 0, 1023, false, &number)) {
-        tries[0] = (struct device_try){&gl_device, words};
+        tries[0] = (struct device_try){&gl_device, words, true};
         return 1;
     }
     if (strcmp(words, "auto") == 0) {

@@ -2,6 +2,8 @@
 #ifndef SHEEN_OPS_DEVICE_CHOICE_H
 #define SHEEN_OPS_DEVICE_CHOICE_H
 
+#include <stdbool.h>
+
 struct renderer_device;
 
 enum { DEVICE_MOST_TRIES = 2 };
@@ -10,6 +12,7 @@ enum { DEVICE_MOST_TRIES = 2 };
 struct device_try {
     const struct renderer_device *kind;
     const char *device;
+    bool has_driver; /* it draws by code that is not sheend's own (sandbox/confine.h) */
 };
 
 /* Fills in the devices that `words` asks for, in the order in which they are to be tried until one

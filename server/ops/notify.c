@@ -11,7 +11,10 @@
 
 #define FIRST_FD 3 /* SD_LISTEN_FDS_START */
 
-void notify_send(const char *state)
+/* The service manager's socket; -1: there is none. */
+static int manager_fd = -1;
+
+void notify_open(void)
 {
     const char *path = getenv("NOTIFY_SOCKET");
     struct sockaddr_un name = {.sun_family = AF_UNIX};
@@ -25,9 +28,16 @@ void notify_send(const char *state)
     if (fd < 0)
         return;
     socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length);
-    sendto(fd, state, strlen(state), MSG_NOSIGNAL | MSG_DONTWAIT, (const struct sockaddr *)&name,
-           size);
-    close(fd);
+    if (connect(fd, (const struct sockaddr *)&name, size) == 0)
+        manager_fd = fd;
+    else
+        close(fd);
+}
+
+void notify_send(const char *state)
+{
+    if (manager_fd >= 0)
+        send(manager_fd, state, strlen(state), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 /* Reads an environment variable that holds a decimal number and nothing else. False if there is no

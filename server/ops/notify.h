@@ -14,8 +14,10 @@
 #define NOTIFY_MAX_FDS 32
 #define NOTIFY_NAME_BYTES 64
 
-/* Sends lines of KEY=VALUE, for example "READY=1" or "STOPPING=1\nSTATUS=draining", to
- * $NOTIFY_SOCKET. Never blocks. A failure is ignored. */
+/* Connects to $NOTIFY_SOCKET, once, since a confined daemon can open no socket. */
+void notify_open(void);
+/* Sends lines of KEY=VALUE, for example "READY=1" or "STOPPING=1\nSTATUS=draining". Never blocks. A
+ * failure is ignored. */
 void notify_send(const char *state);
 
 /* The period within which the service manager expects WATCHDOG=1, in microseconds; 0: no

@@ -28,6 +28,7 @@ struct service {
     enum service_end end;
     uint64_t told_to_end_us; /* when a signal came; 0: none came, or drain() has been called */
     bool overdue;            /* drain-timeout has passed and is logged */
+    bool has_driver;         /* the device draws by a driver, as struct device_try has it */
     bool single;             /* private daemon: ends with its session */
 };
 

@@ -1,12 +1,15 @@
 /* Devices and threads of the service, and what each room needs of the others. */
+#include <errno.h>
 #include <string.h>
 
 #include "server/assets/model_file.h"
 #include "server/net/http.h"
 #include "server/ops/descriptors.h"
 #include "server/ops/device_choice.h"
+#include "server/ops/notify.h"
 #include "server/ops/service_internal.h"
 #include "server/output/jpeg.h"
+#include "server/sandbox/confine.h"
 
 /* Divides the descriptors that are left. Listeners and programs must be open. */
 static void share_descriptors(struct service *service)
@@ -27,9 +30,10 @@ static void share_descriptors(struct service *service)
 }
 
 /* Opens the first device of the list that works. On failure *error is that of the last one. */
-static struct render_thread *open_device(struct daemon *daemon,
-                                         const struct service_options *options, struct error *error)
+static struct render_thread *open_device(struct service *service, struct error *error)
 {
+    struct daemon *daemon = &service->daemon;
+    const struct service_options *options = &service->options;
     struct device_try tries[DEVICE_MOST_TRIES];
     struct render_thread *thread = NULL;
     int n = device_tries(options->device, tries);
@@ -42,6 +46,7 @@ static struct render_thread *open_device(struct daemon *daemon,
         thread = render_thread_create(tries[i].kind, &renderer, daemon->completions, error);
         if (!thread && i + 1 < n)
             log_event(LOG_INFO, "no GPU: processors draw", log_text("text", error->text));
+        service->has_driver = tries[i].has_driver;
     }
     return thread;
 }
@@ -59,7 +64,7 @@ static bool start_threads(struct service *service, struct error *error)
            workers_init(&daemon->workers, NULL, &limits->workers, limits->assets.memory_budget,
                         error) &&
            (daemon->completions = completions_create(daemon->loop, error)) &&
-           (daemon->render_thread = open_device(daemon, options, error)) &&
+           (daemon->render_thread = open_device(service, error)) &&
            (daemon->pool = pool_create("sheend-pool", (unsigned)options->n_threads, 1,
                                        &encode_context, daemon->completions, error)) &&
            (daemon->readers = pool_create("sheend-read", STORE_MAX_BUILDS, 0,
@@ -106,6 +111,14 @@ static void connect_rooms(struct service *service)
     strangers_init(&sessions->strangers);
 }
 
+/* From here on the daemon can start no program, write no file and open no socket. */
+static bool confine(const struct service *service, struct error *error)
+{
+    return confine_enter(service->has_driver ? CONFINE_DRIVER : CONFINE_COMPUTING) ||
+           error_set(error, ERROR_SERVER, "the kernel refuses to confine the daemon (seccomp): %s",
+                     strerror(errno));
+}
+
 bool service_start(struct service *service, struct error *error)
 {
     struct daemon *daemon = &service->daemon;
@@ -120,12 +133,13 @@ bool service_start(struct service *service, struct error *error)
     daemon->most_clients = 1;
     if (service->single) {
         share_descriptors(service);
-        return service_open_session(service, options->session_fd, error);
+        return service_open_session(service, options->session_fd, error) && confine(service, error);
     }
     workers_expect_images(&daemon->workers);
     service->monitor = monitor_create(daemon, options->stuck_s * 1000000, error);
     if (!service->monitor || !service_open_listeners(service, error))
         return false;
+    notify_open();
     share_descriptors(service);
-    return true;
+    return confine(service, error);
 }

@@ -1,10 +1,7 @@
 #include "server/sandbox/sandbox.h"
 
 #include <errno.h>
-#include <linux/audit.h>
-#include <linux/filter.h>
 #include <linux/seccomp.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -12,13 +9,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#if defined(__x86_64__)
-#define ARCHITECTURE AUDIT_ARCH_X86_64
-#elif defined(__aarch64__)
-#define ARCHITECTURE AUDIT_ARCH_AARCH64
-#else
-#error "the system calls of this processor have not been listed yet"
-#endif
+#include "server/sandbox/filter.h"
 
 #ifdef __SANITIZE_ADDRESS__
 enum { HAS_SHADOW = true }; /* AddressSanitizer's shadow needs more memory than any limit */
@@ -64,66 +55,40 @@ bool sandbox_limit(const struct job_limits *limits, uint64_t held_bytes)
 
 /* --- system calls */
 
-/* The low half of argument i. */
-#define ARGUMENT(i) (offsetof(struct seccomp_data, args) + 8 * (size_t)(i))
-#define LOAD(offset) BPF_STMT(BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offset))
-#define MASK(bits) BPF_STMT(BPF_ALU | BPF_AND | BPF_K, (uint32_t)(bits))
-#define RETURN(what) BPF_STMT(BPF_RET | BPF_K, (uint32_t)(what))
-#define ALLOW RETURN(SECCOMP_RET_ALLOW)
-#define KILL RETURN(SECCOMP_RET_KILL_PROCESS)
-/* Continues if equal, else skips the next n instructions. */
-#define IF_EQUAL(value, n) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)(value), 0, n)
-#define ALLOW_CALL(number) IF_EQUAL(number, 1), ALLOW
-/* Allows a system call if its argument i, masked, equals the value; kills otherwise. */
-#define ALLOW_CALL_IF(number, i, mask, value)                                                      \
-    IF_EQUAL(number, 5), LOAD(ARGUMENT(i)), MASK(mask), IF_EQUAL(value, 1), ALLOW, KILL
-
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the low half of a number comes first");
+/* Whatever their arguments. */
+static const long FREE_CALLS[] = {
+    SYS_brk,
+    SYS_munmap,
+    SYS_mremap,
+    SYS_madvise,
+    SYS_futex,
+    SYS_getrandom,
+    SYS_clock_gettime,
+    SYS_sysinfo, /* qsort() calls it for the size of memory */
+    SYS_sched_yield,
+    SYS_exit_group,
+    /* abort() raises a signal in its own process */
+    SYS_rt_sigprocmask,
+    SYS_getpid,
+    SYS_gettid,
+    /* AddressSanitizer calls it before a function ends the process. */
+    HAS_SHADOW ? SYS_sigaltstack : SYS_brk,
+};
 
 bool sandbox_enter(int answer_fd)
 {
-    struct sock_filter code[] = {
-        LOAD(offsetof(struct seccomp_data, arch)),
-        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ARCHITECTURE, 1, 0),
-        KILL,
-        /* Numbers of x32 system calls differ from all below, so they kill. */
-        LOAD(offsetof(struct seccomp_data, nr)),
-        ALLOW_CALL(SYS_brk),
-        ALLOW_CALL(SYS_munmap),
-        ALLOW_CALL(SYS_mremap),
-        ALLOW_CALL(SYS_madvise),
-        ALLOW_CALL(SYS_futex),
-        ALLOW_CALL(SYS_getrandom),
-        ALLOW_CALL(SYS_clock_gettime),
-        ALLOW_CALL(SYS_sysinfo), /* qsort() calls it for the size of memory */
-        ALLOW_CALL(SYS_sched_yield),
-        ALLOW_CALL(SYS_exit_group),
-        /* abort() raises a signal in its own process; no other process can be signalled. */
-        ALLOW_CALL(SYS_rt_sigprocmask),
-        ALLOW_CALL(SYS_getpid),
-        ALLOW_CALL(SYS_gettid),
-        ALLOW_CALL_IF(SYS_tgkill, 0, UINT32_MAX, getpid()),
-        /* AddressSanitizer calls it before a function ends the process. */
-        ALLOW_CALL(HAS_SHADOW ? SYS_sigaltstack : SYS_brk),
-        ALLOW_CALL_IF(SYS_mprotect, 2, PROT_EXEC, 0),
-        IF_EQUAL(SYS_mmap, 8),
-        LOAD(ARGUMENT(2)),
-        MASK(PROT_EXEC),
-        IF_EQUAL(0, 4),
-        LOAD(ARGUMENT(3)),
-        MASK(MAP_TYPE | MAP_ANONYMOUS),
-        IF_EQUAL(MAP_PRIVATE | MAP_ANONYMOUS, 1),
-        ALLOW,
-        KILL,
-        IF_EQUAL(SYS_write, 5),
-        LOAD(ARGUMENT(0)),
-        IF_EQUAL(answer_fd, 1),
-        ALLOW,
-        IF_EQUAL(STDERR_FILENO, 1),
-        RETURN(HAS_SHADOW ? SECCOMP_RET_ALLOW : SECCOMP_RET_ERRNO | EBADF),
-        KILL,
-    };
-    struct sock_fprog program = {sizeof code / sizeof *code, code};
-    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
-           syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &program) == 0;
+    struct filter filter;
+    const uint32_t allow = SECCOMP_RET_ALLOW, all = UINT32_MAX;
+    filter_init(&filter);
+    for (size_t i = 0; i < sizeof FREE_CALLS / sizeof *FREE_CALLS; i++)
+        filter_call(&filter, FREE_CALLS[i], allow);
+    filter_call_if(&filter, SYS_tgkill, 0, all, (uint32_t)getpid(), allow);
+    filter_call_if(&filter, SYS_mprotect, 2, PROT_EXEC, 0, allow);
+    filter_call_if(&filter, SYS_mmap, 2, PROT_EXEC, PROT_EXEC, SECCOMP_RET_KILL_PROCESS);
+    filter_call_if(&filter, SYS_mmap, 3, MAP_TYPE | MAP_ANONYMOUS, MAP_PRIVATE | MAP_ANONYMOUS,
+                   allow);
+    filter_call_if(&filter, SYS_write, 0, all, (uint32_t)answer_fd, allow);
+    filter_call_if(&filter, SYS_write, 0, all, STDERR_FILENO,
+                   HAS_SHADOW ? allow : SECCOMP_RET_ERRNO | EBADF);
+    return filter_enter(&filter, SECCOMP_RET_KILL_PROCESS, 0);
 }

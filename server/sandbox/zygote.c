@@ -9,12 +9,12 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "server/sandbox/pass.h"
 #include "server/sandbox/sandbox.h"
 #include "server/sandbox/threads.h"
 
@@ -26,6 +26,8 @@ struct child {
     uint64_t deadline_ms;
     bool timed_out;
 };
+
+_Static_assert(N_JOB_FDS <= PASS_MAX_FDS, "a job's descriptors travel in one message");
 
 struct zygote {
     const char *name;
@@ -154,42 +156,15 @@ static void start_child(struct zygote *zygote, const struct job *job,
     close(fds[JOB_ANSWER]);
 }
 
-/* Receives a message and its descriptors. Returns the message's size; 0 at the end of the socket,
- * -1 on failure. All descriptors that came are in fds, their number in *n_fds. */
-static ssize_t receive(int socket_fd, uint8_t message[static JOB_MESSAGE_BYTES],
-                       int fds[static N_JOB_FDS], size_t *n_fds)
-{
-    union {
-        struct cmsghdr align;
-        char bytes[CMSG_SPACE(N_JOB_FDS * sizeof(int))];
-    } control;
-    struct iovec vector = {message, JOB_MESSAGE_BYTES};
-    struct msghdr header = {.msg_iov = &vector,
-                            .msg_iovlen = 1,
-                            .msg_control = &control,
-                            .msg_controllen = sizeof control};
-    *n_fds = 0;
-    ssize_t size;
-    do
-        size = recvmsg(socket_fd, &header, MSG_CMSG_CLOEXEC);
-    while (size < 0 && errno == EINTR);
-    const struct cmsghdr *part = size > 0 ? CMSG_FIRSTHDR(&header) : NULL;
-    if (part && part->cmsg_level == SOL_SOCKET && part->cmsg_type == SCM_RIGHTS) {
-        *n_fds = (part->cmsg_len - CMSG_LEN(0)) / sizeof(int);
-        memcpy(fds, CMSG_DATA(part), *n_fds * sizeof(int));
-    }
-    return size;
-}
-
 /* Takes the next job. False at the end of the socket (errno is 0), or if the message is
  * malformed. */
 static bool take_job(struct zygote *zygote)
 {
     uint8_t message[JOB_MESSAGE_BYTES];
-    int fds[N_JOB_FDS];
+    int fds[PASS_MAX_FDS];
     size_t n_fds;
     struct job job;
-    ssize_t size = receive(ZYGOTE_FD, message, fds, &n_fds);
+    ssize_t size = pass_receive(ZYGOTE_FD, message, sizeof message, fds, &n_fds);
     if (size == 0)
         errno = 0;
     if (size <= 0)

@@ -11,14 +11,14 @@
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "protocol/child.h"
 #include "server/base/clock.h"
 #include "server/base/log.h"
-#include "server/threads/pool.h"
+#include "server/sandbox/pass.h"
 #include "server/sandbox/zygote.h"
+#include "server/threads/pool.h"
+#include "server/threads/starter.h"
 
 #define ATTEMPTS 2
 #define GRACE_S 10 /* added to a job's time: for the program to report its end */
@@ -29,7 +29,7 @@ struct worker {
     char path[WORKER_PATH_BYTES];
     pthread_mutex_t lock;
     int socket_fd; /* -1: not running */
-    pid_t pid;
+    struct starter *starter;
     unsigned starts; /* number of starts, to know which process got a job */
     bool stopped;
     size_t n_spares;
@@ -44,24 +44,13 @@ static const char *program_name(const struct worker *worker)
 
 /* --- the program; call with worker->lock held, or before other threads know the worker */
 
-/* 0 or an errno value. socket_fd lies above ZYGOTE_FD. */
-static int spawn(struct worker *worker, int socket_fd)
-{
-    const char *const argv[] = {worker->path, NULL};
-    const struct child_files files = {socket_fd, ZYGOTE_FD, -1};
-    return child_start(&worker->pid, worker->path, argv, &files);
-}
-
 static bool start(struct worker *worker, struct error *error)
 {
-    int pair[2], high_fd = -1, failed = 0;
+    int pair[2], failed = 0;
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) < 0)
         failed = errno;
     if (!failed) {
-        high_fd = fcntl(pair[1], F_DUPFD_CLOEXEC, ZYGOTE_FD + 1);
-        failed = high_fd < 0 ? errno : spawn(worker, high_fd);
-        if (high_fd >= 0)
-            close(high_fd);
+        failed = starter_start(worker->starter, pair[1]);
         close(pair[1]);
         if (failed)
             close(pair[0]);
@@ -80,9 +69,7 @@ static void end(struct worker *worker)
         return;
     close(worker->socket_fd);
     worker->socket_fd = -1;
-    kill(worker->pid, SIGKILL); /* its children die with it */
-    while (waitpid(worker->pid, NULL, 0) < 0 && errno == EINTR)
-        ;
+    starter_stop(worker->starter);
 }
 
 struct worker *worker_create(const char *path, struct error *error)
@@ -90,6 +77,11 @@ struct worker *worker_create(const char *path, struct error *error)
     struct worker *worker = calloc(1, sizeof *worker);
     if (!worker) {
         error_set(error, ERROR_SERVER, "no memory for a worker");
+        return NULL;
+    }
+    worker->starter = starter_create(path, error);
+    if (!worker->starter) {
+        free(worker);
         return NULL;
     }
     snprintf(worker->path, sizeof worker->path, "%s", path);
@@ -119,6 +111,7 @@ void worker_destroy(struct worker *worker)
     if (!worker)
         return;
     end(worker);
+    starter_destroy(worker->starter);
     while (worker->n_spares > 0)
         close(worker->spare_fds[--worker->n_spares]);
     pthread_mutex_destroy(&worker->lock);
@@ -202,26 +195,12 @@ static bool submit(struct worker *worker, const struct job *job, const int fds[s
                    unsigned *starts, struct error *error)
 {
     uint8_t message[JOB_MESSAGE_BYTES];
-    union {
-        struct cmsghdr align;
-        char bytes[CMSG_SPACE(N_JOB_FDS * sizeof(int))];
-    } control = {.bytes = {0}};
-    struct iovec vector = {message, sizeof message};
-    const struct msghdr header = {.msg_iov = &vector,
-                                  .msg_iovlen = 1,
-                                  .msg_control = &control,
-                                  .msg_controllen = sizeof control};
-    struct cmsghdr *part = CMSG_FIRSTHDR(&header);
-    part->cmsg_level = SOL_SOCKET;
-    part->cmsg_type = SCM_RIGHTS;
-    part->cmsg_len = CMSG_LEN(N_JOB_FDS * sizeof(int));
-    memcpy(CMSG_DATA(part), fds, N_JOB_FDS * sizeof(int));
     job_encode(job, message);
 
     pthread_mutex_lock(&worker->lock);
     bool ok = worker->stopped ? error_set(error, ERROR_SERVER, "the daemon is shutting down")
                               : worker->socket_fd >= 0 || start(worker, error);
-    if (ok && sendmsg(worker->socket_fd, &header, MSG_NOSIGNAL) != (ssize_t)sizeof message)
+    if (ok && !pass_send(worker->socket_fd, message, sizeof message, fds, N_JOB_FDS))
         ok = error_set(error, ERROR_SERVER, "%s takes no job: %s", program_name(worker),
                        strerror(errno));
     *starts = worker->starts;

@@ -1,7 +1,8 @@
 /* fault_at() of build/sheend-faults, as $SHEEN_FAULTS asks: "NAME:FIRST:TIMES,..." makes NAME fail
  * at its FIRST-th place and at each FIRST-th after it, TIMES times in all. The faults that happen
- * are told on standard error. "tables.stuck" is the one place outside of sheend's own code: a
- * thread that does not come back from building a model's tables. */
+ * are told on standard error. Places outside of sheend's own code, in a thread that builds a model's
+ * tables: "tables.stuck" does not come back; "taken.over", "taken.over.gl" on a GL device, tries
+ * forbidden system calls. */
 #include "server/base/fault.h"
 
 #include <stdatomic.h>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include "server/surface/subdivision/build.h"
+#include "tests/service/taken_over.h"
 
 enum { MAX_FAULTS = 8 };
 
@@ -64,6 +66,10 @@ bool __wrap_limit_build_faces(struct limit_tables *tables, const struct limit_pl
 {
     if (fault_at("tables.stuck"))
         sleep(600);
+    if (fault_at("taken.over"))
+        taken_over(false);
+    if (fault_at("taken.over.gl"))
+        taken_over(true);
     return __real_limit_build_faces(tables, plan, first, last, watch, error);
 }
 /* NOLINTEND */

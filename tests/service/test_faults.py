@@ -350,6 +350,27 @@ class Sending(unittest.TestCase):
         self.assertEqual(server.stop(), 0)
 
 
+class TakenOver(unittest.TestCase):
+    """Somebody's code runs within the daemon: what it may no longer do is refused, and clients are served."""
+
+    def refused(self, fault, *arguments):
+        server = FaultyDaemon(fault + ":1:1", *arguments)
+        with wire.Client(server.unix) as client:
+            frame = client.render(client.upload(CUBE, "cube.obj"))
+        self.assertEqual(len(frame.data), 64 * 48 * 4)
+        said = server.wait_for("refused: ")
+        self.assertNotIn("permitted: ", said)
+        self.assertEqual(server.stop(), 0)
+        return int(said.split("refused: ")[1].split()[0])
+
+    def test_on_processors(self):
+        self.assertEqual(self.refused("taken.over"), 37)
+
+    @unittest.skipIf(MESA is None, "no GL device")
+    def test_by_a_driver(self):
+        self.assertEqual(self.refused("taken.over.gl", "--device", MESA), 31)
+
+
 class Killed(unittest.TestCase):
     """kill -9 of the daemon or its client while a model is uploaded, built and drawn."""
     ROUNDS = int(os.environ.get("SHEEN_KILLS", "6"))

@@ -29,13 +29,12 @@ def children(pid):
 
 
 def workers(pid):
-    """The running worker programs of a daemon, by name."""
+    """The running worker programs of a daemon, by name. Each is the child of its starter."""
     found = {}
-    for child in children(pid):
-        try:
-            found[os.path.basename(os.readlink(f"/proc/{child}/exe"))] = child
-        except OSError:
-            pass  # ended meanwhile
+    for starter in children(pid):
+        with contextlib.suppress(OSError):  # ended meanwhile
+            for child in children(starter):
+                found[os.path.basename(os.readlink(f"/proc/{child}/exe"))] = child
     return found
 
 
