@@ -59,7 +59,7 @@ static inline void build_file_on_demand(const char *path, struct limit_tables *t
     build_file_as(path, false, tables);
 }
 
-/* A torus of n x n quads: smooth and regular everywhere. */
+/* A torus of n x n quads. It is smooth, and all its vertices are regular. */
 static inline void build_torus(unsigned n, struct limit_tables *tables)
 {
     size_t room = (size_t)n * n * 100, used = 0;

@@ -40,7 +40,7 @@ static inline void gap_tables(struct limit_tables *tables, double gap)
         for (int i = 0; i < QUADS; i++)
             ADD("f %d %d %d %d\n", first + 4 * i + 2 * row, first + 1 + 4 * i + 2 * row,
                 first + 5 + 4 * i + 2 * row, first + 4 + 4 * i + 2 * row);
-    ADD("t interpolateboundary 1/0/0 1\n"); /* corners stay */
+    ADD("t interpolateboundary 1/0/0 1\n"); /* keeps the positions of corner vertices */
 #undef ADD
     build(text, used, tables);
 }
@@ -55,9 +55,9 @@ static inline struct camera gap_camera(double unit_px, double turn_rad)
                            .ortho_height = SIDE_PX / unit_px};
 }
 
-/* Expects that every pixel shows what its centre sees, by the faces, which are `stride` apart.
- * Counts the pixels that show the wall. The borders are circles to a thousandth of a pixel: within
- * a hundredth of a border, either side is accepted. */
+/* Expects that every pixel shows what its centre sees, told by the faces, whose numbers are
+ * `stride` apart. Counts the pixels that show the wall. The borders are circles up to a thousandth
+ * of a pixel, so within a hundredth of a pixel of a border both sides are accepted. */
 static inline size_t gap_expect_exact(const float (*position)[3], const uint32_t *faces,
                                       size_t stride, double unit_px, double gap)
 {

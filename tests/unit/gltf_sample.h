@@ -23,7 +23,7 @@ struct sample {
     const char *top;        /* members of the root, each ending in a comma */
     const char *scene;      /* "scene" and "scenes" */
     const char *nodes;      /* the array's content */
-    const char *meshes;     /* the array's content; overrides the next two */
+    const char *meshes;     /* the array's content; if set, the next two members are ignored */
     const char *primitive;  /* members of the primitive after "attributes" and "indices" */
     const char *mesh;       /* members of the mesh after "primitives" */
     const char *accessors;  /* the array's content */

@@ -23,7 +23,7 @@ static const char *const MODELS[] = {"tests/models/body.obj",    "tests/models/f
                                      "tests/models/tetra.obj",   "tests/models/chaikin.obj"};
 enum { N_MODELS = sizeof MODELS / sizeof *MODELS };
 
-/* --- planes, and who makes them */
+/* --- planes, and the device that draws them */
 
 struct planes {
     struct native_planes at;
@@ -151,11 +151,11 @@ static inline struct camera camera_for(const struct limit_tables *tables, enum l
         look_at_surface(tables, &camera);
     if (look == CLOSE)
         move_eye(&camera, 0.1);
-    if (look == INSIDE) { /* surface reaches behind the eye */
+    if (look == INSIDE) { /* a part of the surface lies behind the eye */
         move_eye(&camera, 0.02);
         camera.fov_deg = 90;
     }
-    if (look == HALF) { /* what lies behind the eye is not seen */
+    if (look == HALF) { /* draws nothing of the surface that lies behind the eye */
         camera.kind = CAMERA_ORTHOGRAPHIC;
         camera.ortho_height = size;
         move_eye(&camera, 1e-3);

@@ -18,7 +18,7 @@ struct scene {
     struct renderer_model *model;
 };
 
-/* `slice`: triangles of a step; 0: the device's default. */
+/* `slice`: triangles that one step draws; 0: the device's default. */
 static inline void open_scene(struct scene *scene, size_t slice)
 {
     const struct renderer_options options = {.device = "software", .slice = slice};

@@ -1,4 +1,4 @@
-/* Entries of the scheduler, for the tests of it: no device, no session. */
+/* Entries of the scheduler for its tests, which need no device and no session. */
 #ifndef SHEEN_TESTS_SCHEDULE_ENTRIES_H
 #define SHEEN_TESTS_SCHEDULE_ENTRIES_H
 
@@ -23,7 +23,7 @@ static inline struct schedule_entry view_of(enum request_class request_class, ui
         .request_class = request_class, .has_view = true, .view = view, .estimate_us = 1000};
 }
 
-/* The session of a client that has no other. */
+/* The queue of a client that has no other queue. */
 static inline void add_queue(struct schedule_queue *queue)
 {
     static struct schedule_party parties[1024];
@@ -40,7 +40,7 @@ static inline void ask(struct scheduler *scheduler, struct schedule_queue *queue
     scheduler_ready(entry);
 }
 
-/* Draws one tile, the whole frame, and gives it back. */
+/* Takes the entry's next turn, draws its whole frame as one tile, and finishes the entry. */
 static inline void draw_whole(struct scheduler *scheduler, struct schedule_entry *entry,
                               uint64_t us)
 {

@@ -1,4 +1,5 @@
-/* The tree of memory accounts against plain sums, and who is visited first when room is made. */
+/* The tree of memory accounts against plain sums, and the order in which owners are visited when
+ * room must be made. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -18,7 +19,7 @@ enum { N_MIDDLE = 5, N_LEAVES = 4, N_CHARGES = 300, STEPS = 20000 };
 struct charge {
     int middle, leaf; /* leaf -1: charged to the middle account itself */
     enum account_class class;
-    uint64_t bytes; /* 0: no charge stands here */
+    uint64_t bytes; /* 0: this charge is not in use */
 };
 
 struct tree {
@@ -50,7 +51,8 @@ static struct account *account_of(struct tree *tree, const struct charge *charge
                             : &tree->leaf[charge->middle][charge->leaf];
 }
 
-/* The plain sum of all charges; middle and leaf -1: of any; class -1: of all. */
+/* The plain sum of charges. middle -1 or leaf -1 means those of every middle or leaf account, class
+ * -1 those of every class. */
 static uint64_t sum_of(const struct tree *tree, int middle, int leaf, int class)
 {
     uint64_t sum = 0;
@@ -113,7 +115,8 @@ static void test_sums(void **state)
                 continue;
             *charge = wanted;
             account_charge(account_of(&tree, charge), charge->class, charge->bytes);
-        } else if (next_random(&seed) % 3 == 0) { /* moves, as an upload becomes an asset */
+        } else if (next_random(&seed) % 3 == 0) { /* a charge moves when an upload becomes an
+                                                   * asset */
             account_refund(account_of(&tree, charge), charge->class, charge->bytes);
             charge->leaf = (int)(next_random(&seed) % N_LEAVES);
             charge->class = ACCOUNT_ASSETS;
@@ -135,8 +138,8 @@ static void test_sums(void **state)
     expect_all_sums(&tree);
 }
 
-/* Two connections of one identity share a quota, which is under the daemon's account. Identities are told apart by
- * `owner`, not by name: two authorities may have signed one name. */
+/* Two connections of one identity share a quota, which is below the daemon's account. Identities
+ * are told apart by `owner` and not by name, because two authorities may sign the same name. */
 static void test_quotas(void **state)
 {
     (void)state;
@@ -162,10 +165,11 @@ static void test_quotas(void **state)
     client_quota_put(b);
     assert_ptr_equal(client_quota_get(&quotas, &anna), a);
     client_quota_put(a);
-    client_quota_put(a); /* a leak checker sees whether it has gone */
+    client_quota_put(a); /* the last reference: a leak checker tells whether the quota was freed */
 }
 
-/* Visits are in the order of size, each once, and none that is too small. */
+/* Owners are visited in descending order of size, each once, and owners below the least size are
+ * not visited. */
 static void test_shares(void **state)
 {
     (void)state;

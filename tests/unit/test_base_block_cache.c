@@ -1,4 +1,5 @@
-/* Memory kept for the next frame: what is kept, how much, and for how long. */
+/* Memory blocks that are kept for the next frame: which are kept, how many bytes, and for how
+ * long. */
 #include <stdarg.h>
 #include <setjmp.h>
 #include <stdint.h>
@@ -19,7 +20,8 @@ static void test_a_block_comes_back_for_its_size(void **state)
     assert_in_range(block_cache_bytes(block_cache), 1000, 1063);
     void *small = block_cache_take(block_cache, 500);
     assert_ptr_not_equal(small, block);
-    assert_ptr_equal(block_cache_take(block_cache, 1001), block); /* rounded up alike */
+    /* both sizes are rounded up to the same block size */
+    assert_ptr_equal(block_cache_take(block_cache, 1001), block);
     assert_int_equal(block_cache_bytes(block_cache), 0);
     block_cache_give(block_cache, small);
     block_cache_give(block_cache, block);
@@ -59,10 +61,12 @@ static void test_what_lies_unused_is_trimmed(void **state)
          *second = block_cache_take(block_cache, 2048);
     block_cache_give(block_cache, first);
     block_cache_give(block_cache, second);
-    block_cache_trim(block_cache); /* both have been used since it began */
+    /* trims nothing, because both blocks have been used since the cache was created */
+    block_cache_trim(block_cache);
     assert_int_equal(block_cache_bytes(block_cache), 4096);
     block_cache_give(block_cache, block_cache_take(block_cache, 2048));
-    block_cache_trim(block_cache); /* one at a time has been enough */
+    /* trims one, because no two blocks have been in use at the same time */
+    block_cache_trim(block_cache);
     assert_int_equal(block_cache_bytes(block_cache), 2048);
     block_cache_trim(block_cache);
     assert_int_equal(block_cache_bytes(block_cache), 0);

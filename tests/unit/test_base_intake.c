@@ -1,4 +1,5 @@
-/* Whose input is handled next: shares of the loop's time by party, then by source, whatever each sends. */
+/* Which connection's input is handled next. The loop's time is shared equally among parties, and
+ * then among each party's sources, whatever each of them sends. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,7 +14,7 @@ enum { PARTIES = 4, SOURCES = 40 };
 
 struct asker {
     struct intake_source source;
-    uint64_t cost_us, used_us; /* of one message; of all that were handled */
+    uint64_t cost_us, used_us; /* microseconds: of one message; of all messages handled so far */
 };
 
 static void handle(struct intake_source *source)
@@ -50,7 +51,8 @@ static void test_empty(void **state)
     assert_null(intake_next(&intake));
     intake_add_party(&party);
     ask(&intake, &asker, &party, 1);
-    intake_ask(&intake, &asker.source, true); /* known already */
+    /* the source has been marked as having input already */
+    intake_ask(&intake, &asker.source, true);
     assert_ptr_equal(intake_next(&intake), &asker.source);
     intake_ask(&intake, &asker.source, false);
     intake_ask(&intake, &asker.source, false);
@@ -81,8 +83,8 @@ static void test_shares(void **state)
         }
 }
 
-/* One that sends a message now and then waits for a round at most, not for all that others have sent; the
- * rounds that it did not use are not saved up. */
+/* A source that sends a message now and then waits at most for one round, not for everything that
+ * others have sent. Rounds in which it had no message are not saved up. */
 static void test_rare_ones(void **state)
 {
     (void)state;
@@ -102,7 +104,7 @@ static void test_rare_ones(void **state)
         for (intake_ask(&intake, &rare.source, true); rare.used_us == 0 && waited_us <= 130;
              waited_us += 10)
             handle_for(&intake, 10);
-        assert_true(waited_us <= 130); /* with its own message */
+        assert_true(waited_us <= 130); /* one round of the others, and its own message */
         intake_ask(&intake, &rare.source, false);
         rare.used_us = 0;
     }
@@ -112,7 +114,7 @@ static void test_rare_ones(void **state)
     assert_in_range(rare.used_us, 5000 - 150, 5000 + 150);
 }
 
-/* Of those that were strangers nobody knows who they are: then each has a place in a party. */
+/* Sources of the party of strangers move to a known party as soon as their identity is known. */
 static void test_moves(void **state)
 {
     (void)state;
@@ -130,7 +132,8 @@ static void test_moves(void **state)
     intake_ask(&intake, &a.source, false);
     assert_null(strangers.sources.first);
     intake_move(&intake, &a.source, &known);
-    assert_ptr_equal(intake_next(&intake), &b.source); /* a asks no more than before */
+    /* source a moved without any request pending */
+    assert_ptr_equal(intake_next(&intake), &b.source);
     intake_ask(&intake, &b.source, false);
     assert_true(intake_is_empty(&intake));
 }

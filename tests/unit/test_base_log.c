@@ -1,4 +1,4 @@
-/* Lines of the log: no value can end a line or forge a field, and no client can fill a disk. */
+/* Lines of the log: no value can end a line or forge a field, and no client can fill the disk. */
 #include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +15,7 @@
 
 static char said[1 << 20];
 
-/* Runs write() with standard error in a file and leaves what was said in `said`. */
+/* Runs write() with standard error redirected to a file, whose text is left in `said`. */
 static void capture(void (*write_lines)(void))
 {
     FILE *file = tmpfile();
@@ -127,7 +127,7 @@ static void test_floods_are_cut_and_counted(void **state)
 {
     (void)state;
     char words[64];
-    usleep(1050000); /* a second of its own */
+    usleep(1050000); /* waits until the limit of lines for a new second applies */
     log_set(LOG_INFO, LOG_LOGFMT);
     capture(flood);
     assert_int_equal(log_left_out(), 2 * LOG_LINES_PER_S);
@@ -151,11 +151,12 @@ static void test_a_reader_that_stops(void **state)
     usleep(1050000);
     uint64_t before = log_left_out();
     dup2(pipe_fds[1], STDERR_FILENO);
-    for (unsigned i = 0; i < 1000; i++) /* each would wait for ever in a full pipe */
+    /* a write that blocked would wait for ever, since the pipe is full */
+    for (unsigned i = 0; i < 1000; i++)
         log_event(LOG_ERROR, "to nobody", log_number("i", i));
     uint64_t left_out = log_left_out() - before;
     assert_true(left_out > 800);
-    /* When he reads again he is told. */
+    /* Once the pipe is read again, a line tells how many lines were left out. */
     said[read(pipe_fds[0], said, sizeof said - 1)] = 0;
     assert_int_equal(count('\n') + left_out, 1000);
     usleep(1050000);

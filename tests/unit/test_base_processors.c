@@ -68,7 +68,8 @@ static void test_affinity(void **state)
     assert_int_equal(processors_available(folder), n);
 }
 
-/* A limit is seen where it is less than what the system allows: 1 processor and a little is 2. */
+/* A limit of the control group counts where it is below what the system allows. It is rounded up: a
+ * little more than 1 processor counts as 2. */
 static void test_second_version(void **state)
 {
     cpu_set_t all;
@@ -77,7 +78,7 @@ static void test_second_version(void **state)
     put("/proc/self/cgroup", "0::/a/b\n");
     const struct {
         const char *text;
-        unsigned processors; /* 0: all */
+        unsigned processors; /* 0: as many as the system allows */
     } cases[] = {
         {"max 100000\n", 0},
         {"50000 100000\n", 1},
@@ -96,7 +97,7 @@ static void test_second_version(void **state)
         put("/sys/fs/cgroup/a/b/cpu.max", cases[i].text);
         assert_int_equal(processors_available(folder), wanted);
     }
-    /* The group above has less, and a container's own root. */
+    /* Limits of the parent group, and of the root group as a container sees it, count as well. */
     put("/sys/fs/cgroup/a/cpu.max", "90000 100000\n");
     assert_int_equal(processors_available(folder), 1);
     put("/sys/fs/cgroup/a/cpu.max", "max 100000\n");
@@ -116,7 +117,8 @@ static void test_first_version(void **state)
     assert_int_equal(processors_available(folder), n);
     put("/sys/fs/cgroup/cpu/a/b/cpu.cfs_quota_us", "20000\n");
     assert_int_equal(processors_available(folder), 1);
-    put("/proc/self/cgroup", "5:memory:/x\n4:cpuset,cpuacct:/a/b\n"); /* of another controller */
+    /* these groups belong to other controllers */
+    put("/proc/self/cgroup", "5:memory:/x\n4:cpuset,cpuacct:/a/b\n");
     assert_int_equal(processors_available(folder), n);
 }
 

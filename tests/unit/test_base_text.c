@@ -61,7 +61,8 @@ static void test_quotes(void **state)
          "Kotfl\xc3\xbcgel \xe2\x82\xac \xf0\x9f\x9a\x97"},
         {"\u202egnp.obj a\u2028b\u2029", "\\u202egnp.obj a\\u2028b\\u2029", "?gnp.obj a?b?"},
         {"tag\U000e0041\U000e007f.", "tag\\udb40\\udc41\\udb40\\udc7f.", "tag??."},
-        {"\U000e0080\u2027", "\U000e0080\u2027", "\U000e0080\u2027"}, /* no tag, no separator */
+        /* neither a tag character nor a separator */
+        {"\U000e0080\u2027", "\U000e0080\u2027", "\U000e0080\u2027"},
         {"cut \xc3", "cut ?", "cut ?"},
         {"\xff\xc3\xbc\xc0\x80", "?\xc3\xbc??", "?\xc3\xbc??"},
         {"\xc2\x85", "??", "??"}, /* a control character above ASCII */

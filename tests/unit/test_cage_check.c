@@ -1,4 +1,4 @@
-/* cage_check(), cage_warn(), cage_found() and how cage_read() chooses a reader. */
+/* cage_check(), cage_warn(), cage_found(), and how cage_read() chooses a reader. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,7 +13,7 @@
 
 #include "server/cage/read/read.h"
 
-/* Two quads side by side, with a crease between them, a corner and a hole. */
+/* Two quads side by side, an edge between them with a crease, a sharp corner and a hole. */
 struct sample {
     double position[6][3];
     uint32_t start[3];
@@ -86,7 +86,7 @@ static void test_faces(void **state)
     expect_bad(&sample, "part: face 1 (counting from 0) has vertex 6 (counting from 0) at corner 3,"
                         " but there are 6 vertices");
     sample_init(&sample);
-    sample.vertex[7] = 1; /* neighbours, across the wrap */
+    sample.vertex[7] = 1; /* neighbours: the last corner and the first */
     expect_bad(&sample, "part: face 1 (counting from 0) has vertex 1 twice: give every corner its "
                         "own vertex");
     sample_init(&sample);
@@ -101,7 +101,7 @@ static void test_faces(void **state)
     expect_bad(&sample, "part: face 0 (counting from 0) has vertex 1 twice: give every corner its "
                         "own vertex");
     sample_init(&sample);
-    sample.start[1] = 9; /* beyond the end */
+    sample.start[1] = 9; /* beyond the end of the corner list */
     expect_bad(&sample, "part: face 0 (counting from 0) has a broken corner list");
     sample_init(&sample);
     sample.cage.n_faces = 0;
@@ -232,7 +232,8 @@ static void test_warnings(void **state)
     cage_finish(&cage);
 }
 
-/* One line longer than the whole buffer must not make the next short one come after the end. */
+/* After a line that is longer than the whole buffer, the next short line must not be written beyond
+ * the buffer's end. */
 static void test_long_warning(void **state)
 {
     (void)state;
@@ -244,7 +245,7 @@ static void test_long_warning(void **state)
     cage_finish(&cage);
 }
 
-/* A kind that is found twice costs nobody the array's end. */
+/* A kind that is found twice takes one entry of the array, so the array does not overflow. */
 static void test_one_finding_of_a_kind(void **state)
 {
     (void)state;
@@ -278,7 +279,8 @@ static void test_choice_of_reader(void **state)
         assert_int_equal(cage.n_faces, 1);
         cage_finish(&cage);
     }
-    /* The ending wins over the content; the content decides where there is none. */
+    /* The file name's extension decides on the format; without a known extension the content
+     * does. */
     assert_false(cage_read(&cage, obj, sizeof obj - 1, "a.gltf", &error));
     assert_non_null(strstr(error.text, "a.gltf: not a glTF file"));
     assert_false(cage_read(&cage, " \n{]", 4, "upload", &error));

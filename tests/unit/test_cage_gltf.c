@@ -25,7 +25,8 @@ static void test_quads(void **state)
 static void test_polygons(void **state)
 {
     (void)state;
-    /* A hexagon round 0, then a triangle that starts elsewhere, then a quad that starts at 0. */
+    /* A hexagon around vertex 0, then a triangle with another first vertex, then a quad that starts
+     * at 0 again. */
     static const uint16_t fan[] = {0, 1, 2, 0, 2, 5, 0, 5, 4, 0, 4, 3, 1, 2, 4, 0, 1, 4, 0, 4, 3};
     struct cage cage;
     read_good(&cage, &(struct sample){.indices = fan, .n_indices = 21});
@@ -47,7 +48,7 @@ static void test_plain_triangles(void **state)
                         "part.glb: plain triangles: Catmull-Clark over triangles, probably not "
                         "what was modelled; export quads as OBJ or with FB_ngon_encoding");
     cage_finish(&cage);
-    /* Loop is made of triangles. */
+    /* A Loop surface is meant to have triangles, so there is no warning. */
     read_good(&cage, &(struct sample){.primitive = "\"extras\":{\"subdivisionScheme\":\"loop\"}"});
     assert_int_equal(cage.scheme, CAGE_SCHEME_LOOP);
     assert_null(cage.warnings);
@@ -65,7 +66,7 @@ static void test_no_indices(void **state)
     cage_finish(&cage);
 }
 
-/* Two triangles with one first vertex but no common edge are two faces, and a warning. */
+/* Two triangles that have the same first vertex but no common edge make two faces and a warning. */
 static void test_broken_polygons(void **state)
 {
     (void)state;
@@ -82,7 +83,8 @@ static void test_broken_polygons(void **state)
 
 /* Welding */
 
-/* The second quad brings its own vertices 6..9, on 1, 2, 5 and 4; one zero is negative. */
+/* The second quad has vertices of its own, 6 to 9, at the positions of 1, 2, 5 and 4; one of their
+ * zeros is negative. */
 static const float SPLIT[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0,   1, 0, 1, 1, 0,
                               2, 1, 0, 1, 0, 0, 2, 0, 0, 2.0, 1, 0, 1, 1, -0.0f};
 
@@ -112,7 +114,7 @@ static void test_weld(void **state)
     assert_null(cage.warnings);
     cage_finish(&cage);
 
-    /* The next float is another place. */
+    /* The nearest other float is another position, so it is not welded. */
     float near[30];
     memcpy(near, SPLIT, sizeof near);
     near[18] = nextafterf(near[18], 2);
@@ -122,15 +124,15 @@ static void test_weld(void **state)
     cage_finish(&cage);
 }
 
-/* A corner that falls onto its neighbour leaves; a face with two places left is dropped, and the
- * hole behind it keeps its face. */
+/* A corner that is welded to its neighbour is removed. A face with only two corners left is
+ * dropped, and a hole that names a later face still names the same face. */
 static void test_collapse(void **state)
 {
     (void)state;
     struct cage cage;
     float moved[30];
     memcpy(moved, SPLIT, sizeof moved);
-    moved[18] = 0.5f; /* 6 between 0 and 1; 9 lies on 4 */
+    moved[18] = 0.5f; /* 6 lies between 0 and 1; 9 lies at 4 */
     static const uint16_t to_triangle[] = {6, 1, 4, 6, 4, 9};
     read_good(&cage,
               &(struct sample){
@@ -163,8 +165,8 @@ static void test_collapse(void **state)
     cage_finish(&cage);
 }
 
-/* A corner that the file itself repeats beside itself goes like one that welding repeats, and
- * counts with it; a polygon that comes back to a vertex later goes as a whole. */
+/* A corner that the file repeats beside itself is removed like a corner that welding repeats, and
+ * counts as the same finding. A polygon that returns to a vertex later is dropped as a whole. */
 static void test_repeated_corners(void **state)
 {
     (void)state;
@@ -206,7 +208,8 @@ static void test_transforms(void **state)
 {
     (void)state;
     struct cage cage;
-    /* Double precision: single would lose the quarter beside a hundred million. */
+    /* Nodes are transformed in double precision: single precision would lose the quarter beside a
+     * hundred million. */
     read_good(&cage, &(struct sample){.nodes = "{\"mesh\":0,\"translation\":[100000000.25,2,3],"
                                                "\"scale\":[2,3,4]}"});
     expect_position(&cage, 5, 100000004.25, 5, 3);
@@ -222,7 +225,7 @@ static void test_transforms(void **state)
     assert_true(fabs(p[0] - 10) < 1e-12 && fabs(p[1] - 22) < 1e-12 && p[2] == 30);
     cage_finish(&cage);
 
-    /* Order: scale, rotate, translate; and columns first in the matrix. */
+    /* The order is scale, rotation, translation. A matrix is stored column by column. */
     read_good(&cage,
               &(struct sample){.nodes = "{\"mesh\":0,\"scale\":[1,5,1],\"rotation\":[0,0,1,1]"
                                         ",\"translation\":[7,0,0]}"});
@@ -232,7 +235,7 @@ static void test_transforms(void **state)
     read_good(&cage, &(struct sample){
                          .nodes = "{\"mesh\":0,\"matrix\":[1,2,3,0,4,5,6,0,7,8,10,0,9,9,9,1]}"});
     expect_position(&cage, 4, 14, 16, 18);
-    EXPECT_FACE(&cage, 0, 0, 3, 4, 1); /* its determinant is -3 */
+    EXPECT_FACE(&cage, 0, 0, 3, 4, 1); /* the determinant of this matrix is -3 */
     cage_finish(&cage);
 }
 
@@ -251,7 +254,8 @@ static void test_mirror(void **state)
     cage_finish(&cage);
 }
 
-/* One half modelled, the other a mirrored instance: they touch at x = 0 and are two surfaces. */
+/* Half of a body, and a mirrored instance of that half: they touch at x = 0 and remain two
+ * surfaces. */
 static void test_instances(void **state)
 {
     (void)state;
@@ -269,7 +273,7 @@ static void test_instances(void **state)
 
 #define GRID_ACCESSOR "{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":6}"
 
-/* Equal positions join inside one mesh of one node, whatever the primitive, and nowhere else. */
+/* Equal positions are welded within one mesh of one node, across primitives, and nowhere else. */
 static void test_bodies(void **state)
 {
     (void)state;
@@ -278,7 +282,7 @@ static void test_bodies(void **state)
                                "\"creaseSharpnesses\":[2],\"cornerIndices\":[2],"
                                "\"cornerSharpnesses\":[3]}";
     struct cage cage;
-    /* Two nodes, one mesh, one place. The tags come with each. */
+    /* Two nodes show one mesh at the same place. Each instance has the mesh's tags. */
     read_good(&cage, &(struct sample){.scene = "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}]",
                                       .nodes = "{\"mesh\":0},{\"mesh\":0}",
                                       .primitive = tags});
@@ -292,7 +296,8 @@ static void test_bodies(void **state)
     assert_int_equal(cage.corner[1].vertex, 8);
     cage_finish(&cage);
 
-    /* Two accessors of the same bytes: in two primitives of a mesh, then in two meshes. */
+    /* Two accessors read the same bytes: first in two primitives of one mesh, then in two
+     * meshes. */
     static const char accessors[] =
         GRID_ACCESSOR "," GRID_ACCESSOR
                       ",{\"bufferView\":1,\"componentType\":5123,\"type\":\"SCALAR\",\"count\":6},"
@@ -321,7 +326,8 @@ static void test_primitives(void **state)
 {
     (void)state;
     struct cage cage;
-    /* The same accessor twice: its vertices come once, and unused ones do no harm. */
+    /* If two primitives use the same accessor, its vertices are read once. Vertices that no face
+     * uses cause no error. */
     struct sample sample = {
         .meshes = "{\"primitives\":["
                   "{\"attributes\":{\"POSITION\":0},\"indices\":1,"
@@ -337,7 +343,7 @@ static void test_primitives(void **state)
     assert_int_equal(cage.n_faces, 3);
     EXPECT_FACE(&cage, 2, 1, 2, 5, 4);
     assert_int_equal(cage.hole[0], 1);
-    assert_int_equal(cage.hole[1], 2); /* the second primitive's first */
+    assert_int_equal(cage.hole[1], 2); /* the first face of the second primitive */
     cage_finish(&cage);
 }
 
@@ -409,7 +415,7 @@ static void test_without_a_scene(void **state)
     cage_finish(&cage);
 }
 
-/* Our own model, which is the same cage in both formats. */
+/* Our own model, as OBJ and as glTF, gives the same cage. */
 
 static struct cage read_model(const char *path)
 {

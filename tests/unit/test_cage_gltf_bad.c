@@ -1,4 +1,4 @@
-/* Every way in which a glTF file can lie to its reader. */
+/* Malformed and malicious glTF files: each is refused with its message. */
 #include "server/cage/read/read.h"
 #include "tests/unit/gltf_sample.h"
 
@@ -38,7 +38,7 @@ static void test_node_errors(void **state)
                "part.glb: the default scene is 0, but there are 0");
 }
 
-/* A chain as long as the reader could recurse. */
+/* A chain of 200000 nodes: a reader that recursed would overflow its stack. */
 static void test_deep_nodes(void **state)
 {
     (void)state;
@@ -53,7 +53,7 @@ static void test_deep_nodes(void **state)
     free(json);
 }
 
-/* Primitives and accessors that lie */
+/* Malformed primitives and accessors */
 
 static void test_primitive_errors(void **state)
 {
@@ -80,7 +80,7 @@ static void test_primitive_errors(void **state)
     expect_bad(&(struct sample){.meshes = "{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
                                           "\"indices\":2}]}"},
                "part.glb: not a glTF file that can be read: primitive indices accessor out of");
-    /* The library would drop this primitive and read the rest. */
+    /* tinygltf would drop this primitive without an error and read the rest. */
     expect_bad(&(struct sample){.meshes = "{\"primitives\":[{\"attributes\":{\"POSITION\":0}},"
                                           "{\"indices\":1}]}"},
                "part.glb: not a glTF file that can be read: 'attributes' property is missing");
@@ -101,7 +101,7 @@ static void test_accessor_errors(void **state)
          "\"count\":18446744073709551615}," INDICES,
          "POSITION has 18446744073709551615 elements, more than its buffer view of 72 bytes"},
         {"{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":"
-         "1537228672809129302}," INDICES, /* * 12 wraps to 8 */
+         "1537228672809129302}," INDICES, /* this count times 12 bytes overflows to 8 */
          "POSITION has 1537228672809129302 elements, more than its buffer view of 72 bytes"},
         {"{\"bufferView\":0,\"byteOffset\":4,\"componentType\":5126,\"type\":\"VEC3\","
          "\"count\":6}," INDICES,
@@ -168,7 +168,7 @@ static void test_view_errors(void **state)
     }
 }
 
-/* All that tinygltf would take for 0. */
+/* tinygltf would read each of these values as 0. */
 static void test_offsets_and_strides(void **state)
 {
     (void)state;
@@ -205,7 +205,7 @@ static void test_offsets_and_strides(void **state)
     expect_bad(&(struct sample){.views = "{\"buffer\":0,\"byteLength\":72,\"byte\\u004fffset\":-4},"
                                          "{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24}"},
                "part.glb: a key of buffer view 0 is spelt with escapes");
-    /* What is no key of theirs may say what it likes. */
+    /* The same words are allowed where they are no keys of a buffer view. */
     struct sample good = {.views =
                               "{\"name\":\"byteOffset\",\"buffer\":0,\"byteLength\":72,"
                               "\"extras\":{\"byteOffset\":-4}},{\"name\":\"\\\"x\",\"buffer\":0,"
@@ -250,7 +250,7 @@ static void test_other_files(void **state)
     expect_bad(&(struct sample){.buffers = "{\"byteLength\":0}"},
                "part.glb: not a glTF file that can be read");
     expect_text_bad("glTF", "part.glb: truncated: a GLB has at least 20 bytes, the file has 4");
-    /* Images are nobody's business here: missing, broken, external. */
+    /* Images are not read, so a missing, broken or external one is no error. */
     struct cage cage;
     read_good(&cage, &(struct sample){
                          .top = "\"images\":[{\"uri\":\"/etc/passwd\"},{\"uri\":\"data:image/png;"
@@ -321,13 +321,14 @@ static void test_glb_header(void **state)
     free(file.data);
 }
 
-/* Cut anywhere, and cut with a header that fits the cut. */
+/* A file cut off at any byte is refused, also if the header gives the shorter length. */
 static void test_truncated(void **state)
 {
     (void)state;
     struct bytes file = make_file(&(struct sample){0});
     for (size_t size = 1; size < file.size; size++) {
-        unsigned char *cut = malloc(size); /* its own block: a sanitizer sees every read beyond */
+        /* a block of exactly this size, so that a sanitizer finds every read beyond it */
+        unsigned char *cut = malloc(size);
         assert_non_null(cut);
         memcpy(cut, file.data, size);
         if (size >= 4)
@@ -378,7 +379,7 @@ static char *repeat(const char *head, const char *part, size_t n, const char *ta
     return text;
 }
 
-/* Small files that would take the stack or the memory. */
+/* Small files that would exhaust the stack or the memory of a careless reader. */
 static void test_bombs(void **state)
 {
     (void)state;
@@ -389,7 +390,8 @@ static void test_bombs(void **state)
     expect_text_bad(text, "part.glb: JSON nested deeper than 64 levels");
     free(text);
     text = repeat("{\"asset\":{\"version\":\"2.0\"},\"extras\":\"", "[{", 100, "\"}");
-    expect_text_bad(text, "part.glb: no face at all"); /* brackets in a string are no nesting */
+    /* brackets within a string are not nesting */
+    expect_text_bad(text, "part.glb: no face at all");
     free(text);
     text = repeat("{\"extras\":[", "1,", 4000001, "1]}");
     expect_text_bad(text, "part.glb: more than 4000000 values in the JSON");

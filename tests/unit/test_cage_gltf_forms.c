@@ -1,4 +1,5 @@
-/* The forms that glTF 2.0 allows for vertices and triangles beside indexed triangles of floats. */
+/* The forms that glTF 2.0 allows for vertices and triangles, besides indexed triangles of
+ * floats. */
 #include "server/cage/read/read.h"
 #include "tests/unit/gltf_sample.h"
 
@@ -7,7 +8,7 @@
 #define GRID_ACCESSOR "{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":6}"
 #define PAIR_ACCESSOR "{\"bufferView\":1,\"componentType\":5123,\"type\":\"SCALAR\",\"count\":12}"
 
-/* A generator of its own, so that each run asks the same. */
+/* A generator of pseudo-random numbers with a fixed seed, so that each run tests the same. */
 static uint32_t random_state;
 
 static uint32_t next_random(uint32_t below)
@@ -25,8 +26,8 @@ static double signed_area(const struct cage *cage, size_t face)
     return ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
 }
 
-/* A band along x and a disc round vertex 0, both counter-clockwise: each triangle's own area says
- * whether it is wound so, and the sum whether one is missing or twice. */
+/* A band along x and a disc around vertex 0, both counter-clockwise. The sign of each triangle's
+ * area tells its winding; the sum of the areas tells whether a triangle is missing or repeated. */
 static void test_strips_and_fans(void **state)
 {
     (void)state;
@@ -72,7 +73,7 @@ static void test_strips_and_fans(void **state)
     }
 }
 
-/* A strip is cut by repeating a vertex; what comes of that is no face. */
+/* Repeated vertices join two strips. The degenerate triangles at the joint are no faces. */
 static void test_strip_joints(void **state)
 {
     (void)state;
@@ -85,7 +86,7 @@ static void test_strip_joints(void **state)
     EXPECT_FACE(&cage, 1, 0, 1, 4);
     EXPECT_FACE(&cage, 2, 2, 5, 4);
     cage_finish(&cage);
-    /* FB_ngon_encoding speaks of separate triangles: a fan stays one triangle each. */
+    /* FB_ngon_encoding applies to separate triangles only, so each triangle of a fan is a face. */
     static const uint16_t fan[] = {0, 1, 4, 3};
     read_good(&cage, &(struct sample){.indices = fan,
                                       .n_indices = 4,
@@ -111,7 +112,8 @@ static void test_quantized(void **state)
     static const struct {
         int component;
         bool normalized;
-        uint16_t bits[6]; /* of one vertex: three integers of 8 bits and a gap, or of 16 */
+        /* of one vertex: three integers of 8 bits and a byte of padding, or three of 16 bits */
+        uint16_t bits[6];
         double x, y, z;
     } forms[] = {
         {5120, false, {0x7f80, 0x0001}, -128, 127, 1},
@@ -125,11 +127,11 @@ static void test_quantized(void **state)
     };
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         bool narrow = forms[i].component < 5122;
-        size_t stride = narrow ? 2 : 4; /* in uint16_t */
+        size_t stride = narrow ? 2 : 4; /* distance of two vertices, in elements of bits[] */
         uint16_t bits[12] = {0};
         for (size_t v = 0; v < 3; v++)
             memcpy(&bits[v * stride], forms[i].bits, stride * sizeof *bits);
-        bits[stride] ^= 0x0101; /* vertices that differ, so that there is a face */
+        bits[stride] ^= 0x0101; /* makes the vertices differ, so that they make a face */
         bits[2 * stride] ^= 0x0202;
         char accessors[200], views[200];
         snprintf(accessors, sizeof accessors,
@@ -152,7 +154,8 @@ static void test_quantized(void **state)
     }
 }
 
-/* Sparse accessors: the same file, its replaced elements written out, is the same cage. */
+/* A sparse accessor gives the same cage as a file in which the replaced elements are written
+ * out. */
 
 static void compare_with_dense(unsigned trial)
 {
@@ -175,7 +178,7 @@ static void compare_with_dense(unsigned trial)
         indices[3 * N + s] = element;
         memcpy(dense[element], base[N + s], sizeof *dense);
     }
-    memcpy(indices, &indices[3 * N], 3 * sizeof *indices); /* one face at least */
+    memcpy(indices, &indices[3 * N], 3 * sizeof *indices); /* at least one face */
     memcpy(replaced, indices, sizeof replaced);
     char views[300], accessors[500];
     snprintf(views, sizeof views,
@@ -213,7 +216,7 @@ static void test_sparse(void **state)
     (void)state;
     for (unsigned trial = 0; trial < 200; trial++)
         compare_with_dense(trial);
-    /* Indices may be sparse too: the last of PAIR becomes 3. */
+    /* Indices may be sparse, too: the last index of PAIR becomes 3. */
     struct cage cage;
     read_good(&cage, &(struct sample){
                          .accessors =
@@ -242,7 +245,7 @@ static void test_sparse_errors(void **state)
     static const struct {
         const char *accessors, *message;
     } bad[] = {
-        /* PAIR begins with 0 1 4 0. */
+        /* The bytes of PAIR are read as sparse indices; PAIR begins with 0 1 4 0. */
         {SPARSE(BASE, "4", SHORTS, BASE "\"byteOffset\":0"),
          "mesh 0 primitive 0: sparse.indices of POSITION[3] does not ascend"},
         {SPARSE(BASE, "2", SHORTS ",\"byteOffset\":10", BASE "\"byteOffset\":0"),
@@ -300,7 +303,7 @@ static void expect_morphed(const char *nodes, const char *mesh, double z, const 
                   .mesh = mesh,
                   .primitive = "\"extensions\":{\"FB_ngon_encoding\":{}},"
                                "\"targets\":[{\"POSITION\":2},{\"NORMAL\":0}]",
-                  /* Only vertex 1 moves, by GRID's vertex 1. */
+                  /* A sparse target moves vertex 1 alone, by the position of GRID's vertex 1. */
                   .accessors = GRID_ACCESSOR
                   "," PAIR_ACCESSOR
                   ",{\"componentType\":5126,\"type\":\"VEC3\",\"count\":6,\"sparse\":{\"count\":1,"
@@ -342,7 +345,8 @@ static void test_morph(void **state)
         "part.glb: mesh 0 primitive 0: POSITION of a morph target refers to accessor 9");
 }
 
-/* Two primitives share POSITION and take one morph target, with weights of their own. */
+/* Two primitives have the same POSITION and morph it by the same accessor, with different
+ * weights. */
 static void test_morphs_by_weight(void **state)
 {
     (void)state;
@@ -359,7 +363,8 @@ static void test_morphs_by_weight(void **state)
                                    "\"POSITION\":0},\"targets\":[{\"NORMAL\":0},{"
                                    "\"POSITION\":0}]}],\"weights\":[1,2]}"});
     assert_int_equal(cage.n_faces, 2);
-    assert_int_equal(cage.n_vertices, 5); /* the origin is one */
+    /* both primitives have one vertex at the origin, which is welded */
+    assert_int_equal(cage.n_vertices, 5);
     expect_position(&cage, cage.face_vertex[1], 2, 0, 0);
     expect_position(&cage, cage.face_vertex[4], 3, 0, 0);
     cage_finish(&cage);

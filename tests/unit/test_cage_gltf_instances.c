@@ -10,13 +10,14 @@
 #define INSTANCED(attributes)                                                                      \
     "{\"mesh\":0,\"translation\":[100,0,0],\"extensions\":{\"EXT_mesh_gpu_instancing\":{"          \
     "\"attributes\":{" attributes "}}}}"
-/* Behind GRID: three translations, three scales, three rotations of floats. */
+/* The buffer: GRID, then three translations, three scales and three rotations, as floats. */
 /* clang-format off */
 static const float INSTANCES[] = {
     0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0, /* GRID */
     5, 0, 0, 0, 6, 0, 0, 0, 7,
     1, 1, 1, 2, 3, 4, -1, 1, 1,
-    0, 0, 0, 1, 2, 0, 0, 0, 0, 0, 1, 1, /* as they stand in the shorts, of any length */
+    /* quaternions, also used as normalized shorts; they need not have unit length */
+    0, 0, 0, 1, 2, 0, 0, 0, 0, 0, 1, 1,
     NAN, 0, 0, 0, 0, 0,
 };
 /* clang-format on */
@@ -71,7 +72,7 @@ static void test_instancing(void **state)
     expect_position(&cage, 17, 102, 1, 7);
     cage_finish(&cage);
 
-    /* Scale, then turn, then move; the third is mirrored. */
+    /* An instance is scaled, then rotated, then translated; the third instance is mirrored. */
     static const char *const rotations[] = {
         INSTANCED("\"TRANSLATION\":2,\"ROTATION\":5,\"SCALE\":3,\"_ID\":1"),
         INSTANCED("\"SCALE\":3,\"ROTATION\":4,\"TRANSLATION\":2"),
@@ -118,7 +119,7 @@ static void test_instancing_errors(void **state)
     }
 }
 
-/* A million and one instances of a mesh that is nothing. */
+/* A million and one instances of a mesh without vertices. */
 static void test_too_many_instances(void **state)
 {
     (void)state;
@@ -141,7 +142,7 @@ static void test_too_many_instances(void **state)
     memcpy(at, "\"count\":0600000", 15);
     at[8] = ' ';
     at = strstr(json, "\"nodes\":[0]");
-    memcpy(at, "\"nodes\":[ ]", 11); /* and then two nodes of 600000 each */
+    memcpy(at, "\"nodes\":[ ]", 11); /* then two nodes with 600000 instances each */
     char two[1500];
     snprintf(two, sizeof two, "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[%s,%s],%s",
              INSTANCED("\"TRANSLATION\":0"), INSTANCED("\"TRANSLATION\":0"),
@@ -153,8 +154,9 @@ static void test_too_many_instances(void **state)
     free(zeros);
 }
 
-/* Zeros that weld to one vertex and cost the file nothing are counted for all instances, and then
- * not read. */
+/* Sparse accessors without values are zeros that take no bytes of the file. They weld to one
+ * vertex, but each instance counts all of them, so that the limit is met before anything is
+ * read. */
 static void test_instances_of_zeros(void **state)
 {
     (void)state;
@@ -175,7 +177,8 @@ static void test_instances_of_zeros(void **state)
                          "\"type\":\"SCALAR\",\"count\":3},{\"count\":2000," ZEROS,
                          cases[i].vertices);
         assert_true(n > 0 && (size_t)n < sizeof accessors);
-        static uint16_t indices[30000] = {0, 1, 2}; /* the rest makes the file as long */
+        /* the zeros behind these make the file as long as the vertices need */
+        static uint16_t indices[30000] = {0, 1, 2};
         struct sample sample = {.nodes = "{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
                                          "\"attributes\":{\"TRANSLATION\":2}}}}",
                                 .accessors = accessors,
@@ -195,7 +198,7 @@ static void test_instances_of_zeros(void **state)
     }
 }
 
-/* Finite numbers in the file whose products are not. */
+/* Numbers in the file are finite, but their products are not. */
 static void test_positions_without_a_place(void **state)
 {
     (void)state;

@@ -22,7 +22,7 @@ static void expect_pair(const struct sample *sample, const char *warnings)
 static void test_passed_over(void **state)
 {
     (void)state;
-    /* All of these are what tinygltf refuses, or would read beyond the file for. */
+    /* tinygltf would refuse each of these, or would read beyond the file because of it. */
     static const char *const members[] = {
         "\"skins\":[{\"joints\":[0]}],",
         "\"skins\":[{}],",
@@ -42,7 +42,7 @@ static void test_passed_over(void **state)
     expect_pair(&(struct sample){.top = "\"skins\":[{\"joints\":[0]}],",
                                  .nodes = "{\"mesh\":0,\"skin\":0}"},
                 "part.glb: skins are passed over: the cage stands in its bind pose");
-    /* A broken member ends where its brackets do, not later. */
+    /* A broken member ends at its closing bracket, not later. */
     expect_text_bad("{\"asset\":{\"version\":\"2.0\"},\"skins\":[{]}", "part.glb: ");
     expect_text_bad("{\"asset\":{\"version\":\"2.0\"},\"skins\":[", "part.glb: not a glTF file");
 }
@@ -114,7 +114,7 @@ static void test_extensions(void **state)
         snprintf(message, sizeof message, "part.glb: %s", bad[i].message);
         expect_bad(&(struct sample){.top = top}, message);
     }
-    /* Used alone, nothing is refused by its name but what is not there without it. */
+    /* An extension that is used but not required is refused only if data is missing without it. */
     expect_pair(&(struct sample){.top = "\"extensionsUsed\":[\"CESIUM_RTC\","
                                         "\"KHR_draco_mesh_compression\"],"},
                 NULL);
@@ -127,7 +127,7 @@ static void test_extensions(void **state)
                                 .accessors = GRID_ACCESSOR ",{\"componentType\":5123,\"type\":"
                                                            "\"SCALAR\",\"count\":12}"},
                packed);
-    /* A buffer that is the fallback of packed views holds nothing. */
+    /* A buffer without URI and bytes, which only packed views replace, holds no data. */
     struct sample fallback = {.top = "\"extensionsUsed\":[\"EXT_meshopt_compression\"],",
                               .buffers = "{\"byteLength\":96},{\"byteLength\":72}",
                               .views = "{\"buffer\":1,\"byteLength\":72},"
@@ -152,7 +152,8 @@ static void test_first_version(void **state)
     expect_pair(&(struct sample){.top = "\"extras\":{\"asset\":{\"version\":\"1.0\"}},"}, NULL);
 }
 
-/* Chunks of any length: what counts them in the header, and what pads without counting. */
+/* Chunks of any length: with padding that the header counts, and with padding that it does not
+ * count. */
 static void test_unaligned_chunks(void **state)
 {
     (void)state;

@@ -15,7 +15,7 @@ static void test_creases(void **state)
 {
     (void)state;
     struct cage cage;
-    /* One sharpness for each crease. */
+    /* creaseSharpnesses has one value for each crease. */
     read_good(&cage, &(struct sample){.primitive = TAGGED("\"creaseIndices\":[0,1,2,4,1],"
                                                           "\"creaseLengths\":[3,2],"
                                                           "\"creaseSharpnesses\":[2.5,10]")});
@@ -24,7 +24,8 @@ static void test_creases(void **state)
     expect_crease(&cage, 1, 1, 2, 2.5f);
     expect_crease(&cage, 2, 4, 1, 10);
     cage_finish(&cage);
-    /* One for each edge; negative is smooth; whole numbers may be written with a point. */
+    /* creaseSharpnesses has one value for each edge. A negative value counts as smooth. Integers
+     * may be written with a decimal point. */
     read_good(&cage, &(struct sample){.primitive = TAGGED("\"creaseIndices\":[0,1.0,2,4,1],"
                                                           "\"creaseLengths\":[3,2],"
                                                           "\"creaseSharpnesses\":[1,-2,3]")});
@@ -34,12 +35,12 @@ static void test_creases(void **state)
                                        "and counts as 0, as any other below 0");
     expect_crease(&cage, 2, 4, 1, 3);
     cage_finish(&cage);
-    /* On the mesh, in an object of their own. */
+    /* The tags are in the mesh's extras, in an object named subdiv. */
     read_good(&cage, &(struct sample){.mesh = ",\"extras\":{\"subdiv\":{\"creaseIndices\":[1,4],"
                                               "\"creaseLengths\":[2],\"creaseSharpnesses\":[7]}}"});
     expect_crease(&cage, 0, 1, 4, 7);
     cage_finish(&cage);
-    /* Each instance has its own. */
+    /* Each instance of a mesh has the mesh's tags. */
     read_good(&cage, &(struct sample){.scene = "\"scenes\":[{\"nodes\":[0,1]}]",
                                       .nodes = "{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,1]}",
                                       .primitive = TAGGED("\"creaseIndices\":[1,4],"

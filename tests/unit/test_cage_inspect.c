@@ -1,4 +1,4 @@
-/* Cages that can be drawn and are probably not meant. */
+/* Cages that can be drawn but probably are not what the modeller meant. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +16,7 @@
 #define CORNERS                                                                                    \
     "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
 #define CUBE CORNERS "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
-/* A cube's faces over the last eight vertices before them. */
+/* A cube's faces over the eight vertices that stand last before the faces. */
 #define OUTWARD                                                                                    \
     "f -8 -5 -6 -7\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n"
 #define INWARD                                                                                     \
@@ -57,13 +57,14 @@ static void expect_none(const char *text)
 static void test_unwelded(void **state)
 {
     (void)state;
-    /* Two squares whose common edge has vertices of each; -0 is 0. */
+    /* Two squares, of which each has its own vertices at the common edge. -0 equals 0. */
     expect_one("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 -0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n"
                "f 1 2 3 4\nf 5 6 7 8\n",
                CAGE_FOUND_UNWELDED, 2, 0,
                "part.obj: no face shares a vertex with another, though 2 positions are repeated: "
                "the faces stand apart; --weld joins those of an OBJ file");
-    /* Apart, but nothing is repeated; one vertex is shared; a vertex of no face is repeated. */
+    /* Separate faces without a repeated position; faces that share one vertex; a repeated position
+     * that belongs to no face. */
     expect_none("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0\n"
                 "f 1 2 3 4\nf 5 6 7 8\n");
     expect_none("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n"
@@ -93,7 +94,8 @@ static void test_wound(void **state)
     expect_one(CORNERS "f 1 2 6 5\nf 3 2 6 7\n", CAGE_FOUND_WOUND, 1, 9,
                "part.obj:9: a face is wound against its neighbour; the edge between them is a "
                "crease");
-    /* Three faces on one edge have no direction to agree on. */
+    /* The three faces at one edge cannot all have opposite directions, so no winding is
+     * reported. */
     expect_none(CORNERS "f 1 2 6 5\nf 3 2 6 7\nf 4 2 6 8\n");
 }
 
@@ -104,12 +106,13 @@ static void test_twice(void **state)
                "part.obj:15: a face repeats the one of line 10");
     expect_one(CUBE "f 6 7 8 5\nf 8 7 6 5\nf 1 2 6 5\n", CAGE_FOUND_FACE_TWICE, 3, 15,
                "part.obj:15: a face repeats the one of line 10; 3 in all, this is the first");
-    /* The same vertices in another order are another face. */
+    /* A face with the same vertices in another cyclic order is another face. */
     struct cage cage;
     read_obj(&cage, CUBE "f 5 7 6 8\n");
     assert_null(find(&cage, CAGE_FOUND_FACE_TWICE));
     cage_finish(&cage);
-    /* A pillow is a body; a sheet of two faces with both sides is not. */
+    /* Two faces back to back make a closed body. In an open sheet whose faces exist twice, both
+     * repetitions are reported. */
     expect_none(CORNERS "f 1 2 3 4\nf 4 3 2 1\n");
     read_obj(&cage, CORNERS "f 1 2 6 5\nf 2 3 7 6\nf 5 6 2 1\nf 6 7 3 2\n");
     assert_int_equal(find(&cage, CAGE_FOUND_FACE_TWICE)->count, 2);
@@ -138,13 +141,13 @@ static void test_inside_out(void **state)
     expect_one(CUBE BESIDE INWARD, CAGE_FOUND_INSIDE_OUT, 1, 23, text);
     snprintf(text, sizeof text, "part.obj:9: %s; 2 bodies in all, this is the first", one);
     expect_one(CORNERS INWARD BESIDE INWARD SMALL OUTWARD, CAGE_FOUND_INSIDE_OUT, 2, 9, text);
-    /* A hollow; a body that is open; a sheet. */
+    /* A hollow inside a body; a body that is open; a flat closed body. */
     expect_none(CORNERS OUTWARD SMALL INWARD);
     expect_none(CORNERS "f 2 3 4 1\nf 5 6 2 1\nf 6 7 3 2\nf 7 8 4 3\nf 8 5 1 4\n");
     expect_none(CORNERS "f 1 2 3 4\nf 4 3 2 1\n");
 }
 
-/* --- random cages made of cubes, against counts that compare everything with everything */
+/* --- random cages made of cubes, against counts by comparison of all pairs */
 
 enum { SIDE = 4, POINTS = (SIDE + 1) * (SIDE + 1) * (SIDE + 1), MOST_FACES = 600 };
 
@@ -210,7 +213,7 @@ static bool share_edge(const uint32_t *a, const uint32_t *b)
     return false;
 }
 
-/* Joins what shares an edge, face by face, until nothing changes. */
+/* Gives faces that share an edge the same body number, until nothing changes. */
 static void find_bodies(const struct block *block, const bool *left_out, int *body)
 {
     for (int f = 0; f < block->n_faces; f++)
@@ -247,7 +250,8 @@ static void make_block(struct block *block, uint32_t *random)
     }
 }
 
-/* Turns bodies and faces, repeats some either way round and begun anywhere, loses one. */
+/* Inverts bodies and faces, repeats some faces in either direction and from any first corner, and
+ * removes one face. */
 static void damage(struct block *block, uint32_t *random)
 {
     static const bool none[MOST_FACES] = {0};
@@ -273,7 +277,7 @@ static void damage(struct block *block, uint32_t *random)
         block->n_faces--;
 }
 
-/* Is b the ring a, the same way round (1) or the other (-1)? */
+/* Returns 1 if ring b is ring a in the same direction, -1 if in the opposite direction, else 0. */
 static int same_ring(const uint32_t *a, const uint32_t *b)
 {
     for (int way = -1; way < 2; way += 2)
@@ -312,8 +316,9 @@ static void judge_twice(const struct block *block, struct judged *judged)
         for (int c = 0; c < 4; c++)
             many |= faces_along(block, NULL, block->vertex[f][c], block->vertex[f][(c + 1) % 4],
                                 &forward) > 2;
-        /* The other way round by the first of those that are the same, which may have been turned
-         * itself: the edges are theirs all the same. */
+        /* A repeated face in the opposite direction counts as a repetition if an edge has more than
+         * two faces. The first of the equal faces may have been inverted itself, but its edges are
+         * the same. */
         judged->again[f] = way == 1 || (way == -1 && many);
         if (judged->again[f] && judged->n_again++ == 0)
             judged->first_again = (uint32_t)f;
@@ -343,7 +348,7 @@ static void judge_winding(const struct block *block, struct judged *judged, bool
 
 struct box {
     int low[3], high[3];
-    int volume; /* by the faces across x */
+    int volume; /* the signed volume, by the faces perpendicular to x */
     bool is_open;
 };
 

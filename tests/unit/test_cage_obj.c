@@ -28,7 +28,7 @@ static void expect_bad(const char *text, const char *message)
 {
     struct cage cage;
     struct error error = {0};
-    /* A copy without a terminator, so that a sanitizer sees a read beyond the end. */
+    /* A copy without a terminating zero, so that a sanitizer finds a read beyond its end. */
     size_t size = strlen(text);
     char *bytes = malloc(size ? size : 1);
     assert_non_null(bytes);
@@ -111,7 +111,7 @@ static void test_lines(void **state)
     }
 }
 
-/* One face of 20000 corners, on one line and on as many continued ones. */
+/* One face of 20000 corners, on one line and on as many continued lines. */
 static void test_long_line(void **state)
 {
     (void)state;
@@ -345,7 +345,7 @@ static void test_warnings(void **state)
     cage_finish(&cage);
 }
 
-/* Once, at the first. */
+/* Several negative sharpnesses make one warning, which names the first. */
 static void test_negative_sharpness(void **state)
 {
     (void)state;
@@ -417,7 +417,7 @@ static void test_own_models(void **state)
     }
 }
 
-/* The three that give a face the same vertex twice, to see whether OpenSubdiv survives it. */
+/* Models of OpenSubdiv's suite in which faces repeat a vertex on purpose. */
 static const struct {
     const char *name;
     size_t n_lost_a_corner, n_few_corners, n_keyholes;
@@ -427,7 +427,7 @@ static const struct {
     {"catmark_nonman_quadpole8", 8, 0, 0},
 };
 
-/* Returns how many of its faces are passed over. */
+/* Returns how many faces of this model are dropped. */
 static size_t check_degenerate(const char *path, const struct cage *cage)
 {
     for (size_t i = 0; i < sizeof DEGENERATE / sizeof *DEGENERATE; i++) {
@@ -520,7 +520,7 @@ static void test_a_million_faces(void **state)
 {
     (void)state;
 #if defined(__SANITIZE_ADDRESS__)
-    const size_t side = 200; /* the sanitizers' time is not the reader's */
+    const size_t side = 200; /* under a sanitizer the time tells nothing about the reader */
 #else
     const size_t side = 1000;
 #endif

@@ -1,4 +1,4 @@
-/* What damaged elements of a file cost: themselves and one warning of their kind. */
+/* A damaged element of a file costs that element and one warning of its kind. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -27,7 +27,7 @@ static void expect_finding(const struct cage *cage, size_t i, enum cage_finding_
     assert_int_equal(cage->finding[i].face, CAGE_NO_FACE);
 }
 
-/* A corner is lost wherever in the face it is repeated, across its end too. */
+/* A repeated corner is removed anywhere in the face, also if the last corner repeats the first. */
 static void test_repeated_corners(void **state)
 {
     (void)state;
@@ -64,7 +64,7 @@ static void test_faces_passed_over(void **state)
     cage_finish(&cage);
 }
 
-/* Holes name faces as the file counts them, those passed over with the others. */
+/* Holes name faces by their numbers in the file, which count dropped faces as well. */
 static void test_tags_after_faces_passed_over(void **state)
 {
     (void)state;
@@ -115,12 +115,13 @@ static void test_tags_without_element(void **state)
     cage_finish(&cage);
 }
 
-/* Two squares side by side with vertices of their own, lines 1 to 10. */
+/* Two squares side by side, each with its own vertices, lines 1 to 10. */
 #define APART                                                                                      \
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 -0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n"                    \
     "f 1 2 3 4\nf 5 6 7 8\n"
 
-/* Asked for anywhere in the file, it holds for all of it; tags follow their vertices. */
+/* The tag may stand anywhere in the file and applies to all of it. Tags refer to the welded
+ * vertices. */
 static void test_weld(void **state)
 {
     (void)state;
@@ -143,7 +144,7 @@ static void test_weld(void **state)
     }
 }
 
-/* What falls together is mended like what the file repeats itself. */
+/* Corners that coincide by welding are treated like corners that the file itself repeats. */
 static void test_weld_of_damage(void **state)
 {
     (void)state;
@@ -165,7 +166,7 @@ static void test_weld_of_damage(void **state)
     assert_string_equal(error.text, "part.obj:11: t weld needs nothing, 0/0/0");
 }
 
-/* --- random faces and tags, against what the rules say one by one */
+/* --- random faces and tags, against the rules applied one by one */
 
 enum { VERTICES = 7, MOST_FACES = 12, MOST_CORNERS = 6, MOST_TAGS = 10 };
 
@@ -221,7 +222,8 @@ static void write_text(const struct sketch *sketch, char *text, size_t size)
     }
 }
 
-/* The face as it should become: corners that differ from the one before them, round the end. */
+/* Writes the repaired face: without corners that equal the one before them, where the last corner
+ * is before the first. */
 static int expected_face(const struct sketch *sketch, int f, uint32_t *vertex,
                          enum cage_finding_kind *kind)
 {
@@ -240,7 +242,7 @@ static int expected_face(const struct sketch *sketch, int f, uint32_t *vertex,
     return kept < 3 || twice ? 0 : kept;
 }
 
-/* Are the vertices neighbours in some face that stays? */
+/* Returns whether the vertices are neighbours in some face that is kept. */
 static bool is_edge(const struct sketch *sketch, int a, int b)
 {
     for (int f = 0; f < sketch->n_faces; f++) {
@@ -265,7 +267,7 @@ static void expect_ring(const uint32_t *rotated, const uint32_t *vertex, int n)
         assert_int_equal(rotated[(turn + c) % n], vertex[c]);
 }
 
-/* Returns how many faces stay; count[] of each kind. */
+/* Returns how many faces are kept, and counts the findings of each kind in count[]. */
 static int check_faces(const struct sketch *sketch, const struct cage *cage, int *face_map,
                        uint32_t *count)
 {

@@ -50,11 +50,11 @@ static void test_sheet(void **state)
     assert_int_equal(s.n_quads, 4);
     assert_int_equal(s.n_triangles, 1);
     assert_int_equal(s.n_ngons, 1);
-    /* 8 of the sheet less 2 on the right, 3-11, 11-14, 14-13, 13-9 */
+    /* eight edges of the sheet, less two at its right side, and 3-11, 11-14, 14-13 and 13-9 */
     assert_int_equal(s.n_boundary_edges, 10);
-    /* corners 1, 7, and 13, 14; 3, 9 and 11 have two faces */
+    /* corners 1, 7, 13 and 14; 3, 9 and 11 have two faces and are regular */
     assert_int_equal(s.n_boundary_extraordinary, 4);
-    assert_int_equal(s.n_valences, 0); /* vertices 5 and 6 have four */
+    assert_int_equal(s.n_valences, 0); /* vertices 5 and 6 have valence 4 */
 }
 
 /* A fan of n triangles around one vertex, for n = 3 .. 3 + count - 1, side by side. */
@@ -92,7 +92,8 @@ static void test_more_valences_than_entries(void **state)
 static void test_tags(void **state)
 {
     (void)state;
-    /* The edge 1-2 is tagged twice, the other way round: the later tag holds. 5-6-7 semi-sharp. */
+    /* The edge 1-2 is tagged twice, in opposite directions: the later tag counts. The edges 5-6 and
+     * 6-7 are semi-sharp. */
     struct cage_statistics s = statistics_of(CUBE "t crease 2/1/0 0 1 10\n"
                                                   "t crease 2/1/0 1 0 2.5\n"
                                                   "t crease 2/1/0 4 5 1\n"
@@ -132,7 +133,7 @@ static void test_non_manifold(void **state)
     assert_int_equal(s.n_nonmanifold_edges, 0);
     assert_int_equal(s.n_boundary_edges, 0);
     assert_int_equal(s.n_nonmanifold_vertices, 1);
-    /* Two faces that run along 1-2 in the same direction. */
+    /* Two faces that have the edge 1-2 in the same direction. */
     s = statistics_of("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 -1 0\nv 0 -1 0\n"
                       "f 1 2 3 4\nf 1 2 5 6\n");
     assert_int_equal(s.n_nonmanifold_edges, 1);

@@ -1,4 +1,4 @@
-/* Welding by itself: which coordinates are one place. */
+/* cage_weld() alone: which coordinates count as the same position. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,7 +7,8 @@
 
 #include "server/cage/build/weld.h"
 
-/* NaN never comes from a reader; were it to, each would be compared with all before it. */
+/* No reader returns NaN. NaN equals NaN here all the same: otherwise each NaN would be compared
+ * with every earlier one. */
 static void test_places(void **state)
 {
     (void)state;

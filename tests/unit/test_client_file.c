@@ -1,4 +1,4 @@
-/* Reading whole files and writing them whole or not at all. */
+/* Reads whole files; writes a whole file or none. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -64,7 +64,8 @@ static void written_files_replace_old_ones(void **state)
     assert_int_equal(file_write("a.png", (const uint8_t *)"2nd", 3, &error), SHEEN_OK);
     assert_holds("a.png", "2nd");
     assert_int_equal(stat("a.png", &about), 0);
-    assert_int_equal(about.st_mode & 0777, 0640); /* as any program's file */
+    /* the permissions of a new file follow the umask */
+    assert_int_equal(about.st_mode & 0777, 0640);
     assert_int_equal(files_in_folder(), 1);
     umask(old);
     unlink("a.png");
@@ -94,7 +95,7 @@ static void a_full_disk_leaves_what_was_there(void **state)
     signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &limit);
     small = limit;
-    small.rlim_cur = 1000; /* writing fails in the middle, as on a full disk */
+    small.rlim_cur = 1000; /* writing fails in the middle of the file, as on a full disk */
     setrlimit(RLIMIT_FSIZE, &small);
     enum sheen_status status = file_write("a.png", large, 100000, &error);
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -135,14 +136,15 @@ static void files_that_cannot_be_read(void **state)
     assert_int_equal(file_read("empty.obj", SHEEN_BAD_IMAGE, &bytes, &n_bytes, &error),
                      SHEEN_BAD_IMAGE);
     assert_non_null(strstr(error.text, "empty.obj: is empty"));
-    assert_int_equal(truncate("empty.obj", 1024ll * 1024 * 1024 + 1), 0); /* a hole, no bytes */
+    /* a sparse file, which takes no space */
+    assert_int_equal(truncate("empty.obj", 1024ll * 1024 * 1024 + 1), 0);
     assert_int_equal(file_read("empty.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
                      SHEEN_TOO_BIG);
     unlink("empty.obj");
     assert_int_equal(file_read(".", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error), SHEEN_BAD_MODEL);
     assert_int_equal(mkfifo("pipe.obj", 0600), 0);
     assert_int_equal(file_read("pipe.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
-                     SHEEN_BAD_MODEL); /* and does not hang */
+                     SHEEN_BAD_MODEL); /* returns at once and does not wait */
     unlink("pipe.obj");
     assert_null(bytes);
 }

@@ -1,4 +1,5 @@
-/* libsheen's frames: from servers that serve, that die in the middle, that lie and that refuse. */
+/* libsheen's frames, from fake servers: some serve, some die in the middle of an answer, some send
+ * wrong data, some refuse. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -136,7 +137,7 @@ static void lying_frames(void **state)
     render_ends_with(serve_zstd_bomb, SHEEN_FORMAT_ZSTD, SHEEN_BAD_PEER, "more bytes");
 }
 
-/* A colour plane packed as the daemon packs it; pixel bytes count up. */
+/* A colour plane packed as the daemon packs it; the pixels' bytes count up from 0. */
 static uint32_t packed_plane(uint8_t *bytes, size_t capacity)
 {
     uint8_t plane[WIDTH * HEIGHT * 4];
@@ -206,7 +207,7 @@ static void requests_in_flight(void **state)
     assert_int_equal(open_session(&fake, serve_packed, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     const int most = (int)server_of(session).max_in_flight;
-    assert_int_equal(most, 4); /* of a server that grants nothing else */
+    assert_int_equal(most, 4); /* the number that holds when a server grants no credits */
     for (int i = 0; i < most; i++)
         assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
     assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
@@ -218,7 +219,8 @@ static void requests_in_flight(void **state)
         const uint8_t *plane = frame.plane[0];
         for (int byte = 0; byte < WIDTH * HEIGHT * 4; byte++)
             assert_int_equal(plane[byte], byte);
-        assert_true(i == 0 || frame.plane[0] == memory); /* no new memory for a second frame */
+        /* the second frame reuses the first one's memory */
+        assert_true(i == 0 || frame.plane[0] == memory);
         memory = frame.plane[0];
         assert_null(frame.plane[1]);
         assert_null(frame.data);
@@ -229,8 +231,8 @@ static void requests_in_flight(void **state)
     fake_finish(&fake);
 }
 
-/* Grants three requests; of those, the second comes first, the first has been superseded by it, and
- * the third is taken back. */
+/* Grants three requests. The second is answered first, the first is then reported as superseded by
+ * the second, and the third is cancelled. */
 static void serve_out_of_order(int fd)
 {
     struct message_header hello = read_message(fd, NULL, 0);
@@ -281,7 +283,8 @@ static void answers_out_of_order(void **state)
     assert_int_equal(frame.superseded_by, number[1]);
     assert_int_equal(sheen_status_exit_code(SHEEN_SUPERSEDED), 4);
     assert_false(sheen_status_is_fatal(SHEEN_SUPERSEDED));
-    assert_int_equal(sheen_cancel(session, number[0], &error), SHEEN_BAD_ARGUMENT); /* answered */
+    /* it has been answered already */
+    assert_int_equal(sheen_cancel(session, number[0], &error), SHEEN_BAD_ARGUMENT);
     assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_CANCELLED);
     assert_int_equal(frame.number, number[2]);
     assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
@@ -351,10 +354,17 @@ static void every_error_has_its_status(void **state)
     static const struct {
         enum sheen_status status;
         int exit_code;
-    } expected[] = {{SHEEN_BAD_REQUEST, 2},   {SHEEN_BAD_MODEL, 3},     {SHEEN_BAD_IMAGE, 3},
-                    {SHEEN_UNKNOWN_MODEL, 4}, {SHEEN_BAD_REQUEST, 2}, /* TOO_BIG of a RENDER */
-                    {SHEEN_OVERLOADED, 4},    {SHEEN_DEVICE_FAILED, 5}, {SHEEN_CANCELLED, 4},
-                    {SHEEN_LATE, 4},          {SHEEN_SHUTTING_DOWN, 4}};
+    } expected[] = {{SHEEN_BAD_REQUEST, 2},
+                    {SHEEN_BAD_MODEL, 3},
+                    {SHEEN_BAD_IMAGE, 3},
+                    /* TOO_BIG as the answer to RENDER */
+                    {SHEEN_UNKNOWN_MODEL, 4},
+                    {SHEEN_BAD_REQUEST, 2},
+                    {SHEEN_OVERLOADED, 4},
+                    {SHEEN_DEVICE_FAILED, 5},
+                    {SHEEN_CANCELLED, 4},
+                    {SHEEN_LATE, 4},
+                    {SHEEN_SHUTTING_DOWN, 4}};
     struct fake fake;
     struct sheen_error error;
     struct sheen_session *session;
@@ -374,7 +384,7 @@ static void every_error_has_its_status(void **state)
     fake_finish(&fake);
 }
 
-/* Two lost, then a frame; then one that is lost as often as it is asked for. */
+/* Loses two frames and draws the third; then loses one frame every time that it is requested. */
 static void serve_lost_frames(int fd)
 {
     uint8_t first[512] = {0}, again[512] = {0};
@@ -411,7 +421,8 @@ static void a_lost_frame_is_asked_for_again(void **state)
     fake_finish(&fake);
 }
 
-/* Three of one view in flight: the first is lost, and must not take the place of the last. */
+/* Three requests of one view are in flight. The first frame is lost; when it is requested again, it
+ * must not supersede the last. */
 static void serve_lost_view(int fd)
 {
     uint32_t seq[3];
@@ -465,7 +476,7 @@ static void bad_arguments_send_nothing(void **state)
     assert_int_equal(sheen_render(NULL, &request, NULL, &frame, &error), SHEEN_BAD_ARGUMENT);
     request = small_request(SHEEN_FORMAT_ZSTD);
     assert_int_equal(sheen_render(session, &request, NULL, NULL, &error), SHEEN_BAD_ARGUMENT);
-    /* The session still works. */
+    /* The session still works after these errors. */
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_OK);
     sheen_frame_finish(&frame);
     sheen_close(session);

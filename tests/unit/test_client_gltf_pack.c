@@ -1,4 +1,4 @@
-/* One file out of a .gltf and what lies beside it, and nothing that lies elsewhere. */
+/* A .gltf file and the files beside it become one GLB; no file outside its folder is read. */
 #include "client/cli/files/file.h"
 #include "client/cli/files/gltf_pack.h"
 #include "protocol/limits.h"
@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The tests run in model/, so that there is something outside of it. */
+/* The tests run in the folder model/, so that there are files outside of it. */
 static char folder[64];
 
 static void put_file(const char *path, const void *bytes, size_t size)
@@ -81,7 +81,7 @@ static void expect_unchanged(const char *json)
     expect_refused(json, SHEEN_OK, "");
 }
 
-/* The whole container, byte for byte: the model's identity. */
+/* Compares the whole GLB byte by byte, because its hash is the model's identity. */
 static void test_bytes(void **state)
 {
     (void)state;
@@ -129,7 +129,7 @@ static void test_names(void **state)
         {NAMES("\\u0061.bin"), "abcde"},
         {NAMES("sub/b c.bin"), "ijklm"},
         {NAMES("sub//b%20c.bin"), "ijklm"},
-        {NAMES("in.bin"), "ijklm"}, /* a link that stays inside */
+        {NAMES("in.bin"), "ijklm"}, /* a symbolic link within the folder */
         {NAMES("100%.bin"), "perce"},
         {NAMES("100%25.bin"), "perce"},
         {NAMES("sub/deep/%C3%A4.bin"), "umlau"},
@@ -193,7 +193,7 @@ static void test_outside(void **state)
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         expect_refused(bad[i].json, SHEEN_BAD_MODEL, bad[i].text);
-    /* A folder whose name begins like the model's is another one. */
+    /* Another folder whose name begins with the name of the model's folder. */
     assert_int_equal(mkdir("../model2", 0700), 0);
     put_file("../model2/x.bin", "12345678", 8);
     assert_int_equal(symlink("../model2/x.bin", "near.bin"), 0);
@@ -216,7 +216,7 @@ static void test_no_files(void **state)
         struct sheen_error error;
         snprintf(json, sizeof json, "{\"buffers\":[{\"byteLength\":5,\"uri\":\"%s\"}]}", names[i]);
         enum sheen_status status = pack("part.gltf", json, &bytes, &error);
-        /* "." is the folder itself, which is not below it. */
+        /* "." is the folder itself and not below it. */
         if (status != SHEEN_BAD_MODEL ||
             (!strstr(error.text, says[i]) && !strstr(error.text, "outside")))
             fail_msg("%s: %s", names[i], error.text);
@@ -265,7 +265,7 @@ static void test_layout(void **state)
                    "part.gltf: buffer 0 has 9 bytes, but 'a.bin' only 8");
 }
 
-/* What others write into a file: text with a zero, and integers that no C type holds. */
+/* What other programs write: texts with a zero byte, and integers that no C type holds. */
 static void test_texts_and_numbers(void **state)
 {
     (void)state;
@@ -296,7 +296,7 @@ static void test_texts_and_numbers(void **state)
                    "part.gltf: buffer 0: its URI holds a zero byte");
 }
 
-/* What names no file is nobody's business here, right or wrong. */
+/* Texts that name no file, valid or not, are passed on as they are; the daemon judges them. */
 static void test_unchanged(void **state)
 {
     (void)state;
@@ -319,7 +319,7 @@ static void test_unchanged(void **state)
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         expect_unchanged(texts[i]);
-    char *deep = malloc(1000001); /* a library that recurses stops in time */
+    char *deep = malloc(1000001); /* nesting so deep that a recursive parser must limit it */
     assert_non_null(deep);
     memset(deep, '[', 1000000);
     memcpy(deep, "{\"buffers\":", 11);
@@ -334,9 +334,9 @@ static void test_too_big(void **state)
     static const char text[] = "part.gltf: with the files beside it over 1073741824 bytes";
     put_file("hole.bin", "x", 1);
     off_t most = (off_t)PROTOCOL_MAX_UPLOAD_BYTES;
-    assert_int_equal(truncate("hole.bin", most + 1), 0); /* a hole, no bytes */
+    assert_int_equal(truncate("hole.bin", most + 1), 0); /* a sparse file, which takes no space */
     expect_refused("{\"buffers\":[{\"byteLength\":5,\"uri\":\"hole.bin\"}]}", SHEEN_TOO_BIG, text);
-    /* Each fits, but they do not together, even if little is used of them. */
+    /* Each file fits below the limit, but both together do not, though little of them is used. */
     assert_int_equal(truncate("hole.bin", most - 7), 0);
     static const char two[] = "{\"buffers\":[{\"byteLength\":5,\"uri\":\"a.bin\"},"
                               "{\"byteLength\":5,\"uri\":\"hole.bin\"}]}";
@@ -350,7 +350,7 @@ static void test_too_big(void **state)
     unlink("hole.bin");
 }
 
-/* However the bytes are dealt out to files, the cage is that of the one GLB. */
+/* However the bytes are distributed over files, the cage is that of the single GLB. */
 static void test_same_cage(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* --help, and what completions say, beside the tables of options. */
+/* Compares --help and what completions offer with the tables of options. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -31,7 +31,7 @@ static void help_shows_every_option(void **state)
     }
 }
 
-/* Valid until the next. */
+/* The text is valid until the next call. */
 static const char *help_of(const struct command *command)
 {
     static char text[1 << 15];
@@ -41,13 +41,13 @@ static const char *help_of(const struct command *command)
     return text;
 }
 
-/* Each its own, and none promises an answer to a question that it does not ask. */
+/* Each command lists its own exit codes, and lists none that it cannot return. */
 static void help_has_the_commands_exit_codes(void **state)
 {
     (void)state;
     static const struct {
         const struct command *command;
-        const char *codes; /* in this order */
+        const char *codes; /* in the order of the help text */
     } cases[] = {{&COMMAND_RENDER, "02345"}, {&COMMAND_STREAM, "02345"}, {&COMMAND_INFO, "02345"},
                  {&COMMAND_LEVELS, "02345"}, {&COMMAND_STATS, "02345"},  {&COMMAND_LIGHTS, "023"},
                  {&COMMAND_PATTERNS, "023"}};
@@ -67,7 +67,7 @@ static void help_has_the_commands_exit_codes(void **state)
     assert_non_null(strstr(text, "old name, figure7, still works"));
 }
 
-/* No place of a range is left open. */
+/* The help text contains no unreplaced placeholder of a range. */
 static void help_has_the_ranges(void **state)
 {
     (void)state;
@@ -82,7 +82,7 @@ static void help_has_the_ranges(void **state)
     }
 }
 
-/* The size that --help says is the one that a command takes without --size. */
+/* The size in --help is the one that a command uses without --size. */
 static void help_says_its_own_default_size(void **state)
 {
     (void)state;
@@ -109,7 +109,7 @@ static void help_says_its_own_default_size(void **state)
     }
 }
 
-/* What the shells complete is what the option takes. */
+/* Each word that the shells offer for an option is accepted by that option. */
 static void completed_words_are_values(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void completed_words_are_values(void **state)
             snprintf(words, sizeof(words), "%s", rows[k]->words ? rows[k]->words : "");
             for (char *word = strtok(words, " "); word; word = strtok(NULL, " ")) {
                 struct options options = {.request = SHEEN_REQUEST_DEFAULTS};
-                options.request.format = SHEEN_FORMAT_EXR; /* for --aov */
+                options.request.format = SHEEN_FORMAT_EXR; /* needed by --aov */
                 if (!rows[k]->apply(&options, word, why))
                     fail_msg("--%s %s: %s", rows[k]->name, word, why);
                 n_words++;

@@ -1,4 +1,4 @@
-/* The writer of JSON. */
+/* The JSON writer. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

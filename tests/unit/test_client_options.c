@@ -1,4 +1,5 @@
-/* Command lines: what they set, what belongs together, and what is refused. */
+/* Command lines: which fields options set, which options need or exclude each other, and which are
+ * refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -70,7 +71,7 @@ static void good_command_lines(void **state)
         parse(&COMMAND_STREAM, "m.obj --frames 10 --orbit -3 --light-only", &options, why),
         OPTIONS_RUN);
     assert_true(options.frames == 10 && options.orbit_deg == -3 && options.light_only);
-    assert_false(options.given & GIVEN_CLASS); /* then the command chooses */
+    assert_false(options.given & GIVEN_CLASS); /* then each command chooses its own */
     assert_int_equal(
         parse(&COMMAND_STREAM, "m.obj --frames 10 --class batch --deadline 250", &options, why),
         OPTIONS_RUN);
@@ -118,7 +119,7 @@ static void good_command_lines(void **state)
     assert_true(camera->auto_view && !camera->has_target && camera->auto_up);
 }
 
-/* --up, --fov and --ortho change the camera that frames the model. */
+/* --up, --fov and --ortho change the default camera, which frames the model. */
 static void cameras_in_part(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What a request's options say reaches the daemon, if it is new enough to know them. */
+/* The options of a request reach a daemon whose protocol version knows them. */
 #include <string.h>
 
 #include "tests/unit/fake_server.h"
@@ -59,13 +59,13 @@ static void classes_travel(void **state)
     assert_int_equal(open_session(&fake, serve_and_keep, &session, &error), SHEEN_OK);
     assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
     assert_int_equal(sheen_cancel(session, sheen_last_number(session), &error),
-                     SHEEN_BAD_ARGUMENT); /* minor version 0 knows no cancelling */
+                     SHEEN_BAD_ARGUMENT); /* minor version 0 has no CANCEL */
     assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OVERLOADED);
     assert_int_equal(seen_render.request_class, sheen_RequestClass_CLASS_INTERACTIVE);
     assert_true(seen_render.has_view && seen_render.has_deadline_ms);
     assert_int_equal(seen_render.view, 9);
     assert_int_equal(seen_render.deadline_ms, 250);
-    request.request_class = SHEEN_CLASS_BATCH; /* which has no view */
+    request.request_class = SHEEN_CLASS_BATCH; /* a batch request may name no view */
     assert_int_equal(sheen_send(session, &request, &error), SHEEN_BAD_ARGUMENT);
     assert_non_null(strstr(error.text, "view"));
     sheen_frame_finish(&frame);
@@ -73,7 +73,8 @@ static void classes_travel(void **state)
     fake_finish(&fake);
 }
 
-/* To a daemon of minor version 2 alone: another would skip them. */
+/* Options of JPEG are sent only to a daemon of minor version 2 or later: an older one would ignore
+ * them. */
 static void jpeg_options_travel(void **state)
 {
     (void)state;
@@ -95,7 +96,8 @@ static void jpeg_options_travel(void **state)
         assert_int_equal(status, is_newer ? SHEEN_OK : SHEEN_BAD_ARGUMENT);
         if (!is_newer) {
             assert_non_null(strstr(error.text, "too old"));
-            request.jpeg_subsampling = SHEEN_JPEG_444; /* what it does anyway */
+            /* the value that an older daemon uses anyway */
+            request.jpeg_subsampling = SHEEN_JPEG_444;
             assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
         }
         assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OVERLOADED);
@@ -111,7 +113,8 @@ static void jpeg_options_travel(void **state)
     }
 }
 
-/* To a daemon of minor version 4 alone: another would skip it and answer shares. */
+/* `aliased` is sent only to a daemon of minor version 4 or later: an older one would ignore it and
+ * antialias. */
 static void no_antialiasing_travels(void **state)
 {
     (void)state;
@@ -130,7 +133,7 @@ static void no_antialiasing_travels(void **state)
         if (!is_newer) {
             assert_non_null(strstr(error.text, "too old"));
             request.aliased = false;
-            request.unfiltered = true; /* which every daemon knows */
+            request.unfiltered = true; /* every daemon knows this field */
             assert_int_equal(sheen_send(session, &request, &error), SHEEN_OK);
         }
         assert_int_equal(sheen_receive(session, NULL, &frame, &error), SHEEN_OVERLOADED);

@@ -1,4 +1,4 @@
-/* The private daemon's life and death, played by shell scripts. */
+/* How a private daemon starts, works and ends; shell scripts play the daemon. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -19,7 +19,7 @@
 
 static char folder[64], script_path[96], report_path[96];
 
-/* Installs `text` as the daemon. */
+/* Writes `text` as the script that plays the daemon. */
 static void play(const char *text)
 {
     FILE *file = fopen(script_path, "w");
@@ -89,7 +89,7 @@ static void a_daemon_that_dies_at_start(void **state)
     connect_ends_with(SHEEN_LOST_SERVER, "the private daemon died of signal 9");
     play("printf 'control \\033[2J\\n' >&2; exit 1");
     connect_ends_with(SHEEN_LOST_SERVER, "control ?[2J");
-    /* A flood: only the end is read, and it fits. */
+    /* Of more output than is kept, the error text has the end. */
     play("i=0; while [ $i -lt 300 ]; do echo xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx >&2; "
          "i=$((i+1)); done; echo 'the last line' >&2; exit 1");
     connect_ends_with(SHEEN_LOST_SERVER, "the last line");
@@ -110,7 +110,7 @@ static void a_daemon_that_speaks_nonsense(void **state)
     connect_ends_with(SHEEN_BAD_PEER, "the server broke the protocol");
 }
 
-/* Reads what the script wrote into the report. */
+/* Reads what the script has written to the report. */
 static void read_report(char *text, size_t size)
 {
     FILE *file = fopen(report_path, "r");
@@ -124,11 +124,13 @@ static void arguments_and_files(void **state)
 {
     (void)state;
     char script[400], report[400];
-    /* $# $*: the arguments; then the open files (one more is ls's own). */
+    /* The report: the arguments, then the numbers of the open files, among them one of ls
+     * itself. */
     snprintf(script, sizeof(script),
              "echo \"$*\" > %s; ls /proc/self/fd | tr '\\n' ' ' >> %s; exit 1", report_path,
              report_path);
-    int leaked = open("/dev/null", O_RDONLY); /* not close-on-exec, as a careless program has it */
+    /* not close-on-exec, as in a program that does not care */
+    int leaked = open("/dev/null", O_RDONLY);
     assert_true(leaked >= 3);
     int far = fcntl(leaked, F_DUPFD, 200);
     play(script);
@@ -183,7 +185,8 @@ static void remove_tree(void)
     assert_int_equal(system(command), 0);
 }
 
-/* The machine's, or what the control group leaves of it: of both versions, on every level. */
+/* The machine's memory, or the limit of a control group where that is less: of both versions of
+ * control groups, and of all parent groups. */
 static void memory_of_the_machine(void **state)
 {
     (void)state;
@@ -200,7 +203,7 @@ static void memory_of_the_machine(void **state)
     assert_int_equal(machine_memory_bytes(folder), 8 * gib);
     put("/sys/fs/cgroup/memory/a/b/memory.limit_in_bytes", "4294967296\n");
     assert_int_equal(machine_memory_bytes(folder), 4 * gib);
-    put("/sys/fs/cgroup/memory.max", "1073741824\n"); /* a container's own root */
+    put("/sys/fs/cgroup/memory.max", "1073741824\n"); /* the root group as a container sees it */
     assert_int_equal(machine_memory_bytes(folder), gib);
     remove_tree();
 }
@@ -212,7 +215,7 @@ static void the_daemon_ends_with_its_socket(void **state)
     struct private_daemon daemon;
     struct sheen_error error;
     int peer_fd;
-    play("cat <&3 >/dev/null"); /* until the end of the stream */
+    play("cat <&3 >/dev/null"); /* reads to the end of the stream */
     assert_int_equal(connection_pair(&connection, &peer_fd, 1000, &error), SHEEN_OK);
     const struct sheen_connect_options options = SHEEN_CONNECT_DEFAULTS;
     assert_int_equal(private_daemon_start(&daemon, peer_fd, &options, &error), SHEEN_OK);
@@ -221,7 +224,7 @@ static void the_daemon_ends_with_its_socket(void **state)
     connection_finish(&connection);
     private_daemon_finish(&daemon);
     no_child_is_left();
-    private_daemon_finish(&daemon); /* twice is safe */
+    private_daemon_finish(&daemon); /* a second call does no harm */
 }
 
 int main(void)

@@ -1,5 +1,5 @@
-/* Frames as they come, without waiting: answers that arrive byte by byte, that end in the middle,
- * and that stay undecoded. */
+/* sheen_try_receive() and undecoded frames: answers that arrive byte by byte, and answers that end
+ * in the middle. */
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -11,7 +11,7 @@
 #include "tests/unit/certificates.h"
 #include "tests/unit/fake_server.h"
 
-/* The messages of a daemon, written before anybody reads them. */
+/* The bytes of a daemon's messages, collected before they are sent. */
 struct script {
     uint8_t bytes[4096];
     size_t size;
@@ -42,7 +42,7 @@ static void add_data(struct script *script, uint32_t seq, const void *bytes, uin
     add_bytes(script, bytes, size);
 }
 
-/* A PNG file of ten bytes in two DATA, with progress before and between. */
+/* A PNG file of ten bytes in two DATA messages, with PROGRESS before and between them. */
 static void add_file(struct script *script, uint32_t seq)
 {
     const sheen_Progress progress = {.stage = "tables", .done = 1, .total = 2};
@@ -54,8 +54,8 @@ static void add_file(struct script *script, uint32_t seq)
     add_data(script, seq, "789", 3, MESSAGE_END);
 }
 
-/* A session with three requests in flight (1, 2: PNG, 3: raw planes), and the daemon's end of its
- * connection. */
+/* A session with three requests in flight (1 and 2 want PNG, 3 raw planes), and the daemon's end of
+ * its connection. */
 static struct sheen_session *script_session(int *peer)
 {
     int ends[2];
@@ -81,8 +81,8 @@ static struct sheen_session *script_session(int *peer)
     return session;
 }
 
-/* Sends the script byte by byte and asks after each, with one frame after the other, until an answer
- * is whole; *got is the frame that was given then. */
+/* Sends the script byte by byte and calls sheen_try_receive() after each byte, passing the frames
+ * in turn, until an answer is complete. *got is the frame that was passed to the last call. */
 static enum sheen_status drip(struct sheen_session *session, int peer, const struct script *script,
                               size_t *sent, struct sheen_frame *frames, size_t n_frames,
                               struct sheen_frame **got)
@@ -117,7 +117,7 @@ static void answers_come_byte_by_byte(void **state)
     add_data(&script, 3, planes, sizeof(planes), MESSAGE_END);
     ends[2] = script.size;
 
-    /* Another frame each time: what has come is the session's. */
+    /* Each call may pass another frame, because the session keeps the bytes that have arrived. */
     struct sheen_frame frames[3] = {SHEEN_FRAME_DEFAULTS, SHEEN_FRAME_DEFAULTS,
                                     SHEEN_FRAME_DEFAULTS};
     struct sheen_frame *got = NULL;
@@ -142,7 +142,8 @@ static void answers_come_byte_by_byte(void **state)
     sheen_close(session);
 }
 
-/* Between the halves of an answer other messages go out, and a call that waits goes on. */
+/* While half of an answer has arrived, other messages can be sent, and a waiting call completes
+ * it. */
 static void a_half_answer_stands_in_nobodys_way(void **state)
 {
     (void)state;
@@ -158,7 +159,8 @@ static void a_half_answer_stands_in_nobodys_way(void **state)
     assert_int_equal(sheen_try_receive(session, NULL, &frame, NULL), SHEEN_AGAIN);
     assert_null(frame.data);
     assert_int_equal(sheen_send(session, &request, NULL), SHEEN_OK);
-    assert_int_equal(sheen_send(session, &request, NULL), SHEEN_BAD_ARGUMENT); /* 4 in flight */
+    /* refused: four requests are in flight already */
+    assert_int_equal(sheen_send(session, &request, NULL), SHEEN_BAD_ARGUMENT);
     assert_int_equal(sheen_cancel(session, 1, NULL), SHEEN_OK);
     assert_int_equal(sheen_query_stats(session, &stats, NULL), SHEEN_BAD_ARGUMENT);
     assert_int_equal(read_message(peer, NULL, 0).type, MESSAGE_RENDER);
@@ -267,7 +269,7 @@ static void an_event_loop_waits_on_the_descriptor(void **state)
     fake_finish(&fake);
 }
 
-/* ---- TLS: records hold more than one answer, and less ---- */
+/* ---- TLS: one record may hold several answers, or a part of one ---- */
 
 static struct certificates certificates;
 
@@ -281,7 +283,7 @@ static ssize_t plain_write(void *owner, const void *bytes, size_t size)
     return send(*(const int *)owner, bytes, size, MSG_NOSIGNAL);
 }
 
-/* Reads one message and drops it; its number, or 0 at the end. */
+/* Reads one message and drops it. Returns its number, or 0 at the end of the connection. */
 static uint32_t tls_read_message(struct tls_channel *channel)
 {
     uint8_t bytes[MESSAGE_BUFFER_BYTES];
@@ -306,7 +308,7 @@ static void tls_send(struct tls_channel *channel, const uint8_t *bytes, size_t s
             return;
 }
 
-/* Two answers in one record, then one in a record for each byte. */
+/* Sends two answers in one record, then one answer in which each byte is a record. */
 static void *serve_records(void *listener)
 {
     char text[TLS_TEXT_BYTES];
@@ -326,14 +328,15 @@ static void *serve_records(void *listener)
     add_file(&script, tls_read_message(channel));
     for (size_t i = 0; i < script.size; i++)
         tls_send(channel, script.bytes + i, 1);
-    tls_read_message(channel); /* until the client has closed */
+    tls_read_message(channel); /* until the client has closed the connection */
     tls_channel_destroy(channel);
     tls_context_destroy(context);
     close(fd);
     return NULL;
 }
 
-/* Waits as sheen.h says: only when nothing is whole. Counts how often. */
+/* Receives as sheen.h describes: waits for the descriptor only when no answer is complete. Returns
+ * how often it waited. */
 static int receive_by_poll(struct sheen_session *session, struct sheen_frame *frame)
 {
     int n_waits = 0;
@@ -373,7 +376,8 @@ static void tls_reads_ahead_of_poll(void **state)
     for (int i = 0; i < 2; i++)
         assert_int_equal(sheen_send(session, &request, NULL), SHEEN_OK);
     receive_by_poll(session, &frame);
-    assert_int_equal(receive_by_poll(session, &frame), 0); /* it came with the first */
+    /* this answer came in the same record as the first */
+    assert_int_equal(receive_by_poll(session, &frame), 0);
     assert_int_equal(sheen_send(session, &request, NULL), SHEEN_OK);
     receive_by_poll(session, &frame);
     assert_int_equal(frame.number, sheen_last_number(session));

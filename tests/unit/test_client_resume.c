@@ -1,4 +1,4 @@
-/* When a client connects again, by a clock of the test's. */
+/* When a client reconnects, by a clock that the test sets. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,7 +8,7 @@
 
 #define LOST_MS 5000000
 
-/* The waits of a loss when every try fails at once. Returns how many. */
+/* The waits after a loss if every attempt fails at once. Returns how many attempts there were. */
 static unsigned waits(uint32_t limit_ms, uint32_t *wait_ms, unsigned max)
 {
     struct resume resume = {.limit_ms = limit_ms};
@@ -54,7 +54,8 @@ static void losses_without_an_answer_end(void **state)
     uint32_t wait_ms;
     for (unsigned i = 0; i < 2; i++) {
         for (unsigned k = 0; k < RESUME_MAX_LOSSES; k++) {
-            assert_true(resume_lost(&resume, LOST_MS + 900 * k)); /* each has the whole time */
+            /* each loss has the whole time again */
+            assert_true(resume_lost(&resume, LOST_MS + 900 * k));
             assert_true(resume_wait(&resume, LOST_MS + 900 * k + 500, &wait_ms));
             assert_int_equal(wait_ms, 200);
         }

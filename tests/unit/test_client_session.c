@@ -1,4 +1,4 @@
-/* libsheen against servers that greet wrongly, refuse and take uploads. */
+/* libsheen with servers that send a wrong greeting, refuse, or take uploads. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -126,7 +126,7 @@ static void serve_greeting_alone(int fd)
     serve_silence(fd);
 }
 
-/* The time to connect in ends with it. */
+/* The time limit for connecting ends with the greeting. */
 static void a_server_that_has_greeted_has_more_time(void **state)
 {
     (void)state;
@@ -174,7 +174,8 @@ static void nobody_listens(void **state)
 #define FILE_BYTES 600000
 #define KEPT_BYTES 100000
 
-/* Keeps KEPT_BYTES of a broken upload, wants the rest, and compares it. */
+/* Reports KEPT_BYTES of an interrupted upload as kept, reads the rest, and compares it with the
+ * file. */
 static void serve_resume(int fd)
 {
     static uint8_t chunk[PROTOCOL_MAX_CHUNK_BYTES];
@@ -195,7 +196,7 @@ static void serve_resume(int fd)
     reply = (sheen_UploadState){.complete = same, .received_bytes = received};
     send_message(fd, MESSAGE_UPLOAD_STATE, seq, &reply);
     seq = read_message(fd, NULL, 0).seq;
-    send_message(fd, MESSAGE_UPLOAD_STATE, seq, &reply); /* it has the file now */
+    send_message(fd, MESSAGE_UPLOAD_STATE, seq, &reply); /* the daemon has the file by now */
 }
 
 static void last_done(void *context, const char *stage, uint64_t done, uint64_t total)
@@ -275,7 +276,8 @@ static void names_lose_folders_and_control_characters(void **state)
     fake_finish(&fake);
 }
 
-/* Refuses in the middle of an upload and hangs up: what it said must not be lost. */
+/* Refuses an upload in its middle and closes the connection. The client must still report the
+ * refusal's text. */
 static void serve_refusal(int fd)
 {
     greet(fd);
@@ -302,7 +304,7 @@ static void last_words_are_heard(void **state)
     free(bytes);
 }
 
-/* ---- what is said of a model ---- */
+/* ---- what is told of a model ---- */
 
 static const uint32_t KINDS[] = {
     0, SHEEN_FINDING_OTHER - 1, SHEEN_FINDING_OTHER, 0x7fffffff, 0x80000000, 0xffffffff};

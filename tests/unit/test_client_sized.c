@@ -1,4 +1,5 @@
-/* libsheen with programs that were compiled with an older or a newer sheen.h: sizes of structs. */
+/* libsheen with programs that were compiled with an older or a newer sheen.h, in which structs have
+ * other sizes. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,7 +7,7 @@
 
 #define CANARY 0xa5
 
-/* A struct of a later sheen.h. */
+/* A struct as a later sheen.h may have it. */
 struct newer_request {
     struct sheen_request request;
     uint64_t later;
@@ -49,14 +50,14 @@ static void an_older_program_gives_and_gets_less(void **state)
     struct sheen_request request = small_request(SHEEN_FORMAT_RAW);
     struct sheen_frame frame;
     assert_int_equal(open_session(&fake, serve_raw, &session, &error), SHEEN_OK);
-    /* Before `undecoded` and `times` were there. */
+    /* A frame from before `undecoded` and `times` were added. */
     memset(&request.undecoded, CANARY, sizeof(request) - offsetof(struct sheen_request, undecoded));
     request.size = offsetof(struct sheen_request, undecoded);
     memset(&frame, CANARY, sizeof(frame));
     sheen_struct_init(&frame, offsetof(struct sheen_frame, times));
     assert_canary(&frame, offsetof(struct sheen_frame, times), sizeof(frame));
     assert_int_equal(sheen_render(session, &request, NULL, &frame, &error), SHEEN_OK);
-    assert_non_null(frame.plane[0]); /* decoded: the default */
+    assert_non_null(frame.plane[0]); /* frames are decoded, which is the default */
     assert_int_equal(frame.n_lights, 1);
     assert_int_equal(frame.size, offsetof(struct sheen_frame, times));
     assert_canary(&frame, offsetof(struct sheen_frame, times), sizeof(frame));
@@ -107,7 +108,7 @@ static void answers_fill_what_the_program_has(void **state)
     assert_int_equal(sheen_query_model(session, id, NULL, &info, &error), SHEEN_OK);
     assert_int_equal(info.vertices, 9);
     assert_canary(&info, offsetof(struct sheen_model_info, faces), sizeof(info));
-    /* A newer program finds zero where this library has nothing to say. */
+    /* A newer program finds zero in the fields that this library does not know. */
     struct newer_stats newer = {.later = 5};
     newer.stats.size = sizeof(newer);
     assert_int_equal(sheen_query_stats(session, &newer.stats, &error), SHEEN_OK);
@@ -180,7 +181,7 @@ static void a_size_that_was_never_set_is_refused(void **state)
     fake_finish(&fake);
 }
 
-/* The macros and the functions say the same. */
+/* The macros and the functions give the same defaults. */
 static void defaults_are_the_same_both_ways(void **state)
 {
     (void)state;
@@ -200,7 +201,7 @@ static void defaults_are_the_same_both_ways(void **state)
     assert_int_equal(sheen_stats_defaults().size, sizeof(struct sheen_stats));
     assert_int_equal(sheen_server_defaults().size, sizeof(struct sheen_server));
     assert_int_equal(sheen_model_info_defaults().size, sizeof(struct sheen_model_info));
-    /* Of an older program: no byte more than it has. */
+    /* In the struct of an older program nothing beyond its size is written. */
     struct sheen_request older;
     memset(&older, CANARY, sizeof(older));
     sheen_request_init(&older, offsetof(struct sheen_request, camera));

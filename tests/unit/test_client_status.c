@@ -1,4 +1,4 @@
-/* What error texts let through to a terminal. */
+/* Which characters of error texts reach a terminal. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,14 +15,14 @@ static void expect_text(const char *given, const char *shown)
     assert_string_equal(error.text, shown);
 }
 
-/* Every character of one to three bytes that is a control, turns text or begins a line, and every
- * other. */
+/* All characters of one to three bytes: those that are control characters, change the writing
+ * direction or end a line are hidden, all others are not. */
 static void controls_are_hidden(void **state)
 {
     (void)state;
     for (unsigned code = 1; code < 0x10000; code++) {
         if (code >= 0xd800 && code < 0xe000)
-            continue; /* no characters */
+            continue; /* surrogates, which are no characters */
         bool hidden = code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c ||
                       code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||
                       (code >= 0x2066 && code <= 0x2069);
@@ -38,7 +38,7 @@ static void controls_are_hidden(void **state)
     expect_text("\U0001F697\u202e\xc2\x9b"
                 "31m",
                 "\U0001F697??31m");
-    expect_text("a\U000e0000b\U000e007fc\U000e0080", "a?b?c\U000e0080"); /* tags */
+    expect_text("a\U000e0000b\U000e007fc\U000e0080", "a?b?c\U000e0080"); /* tag characters */
 }
 
 static void bytes_that_are_no_text_are_hidden(void **state)

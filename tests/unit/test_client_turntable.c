@@ -1,4 +1,4 @@
-/* The camera of a turntable, against a projection of its own at many angles. */
+/* The camera of a turntable at many angles, compared with a separate projection of the box. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -29,7 +29,8 @@ static void unit_cross(const double a[3], const double b[3], double out[3])
         out[i] = c[i] / sqrt(dot(c, c));
 }
 
-/* The greatest share of the picture's half that a corner of the box takes. */
+/* The largest distance of a corner of the box from the picture's middle, in halves of the
+ * picture. */
 static double outermost(const struct sheen_camera *camera, const double box[2][3], double aspect)
 {
     double ahead[3], right[3], above[3], most = 0, tangent = tan(camera->fov_deg * PI / 360);
@@ -50,7 +51,7 @@ static double outermost(const struct sheen_camera *camera, const double box[2][3
     return most;
 }
 
-/* A box, and a camera that looks at a place in it, from a side that is not along `axis`. */
+/* A random box, and a camera that looks at a place in it and not along `axis`. */
 static struct sheen_camera random_scene(double box[2][3], double axis[3])
 {
     struct sheen_camera camera = {.fov_deg = between(5, 90)};
@@ -64,7 +65,7 @@ static struct sheen_camera random_scene(double box[2][3], double axis[3])
         camera.eye[i] = camera.target[i] + size * between(-1, 1);
         camera.up[i] = axis[i];
     }
-    if (rand() % 3 == 0) /* it tips its head: up is not the axis */
+    if (rand() % 3 == 0) /* the camera is tilted: its up is not the axis */
         for (int i = 0; i < 3; i++)
             camera.up[i] = tip[i];
     return camera;
@@ -86,7 +87,7 @@ static void the_box_stays_in_the_picture(void **state)
             most = fmax(most, outermost(&camera, box, aspect));
         }
         assert_true(most <= 0.92 * (1 + 1e-9));
-        assert_true(most > 0.92 * 0.995); /* no further away than that asks for */
+        assert_true(most > 0.92 * 0.995); /* no further away than needed */
     }
 }
 
@@ -98,7 +99,7 @@ static double distance_of(const struct sheen_camera *camera)
     return sqrt(dot(arm, arm));
 }
 
-/* About a target of its own it goes back as far as it must, and comes no nearer. */
+/* With a target of its own, the camera moves back as far as it must, and never nearer. */
 static void a_target_of_its_own(void **state)
 {
     (void)state;
@@ -120,7 +121,7 @@ static void a_target_of_its_own(void **state)
     }
 }
 
-/* A plan turns in its own plane: the eye stays over the middle, up goes round. */
+/* A camera that looks along the axis rotates about its line of sight: the eye stays, up turns. */
 static void a_plan_turns_without_tipping(void **state)
 {
     (void)state;
@@ -131,7 +132,7 @@ static void a_plan_turns_without_tipping(void **state)
     for (int i = 0; i < 3; i++)
         assert_true(fabs(camera.eye[i] - plan.eye[i]) < 1e-12);
     assert_true(fabs(camera.up[0] + 0.5) < 1e-12 && fabs(camera.up[1] - sqrt(0.75)) < 1e-12);
-    /* An up that is the axis, of any length, stays as it was said. */
+    /* If up is along the axis, of any length, it remains as given. */
     const struct sheen_camera side = {.eye = {5, 0, 1}, .up = {0, 0, 3}};
     turntable_turn(&side, axis, PI / 2, &camera);
     assert_memory_equal(camera.up, side.up, sizeof(side.up));

@@ -1,4 +1,4 @@
-/* Values of options: numbers, vectors, colours, patterns, lights, names of frames. */
+/* Values of options: numbers, vectors, colours, patterns, lights, and numbered file names. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -184,7 +184,8 @@ static void families_and_lights(void **state)
 
 /* Parses a command line that is written with spaces. */
 
-/* A pattern that is not strictly one number would write over files, or read what is not there. */
+/* A file name with anything but exactly one number would overwrite files, or read arguments that do
+ * not exist. */
 static void frames_have_names(void **state)
 {
     (void)state;

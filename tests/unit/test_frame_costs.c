@@ -1,4 +1,4 @@
-/* What frames are expected to cost, by what they did. */
+/* The estimated costs of frames, learned from the costs of earlier frames. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,7 +18,8 @@ static void test_costs(void **state)
     assert_int_equal(costs_estimate(&costs, a, 1000), COSTS_UNKNOWN_US);
     costs_learn(&costs, a, 1000, 2000);
     assert_in_range(costs_estimate(&costs, a, 500), 999, 1000);
-    assert_in_range(costs_estimate(&costs, b, 500), 999, 1000); /* as all do */
+    /* the mean of all models, until this one has been drawn */
+    assert_in_range(costs_estimate(&costs, b, 500), 999, 1000);
     for (int i = 0; i < 40; i++)
         costs_learn(&costs, a, 1000, 4000);
     assert_in_range(costs_estimate(&costs, a, 1000), 3990, 4000);

@@ -1,5 +1,5 @@
-/* How frames are cut: no interactive tile costs more than its device's limit, whatever is asked for, and the
- * cut depends on the machine only where it does not change the frame. */
+/* How frames are cut: no interactive tile costs more than its device's limit, whatever is
+ * requested. The cut depends on the machine only where it does not change the frame. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -34,7 +34,8 @@ static uint64_t most_tile_px(const sheen_Render *render, struct cut cut)
     return (uint64_t)size.width * size.height;
 }
 
-/* The limits in nanoseconds: 15 ms, by the weights of cut.c written out again. */
+/* The limits in nanoseconds: 15 ms by the weights of cut.c, which are written a second time
+ * here. */
 static double tile_ms(const sheen_Render *render, struct cut cut, double scale)
 {
     static const double light_ns[] = {15, 22.5, 22.5, 22.5, 22.5, 37.5, 22.5};
@@ -64,7 +65,8 @@ static void test_no_interactive_tile_takes_long(void **state)
     assert_true(cut_frame(&eight, &NATIVE).tile_px * 2 < cut_frame(&one, &NATIVE).tile_px);
     sheen_Render small = frame_of(320, 240, 1, sheen_PatternKind_PATTERN_STRIPES, interactive);
     assert_int_equal(cut_frame(&small, &NATIVE).tile_px, 0);
-    /* Without lights the frame shows a tunnel of stripes, and false colour needs none. */
+    /* Without lights the frame shows a tunnel of stripes; false colour is drawn without any
+     * light. */
     sheen_Render none = frame_of(1600, 1200, 0, sheen_PatternKind_PATTERN_STRIPES, interactive);
     assert_int_equal(cut_frame(&none, &NATIVE).tile_px, cut_frame(&one, &NATIVE).tile_px);
     eight.show.kind = sheen_ShowKind_SHOW_MEAN;

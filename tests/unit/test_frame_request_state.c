@@ -1,4 +1,5 @@
-/* The states of a request: the table against a list of its own, walks at random, and a wrong move. */
+/* The states of a request: the table of transitions against a second list, random walks, and a
+ * wrong transition. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -11,15 +12,15 @@
 
 #include "server/frame/request_state.h"
 
-/* What may follow what, written down a second time: by the events of a request. */
+/* The allowed transitions, written a second time, grouped by the events of a request. */
 static const struct {
     enum request_state from, to;
 } MOVES[] = {
-    /* assets are there */
+    /* the assets are ready */
     {REQUEST_LOADING, REQUEST_QUEUED},
     {REQUEST_LOADING, REQUEST_POLYGONS},
     {REQUEST_POLYGONS, REQUEST_QUEUED},
-    /* the scheduler's turn: memory, a tile, another one */
+    /* the scheduler's turn: memory is there; a tile is drawn; another tile follows */
     {REQUEST_QUEUED, REQUEST_PARKED},
     {REQUEST_PARKED, REQUEST_QUEUED},
     {REQUEST_QUEUED, REQUEST_DRAWING},
@@ -30,12 +31,12 @@ static const struct {
     {REQUEST_DRAWING, REQUEST_ENCODING},
     {REQUEST_PAINTING, REQUEST_ENCODING},
     {REQUEST_ENCODING, REQUEST_HELD},
-    /* answered early while somebody works for it */
+    /* the request is answered early, while a thread works for it */
     {REQUEST_LOADING, REQUEST_ABANDONED},
     {REQUEST_DRAWING, REQUEST_ABANDONED},
     {REQUEST_PAINTING, REQUEST_ABANDONED},
     {REQUEST_ENCODING, REQUEST_ABANDONED},
-    /* answered; painting cannot fail and is always followed by the encoding */
+    /* the request is answered; painting cannot fail, and encoding always follows it */
     {REQUEST_LOADING, REQUEST_ENDED},
     {REQUEST_POLYGONS, REQUEST_ENDED},
     {REQUEST_QUEUED, REQUEST_ENDED},
@@ -59,8 +60,8 @@ static void test_table(void **test_state)
         }
 }
 
-/* A request that somebody works for can be abandoned, and none that nobody works for but one that
- * waits for the store. */
+/* A request can be abandoned while a thread works for it, and while it waits for the store; in no
+ * other state. */
 static void test_who_can_be_abandoned(void **test_state)
 {
     (void)test_state;
@@ -69,7 +70,7 @@ static void test_who_can_be_abandoned(void **test_state)
                     (request_state_is_busy(from) || from == REQUEST_LOADING));
 }
 
-/* Every walk from the beginning comes to the end, which nothing follows, and all states are on
+/* Every walk from the first state reaches the end, nothing follows the end, and every state is on
  * some walk. */
 static void test_walks(void **test_state)
 {

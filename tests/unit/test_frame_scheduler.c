@@ -1,4 +1,5 @@
-/* The scheduler's order: latest wins, what may wait on the device, bounds, sessions that go. */
+/* The scheduler's order: newer requests of a view replace older ones, few tiles wait on the device,
+ * queues are bounded, and sessions may leave at any time. */
 #include "tests/unit/schedule_entries.h"
 
 static void test_empty(void **state)
@@ -10,10 +11,10 @@ static void test_empty(void **state)
     struct schedule_entry entry = entry_of(CLASS_STILL, 1);
     add_queue(&queue);
     assert_null(scheduler_enter(&scheduler, &queue, &entry));
-    assert_null(scheduler_next(&scheduler)); /* it waits for its model */
+    assert_null(scheduler_next(&scheduler)); /* none is ready: the entry waits for its model */
     assert_int_equal(scheduler.waiting, 1);
     scheduler_leave(&scheduler, &entry);
-    scheduler_leave(&scheduler, &entry); /* once is enough */
+    scheduler_leave(&scheduler, &entry); /* a second call does nothing */
     assert_is_empty(&scheduler);
 }
 
@@ -29,12 +30,12 @@ static void test_order_and_two_begun(void **state)
         ask(&scheduler, &queue, &e[i]);
     }
     assert_ptr_equal(scheduler_next(&scheduler), &e[0]);
-    assert_null(scheduler_next(&scheduler)); /* one tile at a time */
+    assert_null(scheduler_next(&scheduler)); /* one tile of a frame at a time */
     scheduler_stepped(&scheduler, &e[0], 1000, false);
     assert_ptr_equal(scheduler_next(&scheduler), &e[1]);
     scheduler_stepped(&scheduler, &e[1], 1000, false);
-    assert_null(scheduler_next(&scheduler)); /* both are being encoded */
-    scheduler_finished(&scheduler, &e[1]);   /* the second may end first */
+    assert_null(scheduler_next(&scheduler)); /* none: both drawn frames are being encoded */
+    scheduler_finished(&scheduler, &e[1]);   /* the second may finish before the first */
     assert_ptr_equal(scheduler_next(&scheduler), &e[2]);
     scheduler_stepped(&scheduler, &e[2], 1000, false);
     scheduler_finished(&scheduler, &e[0]);
@@ -44,7 +45,7 @@ static void test_order_and_two_begun(void **state)
     assert_is_empty(&scheduler);
 }
 
-/* A second tile waits on the device only where nothing more urgent can come. */
+/* A second tile goes to the device only where no more urgent request can arrive meanwhile. */
 static void test_two_tiles_on_the_device(void **state)
 {
     (void)state;
@@ -58,25 +59,28 @@ static void test_two_tiles_on_the_device(void **state)
     ask(&scheduler, &queue[0], &batch);
     assert_ptr_equal(scheduler_next(&scheduler), &batch);
     ask(&scheduler, &queue[0], &still);
-    assert_null(scheduler_next(&scheduler)); /* a still does not queue up behind a batch's tile */
+    /* a still's tile does not wait on the device behind a batch's */
+    assert_null(scheduler_next(&scheduler));
     ask(&scheduler, &queue[1], &interactive[0]);
     ask(&scheduler, &queue[2], &interactive[1]);
     struct schedule_entry next_frame = view_of(CLASS_INTERACTIVE, 1);
     ask(&scheduler, &queue[1], &next_frame);
     assert_ptr_equal(scheduler_next(&scheduler), &interactive[0]);
-    assert_null(scheduler_next(&scheduler)); /* two are enough */
+    assert_null(scheduler_next(&scheduler)); /* at most two tiles are on the device */
     scheduler_stepped(&scheduler, &batch, 1000, true);
     scheduler_leave(&scheduler, &batch);
     scheduler_leave(&scheduler, &still);
     assert_ptr_equal(scheduler_next(&scheduler), &interactive[1]);
     scheduler_stepped(&scheduler, &interactive[1], 1000, false);
-    /* A session's next frame begins, and stops being replaceable, when the one before is drawn. */
+    /* A session's next frame begins when its previous one has been drawn, and can no longer be
+     * replaced then. */
     assert_null(scheduler_next(&scheduler));
     scheduler_stepped(&scheduler, &interactive[0], 1000, false);
     assert_ptr_equal(scheduler_next(&scheduler), &next_frame);
 }
 
-/* Beside an interactive tile a second one only where both are short: who comes meanwhile is next. */
+/* A second tile waits behind an interactive one only if both are short, so that a request that
+ * arrives meanwhile does not wait long. */
 static void test_long_tiles_do_not_queue_up(void **state)
 {
     (void)state;
@@ -95,19 +99,21 @@ static void test_long_tiles_do_not_queue_up(void **state)
     assert_int_equal(e[1].state, SCHEDULE_READY);
     draw_whole(&scheduler, &e[0], 9000);
     assert_ptr_equal(scheduler_next(&scheduler), &e[1]);
-    scheduler_put_back(&scheduler, &e[1]); /* has used nothing of what may be ahead */
+    /* tiles that were put back do not count as waiting on the device */
+    scheduler_put_back(&scheduler, &e[1]);
     scheduler_leave(&scheduler, &e[1]);
     assert_ptr_equal(scheduler_next(&scheduler), &e[2]);
     ask(&scheduler, &queue[3], &late);
     assert_null(scheduler_next(&scheduler));
     draw_whole(&scheduler, &e[2], 9000);
-    assert_ptr_equal(scheduler_next(&scheduler), &late); /* a long one is drawn all the same */
+    /* a long tile is drawn when the device is idle */
+    assert_ptr_equal(scheduler_next(&scheduler), &late);
     draw_whole(&scheduler, &late, 9000);
     assert_is_empty(&scheduler);
     assert_int_equal(scheduler.ahead_us, 0);
 }
 
-/* --- latest wins */
+/* --- a newer request of a view replaces the older one */
 
 static void test_newer_request_of_a_view_replaces(void **state)
 {
@@ -121,14 +127,15 @@ static void test_newer_request_of_a_view_replaces(void **state)
         e[i] = view_of(CLASS_INTERACTIVE, 7);
     e[0].estimate_us = 10;
     ask(&scheduler, &queue, &e[0]);
-    ask(&scheduler, &other, &e[5]); /* the same number of another session is another view */
+    ask(&scheduler, &other, &e[5]); /* the same number in another session is another view */
     assert_ptr_equal(scheduler_next(&scheduler), &e[0]);
-    assert_null(scheduler_enter(&scheduler, &queue, &e[1])); /* e[0] has begun */
+    /* none is replaced, because e[0] has begun */
+    assert_null(scheduler_enter(&scheduler, &queue, &e[1]));
     assert_ptr_equal(scheduler_enter(&scheduler, &queue, &e[2]), &e[1]);
     assert_int_equal(e[1].state, SCHEDULE_OUT);
     e[3].view = 8;
     assert_null(scheduler_enter(&scheduler, &queue, &e[3])); /* another view */
-    e[4].request_class = CLASS_STILL; /* of the same view: it is newer all the same */
+    e[4].request_class = CLASS_STILL; /* a still of the same view replaces it, too */
     assert_ptr_equal(scheduler_enter(&scheduler, &queue, &e[4]), &e[2]);
     assert_int_equal(scheduler.waiting, 3);
     scheduler_stepped(&scheduler, &e[0], 10, false);
@@ -159,12 +166,12 @@ static void test_batches_and_stills_without_a_view_stay(void **state)
         ask(&scheduler, &queue, &still[i]);
     }
     ask(&scheduler, &queue, &interactive);
-    ask(&scheduler, &queue, &zero); /* a still without a view is not one of view 0 */
+    ask(&scheduler, &queue, &zero); /* a still without a view is not a still of view 0 */
     assert_int_equal(scheduler.waiting, 6);
 }
 
-/* Requests that come faster than they are drawn: what has begun is finished, and of the others only
- * the newest is. Every one ends exactly once. */
+/* Requests that arrive faster than they are drawn: a frame that has begun is finished, and of the
+ * others only the newest is kept. Every request ends exactly once. */
 static void test_faster_than_drawn(void **state)
 {
     (void)state;
@@ -186,7 +193,7 @@ static void test_faster_than_drawn(void **state)
                 draw_whole(&scheduler, drawing, 1000);
             n_drawn += drawing != NULL;
             drawing = scheduler_next(&scheduler);
-            assert_ptr_equal(drawing, &e[i]); /* always the newest */
+            assert_ptr_equal(drawing, &e[i]); /* the newest is always drawn */
         }
     }
     assert_int_equal(n_drawn, N / PER_FRAME);
@@ -205,16 +212,16 @@ static void test_encoded_frames_are_replaced_while_held(void **state)
     ask(&scheduler, &queue, &e[0]);
     assert_ptr_equal(scheduler_next(&scheduler), &e[0]);
     scheduler_stepped(&scheduler, &e[0], 1000, false);
-    assert_null(scheduler_hold(&e[0])); /* nothing newer: kept */
+    assert_null(scheduler_hold(&e[0])); /* no newer request: the frame is kept */
     queue.flow[CLASS_INTERACTIVE].held = true;
     assert_ptr_equal(scheduler_enter(&scheduler, &queue, &e[1]), &e[0]);
     scheduler_ready(&e[1]);
-    assert_null(scheduler_next(&scheduler)); /* the socket is full */
+    assert_null(scheduler_next(&scheduler)); /* the client's socket is full */
     queue.flow[CLASS_INTERACTIVE].held = false;
     assert_ptr_equal(scheduler_next(&scheduler), &e[1]);
     scheduler_stepped(&scheduler, &e[1], 1000, false);
     ask(&scheduler, &queue, &e[2]);
-    assert_ptr_equal(scheduler_hold(&e[1]), &e[2]); /* out of date already */
+    assert_ptr_equal(scheduler_hold(&e[1]), &e[2]); /* it has been replaced by a newer one */
     scheduler_finished(&scheduler, &e[1]);
     scheduler_leave(&scheduler, &e[2]);
     assert_is_empty(&scheduler);
@@ -241,14 +248,15 @@ static void test_bound_of_a_class(void **state)
         scheduler_stepped(&scheduler, &e[q], 1000, false);
     }
     assert_null(scheduler_next(&scheduler));
-    ask(&scheduler, &queue[0], &other); /* batches that are being encoded hold no other class up */
+    /* batches that are being encoded do not delay other classes */
+    ask(&scheduler, &queue[0], &other);
     assert_ptr_equal(scheduler_next(&scheduler), &other);
     draw_whole(&scheduler, &other, 1000);
     scheduler_finished(&scheduler, &e[2]);
     assert_ptr_equal(scheduler_next(&scheduler), &e[SCHEDULER_PER_CLASS]);
 }
 
-/* Frames of one party that wait for sockets, which nobody reads, keep no other party out. */
+/* Frames of one party that wait because nobody reads its sockets do not delay other parties. */
 static void test_a_full_class_admits_others(void **state)
 {
     (void)state;
@@ -305,7 +313,7 @@ static void test_held_session_is_passed_over(void **state)
     assert_null(scheduler_next(&scheduler));
     a.flow[CLASS_STILL].held = false;
     assert_ptr_equal(scheduler_next(&scheduler), &ea);
-    a.flow[CLASS_STILL].held = true; /* what has begun goes on */
+    a.flow[CLASS_STILL].held = true; /* frames that have begun are finished */
     scheduler_stepped(&scheduler, &ea, 1, true);
     assert_ptr_equal(scheduler_next(&scheduler), &ea);
 }

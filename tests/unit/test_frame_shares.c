@@ -1,15 +1,15 @@
-/* The scheduler's shares, on a device whose time is a number: fairness by time, and that nobody waits
- * for ever. */
+/* The scheduler's shares, on a simulated device whose time is a number: equal shares of time, and
+ * no request that waits for ever. */
 #include "server/frame/costs.h"
 #include "tests/unit/schedule_entries.h"
 
-/* Sessions always have the next frame ready. */
+/* Each session always has its next frame ready. */
 enum { MOST_SESSIONS = 72, PER_SESSION = 2 };
 
 struct client {
     struct schedule_queue queue;
     struct schedule_entry entry[PER_SESSION];
-    unsigned tiles[PER_SESSION]; /* left of the frame */
+    unsigned tiles[PER_SESSION]; /* tiles that are left of the frame */
     enum request_class request_class;
     uint64_t tile_us;
     unsigned tiles_of_frame;
@@ -35,7 +35,7 @@ static void client_asks(struct device *device, struct client *client, int i)
     ask(&device->scheduler, &client->queue, entry);
 }
 
-/* `party` NULL: a client that is alone in its own. */
+/* `party` NULL: the client is the only one of its party. */
 static struct client *add_client_of(struct device *device, struct schedule_party *party,
                                     enum request_class request_class, uint64_t tile_us,
                                     unsigned tiles_of_frame)
@@ -108,8 +108,8 @@ static void test_sessions_share_time_not_frames(void **state)
     }
 }
 
-/* Parties have equal shares, however many connections they have, and of a party's share each of its
- * connections has the same. */
+/* Parties have equal shares, however many connections they have; within a party its connections
+ * have equal shares. */
 static void test_parties_share_before_sessions(void **state)
 {
     (void)state;
@@ -133,12 +133,14 @@ static void test_parties_share_before_sessions(void **state)
         assert_in_range(device->client[60].used_us, 29500000, 30500000);
         assert_in_range(device->client[61].used_us, 29500000, 30500000);
         assert_in_range(one->used_us, 59500000, 60500000);
-        assert_true(one->longest_wait_us < 40000); /* a turn of each party, two frames ahead */
+        /* one turn of each party, while each may be two frames ahead */
+        assert_true(one->longest_wait_us < 40000);
         free(device);
     }
 }
 
-/* 64 that drag and 8 that queue: the batches keep their fifth and no more, evenly. */
+/* With 64 interactive clients and 8 batch clients, the batches get one fifth of the time, in equal
+ * shares. */
 static void test_batches_keep_a_fifth(void **state)
 {
     (void)state;
@@ -155,7 +157,7 @@ static void test_batches_keep_a_fifth(void **state)
         if (device->client[i].longest_wait_us > longest)
             longest = device->client[i].longest_wait_us;
     }
-    /* The turns of all others, two frames ahead, and the batches' fifth between. */
+    /* two frames of each other client, and the batches' fifth between them */
     assert_true(longest <= 64 * 2 * 2000 * 10 / 8 + 20000);
     for (int i = 64; i < 72; i++)
         assert_in_range(device->client[i].used_us, 1300000, 1700000);
@@ -175,8 +177,8 @@ static void test_three_classes(void **state)
     free(device);
 }
 
-/* Without interactive work stills go before batches, which keep their fifth; and a class alone has
- * everything, without that being held against it later. */
+/* Without interactive work, stills come before batches, which keep their fifth. A class that is
+ * alone gets all the time, and has no disadvantage later because of that. */
 static void test_shares_of_what_is_wanted(void **state)
 {
     (void)state;
@@ -190,8 +192,8 @@ static void test_shares_of_what_is_wanted(void **state)
     free(device);
 }
 
-/* An interactive request that comes alone into the batches' time waits for the tile on the device
- * and no other. */
+/* An interactive request that arrives alone, while batches are drawn, waits only for the tile that
+ * is on the device. */
 static void test_interactive_waits_for_one_tile(void **state)
 {
     (void)state;
@@ -213,13 +215,14 @@ static void test_interactive_waits_for_one_tile(void **state)
     free(device);
 }
 
-/* One with one request at a time has its share too, and one that asks rarely does not wait behind
- * all that the busy ones have queued. */
+/* A client with one request at a time gets its share, too. A client that rarely asks does not wait
+ * behind everything that busy clients have queued. */
 static void test_rare_ones_are_served_at_once(void **state)
 {
     (void)state;
     struct device *device = calloc(1, sizeof *device);
-    for (unsigned i = 0; 2 * i + 2 < SCHEDULER_PER_CLASS; i++) /* two of each have begun */
+    /* so that two frames of each can begin */
+    for (unsigned i = 0; 2 * i + 2 < SCHEDULER_PER_CLASS; i++)
         add_client(device, CLASS_STILL, 4000, 3);
     struct schedule_queue queue;
     add_queue(&queue);
@@ -238,14 +241,15 @@ static void test_rare_ones_are_served_at_once(void **state)
             }
             before++;
         }
-        assert_true(before <= SCHEDULER_PER_CLASS); /* a turn of each, not a frame */
+        assert_true(before <= SCHEDULER_PER_CLASS); /* a turn is a tile, not a frame */
         draw_whole(&device->scheduler, &rare, 1000);
     }
     free(device);
 }
 
-/* A frame of several tiles, of a client that asks rarely, is drawn without a break beside those that ask
- * all the time; one that is longer than what can be saved up shares the rest of its time. */
+/* A frame of several tiles of a client that rarely asks is drawn without interruption beside busy
+ * clients. A frame that is longer than the share that can be saved up shares the rest of its
+ * time. */
 static void test_rare_frames_are_not_interrupted(void **state)
 {
     (void)state;
@@ -262,7 +266,8 @@ static void test_rare_frames_are_not_interrupted(void **state)
         while (drawn < tiles) {
             next = scheduler_next(&device->scheduler);
             if (next == &rare) {
-                assert_null(scheduler_next(&device->scheduler)); /* asked again while it is drawn */
+                /* the scheduler is asked again while the tile is drawn */
+                assert_null(scheduler_next(&device->scheduler));
                 scheduler_stepped(&device->scheduler, next, 5000, ++drawn < tiles);
                 continue;
             }
@@ -277,14 +282,14 @@ static void test_rare_frames_are_not_interrupted(void **state)
         }
         scheduler_finished(&device->scheduler, &rare);
         if (tiles == 6)
-            assert_true(others <= 3); /* a tile that had its turn already */
+            assert_true(others <= 3); /* a tile whose turn was counted already */
         else
             assert_in_range(others, 3 * (20 - 8), 3 * (20 - 5)); /* a quarter of the time */
     }
     free(device);
 }
 
-/* A wrong estimate is put right by what was measured. */
+/* A wrong estimate is corrected by the measured time. */
 static void test_lies_about_costs_do_not_pay(void **state)
 {
     (void)state;

@@ -52,7 +52,7 @@ static void test_gap(void **state)
     }
 }
 
-/* The same frame in tiles: a renderer of its own, once the other's is drawn. */
+/* Draws the same frame in tiles, by a renderer of its own, after the other frame is complete. */
 static struct frame render_in_tiles(const struct limit_tables *tables,
                                     const struct frame_request *request, bool in_place)
 {
@@ -74,7 +74,7 @@ static struct frame render_in_tiles(const struct limit_tables *tables,
     return frame;
 }
 
-/* In tiles bit by bit the same where that is promised, and as exact otherwise. */
+/* Tiles give the same bytes where that is promised, and elsewhere the same exactness. */
 static void test_tiles(void **state)
 {
     (void)state;

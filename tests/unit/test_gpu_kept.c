@@ -1,5 +1,6 @@
-/* Planes that outlive their frame: who may have them, and that they are never another's. What a
- * frame must be is what a renderer draws that has drawn nothing before. */
+/* Planes that are kept from one frame to the next: which frames may use them, and that no frame
+ * uses those of another. Each frame is compared with one of a new renderer, which has kept
+ * nothing. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,7 +16,8 @@
 
 enum { ALL_PLANES = (1 << PLANE_COUNT) - 1, MOST_TILES = 64 };
 
-/* How a frame is cut: as one tile, in tiles that are kept, in tiles that are not. */
+/* How a frame is cut: into one tile, into tiles whose planes are kept, into tiles whose planes are
+ * not. */
 enum cut { WHOLE, IN_PLACE, APART, N_CUTS };
 
 static struct frame_work work_for(const struct frame_request *request, enum cut cut)
@@ -82,9 +84,9 @@ static struct frame_request request_of_all(const struct limit_tables *tables, ui
     return request;
 }
 
-/* Cut in place, bit by bit what it is as one: silhouettes, creases, roundings of half a pixel and
- * some, borders, places without a normal; also where another such frame is drawn between its tiles.
- */
+/* Cut in place, a frame has the same bytes as in one piece: at silhouettes, creases, roundings of
+ * about half a pixel, borders and places without a normal. That holds also if another such frame is
+ * drawn between its tiles. */
 static void test_cut_in_place(void **state)
 {
     (void)state;
@@ -118,8 +120,8 @@ static void test_cut_in_place(void **state)
     }
 }
 
-/* However a view was drawn first, the next frame of it has stage 3 alone, and is what it would be
- * without. */
+/* However a view was cut when it was first drawn, its next frame runs stage 3 only, and has the
+ * bytes of a new renderer's frame. */
 static void test_serves_every_cut(void **state)
 {
     (void)state;
@@ -138,7 +140,7 @@ static void test_serves_every_cut(void **state)
             assert_false(is_reused(&before));
             assert_true(is_reused(&after));
             assert_same_frames(&fresh, &after);
-            /* What tiles need for themselves is no larger than one. */
+            /* What tiles are drawn into is only as wide as a tile. */
             if (frames_device == &gl_device)
                 assert_true(gl_renderer_of(renderer)->resting[PLANES_APART].target.width <
                             request.width_px);
@@ -152,7 +154,8 @@ static void test_serves_every_cut(void **state)
     limit_tables_finish(&tables);
 }
 
-/* A thumbnail between two frames of a view costs it nothing; a frame of 4,096 pixels is none. */
+/* A thumbnail between two frames of a view does not remove the view's kept planes. A frame of 4,096
+ * pixels is too large for a thumbnail. */
 static void test_small_frames(void **state)
 {
     (void)state;
@@ -180,19 +183,19 @@ static void test_small_frames(void **state)
     limit_tables_finish(&tables);
 }
 
-/* --- any sequence */
+/* --- random sequences */
 
 enum { N_CAGES = 2, N_VIEWS = 4, N_REQUESTS = N_CAGES * N_VIEWS, N_UNDER_WAY = 3, N_TURNS = 400 };
 
 struct sequence {
     struct limit_tables tables[N_CAGES];
-    struct frame_request request[N_REQUESTS][2]; /* and the same under another light */
-    struct frame fresh[N_REQUESTS][2][N_CUTS];   /* filled when first compared with */
+    struct frame_request request[N_REQUESTS][2]; /* under the first light, and under another */
+    struct frame fresh[N_REQUESTS][2][N_CUTS];   /* filled at the first comparison */
     struct renderer *renderer;
     struct renderer_model *model[N_CAGES];
     struct frame_work work[N_UNDER_WAY];
     struct frame frame[N_UNDER_WAY];
-    int drawn[N_UNDER_WAY], light[N_UNDER_WAY]; /* which request; -1: none */
+    int drawn[N_UNDER_WAY], light[N_UNDER_WAY]; /* index of the request; -1: none */
     enum cut cut[N_UNDER_WAY];
     uint64_t random;
     unsigned n_compared, n_reused[N_CUTS];
@@ -228,7 +231,7 @@ static void sequence_init(struct sequence *s)
                                          : ALL_PLANES;
         }
     }
-    /* Before the renderer that is tried: one at a time has a context on this thread. */
+    /* Before the tested renderer is opened, because a thread has one context at a time. */
     for (int i = 0; i < N_REQUESTS * 4; i++)
         s->fresh[i / 4][i / 2 % 2][i % 2] = draw_fresh(
             &s->tables[i / 4 / N_VIEWS], &s->request[i / 4][i / 2 % 2], i % 2 ? APART : WHOLE);
@@ -258,7 +261,7 @@ static void compare(struct sequence *s, int k)
     give_up(s, k);
 }
 
-/* Begins a frame, goes on with one, gives one up, or puts another model in place of one. */
+/* Begins a frame, continues one, gives one up, or replaces a model. */
 static void turn(struct sequence *s)
 {
     int k = (int)below(s, N_UNDER_WAY);
@@ -273,7 +276,7 @@ static void turn(struct sequence *s)
     } else if (what == 1) {
         give_up(s, k);
     } else if (s->drawn[k] < 0) {
-        /* Mostly a view of one model, so that there is something to reuse. */
+        /* Mostly a view of one model, so that there are planes to reuse. */
         int c = below(s, 3) == 0, v = (int)below(s, N_VIEWS);
         s->drawn[k] = c * N_VIEWS + v;
         s->light[k] = (int)below(s, 2);
@@ -281,7 +284,7 @@ static void turn(struct sequence *s)
         s->work[k] = work_for(&s->request[s->drawn[k]][s->light[k]], s->cut[k]);
         s->frame[k] = begin(s->renderer, &s->work[k]);
     } else {
-        /* To its end, or a tile further. */
+        /* Draws the frame to its end, or one tile more of it. */
         struct renderer_model *model = s->model[s->drawn[k] / N_VIEWS];
         bool to_end = below(s, 2);
         enum frame_step next;

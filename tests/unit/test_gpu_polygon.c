@@ -1,5 +1,5 @@
-/* The conventional picture: how its error falls from level to level, its wireframe, what is kept
- * between frames, and how many polygons are too many. */
+/* Polygons: how their error falls from level to level, wireframes, what is kept between frames, and
+ * how many polygons are too many. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -42,8 +42,8 @@ static uint32_t face_of(const struct frame *frame, size_t pixel)
     return ((const uint32_t *)frame->plane[3])[3 * pixel];
 }
 
-/* Whether the surface is seen from well above: near its outline a pixel's ray runs along it, and
- * meets the polygons far from where it meets the surface. */
+/* Whether the surface is seen from well above. Near an outline a pixel's ray runs along the
+ * surface, and meets the polygons far from the point where it meets the surface. */
 static bool faces_eye(const struct frame *frame, size_t pixel, const double eye[3])
 {
     const float *p = vec3_of(frame, 1, pixel), *n = vec3_of(frame, 2, pixel);
@@ -55,9 +55,10 @@ static bool faces_eye(const struct frame *frame, size_t pixel, const double eye[
     return fabs(dot) > 0.5 * size;
 }
 
-/* What the polygons are off, where both frames show one Ptex face from well above. */
+/* The polygons' errors where both frames show the same Ptex face from well above. */
 struct errors {
-    double normal_rad, place, curvature; /* the largest of the first two, the curvatures' mean */
+    /* the largest of position and normal, the mean of the curvatures */
+    double normal_rad, place, curvature;
     size_t n, same, hit;
 };
 
@@ -88,8 +89,8 @@ static struct errors compare(const struct frame *a, const struct frame *b, const
     return e;
 }
 
-/* Linear interpolation: an error of second order, in normals and in places. The shape operator
- * that stands in has one of first order. */
+/* Linear interpolation has an error of second order in normals and positions. The shape operator of
+ * polygons has one of first order. */
 static void test_error_falls(void **state)
 {
     (void)state;
@@ -119,8 +120,8 @@ static void test_error_falls(void **state)
     close_scene(&scene);
 }
 
-/* How much of a pixel of a wireframe lines cover: mixed as linear light,
- * shaders/wireframe.frag.glsl. */
+/* The share of a wireframe's pixel that lines cover. Colours are mixed as linear light
+ * (shaders/wireframe.frag.glsl). */
 static double ink_of(uint8_t grey)
 {
     double bare = srgb_to_linear(219 / 255.0);
@@ -132,9 +133,8 @@ static uint8_t red_of(const struct frame *frame, size_t pixel)
     return ((const uint8_t *)frame->plane[0])[4 * pixel];
 }
 
-/* The wireframe of a torus of 12 x 12 quads: its planes are the polygons', its colours grey, and
- * the more lines there are the darker,
- * but never black. */
+/* The wireframe of a torus of 12 x 12 quads: its planes are those of the polygons, its colours are
+ * grey, and more lines make it darker, but never black. */
 static void test_wireframe(void **state)
 {
     (void)state;
@@ -168,12 +168,12 @@ static void test_wireframe(void **state)
         frame_finish(&polygon);
         frame_finish(&wire);
     }
-    assert_true(last < 0.36 + 0.01); /* of either direction a fifth */
+    assert_true(last < 0.36 + 0.01); /* a fifth of each direction's lines */
     close_scene(&scene);
 }
 
-/* One quad that faces the camera: lines along its edges, none along its diagonal, and as wide as
- * they are said to be. */
+/* One quad that faces the camera has lines along its edges and none along its diagonal, of the
+ * promised width. */
 static void test_edges_of_a_quad(void **state)
 {
     (void)state;
@@ -206,8 +206,8 @@ static void test_edges_of_a_quad(void **state)
     close_scene(&scene);
 }
 
-/* Where the surface has no single normal a polygon still has one to be drawn with: a sharp vertex
- * in the middle of a rough sheet, and a crease sector of six faces. */
+/* Where the surface has no unique normal, a polygon still has a normal to be shaded with: a sharp
+ * vertex in the middle of a rough sheet, and a crease sector of six faces. */
 static void test_vertices_without_a_normal(void **state)
 {
     (void)state;
@@ -243,8 +243,8 @@ static void test_vertices_without_a_normal(void **state)
     }
 }
 
-/* A light-only change draws no polygon again; another surface does, and nothing of the last one
- * shows. */
+/* A change of the light draws no polygon again. Another surface draws all of them, and nothing of
+ * the previous surface remains. */
 static void test_kept_planes(void **state)
 {
     (void)state;
@@ -256,7 +256,7 @@ static void test_kept_planes(void **state)
     enum { N = sizeof surfaces / sizeof *surfaces };
     struct frame expected[N];
     struct scene scene;
-    for (size_t k = 0; k < N; k++) { /* each by a renderer that has drawn nothing before */
+    for (size_t k = 0; k < N; k++) { /* each drawn by a renderer that has drawn nothing before */
         build_torus(12, &scene.tables);
         open_scene(&scene, 0);
         struct frame_request request = request_for(&scene);
@@ -283,7 +283,7 @@ static void test_kept_planes(void **state)
     close_scene(&scene);
 }
 
-/* At level 0 an n-gon is one polygon, at level 1 n quads; what each Ptex face shows stays its own
+/* At level 0 an n-gon is one polygon, at level 1 n quads; each Ptex face still shows its own
  * part. */
 static void test_ngons(void **state)
 {
@@ -323,7 +323,8 @@ static void test_ngons(void **state)
     close_scene(&scene);
 }
 
-/* 50 x 50 faces: level 6 has 10.6 million vertices. Refused at once, with the level that fits. */
+/* 50 x 50 faces: level 6 would have 10.6 million vertices. The request is refused at once, and the
+ * text names the level that fits. */
 static void test_too_many(void **state)
 {
     (void)state;

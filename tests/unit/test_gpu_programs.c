@@ -1,5 +1,5 @@
-/* The programs that are kept on the device: made one a step, and no more of them than there is room
- * for. */
+/* The programs that are kept on the device: one is made in each step, and no more are kept than
+ * there is room for. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -66,7 +66,7 @@ static enum frame_step step(struct scene *scene, struct frame_work *work, struct
     return step;
 }
 
-/* One frame of one tile. Returns how many steps made a program. */
+/* Draws one frame of one tile. Returns how many steps made a program. */
 static unsigned draw(struct scene *scene, struct frame_work *work, struct frame *frame)
 {
     struct error error = {0};
@@ -90,7 +90,7 @@ static unsigned draw_anew(struct scene *scene, const struct frame_request *reque
     return n_programs;
 }
 
-/* Each program of a frame takes a step, once; other frames go in between. */
+/* Each program of a frame takes one step, once; other frames are drawn between these steps. */
 static void test_one_a_step(void **state)
 {
     (void)state;
@@ -100,7 +100,7 @@ static void test_one_a_step(void **state)
     assert_int_equal(draw_anew(&scene, &usual), 4);
     assert_int_equal(draw_anew(&scene, &usual), 0);
     usual.width_px = usual.height_px =
-        64; /* a power of two, for which drivers have code of its own */
+        64; /* drivers compile a variant of their own for sizes that are powers of two */
     assert_int_equal(draw_anew(&scene, &usual), 0);
     assert_int_equal(gl_renderer_of(scene.renderer)->target.width, 65);
     other.lights[0].pattern.kind = PATTERN_CIRCLES;
@@ -123,7 +123,7 @@ static void test_one_a_step(void **state)
     scene_finish(&scene);
 }
 
-/* Soft edges make programs of their own, but not of a rainbow, where they change nothing. */
+/* Soft edges need programs of their own, except for a rainbow, which they do not change. */
 static void test_soft(void **state)
 {
     (void)state;
@@ -142,7 +142,7 @@ static void test_soft(void **state)
     scene_finish(&scene);
 }
 
-/* Frames that take turns cannot keep each other from being drawn. */
+/* Frames that take turns cannot prevent each other from being drawn. */
 static void test_ends(void **state)
 {
     (void)state;
@@ -152,13 +152,15 @@ static void test_ends(void **state)
     struct frame frame;
     struct frame_work work = {.request = &scene.request};
     assert_true(renderer_begin(scene.renderer, &work, &frame, &error));
-    gl_frame_of(&work)->n_programs = MAX_FRAME_PROGRAMS; /* others have taken all of them away */
+    /* the other frames have removed all of its programs */
+    gl_frame_of(&work)->n_programs = MAX_FRAME_PROGRAMS;
     assert_int_equal(step(&scene, &work, &frame), FRAME_DONE);
     frame_finish(&frame);
     scene_finish(&scene);
 }
 
-/* Names may be another program's by now. */
+/* How many programs the context has. Counting kept names would not do: a name may belong to another
+ * program by now. */
 static int count_programs(void)
 {
     int n = 0;
@@ -167,7 +169,7 @@ static int count_programs(void)
     return n;
 }
 
-/* The i-th of many keys whose programs are quickly compiled. */
+/* The key of the i-th of many programs that compile quickly. */
 static struct shade_key key(int i)
 {
     return (struct shade_key){.family = (uint8_t)(i / 28),
@@ -176,7 +178,7 @@ static struct shade_key key(int i)
                               .which = SHADED_PLANES};
 }
 
-/* With no room left, the program goes that has not been asked for for longest. */
+/* If there is no room left, the program that was used longest ago is removed. */
 static void test_room(void **state)
 {
     (void)state;
@@ -204,7 +206,7 @@ static void test_room(void **state)
     scene_finish(&scene);
 }
 
-/* Models of any number of different sizes are drawn: the programs asked for last are there. */
+/* Models of any number of different sizes are drawn, and the programs used last are kept. */
 static void test_table_sets(void **state)
 {
     (void)state;
@@ -225,21 +227,21 @@ static void test_table_sets(void **state)
             fail_msg("%s", error.text);
     }
     assert_int_equal(count_programs(), n);
-    model.points.n = 1; /* asked for later than the others */
+    model.points.n = 1; /* this program was used after the others */
     assert_int_equal(programs_of(gl_renderer_of(scene.renderer), &model, false, &error)->evaluate,
                      first);
     assert_int_equal(draw_anew(&scene, &scene.request), 4);
     scene_finish(&scene);
 }
 
-/* Of buffer textures, too, drivers have code of their own for powers of two. */
+/* Drivers also compile variants for buffer textures whose sizes are powers of two. */
 static void test_no_powers_of_two(void **state)
 {
     (void)state;
     static const size_t sizes[][2] = {{0, 3}, {1, 3}, {3, 3}, {4, 5}, {64, 65}, {65, 65}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
         assert_int_equal(no_power_of_two(sizes[i][0]), sizes[i][1]);
-    struct scene scene; /* one face: a texel of adjacency */
+    struct scene scene; /* one face: one texel of adjacency */
     scene_init(&scene, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
     draw_anew(&scene, &scene.request);
     const struct gl_model *model = gl_model_of(scene.model);

@@ -1,5 +1,5 @@
-/* The renderer by itself: the pattern's colours, tables spread over several buffer textures, the
- * planes kept for a light-only change, and requests that cannot be rendered. */
+/* The renderer alone: the pattern's colours, tables in several buffer textures, planes kept for a
+ * change of the light, and requests that cannot be drawn. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 #include "protocol/srgb.h"
 #include "tests/unit/renderer_frames.h"
 
-/* Tables spread over several buffers give the same frame. */
+/* Tables in several buffers give the same frame as in one. */
 static void assert_cuts_do_not_show(const struct limit_tables *tables, size_t max_texels)
 {
     struct frame_request request = request_for(tables, 320, 200);
@@ -66,7 +66,7 @@ static void test_too_few_texels(void **state)
     limit_tables_finish(&tables);
 }
 
-/* A light-only change runs no other stage, and gives the frame that a fresh renderer gives. */
+/* A change of the light runs stage 3 only, and gives the frame of a new renderer. */
 static void test_light_only(void **state)
 {
     (void)state;
@@ -99,8 +99,8 @@ static void test_light_only(void **state)
     limit_tables_finish(&tables);
 }
 
-/* A plane mirror under an image of two colours in squares: away from a square's border its colour
- * is exactly that square's, and no other colour appears. */
+/* A plane mirror under an image of squares in two colours: away from the squares' borders, a pixel
+ * has exactly its square's colour, and no other colour appears. */
 static void test_image_pattern(void **state)
 {
     (void)state;
@@ -148,8 +148,8 @@ static void test_image_pattern(void **state)
     limit_tables_finish(&tables);
 }
 
-/* Where the reflected ray runs along the light's plane the footprint explodes: what misses the
- * light by more than a few pixels shows the colour of a miss and nothing else. */
+/* Where the reflected ray runs along the light's plane, the footprint becomes huge. Pixels that
+ * miss the light by more than a few pixels show the colour `miss` and nothing else. */
 static void test_no_ghost_of_the_light(void **state)
 {
     (void)state;
@@ -185,7 +185,7 @@ static void test_no_ghost_of_the_light(void **state)
     limit_tables_finish(&tables);
 }
 
-/* A fan of quads whose inner edges are collapsed into one point: S_u vanishes there, and each quad
+/* A fan of quads whose inner edges are collapsed into one point: S_u vanishes there, but each quad
  * still has a limit normal. */
 static void test_collapsed_edges(void **state)
 {
@@ -210,7 +210,7 @@ static void test_collapsed_edges(void **state)
     struct renderer *renderer = open_renderer(0);
     struct renderer_model *model = upload(renderer, &tables);
     struct frame_request request = request_for(&tables, 301, 301);
-    /* The middle of a pixel looks straight at the point. */
+    /* The middle of a pixel shows exactly the point. */
     request.camera = (struct camera){
         .kind = CAMERA_ORTHOGRAPHIC, .eye = {0, 0, 5}, .up = {0, 1, 0}, .ortho_height = 0.02};
     struct frame frame = render(renderer, model, &request);
@@ -225,8 +225,8 @@ static void test_collapsed_edges(void **state)
     limit_tables_finish(&tables);
 }
 
-/* The pole of a sphere, so near that a derivative is lost: straight up but for the sphere's own
- * bend. */
+/* The pole of a sphere, so near that a derivative is lost to rounding: the normal is up, except for
+ * the sphere's own curvature. */
 static void test_pole(void **state)
 {
     (void)state;

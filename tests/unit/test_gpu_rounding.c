@@ -1,5 +1,5 @@
-/* Semi-sharp creases whose rounding is narrower than a pixel, about as wide, and wider: what a
- * pixel there shows is the mean over the pixel, as exact samples of it say. */
+/* Semi-sharp creases whose rounding is narrower than a pixel, about as wide, and wider. A pixel
+ * there shows the mean over its area, as many exact samples give it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -60,8 +60,8 @@ static void scene_finish(struct scene *scene)
     limit_tables_finish(&scene->tables);
 }
 
-/* The ridge from above, aslant, `quad_px` pixels a quad; its middle, of width x height such pixels.
- * Or `scale` times the pixels, one sample each. */
+/* The ridge from above at an angle, with `quad_px` pixels for each quad; the middle of it, width x
+ * height such pixels. With `scale` above 1, that many times the pixels, one sample each. */
 static struct frame render(const struct scene *scene, uint32_t width, uint32_t height,
                            double quad_px, uint32_t scale)
 {
@@ -94,7 +94,7 @@ static struct frame render(const struct scene *scene, uint32_t width, uint32_t h
     return frame;
 }
 
-/* The mean error over the pixels that show ridge, 1/255, and the largest. */
+/* The mean error over the pixels that show a ridge, in 1/255, and the largest error. */
 static void compare(const struct scene *scene, double quad_px, double *mean, double *largest)
 {
     struct frame shown = render(scene, WIDTH, HEIGHT, quad_px, 1);
@@ -134,7 +134,8 @@ static void expect(const struct scene *scene, double quad_px, double most_mean, 
         fail_msg("%.1f px a quad: mean error %.2f, largest %.1f", quad_px, mean, largest);
 }
 
-/* Rounded over a sixteenth of a quad: from 0.7 px on. From 1 px on no side of it is a border. */
+/* Rounded over a sixteenth of a quad, from 0.7 px on. From 1 px on no side of the rounding counts
+ * as a border. */
 static void test_ridge(void **state)
 {
     (void)state;
@@ -155,7 +156,7 @@ static void test_many_ridges(void **state)
     scene_finish(&scene);
 }
 
-/* Mean light, 255 for white. */
+/* Mean light; 255 is white. */
 static double brightness(const struct frame *frame, size_t n)
 {
     const uint8_t(*colour)[4] = frame->plane[0];
@@ -165,12 +166,13 @@ static double brightness(const struct frame *frame, size_t n)
     return sum / (double)n;
 }
 
-/* More pixels that show ridges than there is memory for all rays of: as bright, and the same each
- * time. */
+/* More pixels show ridges than there is memory for all their rays: the mean brightness is the same,
+ * and so are repeated frames. */
 static void test_fewer_rays(void **state)
 {
     (void)state;
-    static const uint32_t sides_px[] = {400, 600, 1100}; /* four rays a pixel, one, none */
+    /* room for four rays a pixel, for one, for none */
+    static const uint32_t sides_px[] = {400, 600, 1100};
     struct scene scene;
     scene_init(&scene, 64, 1, 2);
     for (size_t i = 0; i < sizeof sides_px / sizeof *sides_px; i++) {

@@ -1,5 +1,5 @@
-/* How much of what is seen a light is met on, against the planes that say it pixel by pixel; and
- * that the default light is met everywhere. */
+/* The share of visible surface that meets a light, against planes that tell it pixel by pixel. The
+ * default light is met everywhere. */
 #include "tests/unit/renderer_frames.h"
 
 static void scene_init(struct scene *scene, const char *path)
@@ -35,7 +35,8 @@ static void mark_met(const struct scene *scene, const struct frame_request *requ
     frame_finish(&frame);
 }
 
-/* On how many pixels the request's lights are met, by the planes of each in front of the others. */
+/* The number of pixels that meet any of the request's lights, by the planes of requests in which
+ * each light stands first. */
 static uint64_t count_met(const struct scene *scene, const struct frame_request *request)
 {
     size_t pixels = (size_t)request->width_px * request->height_px;
@@ -68,7 +69,7 @@ static struct frame_request request_of(const struct scene *scene, uint32_t width
     return request;
 }
 
-/* To the pixel, whole and in tiles, as one light and as two of which either may be met. */
+/* The count is exact to the pixel: in one piece and in tiles, with one light and with two. */
 static void test_counts(void **state)
 {
     (void)state;
@@ -83,7 +84,7 @@ static void test_counts(void **state)
             for (int family = LINES_REFLECTION; family <= LINES_HIGHLIGHT; family++) {
                 struct frame_request request = request_of(&scene, 241, 163, kinds[i], n);
                 request.lines.family = (enum line_family)family;
-                for (int k = 0; k < 3; k++) { /* to one side, where much misses them */
+                for (int k = 0; k < 3; k++) { /* to one side, so that many rays miss it */
                     request.lights[0].centre[k] += 0.4 * request.lights[0].v[k];
                     request.lights[0].u[k] *= 0.2;
                 }
@@ -97,11 +98,11 @@ static void test_counts(void **state)
                     frame_finish(&frame);
                 }
             }
-    assert_true(n_parts >= 6); /* neither nowhere nor everywhere */
+    assert_true(n_parts >= 6); /* some pixels, but not all */
     scene_finish(&scene);
 }
 
-/* Of a large frame some pixels stand for all. */
+/* In a large frame a sample of the pixels stands for all. */
 static void test_large(void **state)
 {
     (void)state;
@@ -117,7 +118,8 @@ static void test_large(void **state)
     scene_finish(&scene);
 }
 
-/* What is at infinity cannot be missed; nobody counts who was not told to, or where nothing is. */
+/* Lights at infinity are always met. There is no count if none was requested, or if nothing is
+ * visible. */
 static void test_no_count(void **state)
 {
     (void)state;
@@ -147,8 +149,7 @@ static void test_no_count(void **state)
     scene_finish(&scene);
 }
 
-/* A ray that runs along the axis of a tunnel meets nothing; any other does, whatever its direction.
- */
+/* A ray along the axis of a tunnel meets nothing; every other ray meets the tunnel. */
 static void test_along_the_axis(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Frames of polygons drawn slice by slice: the picture of one stroke, whatever is drawn in between,
- * given up, or dropped from the device. */
+/* Frames of polygons drawn slice by slice are the same as frames drawn at once, whatever other
+ * frames are drawn, given up, or removed from the device between slices. */
 #include "tests/unit/polygon_scene.h"
 
 #include <string.h>
@@ -9,7 +9,7 @@
 
 enum { ONE_STROKE = 1 << 28 };
 
-/* A frame on its way. */
+/* A frame that is being drawn. */
 struct drawn {
     struct frame_request request;
     struct frame_work work;
@@ -27,7 +27,7 @@ static void begin(struct scene *scene, struct drawn *drawn, const struct frame_r
     assert_true(renderer_begin(scene->renderer, &drawn->work, &drawn->frame, &drawn->error));
 }
 
-/* One step, with the programs and the polygons before it that are asked for. */
+/* One step, including programs and polygons that it asks for first. */
 static enum frame_step step(struct scene *scene, struct drawn *drawn)
 {
     enum frame_step step;
@@ -77,7 +77,7 @@ static struct frame_request polygons_of(const struct scene *scene, enum surface_
     return request;
 }
 
-/* 73,728 triangles in 36 parts or more, which come to the device in 5 chunks. */
+/* 73,728 triangles in 36 slices or more, uploaded in 5 chunks. */
 static void test_same_picture(void **state)
 {
     (void)state;
@@ -101,7 +101,7 @@ static void test_same_picture(void **state)
             assert_true(drawn.steps >= least + (scene_device == &gl_device ? 3 : 1));
             assert_same(&expected.frame, &drawn.frame);
             finish(&drawn);
-            /* Its light alone changes: no polygon is filled again, edges are drawn again. */
+            /* After a change of the light, no polygon is drawn again, but edges are. */
             struct frame_request moved = request;
             moved.lights[0].centre[0] += 0.25;
             draw(&scene, &drawn, &moved, 0);
@@ -114,7 +114,7 @@ static void test_same_picture(void **state)
     }
 }
 
-/* Four frames of polygons take turns, with frames of the exact surface in between. */
+/* Four frames of polygons take turns, together with frames of the exact surface. */
 static void test_frames_in_between(void **state)
 {
     (void)state;
@@ -157,7 +157,8 @@ static void test_frames_in_between(void **state)
     close_scene(&scene);
 }
 
-/* Frames that are given up leave nothing behind; those under way are counted where they share what the device has. */
+/* Frames that are given up leave nothing behind. The number of frames at once is limited where they
+ * share memory of the device. */
 static void test_given_up(void **state)
 {
     (void)state;
@@ -182,7 +183,7 @@ static void test_given_up(void **state)
             assert_int_equal(next, FRAME_FAILED);
             assert_int_equal(late.error.kind, ERROR_SERVER);
             assert_non_null(strstr(late.error.text, "24 other frames of polygons"));
-        } else { /* has memory of its own */
+        } else { /* each frame has memory of its own */
             assert_int_equal(next, FRAME_MORE);
         }
         finish(&late);
@@ -196,10 +197,10 @@ static void test_given_up(void **state)
     assert_int_equal(step(&scene, &late), FRAME_MORE);
     close_scene(&scene);
     assert_non_null(late.work.state);
-    finish(&late); /* as at the daemon's end */
+    finish(&late); /* after its renderer, as when the daemon ends */
 }
 
-/* The device keeps 32 meshes: those that frames under way are drawn of stay among them. */
+/* The device keeps 32 meshes, among them all that unfinished frames use. */
 static void test_mesh_stays(void **state)
 {
     (void)state;
@@ -232,7 +233,7 @@ static void test_mesh_stays(void **state)
         next = step(&scene, &first);
     while (next == FRAME_MORE);
     assert_int_equal(next, FRAME_DONE);
-    assert_null(first.polygons); /* it was never asked for again */
+    assert_null(first.polygons); /* it never had to ask for its mesh again */
     finish(&first);
     for (int i = 0; i < N_MODELS; i++)
         renderer_model_destroy(scene.renderer, models[i]);
@@ -251,9 +252,9 @@ static double share_of_same_faces(const struct frame *a, const struct frame *b)
     return (double)same / (double)n;
 }
 
-/* What lies outside the picture is not drawn, and nothing else: from inside the torus, with most of
- * it beside and behind the eye, from near, and in tiles, all that is seen of the surface is seen of
- * its polygons. */
+/* Polygons outside the picture are not drawn, and no others are left out: from inside the torus,
+ * where most of it is beside and behind the eye, from near, and in tiles, polygons show wherever
+ * the surface does. */
 static void test_nothing_is_left_out(void **state)
 {
     (void)state;

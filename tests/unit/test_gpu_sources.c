@@ -1,5 +1,5 @@
-/* Every shader that the renderer assembles, by GLSL's reference compiler: drivers differ in what
- * they let pass. No device takes part. */
+/* Every shader that the renderer assembles is checked by GLSL's reference compiler, because drivers
+ * differ in what they accept. No device is needed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,8 +25,8 @@ enum {
     PATH_BYTES = 128
 };
 
-/* The shaders assembled so far, in files of one folder; and whether shader_files[k] and
- * shader_programs[k] stand in those of any test. */
+/* The shaders assembled so far, as files of one folder; and whether any of them contains
+ * shader_files[k] and shader_programs[k]. */
 static char folder[FOLDER_BYTES], paths[MAX_SHADERS][PATH_BYTES];
 static int n_paths;
 static bool uses[MAX_FILES], uses_program[MAX_FILES];
@@ -50,7 +50,7 @@ static void write_shader(const struct program_source *source, int k, const char 
         fail_msg("%s", error.text);
     char *path = paths[n_paths++];
     snprintf(path, PATH_BYTES, "%s/%s.%s", folder, name, ending);
-    FILE *file = fopen(path, "wx"); /* each name once */
+    FILE *file = fopen(path, "wx"); /* each file name once */
     assert_non_null(file);
     for (int i = 0; i < text.n; i++)
         assert_true(fputs(text.part[i], file) >= 0);
@@ -66,7 +66,7 @@ static void write_program(const struct program_source *source, const char *name)
         write_shader(source, 1, "frag", name);
 }
 
-/* The paths from `first` to `last` by one process. */
+/* Checks the paths from `first` to `last` by one process. */
 static void validate(const char *options, int first, int last)
 {
     static char command[SHADERS_A_PROCESS * PATH_BYTES + 200];
@@ -112,7 +112,7 @@ static int end(void **state)
     return rmdir(folder);
 }
 
-/* Of each, both shaders fit together, too. */
+/* Vertex and fragment shaders of each program also link. */
 static void test_single(void **state)
 {
     (void)state;
@@ -126,7 +126,7 @@ static void test_single(void **state)
     }
 }
 
-/* All families, the lights that play a part in each, patterns, edges and ways to shade. */
+/* All families, with the lights that each uses, all patterns, edges, and ways to shade. */
 static void test_shading(void **state)
 {
     (void)state;
@@ -152,8 +152,8 @@ static void test_shading(void **state)
     validate_all();
 }
 
-/* Every number of buffer textures of one table with every number of each other, with PTEX and
- * without, by devices that hold as few texels as OpenGL allows, and many. */
+/* All combinations of numbers of buffer textures, with and without PTEX, for devices that hold as
+ * few texels as OpenGL allows, and for devices that hold many. */
 static void test_tables(void **state)
 {
     (void)state;
@@ -180,7 +180,7 @@ static void test_tables(void **state)
     validate_all();
 }
 
-/* A file that stands in no program, or a program that nobody asks for, has not been looked at. Runs
+/* A file that no program contains, or a program that no test assembles, has not been checked. Runs
  * last. */
 static void test_all_are_used(void **state)
 {

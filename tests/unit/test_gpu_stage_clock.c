@@ -1,5 +1,4 @@
-/* The stages' times by the device's own timer queries, which a software device uses in tests alone.
- */
+/* The stages' times by the device's timer queries. For a software device only tests use them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -62,7 +61,7 @@ static uint64_t now_us(void)
     return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
 }
 
-/* The frame's times, and by the clock how long it took. */
+/* The frame's times, and the elapsed time by the clock. */
 static struct frame_times render(struct scene *scene, uint64_t *took_us)
 {
     struct error error = {0};
@@ -92,13 +91,13 @@ static void test_timer_queries(void **state)
         assert_true(times.visibility_us > 0);
         assert_true(times.evaluate_us > 0);
         assert_true(times.shade_us > 0);
-        /* Each of them is rounded up. */
+        /* each is rounded up */
         assert_true(times.visibility_us + times.evaluate_us + times.shade_us <= took_us + 3);
     }
     scene_finish(&scene);
 }
 
-/* A light-only change runs the last stage alone, and the polygons' picture has no second. */
+/* After a change of the light, only stage 3 runs; frames of polygons have no stage 2. */
 static void test_stages_left_out(void **state)
 {
     (void)state;
@@ -121,7 +120,7 @@ static void test_stages_left_out(void **state)
     }
 }
 
-/* Tiles add up. */
+/* The times of tiles add up. */
 static void test_tiles(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Frames drawn step by step: in tiles, in turn with others, given up, and with polygons that the
- * caller makes. */
+/* Frames drawn step by step: in tiles, in turn with other frames, given up, and with polygons that
+ * the caller makes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +13,7 @@
 
 #include "tests/unit/renderer_frames.h"
 
-/* Across the border of two tiles every pixel still shows the point that projects onto it. */
+/* Across the border of two tiles every pixel shows the point that projects onto it. */
 static void test_tiles(void **state)
 {
     (void)state;
@@ -45,7 +45,7 @@ static void test_tiles(void **state)
     limit_tables_finish(&tables);
 }
 
-/* The next tile, and whatever has to be made ready for it. */
+/* Draws the next tile, after making what it needs. */
 static enum frame_step draw_tile(struct renderer *renderer, struct renderer_model *model,
                                  struct frame_work *work, struct frame *frame, struct error *error)
 {
@@ -73,8 +73,8 @@ static struct frame render_in_tiles(struct renderer *renderer, struct renderer_m
     return frame;
 }
 
-/* How far two frames are apart in a float plane where both show something. Only a pixel or two,
- * which look at a place without a normal, may show it in one of them alone. */
+/* The largest difference of two frames in a float plane, where both show the surface. Only a few
+ * pixels, which see a place without a normal, may show it in one of the frames alone. */
 static double largest_difference(const struct frame *a, const struct frame *b, int plane)
 {
     enum { MOST_ALONE = 6 };
@@ -92,7 +92,7 @@ static double largest_difference(const struct frame *a, const struct frame *b, i
     return largest;
 }
 
-/* Polygons are interpolated: there the device's rounding shows more. */
+/* Polygons are interpolated, so the device's rounding shows more. */
 static void assert_same_picture(const struct frame *a, const struct frame *b, bool exact,
                                 double size)
 {
@@ -102,13 +102,13 @@ static void assert_same_picture(const struct frame *a, const struct frame *b, bo
             fail_msg("pixel %zu is %u and %u", k / 4, x[k], y[k]);
     assert_true(largest_difference(a, b, 1) < (exact ? 5e-6 : 2e-5) * size);
     assert_true(largest_difference(a, b, 2) < (exact ? 5e-5 : 3e-4));
-    /* Where a piece ends in a pixel is packed: rounding may move it by a step. */
+    /* The place where a piece ends is stored in a few bits: rounding may move it by one step. */
     if (a->plane[7])
         assert_true(largest_difference(a, b, 7) < 1e-4);
 }
 
-/* However a frame is cut, every pixel shows the same but for rounding: at silhouettes, creases and
- * borders too, whose pixels look at their neighbours. */
+/* However a frame is cut, every pixel is the same except for rounding, also at silhouettes, creases
+ * and borders, where pixels use their neighbours. */
 static void test_cuts_do_not_show(void **state)
 {
     (void)state;
@@ -144,8 +144,8 @@ static void test_cuts_do_not_show(void **state)
     renderer_destroy(renderer);
 }
 
-/* Planes that are kept for a change of light outlive the tiles of another frame drawn in between,
- * and tiles are not taken for them. */
+/* Planes kept for a change of the light remain while another frame is drawn in tiles, and are not
+ * mistaken for tiles. */
 static void test_frames_interleave(void **state)
 {
     (void)state;
@@ -192,8 +192,8 @@ static bool is_over(void *owner)
     return countdown->left-- == 0;
 }
 
-/* A frame that nobody waits for ends between tiles and between lights; the renderer serves the
- * next. Polygons end between two faces. */
+/* A frame that is abandoned ends between two tiles or two lights, and the renderer draws the next
+ * one. Making polygons ends between two faces. */
 static void test_abandoned(void **state)
 {
     (void)state;
@@ -204,12 +204,13 @@ static void test_abandoned(void **state)
     for (int k = 0; k < 2; k++) {
         struct frame_request request = request_for(&tables, 300, 300);
         struct countdown countdown = {k == 0 ? 4 : 2};
-        if (k == 1) { /* asked at the start, and before the second of eight lights */
+        /* the question is asked at the start, and before the second of eight lights */
+        if (k == 1) {
             request.n_lights = MAX_LIGHTS;
             for (int i = 1; i < MAX_LIGHTS; i++)
                 request.lights[i] = request.lights[0];
         }
-        struct frame frame = render(renderer, model, &request); /* whose programs are there then */
+        struct frame frame = render(renderer, model, &request); /* its programs exist by then */
         frame_finish(&frame);
         struct frame_work work = {
             .request = &request, .tile_px = k == 0 ? 1 : 0, .watch = {is_over, &countdown}};
@@ -220,7 +221,7 @@ static void test_abandoned(void **state)
             step = renderer_step(renderer, model, &work, &frame, &error);
         assert_int_equal(step, FRAME_FAILED);
         assert_int_equal(error.kind, ERROR_SERVER);
-        assert_int_equal(countdown.left, -1); /* and nobody was asked again */
+        assert_int_equal(countdown.left, -1); /* the question was not asked again */
         assert_null(frame.plane[0]);
         frame = render(renderer, model, &request);
         assert_true(hits(&frame) > 1000);
@@ -237,7 +238,7 @@ static void test_abandoned(void **state)
     limit_tables_finish(&tables);
 }
 
-/* One frame of polygons; how often the renderer asked for them is added to *n_asked. */
+/* Draws one frame of polygons and adds to *n_asked how often the renderer asked for them. */
 static void draw_polygons(struct renderer *renderer, struct renderer_model *model,
                           const struct limit_tables *tables, uint32_t level, unsigned *n_asked)
 {
@@ -263,8 +264,8 @@ static void draw_polygons(struct renderer *renderer, struct renderer_model *mode
     frame_finish(&frame);
 }
 
-/* The device keeps 32 meshes. It asks for one that it has not, or not any more, and makes none by
- * itself: whoever else wants a frame would wait for it. */
+/* The device keeps 32 meshes. It asks the caller for a mesh that it does not have, and does not
+ * make the mesh itself, because other frames would wait for that. */
 static void test_polygons_are_asked_for(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* server/image: every format there and back (JPEG and PNG are only read), the same bytes at any
- * time, and files that are none. */
+/* server/image: pictures in every format are written and read again (JPEG and PNG are only read),
+ * repeated writing gives the same bytes, and other files are refused. */
 #include <limits.h>
 #include <math.h>
 #include <setjmp.h>
@@ -16,7 +16,7 @@
 #include "tests/unit/jpeg_file.h"
 #include "tests/unit/png_file.h"
 
-enum { WIDTH = 67, HEIGHT = 131 }; /* odd, and more rows than one strip */
+enum { WIDTH = 67, HEIGHT = 131 }; /* odd, and more rows than one strip has */
 
 struct picture {
     uint8_t colour[HEIGHT][WIDTH][4];
@@ -121,14 +121,14 @@ static void expect_refused(const void *bytes, size_t size, const char *name, enu
     assert_null(strchr(error.text, '\n'));
 }
 
-/* Written apart from protocol/srgb.h. */
+/* The formulas, written independently of protocol/srgb.h. */
 static double light_of(uint8_t value)
 {
     double v = value / 255.0;
     return v > 0.04045 ? exp(2.4 * log((v + 0.055) / 1.055)) : v / 12.92;
 }
 
-/* The pixels are what these colours show: linear light, premultiplied by alpha. */
+/* The pixels are linear light, premultiplied by alpha, as these colours are displayed. */
 static void expect_light(const struct image *image, const uint8_t (*colour)[4], double tolerance)
 {
     assert_true(image->is_float);
@@ -177,7 +177,8 @@ static void test_exr_types(void **state)
     c[n++] = (struct image_channel){"ptex.face", IMAGE_UINT32, p->face, 4, WIDTH * 4};
     size_t size;
     uint8_t *bytes = encode(IMAGE_EXR, c, n, &size);
-    /* In the channel list a name, its 0, and the type: 0 UINT, 1 HALF, 2 FLOAT. */
+    /* A channel list has each channel's name, a zero byte, and its type: 0 UINT, 1 HALF, 2
+     * FLOAT. */
     assert_true(contains(bytes, size, "R\0\1\0\0\0", 6));
     assert_true(contains(bytes, size, "P.X\0\2\0\0\0", 8));
     assert_true(contains(bytes, size, "ptex.face\0\0\0\0\0", 14));
@@ -191,7 +192,7 @@ static void test_exr_types(void **state)
     image_finish(&image);
     free(bytes);
 
-    /* Single precision comes back bit for bit. */
+    /* Single precision is read back bit by bit. */
     struct image_channel position[] = {c[4], c[5], c[6]};
     position[0].name = "R", position[1].name = "G", position[2].name = "B";
     bytes = encode(IMAGE_EXR, position, 3, &size);
@@ -261,7 +262,7 @@ static void test_no_image(void **state)
     expect_refused(bytes, sizeof bytes - 1, "bytes.pfm", ERROR_IMAGE, "bytes");
 }
 
-/* What tells a format, and not all of what does. */
+/* Only the bytes by which a format is recognised, and less than these. */
 static void test_signatures(void **state)
 {
     (void)state;
@@ -290,7 +291,8 @@ static void test_signatures(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         for (size_t size = 1; size <= cases[i].size; size++) {
-            uint8_t *part = malloc(size); /* exact, so that a checker sees a read past the end */
+            /* exactly this size, so that a sanitizer finds a read beyond the end */
+            uint8_t *part = malloc(size);
             struct image image;
             struct error error = {0};
             assert_non_null(part);
@@ -302,7 +304,7 @@ static void test_signatures(void **state)
             free(part);
         }
     static const char *const bad[] = {
-        "\0\0\1\0\0\0\0\0\0\0\0\0\1\0\1\0\x08\0", /* colours of a map that is missing */
+        "\0\0\1\0\0\0\0\0\0\0\0\0\1\0\1\0\x08\0", /* uses a colour map that is missing */
         "\0\2\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\0", "\0\0\4\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\0",
         "\0\0\2\0\0\0\0\0\0\0\0\0\0\0\1\0\x20\0", "\0\0\2\0\0\0\0\0\0\0\0\0\1\0\0\0\x20\0",
         "\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x21\0"};
@@ -310,8 +312,8 @@ static void test_signatures(void **state)
         expect_refused(bad[i], 18, "b", ERROR_IMAGE, "not an image format");
 }
 
-/* Cut anywhere, a file is refused or, where the format allows it, decoded: never a crash. The cut
- * in the middle of the pixels must be refused. */
+/* A file cut off at any byte is refused or, if the format allows it, decoded, but never a crash. A
+ * cut in the middle of the pixels must be refused. */
 static void test_truncated(void **state)
 {
     (void)state;
@@ -322,7 +324,8 @@ static void test_truncated(void **state)
         size_t size;
         uint8_t *bytes = encoders[f](&size);
         for (size_t cut = 1; cut < size; cut += 1 + size / 61) {
-            uint8_t *part = malloc(cut); /* exact, so that a checker sees a read past the end */
+            /* exactly this size, so that a sanitizer finds a read beyond the end */
+            uint8_t *part = malloc(cut);
             assert_non_null(part);
             memcpy(part, bytes, cut);
             struct image image;
@@ -357,7 +360,7 @@ static void test_planes_a_format_cannot_hold(void **state)
     free(p);
 }
 
-/* The columns and rows that text has touched; false: none. */
+/* The bounding box of the pixels that text has changed; false if there are none. */
 static bool touched(uint8_t (*rgba)[4], int box[4])
 {
     bool any = false;
@@ -386,7 +389,7 @@ static void test_text(void **state)
     assert_true(text_check(&text));
     const struct {
         enum text_align align;
-        int low, high; /* of the text's first column less the point, and of its last one */
+        int low, high; /* first and last column of the text, relative to the given point */
     } cases[] = {{TEXT_LEFT, 0, 30}, {TEXT_CENTRE, -15, 15}, {TEXT_RIGHT, -30, 0}};
     for (int i = 0; i < 3; i++) {
         memset(rgba, 0, sizeof rgba);
@@ -394,10 +397,11 @@ static void test_text(void **state)
         assert_true(touched(rgba, box));
         assert_in_range(box[0], 33 + cases[i].low, 33 + cases[i].low + 5);
         assert_in_range(box[1], 33 + cases[i].high - 8, 33 + cases[i].high);
-        assert_in_range(box[2], 43, 47); /* capitals are 0.73 of the size high */
+        assert_in_range(box[2], 43, 47); /* capital letters are 0.73 of the size high */
         assert_in_range(box[3], 58, 60);
     }
-    /* What is wholly covered has the colour; a half-covered, transparent pixel has it as well. */
+    /* Pixels that text covers wholly have its colour; so has a half-covered pixel that was
+     * transparent. */
     bool solid = false;
     for (int i = 0; i < HEIGHT * WIDTH; i++)
         if (rgba[i][3]) {
@@ -407,7 +411,7 @@ static void test_text(void **state)
             solid |= rgba[i][3] == 255;
         }
     assert_true(solid);
-    /* Over the border, and far outside. */
+    /* Text across the picture's border, and far outside. */
     for (int at = -40; at < 200; at += 7)
         text_draw(&text, rgba[0], WIDTH, HEIGHT, at, at, TEXT_CENTRE, orange);
     memset(rgba, 0, sizeof rgba);
