@@ -37,8 +37,8 @@ static inline void close_devices(struct devices *devices)
     limit_tables_finish(&devices->tables);
 }
 
-/* The differences of two frames: pixels whose colours differ by more than one and by more than
- * three steps, hits in only one, and different faces. */
+/* The differences of two frames: pixels whose colours differ by more than one step and by more than
+ * three, pixels that only one frame hits, and pixels that show different faces. */
 struct difference {
     int over_one, over_three, hits, faces, lights, pixels;
 };

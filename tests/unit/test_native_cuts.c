@@ -1,5 +1,5 @@
-/* The planes of the native device are the same for any number of threads and any cut into tiles, and by any
- * instruction set but for rounding. */
+/* The native device's planes are the same for any number of threads and any cut into tiles. Between
+ * instruction sets they differ by rounding only. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,7 +41,7 @@ static void test_threads(void **state)
     limit_tables_finish(&tables);
 }
 
-/* A part of the picture has the pixels of the whole. */
+/* A part of the picture has the same pixels as the whole picture. */
 static void test_tiles(void **state)
 {
     (void)state;
@@ -65,7 +65,7 @@ static void test_tiles(void **state)
             draw_tile(device, model, &camera, tile, &part);
             for (size_t i = 0; i < (size_t)tile->width * tile->height; i++) {
                 size_t x = i % tile->width, y = i / tile->width;
-                /* Planes begin with the tile's first pixel. */
+                /* A tile's planes begin with the tile's first pixel. */
                 size_t from = (y + tile->y) * WIDTH + x + tile->x, to = y * WIDTH + x;
                 for (int k = 0; k < 9 && (k == 0 || whole.at.depth[from] > 0); k++)
                     if (memcmp(&whole.floats[k * PX + (int)from], &moved.floats[k * PX + (int)to],
@@ -85,7 +85,7 @@ static void test_tiles(void **state)
     planes_finish(&part);
 }
 
-/* Two instruction sets agree as two devices do. */
+/* Two instruction sets agree as closely as two devices do. */
 static void test_sets(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* The native device's pictures against those of the GL device: every line family, light and pattern. Both run the same
- * shaders (shaders/lanes), so that what differs is rounding, and what each sees at a silhouette. */
+/* The native device's pictures against those of the GL device: every line family, light and
+ * pattern. Both devices run the same shaders (shaders/lanes), so they differ only by rounding, and
+ * by what each of them sees at a silhouette. */
 #include "tests/unit/native_scene.h"
 
 enum { WIDTH = 200, HEIGHT = 150, PIXELS = WIDTH * HEIGHT };
@@ -60,7 +61,7 @@ static void test_patterns(void **state)
     close_devices(&devices);
 }
 
-/* Images of both kinds of texels, one that ends at its light and one that repeats. */
+/* Images with both kinds of texels; one fills its light once, one repeats. */
 static void test_images(void **state)
 {
     enum { SIDE = 64 };
@@ -129,7 +130,8 @@ static void test_one_sample_and_several_lights(void **state)
     close_devices(&devices);
 }
 
-/* A frame in tiles, and one whose view is kept, against a new one: the same but for rounding, and bit by bit. */
+/* A frame in tiles, and a frame of a view whose planes are kept, against a frame of a new renderer:
+ * in tiles the same except for rounding, with kept planes the same bytes. */
 static void test_tiles_and_kept_planes(void **state)
 {
     struct devices devices;

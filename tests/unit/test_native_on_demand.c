@@ -1,5 +1,5 @@
-/* The native device on tables on demand: the same bytes as from stored ones, however little it may
- * keep and whatever was looked at before; and what a mesh of plain triangles takes. */
+/* The native device with tables on demand: the same bytes as with stored tables, however small the
+ * cache is and whatever was drawn before; and the memory that a mesh of plain triangles takes. */
 #include "server/render/native/device.h"
 #include "server/render/native/native.h"
 #include "server/render/native/patches.h"
@@ -72,7 +72,7 @@ static size_t compare(const struct planes *a, const struct planes *b, const char
     return n;
 }
 
-/* An inner corner's vertex from where a pixel is 2^-24 of its node. */
+/* A camera so near to the vertex of an inner corner that a pixel is 2^-24 of the node. */
 static bool zoom_on_corner(const struct limit_tables *tables, struct camera *camera)
 {
     uint32_t i = 0;
@@ -106,7 +106,7 @@ static void test_same_planes(void **state)
         build_file_on_demand(MODELS[m], &made);
         scene_default_camera(&stored, NULL, VIEW_AROUND, WIDTH, HEIGHT, &camera[0]);
         assert_true(zoom_on_corner(&stored, &camera[1]));
-        /* One keeps all patches, one nearly none of them, and one is a megabyte behind. */
+        /* One model keeps all patches, one keeps almost none, and one keeps a megabyte of them. */
         const size_t bytes[3] = {NATIVE_PATCH_BYTES, 0, 1 << 20};
         struct native_model *all = open_model(&stored, NATIVE_PATCH_BYTES);
         struct native_model *model[3];
@@ -162,7 +162,8 @@ static void test_same_frames(void **state)
 
 /* --- memory */
 
-/* 2 n x n triangles: inner vertices have six of them, all faces have a vertex of three. */
+/* 2 n x n triangles: inner vertices have six of them; each face has extraordinary vertices of
+ * valence 3 once it is divided into quads. */
 static void build_triangles(unsigned n, struct limit_tables *tables)
 {
     size_t room = 100 * (size_t)(n + 1) * (n + 1) + 1000, used = 0;
@@ -186,7 +187,7 @@ static size_t bytes_of(const struct limit_tables *tables)
     return limit_tables_host_bytes(tables) + native_model_most_bytes(tables, NATIVE_PATCH_BYTES);
 }
 
-/* 10,000 triangles, all in view, cost 50,000 levels of 10,000 bytes each when they are stored. */
+/* 10,000 triangles, all visible: stored tables would take 50,000 levels of 10,000 bytes each. */
 static void test_triangles(void **state)
 {
     (void)state;
@@ -197,7 +198,7 @@ static void test_triangles(void **state)
     build_triangles(N, &tables);
     assert_int_equal(tables.n_faces, 3 * TRIANGLES);
     assert_int_equal(tables.count[LIMIT_CORNER],
-                     6 * TRIANGLES - 4); /* two vertices have two triangles: regular */
+                     6 * TRIANGLES - 4); /* two vertices have two triangles each and are regular */
     scene_default_camera(&tables, NULL, VIEW_TOP, WIDTH, HEIGHT, &camera);
     struct native_model *model = open_model(&tables, NATIVE_PATCH_BYTES);
     draw(2, model, &camera, &planes);
@@ -206,8 +207,8 @@ static void test_triangles(void **state)
         n += planes.floats[0][i] > 0;
     assert_true(n > PX / 3);
     assert_true(native_model_bytes(model) <= native_model_most_bytes(&tables, NATIVE_PATCH_BYTES));
-    /* What is kept of patches and bounds is limited. The rest: 15 nodes a triangle of 48, 64 and 24 bytes,
-     * and the cage. */
+    /* The cache of patches and bounds is limited. The rest is 15 nodes for each triangle, of 48, 64
+     * and 24 bytes, and the cage. */
     struct limit_tables fewer;
     enum { M = 67, FEWER = 2 * M * M };
     build_triangles(M, &fewer);

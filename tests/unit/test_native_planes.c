@@ -1,5 +1,5 @@
-/* The planes of the native device: against the limit surface in double at the places that they name, and against
- * the GL device's. */
+/* The native device's planes, against the limit surface in double precision at the places that the
+ * planes name, and against the planes of the GL device. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -60,7 +60,8 @@ static void expect_exact(const struct limit_tables *tables, const struct camera 
     double normal = quantile(errors.normal, errors.n, 0.999);
     double off_px = quantile(errors.off_px, errors.n, 0.999);
     double curvature = quantile(errors.curvature, errors.n_curvature, 0.999);
-    /* u and v are rounded to single precision: that moves a place by so much of the model. */
+    /* u and v are rounded to single precision, which moves a place by this share of the model's
+     * size */
     double size = 0;
     for (int k = 0; k < 3; k++)
         size = hypot(size, tables->box_max[k] - tables->box_min[k]);
@@ -94,7 +95,8 @@ static void test_exact(void **state)
             for (int look = 0; look < N_LOOKS; look++) {
                 char what[200];
                 if (native_set_at(s + 1) && look != (int)((m + s) % N_LOOKS))
-                    continue; /* all looks for the widest set, one of each model for the others */
+                    continue; /* the widest set draws all views, every other set one view of each
+                               * model */
                 snprintf(what, sizeof what, "%s, %s, %s", MODELS[m], LOOK_NAMES[look], set->name);
                 const struct camera camera = camera_for(&tables, (enum look)look);
                 draw(device, model, &camera, &planes);
@@ -110,8 +112,9 @@ static void test_exact(void **state)
 
 /* --- borders */
 
-/* Of a Ptex face's four borders in double, by u and v alone: the foot on the nearest that is no
- * wider than THIN px, px, and how wide that is. False where the pixel shows a rounding. */
+/* Considers the four borders of a Ptex face in double precision, by u and v alone. Finds, of the
+ * borders no wider than THIN px, the nearest one, writes its foot (px) and its width, and returns
+ * whether the pixel shows no rounding. */
 static bool border_at(const struct limit_node *root, const struct view *view,
                       const struct limit_point *p, double u, double v, double foot[2],
                       double *width)
@@ -138,11 +141,11 @@ static bool border_at(const struct limit_node *root, const struct view *view,
     *width = 0;
     for (int e = 0; e < 4; e++) {
         unsigned border = root->borders >> 4 * e & 15;
-        const double *other = along[e & 1]; /* the way that the edge runs */
+        const double *other = along[e & 1]; /* the direction of the edge */
         double length = hypot(other[0], other[1]), out = e == 0 || e == 3 ? -1 : 1;
         if (!border)
             continue;
-        /* Across the edge, as far as one of u or v goes. */
+        /* Perpendicular to the edge, as far as one step of u or v leads. */
         double far = area / (length * length) * (e & 1 ? 1 : -1);
         const double to[2] = {other[1] * far * out, -other[0] * far * out};
         double rounding = border == LIMIT_BORDER_SHARP ? 0 : ldexp(1, -(int)border);
@@ -162,7 +165,8 @@ static bool border_at(const struct limit_node *root, const struct view *view,
     return is_plain;
 }
 
-/* How many of a model's pixels show a border within 4 px; those that are off are counted apart. */
+/* Counts the pixels of a model that show a border within 4 px; those that are wrong are counted in
+ * *n_off. */
 static size_t count_borders(const struct limit_tables *tables, const struct view *view,
                             const struct planes *planes, size_t *n_rounded, size_t *n_off)
 {
@@ -182,7 +186,7 @@ static size_t count_borders(const struct limit_tables *tables, const struct view
         }
         int x = (int)(border << 20) >> 20, y = (int)(border << 8) >> 20;
         n += is_plain && (x != 2047 || y != 2047);
-        /* Steps of a 512th of a px, and 2e-3 px for u and v in single precision. */
+        /* The error allowed is a step of 1/512 px, and 2e-3 px for u and v in single precision. */
         *n_off +=
             is_plain && (fabs(x / 512.0 - foot[0]) > 0.003 || fabs(y / 512.0 - foot[1]) > 0.003 ||
                          fabs((border >> 24) / 510.0 - width) > 0.004);
@@ -225,8 +229,8 @@ static void test_borders(void **state)
 
 /* --- the GL device */
 
-/* Do any of the pixels around hold, with this one, both a hit and none, or that face? Or do depths
- * jump there? */
+/* Whether this pixel and one of its neighbours differ in being hit, or show that face, or whether
+ * depths jump between them. */
 static bool is_at_edge(const struct frame *frame, const struct planes *planes, size_t i)
 {
     const uint32_t(*ptex)[3] = frame->plane[3];
@@ -244,8 +248,8 @@ static bool is_at_edge(const struct frame *frame, const struct planes *planes, s
     return false;
 }
 
-/* How far the surface's normal turns between the places that both devices name: GL's lies as far
- * from the ray as close_enough() of newton.glsl lets it. */
+/* How far the surface's normal turns between the places that both devices name. The GL device's
+ * place may lie as far from the ray as close_enough() of newton.glsl allows. */
 static double turn_between(const struct limit_tables *tables, const struct planes *planes,
                            const uint32_t ptex[3], size_t i)
 {
@@ -257,7 +261,7 @@ static double turn_between(const struct limit_tables *tables, const struct plane
     return angle(own.n, gl.n);
 }
 
-/* How far apart both devices' positions are, px. */
+/* The distance of both devices' positions in px. */
 static double apart_px(const struct view *view, const struct planes *planes, const float gl[3],
                        size_t i)
 {
@@ -286,7 +290,7 @@ static void compare_with_gl(const struct limit_tables *tables, const struct came
         double off_px = is_hit && is_gl_hit ? apart_px(&view, planes, position[i], i) : INFINITY;
         n_hits += is_hit;
         if (is_hit != is_gl_hit || (is_hit && planes->face[i] != ptex[i][0])) {
-            n_differ += off_px > 0.02; /* nearer: on the line between two faces */
+            n_differ += off_px > 0.02; /* closer than that: on the line between two faces */
             if (!is_at_edge(frame, planes, i) && off_px > 0.02)
                 fail_msg("%s: pixel %zu,%zu shows face %u by GL, %u here", what, i % WIDTH,
                          i / WIDTH, ptex[i][0], is_hit ? planes->face[i] : UINT32_MAX);
@@ -324,7 +328,7 @@ static void test_gl(void **state)
         request.planes = PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX;
         for (int look = 0; look < N_LOOKS; look++) {
             char what[200];
-            if (look == FAR) /* depths of the GL device are too coarse to compare faces */
+            if (look == FAR) /* the GL device's depths are too coarse to compare faces */
                 continue;
             snprintf(what, sizeof what, "%s, %s", MODELS[m], LOOK_NAMES[look]);
             request.camera = camera_for(&scene.tables, (enum look)look);
@@ -340,7 +344,7 @@ static void test_gl(void **state)
     planes_finish(&planes);
 }
 
-/* An extraordinary vertex from where a pixel is 2^-24 of a face. */
+/* An extraordinary vertex, from where a pixel is 2^-24 of a face. */
 static struct camera zoomed_on(const struct limit_tables *tables, size_t corner, bool orthographic)
 {
     double size = (double)tables->whole[corner].radius;
@@ -358,8 +362,8 @@ static struct camera zoomed_on(const struct limit_tables *tables, size_t corner,
                            .up = {aside.x, aside.y, aside.z}};
 }
 
-/* There the GL device is followed, too. Places in the world in single precision tell no pixels
- * apart any more, nor do u and v. */
+/* The native device agrees with the GL device there, too. Positions in single precision do not
+ * distinguish pixels at this zoom, and neither do u and v. */
 static void test_zoom(void **state)
 {
     (void)state;

@@ -13,7 +13,8 @@ static const char *const models[] = {
     "tests/models/sheet.obj", "tests/models/tetra.obj",
 };
 
-/* Pixels of two frames at which both show a face, and of those how many planes say something else than rounding. */
+/* Pixels at which both frames show a face, and for each plane the number of these pixels whose
+ * values differ by more than rounding. */
 struct planes {
     int both, position, normal, uv, curvature;
 };
@@ -26,8 +27,9 @@ static double distance(const float *a, const float *b, int n)
     return sum;
 }
 
-/* `size`: what places are measured by. Curvatures are differences of normals from pixel to pixel, so that they are compared
- * by how far the normal turns over a pixel of `px` units. */
+/* `size`: the size of the model, by which positions are compared. Curvatures come from differences
+ * of normals between pixels, so they are compared by how far the normal turns over a pixel of `px`
+ * units. */
 static struct planes compare_planes(const struct frame *a, const struct frame *b, double size,
                                     double px)
 {
@@ -57,7 +59,7 @@ static struct planes compare_planes(const struct frame *a, const struct frame *b
     return found;
 }
 
-/* Returns how many pixels show a face on both. */
+/* Returns the number of pixels that show a face in both frames. */
 static int assert_same_pictures(struct devices *devices, const struct frame_request *request,
                                 const char *what)
 {
@@ -76,7 +78,7 @@ static int assert_same_pictures(struct devices *devices, const struct frame_requ
                     : 2 * far * tan(request->camera.fov_deg * 3.14159265 / 360) / HEIGHT;
     struct planes planes = compare_planes(&frames[0], &frames[1], size + far, px);
     assert_alike(&found, what);
-    /* Beside an edge the one device may show one of its triangles and the other the other. */
+    /* Beside an edge, the two devices may show different triangles of the edge. */
     if (planes.position > planes.both / 500 || planes.normal > planes.both / 500 ||
         planes.uv > planes.both / 500 || planes.curvature > planes.both / 100)
         fail_msg("%s: of %d pixels places %d, normals %d, uv %d, curvatures %d", what, planes.both,
@@ -124,7 +126,8 @@ static void test_models(void **state)
     }
 }
 
-/* Eyes in the middle of the model and near its surface: edges run through the near plane, and far beyond the picture. */
+/* Eyes in the middle of the model and near its surface: edges cross the near plane, and reach far
+ * beyond the picture. */
 static void test_eyes_inside(void **state)
 {
     static const double towards[][3] = {{1, 0.1, 0.2}, {-0.3, 1, -0.1}, {0.2, -0.1, -1}};
@@ -160,7 +163,8 @@ static void test_eyes_inside(void **state)
     assert_true(seen > 10 * PIXELS);
 }
 
-/* From 100 lengths away, and so near that a polygon is larger than the picture. */
+/* From a distance of 100 times the model's size, and so near that a polygon is larger than the
+ * picture. */
 static void test_far_and_near(void **state)
 {
     struct devices devices;

@@ -1,5 +1,5 @@
-/* What few pixels show on the native device: steps over edges of nodes, gaps between borders that are narrower than a
- * pixel, a tip without a normal. */
+/* Rare pixels of the native device: Newton steps over edges of nodes, gaps between borders that are
+ * narrower than a pixel, and a tip without a normal. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 #include "tests/unit/gap_scene.h"
 #include "tests/unit/native_tile.h"
 
-/* A node's place on its edge, so far outside of it. */
+/* A place at this distance outside of a node's edge. */
 static void place_on_edge(int edge, double along, double outside, double *x, double *y)
 {
     const double xs[4] = {along, 1 + outside, along, -outside};
@@ -31,7 +31,7 @@ static struct vec surface_at(const struct limit_tables *tables, uint32_t node, d
     return p.s;
 }
 
-/* A step over any edge of any node leads to the surface beside it. */
+/* A step over any edge of any node continues on the neighbouring surface. */
 static void test_walk(void **state)
 {
     (void)state;
@@ -65,7 +65,7 @@ static void test_walk(void **state)
     assert_true(n_crossed > 10000);
 }
 
-/* Pixels that look between two borders a third of a pixel apart show the wall behind. */
+/* Pixels that look through a gap of a third of a pixel show the wall behind it. */
 static void test_gap(void **state)
 {
     (void)state;
@@ -107,7 +107,8 @@ static void test_gap(void **state)
     planes_finish(&planes);
 }
 
-/* A sharp vertex of six faces has no normal, and the one pixel that looks exactly at it shows none. */
+/* A sharp vertex of six faces has no normal, and the single pixel that shows exactly that vertex
+ * has none. */
 static void test_tip(void **state)
 {
     (void)state;

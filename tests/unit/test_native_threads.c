@@ -1,5 +1,5 @@
-/* Whole frames of the native device, colour and every plane, are the same bytes for any number of threads: pixels at
- * edges and in roundings, which threads list in any order, too. */
+/* Whole frames of the native device, colour and every plane, have the same bytes for any number of
+ * threads, though threads list pixels at edges and in roundings in any order. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,7 +30,7 @@ static struct frame render_by(unsigned n_threads, const struct limit_tables *tab
     return frame;
 }
 
-/* Pixels of which a part shows surface. */
+/* Pixels that surface covers in part. */
 static size_t partly_covered(const struct frame *frame)
 {
     const float *coverage = frame->plane[7];
@@ -64,7 +64,7 @@ static void test_creases(void **state)
     check("tests/models/creases.obj", 1);
 }
 
-/* Roundings some pixels wide. */
+/* Roundings that are some pixels wide. */
 static void test_close_up(void **state)
 {
     (void)state;

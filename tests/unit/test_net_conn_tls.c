@@ -1,5 +1,5 @@
-/* A conn whose TLS cannot say all at once: its flight of certificates is larger than the socket's
- * buffer, and the peer is slow to read it. */
+/* A connection whose TLS handshake does not fit the socket's buffer, because the certificates are
+ * larger than the buffer and the peer reads slowly. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -24,7 +24,7 @@ struct fixture {
     struct conn conn;
     uint64_t sent_bytes;
     int peer;
-    atomic_bool wanted_write; /* in order to read */
+    atomic_bool wanted_write; /* reading had to wait until TLS could write */
     uint8_t answer[ANSWER_BYTES];
 };
 
@@ -93,7 +93,7 @@ static void ask_and_read(const struct fixture *f, struct tls_channel *channel)
     size_t moved, n = 0;
     message_header_encode(&header, ask);
     assert_int_equal(tls_write(channel, ask, sizeof ask, &moved), TLS_WANTS_READ);
-    usleep(100000); /* the server has nowhere to go with its certificates now */
+    usleep(100000); /* the socket's buffer is full of the server's certificates by now */
     for (enum tls_result result; (result = tls_write(channel, ask, sizeof ask, &moved));)
         wait_for_peer(f, result);
     while (n < sizeof got) {

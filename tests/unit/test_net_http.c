@@ -1,5 +1,5 @@
-/* The web server alone: answers larger than a socket's buffer, answers over the bound, and slots
- * that are used again. What requests it refuses is tested on the daemon. */
+/* The web server alone: answers larger than a socket's buffer, answers above the limit, and slots
+ * that are used again. Refused requests are tested with the whole daemon. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -57,7 +57,8 @@ static void *serve(void *loop)
     return NULL;
 }
 
-/* Connections are handed over before the loop runs: it belongs to one thread at a time. */
+/* Connections are added before the loop runs, because only one thread at a time may use the
+ * loop. */
 static int connect_to(const struct fixture *f)
 {
     int ends[2], least = 1;
@@ -92,7 +93,7 @@ static void finish(struct fixture *f)
     loop_destroy(f->loop);
 }
 
-/* Sends a request and reads all of its answer, slowly; *bytes is the caller's to free. */
+/* Sends a request and reads the whole answer slowly. The caller frees *bytes. */
 static size_t fetch(int fd, const char *path, char **bytes)
 {
     static char room[1 << 20];
@@ -158,16 +159,16 @@ static void test_slots(void **state)
     create(&f);
     for (int i = 0; i <= HTTP_MAX_CONNECTIONS; i++)
         fd[i] = connect_to(&f);
-    assert_int_equal(recv(fd[0], &byte, 1, MSG_DONTWAIT), 0); /* the oldest */
+    assert_int_equal(recv(fd[0], &byte, 1, MSG_DONTWAIT), 0); /* this is the oldest connection */
     for (int i = 1; i <= HTTP_MAX_CONNECTIONS; i++)
         assert_int_equal(recv(fd[i], &byte, 1, MSG_DONTWAIT), -1);
     for (int i = 0; i <= HTTP_MAX_CONNECTIONS; i++)
         close(fd[i]);
     start(&f);
-    usleep(300000); /* the loop sees that they have gone */
+    usleep(300000); /* until the loop has noticed that they closed */
     atomic_store(&f.stop, true);
     pthread_join(f.thread, NULL);
-    /* The loop rests: this thread may use it. */
+    /* The loop is stopped, so this thread may use it. */
     for (int i = 0; i < HTTP_MAX_CONNECTIONS; i++) {
         fd[i] = connect_to(&f);
         assert_int_equal(recv(fd[i], &byte, 1, MSG_DONTWAIT), -1);
@@ -177,7 +178,7 @@ static void test_slots(void **state)
     loop_destroy(f.loop);
 }
 
-/* What the loop cannot watch takes no place and is closed. */
+/* A descriptor that the loop cannot watch takes no slot and is closed. */
 static void test_what_cannot_be_watched(void **state)
 {
     (void)state;
@@ -185,7 +186,7 @@ static void test_what_cannot_be_watched(void **state)
     char byte;
     int fd[HTTP_MAX_CONNECTIONS];
     create(&f);
-    FILE *file = tmpfile(); /* epoll takes none */
+    FILE *file = tmpfile(); /* epoll refuses regular files */
     assert_non_null(file);
     int copy = dup(fileno(file));
     fclose(file);

@@ -1,4 +1,5 @@
-/* Strangers: who leaves first, who is turned away; and whom a balancer tells to be whom. */
+/* Connections that have not identified themselves: which is closed for a new one, which address is
+ * refused; and the client's address as a load balancer tells it. */
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <setjmp.h>
@@ -54,18 +55,20 @@ static void test_who_leaves(void **state)
         assert_null(enter(&a[i]));
     }
     a[3] = from(1, true);
-    assert_ptr_equal(enter(&a[3]), &a[1]); /* a[0] is older, and has said something */
+    assert_ptr_equal(enter(&a[3]), &a[1]); /* a[0] is older, but has sent something */
     leave(&a[1], STRANGER_GONE, 0);
     for (int i = 0; i < 3; i++) {
         b[i] = from(2, false);
         assert_null(enter(&b[i]));
     }
     b[3] = from(2, false);
-    assert_ptr_equal(enter(&b[3]), &b[0]); /* nobody is silent: the oldest */
+    assert_ptr_equal(enter(&b[3]), &b[0]); /* all have sent something: the oldest leaves */
     leave(&b[0], STRANGER_GONE, 0);
-    assert_ptr_equal(enter(&c), &a[2]); /* all places are taken: of an address that has most */
+    /* all places are taken: one of the address with most connections leaves */
+    assert_ptr_equal(enter(&c), &a[2]);
     leave(&a[2], STRANGER_GONE, 0);
-    for (int i = 0; i < 4; i++) { /* no limit of its own address, but of all */
+    /* an exempt address has no limit of its own, only that of all together */
+    for (int i = 0; i < 4; i++) {
         balancer[i] = from(4, true);
         balancer[i].is_exempt = true;
         struct stranger *leaves = enter(&balancer[i]);
@@ -76,12 +79,13 @@ static void test_who_leaves(void **state)
     assert_int_equal(strangers.n, 6);
 }
 
-/* Who leaves for a newcomer when all places are taken, by counting every address for every stranger. */
+/* The connection that leaves for a new one when all places are taken, found by counting each
+ * address anew. */
 static const struct stranger *leaves_by_counting(const struct stranger *all[], size_t n)
 {
     const struct stranger *leaves = NULL;
     size_t most = 0;
-    for (size_t i = 0; i < n; i++) { /* the oldest first */
+    for (size_t i = 0; i < n; i++) { /* the oldest of the address first */
         size_t of_it = 0;
         for (size_t k = 0; k < n; k++)
             of_it += memcmp(all[i]->peer.key, all[k]->peer.key, sizeof all[i]->peer.key) == 0;
@@ -90,7 +94,7 @@ static const struct stranger *leaves_by_counting(const struct stranger *all[], s
             leaves = all[i];
         } else if (leaves && leaves->owner && !all[i]->owner &&
                    memcmp(leaves->peer.key, all[i]->peer.key, sizeof leaves->peer.key) == 0) {
-            leaves = all[i]; /* the oldest silent one of the address */
+            leaves = all[i]; /* the oldest of the address that has sent nothing */
         }
     }
     return leaves;
@@ -146,7 +150,8 @@ static void test_hurry(void **state)
     assert_int_equal(strangers_patience_us(&strangers, &LIMITS, 3000000), 3000000);
 }
 
-/* One that comes and leaves so often; whether its address is refused from now on. */
+/* Lets one connection come and leave so many times. Returns whether its address is refused
+ * afterwards. */
 static bool visit(uint64_t address, unsigned times, enum stranger_end end, uint64_t now_us)
 {
     bool refused = false;
@@ -171,17 +176,18 @@ static void test_penalties(void **state)
     assert_true(admits(1, 1));
     assert_true(visit(1, 1, STRANGER_GONE, 1));
     assert_false(admits(1, 1));
-    assert_true(admits(2, 1));         /* others are not */
-    assert_false(admits(1, 14000000)); /* until all of it is over */
+    assert_true(admits(2, 1));         /* other addresses are not refused */
+    assert_false(admits(1, 14000000)); /* until the whole penalty has passed */
     assert_true(admits(1, 15000002));
-    assert_true(visit(2, 3, STRANGER_WRONG, 1)); /* wrong ones count more */
+    assert_true(visit(2, 3, STRANGER_WRONG, 1)); /* wrong credentials count more */
     visit(2, 100, STRANGER_WRONG, 1);
     assert_false(admits(2, 29000000));
-    assert_true(admits(2, 31000002)); /* never longer than the limit says */
+    assert_true(admits(2, 31000002)); /* never longer than the limit */
     visit(3, 20, STRANGER_GONE, 1);
-    visit(3, 1, STRANGER_ADMITTED, 1); /* who has come in before was not refused then */
+    /* a connection that has identified itself clears its address */
+    visit(3, 1, STRANGER_ADMITTED, 1);
     assert_true(admits(3, 1));
-    for (uint64_t i = 0; i < 100; i++) /* a probe each two seconds */
+    for (uint64_t i = 0; i < 100; i++) /* one connection every two seconds */
         assert_false(visit(4, 1, STRANGER_GONE, 1 + i * 2000000));
     const struct strangers_limits none = {.all = 6, .of_peer = 3, .penalty_s = 0};
     for (int i = 0; i < 100; i++) {
@@ -192,7 +198,7 @@ static void test_penalties(void **state)
     assert_true(admits(5, 1));
 }
 
-/* More addresses than there is room for: the least guilty is forgotten, and nothing else. */
+/* With more addresses than entries, the entry with the least penalty is removed, and no other. */
 static void test_penalties_have_a_bound(void **state)
 {
     (void)state;
@@ -253,7 +259,7 @@ static void test_headers(void **state)
                                                0,    12,   192,  0,    2,    7};
     struct sockaddr_storage address;
     bool is_local;
-    header[24] = 0x12; /* the client's port */
+    header[24] = 0x12; /* the client's port is the source port */
     header[25] = 0x67;
     assert_int_equal(proxy_header_length(header), 28);
     assert_true(proxy_header_read(header, 28, &is_local, &address));
@@ -261,19 +267,19 @@ static void test_headers(void **state)
     const struct sockaddr_in *in = (const struct sockaddr_in *)&address;
     assert_int_equal(ntohl(in->sin_addr.s_addr), 0xc0000207);
     assert_int_equal(ntohs(in->sin_port), 0x1267);
-    header[15] = 11; /* too short for its addresses */
+    header[15] = 11; /* too short for the addresses */
     assert_false(proxy_header_read(header, proxy_header_length(header), &is_local, &address));
-    header[15] = 200; /* more follows, which nobody needs */
+    header[15] = 200; /* extensions follow, which are ignored */
     assert_true(proxy_header_read(header, proxy_header_length(header), &is_local, &address));
     header[13] = 0x21;
     assert_true(proxy_header_read(header, proxy_header_length(header), &is_local, &address));
     assert_int_equal(address.ss_family, AF_INET6);
     header[15] = 35;
     assert_false(proxy_header_read(header, proxy_header_length(header), &is_local, &address));
-    header[13] = 0x31; /* a Unix socket's: no address */
+    header[13] = 0x31; /* an address of a Unix socket: no peer address */
     assert_true(proxy_header_read(header, proxy_header_length(header), &is_local, &address));
     assert_true(is_local);
-    header[12] = 0x20; /* LOCAL */
+    header[12] = 0x20; /* LOCAL: the balancer's own check */
     header[15] = 0;
     assert_int_equal(proxy_header_length(header), 16);
     assert_true(proxy_header_read(header, 16, &is_local, &address));

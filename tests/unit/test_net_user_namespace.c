@@ -1,4 +1,4 @@
-/* Maps of user namespaces, as the kernel writes them and as it does not. */
+/* Maps of user namespaces: valid ones, as the kernel writes them, and invalid ones. */
 #include "server/net/user_namespace.h"
 
 #include <setjmp.h>
@@ -44,7 +44,7 @@ static void only_a_map_of_all_ids_is_whole(void **state)
         {"         0          0 4294967295\n", true},
         {"         0          0 4294967295", true},
         {"0 0 1000\n1000 5000 4000\n5000 1000 4000\n9000 9000 4294958295\n", true},
-        {"", false}, /* unshare --user */
+        {"", false}, /* the map that unshare --user makes */
         {"         0       1000          1\n", false},
         {"      1000       1000          1\n         0          0          1\n", false},
         {"         0     100000      65536\n", false},

@@ -1,4 +1,4 @@
-/* How many losses in ten minutes are too many. */
+/* How many losses of the GPU within ten minutes are too many. */
 #include "server/ops/gpu_loss_log.h"
 
 #include <setjmp.h>
@@ -15,9 +15,10 @@ static void the_third_in_ten_minutes_is_too_many(void **state)
     struct gpu_loss_log losses = {0};
     assert_false(gpu_loss_log_add(&losses, 1 * MINUTE_US, 3));
     assert_false(gpu_loss_log_add(&losses, 2 * MINUTE_US, 3));
-    assert_false(
-        gpu_loss_log_add(&losses, 12 * MINUTE_US, 3));         /* the first is eleven minutes old */
-    assert_true(gpu_loss_log_add(&losses, 12 * MINUTE_US, 3)); /* the second is ten */
+    assert_false(gpu_loss_log_add(&losses, 12 * MINUTE_US, 3)); /* the first loss is eleven minutes
+                                                                * old */
+    /* the second loss is ten minutes old */
+    assert_true(gpu_loss_log_add(&losses, 12 * MINUTE_US, 3));
     assert_int_equal(losses.n, 4);
 }
 

@@ -1,4 +1,4 @@
-/* The table of limits: names, ranges, defaults, and values as people write them. */
+/* The table of limits: names, ranges, defaults, and values in the notation that people use. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,7 +26,8 @@ static void test_rows(void **state)
     struct limits limits;
     memset(&limits, 0xff, sizeof limits);
     limits_init(&limits);
-    assert_int_equal(N_LIMITS * sizeof(uint64_t), sizeof limits); /* a row for every member */
+    /* each member of the struct has a row */
+    assert_int_equal(N_LIMITS * sizeof(uint64_t), sizeof limits);
     for (size_t i = 0; i < N_LIMITS; i++) {
         const struct limits_row *row = &LIMITS[i];
         assert_true(row->low <= row->fallback && row->fallback <= row->high);
@@ -86,11 +87,12 @@ static void test_values(void **state)
     assert_true(limits_set(&limits, credits, "64", &error));
     assert_false(limits_set(&limits, credits, "65", &error));
     assert_non_null(strstr(error.text, "credits is '65'; it must be a whole number from 1 to 64"));
-    assert_false(limits_set(&limits, credits, "1K", &error)); /* no bytes */
+    assert_false(limits_set(&limits, credits, "1K", &error)); /* not a number of bytes */
     assert_int_equal(limits.session.credits, 64);
 }
 
-/* What would serve nobody is refused by name, and the least that is not is taken. */
+/* A limit with which the daemon could serve nobody is refused by its name; the least allowed value
+ * is accepted. */
 static void test_least_bytes(void **state)
 {
     (void)state;
@@ -121,8 +123,8 @@ static void test_least_bytes(void **state)
     }
 }
 
-/* The least memory holds a frame of 640 x 480 in every encoding, the least of planes all of its
- * colour. */
+/* The least memory holds a frame of 640 x 480 pixels in every encoding; the least memory for planes
+ * holds the colour of such a frame. */
 static void test_least_memory_holds_a_frame(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* False colour: known planes to known colours, the range rule, and the legend. */
+/* False colour: the colours of known planes, the rule for the range, and the legend. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +17,7 @@ enum { MAX_PIXELS = 320 * 240 };
 
 static struct workers workers; /* draw the legend */
 
-static struct false_colour_extremes extremes; /* of the picture painted last */
+static struct false_colour_extremes extremes; /* of the last painted picture */
 
 static const float MISS[4] = {0, 0.2f, 0.4f, 1}, EMPTY[4] = {1, 0, 1, 0};
 
@@ -26,7 +26,7 @@ struct ptex {
     float u, v;
 };
 
-/* A frame in static memory, of one row until said otherwise. */
+/* A frame in static memory, of one row unless stated otherwise. */
 static struct planes {
     uint8_t colour[MAX_PIXELS][4];
     float position[MAX_PIXELS][3], normal[MAX_PIXELS][3], curvature[MAX_PIXELS][2];
@@ -80,14 +80,14 @@ static void test_curvatures(void **state)
     const float k[][2] = {{-2, 0}, {-3, 2}, {-2, 3}, {0, 0}, {-1, 1}, {NAN, NAN}, {0, INFINITY}};
     paint_curvatures(sheen_ShowKind_SHOW_CURVATURE, 2, k, 7);
     assert_colour(0, BLUE);
-    assert_colour(1, BLUE); /* beyond the end */
+    assert_colour(1, BLUE); /* beyond the end of the range */
     assert_colour(2, RED);
     assert_colour(3, GREY);
     assert_colour(5, MISSED);
     assert_colour(6, MISSED);
     paint_curvatures(sheen_ShowKind_SHOW_MEAN, 1, k, 7);
     assert_colour(0, BLUE);
-    assert_colour(1, 141, 176, 254, 255); /* half way */
+    assert_colour(1, 141, 176, 254, 255); /* half of the range */
     assert_colour(2, 244, 154, 123, 255);
     assert_colour(4, GREY);
     paint_curvatures(sheen_ShowKind_SHOW_GAUSSIAN, 6, k, 7);
@@ -120,8 +120,8 @@ static void test_no_surface(void **state)
     }
 }
 
-/* Two rows of four, the outline between them: what a pixel's centre misses it takes from a
- * neighbour. */
+/* Two rows of four pixels with an outline between them: a pixel whose centre shows nothing has the
+ * colour of a neighbour. */
 static void test_outline(void **state)
 {
     (void)state;
@@ -140,17 +140,17 @@ static void test_outline(void **state)
     false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     assert_colour(0, 255, 128, 128, 255);
     assert_colour(1, 0, 112, 112, 255); /* 3/4 of the light */
-    assert_colour(2, 0, 92, 92, 255);   /* from the left */
+    assert_colour(2, 0, 92, 92, 255);   /* the left neighbour's colour */
     assert_colour(3, 0, 0, 0, 255);
-    assert_colour(4, 137, 65, 65, 255); /* from above */
+    assert_colour(4, 137, 65, 65, 255); /* the upper neighbour's colour */
     assert_colour(5, 0, 0, 0, 255);
-    assert_colour(6, 0, 92, 92, 255); /* from the corner */
-    assert_colour(7, 0, 0, 0, 255);   /* nobody knows */
+    assert_colour(6, 0, 92, 92, 255); /* the diagonal neighbour's colour */
+    assert_colour(7, 0, 0, 0, 255);   /* no neighbour has a colour */
     false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
-    assert_colour(1, 0, 128, 128, 191); /* through to what has no colour */
+    assert_colour(1, 0, 128, 128, 191); /* EMPTY is transparent, so the colour is too */
     planes.normal[1][0] = NAN;
     false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
-    assert_colour(1, 0, 44, 89, 255); /* 3/4 of MISS */
+    assert_colour(1, 0, 44, 89, 255); /* 3/4 of MISS, because the pixel has no normal */
 }
 
 static void test_normals(void **state)
@@ -166,7 +166,7 @@ static void test_normals(void **state)
     assert_false(show.has_range);
 }
 
-/* Sets normals at these angles above the plane across the pull direction, and paints. */
+/* Sets normals at these angles above the plane perpendicular to the pull direction, and paints. */
 static void paint_drafts(sheen_Show *show, const double *deg, size_t n)
 {
     struct frame frame = frame_of(sheen_ShowKind_SHOW_DRAFT, (uint32_t)n, 1);
@@ -196,7 +196,7 @@ static void test_drafts(void **state)
     assert_colour(5, AMBER);
     assert_colour(6, 240, 115, 97, 255);
     assert_colour(7, 128, 0, 13, 255);
-    show.range = 90; /* all but the ends is between */
+    show.range = 90; /* all but the ends lie between the two colours */
     paint_drafts(&show, deg, 8);
     assert_colour(1, YELLOW);
     assert_colour(6, AMBER);
@@ -225,7 +225,8 @@ static void test_ptex(void **state)
     planes.ptex[N + 4] = (struct ptex){UINT32_MAX, 0, 0};
     sheen_Show show = {.kind = sheen_ShowKind_SHOW_PTEX};
     false_colour_paint(&frame, &workers, &show, 1, MISS, EMPTY, &extremes);
-    for (int i = 0; i < N; i++) /* neighbours in number differ widely, all differ */
+    /* neighbouring numbers have very different colours, and all colours differ */
+    for (int i = 0; i < N; i++)
         for (int j = 0; j < i; j++) {
             int apart = 0;
             for (int k = 0; k < 3; k++)
@@ -241,7 +242,8 @@ static void test_ptex(void **state)
 static double range_of(sheen_ShowKind kind, double size, double scale, size_t n)
 {
     struct frame frame = frame_of(kind, (uint32_t)(2 * n), 1);
-    for (size_t i = 0; i < n; i++) { /* shuffled, of both signs, every other pixel without */
+    /* in random order, of both signs, every other pixel without a value */
+    for (size_t i = 0; i < n; i++) {
         double k = scale * (double)((i * 7919) % n + 1);
         planes.curvature[2 * i][0] = planes.curvature[2 * i][1] = (float)(i % 2 ? k : -k);
         planes.curvature[2 * i + 1][0] = NAN;
@@ -257,13 +259,13 @@ static void test_ranges(void **state)
     (void)state;
     const sheen_ShowKind mean = sheen_ShowKind_SHOW_MEAN;
     assert_true(range_of(mean, 1, 1, 1000) == 980); /* the 98th percentile itself */
-    assert_true(range_of(mean, 1, 1, 1001) == 990); /* 981 rounded up */
+    assert_true(range_of(mean, 1, 1, 1001) == 990); /* 981, rounded up */
     assert_true(range_of(mean, 1, 0.001, 1001) == 0.99);
     assert_true(range_of(mean, 1, 1, 1) == 1);
     assert_true(range_of(mean, 1e30, 1e-30, 100) == 9.8e-29);
     assert_true(range_of(mean, 1e-20, 1e20, 100) == 9.8e21);
-    assert_true(range_of(sheen_ShowKind_SHOW_GAUSSIAN, 1, 1, 100) == 9700); /* 9604 */
-    /* A flat one's rounding, and none at all. */
+    assert_true(range_of(sheen_ShowKind_SHOW_GAUSSIAN, 1, 1, 100) == 9700); /* 9604, rounded up */
+    /* The range of a flat surface, with rounding errors and without. */
     assert_true(range_of(mean, 4, 1e-9, 100) == 2.5e-6);
     assert_true(range_of(sheen_ShowKind_SHOW_GAUSSIAN, 4, 1e-9, 100) == 6.3e-12);
     assert_true(range_of(mean, 4, 0, 100) == 2.5e-6);
@@ -288,8 +290,7 @@ static float random_float(void)
     return (float)rand() / (float)RAND_MAX - 0.5f;
 }
 
-/* Random pictures, in which some pixels show nothing, no value or an infinite one; values repeat.
- */
+/* Random pictures: some pixels show nothing, no value or an infinite value, and values repeat. */
 static void test_extremes(void **state)
 {
     (void)state;
@@ -334,8 +335,8 @@ static void test_extremes(void **state)
     }
 }
 
-/* What planes hold beyond a face, by extrapolation, or beyond the largest coordinate, by rounding,
- * is told within the ranges that a client checks. */
+/* Planes may hold values beyond a face, by extrapolation, or beyond the largest coordinate, by
+ * rounding. The extremes are reported within the ranges that a client checks. */
 static void test_extremes_in_range(void **state)
 {
     (void)state;
@@ -359,7 +360,7 @@ static void test_no_extremes(void **state)
     const float none[][2] = {{NAN, NAN}, {0, INFINITY}};
     paint_curvatures(sheen_ShowKind_SHOW_MEAN, 1, none, 2);
     assert_false(extremes.has_values);
-    /* What differs by rounding alone has a value and no place. */
+    /* Values that differ by rounding only are reported without a place. */
     const float flat[][2] = {{0, 1e-7f}, {-1e-7f, 0}};
     paint_curvatures(sheen_ShowKind_SHOW_MEAN, 1, flat, 2);
     assert_true(extremes.has_values && !extremes.least.has_position && !extremes.least.has_x_px);
@@ -417,7 +418,7 @@ static void test_legend(void **state)
     frame = frame_of(sheen_ShowKind_SHOW_MEAN, width, height);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         planes.position[i][0] = NAN;
-    show.has_legend = true; /* a word about it, and it is "no" */
+    show.has_legend = true; /* `legend` is given, as false */
     false_colour_paint(&frame, &workers, &show, 1, MISS, black, &extremes);
     for (size_t i = 0; i < MAX_PIXELS; i++)
         assert_true(is_black(i));

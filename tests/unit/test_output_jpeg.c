@@ -1,4 +1,4 @@
-/* JPEG files of frames: what comes back, the metadata, and what the library refuses. */
+/* JPEG files of frames: the decoded pixels, the metadata, and requests that the library refuses. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -42,14 +42,14 @@ static void paint_grey(uint32_t x, uint32_t y, uint8_t rgb[3])
     memset(rgb, (int)((x + 3 * y) % 256), 3);
 }
 
-/* As false colour is: smooth, through all of red, green and blue. */
+/* Smooth, through all of red, green and blue, like false colour. */
 static void paint_colours(uint32_t x, uint32_t y, uint8_t rgb[3])
 {
     for (int i = 0; i < 3; i++)
         rgb[i] = (uint8_t)lround(127.5 + 127.5 * sin(0.05 * x + 0.03 * y + 2.1 * i));
 }
 
-/* In single columns: subsampling would average the colours away. */
+/* Columns of one pixel, whose colours subsampling averages away. */
 static void paint_columns(uint32_t x, uint32_t y, uint8_t rgb[3])
 {
     (void)y;
@@ -71,14 +71,14 @@ static uint8_t *make_picture(painter *paint, uint32_t width, uint32_t height)
         for (uint32_t x = 0; x < width; x++) {
             uint8_t *pixel = rgba + 4 * ((size_t)y * width + x);
             paint(x, y, pixel);
-            pixel[3] = (uint8_t)(x * y); /* left out */
+            pixel[3] = (uint8_t)(x * y); /* quality and subsampling are left out */
         }
     return rgba;
 }
 
 struct difference {
     int worst;
-    double psnr_db; /* of three channels */
+    double psnr_db; /* with three channels */
 };
 
 static struct difference compare(const uint8_t *rgba, const uint8_t *file, size_t size,
@@ -118,7 +118,8 @@ static void test_what_comes_back(void **state)
         int worst;
         double psnr_db;
     } paints[] = {{paint_grey, 8, 45}, {paint_colours, 8, 42}, {paint_columns, 24, 36}};
-    /* One pixel; less than a block; two strips, the last of one row; three, cut on the right. */
+    /* One pixel; less than a block; two strips, of which the last has one row; three strips, cut
+     * off at the right. */
     static const uint32_t sizes[][2] = {{1, 1}, {17, 3}, {128, 1025}, {811, 323}};
     for (size_t p = 0; p < sizeof paints / sizeof *paints; p++)
         for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
@@ -134,7 +135,7 @@ static void test_what_comes_back(void **state)
         }
 }
 
-/* A whole picture as the library itself writes it; tjFree() is due. */
+/* The whole picture as the library writes it; the caller frees it by tjFree(). */
 static uint8_t *library_file(const uint8_t *rgba, uint32_t width, uint32_t height,
                              const struct jpeg_options *options, unsigned long *size)
 {
@@ -150,7 +151,8 @@ static uint8_t *library_file(const uint8_t *rgba, uint32_t width, uint32_t heigh
     return file;
 }
 
-/* In strips a picture decodes to the same pixels as in one piece, whatever is asked for. */
+/* A picture that is written in strips decodes to the same pixels as one that is written at once,
+ * for every option. */
 static void test_options(void **state)
 {
     (void)state;
@@ -181,7 +183,8 @@ static void test_options(void **state)
     }
 }
 
-/* The most bytes that pixels can become; helped by a checker that knows the bound's end. */
+/* Noise gives the largest files. The buffer ends at the bound, so that a sanitizer finds writes
+ * beyond it. */
 static void test_noise_keeps_to_the_bound(void **state)
 {
     (void)state;
@@ -206,7 +209,7 @@ static void test_noise_keeps_to_the_bound(void **state)
 static void test_strips_are_restart_intervals(void **state)
 {
     (void)state;
-    const uint32_t width = 16384, height = 85; /* 8 rows a strip */
+    const uint32_t width = 16384, height = 85; /* 8 rows in each strip */
     uint8_t *rgba = make_picture(paint_grey, width, height);
     struct jpeg_layout layout;
     jpeg_layout_init(&layout, width, height, &JPEG_DEFAULTS);
@@ -230,7 +233,7 @@ static void test_strips_are_restart_intervals(void **state)
     free(rgba);
 }
 
-/* What all comments of a file say together; freed by the caller. */
+/* The concatenated text of all comments of a file; the caller frees it. */
 static char *read_comments(const uint8_t *file, size_t size, int *n_comments)
 {
     char *text = calloc(1, size);
@@ -269,7 +272,7 @@ static void test_metadata(void **state)
     free(file);
 }
 
-/* A segment holds 65533 bytes. */
+/* A segment holds at most 65533 bytes. */
 static void test_long_metadata(void **state)
 {
     (void)state;
@@ -299,7 +302,8 @@ static void test_long_metadata(void **state)
     }
 }
 
-/* Metadata that differ in a digit or two take the same spare. */
+/* Metadata whose lengths differ by a few bytes have the same bound, so that the memory of one file
+ * is used for the next. */
 static void test_metadata_of_about_one_length(void **state)
 {
     (void)state;
@@ -307,7 +311,7 @@ static void test_metadata_of_about_one_length(void **state)
     assert_int_equal(jpeg_head_bound(623, &METADATA[1], 1), jpeg_head_bound(623, &longer, 1));
 }
 
-/* One side too many, which a request is refused for before. */
+/* One pixel too wide. Such a request is refused earlier. */
 static void test_what_the_library_refuses(void **state)
 {
     (void)state;
@@ -324,7 +328,7 @@ static void test_what_the_library_refuses(void **state)
     assert_non_null(strstr(error.text, "65501 x 1"));
     assert_non_null(strstr(error.text, "65500 pixels"));
     free(bytes);
-    /* The encoder works on, up to the limit. */
+    /* The encoder still works after that, up to the limit. */
     uint8_t *file = jpeg_file(encoder, rgba, width - 1, 1, NULL, 0, &size);
     assert_true(compare(rgba, file, size, width - 1, 1).worst <= 8);
     free(file);
@@ -354,7 +358,7 @@ static void test_two_encoders_at_once(void **state)
     expect_same_at_once(encode_jpeg, rgba);
 }
 
-/* libjpeg-turbo would write arithmetic coding, other tables and more markers. */
+/* libjpeg-turbo would write arithmetic coding, other tables and more markers for these. */
 static void test_environment(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* PNG files of frames: libpng reads every pixel and text back, zlib the whole stream, and checksums
- * are counted again. */
+/* PNG files of frames: libpng reads all pixels and texts, zlib the whole stream, and checksums are
+ * computed again. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -109,7 +109,7 @@ struct reader {
 static void refuse(png_structp png, png_const_charp text)
 {
     (void)png;
-    fail_msg("libpng: %s", text); /* also what it would only warn of */
+    fail_msg("libpng: %s", text); /* warnings count as errors */
 }
 
 static void read_bytes(png_structp png, png_bytep bytes, size_t n)
@@ -121,7 +121,7 @@ static void read_bytes(png_structp png, png_bytep bytes, size_t n)
     reader->left -= n;
 }
 
-/* Reads all but the pixels; finish_reading() is due. */
+/* Reads everything except the pixels. The caller calls finish_reading(). */
 static void start_reading(struct reader *reader, const uint8_t *file, size_t size)
 {
     *reader = (struct reader){.at = file, .left = size};
@@ -140,7 +140,7 @@ static void finish_reading(struct reader *reader)
     png_destroy_read_struct(&reader->png, &reader->info, NULL);
 }
 
-/* The pixels, alpha among them only where a file holds it. */
+/* Compares the pixels, with alpha only where the file has it. */
 static void check_pixels(const uint8_t *file, size_t size, const uint8_t *rgba, uint32_t width,
                          uint32_t height, bool is_opaque)
 {
@@ -165,15 +165,15 @@ static void check_pixels(const uint8_t *file, size_t size, const uint8_t *rgba, 
     finish_reading(&reader);
 }
 
-/* --- the stream */
+/* --- the compressed stream */
 
 static uint32_t get_u32(const uint8_t *bytes)
 {
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* Rows as they are stored, freed by the caller: the data of all IDATs is one zlib stream with the
- * right checksum and nothing behind it. All chunks have the right CRCs. */
+/* The stored rows; the caller frees them. Expects that the data of all IDAT chunks are one zlib
+ * stream with the right checksum and nothing behind it, and that all chunks have the right CRCs. */
 static uint8_t *stored_rows(const uint8_t *file, size_t size, size_t n_bytes)
 {
     uint8_t *rows = malloc(n_bytes + 1);
@@ -215,7 +215,8 @@ static void check_file(const uint8_t *rgba, uint32_t width, uint32_t height, boo
 static void test_what_comes_back(void **state)
 {
     (void)state;
-    /* One pixel; a column; strips of 32 rows, one less, one more; wide ones of two rows and one. */
+    /* One pixel; a column; strips of 32 rows, with a row less and a row more; wide pictures with
+     * strips of two rows and of one. */
     static const uint32_t sizes[][2] = {{1, 1},     {1, 700},   {3, 2},     {4096, 31}, {4096, 32},
                                         {4096, 33}, {4096, 65}, {65500, 3}, {65536, 5}};
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
@@ -227,7 +228,7 @@ static void test_what_comes_back(void **state)
         }
 }
 
-/* Pictures of any size that are put together of pieces of all kinds. */
+/* Random sizes, and pictures composed of parts of all kinds. */
 static void test_random_pictures(void **state)
 {
     (void)state;
@@ -254,7 +255,7 @@ static void test_random_pictures(void **state)
     }
 }
 
-/* The most bytes that pixels can become; png_file() and a checker know the bound's end. */
+/* Noise gives the largest files. png_file() and a sanitizer find writes beyond the bound. */
 static void test_noise_keeps_to_the_bound(void **state)
 {
     (void)state;
@@ -270,7 +271,8 @@ static void test_noise_keeps_to_the_bound(void **state)
     free(rgba);
 }
 
-/* Less room than the bound is an error, no write behind it; the encoder works on. */
+/* Too small a buffer is an error and nothing is written beyond its end; the encoder works
+ * afterwards. */
 static void test_no_room(void **state)
 {
     (void)state;
@@ -296,7 +298,7 @@ static void test_no_room(void **state)
     free(rgba);
 }
 
-/* Stripes are stored as they are, smooth colours as differences; each strip for itself. */
+/* Stripes are stored unfiltered, smooth colours as differences; each strip chooses separately. */
 static void test_filters(void **state)
 {
     (void)state;
@@ -354,7 +356,8 @@ static void test_texts(void **state)
     free(value);
 }
 
-/* Metadata that differ in a digit or two take the same spare. */
+/* Metadata whose lengths differ by a few bytes have the same bound, so that the memory of one file
+ * is used for the next. */
 static void test_metadata_of_about_one_length(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Planes to bytes and back, and data that lies. */
+/* Planes are packed and unpacked again; malformed data is refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +16,7 @@ struct packed {
     size_t size;
 };
 
-/* Planes of a picture that compresses but repeats nowhere. */
+/* Planes of a picture that compresses, but in which nothing repeats. */
 static void fill(uint8_t *bytes, size_t size, unsigned seed)
 {
     uint32_t x = seed * 2654435761u + 1;
@@ -70,7 +70,7 @@ static void unpack_finish(struct packed *packed)
     free(packed->bytes);
 }
 
-/* Unpacks into fresh planes of exactly the right size (a sanitizer sees a byte too many). */
+/* Unpacks into planes of exactly the right size, so that a sanitizer finds a byte too many. */
 static const char *unpack(const struct packed *packed, const uint8_t *bytes, size_t size,
                           bool compare)
 {
@@ -144,7 +144,7 @@ static void layouts_are_bounded(void **state)
     assert_false(codec_layout_init(&layout, 1, UINT32_MAX, 1));
     assert_false(codec_layout_init(&layout, 65536, 65536, 63));
     assert_true(codec_layout_init(&layout, 16384, 16384, 1));
-    assert_true(codec_layout_init(&layout, 65536, 16384, 1)); /* 4 GiB to the byte */
+    assert_true(codec_layout_init(&layout, 65536, 16384, 1)); /* exactly 4 GiB */
     assert_false(codec_layout_init(&layout, 65536, 16385, 1));
 }
 
@@ -172,12 +172,12 @@ static void lengths_that_lie_are_refused(void **state)
         set_length(copy, 0, lies[i]);
         assert_non_null(unpack(&packed, copy, packed.size, false));
     }
-    /* Two frames passed off as one strip. */
+    /* Two zstd frames in the place of one strip. */
     memcpy(copy, packed.bytes, packed.size);
     set_length(copy, 0, first + second);
     set_length(copy, 1, 0);
     assert_non_null(unpack(&packed, copy, packed.size, false));
-    /* One byte more than the table says. */
+    /* One byte more than the table's lengths add up to. */
     memcpy(copy, packed.bytes, packed.size);
     copy[packed.size] = 0;
     assert_non_null(unpack(&packed, copy, packed.size + 1, false));
@@ -205,7 +205,7 @@ static void damaged_strips_are_refused(void **state)
         packed.bytes[i] ^= 0x10;
         const char *wrong = unpack(&packed, packed.bytes, packed.size, false);
         packed.bytes[i] ^= 0x10;
-        if (!wrong) /* a bit that zstd does not look at must not change a pixel */
+        if (!wrong) /* a change in a bit that zstd ignores must not change a pixel */
             assert_null(unpack(&packed, packed.bytes, packed.size, true));
     }
     unpack_finish(&packed);

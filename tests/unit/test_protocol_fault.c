@@ -1,4 +1,4 @@
-/* message_find_fault: what is said of a body that cannot be decoded. */
+/* message_find_fault(): the text about a body that cannot be decoded. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@
 
 #define NOT_WELL_FORMED "it is not well-formed"
 
-/* What is wrong with the request GOOD when `n` bytes of fields follow it. */
+/* The fault of the request GOOD with `n` bytes of further fields. */
 static const char *fault_with(const void *fields, size_t n)
 {
     static uint8_t buffer[2 * MESSAGE_BUFFER_BYTES];
@@ -32,15 +32,15 @@ static const char *fault_of(uint8_t type, const void *body, size_t n)
     return text;
 }
 
-/* limits.h: going over a limit names it. */
+/* Exceeding a limit of limits.h names that limit. */
 static void faults_are_named(void **state)
 {
     (void)state;
     uint8_t lights[2 * 8], bytes[400] = {0};
     for (int i = 0; i < 16; i++)
-        lights[i] = i % 2 ? 0 : 0x2a; /* a light with nothing in it */
+        lights[i] = i % 2 ? 0 : 0x2a; /* an empty light */
     assert_string_equal(fault_with(lights, 16), "lights has 9 entries; it may have at most 8");
-    /* A light, its pattern, which is lines, and 17 places, packed and one by one. */
+    /* A light with a pattern of lines that has 17 places, once packed and once one by one. */
     memcpy(bytes, "\x2a\x90\x01\x32\x8d\x01\x08\x04\x62\x88\x01", 11);
     assert_string_equal(fault_with(bytes, 11 + 17 * 8),
                         "lights.pattern.at has 17 entries; it may have at most 16");
@@ -78,7 +78,7 @@ static void faults_are_named(void **state)
     assert_string_equal(fault_of(MESSAGE_STATS_QUERY, bytes, 4), NOT_WELL_FORMED);
 }
 
-/* Changes bytes of a request at random: what can be read has no fault, whatever else is said. */
+/* Changes random bytes of a request: if the request can be decoded, no fault is found. */
 static void faults_are_found_only_where_they_are(void **state)
 {
     (void)state;

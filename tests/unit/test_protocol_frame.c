@@ -1,4 +1,4 @@
-/* The header of messages, and addresses. */
+/* Headers of messages, and addresses. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Bodies of messages: bounds, and the checks the schema cannot make (of requests for frames:
- * test_protocol_render.c). */
+/* Bodies of messages: their bounds, and the checks that the schema cannot express
+ * (test_protocol_render.c has those of RENDER). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -27,7 +27,7 @@ static void text_is_utf8_without_controls(void **state)
                                       "\x7f",
                                       "\x80",
                                       "\xc3",
-                                      "\xc0\x80", /* overlong */
+                                      "\xc0\x80", /* an overlong encoding of "/" */
                                       "\xc1\xbf",
                                       "\xe0\x9f\xbf",     /* overlong */
                                       "\xed\xa0\x80",     /* surrogate */
@@ -37,7 +37,8 @@ static void text_is_utf8_without_controls(void **state)
                                       "\xff",
                                       "\xe2\x82",
                                       "\xe2(\xa1",
-                                      "\xc2\x9b" /* C1: a terminal's control sequence */};
+                                      "\xc2\x9b" /* C1: the beginning of a terminal's control
+                                                  * sequence */};
     for (size_t i = 0; i < sizeof(good) / sizeof(*good); i++)
         assert_true(message_is_text(good[i], false));
     for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++)
@@ -86,9 +87,9 @@ static void credits_and_replacements_are_checked(void **state)
     assert_true(message_check_answer(MESSAGE_SUPERSEDED, &superseded, text));
     superseded.by = 0;
     assert_false(message_check_answer(MESSAGE_SUPERSEDED, &superseded, text));
-    assert_false(message_check_answer(MESSAGE_CANCEL, NULL, text)); /* no server sends it */
+    assert_false(message_check_answer(MESSAGE_CANCEL, NULL, text)); /* no server sends this value */
 
-    /* What a server of minor version 0 leaves out. */
+    /* The fields that a server of minor version 0 leaves out. */
     uint8_t buffer[MESSAGE_BUFFER_BYTES];
     size_t length;
     ok = (sheen_HelloOk){.server = "0"};
@@ -120,7 +121,7 @@ static void answers_are_checked(void **state)
     assert_false(message_check_answer(MESSAGE_MODEL_INFO, &info, text));
     assert_non_null(strstr(text, "box_max.z"));
     info.box_max.z = 0;
-    info.findings_count = 2; /* of a kind that is not known here, too */
+    info.findings_count = 2; /* also of a kind that this version does not know */
     info.findings[0] = (sheen_Finding){.kind = (sheen_FindingKind)99, .count = 1};
     info.findings[1] = (sheen_Finding){.count = 1, .has_line = true};
     assert_false(message_check_answer(MESSAGE_MODEL_INFO, &info, text));
@@ -184,7 +185,7 @@ static void answers_are_checked(void **state)
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     assert_non_null(strstr(text, "base.a"));
     frame.base.a = 1;
-    frame.camera.has_up = false; /* a request may leave it out, an answer may not */
+    frame.camera.has_up = false; /* optional in a request, required in an answer */
     assert_false(message_check_answer(MESSAGE_FRAME, &frame, text));
     assert_non_null(strstr(text, "camera"));
     frame.camera = GOOD.camera;
@@ -218,7 +219,7 @@ static void encoding_stays_within_its_buffer(void **state)
     assert_false(message_encode(MESSAGE_DATA, 9, &GOOD, whole, sizeof(whole), &length));
     assert_false(message_encode(200, 9, &GOOD, whole, sizeof(whole), &length));
     sheen_Error error = {.code = sheen_ErrorCode_ERROR_MODEL};
-    memset(error.text, 'x', sizeof(error.text)); /* a text without its end */
+    memset(error.text, 'x', sizeof(error.text)); /* a text without its terminating zero */
     assert_false(message_encode(MESSAGE_ERROR, 9, &error, whole, sizeof(whole), &length));
 }
 
@@ -253,7 +254,7 @@ static void malformed_bodies_are_refused(void **state)
     assert_true(message_encode(MESSAGE_RENDER, 9, &GOOD, buffer, sizeof(buffer), &length));
     for (size_t n = 0; n + 1 < length - 16; n++)
         assert_false(message_decode(MESSAGE_RENDER, buffer + 16, n, &render));
-    /* A string longer than its bound. */
+    /* A text longer than its bound. */
     uint8_t progress[64] = {0x0a, 40};
     memset(progress + 2, 's', 40);
     memcpy(progress + 42, "\x10\x01\x18\x02", 4);
@@ -262,7 +263,7 @@ static void malformed_bodies_are_refused(void **state)
     progress[1] = 31;
     memcpy(progress + 33, "\x10\x01\x18\x02", 4);
     assert_true(message_decode(MESSAGE_PROGRESS, progress, 37, &body));
-    /* An id of another length than 32. */
+    /* An id that has not 32 bytes. */
     assert_false(message_decode(MESSAGE_MODEL_QUERY, (const uint8_t *)"\x0a\x02xy", 4, &render));
     assert_true(message_hello_encode(1, id, &hello, buffer, sizeof(buffer), &length));
     for (size_t n = 0; n < length - 16; n++)

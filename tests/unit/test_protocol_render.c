@@ -1,4 +1,4 @@
-/* message_check_render: what a request may ask for. */
+/* message_check_render(): which requests for frames are valid. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +16,8 @@ static bool check(const sheen_Render *render, char *text)
     return message_check_render(render, 16384, 16384, text);
 }
 
-/* The request GOOD with one field changed is refused with a text that names the field. */
+/* Expects that the request GOOD with one changed field is refused with a text that names this
+ * field. */
 #define REFUSED(field, value, word)                                                                \
     do {                                                                                           \
         sheen_Render changed = GOOD;                                                               \
@@ -43,7 +44,7 @@ static void render_sizes(void **state)
     REFUSED(height_px, 100000, "height is 100000");
     REFUSED(width_px, UINT32_MAX, "width");
     ACCEPTED(width_px, 16384);
-    /* A device without a limit of its own is held by the protocol's. */
+    /* The protocol's limit holds for a device that has none of its own. */
     sheen_Render render = GOOD;
     char text[MESSAGE_TEXT_BYTES];
     render.width_px = render.height_px = 100000;
@@ -155,7 +156,7 @@ static void render_geometry(void **state)
     REFUSED(lights[0].u, zero, "length of light.u");
     REFUSED(lights[0].v, GOOD.lights[0].u, "span no light");
     REFUSED(camera.has_ortho_height, true, "exclude");
-    /* Another up is suggested than the one that does not do. */
+    /* The text suggests another up than the one that was refused. */
     sheen_Render along_y = GOOD;
     along_y.camera.eye = (sheen_Vec3){0, 5, 0};
     along_y.camera.up = (sheen_Vec3){0, 1, 0};
@@ -170,13 +171,13 @@ static void render_geometry(void **state)
     assert_true(check(&ortho, text));
     ortho.camera.ortho_height = 0;
     assert_false(check(&ortho, text));
-    /* Far apart in size, yet a proper rectangle and view. */
+    /* Lengths of very different size that still make a valid rectangle and view. */
     sheen_Vec3 tiny = {0, 1e-18, 0}, huge = {1e18, 0, 0};
     ACCEPTED(lights[0].v, tiny);
     ACCEPTED(lights[0].u, huge);
 }
 
-/* The rest of such a camera is the daemon's. */
+/* The daemon supplies the missing parts of such a camera. */
 static void cameras_in_part(void **state)
 {
     (void)state;
@@ -315,7 +316,7 @@ static void false_colour(void **state)
     render.surface = sheen_SurfaceKind_SURFACE_WIREFRAME;
     assert_false(check(&render, text));
     assert_non_null(strstr(text, "wireframe"));
-    /* The planes that it is painted from count, too: 28 bytes a pixel. */
+    /* The planes from which false colour is painted count as well: 28 bytes for each pixel. */
     render.surface = sheen_SurfaceKind_SURFACE_EXACT;
     render.width_px = render.height_px = 16384;
     assert_false(check(&render, text));

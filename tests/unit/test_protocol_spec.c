@@ -1,5 +1,5 @@
-/* protocol/README.md is the specification: its hex examples are run against the codecs, both ways.
- * Runs in the repository's root. */
+/* The hex examples of protocol/README.md, the specification, are decoded and encoded again. Runs in
+ * the repository's root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +16,7 @@
 #define SPECIFICATION "protocol/README.md"
 #define MAX_EXAMPLE_BYTES 4096
 
-/* What a decoded struct is compared by: its own encoding, which names every field that is set. */
+/* Decoded structs are compared by their encodings, which contain every field that is set. */
 static void same_message(uint8_t type, uint32_t seq, const void *body, const uint8_t *bytes,
                          size_t size)
 {
@@ -46,7 +46,7 @@ static void same_message(uint8_t type, uint32_t seq, const void *body, const uin
     assert_true(message_encode(type, seq, &decoded, buffer, sizeof(buffer), &length));
     assert_int_equal(length, size);
     assert_memory_equal(buffer, bytes, size);
-    /* One field short must not pass as the same message. */
+    /* A message that lacks one field must not count as equal. */
     assert_false(header.length > 0 &&
                  message_decode(type, bytes + MESSAGE_HEADER_BYTES, header.length - 1, &decoded));
 }
@@ -66,7 +66,7 @@ static void check_hello(const uint8_t *bytes, size_t size)
     assert_true(message_hello_encode(1, id, &hello, buffer, sizeof(buffer), &length));
     assert_int_equal(length, size);
     assert_memory_equal(buffer, bytes, size);
-    assert_memory_equal(bytes + 16, id, 32); /* where a balancer looks */
+    assert_memory_equal(bytes + 16, id, 32); /* the offset at which a load balancer reads the id */
 
     sheen_Hello decoded;
     struct message_header header;
@@ -330,8 +330,8 @@ static void check_data(const uint8_t *bytes, size_t size)
     assert_memory_equal(colour, "\xff\xff\xff\xff\x00\x00\x00\x00", 8);
 }
 
-/* zstd may compress otherwise in another version: the example is unpacked, and a packed copy of its
- * pixels must unpack to the same. */
+/* Another version of zstd may compress differently: so the example is unpacked, and its pixels,
+ * packed anew, must unpack to the same pixels. */
 static void check_zstd_data(const uint8_t *bytes, size_t size)
 {
     const uint8_t colour[8] = {255, 255, 255, 255, 0, 0, 0, 0};
@@ -428,7 +428,7 @@ static const struct {
 };
 #define N_EXAMPLES (sizeof(EXAMPLES) / sizeof(*EXAMPLES))
 
-/* Appends the bytes of one line of an example; '#' begins a comment. */
+/* Appends the bytes of one line of an example; '#' starts a comment. */
 static size_t read_hex_line(const char *line, uint8_t *bytes, size_t size)
 {
     while (*line && *line != '#' && *line != '\n') {
@@ -503,7 +503,7 @@ static void the_version_is_that_of_the_page(void **state)
     assert_true(file_has_line("CHANGELOG.md", entry));
 }
 
-/* The whole table of chapter 7, and no row more. */
+/* The table of chapter 7 has all these rows and no others. */
 static void the_ranges_are_those_of_the_table(void **state)
 {
     (void)state;

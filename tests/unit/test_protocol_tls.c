@@ -1,4 +1,5 @@
-/* TLS through pipes in memory that hold few bytes: every want of a channel comes up. */
+/* TLS through pipes in memory that hold few bytes, so that a channel wants to read and to write in
+ * every situation. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -92,7 +93,7 @@ static void count_wants(struct end *end, enum tls_result result)
     end->wanted_write += result == TLS_WANTS_WRITE;
 }
 
-/* Moves n bytes from one end to the other and checks that they arrive. */
+/* Moves n bytes from one end to the other and compares them. */
 static enum tls_result move(struct end *from, struct end *to, size_t n)
 {
     static uint8_t sent[100000], got[100000];
@@ -130,7 +131,7 @@ static void test_narrow_pipes(void **state)
         assert_int_equal(move(&pair.server, &pair.client, 100000), TLS_MOVED);
         assert_int_equal(move(&pair.client, &pair.server, 1), TLS_MOVED);
         assert_true(pair.server.wanted_read > 0);
-        if (capacities[i] <= 100) /* also in the handshake, which reads */
+        if (capacities[i] <= 100) /* also during the handshake, while it reads */
             assert_true(pair.server.wanted_write > 0);
         assert_string_equal(tls_reason(pair.server.channel), "");
         assert_int_equal(tls_fault(pair.server.channel), TLS_NO_FAULT);
@@ -149,7 +150,7 @@ static void test_end_and_cut(void **state)
     tls_end(pair.client.channel);
     assert_int_equal(tls_read(pair.server.channel, &byte, 1, &moved), TLS_ENDED);
     pair_finish(&pair);
-    /* An end that the peer has not said is no end. */
+    /* A connection that closes without TLS's closing message is an error and no end. */
     pair_init(&pair, MAX_PIPE, client_context, "127.0.0.1");
     assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
     pair.up.closed = true;
@@ -175,9 +176,9 @@ static void test_pending(void **state)
     pair_finish(&pair);
 }
 
-/* --- a client that tls.c would not be */
+/* --- a client that behaves as tls.c never does */
 
-/* Hands what `ssl` has to say to the other end, whole. */
+/* Passes everything that `ssl` has to send to the other end. */
 static void say(SSL *ssl, const struct end *end)
 {
     char *bytes = NULL;
@@ -199,7 +200,7 @@ static void shake_hands(SSL *ssl, const struct pair *pair)
     }
 }
 
-/* One call must end before the peer does: it may never stop to send new keys. */
+/* A single call must return, though the peer may send new keys for ever. */
 static void test_key_updates(void **state)
 {
     (void)state;
@@ -242,7 +243,7 @@ static void test_wrong_host(void **state)
         assert_int_equal(move(&pair.server, &pair.client, 10), TLS_FAILED);
         assert_non_null(strstr(tls_reason(pair.client.channel), "mismatch"));
         assert_int_equal(tls_fault(pair.client.channel), TLS_PEER_UNTRUSTED);
-        /* The client has said so in an alert. */
+        /* The client sent an alert that says so. */
         assert_int_equal(move(&pair.client, &pair.server, 10), TLS_FAILED);
         uint8_t byte;
         size_t moved;
@@ -284,7 +285,7 @@ static void test_peer(void **state)
     struct tls_context *context = tls_context_create(TLS_CLIENT, &anna, text);
     assert_non_null(context);
     pair_init(&pair, MAX_PIPE, context, "localhost");
-    tls_context_destroy(context); /* its channel goes on */
+    tls_context_destroy(context); /* the channel keeps its own reference */
     assert_int_equal(move(&pair.client, &pair.server, 10), TLS_MOVED);
     assert_true(tls_peer(pair.server.channel, &again));
     assert_string_equal(again.subject, "CN=anna");
@@ -298,7 +299,7 @@ static void test_bad_files(void **state)
 {
     (void)state;
     char text[TLS_TEXT_BYTES];
-    const struct tls_files bad[] = {{.cert = files.cert}, /* its key is missing */
+    const struct tls_files bad[] = {{.cert = files.cert}, /* the file with its key is missing */
                                     {.cert = "/no/such", .key = files.key},
                                     {.cert = files.cert, .key = "/no/such"},
                                     {.cert = files.cert, .key = files.client_key},

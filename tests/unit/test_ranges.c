@@ -1,5 +1,5 @@
-/* One table of ranges: at each end of each range, just inside and just outside, the command line,
- * the check of messages and the renderer's say the same. */
+/* One table of ranges for all: at both ends of each range, just inside and just outside, the
+ * command line, the check of messages and the renderer decide equally. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -22,7 +22,7 @@
 
 static enum options_result parse(const struct command *command, const char *line)
 {
-    static char copy[4000]; /* options point into it */
+    static char copy[4000]; /* the options point into this copy of the line */
     char *argv[64], why[OPTIONS_WHY_BYTES];
     struct options options;
     int argc = 0;
@@ -56,7 +56,7 @@ FRAME(width, frame->width_px = (uint32_t)value)
 WIRE(height, render->height_px = (uint32_t)value)
 FRAME(height, frame->height_px = (uint32_t)value)
 WIRE(jpeg, render->height_px = (uint32_t)value; render->encoding = sheen_Encoding_ENCODING_JPEG)
-/* Not in the plane of the light, nor along up. */
+/* Neither in the plane of the light nor along up. */
 WIRE(eye, render->camera.eye.x = render->camera.eye.z = value)
 FRAME(eye, frame->camera.eye[0] = frame->camera.eye[2] = value)
 BOTH(target, render->camera.target.y, frame->camera.target[1])
@@ -131,7 +131,7 @@ static void wire_lights(sheen_Render *render, double n)
 }
 static void frame_lights(struct frame_request *frame, double n)
 {
-    frame->n_lights = n < 1 ? 1 : (uint32_t)n; /* the daemon puts one where there is none */
+    frame->n_lights = n < 1 ? 1 : (uint32_t)n; /* the daemon adds a light if there is none */
     for (uint32_t i = 1; i < frame->n_lights && i < MAX_LIGHTS; i++)
         frame->lights[i] = frame->lights[0];
 }
@@ -160,15 +160,17 @@ WIRE(jpeg_quality, render->encoding = sheen_Encoding_ENCODING_JPEG; render->has_
      render->jpeg_quality = (uint32_t)value)
 WIRE(deadline, render->has_deadline_ms = true; render->deadline_ms = (uint32_t)value)
 
-enum kind { REAL, WHOLE, SINGLE /* precision */ };
+enum kind { REAL, WHOLE, SINGLE /* of single precision */ };
 
 static const struct field {
     const struct range *range;
     enum kind kind;
-    const char *line; /* of sheen render, with the number in its place; NULL: there is none */
+    /* a command line of sheen render with the number in its place; NULL: no option sets this
+     * field */
+    const char *line;
     void (*wire)(sheen_Render *render, double value);
     void (*frame)(struct frame_request *frame,
-                  double value); /* NULL: no matter of the renderer's */
+                  double value); /* NULL: the renderer has no such field */
 } FIELDS[] = {
     {&RANGES[RANGE_SIDE], WHOLE, RENDER "--size %.17gx64", wire_width, frame_width},
     {&RANGES[RANGE_SIDE], WHOLE, RENDER "--size 64x%.17g", wire_height, frame_height},
@@ -233,9 +235,9 @@ static const struct field {
 };
 #define N_FIELDS (sizeof(FIELDS) / sizeof(*FIELDS))
 
-/* --- what each of the three says */
+/* --- the decision of each of the three */
 
-/* As many times as `n` says. */
+/* How many elements: the value of `n`. */
 static bool client_takes_count(const struct range *range, double n)
 {
     char line[1000] = RENDER;
@@ -261,7 +263,8 @@ static bool message_takes(const struct field *field, double value)
 {
     char text[MESSAGE_TEXT_BYTES];
     sheen_Render render = GOOD;
-    /* More than its struct holds is refused when it is read (protocol/sheen.options). */
+    /* More elements than the struct holds are refused when a message is decoded
+     * (protocol/sheen.options). */
     if (field->range == &RANGES[RANGE_LIGHTS] && value > sizeof GOOD.lights / sizeof *GOOD.lights)
         return false;
     if (field->range == &RANGES[RANGE_PATTERN_LINES] &&
@@ -271,7 +274,7 @@ static bool message_takes(const struct field *field, double value)
     return message_check_render(&render, UINT32_MAX, UINT32_MAX, text);
 }
 
-/* What a request leaves out is of this model. */
+/* Fields that a request leaves out are taken from this model. */
 static const struct limit_tables TABLES = {.box_min = {-1, -1, -1}, .box_max = {1, 1, 1}};
 static const struct scene_subject SUBJECT = {&TABLES, CAGE_UP_UNSAID};
 
@@ -292,7 +295,7 @@ static void all_say(const struct field *field, double value, bool takes)
     if (has_option && client_takes(field, value) != takes)
         fail_msg("the client on %s %.17g, of '%s'", name, value, field->line ? field->line : "");
     if (value < 0 && field->kind == WHOLE)
-        return; /* the wire has no such number */
+        return; /* the message has no such number */
     if (field->wire && message_takes(field, value) != takes)
         fail_msg("the message's check on %s %.17g, field %zu", name, value,
                  (size_t)(field - FIELDS));
@@ -327,7 +330,7 @@ static void all_agree_at_each_end(void **state)
     }
 }
 
-/* Nothing in the table is left out above. */
+/* FIELDS has every range of the table. */
 static void every_range_is_tried(void **state)
 {
     (void)state;
@@ -341,8 +344,8 @@ static void every_range_is_tried(void **state)
     }
 }
 
-/* What is no range of one number: points that fall together, directions that are none, parallel
- * ones. Message and renderer draw the line at the same place. */
+/* Rules about several numbers: equal points, zero directions, parallel directions. The check of
+ * messages and the renderer draw the line at the same value. */
 static void directions_agree(void **state)
 {
     (void)state;
@@ -351,7 +354,7 @@ static void directions_agree(void **state)
     srand(7);
     for (int i = 0; i < 20000; i++) {
         sheen_Render render = GOOD;
-        render.lines.family = sheen_LineFamily_LINES_HIGHLIGHT; /* the eye may be anywhere */
+        render.lines.family = sheen_LineFamily_LINES_HIGHLIGHT; /* the eye may be anywhere else */
         double size = pow(10, -32 + 64.0 * rand() / RAND_MAX);
         double sine = pow(10, -12 + 6.0 * rand() / RAND_MAX);
         switch (i % 4) {
@@ -372,7 +375,8 @@ static void directions_agree(void **state)
         struct frame_request frame;
         struct error error = {0};
         scene_read_request(&render, &SUBJECT, &frame);
-        message_read_vec3(&render.camera.up, frame.camera.up); /* where it is parallel, too */
+        /* the request's own up, in case the default camera replaced it because it is parallel */
+        message_read_vec3(&render.camera.up, frame.camera.up);
         bool is_taken = message_check_render(&render, 16384, 16384, text);
         if (request_check(&frame, 16384, 16384, &error) != is_taken)
             fail_msg("case %d: message %d '%s', renderer '%s'", i, is_taken, text, error.text);

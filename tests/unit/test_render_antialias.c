@@ -1,5 +1,5 @@
-/* Frames without antialiasing, on both devices: what a pixel's centre sees, with lines averaged over
- * the pixel. */
+/* Frames without antialiasing, on both devices: a pixel shows the surface at its centre, and lines
+ * averaged over its area. */
 #include "tests/unit/native_scene.h"
 
 enum { WIDTH = 320, HEIGHT = 240, PIXELS = WIDTH * HEIGHT };
@@ -7,18 +7,18 @@ enum { WIDTH = 320, HEIGHT = 240, PIXELS = WIDTH * HEIGHT };
 /* How pixels are sampled. */
 enum sampling { EXACT, ALIASED, ONE_SAMPLE, SAMPLINGS };
 
-/* Planes that are one sample a pixel, with and without antialiasing. */
+/* Planes that have one sample for each pixel, with and without antialiasing. */
 static const uint32_t SAMPLED =
     PLANE_POSITION | PLANE_NORMAL | PLANE_PTEX | PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE;
 
-/* Empty is clear, so that alpha is the share that shows surface. */
+/* `empty` is transparent, so that alpha is the share of a pixel that shows surface. */
 static struct frame_request request_of(const struct devices *devices, enum sampling sampling)
 {
     struct frame_request request = request_for(&devices->tables, WIDTH, HEIGHT);
     request.planes = PLANE_COLOUR | SAMPLED;
     request.lights[0].kind = LIGHT_TUNNEL;
     scene_default_light(devices->tables.box_min, devices->tables.box_max, NULL, &request.lights[0]);
-    request.lights[0].pattern.count = 150; /* finer than a pixel in places */
+    request.lights[0].pattern.count = 150; /* stripes that are finer than a pixel in some places */
     memcpy(request.miss, (const float[4]){1, 0, 0, 1}, sizeof request.miss);
     request.aliased = sampling == ALIASED;
     request.unfiltered = sampling == ONE_SAMPLE;
@@ -41,8 +41,8 @@ static bool is_hit(const struct frame *frame, int pixel)
     return ((const uint32_t *)frame->plane[3])[3 * pixel] != UINT32_MAX;
 }
 
-/* Where all of the 3 x 3 pixels around see surface that turns so little from one to the next that
- * nothing but a smooth, flat piece can lie between them. */
+/* Whether the pixel and its eight neighbours all see surface, and the surface turns so little
+ * between neighbours that only a smooth, flat piece can lie between them. */
 static bool is_calm(const struct frame *frame, int x, int y)
 {
     const float(*normal)[3] = frame->plane[2];
@@ -54,7 +54,7 @@ static bool is_calm(const struct frame *frame, int x, int y)
         float dot = 0;
         for (int i = 0; i < 3; i++)
             dot += normal[middle][i] * normal[beside][i];
-        if (!is_hit(frame, beside) || !(dot > 0.99976f)) /* 0.022 rad */
+        if (!is_hit(frame, beside) || !(dot > 0.99976f)) /* an angle of 0.022 rad */
             return false;
     }
     return true;
@@ -66,7 +66,7 @@ static void finish(struct frame frames[SAMPLINGS])
         frame_finish(&frames[i]);
 }
 
-/* All but colours, which are one sample a pixel in any case. */
+/* All planes except colour have one sample for each pixel in any case. */
 static void assert_same_samples(const struct frame *a, const struct frame *b)
 {
     for (int p = 1; p < PLANE_COUNT; p++)
@@ -84,7 +84,8 @@ static struct counts count(const struct frame frames[SAMPLINGS])
     struct counts n = {0};
     for (int k = 0; k < PIXELS; k++) {
         const uint8_t *aliased = colour_at(&frames[ALIASED], k);
-        assert_int_equal(aliased[3], is_hit(&frames[ALIASED], k) ? 255 : 0); /* all or nothing */
+        /* covered wholly or not at all */
+        assert_int_equal(aliased[3], is_hit(&frames[ALIASED], k) ? 255 : 0);
         n.mixed += colour_at(&frames[EXACT], k)[3] % 255 != 0;
         if (!is_calm(&frames[ALIASED], k % WIDTH, k / WIDTH))
             continue;
@@ -95,8 +96,8 @@ static struct counts count(const struct frame frames[SAMPLINGS])
     return n;
 }
 
-/* Calm pixels have the mean that they have with antialiasing; not those of them that the rounding of
- * a semi-sharp crease runs through, or over which the lines bend: these are shaded in squares. */
+/* Calm pixels show the same mean as with antialiasing. Exceptions are pixels that the rounding of a
+ * semi-sharp crease crosses, or over which the lines bend: they are shaded in nine squares. */
 static void test_planes_and_means(void **state)
 {
     static const struct {
@@ -127,7 +128,7 @@ static void test_planes_and_means(void **state)
     }
 }
 
-/* A pixel at an edge shows its centre's mean, to the border of the surface. */
+/* A pixel at an edge shows the mean over the surface at its centre. */
 static void test_edges_show_the_centre(void **state)
 {
     struct devices devices;
@@ -135,7 +136,7 @@ static void test_edges_show_the_centre(void **state)
     open_devices(&devices, "tests/models/creases.obj");
     for (int device = 0; device < DEVICES; device++) {
         struct frame_request request = request_of(&devices, ALIASED);
-        request.lights[0].pattern.duty = 1; /* one colour all over */
+        request.lights[0].pattern.duty = 1; /* the same colour everywhere */
         memcpy(request.lights[0].pattern.foreground, (const float[4]){0.2f, 0.4f, 0.6f, 1},
                sizeof request.lights[0].pattern.foreground);
         struct frame frame = render(devices.renderer[device], devices.model[device], &request);
@@ -175,8 +176,8 @@ static void test_several_lights(void **state)
     close_devices(&devices);
 }
 
-/* Planes of a view serve frames without antialiasing after those with it, and not the other way
- * round: they have no lists of edges then. */
+/* Planes that were kept with antialiasing serve frames without, but not the reverse, because planes
+ * kept without antialiasing have no lists of edges. */
 static void test_kept_planes(void **state)
 {
     struct devices devices;

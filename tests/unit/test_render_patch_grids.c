@@ -1,6 +1,6 @@
-/* The grids that stage 1 draws: no triangle strays further from the surface than is allowed, no
- * grid is finer than its part of the surface bends in either direction, and clusters of nodes leave out nothing.
- */
+/* The grids that stage 1 draws. No triangle deviates further from the surface than allowed, no grid
+ * is finer than its part of the surface needs in either direction, and clusters of nodes omit
+ * nothing. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +27,7 @@ struct scene {
     struct patch_grids grids;
 };
 
-/* The tables are there already. */
+/* Completes the scene; the caller has built the tables. */
 static void scene_ready(struct scene *scene)
 {
     struct error error = {0};
@@ -42,7 +42,7 @@ static void scene_finish(struct scene *scene)
     limit_tables_finish(&scene->tables);
 }
 
-/* The default camera, from `closer` times as near to the middle of the box. */
+/* The default camera, with its distance from the box's middle divided by `closer`. */
 static void look(struct scene *scene, bool orthographic, double closer)
 {
     struct camera camera;
@@ -88,8 +88,8 @@ static struct limit_point surface_at(const struct scene *scene, const struct pat
     return point;
 }
 
-/* A vector from the surface at `p` in px, by what shows: what lies along the surface counts a
- * quarter. */
+/* The visible length in px of a vector that starts at the surface point `p`. The part of it along
+ * the surface counts a quarter. */
 static double shown_px(const struct view *view, const struct limit_point *p, struct vec off)
 {
     const double world[3] = {p->s.x, p->s.y, p->s.z};
@@ -101,8 +101,8 @@ static double shown_px(const struct view *view, const struct limit_point *p, str
     return (across + along / 4) / (view->units_per_px * depth);
 }
 
-/* How far the surface is from a cell's triangles, by the middles of their sides and of themselves.
- */
+/* The distance of the surface from a cell's triangles, measured at the middles of their sides and
+ * at their centres. */
 static double stray_px(const struct scene *scene, const struct patch_grid *grid, double x, double y,
                        double width, double height)
 {
@@ -202,7 +202,7 @@ static void test_one_way(void **state)
 
 /* --- */
 
-/* How many clusters the tile cannot show. */
+/* The number of clusters that the tile cannot show. */
 static size_t n_outside(const struct scene *scene, const struct tile *tile)
 {
     struct view_sides sides;
@@ -224,8 +224,8 @@ static void assert_same_grids(const struct patch_grids *a, const struct patch_gr
     assert_memory_equal(a->block, b->block, a->n_blocks * sizeof *a->block);
 }
 
-/* In every tile those that it cannot show are passed over, and nothing else is missed: the grids
- * are those of clusters that reach everywhere. */
+/* In every tile, the clusters that it cannot show are skipped and no others: the grids are the same
+ * as those of clusters with boundless boxes. */
 static void test_clusters_leave_out_nothing(void **state)
 {
     (void)state;
@@ -257,15 +257,15 @@ static void test_clusters_leave_out_nothing(void **state)
                 n_passed_over += n_outside(&scene, &tile);
             }
         }
-        assert_true(n_passed_over > N * N); /* of 4 N N n */
+        assert_true(n_passed_over > N * N); /* of 4 N N for each cluster */
         patch_grids_finish(&expected);
         clusters_finish(&all);
         scene_finish(&scene);
     }
 }
 
-/* Sheets behind each other, which a file may have by the thousands: a ray has a guess for each, or
- * for none where there are too many to try. */
+/* Many sheets behind each other. A ray gets a guess for each sheet, or for none if there are too
+ * many to try. */
 static void test_guesses_are_limited(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-/* What holds for every device, with one that draws nothing: requests and images that are out of
- * range never reach it, what it keeps of a frame is dropped once, and a frame that fails is empty.
- */
+/* What holds for every device, tested with one that draws nothing: requests and images out of range
+ * never reach a device, what it keeps of a frame is dropped exactly once, and a frame that fails is
+ * empty. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,10 +16,10 @@
 
 enum { N_STEPS = 3, MAX_PX = 64 };
 
-/* A device that counts what is asked of it, and fails a frame's step `fails_at`. */
+/* A device that counts its calls, and fails a frame's step `fails_at`. */
 static struct {
     unsigned opened, begun, steps, models, images;
-    int states; /* of frames under way */
+    int states; /* of unfinished frames */
     unsigned fails_at;
     bool fails_to_begin;
 } counts;
@@ -135,7 +135,7 @@ static enum frame_step step(struct renderer *renderer, struct renderer_model *mo
     (void)renderer;
     assert_non_null(model);
     assert_non_null(frame->plane[0]);
-    assert_false(work->has_drawn); /* nothing is left of the step before */
+    assert_false(work->has_drawn); /* the error of the previous step is gone */
     counts.steps++;
     if (++state->step == counts.fails_at) {
         error_set(error, ERROR_DEVICE, "no");
@@ -227,7 +227,7 @@ static void test_whole(void **state)
     assert_int_equal(renderer_step(scene.renderer, scene.model, &work, &frame, &error), FRAME_DONE);
     assert_int_equal(counts.states, 0);
     assert_null(work.state);
-    frame_work_finish(&work); /* safe again */
+    frame_work_finish(&work); /* a second call is safe */
     assert_int_equal(*(const uint8_t *)frame.plane[0], N_STEPS);
     assert_non_null(frame.plane[2]);
     assert_null(frame.plane[1]);
@@ -238,7 +238,7 @@ static void test_whole(void **state)
     scene_finish(&scene);
 }
 
-/* A frame may be given up at any step, also after the renderer has gone. */
+/* A frame may be given up at any step, also after the renderer was destroyed. */
 static void test_given_up(void **state)
 {
     (void)state;
@@ -284,7 +284,7 @@ static void test_failures(void **state)
     scene_finish(&scene);
 }
 
-/* What is out of range never comes to the device. */
+/* Values out of range never reach the device. */
 static void test_checked(void **state)
 {
     (void)state;

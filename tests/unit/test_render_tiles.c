@@ -1,5 +1,5 @@
-/* Tiles cover the picture once each, keep to what was asked of their size, and their margins end
- * where the picture does. */
+/* Tiles cover each pixel of the picture once, keep to the requested size, and their margins end at
+ * the picture's border. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -48,7 +48,7 @@ static void check_margin(const struct tile *tile, const struct tile_size *size, 
                      drawn.width == tile->width && drawn.height == tile->height);
 }
 
-/* Pictures of all shapes, tiles of all sizes. */
+/* Pictures of many shapes, and tiles of many sizes. */
 static void test_cover_once(void **state)
 {
     (void)state;
@@ -83,7 +83,7 @@ static void test_cover_once(void **state)
     assert_true(n_whole > 100 && n_cut > 1000);
 }
 
-/* The sizes that frames of the daemon are cut into. */
+/* The sizes of tiles that the daemon uses. */
 static void test_known(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* What requests leave out, what files say about themselves, and texts that must not reach the
- * wire. */
+/* Defaults for what requests leave out, models' own up, and texts that must not get into a
+ * message. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -30,11 +30,11 @@ static void test_defaults_are_valid(void **state)
     assert_true(request.lights[0].pattern.duty == pattern.duty);
     assert_true(request.lights[0].pattern.foreground[0] == 1 &&
                 request.lights[0].pattern.background[0] == 0);
-    /* What misses the light is told from the dark stripes. */
+    /* The colour `miss` differs from the dark stripes. */
     const float miss[4] = {0.16f, 0.19f, 0.23f, 1};
     assert_memory_equal(request.miss, miss, sizeof miss);
 
-    /* Sent back as a request it is the same frame. */
+    /* If the answer's fields are sent as a request, the frame is the same. */
     render.has_camera = true;
     render.lights_count = 1;
     render.camera = scene_write_camera(&request.camera);
@@ -94,7 +94,8 @@ static struct camera camera_for(const sheen_Camera *asked)
     return request.camera;
 }
 
-/* What a request leaves out of its camera is that of the camera that frames the model. */
+/* Fields of a camera that a request leaves out are those of the default camera, which frames the
+ * model. */
 static void test_cameras_in_part(void **state)
 {
     (void)state;
@@ -117,7 +118,7 @@ static void test_cameras_in_part(void **state)
     assert_true(camera.eye[1] == 9 && camera.target[1] == 0);
     assert_memory_equal(camera.up, whole.up, sizeof camera.up);
 
-    /* Orthographic: the same direction, with all of the box before the eye. */
+    /* An orthographic camera looks in the same direction, with the whole box in front of it. */
     const sheen_Camera flat = {.has_ortho_height = true, .ortho_height = 3};
     camera = camera_for(&flat);
     assert_int_equal(camera.kind, CAMERA_ORTHOGRAPHIC);
@@ -152,7 +153,7 @@ static sheen_Vec3 noise_vec3(uint64_t *state, double size)
     return (sheen_Vec3){size * noise(state), size * noise(state), size * noise(state)};
 }
 
-/* Of a request for each kind of light, and one that leaves the kind out. */
+/* One light of each kind, and one without a kind. */
 enum { UNPLACED = 5 };
 
 static void light_every_kind(sheen_Render *render)
@@ -165,8 +166,8 @@ static void light_every_kind(sheen_Render *render)
     }
 }
 
-/* Nobody who looks moves a light that has no place of its own: eye, target, field of view, height
- * of an orthographic picture, and size. */
+/* A light without a place of its own does not depend on the camera: not on eye, target, field of
+ * view, orthographic height, or size. */
 static void test_lights_stay(void **state)
 {
     (void)state;
@@ -201,8 +202,9 @@ static void test_lights_stay(void **state)
         assert_memory_not_equal(other.lights[k].u, first.lights[k].u, sizeof first.lights[k].u);
 }
 
-/* Up is what the request says, else the file, else what the box looks like; whoever looks along it
- * sees the back of the model at the top from above, the front from below. */
+/* Up is taken from the request, else from the file, else from the shape of the box. A camera that
+ * looks along up has the back of the model at the picture's top from above, and the front from
+ * below. */
 static void test_up(void **state)
 {
     (void)state;
@@ -236,7 +238,8 @@ static void test_up(void **state)
     assert_true(request.camera.up[1] == 3);
 }
 
-/* Zebra and environment are about up, whoever looks; what is asked for comes first. */
+/* The axes of zebra and environment are up for every camera, unless the request gives a
+ * direction. */
 static void test_axes(void **state)
 {
     (void)state;

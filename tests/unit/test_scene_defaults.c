@@ -1,4 +1,4 @@
-/* The camera that frames a model. */
+/* The default camera and the default lights. */
 #include <string.h>
 
 #include "server/render/view.h"
@@ -7,14 +7,14 @@
 #include "server/surface/support.h"
 #include "tests/unit/cage_tables.h"
 
-#define MARGIN 0.92 /* of the half picture, which the box fills */
+#define MARGIN 0.92 /* the share of the half picture that the box fills */
 
 static const double ups[][3] = {{0, 0, 1},  {0, 1, 0},   {1, 0, 0},
                                 {0, 0, -2}, {-50, 0, 0}, {1, -9, 8}};
 
-/* How far the box reaches to either side of the picture's middle, in halves of the picture. */
+/* How far the box reaches from the picture's middle to each side, in halves of the picture. */
 struct reach {
-    double low[2], high[2]; /* across, down */
+    double low[2], high[2]; /* horizontally, vertically */
 };
 
 static void frame_box(const double box_min[3], const double box_max[3], const double up[3],
@@ -62,7 +62,7 @@ static void assert_fills(struct reach reach)
     assert_true(touches);
 }
 
-/* All of the box is in the picture, and it could not be larger there, whatever is up. */
+/* The whole box is in the picture, and as large as possible, whichever axis is up. */
 static void test_the_box_fills_the_picture(void **state)
 {
     (void)state;
@@ -84,8 +84,8 @@ static void test_the_box_fills_the_picture(void **state)
         }
 }
 
-/* The camera stands 45 degrees above the horizon of the up that it is given, whose length does not
- * matter; what would have been chosen gives the same camera as when nothing is said. */
+/* The camera stands 45 degrees above the horizon of the given up, whose length has no effect. The
+ * up that would be chosen anyway gives the default camera. */
 static void test_up_is_above(void **state)
 {
     (void)state;
@@ -107,7 +107,8 @@ static void test_up_is_above(void **state)
     assert_memory_equal(&camera, &guessed, sizeof camera);
 }
 
-/* Neither rounding nor a small change of a model that is as deep as high turns it. */
+/* For a model about as deep as high, neither rounding nor a small change of the model changes
+ * up. */
 static void test_a_near_tie_stays_z_up(void **state)
 {
     (void)state;
@@ -127,8 +128,8 @@ static void test_a_near_tie_stays_z_up(void **state)
     assert_true(up[2] == 1);
 }
 
-/* The longer of the two horizontal sides is seen across, whichever it is and whatever is up, and
- * x if neither is by much; the picture's size changes nothing. */
+/* The longer of the two horizontal sides is seen across, for every up; x if they differ little. The
+ * size of the picture has no effect. */
 static void test_the_longer_side_lies_across(void **state)
 {
     (void)state;
@@ -150,7 +151,8 @@ static void test_the_longer_side_lies_across(void **state)
         }
 }
 
-/* Of a frame in which the points lie, the share that they take of the longer side. */
+/* The share of the picture's longer half that the points reach, in a frame that shows all of
+ * them. */
 static double fill_of(const struct limit_tables *tables, enum default_view view,
                       const struct vec *points, size_t n)
 {
@@ -177,8 +179,8 @@ static double fill_of(const struct limit_tables *tables, enum default_view view,
 
 enum { SAMPLES = 33 };
 
-/* All of the surface, sampled so much more densely than what the camera is fitted to, is in the
- * picture, from wherever it looks, and fills it. */
+/* The whole surface is in the picture and fills it, for every view. It is sampled more densely here
+ * than by the code that places the camera. */
 static void test_the_surface_fills_the_picture(void **state)
 {
     (void)state;
@@ -216,8 +218,8 @@ static struct vec vec_of(const double a[3])
     return (struct vec){a[0], a[1], a[2]};
 }
 
-/* The tunnel is about the longer horizontal side, x if neither is by much, has the middle of the
- * box on its axis and all of the box well inside; its azimuth begins above. */
+/* The axis of the tunnel is along the longer horizontal side (x if they differ little), through the
+ * middle of the box. The whole box is well inside, and azimuth 0 is above. */
 static void test_the_tunnel(void **state)
 {
     (void)state;
@@ -246,7 +248,7 @@ static void test_the_tunnel(void **state)
     }
 }
 
-/* What hangs over the model is seen from below. */
+/* A light above the model, seen from below. */
 static void test_flat_lights_face_the_model(void **state)
 {
     (void)state;
@@ -263,7 +265,7 @@ static void test_flat_lights_face_the_model(void **state)
         }
 }
 
-/* A box without size is looked at from some distance. */
+/* A box without size is seen from some distance. */
 static void test_a_point(void **state)
 {
     (void)state;
