@@ -1,4 +1,5 @@
-/* Frames on their way out: encoded on a pool, answered in the order of requests, cut into DATA. */
+/* How frames are sent: encoded by a pool of threads, answered in the order of their requests, and
+ * cut into DATA messages. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,7 +16,11 @@
 #include "tests/unit/jpeg_file.h"
 #include "tests/unit/png_file.h"
 
-enum { WIDTH = 811, HEIGHT = 523 }; /* odd, several strips a plane, several DATA a frame */
+enum {
+    WIDTH = 811,
+    HEIGHT = 523
+}; /* odd; several strips for each plane, several DATA for each
+                                     * frame */
 
 static const struct image_attribute METADATA[] = {{"sheen:version", "1.2.3"}};
 
@@ -28,7 +33,7 @@ struct fixture {
     struct reply_list replies;
     int peer; /* the client's end */
     uint64_t sent_bytes;
-    struct encoded *encoded[2]; /* since the last encode() */
+    struct encoded *encoded[2]; /* of the last call of encode() */
     size_t n_encoded;
 };
 
@@ -100,7 +105,7 @@ static void encode_finished(void *owner, struct encoded *encoded, const struct e
     loop_stop(f->loop);
 }
 
-/* Takes the frame over. */
+/* Takes ownership of the frame. */
 static void start_frame(struct fixture *f, struct frame frame, uint32_t planes,
                         sheen_Encoding encoding)
 {
@@ -117,7 +122,7 @@ static void start_encoding(struct fixture *f, uint32_t planes, sheen_Encoding en
     start_frame(f, make_frame(planes), planes, encoding);
 }
 
-/* The bytes of all pieces; freed by the caller. */
+/* The concatenated bytes of all pieces; the caller frees them. */
 static uint8_t *join(const struct encoded *encoded)
 {
     uint8_t *bytes = malloc(encoded->size), *end = bytes;
@@ -160,7 +165,7 @@ static void test_zstd_round_trip(void **state)
     encoded_destroy(encoded);
 }
 
-/* By three threads, of which each takes strips as they come. */
+/* Three threads encode; each takes the next free strip. */
 static void test_two_jpeg_files_at_once(void **state)
 {
     struct fixture *f = *state;
@@ -184,7 +189,7 @@ static void test_two_jpeg_files_at_once(void **state)
     frame_finish(&frame);
 }
 
-/* A picture whose alpha is 255 but in one pixel, or in all (pixel < 0). */
+/* A picture whose alpha is 255 except in one pixel, or in all pixels (pixel < 0). */
 static struct frame make_picture(long pixel)
 {
     struct frame frame = make_frame(1);
@@ -194,8 +199,8 @@ static struct frame make_picture(long pixel)
     return frame;
 }
 
-/* Which strip is not opaque is found while others are being encoded: the file is the same whoever
- * finds it first. */
+/* Threads look for transparent pixels while other strips are being encoded. The file does not
+ * depend on which thread finds one first. */
 static void test_png_files(void **state)
 {
     struct fixture *f = *state;
@@ -219,7 +224,7 @@ static void test_png_files(void **state)
     png_encoder_destroy(encoder);
 }
 
-/* Reads exactly n bytes, letting the connection write what it holds back. */
+/* Reads exactly n bytes, and lets the connection write what it has buffered. */
 static void read_exactly(struct fixture *f, void *bytes, size_t n)
 {
     for (uint8_t *to = bytes; n > 0;) {
@@ -338,7 +343,8 @@ static void test_nothing_after_the_last(void **state)
     assert_int_equal(f->conn.state, CONN_LINGERING);
 }
 
-/* Nobody reads: what is unsent is given back when the connection closes (a leak checker sees). */
+/* The client reads nothing: unsent bytes are freed when the connection closes, as a leak checker
+ * confirms. */
 static void test_closed_with_a_frame_unsent(void **state)
 {
     struct fixture *f = *state;

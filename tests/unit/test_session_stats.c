@@ -1,4 +1,4 @@
-/* Histograms against sorted lists, and what of the last minute is kept and forgotten. */
+/* Histograms, against sorted lists; and which values of the last minute are kept. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,8 +20,8 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Values spread evenly over all octaves, by a generator of our own so that every run is the same.
- */
+/* Values distributed over all octaves, from a generator with a fixed seed, so that every run is the
+ * same. */
 static void fill(struct histogram *histogram, uint64_t *values)
 {
     uint64_t state = 12345;
@@ -44,7 +44,8 @@ static void test_percentiles(void **test_state)
     for (double p = 0.01; p < 1; p += 0.01) {
         uint64_t found = histogram_percentile(&histogram, p), exact = values[(int)(p * N)];
         uint64_t error = found > exact ? found - exact : exact - found;
-        /* 1 in 32, and the next value where two are far apart. */
+        /* 1 part in 32, and the distance of the neighbouring value where two values are far
+         * apart */
         uint64_t gap = values[(int)(p * N)] - values[(int)(p * N) - 1];
         assert_true(error <= exact / 31 + gap);
     }
@@ -131,7 +132,7 @@ static void test_the_last_minute(void **test_state)
     assert_int_equal(recent.p50.total_us, 8);
     assert_int_equal(stats.error_codes[sheen_ErrorCode_ERROR_MODEL], 1);
 
-    /* At 60 s the first slice goes; its frames are in no percentile any more. */
+    /* At 60 s the first slice is dropped, and its frames no longer count in any percentile. */
     answered(&stats, 2, start + 59 * second);
     stats_recent(&stats, start + 59 * second, &recent);
     assert_int_equal(recent.frames, 101);
@@ -139,11 +140,11 @@ static void test_the_last_minute(void **test_state)
     assert_int_equal(recent.window_us, 50 * second);
     assert_int_equal(recent.frames, 1);
     assert_int_equal(recent.p99.total_us, 2);
-    /* The sums stay. */
+    /* The sums since the start remain. */
     assert_int_equal(stats.frames, 101);
     assert_int_equal(stats.stage[STAGE_TOTAL].n, 101);
 
-    /* After a long rest old slices are not taken for new ones. */
+    /* After a long pause, old slices do not count as new ones. */
     stats_recent(&stats, start + 3600 * second, &recent);
     assert_int_equal(recent.frames + recent.requests, 0);
     answered(&stats, 4, start + 3600 * second);
@@ -171,7 +172,7 @@ static void test_latency_by_class(void **test_state)
     assert_int_equal(recent.latency[CLASS_STILL].p99_us, 0);
     assert_int_equal(recent.latency[CLASS_BATCH].frames, 1);
     assert_int_equal(recent.latency[CLASS_BATCH].p50_us, 15);
-    /* The interactive ones have become too old. */
+    /* The interactive frames have become too old. */
     stats_recent(&stats, start + 70 * second, &recent);
     assert_int_equal(recent.latency[CLASS_INTERACTIVE].frames, 0);
     assert_int_equal(recent.latency[CLASS_BATCH].frames, 1);
@@ -185,7 +186,7 @@ static void test_sent_bytes(void **test_state)
     stats_init(&stats);
     const uint64_t start = stats.start_us, second = 1000000;
     answered_class(&stats, CLASS_STILL, 8, start);
-    stats.sent_bytes += 1000; /* as a connection counts them */
+    stats.sent_bytes += 1000; /* incremented as a connection does it */
     stats_recent(&stats, start + second, &recent);
     assert_int_equal(recent.sent_bytes, 1000);
     answered_class(&stats, CLASS_STILL, 8, start + 35 * second);
@@ -194,7 +195,7 @@ static void test_sent_bytes(void **test_state)
     stats.sent_bytes += 5;
     stats_recent(&stats, start + 50 * second, &recent);
     assert_int_equal(recent.sent_bytes, 1075);
-    /* What went out before the window is in the sum alone. */
+    /* Bytes sent before the window count in the sum only. */
     stats_recent(&stats, start + 65 * second, &recent);
     assert_int_equal(recent.sent_bytes, 75);
     stats_recent(&stats, start + 99 * second, &recent);

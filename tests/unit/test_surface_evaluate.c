@@ -1,6 +1,6 @@
-/* The CPU's evaluator: closed forms at extraordinary vertices, derivatives against differences of
- * the surface itself on every kind of node, places seen from other corners, holes. How right the
- * tables are is for tests/oracle. */
+/* The evaluator on the CPU: closed forms at extraordinary vertices, derivatives against differences
+ * of the surface on every kind of node, the same place seen from other corners, and holes.
+ * tests/oracle judges whether the tables are right. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,7 +33,7 @@ static void test_extraordinary_vertex(void **state)
     struct limit_point p;
     build(CUBE, strlen(CUBE), &tables);
     double diagonal = -1 / sqrt(3);
-    for (uint32_t face = 0; face < 3; face += 2) { /* both begin at vertex 1 */
+    for (uint32_t face = 0; face < 3; face += 2) { /* each begins at vertex 1 */
         assert_true(limit_evaluate(&tables, face, 0, 0, &p));
         assert_near(p.s, (struct vec){-0.5, -0.5, -0.5}, 1e-12);
         assert_true(p.has_normal);
@@ -45,7 +45,7 @@ static void test_extraordinary_vertex(void **state)
     limit_tables_finish(&tables);
 }
 
-/* The surface runs into the vertex: the last ring before it has its position and normal. */
+/* The surface is continuous at the vertex: the last ring before it has its position and normal. */
 static void test_next_to_the_vertex(void **state)
 {
     (void)state;
@@ -79,7 +79,8 @@ static void test_no_normal_at_a_tip(void **state)
     assert_near(p.n, own, 1e-4);
     assert_true(limit_evaluate(&tables, 2, 0, 0, &p) && !p.has_normal);
     assert_true(vec_length(vec_sub(p.n, own)) > 0.1);
-    /* What the table leaves out is no pixel of 2^-24 of the face, which is two units wide. */
+    /* The part that the table leaves out is smaller than a pixel of 2^-24 of the face, which is two
+     * units wide. */
     const struct limit_node *node = &tables.nodes[tables.nodes[0].first];
     assert_int_equal(node->kind, LIMIT_CORNER);
     double last = ldexp(1, -1 - (node->levels & ~(int)LIMIT_NO_NORMAL));
@@ -95,7 +96,7 @@ static void assert_normal(const struct limit_tables *tables, double u, double v,
     assert_near(p.n, n, 5e-6);
 }
 
-/* Straight up all along the pole, whichever derivative vanishes there. */
+/* The normal is straight up along the whole pole, whichever derivative vanishes there. */
 static void test_pole(void **state)
 {
     (void)state;
@@ -108,8 +109,8 @@ static void test_pole(void **state)
     }
 }
 
-/* At u = v = 0 su and sv are parallel: of S = (u - v, (u^2 + v^2) / 2 + u v / 4, u v + u^3 + v^3)
- * the normal comes to (1, 0, 0) x (0, 5, 4). */
+/* At u = v = 0, su and sv are parallel. The normal of S = (u - v, (u^2 + v^2) / 2 + u v / 4, u v +
+ * u^3 + v^3) is (1, 0, 0) x (0, 5, 4). */
 static void test_parallel_derivatives(void **state)
 {
     (void)state;
@@ -130,8 +131,8 @@ static void test_parallel_derivatives(void **state)
     limit_tables_finish(&tables);
 }
 
-/* At u = v = 0 both derivatives vanish: of S = (u^2 + 2 u v, v^2 + u v, u^2 + v^2 + u^3) the normal
- * towards the middle, along u = v, is (4, 1, 2) x (2, 3, 2). */
+/* At u = v = 0, both derivatives vanish. The normal of S = (u^2 + 2 u v, v^2 + u v, u^2 + v^2 +
+ * u^3) towards the middle, along u = v, is (4, 1, 2) x (2, 3, 2). */
 static void test_both_derivatives_vanish(void **state)
 {
     (void)state;
@@ -151,8 +152,8 @@ static void test_both_derivatives_vanish(void **state)
     limit_tables_finish(&tables);
 }
 
-/* A smooth corner of one quad: the normal turns on towards the corner, as 1/n at 2^-n, and must
- * come to the one that the corner itself has. */
+/* A smooth corner of one quad: towards the corner the normal keeps turning, by 1/n at distance
+ * 2^-n, and its limit must be the corner's own normal. */
 static void test_corner_of_one_quad(void **state)
 {
     (void)state;
@@ -188,7 +189,8 @@ static void test_hole(void **state)
     limit_tables_finish(&tables);
 }
 
-/* A place and those a little way along a and b; false where they are not all on one sub-patch. */
+/* A place and those at small distances along a and b; false unless all of them lie on one
+ * sub-patch. */
 static bool neighbours(const struct limit_tables *tables, const struct limit_place *at, double h,
                        struct limit_point p[5])
 {
@@ -231,7 +233,7 @@ static void check_derivatives(const struct limit_point p[5], double h)
     assert_true(fabs(p->lvv - vec_dot(p->svv, n)) < 1e-6 * bend);
 }
 
-/* All over the faces of a model, from each corner. */
+/* At many places of a model's faces, from each corner. */
 static void check_model(const char *path, unsigned kinds)
 {
     const double h = 1e-5;
@@ -264,7 +266,7 @@ static void test_derivatives(void **state)
     check_model("tests/models/ngons.obj", 1u << LIMIT_CORNER);
 }
 
-/* One place, seen from all four corners of its face. */
+/* The same place, seen from all four corners of its face. */
 static void test_corners_of_a_face(void **state)
 {
     (void)state;
@@ -282,7 +284,7 @@ static void test_corners_of_a_face(void **state)
             assert_near(p.s, first.s, 1e-12);
             assert_near(p.n, first.n, 1e-9);
         }
-        /* From corner 1 on, a runs along v and b against u. */
+        /* From corner 1 on, a runs along v and b runs against u. */
         struct limit_place at = {face, 1, a[1], b[1]};
         assert_true(limit_evaluate_at(&tables, &at, &p));
         assert_near(p.su, first.sv, 1e-9 * vec_length(first.sv));

@@ -1,5 +1,6 @@
-/* Vertices at which several sheets meet: one rule for all of them, by the sharp edges of all. A
- * book of pages on a spine, whose middle vertex ends creases of one page or another. */
+/* Vertices at which several sheets meet. One rule moves all of them, by the sharp edges of all
+ * sheets. The model is a book: pages that meet at a spine, whose middle vertex is the end of
+ * creases of one page or of several. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +18,8 @@
 
 enum { PAGES = 3, SPINE_Z = 3, MAX_CREASES = 4 };
 
-static const double middle_x = 0.4; /* of the spine's middle vertex; its ends are at x = 0 */
+/* x of the spine's middle vertex; the ends of the spine are at x = 0 */
+static const double middle_x = 0.4;
 
 /* The spine runs along z through vertices 0 (its middle), 1 and 2; page k's outer vertices are
  * 3 + 3 k (beside the middle) and the two after it. Its faces 2 k and 2 k + 1 hold the middle. */
@@ -39,7 +41,8 @@ static size_t book(char *text, size_t room, const char *more)
     return (size_t)used;
 }
 
-/* x of the middle's limit when edges of those sharpnesses end there: its own rule step by step. */
+/* x of the middle's limit if edges of these sharpnesses end there: the vertex's own rule, applied
+ * step by step. */
 static double limit_of_middle(const double *sharpness, int n, bool chaikin)
 {
     double x = middle_x, end = 0, sharp[MAX_CREASES] = {0}; /* end: the mean of both neighbours */
@@ -70,7 +73,7 @@ static double limit_of_middle(const double *sharpness, int n, bool chaikin)
     return x;
 }
 
-/* The middle, seen from all six faces, is where its own rule brings it. */
+/* Expects that the middle, evaluated from all six faces, lies at x. */
 static void assert_middle(const char *more, double x)
 {
     char text[4096];
@@ -100,14 +103,15 @@ static void test_crease_of_one_page(void **state)
             assert_middle(tag, limit_of_middle(&sharpness[i], 1, false));
         }
     }
-    /* By hand: 2.5 holds the middle for two steps and half of the third, and 1/16 of the way to
-     * the mean of its neighbours is left. */
+    /* By hand: a sharpness of 2.5 holds the middle for two steps and half of the third, so that the
+     * middle moves 1/16 of the way to the mean of its neighbours. */
     assert_float_equal(limit_of_middle(&sharpness[2], 1, false), middle_x * 15 / 16, 1e-12);
     assert_middle("t crease 2/1/0 3 0 10\n", middle_x);
     assert_middle("t crease 2/1/0 3 0 10\nt crease 2/1/0 6 0 1.5\n", middle_x);
 }
 
-/* Creases of different pages wear off at different times, by their mean. */
+/* Creases of different pages lose their sharpness at different steps; the mean of their sharpnesses
+ * counts. */
 static void test_creases_of_two_pages(void **state)
 {
     (void)state;
@@ -118,7 +122,7 @@ static void test_creases_of_two_pages(void **state)
                   limit_of_middle(together, 2, false));
 }
 
-/* By Chaikin's rule, too, a crease takes its part of those in other pages. */
+/* With Chaikin's rule, too, a crease takes account of those in other pages. */
 static void test_chaikin(void **state)
 {
     (void)state;
@@ -133,7 +137,7 @@ static void test_chaikin(void **state)
     assert_middle(tags, x);
 }
 
-/* The vertex's own sharpness is one among the others'. */
+/* The vertex's own sharpness counts like that of an edge. */
 static void test_sharp_vertex(void **state)
 {
     (void)state;
@@ -143,8 +147,9 @@ static void test_sharp_vertex(void **state)
                   limit_of_middle(both, 2, false));
 }
 
-/* A tent whose tip is the middle is closed by itself: the spine's crease holds its tip, though it
- * does not end there. With a crease on one of the tent's edges, and with one straight across. */
+/* A tent whose tip is the middle vertex is a closed fan. The crease of the spine holds the tip,
+ * though it does not end there. Tested with a crease on one of the tent's edges, and with one
+ * across the tent. */
 static void test_closed_sheet(void **state)
 {
     (void)state;
@@ -164,9 +169,9 @@ static void test_closed_sheet(void **state)
         for (uint32_t face = 2 * PAGES; face < 2 * PAGES + 4; face++) {
             assert_true(limit_evaluate(&tables, face, 0, 0, &p));
             assert_float_equal(p.s.x, x, 1e-6);
-            assert_false(p.has_normal); /* of a tip */
+            assert_false(p.has_normal); /* a tip has no normal */
             assert_true(limit_evaluate(&tables, face, 0x1p-20, 0x1p-21, &p));
-            assert_float_equal(p.s.x, x, 1e-3); /* rings about a tip shrink slowly */
+            assert_float_equal(p.s.x, x, 1e-3); /* rings around a tip shrink slowly */
             assert_true(p.has_normal);
         }
         assert_middle(more, x);
@@ -183,7 +188,7 @@ static const struct vertex_creases *levels_of(const struct topology *t)
     return &t->vertex_creases[sheets->first_step];
 }
 
-/* What the list says, level for level. */
+/* The list of vertex creases against these sharpnesses, level by level. */
 static void test_levels(void **state)
 {
     (void)state;
@@ -195,7 +200,7 @@ static void test_levels(void **state)
                        "t crease 2/1/0 0 3 1.5\nt crease 2/1/0 0 6 10\nt crease 2/1/0 0 9 0.25\n");
     assert_true(cage_read(&cage, text, size, "book.obj", &error));
     assert_true(topology_init(&t, &cage, &error));
-    assert_int_equal(t.n_nonmanifold, 1); /* the spine's ends are sharp anyway */
+    assert_int_equal(t.n_nonmanifold, 1); /* the ends of the spine are sharp anyway */
     const struct vertex_creases *level = levels_of(&t);
     assert_int_equal(level[0].n_sharp, 5);
     assert_float_equal(level[0].semisharp.sum, 1.75, 0);

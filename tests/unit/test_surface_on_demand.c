@@ -1,5 +1,5 @@
-/* Tables on demand against stored ones: the same nodes, and byte for byte the same points and bounds,
- * whatever was asked for before, by any number of threads. */
+/* Tables on demand against stored ones: the same nodes, and the same bytes of points and bounds,
+ * whatever was requested before, by any number of threads. */
 #include <pthread.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ static unsigned parts_of(const struct limit_node *node)
                                        : 1;
 }
 
-/* Where stored tables have a part: its scale and its other texels. */
+/* Where stored tables hold part n of a node: returns its texels and writes its scale. */
 static const float (*stored_part(const struct limit_tables *tables, const struct limit_node *node,
                                  unsigned n, float *scale))[4]
 {
@@ -63,7 +63,7 @@ struct asking {
     uint32_t seed, n_asked, n_different;
 };
 
-/* Parts in random order, those of a node often after each other. */
+/* Reads parts in random order; often several parts of one node in succession. */
 static void *ask(void *argument)
 {
     struct asking *asking = argument;
@@ -130,7 +130,8 @@ static bool is_near(const double world[3], struct vec p, double distance)
            fabs(world[2] - p.z) < distance;
 }
 
-/* The corners that a head names are those of the surface; and the bound of the whole holds it. */
+/* The corners in a node's head are those of the surface, and the bound of the whole node contains
+ * it. */
 static void test_heads(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Planning of a surface's tables ends as soon as what it has measured cannot be kept. */
+/* The plan of a surface's tables is given up as soon as the measured part cannot be kept. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@
 #include "server/surface/subdivision/build.h"
 #include "server/surface/watch.h"
 
-/* Allows so many texels and counts how often it is asked. */
+/* Allows this many texels, and counts how often permission is asked for. */
 struct gauge {
     size_t most_texels;
     size_t asked, last_texels, least_texels;
@@ -58,7 +58,7 @@ static struct limit_plan *plan_within(const struct cage *cage, size_t most_texel
     return limit_plan_create(cage, &watch, error);
 }
 
-/* What is asked first is a bound from below, and what is asked last all that the tables take. */
+/* The first question gives a lower bound, and the last one the size of the whole tables. */
 static void test_the_sum_is_asked_at_every_face(void **state)
 {
     (void)state;
@@ -95,7 +95,7 @@ static void test_it_ends_where_the_sum_passes_the_limit(void **state)
     assert_true(0 < least && least < all);
 
     assert_null(plan_within(&cage, least - 1, &gauge, &error));
-    assert_int_equal(gauge.asked, 1); /* before any face is looked at */
+    assert_int_equal(gauge.asked, 1); /* asked before any face was measured */
     assert_int_equal(error.kind, ERROR_MODEL);
     for (size_t most = least; most < all; most += (all - least) / 7 + 1) {
         assert_null(plan_within(&cage, most, &gauge, &error));
@@ -103,7 +103,7 @@ static void test_it_ends_where_the_sum_passes_the_limit(void **state)
         assert_true(gauge.asked > 1 && gauge.asked <= asked);
     }
     assert_null(plan_within(&cage, all / 2 > least ? all / 2 : least, &gauge, &error));
-    assert_true(gauge.asked < asked); /* what is behind is not measured */
+    assert_true(gauge.asked < asked); /* the faces behind were not measured */
     plan = plan_within(&cage, all, &gauge, &error);
     assert_non_null(plan);
     limit_plan_destroy(plan);

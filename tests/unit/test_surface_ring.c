@@ -1,5 +1,5 @@
-/* Tangents of rings, by the one thing that makes them tangents: a step of subdivision multiplies
- * them by an eigenvalue, whatever the ring. And where the surface has one normal. */
+/* Tangents of rings have one defining property: a step of subdivision multiplies them by an
+ * eigenvalue, whatever the ring's points are. Also tests where the surface has a unique normal. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,7 +41,7 @@ static void assert_scaled(struct vec fine, double factor, struct vec coarse, uin
         fail_msg("%u faces: %g off", n_faces, off);
 }
 
-/* One step on rough rings: by which factors both tangents shrink. */
+/* One step on random rings: the factors by which both tangents shrink. */
 static void check_step(uint32_t n_faces, bool closed, double first, double second)
 {
     struct arena arena;
@@ -70,7 +70,7 @@ static void test_tangents_are_eigenvectors(void **state)
         check_step(n, false, ring_eigenvalue(pi / n), 0.5);
 }
 
-/* On a flat fan the tangents span its plane along the winding. */
+/* On a flat fan the tangents span the fan's plane, oriented by the winding. */
 static void test_winding(void **state)
 {
     (void)state;

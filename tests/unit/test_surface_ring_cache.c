@@ -1,5 +1,5 @@
-/* Rings of large vertices: made once for all the quads around, whatever follows from them too, and
- * of tables' windows onto them the same surface. */
+/* Rings of vertices with many faces. Each ring is made once for all quads around the vertex, and so
+ * is what is computed from it. The tables' windows onto a ring give the same surface. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,7 +21,7 @@
 #include "server/surface/subdivision/dart_mask_list.h"
 #include "server/surface/subdivision/plan.h"
 
-enum { N = 150 }; /* faces: more than a table's window */
+enum { N = 150 }; /* faces: more than a window of a table has */
 
 struct fan {
     struct cage cage;
@@ -42,7 +42,7 @@ static void fan_read(struct fan *fan, const char *text, size_t size)
     assert_true(arena_init(&fan->arena, fan->plan->arena_bytes));
 }
 
-/* Quads about vertex 0, all round or not, rough; tags are lines of OBJ. */
+/* Quads around vertex 0, closed or open, with random heights; tags are lines of an OBJ. */
 static void fan_init_of(struct fan *fan, int n_faces, bool closed, const char *tags)
 {
     static char text[1 << 16];
@@ -73,7 +73,8 @@ static void fan_finish(struct fan *fan)
     cage_finish(&fan->cage);
 }
 
-/* Every quad around, and each of its refinements, holds the same ring and not a copy. */
+/* Expects that all quads around the vertex, and their refinements, hold the same ring and no
+ * copies. */
 static void assert_made_once(bool closed, const char *tags, int n_sectors)
 {
     enum { DEPTH = 3 };
@@ -110,11 +111,12 @@ static void test_made_once(void **state)
     assert_made_once(true, "t corner 1/1/0 0 10\n", 1);
     assert_made_once(true, "t crease 2/1/0 0 1 3.5\n", 1);
     assert_made_once(true, "t crease 2/1/0 0 1 10\nt crease 2/1/0 0 61 10\n", 2);
-    assert_made_once(true, "t crease 2/1/0 0 21 10\nt crease 2/1/0 0 61 10\n", 3); /* one twice */
+    /* three sectors' rings: one sector is refined twice */
+    assert_made_once(true, "t crease 2/1/0 0 21 10\nt crease 2/1/0 0 61 10\n", 3);
     assert_made_once(false, "t crease 2/1/0 0 61 10\n", 2);
 }
 
-/* All quads of a large face, too, whatever corner they are at. */
+/* The quads of a face with many corners share the face's ring, whichever corner they have. */
 static void test_face(void **state)
 {
     (void)state;
@@ -144,7 +146,8 @@ static void test_face(void **state)
     fan_finish(&fan);
 }
 
-/* The quarter at corner 0, again and again: what refining whole rings says of S(2^-k, 2^-k). */
+/* Expects that the table's S(2^-k, 2^-k) equals that of the quarter at corner 0, refined k times
+ * with whole rings. */
 static void assert_table_right(struct fan *fan, const struct limit_tables *tables, uint32_t face)
 {
     fan->arena.used = 0;
@@ -184,8 +187,8 @@ static void test_windows(void **state)
     }
 }
 
-/* Modes of darts depend on the number of faces alone: found once, and turned to where the dart's
- * edge is. */
+/* The modes of a dart depend on the number of faces only. They are computed once and rotated to the
+ * dart's edge. */
 static void test_masks(void **state)
 {
     (void)state;
@@ -212,7 +215,7 @@ static void test_masks(void **state)
     arena_finish(&arena);
 }
 
-/* The plan of a cage knows them; sharp vertices need none. */
+/* The plan of a cage lists the masks of darts; sharp vertices need none. */
 static void test_plan_lists_masks(void **state)
 {
     (void)state;
@@ -227,8 +230,8 @@ static void test_plan_lists_masks(void **state)
     fan_finish(&fan);
 }
 
-/* Chaikin's rule, of which every edge around a vertex takes its part: summed once a vertex, as the
- * ring says. */
+/* With Chaikin's rule every edge depends on all edges around the vertex. Their sum is computed once
+ * for each vertex, and equals the sum over the ring. */
 static void test_chaikin(void **state)
 {
     (void)state;
@@ -244,7 +247,8 @@ static void test_chaikin(void **state)
         assert_true(t->child_sharpness[4 * face] == crease_child(&quad.corner[0], face));
         assert_true(t->child_sharpness[4 * face + 1] >= 0);
     }
-    assert_true(t->child_sharpness[4 * 50 + 1] == CAGE_SHARPNESS_INFINITE); /* the rim */
+    /* the boundary of the fan */
+    assert_true(t->child_sharpness[4 * 50 + 1] == CAGE_SHARPNESS_INFINITE);
     fan_finish(&fan);
 }
 

@@ -1,6 +1,6 @@
-/* Processes for files from strangers: what a taken-over parser can do (nothing), how its end is
- * told, and that nothing of it stays. The programs are tests/worker/bad_worker.c and the real ones.
- */
+/* Worker processes for files from strangers: a parser that was taken over can do nothing, its end
+ * is reported, and nothing of it remains. The programs are tests/worker/bad_worker.c and the real
+ * workers. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +23,7 @@
 #include "tests/unit/build_folder.h"
 
 #ifdef __SANITIZE_ADDRESS__
-enum { SANITIZED = true }; /* takes more memory than any limit */
+enum { SANITIZED = true }; /* a sanitizer takes more memory than any limit allows */
 #else
 enum { SANITIZED = false };
 #endif
@@ -58,7 +58,7 @@ static void nap(void)
     nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
 }
 
-/* The first child of a process, waited for; 0 when there is none for two seconds. */
+/* The first child of a process, for which it waits up to two seconds; 0 if there is none. */
 static pid_t child_of(pid_t parent)
 {
     char path[64];
@@ -80,7 +80,7 @@ static pid_t worker_program(void)
     return child_of(child_of(getpid()));
 }
 
-/* Gone, or a zombie that its next parent has not buried yet. */
+/* Whether the process has ended, or is a zombie that its new parent has not reaped yet. */
 static bool is_dead(pid_t pid)
 {
     char path[64], state = 'Z';
@@ -208,7 +208,7 @@ static void test_broken_answers(void **state)
     assert_string_equal(error.text, "a?b?c");
 }
 
-/* --- with another thread, while a job runs */
+/* --- while another thread runs a job */
 
 struct running {
     const char *name;
@@ -243,7 +243,8 @@ static void test_killed_child(void **state)
     snprintf(path, sizeof path, "/proc/%d/fd", child);
     for (int i = 0; i < 500 && count_entries(path) != 2; i++)
         nap();
-    assert_int_equal(count_entries(path), 2); /* standard error and the answer */
+    /* the child has standard error and the pipe of the answer, no other descriptor */
+    assert_int_equal(count_entries(path), 2);
     kill(child, SIGKILL);
     pthread_join(running.thread, NULL);
     assert_false(running.ok);
@@ -259,7 +260,7 @@ static void test_killed_program(void **state)
     kill(program, SIGKILL);
     assert_works();
     assert_dies(program);
-    /* In the middle of a job, which is run once more. */
+    /* If the program is killed while a job runs, the job is run once more. */
     struct running running;
     start_job(&running, "spin");
     program = worker_program();
@@ -302,15 +303,16 @@ static void test_nothing_stays(void **state)
     pthread_join(running.thread, NULL);
     assert_false(running.ok);
     assert_int_equal(running.error.kind, ERROR_SERVER);
-    assert_true(kill(program, 0) < 0); /* waited for */
+    assert_true(kill(program, 0) < 0); /* the program was reaped */
     assert_dies(child);
     worker_destroy(worker);
     assert_int_equal(count_entries("/proc/self/fd"), before - 2); /* to program and starter */
-    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);             /* no child at all */
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);             /* there is no child left */
     start_worker(NULL);
 }
 
-/* Echoes so many bytes through a file that may be an old one; returns its number on disk. */
+/* Sends this many bytes through a job that returns them; its input is a file that may be reused.
+ * Returns the file's inode number. */
 static ino_t echo_lent(size_t size)
 {
     static uint8_t bytes[WORKER_MAX_SPARE_BYTES + 1];
@@ -336,13 +338,13 @@ static void test_inputs_are_lent(void **state)
     assert_works();
     int before = count_entries("/proc/self/fd");
     ino_t first = echo_lent(100000);
-    assert_int_equal(echo_lent(999), first); /* nothing of the longer one comes along */
+    assert_int_equal(echo_lent(999), first); /* nothing of the longer input is left in the file */
     assert_int_equal(echo_lent(WORKER_MAX_SPARE_BYTES + 1), first);
-    assert_int_equal(count_entries("/proc/self/fd"), before); /* too large to be kept */
+    assert_int_equal(count_entries("/proc/self/fd"), before); /* a file of this size is not kept */
     assert_int_not_equal(echo_lent(5), first);
 }
 
-/* Busy for a while, then waits as the idle threads of libraries do. */
+/* A thread that is busy for a while and then waits, like the idle threads of libraries. */
 struct busy {
     atomic_bool done;
     pthread_mutex_t lock; /* held by the test until the end */
