@@ -94,7 +94,8 @@ endif
 # GCC 12 takes what its own intrinsics leave undefined on purpose for an error, and warns that vectors are passed
 # in other registers than by older compilers: no function here is called from outside of its unit. -g1: lines and
 # functions, since names of what a translator wrote help nobody, and take a quarter of the compiler's time.
-LANES_CXXFLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),-O2) -g1 -Wno-uninitialized -Wno-maybe-uninitialized -Wno-psabi -Wno-unused -Wno-unused-parameter -Wno-shadow
+# ThreadSanitizer ends every function by a handler of exceptions, which would need the runtime of C++ in sheend.
+LANES_CXXFLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),-O2) $(if $(SANITIZE),-fno-exceptions) -g1 -Wno-uninitialized -Wno-maybe-uninitialized -Wno-psabi -Wno-unused -Wno-unused-parameter -Wno-shadow
 # Frames need not be the same bytes from one instruction set to the next.
 LANES_FLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-O3) -ffp-contract=fast -fno-math-errno -fno-trapping-math
 IMAGE_SRC := $(wildcard server/image/*.c)
