@@ -16,7 +16,7 @@
 namespace
 {
 
-/* The figures of an earlier run that are numbers; none when there is no such file. */
+/* The numbers of an earlier run's file; empty if there is no such file. */
 nlohmann::json read_figures(const std::string &path)
 {
     nlohmann::json numbers = nlohmann::json::object();

@@ -1,6 +1,6 @@
-/* bench_closeup: whether a frame gets slower as an extraordinary vertex fills it. The camera comes
- * down on one of a sheet; in turn the same frame of the same sheet all regular, 1280x720. The share
- * is of pixels that show a face with such a vertex. */
+/* bench_closeup: whether a frame takes longer when an extraordinary vertex fills it. The camera
+ * approaches an extraordinary vertex of a sheet; alternately the same frame of a regular sheet is
+ * drawn, at 1280x720. The printed share is that of pixels that show a face with such a vertex. */
 #include "tests/bench/question.h"
 
 #include "tests/oracle/scene.h"

@@ -1,12 +1,12 @@
-/* bench_frame: how long an exact frame takes, beside peers that end in a tessellation for what is
- * seen and in caps of their own for normals: Embree without a GPU, OpenSubdiv's drawing on one.
- *
- * Same cage, camera, size, light and stripes, two threads each; runs in turn, the camera a little
- * on in every round so that no planes are kept. Ours is visibility + evaluate + shade, filtered;
- * "wall" is the same by the clock from the request on, "all" has the picture read back, too. "off" is
- * ours without antialiasing, one sample of the surface a pixel, as theirs are, and filtered still.
- * --device native leaves out OpenSubdiv, which draws in our GL context. The light is a rectangle over
- * the model, with 40 stripes. How alike the pictures are is printed beside the times. */
+/* bench_frame: how long an exact frame takes, compared with peers that tessellate the surface and
+ * approximate normals near extraordinary vertices: Embree without a GPU, OpenSubdiv's drawing on a
+ * GPU. All have the same cage, camera, size, light and stripes, and two threads. They run
+ * alternately, and the camera moves a little in every round, so that no planes are reused. Ours is
+ * visibility + evaluate + shade, filtered; "wall" is the elapsed time of the same from the request
+ * on; "all" includes reading the picture back. "off" is ours without antialiasing, that is, with
+ * one sample of the surface for each pixel like the peers, but with filtered lines. --device native
+ * leaves out OpenSubdiv, which draws in our GL context. The light is a rectangle above the model
+ * with 40 stripes. How similar the pictures are is printed beside the times. */
 #include "tests/bench/peers.h"
 #include "tests/bench/question.h"
 
@@ -26,13 +26,13 @@ struct size {
     uint32_t width, height;
 };
 
-/* What both show of one view. */
+/* How similar two pictures of one view are. */
 struct likeness {
-    size_t ours = 0, theirs = 0, both = 0; /* pixels covered */
-    double mean_deg = 0, median_deg = 0;   /* between the normals of pixels that both cover */
+    size_t ours = 0, theirs = 0, both = 0; /* pixels that each covers */
+    double mean_deg = 0, median_deg = 0;   /* angle between the normals of pixels that both cover */
 };
 
-/* One model with all who draw it. */
+/* One model, and all that draw it. */
 struct contest {
     std::string name;
     std::unique_ptr<scene> its_scene;
@@ -41,8 +41,8 @@ struct contest {
     std::vector<std::unique_ptr<frame_peer>> peers;
 };
 
-/* The view that all draw: the default one, but for OpenSubdiv's car, which is seen from where earlier
- * figures of it were taken: close by the front wheel, through 30 degrees. */
+/* The view that all draw. It is the default view, except for OpenSubdiv's car, which is seen as in
+ * earlier measurements: close by the front wheel, turned through 30 degrees. */
 frame_request request_of(const contest &contest, size size)
 {
     frame_request request = contest.its_scene->request(size.width, size.height);
@@ -83,7 +83,7 @@ likeness compare(const float *ours, const float *theirs, size_t pixels)
         like.both++;
         double deg = angle(a, b) * 180 / M_PI;
         like.mean_deg += deg;
-        if (like.both % 101 == 1) /* a sample does for the median */
+        if (like.both % 101 == 1) /* a sample of the pixels is enough for the median */
             degrees.add(deg);
     }
     if (like.both) {
@@ -93,7 +93,7 @@ likeness compare(const float *ours, const float *theirs, size_t pixels)
     return like;
 }
 
-/* How alike the pictures are. */
+/* Prints how similar the pictures are. */
 void compare_all(report *report, table *alike, const contest &contest, size size)
 {
     frame_request request = request_of(contest, size);
@@ -121,7 +121,7 @@ void compare_all(report *report, table *alike, const contest &contest, size size
     frame_finish(&frame);
 }
 
-/* A peer beside our frames with antialiasing, which its ratio is to, and without. */
+/* A peer beside our frames with antialiasing, to which its ratio is, and without. */
 void add_peer(report *report, std::vector<std::string> *row, const std::string &key,
               const std::string &peer, const turn &theirs, const turn &aliased)
 {
@@ -134,7 +134,7 @@ void add_peer(report *report, std::vector<std::string> *row, const std::string &
     report->figure(key + peer + "/aliased ratio", to_aliased);
 }
 
-/* One size of one model, all warm. */
+/* Measures one model at one size, after a first frame. */
 void measure_size(report *report, tables *tables, const contest &contest, size size)
 {
     frame_request request = request_of(contest, size);
@@ -156,7 +156,8 @@ void measure_size(report *report, tables *tables, const contest &contest, size s
         return cost.stages_ms();
     }};
     calls.push_back([&](int run) {
-        frame_request aliased = view(run + 0.5); /* the planes of its own view serve it */
+        /* another view, since the planes kept of the same view would serve it */
+        frame_request aliased = view(run + 0.5);
         aliased.aliased = true;
         return contest.ours->cost(aliased).stages_ms();
     });
@@ -191,7 +192,7 @@ void measure_size(report *report, tables *tables, const contest &contest, size s
     compare_all(report, &tables->alike, contest, size);
 }
 
-/* Everything from the cage to everybody's first picture. */
+/* Everything from the cage to the first picture of each. */
 void measure_cold(report *report, table *cold, contest *contest, const std::string &path, size size)
 {
     std::shared_ptr<const cage> cage = read_cage_file(path);

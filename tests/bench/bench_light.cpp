@@ -1,5 +1,5 @@
-/* bench_light: what a frame costs whose light alone moved, against a full frame: both by the clock,
- * with the picture read back, in turn, on the same view. */
+/* bench_light: the time of a frame in which only the light changed, against that of a full frame:
+ * both elapsed times, including reading the picture back, measured alternately on the same view. */
 #include "tests/bench/question.h"
 
 #include "tests/bench/timing.h"

@@ -1,9 +1,8 @@
-/* bench_paper: the measurements of Yasui and Kanai (2004): stage one, the tables, for cages of 300,
- * 1,200 and 4,800 faces, and position and colour for 300x300, 500x500 and 700x700 fragments. The
- * paper's own figures are those for 700x700 on its GPU: 0.13 s and 0.52 s.
- *
- * The cage is a rolling sheet with vertices of valence 3 and 5 inside, drawn so large that every
- * pixel is covered. Position is visibility + evaluate, colour is shade. */
+/* bench_paper: the measurements of Yasui and Kanai (2004). Stage one makes the tables of cages of
+ * 300, 1,200 and 4,800 faces; position and colour are measured for 300x300, 500x500 and 700x700
+ * fragments. The paper's own figures are for 700x700 on its GPU: 0.13 s and 0.52 s. The cage is a
+ * wavy sheet with inner vertices of valence 3 and 5, drawn so large that it covers every pixel.
+ * Position is visibility + evaluate, colour is shade. */
 #include "tests/bench/question.h"
 
 #include <array>

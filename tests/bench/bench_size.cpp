@@ -1,7 +1,8 @@
-/* bench_size: what a cage of N x N regular quads costs, from 1,000 to 1,000,000 faces: to read, to
- * build its tables in two threads, bytes a face, and a frame of 1280x720 that shows all of it, by a
- * view that stays. Cost of reading and building must grow with the number of faces and no faster,
- * that of a frame much slower: the last columns are against the first row's. */
+/* bench_size: the costs of a cage of N x N regular quads, from 1,000 to 1,000,000 faces: the time
+ * to read it and to build its tables with two threads, the bytes for each face, and the time of a
+ * frame of 1280x720 that shows all of it from a fixed view. Reading and building must grow with the
+ * number of faces and no faster, a frame much more slowly. The last columns are relative to the
+ * first row. */
 #include "tests/bench/question.h"
 
 #include <cmath>

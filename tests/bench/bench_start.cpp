@@ -1,7 +1,7 @@
-/* bench_start [--sheend PROGRAM] [MODEL]: from nothing to the first pixel, as a command sees it
- * that starts a daemon of its own: connect, upload, a frame of 640x480. Planes, which sheend packs
- * itself, and a PNG file, for which sheend-image loads its libraries first, in turn. The caches of
- * the system and of the driver are warm: an unmeasured pair goes first. */
+/* bench_start [--sheend PROGRAM] [MODEL]: the time from the start of a private daemon to the first
+ * picture, as a command without --server has it: connect, upload, a frame of 640x480. Alternately
+ * planes, which sheend packs itself, and a PNG file. An unmeasured pair goes first, so that the
+ * system's and the driver's caches are warm. */
 #include "tests/bench/question.h"
 
 #include <cstdlib>
@@ -21,7 +21,7 @@ void check(sheen_status status, const sheen_error &error)
         throw std::runtime_error(error.text);
 }
 
-/* Milliseconds to the first frame; the daemon's end is not counted. */
+/* Milliseconds to the first frame, without the time in which the daemon ends. */
 double first_frame(const std::string &path, const std::string &file, sheen_format format,
                    const char *device)
 {

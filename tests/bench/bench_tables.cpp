@@ -1,8 +1,8 @@
-/* bench_tables: how long our tables take against OpenSubdiv's refiner, adaptive refinement and
- * patch table of the same cage, at isolation levels 6 and 10. OpenSubdiv builds on one core; ours
- * stand beside it on one and on two. Ours are exact to level 32 and more, and hold points;
- * OpenSubdiv's table holds indices and the stencils of its end caps, so that its points, refined
- * level by level, are part of its time. */
+/* bench_tables: the time of our tables against OpenSubdiv's refiner, adaptive refinement and patch
+ * table of the same cage, at isolation levels 6 and 10. OpenSubdiv builds on one core; ours are
+ * measured on one and on two. Our tables are exact to level 32 and more and hold points.
+ * OpenSubdiv's table holds indices and the stencils of its end caps, so the time to refine its
+ * points level by level is included. */
 #include "tests/bench/peers.h"
 #include "tests/bench/question.h"
 #include "tests/oracle/cage_file.h"

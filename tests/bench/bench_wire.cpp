@@ -1,9 +1,9 @@
-/* bench_wire [--sheend PROGRAM] [--frames N] [MODEL]: frames of 1920x1080 through a real daemon, by
- * a Unix socket and TCP on loopback, each encoding; the camera goes round.
- *
- * Latency is from request to decoded frame, one in flight. "daemon's" is what the daemon took from
- * request to answer beyond the render (visibility, evaluate, shade, readback), encoding included.
- * Then two in flight: frames a second, and how much of the render's own rate in that time it is. */
+/* bench_wire [--sheend PROGRAM] [--frames N] [MODEL]: frames of 1920x1080 from a real daemon, over
+ * a Unix socket and over TCP on loopback, in each encoding; the camera moves around the model.
+ * Latency is the time from the request to the decoded frame, with one request in flight. "daemon's"
+ * is the time from request to answer that the daemon took beyond rendering (visibility, evaluate,
+ * shade, readback), including encoding. Then two requests are in flight: the frames for each
+ * second, and their ratio to the renderer's own rate in that time. */
 #include "tests/bench/question.h"
 
 #include <cstring>
@@ -88,7 +88,8 @@ class client
 
 struct costs {
     samples latency, daemon, render, bytes;
-    /* Two in flight: share of the time that the renderer works, the daemon's processor time. */
+    /* Two requests in flight: the share of the time in which the renderer works, and the daemon's
+     * processor time. */
     double per_s = 0, busy = 0, cpu_ms = 0;
 };
 

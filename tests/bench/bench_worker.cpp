@@ -1,6 +1,6 @@
-/* bench_worker [--workers FOLDER]: what a process of its own costs a job: pictures of
- * 1920x1080 written in this process and by sheend-image, in turn; and the least job of each worker,
- * a cage of one face and an image of one pixel. */
+/* bench_worker [--workers FOLDER]: the cost of a separate process for a job. Pictures of 1920x1080
+ * are written alternately in this process and by sheend-image. Then the smallest job of each
+ * worker: a cage of one face, and an image of one pixel. */
 #include "tests/bench/question.h"
 
 #include <cstdlib>
@@ -22,7 +22,7 @@ void check(bool ok, const error &error)
         throw std::runtime_error(error.text);
 }
 
-/* Stripes of a pixel's width and more, as a frame's colour plane has them. */
+/* Stripes one pixel wide and wider, as in a frame's colour plane. */
 std::vector<uint8_t> stripes()
 {
     std::vector<uint8_t> rgba(size_t{4} * WIDTH * HEIGHT, 255);

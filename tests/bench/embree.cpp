@@ -14,7 +14,7 @@ namespace
 {
 
 const int packet_width = 4, packet_height = 2, packet = packet_width * packet_height;
-const uint32_t tile_rows = 8; /* of the picture: what a thread takes at a time */
+const uint32_t tile_rows = 8; /* of the picture, which a thread takes at a time */
 
 struct float3 {
     float x, y, z;
@@ -48,7 +48,7 @@ float3 from(const double a[3])
     return {(float)a[0], (float)a[1], (float)a[2]};
 }
 
-/* The camera as directions: `corner` to the picture's top left, `across` and `down` a pixel. */
+/* The camera as vectors: `corner` to the picture's top left, `across` and `down` for one pixel. */
 struct pinhole {
     float3 eye, corner, across, down;
 
@@ -73,9 +73,9 @@ struct pinhole {
     }
 };
 
-/* The stripes on the rectangle, and what else a pixel may show. */
+/* The rectangle's stripes, and the colours of pixels that show none. */
 struct striped_light {
-    float3 centre, normal, u, v; /* u and v over their squared lengths */
+    float3 centre, normal, u, v; /* u and v divided by their squared lengths */
     float count, duty;
     uint32_t foreground, background, miss, empty;
 
@@ -104,7 +104,7 @@ struct striped_light {
             packed |= (uint32_t)std::lround(255 * colour[i]) << 8 * i;
         return packed;
     }
-    /* Of the point x with unit normal n, seen along `view`. */
+    /* The colour of the point x with unit normal n, seen along `view`. */
     uint32_t colour(float3 x, float3 n, float3 view) const
     {
         float3 r = view - (2 * dot(view, n)) * n;
@@ -133,7 +133,7 @@ float sharpness_of(float sharpness)
 
 void set_topology(RTCGeometry geometry, const cage &cage)
 {
-    /* Embree reads vertices four floats at a time, the last one, too. */
+    /* Embree reads vertices as four floats, so the last one needs a float behind it. */
     typedef float padded[4];
     padded *vertex =
         new_buffer<padded>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, cage.n_vertices);
@@ -191,7 +191,7 @@ struct embree_scene::implementation {
     RTCGeometry geometry = nullptr;
     int n_threads;
 
-    /* One frame's work, shared by its threads. */
+    /* The work on one frame, which its threads share. */
     struct picture_job {
         const pinhole camera;
         const striped_light light;
@@ -205,7 +205,7 @@ struct embree_scene::implementation {
     void work(picture_job *job) const;
 };
 
-/* Of one pixel that a ray has been traced through. */
+/* The results for one pixel whose ray was traced. */
 void embree_scene::implementation::show(picture_job *job, const RTCRayHit8 &hit, int lane,
                                         size_t pixel) const
 {
@@ -258,7 +258,7 @@ void embree_scene::implementation::trace(picture_job *job, uint32_t x, uint32_t 
 
 void embree_scene::implementation::work(picture_job *job) const
 {
-    /* As Embree's manual asks for. */
+    /* As Embree's manual demands. */
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
     _mm_setcsr(_mm_getcsr() | 0x40); /* denormals are zero */
     for (uint32_t row; (row = job->next_row.fetch_add(tile_rows)) < job->height;)
@@ -305,7 +305,7 @@ void embree_scene::render(const frame_request &request, bool want_normals,
     std::vector<std::thread> others;
     for (int k = 1; k < m->n_threads; k++)
         others.emplace_back([&] { m->work(&job); });
-    std::thread([&] { m->work(&job); }).join(); /* its rounding modes end with it */
+    std::thread([&] { m->work(&job); }).join(); /* the rounding modes that it set end with it */
     for (std::thread &thread : others)
         thread.join();
 }

@@ -1,4 +1,4 @@
-/* main() of every benchmark: the questions that are linked in, asked one after the other. */
+/* main() of every benchmark: runs the questions that are linked in, one after the other. */
 #include "tests/bench/question.h"
 
 #include <algorithm>
@@ -12,7 +12,8 @@ namespace
 
 using questions = std::vector<const question *>;
 
-/* Made when the first question comes: their order of construction is nobody's. */
+/* Made when the first question registers, because objects at namespace scope are constructed in no
+ * defined order. */
 questions &linked()
 {
     static questions all;
@@ -24,7 +25,8 @@ bool alone()
     return linked().size() == 1;
 }
 
-/* Those that the first word names, which is taken away; a program with one question asks that. */
+/* The questions that the first word names, and removes that word; a program with one question runs
+ * it. */
 questions choose(std::vector<std::string> *arguments)
 {
     if (alone())

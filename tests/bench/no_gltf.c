@@ -1,4 +1,4 @@
-/* Stands in for the reader of glTF in a program that shall need nothing of tinygltf. */
+/* Replaces the glTF reader in a program that must not need tinygltf. */
 #include "server/cage/read/gltf/gltf.h"
 
 bool gltf_read(struct cage_builder *builder, const void *bytes, size_t size, const char *name,

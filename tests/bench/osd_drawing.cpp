@@ -20,11 +20,12 @@ namespace Osd = OpenSubdiv::Osd;
 namespace
 {
 
-/* llvmpipe (Mesa 22.3) numbers a draw call's patches anew after so many indices, and libosd's
- * shaders look their patch up by that number. */
+/* llvmpipe (Mesa 22.3) restarts the numbering of a draw call's patches after this many indices, but
+ * libosd's shaders use the number to find their patch. */
 const int llvmpipe_indices = 1024;
 
-/* What libosd's shaders ask their user for. Eye space: the camera looks along -z. */
+/* The functions that libosd's shaders expect from their user. In eye space the camera looks along
+ * -z. */
 const char *const user_source = R"(
 layout(std140, binding = 0) uniform View {
     mat4 model_view, projection;
@@ -58,7 +59,7 @@ void main()
 }
 )";
 
-/* As user_source has it. */
+/* In the layout of user_source. */
 struct view_block {
     float model_view[16], projection[16];
     float light_centre[4], light_u[4], light_v[4], light_normal[4];
@@ -115,7 +116,7 @@ view_block fill(const frame_request &request, double edge_px)
             block.model_view[4 * j + i] = (float)row[j];
     }
     block.model_view[15] = 1;
-    /* Depth from 1 at `near` to 0 at infinity. */
+    /* Depth is 1 at `near` and 0 at infinity. */
     double focal = 1 / std::tan(request.camera.fov_deg * M_PI / 360);
     double near = 1e-3 * length(axes.eye - from(request.camera.target));
     block.projection[0] = (float)(focal * request.height_px / request.width_px);
@@ -134,7 +135,8 @@ view_block fill(const frame_request &request, double edge_px)
     }
     block.count = (float)light.pattern.count;
     block.duty = (float)light.pattern.duty;
-    block.tess_level = (float)(request.height_px / (2 * edge_px)); /* libosd's unit: half of it */
+    block.tess_level =
+        (float)(request.height_px / (2 * edge_px)); /* libosd counts in half pictures */
     return block;
 }
 

@@ -13,15 +13,16 @@ sheet::sheet(int n_columns, int n_rows, int every) : columns(n_columns), rows(n_
         for (int i = 0; i < columns; i++)
             loose.faces.push_back(
                 {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
-    /* Patches of 4 x 3 faces have room for one turned edge each, its vertices to themselves. */
+    /* Each block of 4 x 3 faces has room for one turned edge, whose vertices belong to no other
+     * block's. */
     for (int j = 1; every && j + 3 <= rows; j += 3)
         for (int i = 1; i + 4 <= columns; i += 4)
             if (loose.faces.size() >= (turned + 1) * (size_t)every)
                 turn(i, j);
 }
 
-/* The edge between face (i, j) and the next one goes one corner on: its ends lose a face each, and
- * the two that it comes to gain one. */
+/* The edge between face (i, j) and the next one is turned by one corner: its old ends lose a face
+ * each, and its new ends gain one. */
 void sheet::turn(int i, int j)
 {
     size_t face = (size_t)(j * columns + i);

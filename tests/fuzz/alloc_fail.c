@@ -1,4 +1,5 @@
-/* Allocations that fail where the input says: linked with --wrap for each function below. */
+/* Allocations that fail where the input says. The linker's --wrap redirects each function below to
+ * its wrapper here. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 #define ALL_FROM_THERE 0x8000u
 
 static bool active, spared, failed, all_from_there;
-static unsigned n_until_failure; /* 0: none will fail */
+static unsigned n_until_failure; /* allocations up to the one that fails; 0: none fails */
 
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t n, size_t size);
@@ -89,7 +90,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     unsigned chosen = bytes[0] | (unsigned)bytes[1] << 8;
     all_from_there = (chosen & ALL_FROM_THERE) != 0;
     n_until_failure = chosen & ~ALL_FROM_THERE;
-    /* A copy of its own size: what reads behind its end is seen. */
+    /* A copy of exactly this size, so that a sanitizer finds reads beyond its end. */
     uint8_t *copy = __real_malloc(size - 2 ? size - 2 : 1);
     memcpy(copy, bytes + 2, size - 2);
     failed = false;

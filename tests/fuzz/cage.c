@@ -12,7 +12,7 @@
 #include "server/sandbox/cage_code.h"
 #include "tests/fuzz/fuzz.h"
 
-#define MOST_FACES 40 /* more costs time and finds nothing more */
+#define MOST_FACES 40 /* a larger cage takes time and reaches no other code */
 
 static void build_tables(const struct cage *cage)
 {
@@ -40,7 +40,7 @@ static void check_same(const struct cage *a, const struct cage *b)
                 a->face_start[a->n_faces] * sizeof *a->face_vertex) == 0);
 }
 
-/* Through a file, as from a worker. */
+/* Writes the cage to a file and reads it again, as it comes from a worker. */
 static void hand_over(const struct cage *cage)
 {
     struct error error = {0};

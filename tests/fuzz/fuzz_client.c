@@ -1,6 +1,7 @@
-/* A server that lies to libsheen. The first byte chooses what the client waits for, the second the
- * planes and encoding of the frame; the rest is what the server says before it hangs up. For frames
- * the first byte also says after which share of it the client asks without waiting. */
+/* A server that sends wrong data to libsheen. The first byte chooses what the client requests, the
+ * second the planes and the encoding of the frame; the rest is what the server sends before it
+ * closes. For frames, the first byte also gives the share of that data after which the client
+ * receives without waiting. */
 #include <fcntl.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -12,9 +13,9 @@
 #define WIDTH_PX 8
 #define HEIGHT_PX 4
 #define SEQ 1
-#define MAX_BYTES 65536 /* a socket takes so many without a reader */
+#define MAX_BYTES 65536 /* a socket accepts this many bytes without a reader */
 
-/* `late` is what the server says after the client has asked once. */
+/* `late`: the data that the server sends after the client's first call */
 static void receive_frames(struct sheen_session *session, uint8_t choice, int server,
                            const uint8_t *late, size_t n_late)
 {

@@ -1,12 +1,13 @@
-/* Frames of a few planes: width, height and planes in three bytes, then ZSTD data of a server that
- * lies, or pixels that must come back as they were. */
+/* Frames of a few planes. Three bytes give width, height and planes. Then follow either packed data
+ * of a server that sends wrong data, or pixels that must be the same after packing and
+ * unpacking. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "protocol/codec.h"
 #include "tests/fuzz/fuzz.h"
 
-#define MAX_SIDE_PX 48 /* more costs time and finds nothing more */
+#define MAX_SIDE_PX 48 /* more takes time and reaches no other code */
 
 static bool allocate(const struct codec_layout *layout, void *planes[CODEC_PLANES])
 {
@@ -37,7 +38,8 @@ static void decode(const struct codec_layout *layout, const uint8_t *bytes, size
     codec_decoder_destroy(decoder);
 }
 
-/* The strips of planes, back to back behind their table; NULL without memory. */
+/* The compressed strips of planes, one after the other behind their table; NULL if memory runs
+ * out. */
 static uint8_t *encode(const struct codec_layout *layout, void *const planes[CODEC_PLANES],
                        size_t *size)
 {

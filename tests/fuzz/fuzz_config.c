@@ -1,4 +1,4 @@
-/* A configuration file of sheend, behind the command line that names it. */
+/* A configuration file of sheend, and the command line that names it. */
 #include <netdb.h>
 #include <stdio.h>
 #include <sys/mman.h>
@@ -7,7 +7,8 @@
 #include "server/ops/options.h"
 #include "tests/fuzz/fuzz.h"
 
-/* Names of hosts are resolved while options are checked: no input may ask the network. */
+/* Host names are resolved while options are checked. A wrapper answers, so that no input reaches
+ * the network. */
 int __wrap_getaddrinfo(const char *node, const char *service, const struct addrinfo *hints,
                        struct addrinfo **found);
 int __wrap_getaddrinfo(const char *node, const char *service, const struct addrinfo *hints,

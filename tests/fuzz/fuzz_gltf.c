@@ -1,4 +1,4 @@
-/* glTF and GLB files; the content says which. */
+/* glTF and GLB files. The content determines which of both a file is. */
 #include "tests/fuzz/cage.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,4 +1,4 @@
-/* A .gltf that names files beside it, at the client. Those are the files of tests/fuzz. */
+/* A .gltf on the client's side that names files beside it, which are those of tests/fuzz. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* The 16 bytes before every message: one after the other, as a stream has them. */
+/* The 16-byte headers of messages, one after the other, as in a stream. */
 #include <string.h>
 
 #include "protocol/frame.h"

@@ -1,4 +1,4 @@
-/* A request to the port of metrics and health. */
+/* A request to the HTTP port of metrics and health. */
 #include <string.h>
 
 #include "server/net/http.h"

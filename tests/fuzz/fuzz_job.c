@@ -1,5 +1,5 @@
-/* What the daemon and its workers say to each other. The first byte chooses: a job, its end, or an
- * answer of each kind, which a worker that was taken over has written. */
+/* Messages between the daemon and its workers. The first byte chooses: a job, the end of a job, or
+ * an answer of one kind, as a worker could write it after an attacker took it over. */
 #include <stdlib.h>
 
 #include "server/sandbox/cage_code.h"
@@ -8,7 +8,7 @@
 #include "tests/fuzz/fuzz.h"
 
 #define MAX_PX 4096
-#define FOUR_NUMBERS (4 * sizeof(uint32_t)) /* before pixels */
+#define FOUR_NUMBERS (4 * sizeof(uint32_t)) /* bytes before the pixels */
 
 static void try_job(const uint8_t *bytes, size_t size)
 {
@@ -46,9 +46,9 @@ static void try_image(struct source *source)
     }
 }
 
-static volatile unsigned sum; /* so that reading is not left out */
+static volatile unsigned sum; /* the result is used, so that the compiler keeps the reads */
 
-/* Reads every sample of every channel: all must lie in the input. */
+/* Reads every sample of every channel, which must all lie within the input. */
 static void try_picture(struct source *source)
 {
     struct picture picture;

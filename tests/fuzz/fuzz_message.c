@@ -1,5 +1,6 @@
-/* The body of any message, in either direction: the first byte is its type. What is read well is
- * written, and read the same again; what passes its check keeps what the check promises. */
+/* The body of any message in either direction; the first byte is its type. A body that can be read
+ * is written and read again, and must be the same. A body that passes its check must have the
+ * properties that the check promises. */
 #include <math.h>
 #include <string.h>
 
@@ -51,7 +52,7 @@ static void check(uint8_t type, const union body *body)
         MUST(message_check_answer(type, body, text) || text[0]);
 }
 
-/* What is said of a body that breaks the schema is fit for an answer. */
+/* The text about a body that breaks the schema must itself fit in an ERROR. */
 static void check_fault(uint8_t type, const uint8_t *bytes, size_t size)
 {
     char text[MESSAGE_TEXT_BYTES] = "";

@@ -1,4 +1,5 @@
-/* OpenSubdiv's tags behind a good cage of 3 x 3 faces, and behind the surface that they shape. */
+/* OpenSubdiv's tags after a good cage of 3 x 3 faces, and the tables of the surface that they
+ * shape. */
 #include <stdlib.h>
 #include <string.h>
 

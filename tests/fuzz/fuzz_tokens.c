@@ -1,4 +1,4 @@
-/* A file of tokens, and what it says of one that it does not hold. */
+/* A file of tokens, and the look-up of a token that it does not have. */
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>

@@ -1,4 +1,4 @@
-/* Runs a target over the files of folders, without libFuzzer: replay FOLDER... */
+/* Runs a fuzz target over the files of folders, without libFuzzer: replay FOLDER... */
 #include <dirent.h>
 #include <limits.h>
 #include <stdio.h>
@@ -22,7 +22,7 @@ static bool replay_file(const char *path)
     return true;
 }
 
-/* How many files there were; -1 on failure. */
+/* Returns the number of files, or -1 on failure. */
 static int replay_folder(const char *folder)
 {
     int n = 0;

@@ -7,9 +7,9 @@ namespace
 
 const size_t side = area_samples_side;
 
-/* Neighbouring samples are of one sheet when neither lies off the other's tangent plane by more
- * than this, px (a smooth surface does so by the third order alone), nor do their normals differ
- * by a larger angle, rad. */
+/* Neighbouring samples belong to one sheet if neither lies further off the other's tangent plane
+ * than this, in px (on a smooth surface only third derivatives contribute to that distance), and if
+ * their normals differ by no larger angle, in rad. */
 const double most_off_px = 0.05, most_turn = 0.3;
 
 void add(const rgba &light, double share, rgba *sum)
@@ -93,7 +93,8 @@ class sampler
     line_tracer tracer;
     rgba empty;
     vec3 forward;
-    double height_per_depth, height; /* of a pixel: both, times its depth, in units */
+    /* a pixel's height: height_per_depth times its depth, plus height; in units */
+    double height_per_depth, height;
 };
 
 } // namespace

@@ -15,7 +15,7 @@ struct box {
     double radius;
 };
 
-/* As bytes say it. */
+/* A colour whose components are bytes. */
 rgba any_colour(chance *chance)
 {
     auto byte = [&] { return chance->below(256) / 255.0; };
@@ -24,7 +24,8 @@ rgba any_colour(chance *chance)
     return chance->with(0.1) ? rgba{colour.r, colour.g, colour.b, 0} : colour;
 }
 
-/* From above, so that lights there are seen; near enough that the surface fills most of it. */
+/* From above, so that lights above are visible, and so near that the surface fills most of the
+ * picture. */
 view any_view(chance *chance, const box &box, int width_px, int height_px)
 {
     view view;
@@ -164,7 +165,8 @@ area_setup make_area_setup(chance *chance, int number, vec3 box_min, vec3 box_ma
         auto pattern =
             (line_pattern_kind)(i == 0 ? number % n_patterns : chance->below(n_patterns));
         bool far = kind == line_light_kind::sphere || !setup.lines.meets_lights();
-        if (far && pattern == line_pattern_kind::distance) { /* nothing there has a distance */
+        /* a light at infinity has no distance */
+        if (far && pattern == line_pattern_kind::distance) {
             kind = line_light_kind::plane;
             setup.lines.family = line_family::reflection;
             setup.lines.has_axis = false;

@@ -51,7 +51,7 @@ void loose_cage::write_obj(const std::string &path) const
             std::fprintf(file, " %u", v + 1);
         std::fputc('\n', file);
     }
-    static const int mode[] = {2, 1, 0}; /* by cage_boundary */
+    static const int mode[] = {2, 1, 0}; /* indexed by cage_boundary */
     std::fprintf(file, "t interpolateboundary 1/0/0 %d\n", mode[boundary]);
     if (chaikin)
         std::fprintf(file, "t creasemethod 0/0/1 chaikin\n");

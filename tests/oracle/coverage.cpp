@@ -11,12 +11,12 @@
 namespace
 {
 
-const double depth_slack = 1e-4; /* of the diagonal: the reference is made of flat cells */
+const double depth_slack = 1e-4; /* of the diagonal; the reference consists of flat cells */
 
-/* What the reference shows within one pixel of a pixel's centre. */
+/* What the reference shows within one pixel's distance of a pixel's centre. */
 struct neighbourhood {
     int hits = 0, misses = 0;
-    bool one_face = true, has_face = false; /* has_face: the face asked for is among them */
+    bool one_face = true, has_face = false; /* has_face: the requested face is among the faces */
     double nearest = INFINITY, farthest = -INFINITY;
 };
 
@@ -46,12 +46,13 @@ neighbourhood look_around(const raster &reference, int x_px, int y_px, uint32_t 
 
 struct counts {
     size_t reference_hit = 0, hit = 0;
-    size_t differ = 0;              /* pixels whose masks differ, all of them */
-    size_t holes = 0;               /* not hit, though the reference is hit all around */
-    size_t strays = 0;              /* hit, though the reference is hit nowhere around */
-    size_t wrong_face = 0;          /* another face than the only one around */
-    size_t wrong_layer = 0;         /* before or behind everything around */
-    size_t face_differs = 0;        /* as wrong_face, but near a border: for the table */
+    size_t differ = 0;      /* pixels whose masks differ */
+    size_t holes = 0;       /* not hit, though all of the reference around is hit */
+    size_t strays = 0;      /* hit, though none of the reference around is hit */
+    size_t wrong_face = 0;  /* shows another face than the only one around */
+    size_t wrong_layer = 0; /* lies in front of or behind everything around */
+    /* shows another face near a border; counted for the table only */
+    size_t face_differs = 0;
     int first_x = -1, first_y = -1; /* the first pixel that is wrong */
 
     void blame(size_t *count, int x, int y)
@@ -62,7 +63,7 @@ struct counts {
     }
 };
 
-/* Whether a pixel's face does pass through its point: sheets may coincide. */
+/* Whether a pixel's face passes through the pixel's point, since sheets may coincide. */
 bool lies_on_its_face(const model &model, const planes &planes, size_t i)
 {
     vec3 p;
@@ -94,7 +95,8 @@ void compare_pixel(const model &model, const raster &reference, const planes &pl
     counts->face_differs += theirs && planes.face[i] != centre.face;
     if (!n.has_face && n.one_face && n.misses == 0 && !lies_on_its_face(model, planes, i))
         counts->blame(&counts->wrong_face, x, y);
-    /* By a silhouette depth changes without bound between samples; elsewhere it hardly does. */
+    /* At a silhouette, depth may change by any amount between samples; elsewhere it changes
+     * little. */
     double slack = depth_slack * model.diagonal() + n.farthest - n.nearest;
     double depth = camera.project(planes.position(i)).depth;
     if (!(depth >= n.nearest - slack) || (n.misses == 0 && !(depth <= n.farthest + slack)))

@@ -8,7 +8,7 @@
 namespace
 {
 
-/* The bounds of the project's definition of exact. */
+/* The bounds by which the project defines "exact". */
 const double max_normal_p999_rad = 2e-6;
 const double max_position_p999 = 1e-6; /* of the bounding diagonal */
 const double max_residual_p999_px = 0.01;
@@ -18,14 +18,16 @@ const size_t min_hit_px = 1000;
 
 struct figures {
     size_t hit = 0, near_corner = 0;
-    size_t bad_ptex = 0;  /* no such face, (u,v) outside it, or a hole there */
-    size_t bad_value = 0; /* P or N not finite where something is hit, or finite where not */
-    size_t backwards = 0; /* N against the face winding */
+    size_t bad_ptex = 0; /* the face does not exist, (u,v) lies outside of it, or it is a hole */
+    /* P or N is not finite where the pixel hits, or finite where it does not */
+    size_t bad_value = 0;
+    size_t backwards = 0; /* angle of N to the face's winding */
     std::vector<double> normal_rad, position, residual_px, length_error;
-    std::vector<double> tables_rad; /* N to that of the tables' own CPU evaluator at (face,u,v) */
+    /* angle of N to the normal by the CPU's evaluator of the same tables at (face,u,v) */
+    std::vector<double> tables_rad;
 };
 
-/* The shaders' descent and evaluation against the same in double on the CPU. */
+/* The shaders' descent and evaluation, against the same in double precision on the CPU. */
 void measure_against_tables(const table_evaluator &tables, const planes &planes, size_t i,
                             figures *figures)
 {
@@ -54,8 +56,8 @@ void measure_against_oracle(const model &model, const planes &planes, size_t i, 
     figures->backwards += dot(planes.normal(i), normal) <= 0;
 }
 
-/* How far off its pixel single precision alone may put P, px: half a unit in the last place of each
- * world coordinate. It shows in close-ups of models that stand away from the origin. */
+/* How far single precision alone may move P away from its pixel, in px: half a unit in the last
+ * place of each world coordinate. It matters in close views of models far from the origin. */
 double rounding_px(const projector &camera, vec3 p, projected q)
 {
     const vec3 half_ulp[3] = {

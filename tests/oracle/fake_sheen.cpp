@@ -1,6 +1,7 @@
-/* fake_sheen render MODEL -o FILE.exr [options of `sheen render`]: a frame made of libosd's surface
- * on the CPU, right but for the faults that FAKE_FAULTS names (comma-separated). It stands in for
- * `sheen` where self_test.sh shows that the oracles pass what is right and catch what is wrong. */
+/* fake_sheen render MODEL -o FILE.exr [options of `sheen render`]: a frame of libosd's surface,
+ * made on the CPU. It is right except for the faults that FAKE_FAULTS names (comma-separated).
+ * self_test.sh uses it in the place of `sheen`, to show that the oracles accept right frames and
+ * find faults. */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -42,7 +43,7 @@ job parse_job(int argc, char **argv)
     job.model = argv[2];
     std::map<std::string, std::string> options;
     for (int i = 3; i + 1 < argc; i++)
-        options[argv[i]] = argv[i + 1]; /* values land among the names too, and do no harm */
+        options[argv[i]] = argv[i + 1]; /* values become keys as well, which has no effect */
     job.output = options["-o"];
     view &view = job.camera;
     if (std::sscanf(options["--size"].c_str(), "%dx%d", &view.width_px, &view.height_px) != 2)
@@ -81,7 +82,7 @@ struct pixel {
     uint32_t face;
 };
 
-/* Newton on the pixel's ray from the rasterised (u,v); stays in the face. */
+/* Newton's method on the pixel's ray, from the rasterised (u,v); stays within the face. */
 osd_sample solve_pixel(const osd_oracle &oracle, const projector &camera, double x, double y,
                        uint32_t face, double *u, double *v)
 {
@@ -111,7 +112,7 @@ void store(float out[3], vec3 v)
     out[2] = (float)v.z;
 }
 
-/* Where the eye's ray, reflected, meets the light; its colour, point-sampled. */
+/* Where the reflected ray meets the light, and the colour there, as one sample. */
 void shade(const job &job, vec3 direction, vec3 p, vec3 n, pixel *pixel)
 {
     vec3 r = direction - (2 * dot(direction, n)) * n;
@@ -124,7 +125,8 @@ void shade(const job &job, vec3 direction, vec3 p, vec3 n, pixel *pixel)
     if (!(distance > 0 && s >= 0 && s <= 1 && t >= 0 && t <= 1))
         return;
     double phase = s * job.stripe_count;
-    pixel->colour = phase - std::floor(phase) < job.stripe_duty ? 1.0f : 0.1f; /* light, in EXR */
+    /* EXR holds linear light */
+    pixel->colour = phase - std::floor(phase) < job.stripe_duty ? 1.0f : 0.1f;
     pixel->s = (float)s;
     pixel->t = (float)t;
 }
@@ -157,7 +159,8 @@ std::vector<pixel> draw(const job &job, const osd_oracle &oracle)
     return pixels;
 }
 
-/* The first pixel with `wanted` hits in its 11 x 11 surroundings, or the number of pixels. */
+/* The first pixel with `wanted` hits among the 11 x 11 pixels around it, or the number of pixels if
+ * there is none. */
 size_t find_pixel(const std::vector<pixel> &pixels, const view &view, int wanted)
 {
     for (int y = 5; y < view.height_px - 5; y++)
@@ -172,7 +175,7 @@ size_t find_pixel(const std::vector<pixel> &pixels, const view &view, int wanted
     return pixels.size();
 }
 
-/* Moves the point sideways by 0.3 px or so, away from its pixel's ray. */
+/* Moves the point by about 0.3 px perpendicular to its pixel's ray. */
 vec3 moved_aside(const projector &camera, vec3 p, double x, double y)
 {
     vec3 origin, ray, aside_origin, aside_ray;
@@ -181,7 +184,7 @@ vec3 moved_aside(const projector &camera, vec3 p, double x, double y)
     return p + (aside_origin - origin) + length(p - origin) * (aside_ray - ray);
 }
 
-/* Faults that change every 500th pixel by a little, each its own pixels. */
+/* Faults that change every 500th pixel a little; each fault has pixels of its own. */
 void break_figures(std::vector<pixel> *pixels, const view &view, double diagonal)
 {
     projector camera(view);
@@ -197,7 +200,8 @@ void break_figures(std::vector<pixel> *pixels, const view &view, double diagonal
             store(pixel.n, normalized(n + 4e-6 * normalized(cross(n, {0.3, 0.5, 0.8}))));
         if (turn == 1 && has_fault("unit"))
             store(pixel.n, (1 + 1e-6) * n);
-        if (turn == 2 && has_fault("position")) /* along the ray: the residual stays */
+        /* moves along the ray, so that the residual does not change */
+        if (turn == 2 && has_fault("position"))
             store(pixel.p, p + 3e-6 * diagonal * ray);
         if (turn == 3 && has_fault("residual"))
             store(pixel.p, moved_aside(camera, p, x, y));
@@ -266,7 +270,8 @@ void write_exr(const job &job, const std::vector<pixel> &pixels)
         spec.channelformats[7] = OIIO::TypeHalf;
     auto output = OIIO::ImageOutput::create(path);
     std::vector<float>
-        row; /* the face's bits ride in a float: native types are copied as they are */
+        row; /* the face's bits are stored as those of a float; the writer does not convert native
+              * types */
     for (const pixel &q : pixels) {
         float face;
         std::memcpy(&face, &q.face, sizeof face);

@@ -6,11 +6,11 @@
 namespace
 {
 
-const int reach = 2; /* quads from the vertex to the rim */
+const int reach = 2; /* quads from the vertex to the boundary */
 
 } // namespace
 
-/* Faces begin at different corners from sector to sector, so that tables have to be turned. */
+/* Each sector's faces begin at another corner, so that tables must be rotated. */
 uint32_t fan::corner(int sector) const
 {
     return (uint32_t)(16 * sector + sector % 4);

@@ -8,7 +8,7 @@ static void fill(float colour[4], float value)
         colour[k] = k < 3 ? value : 1;
 }
 
-/* A white light, black where it is missed, grey where nothing is hit. */
+/* A white light; black where rays miss the light, grey where they miss the model. */
 static frame_request enlarged(frame_request request, const middle_part &part)
 {
     const double deg = M_PI / 180;
@@ -26,7 +26,7 @@ static frame_request enlarged(frame_request request, const middle_part &part)
     return request;
 }
 
-/* How many of each pixel's samples are so; `is_so` takes the number of a sample. */
+/* For each pixel, the number of its samples for which is_so(index of the sample) holds. */
 template <typename predicate>
 void light_samples::count(std::vector<uint16_t> *n, predicate is_so) const
 {
@@ -62,7 +62,7 @@ std::vector<uint16_t> light_samples::bright(double stripes) const
     std::vector<uint16_t> n;
     auto *st = static_cast<const float(*)[2]>(frame.plane[4]);
     count(&n, [&](size_t i) {
-        double phase = st[i][0] * stripes; /* no comparison holds for NaN */
+        double phase = st[i][0] * stripes; /* comparisons with NaN are false */
         return phase - std::floor(phase) < 0.5;
     });
     return n;

@@ -6,8 +6,8 @@
 namespace
 {
 
-/* A random point of a random face: half of them uniform, half at distances from a corner that are
- * uniform in the logarithm, so that every ring is met; some on an edge. */
+/* A random point of a random face. Half of the points are uniform; half have a distance from a
+ * corner whose logarithm is uniform, so that every ring gets points. Some lie on an edge. */
 void draw_place(std::mt19937_64 *random, uint32_t n_faces, uint32_t *face, double *u, double *v)
 {
     std::uniform_real_distribution<double> unit(0, 1);

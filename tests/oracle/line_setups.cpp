@@ -21,13 +21,13 @@ line_pattern make_pattern(line_pattern_kind kind, double count, double duty, dou
     return p;
 }
 
-/* 1 for a view from above, -1 for one from below: lights belong on that side. */
+/* 1 for a view from above, -1 for one from below. Lights are placed on that side. */
 double side_seen(const view &view)
 {
     return view.eye.z > view.target.z ? 1 : -1;
 }
 
-/* Lights of the size and place that sheen gives them unasked, but oblique. */
+/* Lights with the size and place of sheen's default, but oblique. */
 line_light make_light(const model &model, const view &view, line_light_kind kind,
                       const line_pattern &pattern)
 {
@@ -81,7 +81,7 @@ void add_reflections(const model &model, const view &view, std::vector<named_set
         with_light(family, make_light(model, view, line_light_kind::rectangle, circles));
     two.lights[0].one_sided = true;
     two.lights[0].u = 0.4 * two.lights[0].u;
-    /* u x v must look away from the model for its lit side to look at it. */
+    /* u x v must point away from the model, so that the light's front faces the model. */
     two.lights[0].v = (-0.4 * side_seen(view)) * two.lights[0].v;
     two.lights[0].pattern.opacity = 0.4;
     two.lights.push_back(make_light(model, view, line_light_kind::sphere, stripes));
@@ -105,7 +105,7 @@ void add_highlights(const model &model, const view &view, std::vector<named_setu
     add("highlight sphere", line_light_kind::sphere, lines);
 }
 
-/* The families that need no light. */
+/* The families that use no light. */
 void add_directions(const model &model, const view &view, std::vector<named_setup> *list)
 {
     line_pattern stripes = make_pattern(line_pattern_kind::stripes, 24, 0.4, 0, 0.25, 0.2);
@@ -127,7 +127,7 @@ void add_directions(const model &model, const view &view, std::vector<named_setu
     add("environment x", line_family::environment, {2, 0, 0}, lattice);
 }
 
-/* Held to an eye that is not the camera. */
+/* Computed for a fixed eye that is not the camera's. */
 void add_locked(const model &model, const view &view, std::vector<named_setup> *list)
 {
     line_pattern stripes = make_pattern(line_pattern_kind::stripes, 40, 0.5, 0, 0, 0);

@@ -11,7 +11,7 @@ namespace
 
 const double degrees = 180 / M_PI;
 
-/* Asked once: there are many samples. */
+/* Read once, because there are many samples. */
 const bool duty_is_broken = has_fault("duty"), eye_is_broken = has_fault("eye"),
            isophote_is_broken = has_fault("isophote"), mirror_is_broken = has_fault("mirror"),
            side_is_broken = has_fault("side"), turn_is_broken = has_fault("turn");
@@ -21,10 +21,11 @@ vec3 without_part_along(vec3 v, vec3 unit)
     return v - dot(v, unit) * unit;
 }
 
-/* What shaders/README.md, "Where rounding decides", takes for 0: a sine, and a share of lengths. */
+/* What counts as 0 by shaders/README.md, "Where rounding decides": a sine, and a ratio of
+ * lengths. */
 const double least_sine = 1e-6, least_share = std::ldexp(1, -21);
 
-/* The angle of r from u about v, over a full turn: (-1/2, 1/2]. */
+/* The angle of r from u about v, as a part of a full turn: (-1/2, 1/2]. */
 double turn_about(vec3 r, vec3 u, vec3 v)
 {
     vec3 axis = normalized(v);
@@ -36,20 +37,21 @@ double turn_about(vec3 r, vec3 u, vec3 v)
     return std::atan2(dot(r, cross(axis, e1)), dot(r, e1)) / (2 * M_PI);
 }
 
-/* The elevation of unit r over the plane across v, over half a turn: [-1/2, 1/2]. */
+/* The elevation of unit r above the plane perpendicular to v, as a part of half a turn: [-1/2,
+ * 1/2]. */
 double elevation(vec3 r, vec3 v)
 {
     vec3 axis = normalized(v);
     return std::atan2(dot(r, axis), length(cross(r, axis))) / M_PI;
 }
 
-/* Where azimuths about an axis begin. */
+/* The direction of azimuth 0 about an axis. */
 vec3 azimuth_zero(vec3 axis)
 {
     return std::fabs(axis.x) < 0.999 * length(axis) ? vec3{1, 0, 0} : vec3{0, 1, 0};
 }
 
-/* The ray from x along r, or the line both ways, against the light's plane. */
+/* Meets the light's plane by the ray from x along r, or by the line in both directions. */
 light_hit meet_plane(vec3 x, vec3 r, bool both_ways, vec3 eye, const line_light &light)
 {
     light_hit hit;
@@ -61,7 +63,7 @@ light_hit meet_plane(vec3 x, vec3 r, bool both_ways, vec3 eye, const line_light 
     ahead = std::fabs(ahead) <= noise ? 0 : ahead;
     double tau = ahead / approach;
     vec3 offset = x + tau * r - light.centre;
-    /* u and v need not be perpendicular: coordinates by the reciprocal vectors. */
+    /* u and v need not be perpendicular, so coordinates use the reciprocal vectors. */
     vec3 by_u = cross(light.v, normal), by_v = cross(normal, light.u);
     hit.s = 0.5 + dot(offset, by_u) / dot(light.u, by_u);
     hit.t = 0.5 + dot(offset, by_v) / dot(light.v, by_v);
@@ -74,7 +76,7 @@ light_hit meet_plane(vec3 x, vec3 r, bool both_ways, vec3 eye, const line_light 
     return hit;
 }
 
-/* The far side of the cylinder about the axis. */
+/* The far side of the cylinder around the axis. */
 light_hit meet_tunnel(vec3 x, vec3 r, const line_light &light)
 {
     light_hit hit;
@@ -152,14 +154,14 @@ light_hit environment(vec3 r, vec3 axis)
     return hit;
 }
 
-/* How much of phases [0, phase) is bright. */
+/* The length of the bright part of phases [0, phase). */
 double bright_until(double phase, double duty)
 {
     double whole = std::floor(phase);
     return whole * duty + std::min(phase - whole, duty);
 }
 
-/* The wave at a phase, convolved with a box as wide as `soft` says. */
+/* The wave at a phase, convolved with a box of width `soft`. */
 double wave(double phase, const line_pattern &pattern)
 {
     if (pattern.soft == 0)
@@ -168,14 +170,14 @@ double wave(double phase, const line_pattern &pattern)
     return (bright_until(high, pattern.duty) - bright_until(low, pattern.duty)) / pattern.soft;
 }
 
-/* How bright a line is so far from its middle. */
+/* The brightness of a line at this distance from its middle. */
 double single_line(double distance, const line_pattern &pattern)
 {
     double soft = pattern.soft * pattern.width, inside = pattern.width / 2 - distance;
     return soft > 0 ? std::clamp(inside / soft + 0.5, 0.0, 1.0) : inside > 0;
 }
 
-/* Full saturation and value. */
+/* A hue with full saturation and value. */
 rgba hue_colour(double hue)
 {
     auto ramp = [&](double shift) {
@@ -185,7 +187,7 @@ rgba hue_colour(double hue)
     return {ramp(0), ramp(2.0 / 3), ramp(1.0 / 3), 1};
 }
 
-/* Both premultiplied. */
+/* Both colours are premultiplied. */
 rgba over(const rgba &top, const rgba &below)
 {
     double share = 1 - top.a;
@@ -193,12 +195,12 @@ rgba over(const rgba &top, const rgba &below)
             top.a + share * below.a};
 }
 
-/* Where a pattern has its periods: across its lines, and along them. */
+/* A place in a pattern, by the directions of its periods: across its lines, and along them. */
 struct pattern_place {
     double across, along;
 };
 
-/* In the light's units from its middle, turned by the pattern's rotation. */
+/* In the light's units from the light's middle, rotated by the pattern's rotation. */
 pattern_place turned_place(const line_pattern &p, const light_hit &hit)
 {
     double q = p.rotation_deg / degrees;
@@ -242,7 +244,7 @@ double bright_share(const line_pattern &p, const light_hit &hit)
     return across; /* rainbow: its hue */
 }
 
-/* Which of n texels lies at i, which may be beyond them. */
+/* The index of the texel at i, which may lie beyond the n texels: clamped, or repeated. */
 int texel_index(int i, int n, bool ends)
 {
     return ends ? std::clamp(i, 0, n - 1) : ((i % n) + n) % n;
@@ -294,7 +296,7 @@ rgba pattern_colour(const line_pattern &pattern, const light_hit &hit)
 
 double pattern_distance(const line_pattern &p, const light_hit &a, const light_hit &b)
 {
-    light_hit near = b; /* the same place, not round the light */
+    light_hit near = b; /* the same place by the shorter way around the light */
     near.s = a.s - coordinate_difference(a.s, b.s, b.s_wraps);
     near.t = a.t - coordinate_difference(a.t, b.t, b.t_wraps);
     pattern_place from = turned_place(p, a), to = turned_place(p, near);
@@ -370,7 +372,7 @@ light_hit line_tracer::meet_along(vec3 v, vec3 x, vec3 n, const line_light &ligh
         return zebra(r, setup.has_axis ? setup.axis : camera_up);
     case line_family::environment:
         return environment(r, setup.has_axis ? setup.axis : camera_up);
-    case line_family::highlight: /* of the two ways, the one that faces the eye */
+    case line_family::highlight: /* of the two directions, the one that faces the eye */
         r = dot(v, n) >= std::fmax(least_sine, eye_noise(x)) ? -1 * n : n;
         break;
     case line_family::reflection:

@@ -55,11 +55,12 @@ edge_key key(int a, int b)
 
 struct mesh {
     std::vector<point> p;
-    std::vector<double> sharpness;       /* of vertices */
-    std::vector<std::vector<int>> faces; /* those at vertex 0 begin with it */
-    std::vector<uint32_t> corner;        /* of faces at vertex 0: the cage's corner */
-    std::map<edge_key, double> creases;  /* sharpness of edges that have any */
-    point origin;                        /* the points are relative to it */
+    std::vector<double> sharpness;       /* of the vertices */
+    std::vector<std::vector<int>> faces; /* faces at vertex 0 begin with vertex 0 */
+    /* for each face at vertex 0: the corner of the cage that it comes from */
+    std::vector<uint32_t> corner;
+    std::map<edge_key, double> creases; /* sharpness of those edges that have one */
+    point origin;                       /* points are relative to this one */
 
     double crease(edge_key e) const
     {
@@ -68,16 +69,16 @@ struct mesh {
     }
 };
 
-/* What meets at every edge and vertex. An edge of one face is infinitely sharp. */
+/* The faces at every edge and vertex. An edge with one face is infinitely sharp. */
 struct incidence {
     struct edge {
         std::vector<int> faces;
         double sharpness;
-        int point; /* of the refined mesh */
+        int point; /* index in the refined mesh */
     };
     std::map<edge_key, edge> edges;
     std::vector<std::vector<int>> vertex_faces;
-    std::vector<std::set<int>> vertex_ends; /* the far ends of its edges */
+    std::vector<std::set<int>> vertex_ends; /* the other ends of its edges */
 
     explicit incidence(const mesh &m) : vertex_faces(m.p.size()), vertex_ends(m.p.size())
     {
@@ -106,7 +107,7 @@ double child_sharpness(double s)
 
 enum class rule { smooth, crease, corner };
 
-/* One step of the whole mesh. */
+/* One step of subdivision of the whole mesh. */
 class refinement
 {
   public:
@@ -159,7 +160,7 @@ class refinement
             }
         }
     }
-    /* Sharp edges about v, before or after the step; their far ends. */
+    /* The sharp edges at v before or after the step, by their other ends. */
     rule find_rule(int v, bool after, std::vector<int> *ends) const
     {
         ends->clear();
@@ -187,7 +188,7 @@ class refinement
             mid = mid + 0.5L * (s + in.p[(size_t)w]);
         return (1 / n) * ((1 / n) * q + (2 / n) * mid + (n - 3) * s);
     }
-    /* The mean of the sharpness that runs out in this step. */
+    /* The mean of the sharpnesses that become zero in this step. */
     long double run_out(int v) const
     {
         long double sum = 0;
@@ -232,7 +233,7 @@ class refinement
     std::vector<int> face_point;
 };
 
-/* What n_rings of faces about vertex 0 hold, with vertex 0 at the origin. */
+/* The part of a mesh within n_rings of faces around vertex 0, with vertex 0 moved to the origin. */
 mesh trimmed(const mesh &m)
 {
     std::set<int> inside = {0};
@@ -251,7 +252,7 @@ mesh trimmed(const mesh &m)
     mesh out;
     out.origin = m.origin + m.p[0];
     std::map<int, int> number;
-    for (int v : inside) { /* sorted: vertex 0 stays 0 */
+    for (int v : inside) { /* sorted, so that vertex 0 remains 0 */
         number[v] = (int)out.p.size();
         out.p.push_back(m.p[(size_t)v] - m.p[0]);
         out.sharpness.push_back(m.sharpness[(size_t)v]);
@@ -270,7 +271,7 @@ mesh trimmed(const mesh &m)
     return out;
 }
 
-/* The whole cage, vertices exchanged so that `vertex` is 0. */
+/* The whole cage, with `vertex` exchanged for vertex 0. */
 mesh read_cage(const cage &cage, uint32_t vertex)
 {
     if (cage.chaikin || cage.smooth_triangles || cage.boundary == CAGE_BOUNDARY_NONE)
@@ -308,13 +309,13 @@ mesh read_cage(const cage &cage, uint32_t vertex)
     return m;
 }
 
-/* A quad of a mesh, seen from one of its corners. */
+/* A face of a mesh with four corners, counted from corner `start`. */
 struct turned_quad {
     int face;
     int start;
 };
 
-/* A level, ready to be walked. */
+/* A level that is prepared for walking from face to face. */
 struct level {
     mesh m;
     incidence incident;
@@ -331,8 +332,8 @@ struct level {
     {
         return m.p[(size_t)vertex(q, corner)];
     }
-    /* The quad across edge `edge`, turned so that its sides are parallel to q's; face nowhere when
-     * the surface ends there. *semisharp when it may still change. */
+    /* The quad across edge `edge`, rotated so that its sides are parallel to q's; its face is
+     * `nowhere` where the surface ends. Sets *semisharp if the edge's rule may still change. */
     turned_quad across(turned_quad q, int edge, bool *semisharp) const
     {
         int a = vertex(q, edge), b = vertex(q, edge + 1);
@@ -347,11 +348,14 @@ struct level {
     }
 };
 
-/* The 16 points about a quad. Returns whether it is a B-spline patch: its corners are regular. */
+/* Writes the 16 points around a quad. Returns whether they define a B-spline patch, that is,
+ * whether all four corners are regular. */
 bool find_net(const level &l, turned_quad q, point net[4][4])
 {
-    static const int at[4][2] = {{1, 1}, {2, 1}, {2, 2}, {1, 2}};     /* x, y of the corners */
-    static const int step[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}}; /* out across edge k */
+    /* x and y of the four corners */
+    static const int at[4][2] = {{1, 1}, {2, 1}, {2, 2}, {1, 2}};
+    /* from the quad across edge k */
+    static const int step[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
     bool semisharp = false;
     turned_quad beside[4];
     for (int k = 0; k < 4; k++)
@@ -367,7 +371,7 @@ bool find_net(const level &l, turned_quad q, point net[4][4])
                                        : l.at(beside[k], end);
         }
     }
-    for (int k = 0; k < 4; k++) { /* diagonally beyond corner k: edges k and k - 1 meet there */
+    for (int k = 0; k < 4; k++) { /* diagonally beyond corner k, where edges k and k - 1 meet */
         int before = (k + 3) & 3, x = at[k][0], y = at[k][1];
         int dx = step[k][0] + step[before][0], dy = step[k][1] + step[before][1];
         turned_quad diagonal = {nowhere, 0};
@@ -432,8 +436,9 @@ local_sample evaluate_net(const point net[4][4], long double s, long double t, p
 } // namespace
 
 struct local_surface::implementation {
-    std::vector<level> levels;  /* 1 first */
-    std::set<uint32_t> of_ngon; /* corners whose Ptex face is one of level 1 */
+    std::vector<level> levels; /* levels[0] is level 1 */
+    /* corners whose Ptex face is a face of level 1, because their cage face is an n-gon */
+    std::set<uint32_t> of_ngon;
 };
 
 local_surface::local_surface(const cage &cage, uint32_t vertex, int levels) : m(new implementation)

@@ -84,7 +84,7 @@ model read_model(const std::string &path)
 
 model with_boundary(const model &original, cage_boundary boundary)
 {
-    /* A shallow copy: the memory stays the original's, which the deleter keeps alive. */
+    /* A shallow copy. The deleter keeps the original, which owns the memory, alive. */
     std::shared_ptr<const cage> owner = original.cage;
     std::shared_ptr<struct cage> cage(new struct cage(*owner),
                                       [owner](struct cage *c) { delete c; });

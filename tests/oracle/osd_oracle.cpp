@@ -17,7 +17,7 @@ namespace
 {
 
 const int isolation_level = 10;
-const int max_patch_points = 20; /* Gregory; every other kind has fewer */
+const int max_patch_points = 20; /* the size of a Gregory patch; every other kind has fewer */
 
 Far::PatchTableFactory::Options patch_options()
 {
@@ -30,7 +30,7 @@ Far::PatchTableFactory::Options patch_options()
     return options;
 }
 
-/* Base points, then those of every level, then the end caps' own. */
+/* The points of the cage, then those of every level, then those of the end caps. */
 std::vector<control_point> make_points(const cage &cage, const Far::TopologyRefiner &refiner,
                                        const Far::PatchTable &table)
 {
@@ -151,7 +151,8 @@ bool osd_oracle::evaluate(uint32_t face, double u, double v, osd_sample *sample)
     for (int i = 0; i < indices.size(); i++)
         for (int k = 0; k < 6; k++)
             sum[k] = sum[k] + w[k][i] * m->points[(size_t)indices[i]].p;
-    /* libosd counts the n-gon's own split as a level: its derivatives are by half the Ptex face. */
+    /* libosd counts the split of an n-gon as a level, so its derivatives are by half of the Ptex
+     * face. */
     double h = m->table->GetPatchParam(*handle).NonQuadRoot() ? 0.5 : 1;
     *sample = {sum[0], h * sum[1], h * sum[2], h * h * sum[3], h * h * sum[4], h * h * sum[5]};
     return true;

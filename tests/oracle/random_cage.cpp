@@ -11,7 +11,7 @@
 namespace
 {
 
-using edge = std::pair<uint32_t, uint32_t>; /* lower vertex, higher vertex */
+using edge = std::pair<uint32_t, uint32_t>; /* lower vertex index, higher vertex index */
 
 edge edge_of(uint32_t a, uint32_t b)
 {
@@ -22,7 +22,7 @@ struct maker {
     std::mt19937_64 random;
     loose_cage cage;
     std::string story;
-    std::vector<uint32_t> middles; /* inner vertices of spines, where sheets meet */
+    std::vector<uint32_t> middles; /* inner vertices of spines, where several sheets meet */
 
     explicit maker(uint64_t seed) : random(seed)
     {
@@ -54,7 +54,7 @@ struct maker {
         cage.position.push_back(p);
         return (uint32_t)cage.position.size() - 1;
     }
-    /* Faces between rows of vertices, at(x, y) for x in 0..nx and y in 0..ny. */
+    /* Faces between rows of vertices; at(x, y) is a vertex for x in 0..nx and y in 0..ny. */
     void add_grid(int nx, int ny, const std::function<uint32_t(int, int)> &at)
     {
         for (int y = 0; y < ny; y++)
@@ -103,7 +103,7 @@ struct maker {
         return path;
     }
 
-    /* --- what it is made from --- */
+    /* --- basic shapes --- */
 
     void sheet()
     {
@@ -127,7 +127,7 @@ struct maker {
         add_grid(n, m, [&](int x, int y) { return v[(size_t)(y % m * n + x % n)]; });
         story = "torus";
     }
-    /* With triangles about its poles. */
+    /* A sphere with triangles at its poles. */
     void sphere()
     {
         int n = between(3, 8), m = between(2, 4);
@@ -161,7 +161,7 @@ struct maker {
         for (int k = 0; k < rays - !closed; k++)
             cage.faces.push_back({centre, at(2 * k), at(2 * k + 1), at(2 * k + 2)});
     }
-    /* Pages that share a spine, each wound one way or the other. */
+    /* Pages that share a spine, each with a random winding. */
     void book()
     {
         int pages = between(2, 5), length = between(2, 4), width = between(1, 3);
@@ -183,8 +183,8 @@ struct maker {
         }
         story = "book of " + std::to_string(pages);
     }
-    /* Cubes of a lattice, with the faces between them left out: they may share an edge or a vertex
-     * only. */
+    /* Random cubes of a lattice, without the faces between them. Two cubes may share only an edge
+     * or a vertex. */
     void cubes()
     {
         const int n = 3, m = 2;
@@ -231,7 +231,7 @@ struct maker {
         cage.faces.push_back(face);
     }
 
-    /* --- what becomes of it --- */
+    /* --- changes of a shape --- */
 
     void lose_faces(double share)
     {
@@ -243,7 +243,7 @@ struct maker {
             cage.faces = left;
         story += ", faces lost";
     }
-    /* Along a walk on edges: a third face there, if they had two. */
+    /* Adds faces along a walk on edges, which become non-manifold if they had two faces. */
     void glue_sheet()
     {
         std::vector<uint32_t> path = walk(vertex(), between(1, 4));
@@ -280,7 +280,7 @@ struct maker {
         cage.faces = split;
         story += ", quads split";
     }
-    /* Two faces that share an edge become one, unless that repeats a vertex. */
+    /* Merges two faces that share an edge, unless the result repeats a vertex. */
     void join_faces()
     {
         size_t a = (size_t)(unit() * (double)cage.faces.size());
@@ -294,7 +294,7 @@ struct maker {
             std::rotate(second.begin(), at, second.end());
             if (second.back() != first[1])
                 continue;
-            /* From the edge's end round the first, then from its start round the second. */
+            /* from the edge's end around the first face, then from its start around the second */
             std::vector<uint32_t> both(first.begin() + 1, first.end());
             both.insert(both.end(), second.begin(), second.end() - 1);
             if (std::set<uint32_t>(both.begin(), both.end()).size() != both.size())

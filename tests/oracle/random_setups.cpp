@@ -103,7 +103,8 @@ line_light random_setups::choose_light(line_light_kind kind)
     return light;
 }
 
-/* Also a sphere's vectors. As wide as the model sees some of it. */
+/* Also for the vectors of a sphere. The light is as wide as its distance, within a factor of ten or
+ * so. */
 void random_setups::choose_flat(line_light *light, double distance, vec3 to_light)
 {
     vec3 u = chance(0.7) ? cross(to_light, direction_off(to_light)) : direction();
@@ -111,9 +112,10 @@ void random_setups::choose_flat(line_light *light, double distance, vec3 to_ligh
     light->u = (distance * std::pow(10, uniform(-0.5, 1))) * normalized(u);
     light->v = (distance * std::pow(10, uniform(-0.5, 1))) * v;
     light->one_sided = light->kind != line_light_kind::sphere && chance(0.3);
-    if (light->kind == line_light_kind::plane && chance(0.4)) /* far off in its plane */
+    /* the centre far away within the light's plane */
+    if (light->kind == line_light_kind::plane && chance(0.4))
         light->centre = light->centre + sizes(0, 4) * normalized(v);
-    if (light->kind == line_light_kind::plane && chance(0.3)) /* fine */
+    if (light->kind == line_light_kind::plane && chance(0.3)) /* with very fine stripes */
         light->u = (0.01 * size / length(light->u)) * light->u;
 }
 
@@ -122,15 +124,15 @@ void random_setups::choose_tunnel(line_light *light, double distance, vec3 to_li
     light->v = sizes(-1, 1) * direction_off(to_light);
     vec3 across = normalized(cross(light->v, direction_off(light->v)));
     double kind = uniform(0, 1), radius;
-    if (kind < 0.3) /* thin */
+    if (kind < 0.3) /* a thin tunnel */
         radius = distance * std::pow(10, uniform(-2.5, -0.5));
-    else if (kind < 0.6) /* around the model */
+    else if (kind < 0.6) /* a tunnel around the model */
         radius = distance * uniform(1.5, 3) + 2 * size;
-    else /* wide, its wall near the model */
+    else /* a wide tunnel whose wall is near the model */
         radius =
             length(cross(light->centre - middle, normalized(light->v))) + uniform(-0.2, 2) * size;
     radius = std::fmax(radius, 1e-3 * distance);
     light->u = radius * across + uniform(-2, 2) * light->v;
-    if (chance(0.4)) /* far along the axis */
+    if (chance(0.4)) /* the centre far away along the axis */
         light->centre = light->centre + sizes(0, 4) * normalized(light->v);
 }

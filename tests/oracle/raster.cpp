@@ -11,9 +11,9 @@ namespace
 {
 
 const double cell_px = 2;
-const int probe = 4;                     /* cells of the grid that measures a square */
-const int min_cells = 8, max_cells = 32; /* along one side of a square that is drawn */
-const int max_depth = 24;                /* halvings of a face */
+const int probe = 4;                     /* cells of the probing grid that measures a square */
+const int min_cells = 8, max_cells = 32; /* cells along one side of a square that is drawn */
+const int max_depth = 24;                /* how often a face may be halved */
 
 struct vertex {
     double x, y; /* samples */
@@ -25,7 +25,7 @@ struct vertex {
 struct canvas {
     raster picture;
     projector camera;
-    double nearest; /* depths below this are behind the eye */
+    double nearest; /* points nearer than this depth count as behind the eye */
 };
 
 /* A square of a Ptex face in (u,v). */
@@ -40,13 +40,13 @@ bool evaluate_at(const osd_oracle &oracle, const square &q, int i, int j, int n,
     return oracle.evaluate(q.face, q.u + q.size * i / n, q.v + q.size * j / n, p);
 }
 
-/* Twice the signed area of a, b, (x, y). */
+/* Twice the signed area of the triangle a, b, (x, y). */
 double edge(const vertex &a, const vertex &b, double x, double y)
 {
     return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
 }
 
-/* Sample indices whose middles lie in [low, high], cut to [0, size). */
+/* The range of samples whose centres lie in [low, high], clamped to [0, size). */
 void sample_range(double low, double high, int size, int *first, int *last)
 {
     *first = (int)std::ceil(std::clamp(low - 0.5, 0.0, (double)size));
@@ -102,8 +102,8 @@ void draw_cells(canvas *canvas, const osd_oracle &oracle, const square &q, int n
     }
 }
 
-/* The longest distance of neighbours on the probe's grid, px; infinite when some are behind the
- * eye, negative when there is nothing to see. */
+/* The longest distance of neighbours on the probing grid, in px; infinite if some are behind the
+ * eye, negative if none is in the picture. */
 double measure(const canvas &canvas, const osd_oracle &oracle, const square &q)
 {
     vec3 grid[probe + 1][probe + 1];
@@ -115,7 +115,7 @@ double measure(const canvas &canvas, const osd_oracle &oracle, const square &q)
     double radius = 0, longest = 0;
     for (int k = 0; k < (probe + 1) * (probe + 1); k++)
         radius = std::max(radius, length(grid[k / (probe + 1)][k % (probe + 1)] - centre));
-    /* Twice: the surface may bulge between the probes. */
+    /* Twice that, because the surface may bulge between the probes. */
     if (!canvas.camera.may_see(centre, 2 * radius))
         return -1;
     for (int j = 0; j <= probe; j++)

@@ -9,7 +9,7 @@
 namespace
 {
 
-/* What is compared as both sides are walked down together. */
+/* Both sides of the comparison, during their common descent. */
 struct walker {
     const limit_plan *plan;
     const osd_levels *truth;
@@ -18,7 +18,7 @@ struct walker {
     struct ring_cache rings;
     refine_walk found;
 
-    /* The quad is face `face` of that level, corner for corner. */
+    /* The quad is face `face` of that level, with the same first corner. */
     void compare(const quad &quad, int level, int face)
     {
         double &distance = found.distance[(size_t)level];
@@ -27,7 +27,7 @@ struct walker {
             const vec &p = quad.corner[i].centre;
             vec3 there = truth->vertex(level, face, i);
             double off = length(vec3{p.x, p.y, p.z} - there);
-            distance = off <= distance ? distance : off; /* keeps NaN */
+            distance = off <= distance ? distance : off; /* also true for NaN */
         }
         if (level == n_levels)
             return;
@@ -48,7 +48,7 @@ bool touches_ngon(const topology &t, uint32_t corner)
     return false;
 }
 
-/* From level 0 where all around is a quad, else from level 1. */
+/* Begins at level 0 if all faces around are quads, else at level 1. */
 void compare_face(walker *walk, uint32_t face)
 {
     const topology &t = walk->plan->topology;
@@ -64,7 +64,8 @@ void compare_face(walker *walk, uint32_t face)
         quad quad =
             extract_refined_quad(&t, &walk->plan->refined, first + k, &walk->rings, &walk->arena);
         if (n == 4)
-            quad = quad_rotated(&quad, (4 - k) & 3); /* a quad's children keep its orientation */
+            quad = quad_rotated(&quad, (4 - k) & 3); /* the children of a quad keep its
+                                                      * orientation */
         walk->compare(quad, 1, walk->truth->child(0, (int)face, (int)k));
     }
 }

@@ -28,7 +28,7 @@ int channel_index(const OIIO::ImageSpec &spec, const char *name)
     throw std::runtime_error(std::string("no channel ") + name);
 }
 
-/* The whole picture as the file stores it, decoded once. */
+/* The whole picture as stored in the file, decoded once. */
 class native_picture
 {
   public:
@@ -39,7 +39,7 @@ class native_picture
         if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeUnknown, bytes.data()))
             throw std::runtime_error(input->geterror());
     }
-    /* A channel of values of type T, which the file must call `promised`. */
+    /* A channel of type T; an error unless the file gives its type as `promised`. */
     template <typename T>
     void extract(const char *name, OIIO::TypeDesc promised, std::vector<T> *values) const
     {
@@ -119,7 +119,7 @@ void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
         read_colour(input, planes);
 }
 
-/* The child's exit code, or -1 after killing it when time is up. */
+/* The child's exit code; or kills the child and returns -1 after the time limit. */
 int wait_for(pid_t child)
 {
     for (int waited_ms = 0;; waited_ms += 2) {

@@ -24,7 +24,7 @@ void check(bool ok, const error &error)
         throw std::runtime_error(error.text);
 }
 
-/* Ranges of 16 faces to whoever is free, as the daemon's pool does with them. */
+/* Passes ranges of 16 faces to idle threads, like the daemon's pool. */
 void build(limit_tables *tables, const limit_plan *plan, int n_threads)
 {
     const size_t range = 16;

@@ -21,8 +21,8 @@ surface_point from_patch(const limit_tables &tables, const limit_patch &patch)
     return {from_vec(p.s), from_vec(p.su), from_vec(p.sv), p.luu, p.luv, p.lvv};
 }
 
-/* That every child is the cell of its parent that its place among the four says: else a descent
- * would end somewhere else on the surface. */
+/* Expects that every child is the quarter of its parent that its index says. Otherwise a descent
+ * would end at another place of the surface. */
 void check_cells(const limit_tables &tables)
 {
     for (size_t k = 0; k < tables.n_nodes; k++) {
@@ -40,7 +40,7 @@ void check_cells(const limit_tables &tables)
     }
 }
 
-/* Puts in the faults that FAKE_FAULTS names, for self_test.sh. */
+/* Applies the faults that FAKE_FAULTS names, for self_test.sh. */
 void break_tables(limit_tables *t)
 {
     bool opened = false;
@@ -50,7 +50,8 @@ void break_tables(limit_tables *t)
             continue;
         float(*texels)[4] = t->texels + node->first;
         int levels = node->levels & ~(int)LIMIT_NO_NORMAL;
-        float off = k % 2 ? 1e-4f : -1e-4f; /* else neighbours would agree in their fault */
+        /* the fault differs from node to node, since equal faults in neighbours would agree */
+        float off = k % 2 ? 1e-4f : -1e-4f;
         if (has_fault("point"))
             texels[node->kind == LIMIT_CORNER ? LIMIT_CORNER_HEAD(levels) + 6 : 6][0] += off;
         if (has_fault("frame") && node->kind == LIMIT_CORNER)
@@ -78,7 +79,7 @@ surface_point evaluate_ring(const limit_tables &tables, const limit_node &node, 
 curvatures principal_curvatures(const surface_point &s)
 {
     double e = dot(s.du, s.du), f = dot(s.du, s.dv), g = dot(s.dv, s.dv);
-    vec3 m = cross(s.du, s.dv); /* e g - f f would cancel where du and dv are nearly parallel */
+    vec3 m = cross(s.du, s.dv); /* e g - f f would cancel if du and dv are nearly parallel */
     double w = dot(m, m);
     double mean = (e * s.lvv - 2 * f * s.luv + g * s.luu) / (2 * w);
     double gauss = (s.luu * s.lvv - s.luv * s.luv) / w;

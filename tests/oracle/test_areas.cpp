@@ -1,7 +1,7 @@
-/* test_areas SHEEN MODEL...: random setups of cameras, lights, patterns and colours. What each
- * pixel shows is the mean over its area, by 20 x 20 samples of it. Inside the surface and its
- * lights it is judged for each pattern; where the surface or a light ends within a pixel it is
- * measured apart. */
+/* test_areas SHEEN MODEL...: random cameras, lights, patterns and colours. Each pixel must show the
+ * mean over its area, as 20 x 20 samples give it. Pixels within the surface and its lights are
+ * judged separately for each pattern; pixels in which the surface or a light ends are measured
+ * apart. */
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -22,19 +22,21 @@ namespace
 {
 
 const int n_setups = 60, width_px = 48, height_px = 36;
-/* Of the first all is judged, of the second what is inside the surface and its lights: there, images that lie
- * over each other change within one pixel. */
+/* With the first seed all pixels are judged; with the second, whose setups have images that change
+ * within one pixel and lie over each other, only pixels within the surface and its lights. */
 const uint32_t seeds[] = {20260, 4000};
 
-/* Of the colours' bytes, in 1/255. */
+/* Errors of the colours' bytes, in 1/255. */
 const double max_mean = 1, max_p99 = 8;
 const double max_border_mean = 3, max_border_p99 = 32;
-/* Where the surface ends within a pixel, as asked for; and of the coverage as asked for. */
+/* Errors where the surface ends within a pixel: of the colours, and of the coverage (a share of the
+ * pixel). */
 const double max_edge_mean = 3, max_edge_p99 = 32, max_coverage_p99 = 0.1;
-/* Of patterns that change faster than this from one sample to the next, in periods, samples tell no
- * more than the mean: they scatter by a fortieth of what is between bright and dark. */
+/* A pattern that changes faster than this between two samples, in its periods, is judged by its
+ * mean only, because the samples scatter by a fortieth of the range between dark and bright. */
 const double max_step = 0.25, max_fine_mean = 2;
-const size_t least_pixels = 2000; /* of each pattern, for a percentile that tells */
+/* pixels of each pattern: a percentile of fewer would mean nothing */
+const size_t least_pixels = 2000;
 
 const char *const pattern_names[] = {"stripes", "lattice",  "circles", "lines",
                                      "rainbow", "distance", "image"};
@@ -45,7 +47,7 @@ struct worst_pixel {
     std::string where;
 };
 
-/* Errors of one kind of pixels. */
+/* The errors of one kind of pixels. */
 struct errors {
     std::vector<double> all;
     worst_pixel worst;
@@ -62,8 +64,9 @@ struct found_errors {
     errors inside[n_patterns], fine, at_border, at_edge, coverage;
 };
 
-/* The largest difference of alpha and of the displayed colours laid over black, in 1/255: of a
- * colour that is nearly clear nobody sees more. Both straight. */
+/* The largest difference of alpha and of the displayed colours laid over black, in 1/255. Laid over
+ * black, because a colour that is nearly transparent is hardly visible. Both colours have straight
+ * alpha. */
 double difference(const rgba &a, const rgba &b)
 {
     double worst = std::fabs(a.a - b.a);
@@ -72,7 +75,7 @@ double difference(const rgba &a, const rgba &b)
     return 255 * worst;
 }
 
-/* The first of the bits of a set. */
+/* The lowest bit of a set. */
 size_t first_of(unsigned set)
 {
     return (size_t)__builtin_ctz(set);
@@ -152,14 +155,14 @@ std::string printed(const std::vector<std::string> &words)
     return text;
 }
 
-/* ONLY_SETUP=N in the environment: that one alone, with the command that draws it. */
+/* ONLY_SETUP=N in the environment runs that setup alone and prints the command that draws it. */
 int only_setup()
 {
     const char *number = std::getenv("ONLY_SETUP");
     return number ? std::atoi(number) : -1;
 }
 
-/* What all setups share. */
+/* What all setups have in common. */
 struct bench {
     std::string sheen;
     temporary_folder folder;
@@ -198,10 +201,10 @@ void run(const std::string &sheen, const std::vector<std::string> &paths, verdic
 {
     bench bench(sheen, verdict);
     int n_models = (int)paths.size();
-    for (int k = 0; k < n_models; k++) { /* one after the other: each has a renderer */
+    for (int k = 0; k < n_models; k++) { /* one after the other, because each has a renderer */
         grid_model model(paths[(size_t)k]);
         for (uint32_t seed : seeds)
-            for (int i = 0; i < n_setups; i++) /* no pattern is bound to a model */
+            for (int i = 0; i < n_setups; i++) /* so that every pattern is drawn on every model */
                 if ((i + i / (int)n_patterns) % n_models == k &&
                     (only_setup() < 0 || only_setup() == i))
                     bench.compare_setup(&model, seed, i);

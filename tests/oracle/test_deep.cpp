@@ -1,6 +1,7 @@
-/* test_deep: tables near extraordinary vertices, 2^-10 to 2^-30 of a face from them, against
- * repeated local refinement in long double: vertices of 3 to 50 faces, smooth, on boundaries and
- * creases, where creases end, and sharp. No GPU, no libosd. */
+/* test_deep: the tables near extraordinary vertices, at distances of 2^-10 to 2^-30 of a face,
+ * against repeated local refinement in long double. The vertices have 3 to 50 faces; they are
+ * smooth, on boundaries and creases, at the ends of creases, and sharp. Needs no GPU and no
+ * libosd. */
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -17,16 +18,19 @@
 namespace
 {
 
-const double max_normal_rad = 2e-6, max_normal_high_rad = 2e-5; /* to 8 faces; to 50 */
-const double max_position = 1e-7;                               /* of a cage four units wide */
-/* Of the larger of the two. */
-const double max_curvature = 1e-4, max_curvature_high = 5e-4; /* to 8 faces; to 50 */
+/* for vertices of up to 8 faces; of up to 50 */
+const double max_normal_rad = 2e-6, max_normal_high_rad = 2e-5;
+/* of the diagonal of a cage four units wide */
+const double max_position = 1e-7;
+/* Relative to the larger of the two curvatures. */
+/* for vertices of up to 8 faces; of up to 50 */
+const double max_curvature = 1e-4, max_curvature_high = 5e-4;
 const int first_depth = 10, last_depth = 30;
 const int max_sectors_tried = 8, places_per_ring = 4, cages_per_shape = 2;
 const size_t min_places = 150;
 
 struct figures {
-    std::vector<double> normal_rad[4]; /* by depth: 10-14, 15-19, 20-24, 25-30 */
+    std::vector<double> normal_rad[4]; /* by level: 10-14, 15-19, 20-24, 25-30 */
     std::vector<double> curvature, position;
     size_t missing = 0;
     double worst_rad = 0;
@@ -111,7 +115,7 @@ std::vector<fan_shape> list_shapes()
         shapes.push_back({"sharp vertex on boundary", n, false, {}, sharp});
         shapes.push_back({"dart", n, true, {{0, sharp}}, 0});
         for (int k : std::set<int>{1, std::max(1, n / 3), n / 2})
-            if (n != 4 || k != 2) /* those are regular */
+            if (n != 4 || k != 2) /* these vertices are regular */
                 shapes.push_back({"crease, sector of " + std::to_string(k),
                                   n,
                                   true,

@@ -1,5 +1,5 @@
-/* test_far SHEEN MODEL...: a model moved 100,000 of its lengths away, with eye and light, looks as
- * it did: the normal of every pixel, and its colour. */
+/* test_far SHEEN MODEL...: a model that is moved 100,000 of its lengths away, together with eye and
+ * light, must have the same normal and colour at every pixel. */
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -15,7 +15,7 @@ namespace
 const double lengths_away = 1e5;
 const double max_normal_p999_rad = 2e-5;
 const double max_colour = 2.0 / 255;
-/* Where the surface turns away from the eye a pixel's centre may fall on either side of it. */
+/* Near a silhouette, a pixel's centre may fall on either side of it. */
 const size_t max_other_px = 12;
 const size_t min_hit_px = 20000, min_lit_px = 3000;
 
@@ -23,7 +23,7 @@ struct light {
     vec3 centre, u, v;
 };
 
-/* Behind the eye's shoulder and wide, so that most of what is seen reflects it. */
+/* A wide light behind the eye, which most of the visible surface reflects. */
 light choose_light(const model &model, const view &view)
 {
     vec3 toward = normalized(view.eye - view.target);
@@ -59,7 +59,8 @@ figures compare(const model &model, const planes &near, const planes &far)
     figures f;
     for (size_t i = 0; i < near.face.size(); i++) {
         bool same = near.face[i] == far.face[i];
-        if (!same && near.hit(i) && far.hit(i)) /* the next face, on a common edge? */
+        /* whether b is the next face across a common edge */
+        if (!same && near.hit(i) && far.hit(i))
             same = angle(near.normal(i), far.normal(i)) <= max_normal_p999_rad;
         if (!same) {
             f.other++;

@@ -1,5 +1,6 @@
-/* test_filter SHEEN MODEL.obj...: the colour of a pixel is the mean over the pixel. Frames are held
- * against 16 x 16 samples a pixel, and beside them frames of one sample a pixel (--filter off). */
+/* test_filter SHEEN MODEL.obj...: the colour of a pixel is the mean over the pixel. Frames are
+ * compared with 16 x 16 samples for each pixel; frames of one sample for each pixel (--filter off)
+ * are printed beside them. */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,21 +20,23 @@
 namespace
 {
 
-/* Over all pixels of a frame, in 1/255. */
+/* The mean error over all pixels of a frame, in 1/255. */
 const double max_mean = 1, max_p99 = 8;
-/* Over the pixels that an outline runs through. 1.1 to 3.3 were measured, and 5.5 of the car: what
- * no pixel's centre sees cannot be known from the pixels around, and corners of borders, of which
- * only the nearest side is known, cost more. */
+/* The mean error over the pixels that an outline crosses. 1.1 to 3.3 were measured, and 5.5 for the
+ * car: it has parts that no pixel's centre sees, and corners of borders, of which only the nearest
+ * side is known. */
 const double max_outline_mean = 7, min_outline_mean_off = 40;
-/* A pixel that no ray leaves is white but for the rounding of the sRGB curve. */
+/* A pixel from which no ray escapes is white, except for rounding in the sRGB curve. */
 const double almost_white = 254.9;
 
 const uint8_t miss[3] = {0x29, 0x30, 0x3b}, empty[3] = {0x80, 0x80, 0x80};
 const std::vector<std::string> colour_options = {"--miss", "#29303b", "--empty", "#808080"};
-/* Frames cut otherwise differ by rounding; where a border runs within it of one of a pixel's 16
- * rays, by what that shows. */
+/* Frames that are cut differently differ by rounding. Where a border passes so near to one of a
+ * pixel's 16 rays that rounding decides, they differ by that ray's share. */
 const double max_ray_apart = 16, max_rays_apart = 12;
-const int compared_count = 100; /* of stripes: also drawn by the program itself, but for rounding */
+/* number of stripes; the program itself draws them, too, and must give the same except for
+ * rounding */
+const int compared_count = 100;
 
 void fill(float colour[4], const uint8_t rgb[3])
 {
@@ -56,7 +59,7 @@ picture draw(drawing *drawing, frame_request request, bool filtered)
     return picture;
 }
 
-/* One model in one size. */
+/* One model at one size. */
 struct view_judge {
     std::string sheen, model, name;
     scene *shown;
@@ -72,7 +75,7 @@ struct view_judge {
         return request;
     }
 
-    /* A white surface before black. */
+    /* A white surface in front of black. */
     frame_request outline_request() const
     {
         frame_request all = request();
@@ -83,7 +86,8 @@ struct view_judge {
         return all;
     }
 
-    /* The smallest part that holds all that is not black, and a pixel around it. */
+    /* The smallest rectangle that contains all pixels that are not black, and one pixel around
+     * it. */
     middle_part part_of(const picture &outline) const
     {
         int half_width = 0, half_height = 0;
@@ -101,7 +105,7 @@ struct view_judge {
                 2 * half_height};
     }
 
-    /* A frame of what is sampled, `outside` where nothing is. */
+    /* A frame of the samples, with the colour `outside` where there are none. */
     template <typename colour_of>
     std::vector<double> truth(const middle_part &part, const uint8_t outside[3],
                               colour_of colour) const
@@ -138,7 +142,8 @@ struct view_judge {
         found->check(off > min_outline_mean_off, name + ": the outline tells nothing");
     }
 
-    /* Stripes, with everything else there is: folds, creases, borders, the light's own border. */
+    /* Stripes with everything that may occur: folds, creases, borders, and the border of the
+     * light. */
     void judge_stripes(const light_samples &samples, const middle_part &part, int count) const
     {
         std::vector<uint16_t> bright = samples.bright(count);

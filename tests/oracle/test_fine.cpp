@@ -1,6 +1,6 @@
-/* test_fine SHEEN MODEL...: patterns far finer than a pixel must show their mean colour, and no
- * pattern of their own: no row of the picture may have a spectral line above what rounding to eight
- * bits explains. The same rows without filtering show that the test would see one. */
+/* test_fine SHEEN MODEL...: patterns much finer than a pixel must show their mean colour without
+ * any pattern. No row of the picture may have a spectral line above what rounding to eight bits
+ * explains. The same rows without filtering show that the test would find one. */
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -18,19 +18,20 @@ namespace
 const int width_px = 320, height_px = 240;
 const double count = 100000, duty = 0.4;
 const double max_mean_error = 1.0 / 255;
-const double rounding = 0.5 / 255; /* to the eight bits of a pixel */
+const double rounding = 0.5 / 255; /* of the eight bits of a pixel */
 const double max_line = 0.5 / 255; /* amplitude */
 const double min_unfiltered = 0.1; /* amplitude */
-const double fine = 20;            /* periods a pixel, at least, across the pixel */
+/* periods for each pixel, at least, in the direction across the pixel */
+const double fine = 20;
 const size_t run_px = 64;
 
 struct figures {
     size_t n = 0, runs = 0;
     double sum = 0, line = 0;
-    std::vector<double> off; /* of a pixel from the mean expected */
+    std::vector<double> off; /* of a pixel's difference from the expected mean */
 };
 
-/* The largest amplitude among the sinusoids that a run is made of, its mean left out. */
+/* The largest amplitude among the sinusoids of a run of pixels, after its mean is subtracted. */
 double largest_line(const std::vector<double> &run)
 {
     double n = (double)run.size(), mean = 0, largest = 0;
@@ -45,7 +46,7 @@ double largest_line(const std::vector<double> &run)
     return largest;
 }
 
-/* Whether the pixel and all about it are on the surface: it shows nothing else. */
+/* Whether the pixel and all its neighbours are on the surface, so that it shows nothing else. */
 bool is_surrounded(const planes &planes, int x, int y)
 {
     for (int k = 0; k < 9; k++)
@@ -55,7 +56,8 @@ bool is_surrounded(const planes &planes, int x, int y)
     return true;
 }
 
-/* Whether the pattern is far finer than the pixel there, and its neighbours see the light too. */
+/* Whether the pattern is much finer than the pixel there, and the pixel's neighbours see the light,
+ * too. */
 bool is_fine(const planes &planes, int x, int y)
 {
     if (x < 1 || y < 1 || x + 1 >= planes.width_px || y + 1 >= planes.height_px)
@@ -93,7 +95,7 @@ figures measure(const planes &planes, double mean)
     return f;
 }
 
-/* Under a light that is all foreground or all background every pixel is. */
+/* If the whole light is foreground or background, every pixel is. */
 void judge_whole(const std::string &sheen, const model &model, const view &chosen, verdict *verdict)
 {
     for (double whole : {0.0, 1.0})

@@ -1,6 +1,6 @@
 /* test_frames [--small] SHEEN MODEL...: frames of every model from several views, judged pixel by
- * pixel: exactness.h says by what for P and N, coverage.h for what is seen where. --small: frames
- * of a quarter of the pixels. */
+ * pixel. exactness.h judges P and N, coverage.h which pixels show which part of the surface.
+ * --small: frames with a quarter of the pixels. */
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -14,7 +14,7 @@
 namespace
 {
 
-const char *const close_up = "zoom"; /* so close that test_zoom has the bounds for P and N */
+const char *const close_up = "zoom"; /* a view so close that test_zoom judges its P and N */
 
 std::vector<view> views_of(const model &model, int width_px, int height_px)
 {

@@ -1,7 +1,7 @@
-/* test_isophotes SHEEN BODY: lines must be where closed forms put them. Isophotes of the paraboloid
- * z = (x^2 + y^2) / 2, which uniform bicubic B-splines, and so Catmull-Clark surfaces, reproduce:
- * its normal (-x, -y, 1) makes them circles. And a closed body under a tunnel of lines, whose
- * closed form is applied to libosd's surface. */
+/* test_isophotes SHEEN BODY: lines must lie where closed forms put them. First, isophotes of the
+ * paraboloid z = (x^2 + y^2) / 2, which Catmull-Clark surfaces reproduce exactly, as they include
+ * uniform bicubic B-splines; its normal is (-x, -y, 1), so the isophotes are circles. Second, a
+ * closed body under a tunnel of lines, whose closed form is applied to libosd's surface. */
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -17,11 +17,13 @@ namespace
 
 const int width_px = 320, height_px = 240;
 const double max_off_px = 0.02;
-const double colour_rounding = 2.3 * 0.5 / 255;     /* as light: the sRGB curve's steepest */
-const int lattice_points = 610, lattice_step = 377; /* of a Fibonacci lattice on the pixel */
-const double lattice_error = 0.004;                 /* of an edge's share of the pixel */
+/* as linear light: where the sRGB curve is steepest */
+const double colour_rounding = 2.3 * 0.5 / 255;
+const int lattice_points = 610, lattice_step = 377; /* of a Fibonacci lattice over the pixel */
+/* of the share of a pixel on one side of an edge */
+const double lattice_error = 0.004;
 
-/* A grid of control points at (i, j) h: a B-spline with control values i^2 - 1/3 is t^2. */
+/* A grid of control points at (i, j) h. Control values i^2 - 1/3 give the B-spline t^2. */
 void write_paraboloid(const std::string &path)
 {
     const int n = 6;
@@ -40,14 +42,15 @@ void write_paraboloid(const std::string &path)
     cage.write_obj(path);
 }
 
-/* Where the pixel's ray leaves the bowl, that the eye is within. */
+/* Where the pixel's ray leaves the bowl; the eye is within the bowl. */
 vec3 paraboloid_point(const projector &camera, double x, double y)
 {
     vec3 o, d;
     camera.ray(x, y, &o, &d);
     double a = 0.5 * (d.x * d.x + d.y * d.y), b = o.x * d.x + o.y * d.y - d.z;
     double c = 0.5 * (o.x * o.x + o.y * o.y) - o.z;
-    double t = -2 * c / (b + std::sqrt(b * b - 4 * a * c)); /* c < 0, also where a = 0 */
+    /* the quadratic's c is below 0, so this root exists also for a = 0 */
+    double t = -2 * c / (b + std::sqrt(b * b - 4 * a * c));
     return o + t * d;
 }
 
@@ -57,7 +60,7 @@ double paraboloid_s(const projector &camera, double x, double y)
     return std::atan(std::hypot(p.x, p.y)) / M_PI;
 }
 
-/* The mean light over the pixel at (x, y). */
+/* The mean of the linear light over the pixel at (x, y). */
 double paraboloid_colour(const projector &camera, const line_pattern &pattern, int x, int y)
 {
     double sum = 0;
@@ -74,7 +77,7 @@ double paraboloid_colour(const projector &camera, const line_pattern &pattern, i
     return sum / lattice_points;
 }
 
-/* All pixels about it are on the surface. */
+/* Whether all pixels around it are on the surface. */
 bool is_inner(const planes &planes, int x, int y)
 {
     if (x < 1 || y < 1 || x + 1 >= planes.width_px || y + 1 >= planes.height_px)
@@ -108,7 +111,8 @@ void judge_paraboloid(const std::string &sheen, bool orthographic, verdict *verd
     line_pattern pattern;
     pattern.count = 18;
     pattern.duty = 0.4;
-    pattern.offset = 0.5; /* no edge within 10 px of the apex, where s has no gradient */
+    /* within 10 px of the apex there is no edge, because s has no gradient there */
+    pattern.offset = 0.5;
     setup.lights = {{line_light_kind::plane, false, {0, 0, 9}, {1, 0, 0}, {0, 1, 0}, pattern}};
     planes planes;
     int exit_code;
@@ -137,7 +141,8 @@ void judge_paraboloid(const std::string &sheen, bool orthographic, verdict *verd
     std::string what = "paraboloid " + view.name + ": ";
     verdict->check(off_px.size() > 20000, what + "too few pixels");
     verdict->at_most(worst_px, max_off_px, what + "isophotes off (px)");
-    /* An edge that is off by so much changes its pixel's share by no more than 1.42 of it. */
+    /* If an edge is displaced by this distance, its pixel's share changes by at most 1.42 times
+     * that. */
     verdict->at_most(worst_colour, 1.42 * max_off_px + colour_rounding + lattice_error,
                      what + "filtered colour off");
 }

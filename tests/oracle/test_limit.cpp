@@ -1,7 +1,7 @@
 /* test_limit MODEL...: the tables of server/surface, evaluated on the CPU as
- * server/surface/tables.h describes them, against libosd in double at random (face, u, v): no GPU,
- * no service. Then what libosd cannot tell: that the rings of an extraordinary vertex meet, down to
- * the deepest. */
+ * server/surface/tables.h describes, against libosd in double precision at random (face, u, v),
+ * without GPU or daemon. Then what libosd cannot judge: that the rings of an extraordinary vertex
+ * join, down to the deepest. */
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -18,9 +18,9 @@
 namespace
 {
 
-const double max_normal_p999_rad = 2e-6, max_position_p999 = 1e-6; /* as exactness.cpp */
-const double max_seam_rad = 5e-6; /* both sides are single precision */
-const double max_seam = 2e-6;     /* of the ring's size */
+const double max_normal_p999_rad = 2e-6, max_position_p999 = 1e-6; /* as in exactness.cpp */
+const double max_seam_rad = 5e-6; /* both sides are stored in single precision */
+const double max_seam = 2e-6;     /* of the size of the ring */
 const size_t n_samples = 40000, min_samples = 1000;
 
 struct figures {
@@ -29,7 +29,8 @@ struct figures {
     size_t adjacency = 0;
 };
 
-/* On the seam max(a,b) = 2^-n, ring n from outside and ring n + 1 from inside are one surface. */
+/* On the seam max(a,b) = 2^-n, ring n (outside) and ring n + 1 (inside) must give the same
+ * surface. */
 void compare_seams(const table_evaluator &tables, figures *f)
 {
     for (size_t k = 0; k < tables.tables.n_nodes; k++) {
@@ -40,22 +41,23 @@ void compare_seams(const table_evaluator &tables, figures *f)
             for (int side = 0; side < 6; side++) {
                 double reach = std::ldexp(1.0, -n), other = reach * (side % 3) / 2.0;
                 double a = side < 3 ? reach : other, b = side < 3 ? other : reach;
-                /* The inner ring has its outer border at s = 2: the top of its last patch. */
+                /* The inner ring's outer border is at s = 2, the upper end of its last patch. */
                 surface_point outer = evaluate_ring(tables.tables, node, n, a, b);
                 surface_point inner = evaluate_ring(tables.tables, node, n + 1, a, b);
                 double size = length(outer.du) + length(outer.dv);
                 f->seam.push_back(length(outer.p - inner.p) / size);
                 vec3 normal = cross(outer.du, outer.dv);
-                if (length(normal) > 1e-6 * size * size) /* else a fold, see has_normal() */
+                if (length(normal) > 1e-6 * size * size) /* else it is a fold: has_normal() */
                     f->seam_rad.push_back(angle(normal, cross(inner.du, inner.dv)));
             }
     }
 }
 
-/* Edges (of Ptex faces) that no other face lies across: by the cage alone. */
+/* Edges of Ptex faces that no other face shares, determined from the cage alone. */
 size_t count_open_edges(const cage &cage)
 {
-    std::map<std::pair<uint32_t, uint32_t>, std::pair<int, int>> uses; /* forward, backward */
+    /* in the direction of the winding, and against it */
+    std::map<std::pair<uint32_t, uint32_t>, std::pair<int, int>> uses;
     auto each_edge = [&](auto action) {
         for (size_t f = 0; f < cage.n_faces; f++) {
             uint32_t first = cage.face_start[f], end = cage.face_start[f + 1];
@@ -77,14 +79,14 @@ size_t count_open_edges(const cage &cage)
     return open;
 }
 
-/* The point at `along` (0 to 1) of edge e of a face, walking from corner e to corner e + 1. */
+/* The point at `along` (0 to 1) of edge e of a face, from corner e to corner e + 1. */
 bool edge_point(const osd_oracle &oracle, uint32_t face, uint32_t e, double along, vec3 *p)
 {
     const double us[4] = {along, 1, 1 - along, 0}, vs[4] = {0, along, 1, 1 - along};
     return oracle.evaluate(face, us[e], vs[e], p);
 }
 
-/* Which Ptex faces are whole quads of the cage, the others being parts of n-gons. */
+/* For each Ptex face, whether it is a whole quad of the cage and not a part of an n-gon. */
 std::vector<bool> find_quads(const cage &cage)
 {
     std::vector<bool> quads;
@@ -95,8 +97,8 @@ std::vector<bool> find_quads(const cage &cage)
     return quads;
 }
 
-/* Neighbours point at each other and share the points of their edge. A quad beside an n-gon has two
- * Ptex faces across and may name either. */
+/* Neighbours refer to each other, and have the same points on their common edge. A quad beside an
+ * n-gon has two Ptex faces across an edge and may refer to either. */
 bool is_neighbour(const model &model, const limit_tables &t, const std::vector<bool> &quads,
                   uint32_t face, uint32_t e)
 {
@@ -105,7 +107,7 @@ bool is_neighbour(const model &model, const limit_tables &t, const std::vector<b
         return false;
     bool mutual = t.adjacency[other].across[across & 3] == (face << 2 | e);
     if (quads[face] && !quads[other])
-        return mutual; /* places are compared from the n-gon's side */
+        return mutual; /* positions are compared when the n-gon's face is visited */
     bool whole = quads[face] == quads[other];
     if (whole && !mutual)
         return false;
@@ -113,7 +115,7 @@ bool is_neighbour(const model &model, const limit_tables &t, const std::vector<b
     vec3 here, there;
     if (!edge_point(*model.oracle, face, e, 0.3, &here) ||
         !edge_point(*model.oracle, other, across & 3, 1 - from_end, &there))
-        return true; /* no surface on one side, so nothing to compare */
+        return true; /* one side has no surface, so there is nothing to compare */
     return length(here - there) <= 1e-9 * model.diagonal();
 }
 
@@ -167,7 +169,7 @@ void judge(const model &model, verdict *verdict)
     verdict->at_most(seam, max_seam, what + "gap at ring seams p99.9 (rings)");
 }
 
-/* As the file says, and an open cage in the other boundary modes as well. */
+/* With the file's boundary mode; an open cage in the other boundary modes as well. */
 void judge_file(const std::string &path, verdict *verdict)
 {
     model as_read = read_model(path);

@@ -1,7 +1,7 @@
 /* test_lines SHEEN MODEL...: families, lights, patterns and line eyes against the formulas of
- * shaders/README.md in double. Light coordinates are judged twice: on the frame's own P and N, and
- * on libosd's surface at the frame's (face, u, v); their change over a pixel by differences on
- * libosd's surface; colours as single samples. */
+ * shaders/README.md in double precision. Light coordinates are judged twice: on the frame's own P
+ * and N, and on libosd's surface at the frame's (face, u, v). Their change over a pixel is judged
+ * by differences on libosd's surface, colours as single samples. */
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -17,24 +17,26 @@ namespace
 {
 
 const int width_px = 320, height_px = 240;
-/* Of a light's width or height; by the radian where normals move lines further than that. */
+/* Of a light's width or height; where a turn of the normal moves lines further than that, by that
+ * turn in radians. */
 const double max_formula_error = 6e-7;
 const double max_surface_p999 = 1e-6;
 const double max_change_p999 = 1e-3; /* relative */
 const double max_locked_p999 = 1e-6;
-/* Differences say nothing where a pixel sees this share of a light or more, at silhouettes and
- * horizons, nor where a quarter of the step changes them by more than `settled`, next to
- * extraordinary vertices and creases. Both are few. */
+/* Differences are not judged where a pixel spans this share of a light or more (at silhouettes and
+ * horizons), nor where a quarter of the step changes them by more than `settled` (beside
+ * extraordinary vertices and creases). Both are rare. */
 const double max_change = 0.25, settled = 2e-5;
-const double min_change = 1e-3; /* 1000 pixels from border to border */
+const double min_change = 1e-3; /* 1000 pixels from one border of the light to the other */
 const double max_unsettled = 0.03;
-const double step_px = 0.002;          /* of the differences */
-const double edge_width = 1e-5;        /* as far from an edge, either colour may show */
-const double max_wrong_colours = 2e-4; /* where edges meet, either side may be missed */
-const double rounding = 0.6 / 255;     /* of a colour */
+const double step_px = 0.002;   /* of the differences */
+const double edge_width = 1e-5; /* within this distance of an edge, both colours are right */
+/* share of pixels; near a place where edges meet, the colour of one side may be absent */
+const double max_wrong_colours = 2e-4;
+const double rounding = 0.6 / 255; /* of a colour */
 
-/* Libosd's surface about one pixel: at its (face, u, v), and a step left, right, up and down, and
- * the same with a quarter of the step. */
+/* Libosd's surface around one pixel: at the pixel's (face, u, v); one step to the left, right, up
+ * and down; and the same with a quarter of the step. */
 struct surroundings {
     bool at_centre = false, about = false;
     vec3 p[9], n[9];
@@ -51,8 +53,8 @@ surroundings look_about(const model &model, const projector &camera, const plane
     around.at_centre = around.about = true;
     around.p[0] = sample.p;
     around.n[0] = sample.normal();
-    /* About the point itself: at silhouettes lines change within the hundredth of a pixel by which
-     * it may miss its pixel's centre. */
+    /* The steps are made around the surface's own point: at silhouettes, lines change within the
+     * hundredth of a pixel by which that point may miss the pixel's centre. */
     projected at = camera.project(sample.p);
     for (int k = 0; k < 8 && around.about; k++) {
         double step = (k < 4 ? step_px : step_px / 4) * (k % 2 ? 1 : -1);
@@ -72,14 +74,14 @@ struct figures {
     std::vector<double> surface, change;
 };
 
-/* The distance of two places on a light. */
+/* The distance between two places on a light. */
 double apart(double s, double t, const light_hit &hit)
 {
     return std::hypot(coordinate_difference(s, hit.s, hit.s_wraps),
                       coordinate_difference(t, hit.t, hit.t_wraps));
 }
 
-/* How far the place on the light moves by a turn of the normal, 1/rad, and 1 at least. */
+/* How far the place on the light moves when the normal turns, in 1/rad; at least 1. */
 double sensitivity(const line_tracer &tracer, vec3 p, vec3 n, const light_hit &hit)
 {
     const double turn = 1e-6;
@@ -92,7 +94,8 @@ double sensitivity(const line_tracer &tracer, vec3 p, vec3 n, const light_hit &h
     return std::fmax(1, sum);
 }
 
-/* The light coordinates' change over a pixel, by central differences on the points from `first`. */
+/* The change of the light coordinates over a pixel, by central differences of the points from
+ * `first` on. */
 bool change_by_differences(const line_tracer &tracer, const surroundings &around, int first,
                            double step, double change[4])
 {
@@ -110,7 +113,7 @@ bool change_by_differences(const line_tracer &tracer, const surroundings &around
     return true;
 }
 
-/* As a share of the change, or of the least that any pattern feels. */
+/* As a share of the change, or of the smallest change that affects any pattern. */
 double relative_difference(const double a[4], const double b[4])
 {
     double off = 0, size = min_change;
@@ -138,7 +141,8 @@ void measure_change(const line_tracer &tracer, const surroundings &around, const
         f->change.push_back(relative_difference(found, expected));
 }
 
-/* The colour must lie between those of places so near that single precision may have meant them. */
+/* The colour must lie between the colours at places so near that single precision cannot
+ * distinguish them. */
 void measure_colour(const line_tracer &tracer, const planes &planes, size_t i, double turn,
                     figures *f)
 {
@@ -189,7 +193,7 @@ figures measure(const line_tracer &tracer, const std::vector<surroundings> &arou
                 f.surface.push_back(apart(planes.s[i], planes.t[i], truth) / k);
             measure_change(tracer, around[i], planes, i, &f);
         }
-        if (k < 100) /* else many lines lie within the edges' width */
+        if (k < 100) /* else many lines lie within the width that is not judged */
             measure_colour(tracer, planes, i, edge_width, &f);
     }
     return f;
@@ -221,7 +225,7 @@ void judge(const model &model, const view &view, const named_setup &named,
                    what + std::to_string(f.wrong_colour) + " pixels of the wrong colour");
 }
 
-/* Every setup, or every other one, from the given one on. */
+/* Every setup, or every second one, from the given one on. */
 void judge_view(const std::string &sheen, const model &model, view view, size_t from, size_t stride,
                 verdict *verdict)
 {
@@ -237,7 +241,7 @@ void judge_view(const std::string &sheen, const model &model, view view, size_t 
                                         &planes, &exit_code);
         if (!verdict->check(wrong.empty(), named.name + ": " + wrong))
             continue;
-        if (around.empty()) { /* the surface is the same in all frames of this view */
+        if (around.empty()) { /* all frames of this view have the same surface */
             around.resize(planes.face.size());
             for (size_t i = 0; i < around.size(); i++)
                 if (planes.hit(i))
@@ -262,7 +266,7 @@ int main(int argc, char **argv)
     for (const std::string &path : list_models(std::vector<std::string>(argv + 2, argv + argc))) {
         model model = read_model(path);
         std::vector<view> views = model_views(model, width_px, height_px);
-        /* All setups in both views for the first model, in one of them for the others. */
+        /* All setups in both views for the first model; in one of the views for the others. */
         judge_view(argv[1], model, views[1], 0, stride, &verdict);
         judge_view(argv[1], model, views[2], stride - 1, stride, &verdict);
         stride = 2;

@@ -1,5 +1,6 @@
-/* test_mirror SHEEN PLANE.obj: a flat cage in z = 0 is a mirror. Its normal, the light's (s,t) and
- * the stripes have closed forms, and every stripe edge is a straight line of the picture. */
+/* test_mirror SHEEN PLANE.obj: a flat cage in z = 0 is a plane mirror. Its normal, the light's
+ * (s,t) and the stripes have closed forms, and every edge of a stripe is a straight line of the
+ * picture. */
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -13,7 +14,8 @@ namespace
 {
 
 const double max_normal_error = 1e-6; /* rad from (0,0,1) */
-const double max_light_px = 1e-3;     /* how far on the picture (s,t) belong from where they are */
+/* px: how far from its pixel the place lies to which (s,t) belong */
+const double max_light_px = 1e-3;
 const double max_bend_px = 1e-3;
 const double max_phase_error = 1e-4; /* of a period */
 const double stripe_duty = 0.4;
@@ -22,8 +24,8 @@ struct rectangle {
     vec3 centre, u, v;
 };
 
-/* (s,t) where the ray through (x, y), reflected by z = 0, meets the light's plane; NaN when it goes
- * the other way or lands outside the rectangle. */
+/* (s,t) of the point where the ray through (x, y), reflected by z = 0, meets the light's plane; NaN
+ * if the ray runs the other way or misses the rectangle. */
 bool mirror_light(const projector &camera, const rectangle &light, double x, double y, double *s,
                   double *t)
 {
@@ -34,7 +36,7 @@ bool mirror_light(const projector &camera, const rectangle &light, double x, dou
     vec3 normal = cross(light.u, light.v);
     double distance = dot(normal, light.centre - point) / dot(normal, reflected);
     vec3 offset = point + distance * reflected - light.centre;
-    /* u and v need not be perpendicular: coordinates by the reciprocal vectors. */
+    /* u and v need not be perpendicular, so coordinates use the reciprocal vectors. */
     vec3 by_u = cross(light.v, normal), by_v = cross(normal, light.u);
     *s = 0.5 + dot(offset, by_u) / dot(light.u, by_u);
     *t = 0.5 + dot(offset, by_v) / dot(light.v, by_v);
@@ -53,8 +55,8 @@ struct figures {
     std::vector<double> light_px, phase;
 };
 
-/* s and t on every pixel against the closed form. Within 1e-5 of the rectangle's edge a pixel may
- * be on either side. */
+/* s and t of every pixel against the closed form. A pixel within 1e-5 of the rectangle's edge may
+ * lie on either side. */
 void measure_light(const projector &camera, const scene &scene, const planes &planes, figures *f)
 {
     const rectangle &light = scene.light;
@@ -89,7 +91,7 @@ struct point {
     double x, y;
 };
 
-/* Where the cubic through values at -1, 0, 1, 2 is `level`, in [0, 1]; by bisection. */
+/* Where the cubic through values at -1, 0, 1 and 2 reaches `level`, in [0, 1]; by bisection. */
 double crossing(const double value[4], double level)
 {
     auto cubic = [&](double x) {
@@ -105,7 +107,7 @@ double crossing(const double value[4], double level)
     return 0.5 * (low + high);
 }
 
-/* The largest distance of points from their own best line. */
+/* The largest distance of the points from their best-fitting line. */
 double straightness(const std::vector<point> &points)
 {
     double n = (double)points.size(), mx = 0, my = 0, xx = 0, xy = 0, yy = 0, worst = 0;
@@ -123,10 +125,11 @@ double straightness(const std::vector<point> &points)
     return worst;
 }
 
-/* Every stripe edge, located along rows between pixels by s, must be a straight line. */
+/* Every stripe edge, located between pixels of a row by s, must be a straight line. */
 void measure_edges(const planes &planes, int stripe_count, figures *f)
 {
-    std::map<long, std::vector<point>> edges; /* by twice the period, odd for the falling edge */
+    /* key: twice the period's number, odd for the falling edge */
+    std::map<long, std::vector<point>> edges;
     for (int y = 0; y < planes.height_px; y++)
         for (int x = 1; x + 2 < planes.width_px; x++) {
             double value[4];
@@ -151,8 +154,8 @@ void measure_edges(const planes &planes, int stripe_count, figures *f)
     }
 }
 
-/* Away from edges by a pixel and a half, all bright pixels look alike, all dark ones too, and
- * bright is brighter. */
+/* More than a pixel and a half away from edges, all bright pixels have the same colour, all dark
+ * ones too, and bright is brighter than dark. */
 void measure_colours(const projector &camera, const scene &scene, const planes &planes, figures *f)
 {
     const rectangle &light = scene.light;

@@ -1,8 +1,8 @@
-/* test_numbers FLAT MODEL...: random setups of families, lights, eyes and cameras, far and thin
- * ones among them: the light plane of each frame against the formulas of shaders/README.md in
- * double on the frame's own P and N. The error must be what rounding to single precision explains.
- * And on a flat model turned in space, setups where rounding decides at every pixel: all must show
- * the one answer that README.md gives. */
+/* test_numbers FLAT MODEL...: random families, lights, eyes and cameras, some of them far or thin.
+ * The light plane of each frame is compared with the formulas of shaders/README.md in double
+ * precision on the frame's own P and N; rounding to single precision must explain the error.
+ * Further, setups of a rotated flat model in which rounding decides at every pixel: all pixels must
+ * show the single answer that README.md gives. */
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -20,12 +20,13 @@
 namespace
 {
 
-const int width_px = 65, height_px = 49; /* odd: the middle one's centre sees the target */
+/* odd, so that the target is at the middle pixel's centre */
+const int width_px = 65, height_px = 49;
 const int n_setups = 200;
 const double max_ratio = 4;
-/* Pixels at which rounding of P and N decides whether the light is met. */
+/* Pixels at which the rounding of P and N decides whether the light is met. */
 const double max_undecided = 0.01;
-const size_t min_met = 300; /* of each family and light */
+const size_t min_met = 300; /* pixels of each family and light */
 const double ulp = std::ldexp(1, -24);
 
 frame_request request_of(const scene &scene, const seen_setup &asked, bool filtered)
@@ -52,11 +53,12 @@ frame_request request_of(const scene &scene, const seen_setup &asked, bool filte
 
 struct figures {
     size_t setups = 0, seen = 0, met = 0, undecided = 0, wrong = 0;
-    size_t coloured = 0; /* where lights are not met all is black */
+    size_t coloured = 0; /* black where no light is met */
     double ratio = 0;
 };
 
-/* Half a unit in the last place of a coordinate, or of its distance from the light's centre. */
+/* Half a unit in the last place of a coordinate, or of the coordinate's distance from the light's
+ * centre. */
 double rounding_of(double coordinate)
 {
     int exponent;
@@ -65,9 +67,10 @@ double rounding_of(double coordinate)
     return std::ldexp(ulp, exponent - 1);
 }
 
-/* How far (s,t) moves when P, N and the view of P are off by their rounding, and whether the light
- * is met wherever they may lie within a few times that. (Of a near line eye P's rounding turns the
- * view as far; a far one's is a unit vector in single precision as N is.) */
+/* How far (s,t) moves if P, N and the view of P are wrong by their rounding, and whether the light
+ * is met for all values within a few times that rounding. (For a near line eye, P's rounding turns
+ * the view by its own amount; for a far one, the view is a unit vector in single precision, like
+ * N.) */
 struct explained {
     double s = 0, t = 0;
     bool decided = true;
@@ -215,9 +218,9 @@ void judge_model(const std::string &path, unsigned seed, verdict *verdict)
     judge(thin, "far, thin tunnel", verdict);
 }
 
-/* --- where rounding decides at every pixel */
+/* --- setups in which rounding decides at every pixel */
 
-/* A frame in space, so that no coordinate of the flat model is a round number. */
+/* A rotated coordinate system, in which no coordinate of the flat model is a round number. */
 const vec3 across = normalized({0.8, 0.5, -0.33}),
            normal = normalized(cross(across, {0.1, 0.7, 1})), along = cross(normal, across),
            origin = {0.3, -0.7, 0.21};
@@ -243,7 +246,7 @@ std::shared_ptr<const struct cage> turned_cage(const std::string &path)
 
 struct flat_case {
     const char *what;
-    bool all; /* every pixel meets the light, or none */
+    bool all; /* whether every pixel meets the light; otherwise none must */
     line_setup setup;
 };
 
@@ -267,7 +270,7 @@ line_setup seen_from(line_setup setup, line_eye_kind kind, vec3 eye)
     return setup;
 }
 
-/* The model lies in z = 0 of the turned frame, from -1 to 1 in x and y. */
+/* In rotated coordinates the model lies in z = 0, from -1 to 1 in x and y. */
 std::vector<flat_case> flat_cases()
 {
     const auto reflection = line_family::reflection, highlight = line_family::highlight;

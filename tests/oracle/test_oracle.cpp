@@ -1,4 +1,4 @@
-/* test_oracle: the oracle itself against closed forms, before it judges anything. */
+/* test_oracle: judges the oracle itself by closed forms. */
 #include <array>
 #include <cstdio>
 #include <string>
@@ -10,7 +10,7 @@
 namespace
 {
 
-/* A cage with its memory. */
+/* A cage with the memory that it refers to. */
 struct built_cage {
     std::vector<std::array<double, 3>> points;
     std::vector<uint32_t> start = {0}, corners;
@@ -62,7 +62,7 @@ const double height_factor[4][4] = {{0.3, -0.2, 0.05, 0.01},
                                     {-0.06, 0.02, 0.01, -0.002},
                                     {0.01, -0.005, 0.003, 0.0007}};
 
-/* Any bicubic over [0, n]^2 as a grid of quads; its height by (derivative in x, in y). */
+/* A bicubic over [0, n]^2 as a grid of quads, and its height by (derivative in x, in y). */
 double height(int dx, int dy, double x, double y)
 {
     double sum = 0;
@@ -114,7 +114,7 @@ void test_bicubic(verdict *verdict)
     verdict->at_most(worst, 1e-12, "bicubic: position and derivatives to second order");
 }
 
-/* With boundary edges infinitely sharp, the border is the B-spline curve of the border points. */
+/* If boundary edges are infinitely sharp, the border is the B-spline curve of the border points. */
 void test_boundary(verdict *verdict)
 {
     built_cage grid = bicubic_grid(4);
@@ -159,7 +159,7 @@ void test_cube(verdict *verdict)
     built_cage cage = cube();
     osd_oracle oracle(cage.view());
     osd_sample s;
-    bool found = oracle.evaluate(0, 0, 0, &s); /* vertex 4 = (-1,-1,1) */
+    bool found = oracle.evaluate(0, 0, 0, &s); /* vertex 4 is at (-1,-1,1) */
     double c = 3.0 / 8 + (1.0 / 6) - (1.0 / 24);
     verdict->check(found && length(s.p - c * vec3{-1, -1, 1}) < 1e-13, "limit of a cube's corner");
     found = oracle.evaluate(0, 0.5, 0.5, &s);
@@ -171,7 +171,7 @@ void test_cube(verdict *verdict)
     verdict->check(!open.evaluate(0, 0.5, 0.5, &s) && open.evaluate(1, 0.5, 0.5, &s), "a hole");
 }
 
-/* Infinite sharpness everywhere leaves the polyhedron itself. */
+/* If every edge is infinitely sharp, the surface is the polyhedron itself. */
 void test_sharp(verdict *verdict)
 {
     built_cage cage = cube();
@@ -191,7 +191,7 @@ void test_sharp(verdict *verdict)
     verdict->check(found && length(s.p - vec3{-1, -1, 1}) < 1e-12, "sharp corners alone");
 }
 
-/* On a pentagon among quads, derivatives are those of the Ptex face's own u and v. */
+/* On a pentagon among quads, derivatives are by the Ptex face's own u and v. */
 void test_ngon_derivatives(verdict *verdict)
 {
     built_cage cage;

@@ -1,6 +1,6 @@
-/* test_patterns SHEEN PLANE.obj: patterns whose edges run across one another, and lights that end
- * within the picture, against many samples a pixel. The plane mirrors them without a bend, so that
- * what is left is the filter's own error: below one in a hundred. */
+/* test_patterns SHEEN PLANE.obj: patterns whose edges cross each other, and lights that end within
+ * the picture, against many samples for each pixel. The plane mirrors them without bending, so the
+ * remaining error is that of the filter: below one part in a hundred. */
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -17,21 +17,22 @@
 namespace
 {
 
-const int width_px = 96, height_px = 64, samples = 32; /* a pixel, each way */
-/* In 1/255: a hundredth of a pixel's area, which the sRGB curve stretches where little of it is
- * bright, and half a step of the colour. */
+/* samples for each pixel, in each direction */
+const int width_px = 96, height_px = 64, samples = 32;
+/* In 1/255: a hundredth of a pixel's area, which the sRGB curve enlarges where little of the area
+ * is bright, and half a step of the colour. */
 const double max_error = 3.0 + 0.5;
-/* Of what has edges along the rows of samples, which then are off themselves, and of images, which
- * are a sum of samples: 99 of 100 pixels. */
+/* For patterns with edges along the rows of samples, where the samples themselves are inexact, and
+ * for images, which are sums of samples: 99 of 100 pixels. */
 const double max_p99 = 4, max_image_p99 = 8;
-const double px = 1.0 / height_px; /* in units: the camera sees one from top to bottom */
+const double px = 1.0 / height_px; /* in units: the camera's picture is one unit high */
 
 struct scene {
     std::string name;
     std::vector<std::string> options;
 };
 
-/* From straight above: a pixel is a square of the plane, and the mirrored ray goes straight up. */
+/* From straight above: a pixel is a square of the plane, and the reflected ray goes straight up. */
 const std::vector<std::string> camera = {"--eye", "0,0,1", "--target", "0,0,0",
                                          "--up",  "0,1,0", "--ortho",  "1"};
 
@@ -43,7 +44,7 @@ void add_light(std::vector<std::string> *options, vec3 centre, vec3 u, vec3 v,
                      comma_separated(u), "--light-v", comma_separated(v), "--pattern", pattern});
 }
 
-/* A pattern on a light that fills the picture, whose sides are not at right angles with `shear`. */
+/* A pattern on a light that fills the picture; with `shear`, its sides are not at right angles. */
 scene pattern_scene(const std::string &pattern, double shear)
 {
     scene scene = {pattern + (shear > 0 ? ", sheared" : ""), camera};
@@ -51,8 +52,8 @@ scene pattern_scene(const std::string &pattern, double shear)
     return scene;
 }
 
-/* White lights on black, so small that their corners are most of them, but wider than a pixel.
- */
+/* White lights on black, so small that most of their area is near corners, but wider than a
+ * pixel. */
 scene corner_scene()
 {
     const double deg = M_PI / 180;
@@ -70,7 +71,7 @@ scene corner_scene()
     return scene;
 }
 
-/* `image`: a file. */
+/* `image`: the path of a file. */
 std::vector<scene> scenes(const std::string &image)
 {
     return {

@@ -1,6 +1,6 @@
-/* test_random_cages [SEED]: 300 cages of random_cage.h, each against libosd in double: every point
- * of three levels of refinement, and the tables at random places. With a seed: that cage alone,
- * written to random_cage_SEED.obj in the working folder. */
+/* test_random_cages [SEED]: 300 cages of random_cage.h, each against libosd in double precision:
+ * every point of three levels of refinement, and the tables at random places. With a seed only that
+ * cage is tested, and written to random_cage_SEED.obj in the working folder. */
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -25,7 +25,7 @@ const size_t n_samples = 3000, min_samples = 500;
 const double max_refined = 1e-12, max_position_p999 = 1e-6; /* of the cage's diagonal */
 const double max_normal_p999_rad = 2e-6;
 
-/* How many cages had what the test is there for, and how far off they were. */
+/* How many cages had each feature that the test is meant for, and the largest errors. */
 struct census {
     size_t without_surface = 0, non_manifold = 0;
     size_t worn_off = 0, foreign = 0; /* see look_at_sheets() */
@@ -43,8 +43,9 @@ bool runs_through(const topology &t, uint32_t corner)
                                  corner_vertex(&t, corner_prev(&t, last));
 }
 
-/* Whether at a vertex of several sheets semi-sharp creases end, and whether a sheet there is closed
- * by itself or between two sides of one edge, so that its vertex runs along a crease of others. */
+/* Whether a vertex of several sheets is the end of semi-sharp creases, and whether one of its
+ * sheets is a closed fan or lies between two sides of one edge, so that the crease of other sheets
+ * passes through the vertex. */
 void look_at_sheets(const cage &cage, census *all)
 {
     topology t;
@@ -104,7 +105,7 @@ void try_seed(uint64_t seed, bool write, census *all, verdict *verdict)
     }
 }
 
-/* The whole space was met. */
+/* Whether every feature occurred. */
 void judge_census(const census &all, verdict *verdict)
 {
     verdict->check(all.without_surface <= n_cages / 10, "too many cages with hardly any surface");

@@ -1,5 +1,5 @@
-/* test_refine MODEL...: our own refinement of every quad, by its rings, against libosd's uniform
- * refinement of the cage, levels 1 to 4, every vertex. */
+/* test_refine MODEL...: sheen's refinement of every quad, by its rings, against libosd's uniform
+ * refinement of the cage: every vertex of levels 1 to 4. */
 #include <cmath>
 #include <cstdio>
 #include <memory>

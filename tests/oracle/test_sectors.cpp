@@ -1,7 +1,8 @@
-/* test_sectors: boundary, crease and corner sectors of 1 to 12 faces, levels 1 to 30, rings rough
- * at random, against repeated local refinement in long double: normal and curvature inside the
- * faces, and the vertex's own normal against what the normals inside the faces come to. No GPU, no
- * libosd, whose across-tangent belongs to another edge rule (server/surface/subdivision/ring_limit.c). */
+/* test_sectors: sectors of 1 to 12 faces at boundaries, creases and corners, levels 1 to 30, with
+ * random rings, against repeated local refinement in long double: normal and curvature inside the
+ * faces, and the vertex's own normal against the limit of the normals inside the faces. Needs no
+ * GPU, and no libosd, whose tangent across a crease belongs to another edge rule
+ * (server/surface/subdivision/ring_limit.c). */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,24 +22,29 @@ namespace
 const int max_faces = 12, max_level = 30, deep_level = 24, simple_faces = 4;
 const int places_per_level = 8, rays_per_face = 5, cages_per_shape = 3;
 const double max_normal_p999_rad = 2e-6;
-const double max_curvature_p999 = 1e-4;      /* to simple_faces and deep_level */
-const double max_curvature_deep_p999 = 5e-4; /* beyond */
-const double max_vertex_deg = 0.01;          /* of the vertex's normal from the normals' limit */
-/* A smooth corner of one face turns on as 1/level: its normal is that of level 32. */
+const double max_curvature_p999 = 1e-4;      /* for up to simple_faces faces and up to deep_level */
+const double max_curvature_deep_p999 = 5e-4; /* for more faces, or deeper */
+/* angle of the vertex's normal to the limit of the normals */
+const double max_vertex_deg = 0.01;
+/* At a smooth corner of one face the normal keeps turning by 1/level, so the bound is that of level
+ * 32. */
 const double max_vertex_one_face_deg = 0.2;
-/* What four faces and more still turn at the last level is beyond what one normal could be. */
+/* If the limits of the normals along several rays differ by more than this, the vertex has no
+ * single normal. */
 const double min_spread_deg = 0.05;
 
 struct sector {
     fan_shape shape;
-    int faces;       /* of the sector, from ray 0 on */
-    bool has_normal; /* as the eigenvalues say */
+    int faces;       /* of the sector, counted from ray 0 */
+    bool has_normal; /* as the eigenvalues predict */
 };
 
 struct figures {
-    std::vector<double> normal_rad, curvature[2]; /* to deep_level, and beyond */
+    std::vector<double> normal_rad, curvature[2]; /* up to deep_level, and deeper */
     double limit_deg = 0,
-           last_deg = 0; /* from the vertex's normal: the limit's, the last level's */
+           /* angle to the vertex's normal: of the extrapolated limit, and of the last level's
+            * normal */
+        last_deg = 0;
     size_t missing = 0, wrong_kind = 0;
 };
 
@@ -64,8 +70,8 @@ void compare(const table_evaluator &tables, const local_surface &truth, uint32_t
     f->curvature[level > deep_level].push_back(off / size);
 }
 
-/* Where the normals come to along a ray towards the vertex, by three levels of the truth: what the
- * next ones leave of a change goes on as the last (Aitken), if it shrinks by a factor at all. */
+/* The limit of the normals along a ray towards the vertex, from three levels of the reference: if
+ * the changes shrink by a constant factor, they are extrapolated by it (Aitken). */
 bool follow_ray(const local_surface &truth, uint32_t corner, double a, double b, vec3 *last,
                 vec3 *limit)
 {
@@ -82,7 +88,7 @@ bool follow_ray(const local_surface &truth, uint32_t corner, double a, double b,
     return true;
 }
 
-/* The vertex's normal, as the face at that corner tells it. */
+/* The vertex's normal as the face at that corner gives it. */
 void compare_vertex(const table_evaluator &tables, const local_surface &truth, uint32_t corner,
                     bool has_normal, figures *f)
 {

@@ -1,6 +1,6 @@
-/* test_shares MODEL...: the coverage plane is the share of each pixel that shows surface. Held
- * against 20 x 20 samples of each pixel: frames of so many times the size, whose pixels' centres
- * are met by the surface or not. */
+/* test_shares MODEL...: the coverage plane holds the share of each pixel that shows surface. It is
+ * compared with 20 x 20 samples of each pixel: the centres of a frame enlarged by that factor,
+ * which meet the surface or do not. */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,14 +20,14 @@ namespace
 const int side = 20, per_pixel = side * side;
 const uint32_t width_px = 160, height_px = 120;
 const uint32_t seed = 5;
-const int n_views = 5; /* the default camera, and others at random */
-/* Of each model's pixels that an edge runs through, so many are within most_off of their share. Many
- * of the car's parts are narrower than such a pixel, so that the centre of none sees them: 0.990
- * were measured in its first n_first views, and 0.971 in all. */
+const int n_views = 5; /* the default camera, and random ones */
+/* Of each model's pixels that an edge crosses, at least this share is within most_off of the right
+ * value. Many parts of the car are narrower than a pixel, so that no pixel's centre sees them:
+ * 0.990 was measured in its first n_first views, and 0.971 in all. */
 const int n_first = 3;
 const double most_off = 0.1, least_good = 0.99, least_good_car_first = 0.98, least_good_car = 0.965;
 
-/* White before what is clear. */
+/* White in front of transparent. */
 frame_request request_for(const scene &scene, int view, std::mt19937 *random)
 {
     frame_request request = scene.request(width_px, height_px);
@@ -51,7 +51,7 @@ frame_request request_for(const scene &scene, int view, std::mt19937 *random)
     return request;
 }
 
-/* Samples that meet the surface, of per_pixel of each pixel. */
+/* For each pixel, how many of its per_pixel samples meet the surface. */
 std::vector<int> sampled(drawing *drawing, frame_request request)
 {
     request.width_px *= (uint32_t)side;
@@ -104,7 +104,7 @@ void judge_share(const tally &all, double least, const std::string &what, verdic
     verdict->at_most(bad, 1 - least, what + ", share of the pixels at edges that are off");
 }
 
-/* The views of a model do not depend on which models are judged before it. */
+/* A model's views do not depend on which models were judged before it. */
 void judge(const std::string &path, verdict *verdict)
 {
     bool is_car = path.find("catmark_car") != std::string::npos;

@@ -1,6 +1,6 @@
-/* test_twin MODEL...: a cage and its twins, rotated, re-indexed and re-wound, have one surface; and
- * where two faces, or two leaves of one face, meet there is no gap, and no step in the normal
- * unless the cage says so. */
+/* test_twin MODEL...: a cage and its twins, which are rotated, renumbered and rewound, have the
+ * same surface. Where two faces, or two leaves of one face, meet, there is no gap, and no step in
+ * the normal unless a tag asks for it. */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,16 +20,16 @@ namespace
 {
 
 const double max_gap = 1e-7;      /* of the cage's diagonal */
-const double max_step_rad = 5e-6; /* of the normal, both sides single precision */
-const double max_twin_rad = 4e-6; /* two times what one table may be off */
+const double max_step_rad = 5e-6; /* of the normal; both sides are in single precision */
+const double max_twin_rad = 4e-6; /* twice the error that one table may have */
 const int n_places = 20000, n_edge_places = 5, deepest = 20;
 
 struct figures {
     std::vector<double> gap, step_rad;
-    size_t presence = 0; /* places where only one has a surface */
+    size_t presence = 0; /* places where only one of the two has a surface */
 };
 
-/* Normals are only compared where both sides have one. */
+/* Normals are compared only if both sides have one. */
 void compare(const surface_point &a, const surface_point &b, bool smooth, double diagonal,
              figures *f)
 {
@@ -56,8 +56,8 @@ void judge_figures(const std::string &what, double max_rad, figures *f, verdict 
 
 struct twin {
     loose_cage cage;
-    std::vector<uint32_t> face;  /* where each of the original's faces went */
-    std::vector<uint32_t> start; /* and which of its corners is the original's first */
+    std::vector<uint32_t> face;  /* the twin's face for each face of the original */
+    std::vector<uint32_t> start; /* and the twin's corner that was the original's first */
     bool rewound;
     double axis[3][3]; /* rows of the rotation */
 };
@@ -105,7 +105,7 @@ twin make_twin(const loose_cage &original, bool rewound, std::mt19937_64 *random
         for (uint32_t &v : corners)
             v = vertex[v];
         if (rewound)
-            std::reverse(corners.begin() + 1, corners.end()); /* the first stays first */
+            std::reverse(corners.begin() + 1, corners.end()); /* the first corner remains first */
         uint32_t start = (uint32_t)((*random)() % corners.size());
         std::rotate(corners.rbegin(), corners.rbegin() + start, corners.rend());
         t.start.push_back(start);
@@ -160,10 +160,10 @@ figures compare_twin(const loose_cage &loose, const table_evaluator &tables,
 /* --- edges --- */
 
 struct side {
-    uint32_t face, corner; /* the edge runs from this corner to the next */
+    uint32_t face, corner; /* the edge runs from this corner to the next one */
 };
 
-/* The place `along` that edge, from its first corner. */
+/* The place at `along` of that edge, from its first corner. */
 place on_edge(const solid_cage &cage, const loose_cage &loose, side s, double along)
 {
     uint32_t n = (uint32_t)loose.faces[s.face].size();
@@ -185,7 +185,7 @@ edge_map find_edges(const loose_cage &loose)
     return edges;
 }
 
-/* Places along an edge: its middle part, and near both ends as deep as tables go. */
+/* Places on an edge: in its middle part, and near both ends, as deep as tables reach. */
 double edge_place(std::mt19937_64 *random)
 {
     std::uniform_real_distribution<double> unit(0, 1);
@@ -208,7 +208,7 @@ figures compare_edges(const loose_cage &loose, const solid_cage &cage,
         const std::vector<side> &s = edge.second;
         if (s.size() != 2 ||
             loose.faces[s[0].face][s[0].corner] == loose.faces[s[1].face][s[1].corner])
-            continue; /* an end of the surface, many faces, or against the winding */
+            continue; /* the surface ends, more than two faces meet, or the windings disagree */
         auto found = sharp.find(edge.first);
         bool smooth = found == sharp.end() || found->second < CAGE_SHARPNESS_INFINITE;
         for (int i = 0; i < n_edge_places; i++) {
@@ -222,7 +222,7 @@ figures compare_edges(const loose_cage &loose, const solid_cage &cage,
     return f;
 }
 
-/* The four borders inside every split node; what meets there is always smooth. */
+/* The four borders inside every split node. The surface is always smooth across them. */
 figures compare_leaves(const table_evaluator &tables, double diagonal)
 {
     std::mt19937_64 random(5);
@@ -234,10 +234,11 @@ figures compare_leaves(const table_evaluator &tables, double diagonal)
         for (uint32_t e = 0; e < 4; e++)
             for (int i = 0; i < 2; i++) {
                 double along = edge_place(&random);
-                bool upright = e == 0 || e == 2; /* child e and the next lie side by side */
+                bool upright = e == 0 || e == 2; /* child e and the next child are neighbours */
                 surface_point p, q;
                 uint32_t a = node.first + e, b = node.first + ((e + 1) & 3);
-                double near = e < 2; /* the border is child e's far side, and b's near one */
+                /* the common border is the far side of child e, and the near side of b */
+                double near = e < 2;
                 if (tables.evaluate_node(a, upright ? near : along, upright ? along : near, &p) &&
                     tables.evaluate_node(b, upright ? 1 - near : along, upright ? along : 1 - near,
                                          &q))

@@ -1,9 +1,9 @@
 /* test_zoom SHEEN MODEL...: cameras so close to an extraordinary vertex that a pixel is 2^-24 of a
- * face, by nearness and by a narrow field of view: every pixel still shows the limit surface, where
- * its ray meets it, against repeated local refinement in long double.
- *
- * The cage is moved so that the vertex is at the origin and turned so that it is corner 0 of its
- * faces: single precision then tells P, u and v of every pixel apart. */
+ * face, once by a small distance and once by a narrow field of view. Every pixel must still show
+ * the limit surface where the pixel's ray meets it, as repeated local refinement in long double
+ * gives it. The cage is moved so that the vertex is at the origin, and its faces are rotated so
+ * that the vertex is their corner 0: only then can single precision distinguish P, u and v of every
+ * pixel. */
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,15 +24,17 @@ namespace
 
 const double pixel_of_face = 1.0 / (1 << 24);
 const double max_residual_px = 0.2;
-const double max_normal_p999_rad = 2e-6, max_normal_high_p999_rad = 2e-5; /* to 8 faces; beyond */
-const double max_curvature_p999 = 1e-4;   /* relative to the larger one */
-const double flat_per_pixel = 1e-12;      /* curvature times a pixel's size that counts as none */
-const double max_position_p999_px = 0.05; /* P to the surface at (face, u, v) */
-/* With the eye a face's size away and that pixel, single precision knows the eye to a pixel only:
- * measured 1.6 px for P, 0.83 px for (u, v) and 4.1 px for P along the ray. */
+/* for up to 8 faces; for more */
+const double max_normal_p999_rad = 2e-6, max_normal_high_p999_rad = 2e-5;
+const double max_curvature_p999 = 1e-4; /* relative to the larger curvature */
+/* a curvature times a pixel's size below this counts as zero */
+const double flat_per_pixel = 1e-12;
+const double max_position_p999_px = 0.05; /* distance of P to the surface at (face, u, v) */
+/* If the eye is a face's size away, single precision knows the eye's position to one such pixel
+ * only: measured were 1.6 px for P, 0.83 px for (u, v) and 4.1 px for P along the ray. */
 const double max_narrow_residual_px = 2, max_narrow_position_px = 6;
 const int width_px = 320, height_px = 240, n_levels = 44;
-const size_t max_vertices = 5; /* of a model */
+const size_t max_vertices = 5; /* vertices of one model */
 
 struct corner_vertex {
     std::string kind;
@@ -43,7 +45,8 @@ struct corner_vertex {
 struct vertex_tags {
     size_t n_faces = 0, n_sharp = 0, n_semisharp = 0, n_open = 0;
     bool tagged = false, hole = false;
-    bool shared = false; /* another vertex is at the same place: other surface may hide this one */
+    /* another vertex has the same position, so other surface may hide this one */
+    bool shared = false;
 };
 
 std::vector<vertex_tags> read_tags(const loose_cage &cage)
@@ -75,7 +78,8 @@ std::vector<vertex_tags> read_tags(const loose_cage &cage)
     return tags;
 }
 
-/* One of every kind and number of faces, as far as max_vertices go. Cones' tips have no normal. */
+/* Chooses a vertex of every kind and number of faces, up to max_vertices. Tips of cones have no
+ * normal and are left out. */
 std::vector<corner_vertex> choose_vertices(const loose_cage &cage)
 {
     std::vector<vertex_tags> tags = read_tags(cage);
@@ -96,7 +100,7 @@ std::vector<corner_vertex> choose_vertices(const loose_cage &cage)
             found.insert({{kind, t.n_faces}, v});
     }
     std::vector<corner_vertex> chosen;
-    std::map<std::string, size_t> taken; /* every kind before a second of any */
+    std::map<std::string, size_t> taken; /* first one of every kind, then a second of each */
     for (size_t round = 0; round < max_vertices; round++)
         for (const auto &f : found)
             if (chosen.size() < max_vertices && taken[f.first.first] == round &&
@@ -108,7 +112,7 @@ std::vector<corner_vertex> choose_vertices(const loose_cage &cage)
     return chosen;
 }
 
-/* The vertex at the origin, and first in its faces. */
+/* Moves the vertex to the origin, and makes it the first corner of its faces. */
 loose_cage about_vertex(const loose_cage &cage, uint32_t vertex)
 {
     loose_cage out = cage;
@@ -117,7 +121,7 @@ loose_cage about_vertex(const loose_cage &cage, uint32_t vertex)
         if (at != face.end())
             std::rotate(face.begin(), at, face.end());
     }
-    for (int pass = 0; pass < 2; pass++) { /* the second takes up what the first rounded away */
+    for (int pass = 0; pass < 2; pass++) { /* the second pass corrects the rounding of the first */
         solid_cage solid(out);
         local_surface surface(solid.cage, vertex, n_levels);
         local_sample s;
@@ -136,7 +140,7 @@ loose_cage about_vertex(const loose_cage &cage, uint32_t vertex)
 struct scene {
     view camera;
     double pixel; /* world units at the target */
-    bool whole;   /* the surface fills the picture */
+    bool whole;   /* so that the surface fills the picture */
     bool narrow;
 };
 
@@ -145,7 +149,7 @@ vec3 across(vec3 n)
     return normalized(cross(n, std::fabs(n.x) < 0.6 ? vec3{1, 0, 0} : vec3{0, 1, 0}));
 }
 
-/* Looking at the vertex a little off the normal: from nearby, or from a face's size away. */
+/* Looks at the vertex, a little off its normal: from nearby, or from a face's size away. */
 scene make_scene(const loose_cage &cage, const solid_cage &solid, const local_surface &surface,
                  const corner_vertex &v, bool from_near)
 {
@@ -173,7 +177,8 @@ scene make_scene(const loose_cage &cage, const solid_cage &solid, const local_su
 
 struct figures {
     size_t hit = 0, elsewhere = 0, compared = 0;
-    double residual_px = 0, place_px = 0; /* off the pixel's ray: P; the surface at (face, u, v) */
+    /* distance from the pixel's ray: of P; of the surface at (face, u, v) */
+    double residual_px = 0, place_px = 0;
     std::vector<double> normal_rad, curvature, position_px, depth;
 };
 
@@ -183,7 +188,7 @@ figures measure(const scene &scene, const planes &planes, const local_surface &s
     figures f;
     projector camera(scene.camera);
     auto worse = [&](double *worst, vec3 p,
-                     size_t i) { /* keeps NaN */
+                     size_t i) { /* also true for NaN */
                                  projected q = camera.project(p);
                                  double off = std::hypot(q.x - ((double)(i % width_px) + 0.5),
                                                          q.y - ((double)(i / width_px) + 0.5));
@@ -195,13 +200,13 @@ figures measure(const scene &scene, const planes &planes, const local_surface &s
         auto corner = corner_of_ptex.find(planes.face[i]);
         local_sample truth;
         if (corner == corner_of_ptex.end()) {
-            f.elsewhere++; /* past a boundary whatever is behind shows */
+            f.elsewhere++; /* beyond a boundary other surface is visible, which is not judged */
             continue;
         }
         f.hit++;
         worse(&f.residual_px, planes.position(i), i);
         if (!surface.evaluate(corner->second, planes.u[i], planes.v[i], &truth))
-            continue; /* deeper still */
+            continue; /* deeper than the reference */
         worse(&f.place_px, truth.p, i);
         f.normal_rad.push_back(angle(planes.normal(i), truth.normal));
         double size = std::fmax(std::fabs(truth.k.least), std::fabs(truth.k.most));
@@ -243,7 +248,7 @@ void judge_view(const std::string &name, const corner_vertex &v, const scene &sc
                      what + "normal p99.9 (rad)");
 }
 
-/* Both views of one vertex. */
+/* Judges both views of one vertex. */
 void judge(const std::string &sheen, const std::string &name, const loose_cage &whole,
            const corner_vertex &v, verdict *verdict)
 {
@@ -279,7 +284,7 @@ void judge_model(const std::string &sheen, const std::string &path, verdict *ver
         judge(sheen, name, cage, v, verdict);
 }
 
-/* What models of cars have none of. */
+/* Kinds of vertices that models of cars lack. */
 std::vector<fan_shape> list_fans()
 {
     const float sharp = CAGE_SHARPNESS_INFINITE;
@@ -288,7 +293,8 @@ std::vector<fan_shape> list_fans()
             {"boundary", 3, false, {}, 0},
             {"boundary", 6, false, {}, 0},
             {"crease", 6, true, {{0, sharp}, {3, sharp}}, 0},
-            {"crease", 5, true, {{0, sharp}, {2, sharp}}, 0}, /* two plain faces on one side */
+            /* two faces on one side, without further tags */
+            {"crease", 5, true, {{0, sharp}, {2, sharp}}, 0},
             {"dart", 6, true, {{0, sharp}}, 0}};
 }
 

@@ -19,14 +19,15 @@ view look(const char *name, vec3 eye, vec3 target, vec3 up, int width_px, int he
     return view;
 }
 
-/* Any unit vector across n. */
+/* Any unit vector perpendicular to n. */
 vec3 across(vec3 n)
 {
     vec3 axis = std::fabs(n.x) < 0.6 ? vec3{1, 0, 0} : vec3{0, 1, 0};
     return normalized(cross(n, axis));
 }
 
-/* A fifth of a face high, a little off the normal, at the irregular vertex with the most faces. */
+/* A picture a fifth of a face high, a little off the normal, at the irregular vertex with most
+ * faces. */
 bool close_up(const model &model, int width_px, int height_px, view *view)
 {
     const osd_irregular *worst = nullptr;
@@ -51,7 +52,7 @@ bool close_up(const model &model, int width_px, int height_px, view *view)
     return true;
 }
 
-/* The number, or the `count` numbers of the array, that JSON has under a key. */
+/* Reads the number, or the `count` numbers of the array, that JSON has under a key. */
 bool numbers_after(const std::string &text, const std::string &key, int count, double *numbers)
 {
     size_t at = text.find("\"" + key + "\":");

@@ -1,5 +1,5 @@
-/* A worker whose parser has been taken over: the name of the "file" says what it tries. What the
- * sandbox lets pass ends in an answer that says so. */
+/* A worker whose parser was taken over by an attacker. The name of the "file" chooses what it
+ * tries. If the sandbox lets an attempt pass, the answer says so. */
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/futex.h>
@@ -15,7 +15,7 @@
 
 #include "server/sandbox/zygote.h"
 
-/* --- attempts that must not come back */
+/* --- attempts that the sandbox must prevent */
 
 static void try_open(void)
 {
@@ -29,7 +29,7 @@ static void try_socket(void)
 
 static void try_fork(void)
 {
-    syscall(SYS_clone, 17, 0, 0, 0, 0); /* SIGCHLD: as fork() */
+    syscall(SYS_clone, 17, 0, 0, 0, 0); /* SIGCHLD: like fork() */
 }
 
 static void try_exec(void)
@@ -146,7 +146,7 @@ static void answer_much(struct sink *answer)
         sink_bytes(answer, zeros, sizeof zeros);
 }
 
-/* Until there is no more; says then that there is none, as a parser does. */
+/* Allocates until memory runs out, and then reports that, like a parser. */
 static void answer_allocate(struct sink *answer)
 {
     struct error error = {0};
@@ -156,7 +156,7 @@ static void answer_allocate(struct sink *answer)
     answer_write_error(answer, &error);
 }
 
-/* A second of work. */
+/* Computes for a second. */
 static void answer_spin(struct sink *answer)
 {
     struct timespec start, now;
