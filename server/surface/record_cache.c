@@ -108,13 +108,22 @@ static uint64_t place_of(const struct record_cache *cache, uint64_t key)
     return (mixed ^ mixed >> 29) & cache->mask;
 }
 
+/* A record's place in a segment that has been reserved. The read is atomic because reserve() may try
+ * to set `records` again in another thread. */
+static char *place_in(const struct record_cache *cache, const struct segment *segment,
+                      uint64_t number)
+{
+    return __atomic_load_n(&segment->records, __ATOMIC_RELAXED) +
+           (size_t)(number % cache->per_segment) * cache->record_bytes;
+}
+
 static const void *record_of(struct record_cache *cache, uint64_t entry)
 {
     uint32_t number = (uint32_t)(entry & ((1u << NUMBER_BITS) - 1)) - 1;
     struct segment *segment = &cache->segment[number / cache->per_segment];
     if (__atomic_load_n(&segment->used_in, __ATOMIC_RELAXED) != cache->use)
         __atomic_store_n(&segment->used_in, cache->use, __ATOMIC_RELAXED);
-    return segment->records + (size_t)(number % cache->per_segment) * cache->record_bytes;
+    return place_in(cache, segment, number);
 }
 
 const void *record_cache_find(struct record_cache *cache, uint64_t key)
@@ -157,8 +166,7 @@ const void *record_cache_add(struct record_cache *cache, uint64_t key, const voi
     struct segment *segment = &cache->segment[number / cache->per_segment];
     if (!reserve(cache, segment))
         return NULL;
-    memcpy(segment->records + number % cache->per_segment * cache->record_bytes, record,
-           cache->record_bytes);
+    memcpy(place_in(cache, segment, number), record, cache->record_bytes);
     uint64_t own = key << NUMBER_BITS | (number + 1);
     for (uint64_t at = place_of(cache, key);; at = (at + 1) & cache->mask) {
         uint64_t entry = 0;
