@@ -106,7 +106,7 @@ WORKER_SHARED_SRC := server/sandbox/stream.c server/sandbox/job.c server/sandbox
 ZYGOTE_SRC := server/sandbox/zygote.c server/sandbox/sandbox.c server/sandbox/threads.c
 # The rooms of the daemon alone.
 SERVICE_SRC := $(foreach room,net session frame assets output threads ops,$(wildcard server/$(room)/*.c))
-CLIENT_LIB_SRC := $(wildcard client/lib/*.c)
+CLIENT_LIB_SRC := $(wildcard client/lib/*.c client/lib/*/*.c)
 CLIENT_CLI_SRC := $(wildcard client/cli/*.c client/cli/*/*.c)
 CLIENT_SRC := $(CLIENT_LIB_SRC) $(CLIENT_CLI_SRC)
 SHADERS := $(sort $(wildcard shaders/*.glsl))
@@ -141,8 +141,8 @@ CLI_OBJ := $(call obj,$(CLIENT_CLI_SRC) protocol/number.c protocol/ranges.c prot
 SERVER_LIBS := -lepoxy -lprotobuf-nanopb -lzstd -lz -lturbojpeg -lssl -lcrypto -linih -lm
 CAGE_WORKER_LIBS := -ltinygltf -lm
 IMAGE_WORKER_LIBS := -lOpenImageIO -lOpenImageIO_Util -lm
-LIBSHEEN_LIBS := -lprotobuf-nanopb -lzstd -lssl -lcrypto -lm
-CLIENT_LIBS := $(LIBSHEEN_LIBS) -lpng -ljansson
+LIBSHEEN_LIBS := -lprotobuf-nanopb -ljansson -lzstd -lssl -lcrypto -lm
+CLIENT_LIBS := $(LIBSHEEN_LIBS) -lpng
 TEST_LIBS := $(SERVER_LIBS) $(CAGE_WORKER_LIBS) $(IMAGE_WORKER_LIBS) -lpng -ljansson
 
 .PHONY: all

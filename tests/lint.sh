@@ -43,6 +43,7 @@ $found"
 common='server/base'
 room protocol '' 'both sides speak by it'
 room client/lib 'protocol' 'a client needs nothing of the daemon'
+room client/lib/files 'client/lib|protocol' 'reading files for uploads needs no session'
 room client/cli/base 'client/lib|protocol' 'every part of the command knows it'
 room client/cli/files 'client/lib|client/cli/base|protocol' 'files as they are sent, without options and sessions'
 room client/cli/options 'client/lib|protocol' 'the command line is data'
@@ -118,7 +119,7 @@ only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned fun
     'server client protocol'
 only_in '#include <OpenImageIO|OIIO::' 'OpenImageIO code' 'server client protocol' server/image/image.cpp
 only_in '#include <turbojpeg|\btj[A-Z][A-Za-z0-9]*\(' 'libjpeg-turbo code' 'server client protocol' server/output/jpeg.c
-only_in '#include <jansson' 'jansson code' 'server client protocol' client/cli/files/gltf_pack.c
+only_in '#include <jansson' 'jansson code' 'server client protocol' client/lib/files/gltf_pack.c
 only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32)(_combine)?\(' 'zlib code' \
     'server client protocol' server/output/png.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf/

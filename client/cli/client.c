@@ -8,7 +8,6 @@
 
 #include "client/cli/base/clock.h"
 #include "client/cli/files/file.h"
-#include "client/cli/files/gltf_pack.h"
 #include "client/cli/base/failure.h"
 #include "client/cli/options/values.h"
 #include "client/cli/files/weld_tag.h"
@@ -60,9 +59,8 @@ static enum sheen_status read_model(struct client *client, const struct options 
                                     uint8_t **bytes, size_t *n_bytes)
 {
     const char *path = options->model;
-    enum sheen_status status = file_read(path, SHEEN_BAD_MODEL, bytes, n_bytes, &client->error);
-    if (!status)
-        status = gltf_pack(path, bytes, n_bytes, &client->error);
+    enum sheen_status status =
+        sheen_read_file(SHEEN_FILE_MODEL, path, bytes, n_bytes, &client->error);
     if (!status && options->weld)
         status = weld_tag_append(path, bytes, n_bytes, &client->error);
     return status ? status
@@ -219,7 +217,8 @@ static enum sheen_status upload_image(struct client *client, const char *path,
 {
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
-    enum sheen_status status = file_read(path, SHEEN_BAD_IMAGE, &bytes, &n_bytes, &client->error);
+    enum sheen_status status =
+        sheen_read_file(SHEEN_FILE_IMAGE, path, &bytes, &n_bytes, &client->error);
     if (!status)
         status = take_id(client, path, SHEEN_BAD_IMAGE, bytes, n_bytes, id);
     if (!status)

@@ -8,25 +8,6 @@
 
 #include <sheen.h>
 
-/* Reads a file. The caller frees the bytes; NULL if it cannot be read. */
-static unsigned char *read_file(const char *path, size_t *n_bytes)
-{
-    unsigned char *bytes = NULL;
-    long size = -1;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return NULL;
-    if (fseek(file, 0, SEEK_END) == 0 && (size = ftell(file)) > 0 && fseek(file, 0, SEEK_SET) == 0)
-        bytes = malloc((size_t)size);
-    if (bytes && fread(bytes, 1, (size_t)size, file) != (size_t)size) {
-        free(bytes);
-        bytes = NULL;
-    }
-    fclose(file);
-    *n_bytes = (size_t)size;
-    return bytes;
-}
-
 static int write_file(const char *path, const void *bytes, size_t n_bytes)
 {
     FILE *file = fopen(path, "wb");
@@ -41,6 +22,7 @@ int main(int argc, char **argv)
     struct sheen_request request = SHEEN_REQUEST_DEFAULTS;
     struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
     struct sheen_session *session = NULL;
+    uint8_t *bytes;
     size_t n_bytes;
     int code = 0;
 
@@ -48,11 +30,11 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: picture MODEL FILE.png [ADDRESS]\n");
         return 2;
     }
-    unsigned char *bytes = read_file(argv[1], &n_bytes);
-    if (!bytes || !sheen_file_id(bytes, n_bytes, request.model_id)) {
-        fprintf(stderr, "picture: cannot read %s\n", argv[1]);
-        return 3;
+    if (sheen_read_file(SHEEN_FILE_MODEL, argv[1], &bytes, &n_bytes, &error)) {
+        fprintf(stderr, "picture: %s\n", error.text);
+        return sheen_status_exit_code(error.status);
     }
+    sheen_file_id(bytes, n_bytes, request.model_id);
     options.address = argc > 3 ? argv[3] : NULL;
     memcpy(options.model_id, request.model_id, SHEEN_ID_BYTES);
     request.width_px = 320;

@@ -7,8 +7,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -75,16 +73,18 @@ double share_of(const sheen_frame &frame)
 
 void run(const char *path, int n_frames, const char *address)
 {
-    std::ifstream file(path, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(file)), {});
     sheen_error error;
+    std::uint8_t *bytes;
+    std::size_t n_bytes;
+    check(sheen_read_file(SHEEN_FILE_MODEL, path, &bytes, &n_bytes, &error), error);
+    const std::unique_ptr<std::uint8_t, decltype(&std::free)> file(bytes, std::free);
     sheen_request request = sheen_request_defaults();
     sheen_frame frame = sheen_frame_defaults();
     std::unique_ptr<sheen_frame, decltype(&sheen_frame_finish)> owner(&frame, sheen_frame_finish);
-    sheen_file_id(bytes.data(), bytes.size(), request.model_id);
+    sheen_file_id(bytes, n_bytes, request.model_id);
     const session_pointer session = open_session(address, request);
-    check(sheen_upload(session.get(), SHEEN_FILE_MODEL, request.model_id, bytes.data(),
-                       bytes.size(), path, nullptr, &error),
+    check(sheen_upload(session.get(), SHEEN_FILE_MODEL, request.model_id, bytes, n_bytes, path,
+                       nullptr, &error),
           error);
     request.width_px = 160;
     request.height_px = 120;

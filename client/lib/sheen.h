@@ -6,17 +6,22 @@
  *     struct sheen_request request = SHEEN_REQUEST_DEFAULTS;         // 1280x720, a PNG file
  *     struct sheen_frame frame = SHEEN_FRAME_DEFAULTS;
  *     struct sheen_session *session = NULL;
+ *     uint8_t *bytes = NULL;
+ *     size_t n_bytes;
  *
+ *     if (sheen_read_file(SHEEN_FILE_MODEL, "hood.obj", &bytes, &n_bytes, &error))
+ *         return show(error.text);
  *     sheen_file_id(bytes, n_bytes, request.model_id);
  *     if (sheen_connect(&session, &options, &error) ||
  *         sheen_upload(session, SHEEN_FILE_MODEL, request.model_id, bytes, n_bytes, "hood.obj",
  *                      NULL, &error) ||
  *         sheen_render(session, &request, NULL, &frame, &error))
- *         fprintf(stderr, "%s\n", error.text);
+ *         show(error.text);
  *     else
  *         fwrite(frame.data, 1, frame.data_bytes, out);
  *     sheen_frame_finish(&frame);
  *     sheen_close(session);
+ *     free(bytes);
  *
  * In C++ the defaults are functions: `sheen_request request = sheen_request_defaults();`.
  *
@@ -203,6 +208,18 @@ enum sheen_file_kind { SHEEN_FILE_MODEL, SHEEN_FILE_IMAGE };
 
 /* Computes the id of a file: the SHA-256 of its bytes. False only if libcrypto fails. */
 bool sheen_file_id(const void *bytes, size_t n_bytes, uint8_t id[SHEEN_ID_BYTES]);
+
+/* Reads a file of 1 byte to 1 GiB for sheen_upload(). A glTF model as JSON (.gltf) may name files that
+ * hold its buffers: those are read as well, and *bytes is a GLB file that contains model and
+ * buffers. Only files in the model's folder or below are read, also where a name is a symbolic link,
+ * and no URL is fetched. Images that a model names are not read, because a cage has none.
+ *
+ * On success *bytes has *n_bytes bytes from malloc(), which the program frees by free(); on failure
+ * *bytes is NULL. SHEEN_BAD_MODEL or SHEEN_BAD_IMAGE, by `kind`, if a file cannot or must not be
+ * read; SHEEN_TOO_BIG if it is larger, together with its buffers; SHEEN_NO_MEMORY. Needs no session,
+ * any thread. */
+enum sheen_status sheen_read_file(enum sheen_file_kind kind, const char *path, uint8_t **bytes,
+                                  size_t *n_bytes, struct sheen_error *error);
 
 /* Uploads a file, unless the daemon has it; a broken upload continues where it stopped. `id` is
  * sheen_file_id() of the bytes; the daemon verifies it. `name` is the file's name; folders in it

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/cli/files/gltf_pack.h"
+#include "client/lib/files/gltf_pack.h"
 #include "tests/fuzz/fuzz.h"
 
 #define PATH "tests/fuzz/model.gltf"

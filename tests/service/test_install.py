@@ -1,4 +1,6 @@
 """make install: what it brings, that it builds nothing again, and that programs build with what it brought."""
+import base64
+import json
 import os
 import re
 import shutil
@@ -248,6 +250,18 @@ class Examples(Installed):
         self.assertNotIn("-lssl", self.pkg_config("--libs"))
         self.assertIn("-lssl", self.pkg_config("--static", "--libs"))
 
+    def split_gltf(self):
+        """fender.gltf with its buffer in a file beside it."""
+        with open(os.path.join(MODELS, "fender.gltf"), encoding="utf-8") as file:
+            gltf = json.load(file)
+        with open(os.path.join(self.work, "fender.bin"), "wb") as file:
+            file.write(base64.b64decode(gltf["buffers"][0]["uri"].partition(",")[2]))
+        gltf["buffers"][0]["uri"] = "fender.bin"
+        model = os.path.join(self.work, "fender.gltf")
+        with open(model, "w", encoding="utf-8") as file:
+            json.dump(gltf, file)
+        return model
+
     def test_c(self):
         model = os.path.join(MODELS, "fender.obj")
         program = self.build(["gcc", "-std=c11"], "picture.c", "picture",
@@ -256,6 +270,7 @@ class Examples(Installed):
                                 text=True).stdout
         self.assertIn("[libsheen.so.0]", needed)
         self.assert_same_picture(program, model)
+        self.assert_same_picture(program, self.split_gltf())
 
     def test_c_without_the_shared_library(self):
         model = os.path.join(MODELS, "fender.obj")

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "client/cli/files/file.h"
+#include "client/lib/files/read_file.h"
 
 static char folder[64];
 
@@ -45,7 +46,7 @@ static void assert_holds(const char *path, const char *text)
     struct sheen_error error;
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
-    assert_int_equal(file_read(path, SHEEN_BAD_MODEL, &bytes, &n_bytes, &error), SHEEN_OK);
+    assert_int_equal(read_file(path, SHEEN_BAD_MODEL, &bytes, &n_bytes, &error), SHEEN_OK);
     assert_int_equal(n_bytes, strlen(text));
     assert_memory_equal(bytes, text, n_bytes);
     free(bytes);
@@ -129,21 +130,21 @@ static void files_that_cannot_be_read(void **state)
     struct sheen_error error;
     uint8_t *bytes = NULL;
     size_t n_bytes;
-    assert_int_equal(file_read("none.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+    assert_int_equal(read_file("none.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
                      SHEEN_BAD_MODEL);
     assert_non_null(strstr(error.text, "none.obj: No such file"));
     fclose(fopen("empty.obj", "w"));
-    assert_int_equal(file_read("empty.obj", SHEEN_BAD_IMAGE, &bytes, &n_bytes, &error),
+    assert_int_equal(read_file("empty.obj", SHEEN_BAD_IMAGE, &bytes, &n_bytes, &error),
                      SHEEN_BAD_IMAGE);
     assert_non_null(strstr(error.text, "empty.obj: is empty"));
     /* a sparse file, which takes no space */
     assert_int_equal(truncate("empty.obj", 1024ll * 1024 * 1024 + 1), 0);
-    assert_int_equal(file_read("empty.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+    assert_int_equal(read_file("empty.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
                      SHEEN_TOO_BIG);
     unlink("empty.obj");
-    assert_int_equal(file_read(".", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error), SHEEN_BAD_MODEL);
+    assert_int_equal(read_file(".", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error), SHEEN_BAD_MODEL);
     assert_int_equal(mkfifo("pipe.obj", 0600), 0);
-    assert_int_equal(file_read("pipe.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+    assert_int_equal(read_file("pipe.obj", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
                      SHEEN_BAD_MODEL); /* returns at once and does not wait */
     unlink("pipe.obj");
     assert_null(bytes);
@@ -159,7 +160,7 @@ static void links_are_refused_anywhere_in_a_path(void **state)
     assert_int_equal(file_write("real/a", (const uint8_t *)"abc", 3, &error), SHEEN_OK);
     assert_int_equal(symlink("a", "real/link"), 0);
     assert_int_equal(symlink("real", "folder"), 0);
-    assert_int_equal(file_read_linkless("real/a", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+    assert_int_equal(read_file_linkless("real/a", SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
                      SHEEN_OK);
     assert_int_equal(n_bytes, 3);
     assert_memory_equal(bytes, "abc", 3);
@@ -167,7 +168,7 @@ static void links_are_refused_anywhere_in_a_path(void **state)
     static const char *const links[] = {"real/link", "folder/a"};
     for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
         assert_holds(links[i], "abc");
-        assert_int_equal(file_read_linkless(links[i], SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
+        assert_int_equal(read_file_linkless(links[i], SHEEN_BAD_MODEL, &bytes, &n_bytes, &error),
                          SHEEN_BAD_MODEL);
         assert_non_null(strstr(error.text, "Too many levels of symbolic links"));
     }

@@ -1,6 +1,5 @@
 /* A .gltf file and the files beside it become one GLB; no file outside its folder is read. */
-#include "client/cli/files/file.h"
-#include "client/cli/files/gltf_pack.h"
+#include "client/lib/files/gltf_pack.h"
 #include "protocol/limits.h"
 #include "tests/unit/gltf_sample.h"
 
@@ -393,6 +392,57 @@ static void test_same_cage(void **state)
     cage_finish(&whole);
 }
 
+/* sheen_read_file() as programs call it: a .gltf becomes the GLB of gltf_pack(), and every other file
+ * comes as it is. */
+static void test_read_file(void **state)
+{
+    (void)state;
+    static const char json[] = "{\"buffers\":[{\"byteLength\":8,\"uri\":\"a.bin\"}]}";
+    static const char missing[] = "{\"buffers\":[{\"byteLength\":8,\"uri\":\"no.bin\"}]}";
+    struct bytes packed;
+    struct sheen_error error;
+    uint8_t *bytes;
+    size_t n_bytes;
+    assert_int_equal(pack("part.gltf", json, &packed, &error), SHEEN_OK);
+    put_file("whole.bin", json, strlen(json));
+    assert_int_equal(sheen_read_file(SHEEN_FILE_MODEL, "whole.bin", &bytes, &n_bytes, &error),
+                     SHEEN_OK);
+    assert_int_equal(n_bytes, packed.size);
+    assert_memory_equal(bytes, packed.data, n_bytes);
+    free(bytes);
+    free(packed.data);
+    assert_int_equal(sheen_read_file(SHEEN_FILE_IMAGE, "whole.bin", &bytes, &n_bytes, NULL),
+                     SHEEN_OK);
+    assert_int_equal(n_bytes, strlen(json));
+    assert_memory_equal(bytes, json, n_bytes);
+    free(bytes);
+
+    put_file("whole.bin", missing, strlen(missing));
+    assert_int_equal(sheen_read_file(SHEEN_FILE_MODEL, "whole.bin", &bytes, &n_bytes, &error),
+                     SHEEN_BAD_MODEL);
+    assert_non_null(strstr(error.text, "whole.bin: buffer 0: no.bin: No such file"));
+    assert_null(bytes);
+    assert_int_equal(n_bytes, 0);
+    assert_int_equal(sheen_read_file(SHEEN_FILE_IMAGE, "no.png", &bytes, &n_bytes, &error),
+                     SHEEN_BAD_IMAGE);
+    assert_null(bytes);
+
+    const int no_kind = 2;
+    const struct {
+        int kind;
+        const char *path;
+        uint8_t **bytes;
+        size_t *n_bytes;
+    } bad[] = {{SHEEN_FILE_MODEL, NULL, &bytes, &n_bytes},
+               {SHEEN_FILE_MODEL, "a.bin", NULL, &n_bytes},
+               {SHEEN_FILE_MODEL, "a.bin", &bytes, NULL},
+               {no_kind, "a.bin", &bytes, &n_bytes}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(sheen_read_file((enum sheen_file_kind)bad[i].kind, bad[i].path,
+                                         bad[i].bytes, bad[i].n_bytes, &error),
+                         SHEEN_BAD_ARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -405,6 +455,7 @@ int main(void)
         cmocka_unit_test(test_too_big),
         cmocka_unit_test(test_same_cage),
         cmocka_unit_test(test_texts_and_numbers),
+        cmocka_unit_test(test_read_file),
     };
     return cmocka_run_group_tests_name("client/gltf_pack", tests, setup, teardown);
 }

@@ -1,4 +1,5 @@
-/* Reads and writes local files: whole, or not at all. Any thread. */
+/* The command's own files: reads a line, writes a whole file or none. Any thread. Files for uploads
+ * are read by sheen_read_file(). */
 #ifndef SHEEN_CLIENT_FILE_H
 #define SHEEN_CLIENT_FILE_H
 
@@ -6,17 +7,6 @@
 #include <stdint.h>
 
 #include "client/lib/sheen.h"
-
-/* Reads a file of 1 byte up to the protocol's largest upload. The caller frees *bytes. A file that
- * cannot be used returns `status`: SHEEN_BAD_MODEL or SHEEN_BAD_IMAGE. */
-enum sheen_status file_read(const char *path, enum sheen_status status, uint8_t **bytes,
-                            size_t *n_bytes, struct sheen_error *error);
-
-/* As file_read(), but no part of `path` may be a symbolic link. So a path from realpath() that was
- * checked is the file that is opened, even if links are placed meanwhile. Without openat2() in the
- * kernel only the last part is checked. */
-enum sheen_status file_read_linkless(const char *path, enum sheen_status status, uint8_t **bytes,
-                                     size_t *n_bytes, struct sheen_error *error);
 
 /* Reads the first line, without its end. SHEEN_BAD_ARGUMENT if the file cannot be read, or if the
  * line is empty or does not fit. */

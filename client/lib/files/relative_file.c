@@ -1,4 +1,4 @@
-#include "client/cli/files/relative_file.h"
+#include "client/lib/files/relative_file.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -8,8 +8,8 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#include "client/cli/files/file.h"
-#include "client/cli/base/failure.h"
+#include "client/lib/files/read_file.h"
+#include "client/lib/status.h"
 
 #define SHOWN_URI "%.120s"
 
@@ -98,20 +98,20 @@ static enum sheen_status read_below(const char *folder, const char *uri, const c
 {
     char *real = realpath(joined, NULL);
     if (!real)
-        return failure_set(error, SHEEN_BAD_MODEL, "%s: %s; the model needs it", joined,
-                           strerror(errno));
+        return status_set(error, SHEEN_BAD_MODEL, "%s: %s; the model needs it", joined,
+                          strerror(errno));
     struct stat about;
     enum sheen_status status;
     if (!is_below(real, folder))
-        status = failure_set(error, SHEEN_BAD_MODEL,
-                             "'" SHOWN_URI "' is a link to outside of the model's folder, where "
-                             "nothing is read",
-                             uri);
+        status = status_set(error, SHEEN_BAD_MODEL,
+                            "'" SHOWN_URI "' is a link to outside of the model's folder, where "
+                            "nothing is read",
+                            uri);
     else if (stat(real, &about) == 0 && about.st_size > 0 && (uint64_t)about.st_size > most)
         status =
-            failure_set(error, SHEEN_TOO_BIG, "%s: %lld bytes", joined, (long long)about.st_size);
+            status_set(error, SHEEN_TOO_BIG, "%s: %lld bytes", joined, (long long)about.st_size);
     else
-        status = file_read_linkless(real, SHEEN_BAD_MODEL, bytes, n_bytes, error);
+        status = read_file_linkless(real, SHEEN_BAD_MODEL, bytes, n_bytes, error);
     free(real);
     return status;
 }
@@ -122,14 +122,14 @@ enum sheen_status relative_file_read(const char *path, const char *uri, uint64_t
     char *relative = NULL, *joined = NULL;
     const char *problem = relative_path(uri, &relative);
     if (problem)
-        return failure_set(error, SHEEN_BAD_MODEL, "'" SHOWN_URI "' %s", uri, problem);
+        return status_set(error, SHEEN_BAD_MODEL, "'" SHOWN_URI "' %s", uri, problem);
     const char *slash = strrchr(path, '/');
     int folder_bytes = slash ? (int)(slash - path) + 1 : 0;
     enum sheen_status status = SHEEN_NO_MEMORY;
     char *folder = NULL;
     if (asprintf(&joined, "%.*s%s", folder_bytes, path, relative) < 0) {
         joined = NULL;
-        failure_set(error, status, "no memory for a path");
+        status_set(error, status, "no memory for a path");
         goto done;
     }
     char *folder_name = slash ? strndup(path, (size_t)folder_bytes) : strdup(".");
@@ -138,7 +138,7 @@ enum sheen_status relative_file_read(const char *path, const char *uri, uint64_t
     if (folder)
         status = read_below(folder, uri, joined, most, bytes, n_bytes, error);
     else
-        status = failure_set(error, SHEEN_BAD_MODEL, "the model's folder: %s", strerror(errno));
+        status = status_set(error, SHEEN_BAD_MODEL, "the model's folder: %s", strerror(errno));
 done:
     free(folder);
     free(joined);

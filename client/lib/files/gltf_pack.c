@@ -1,12 +1,12 @@
-#include "client/cli/files/gltf_pack.h"
+#include "client/lib/files/gltf_pack.h"
 
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/cli/files/relative_file.h"
-#include "client/cli/base/failure.h"
+#include "client/lib/files/relative_file.h"
+#include "client/lib/status.h"
 #include "protocol/limits.h"
 
 #define GLB_HEADER_BYTES 12u
@@ -37,11 +37,10 @@ static size_t aligned(size_t size)
 
 static enum sheen_status too_big(const struct pack *pack)
 {
-    return failure_set(
-        pack->error, SHEEN_TOO_BIG,
-        "%s: with the files beside it over %llu bytes, which is the most that can be "
-        "uploaded",
-        pack->path, (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
+    return status_set(pack->error, SHEEN_TOO_BIG,
+                      "%s: with the files beside it over %llu bytes, which is the most that can be "
+                      "uploaded",
+                      pack->path, (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
 }
 
 /* The URI of a buffer that names a file, or NULL. */
@@ -58,8 +57,8 @@ static enum sheen_status append(struct pack *pack, const uint8_t *bytes, size_t 
         return too_big(pack);
     uint8_t *grown = realloc(pack->binary, all);
     if (!grown)
-        return failure_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory for %zu bytes", pack->path,
-                           all);
+        return status_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory for %zu bytes", pack->path,
+                          all);
     memcpy(grown + pack->binary_bytes, bytes, n_bytes);
     memset(grown + pack->binary_bytes + n_bytes, 0, all - pack->binary_bytes - n_bytes);
     pack->binary = grown;
@@ -72,12 +71,12 @@ static enum sheen_status add_file(struct pack *pack, size_t index, const json_t 
 {
     json_int_t wanted = json_integer_value(json_object_get(buffer, "byteLength"));
     if (strlen(uri) != json_string_length(json_object_get(buffer, "uri")))
-        return failure_set(pack->error, SHEEN_BAD_MODEL,
-                           "%s: buffer %zu: its URI holds a zero byte", pack->path, index);
+        return status_set(pack->error, SHEEN_BAD_MODEL, "%s: buffer %zu: its URI holds a zero byte",
+                          pack->path, index);
     if (wanted < 1)
-        return failure_set(pack->error, SHEEN_BAD_MODEL,
-                           "%s: buffer %zu has no byteLength, a whole number from 1 up", pack->path,
-                           index);
+        return status_set(pack->error, SHEEN_BAD_MODEL,
+                          "%s: buffer %zu has no byteLength, a whole number from 1 up", pack->path,
+                          index);
     uint8_t *bytes = NULL;
     size_t n_bytes = 0;
     struct sheen_error inner = {0};
@@ -86,15 +85,14 @@ static enum sheen_status add_file(struct pack *pack, size_t index, const json_t 
     if (status == SHEEN_TOO_BIG)
         return too_big(pack);
     if (status)
-        return failure_set(pack->error, status, "%s: buffer %zu: %s", pack->path, index,
-                           inner.text);
+        return status_set(pack->error, status, "%s: buffer %zu: %s", pack->path, index, inner.text);
     pack->read_bytes += n_bytes;
     if (pack->read_bytes > PROTOCOL_MAX_UPLOAD_BYTES) { /* the file has grown */
         status = too_big(pack);
     } else if ((uint64_t)wanted > n_bytes) {
-        status = failure_set(pack->error, SHEEN_BAD_MODEL,
-                             "%s: buffer %zu has %lld bytes, but '%.100s' only %zu", pack->path,
-                             index, (long long)wanted, uri, n_bytes);
+        status = status_set(pack->error, SHEEN_BAD_MODEL,
+                            "%s: buffer %zu has %lld bytes, but '%.100s' only %zu", pack->path,
+                            index, (long long)wanted, uri, n_bytes);
     } else {
         pack->place[index] =
             (struct place){.offset = (json_int_t)pack->binary_bytes, .bytes = wanted};
@@ -127,7 +125,7 @@ static enum sheen_status pack_buffers(struct pack *pack, const json_t *buffers)
     json_decref(first);
     json_decref(left);
     return ok || status ? status
-                        : failure_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
+                        : status_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
 }
 
 /* Reads a member of a view as a whole number; 0 if it is absent. Refuses anything else, because the
@@ -139,9 +137,9 @@ static enum sheen_status whole_number(const struct pack *pack, size_t index, con
     *number = json_integer_value(value);
     return !value || json_is_integer(value)
                ? SHEEN_OK
-               : failure_set(pack->error, SHEEN_BAD_MODEL,
-                             "%s: buffer view %zu: %s is not a whole number", pack->path, index,
-                             key);
+               : status_set(pack->error, SHEEN_BAD_MODEL,
+                            "%s: buffer view %zu: %s is not a whole number", pack->path, index,
+                            key);
 }
 
 static enum sheen_status move_view(struct pack *pack, size_t index, json_t *view)
@@ -160,15 +158,15 @@ static enum sheen_status move_view(struct pack *pack, size_t index, json_t *view
         /* The view must lie within its buffer, because other buffers follow now. */
         if (offset < 0 || bytes < 0 || __builtin_add_overflow(offset, bytes, &end) ||
             end > place->bytes)
-            return failure_set(pack->error, SHEEN_BAD_MODEL,
-                               "%s: buffer view %zu ends beyond its buffer of %lld bytes",
-                               pack->path, index, (long long)place->bytes);
+            return status_set(pack->error, SHEEN_BAD_MODEL,
+                              "%s: buffer view %zu ends beyond its buffer of %lld bytes",
+                              pack->path, index, (long long)place->bytes);
         if (json_object_set_new(view, "byteOffset", json_integer(place->offset + offset)) != 0)
-            return failure_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
+            return status_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
     }
     return json_object_set_new(view, "buffer", json_integer(place->buffer)) == 0
                ? SHEEN_OK
-               : failure_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
+               : status_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
 }
 
 static void put_u32(uint8_t *at, size_t value)
@@ -189,8 +187,8 @@ static enum sheen_status write_container(struct pack *pack, uint8_t **bytes, siz
     if (text_bytes == 0 || !glb ||
         json_dumpb(pack->root, (char *)json, text_bytes, JSON_COMPACT) != text_bytes) {
         free(glb);
-        return failure_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory for %zu bytes", pack->path,
-                           all);
+        return status_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory for %zu bytes", pack->path,
+                          all);
     }
     memset(json + text_bytes, ' ', json_bytes - text_bytes);
     memcpy(glb, "glTF", 4);
@@ -213,7 +211,7 @@ static enum sheen_status pack_files(struct pack *pack, const json_t *buffers, ui
 {
     pack->place = calloc(pack->n_buffers, sizeof(*pack->place));
     if (!pack->place)
-        return failure_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
+        return status_set(pack->error, SHEEN_NO_MEMORY, "%s: no memory", pack->path);
     enum sheen_status status = pack_buffers(pack, buffers);
     json_t *views = json_object_get(pack->root, "bufferViews");
     for (size_t i = 0; !status && i < json_array_size(views); i++)
@@ -253,9 +251,9 @@ static enum sheen_status parse(struct pack *pack, const uint8_t *bytes, size_t n
         json_loadb(text, n_bytes - start, JSON_ALLOW_NUL | JSON_DECODE_INT_AS_REAL, NULL);
     bool needed = names_files(inexact);
     json_decref(inexact);
-    return needed ? failure_set(pack->error, SHEEN_BAD_MODEL,
-                                "%s:%d: %.100s; the files beside it cannot be packed with it",
-                                pack->path, problem.line, problem.text)
+    return needed ? status_set(pack->error, SHEEN_BAD_MODEL,
+                               "%s:%d: %.100s; the files beside it cannot be packed with it",
+                               pack->path, problem.line, problem.text)
                   : SHEEN_OK;
 }
 

@@ -18,7 +18,7 @@ bool relative_file_is_data(const char *uri);
  *
  * On failure *bytes is not set. SHEEN_BAD_MODEL for a URI with a scheme, an empty or absolute one,
  * one with "..", and a file outside of the folder; SHEEN_TOO_BIG for a file of more than `most`
- * bytes; SHEEN_NO_MEMORY; else as file_read(). Error texts name the file or the URI, not `path`. */
+ * bytes; SHEEN_NO_MEMORY; else as read_file(). Error texts name the file or the URI, not `path`. */
 enum sheen_status relative_file_read(const char *path, const char *uri, uint64_t most,
                                      uint8_t **bytes, size_t *n_bytes, struct sheen_error *error);
 

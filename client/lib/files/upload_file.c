@@ -1,0 +1,31 @@
+/* sheen_read_file() of sheen.h. */
+#include <stdlib.h>
+
+#include "client/lib/files/gltf_pack.h"
+#include "client/lib/files/read_file.h"
+#include "client/lib/status.h"
+
+enum sheen_status sheen_read_file(enum sheen_file_kind kind, const char *path, uint8_t **bytes,
+                                  size_t *n_bytes, struct sheen_error *error)
+{
+    bool is_model = kind == SHEEN_FILE_MODEL;
+    if (!path || !bytes || !n_bytes || (!is_model && kind != SHEEN_FILE_IMAGE))
+        return status_set(error, SHEEN_BAD_ARGUMENT,
+                          "sheen_read_file: kind must be a model or an image, and path, bytes and "
+                          "n_bytes not NULL");
+    *bytes = NULL;
+    *n_bytes = 0;
+    uint8_t *read = NULL;
+    size_t n_read = 0;
+    enum sheen_status status =
+        read_file(path, is_model ? SHEEN_BAD_MODEL : SHEEN_BAD_IMAGE, &read, &n_read, error);
+    if (!status && is_model)
+        status = gltf_pack(path, &read, &n_read, error);
+    if (status) {
+        free(read);
+        return status;
+    }
+    *bytes = read;
+    *n_bytes = n_read;
+    return SHEEN_OK;
+}
