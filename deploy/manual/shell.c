@@ -2,29 +2,41 @@
 
 #include <string.h>
 
-/* Writes the first part of a help text, in one line: up to a default, an explanation or a second
- * sentence. Characters in `escaped` get a backslash; a quotation mark ends and restarts the quoted
- * text. */
+#define MOST_DEFAULT_BYTES 48 /* a longer default would hide the summary of the next option */
+
+/* Writes the text in one line. Characters in `escaped` get a backslash; a quotation mark ends and
+ * restarts the quoted text. */
+static void put_text(FILE *out, const char *text, size_t length, const char *escaped)
+{
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] == '\'')
+            fputs("'\\'", out);
+        else if (strchr(escaped, text[i]))
+            fputc('\\', out);
+        fputc(text[i] == '\n' ? ' ' : text[i], out);
+    }
+}
+
+/* Writes the first part of a help text, up to a parenthesis, a semicolon, a colon or the end of the
+ * sentence; then the default, "(default: ...)", if there is a single and short one. */
 static void put_summary(FILE *out, const char *help, const char *escaped)
 {
-    static const char *const ends[] = {" (", "; ", ": ", ". ", ".\n"};
+    static const char *const ends[] = {" (", "\n(", "; ", ";\n", ": ", ":\n", ". ", ".\n"};
+    static const char mark[] = "(default: ";
     size_t length = strlen(help);
     for (size_t i = 0; i < sizeof(ends) / sizeof(*ends); i++) {
         const char *end = strstr(help, ends[i]);
         if (end && (size_t)(end - help) < length)
             length = (size_t)(end - help);
     }
-    const char *line = strstr(help, "\n(");
-    if (line && (size_t)(line - help) < length)
-        length = (size_t)(line - help);
     if (length > 0 && help[length - 1] == '.')
         length--;
-    for (size_t i = 0; i < length; i++) {
-        if (help[i] == '\'')
-            fputs("'\\'", out);
-        else if (strchr(escaped, help[i]))
-            fputc('\\', out);
-        fputc(help[i] == '\n' ? ' ' : help[i], out);
+    put_text(out, help, length, escaped);
+    const char *preset = strstr(help, mark);
+    size_t n = preset ? strcspn(preset + 1, "()") + 2 : 0;
+    if (preset && preset[n - 1] == ')' && n <= MOST_DEFAULT_BYTES && !strstr(preset + 1, mark)) {
+        fputc(' ', out);
+        put_text(out, preset, n, escaped);
     }
 }
 

@@ -19,7 +19,7 @@ struct shell_option {
     char letter;      /* 0: none */
     enum shell_value value;
     const char *words; /* values, separated by blanks; NULL: none */
-    const char *help;  /* its first part is shown */
+    const char *help;  /* its first part is shown, and a short default */
 };
 
 /* A command of the program. A program without commands has one, with name NULL. */

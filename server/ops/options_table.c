@@ -200,7 +200,7 @@ static const struct option_row OWN_ROWS[] = {
      "group whose members may connect to the Unix sockets; may be given several times", add_id},
     {"tls-cert", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,
      VALUE(service.access.tls_cert), 0, 0, NULL, NULL,
-     "PEM file with the certificate of tls: addresses, followed by its authorities", NULL},
+     "PEM file with the certificate for TLS addresses, followed by its authorities", NULL},
     {"tls-key", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS, VALUE(service.access.tls_key),
      0, 0, NULL, NULL, "PEM file with the key of --tls-cert", NULL},
     {"client-ca", "FILE", OPTION_TEXT, OPTION_IN_FILE | OPTION_RELOADS,

@@ -143,6 +143,21 @@ class Completions(unittest.TestCase):
                 self.assertIn(f"complete -c sheend -l {name} ", fish)
 
 
+    def test_what_zsh_and_fish_say(self):
+        """The first part of a help text, whole, and its default if that is short and the only one."""
+        said = {"size": "width and height of the picture (default: 1280x720)",
+                "fov": "vertical field of view, from 1e-6 to 179 degrees (default: 35)",
+                "cert": "PEM file with the certificate to present to a TLS server",
+                "show-range": "value at which the colours of --show end, on both sides",
+                "memory-budget": "memory of the private daemon for the model, its tables, images and frames together, "
+                                 "in main memory and on the device, at least 4M"}
+        zsh, fish = read("_sheen"), read("sheen.fish")
+        for name, words in said.items():
+            with self.subTest(option=name):
+                self.assertIn(f"--{name}[{words.replace(':', chr(92) + ':')}]", zsh)
+                self.assertRegex(fish, rf"from render' -l {name} .*-d '{re.escape(words)}'\n")
+
+
 class Terminal:
     """An interactive shell that is typed into."""
     def __init__(self, *command):

@@ -44,7 +44,7 @@ struct options {
     const char *native_isa;       /* NULL: auto */
     uint32_t native_threads;      /* 0: auto */
     uint64_t memory_budget_bytes; /* of the private daemon; 0: libsheen's default */
-    const char *ca, *cert, *key;  /* for a tls: server; NULL: none */
+    const char *ca, *cert, *key;  /* for a TLS server; NULL: none */
     bool share;                   /* other clients may use the uploads */
     bool weld;                    /* join the model's vertices at equal positions */
     const char *token_file;       /* --token-file, else SHEEN_TOKEN_FILE, else NULL */

@@ -394,14 +394,14 @@ const struct option_row OPTIONS_COMMON[] = {
      "(default: $SHEEN_SERVER, else a private daemon for this command)",
      apply_server, NULL},
     {"ca", 0, "FILE",
-     "PEM file with the authority that must have issued the certificate of a tls:\n"
+     "PEM file with the authority that must have issued the certificate of a TLS\n"
      "server (default: the authorities that the system trusts)",
      apply_ca, NULL},
-    {"cert", 0, "FILE", "PEM file with the certificate to present to a tls: server; with --key",
+    {"cert", 0, "FILE", "PEM file with the certificate to present to a TLS server; with --key",
      apply_cert, NULL},
     {"key", 0, "FILE", "PEM file with the key of --cert", apply_key, NULL},
     {"token-file", 0, "FILE",
-     "file whose first line is the token to present to a tls: server (default:\n"
+     "file whose first line is the token to present to a TLS server (default:\n"
      "$SHEEN_TOKEN_FILE, else none)",
      apply_token_file, NULL},
     {"share", 0, NULL,
