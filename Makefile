@@ -225,10 +225,10 @@ $(BUILD)/gen/lanes/%.cpp: $(SHADERS) shaders/programs shaders/listed.py $(wildca
 $(BUILD)/gen/shaders.c: $(SHADERS) shaders/programs shaders/listed.py shaders/embed.py
 	@mkdir -p $(@D)
 	$(Q)PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 shaders/embed.py $(SHADERS) > $@.part && mv $@.part $@
-# The places of EDGE_RAYS as C initialises them: rays.c reads them, too.
-$(BUILD)/gen/edge_rays.inc: shaders/rounded.glsl
+# A constant of a shader as the rows of a C array: server/render/native/rays/ask.c has the same places of rays.
+$(BUILD)/gen/edge_rays.inc: shaders/rounded.glsl shaders/lanes/constant.py shaders/lanes/parse.py
 	@mkdir -p $(@D)
-	$(Q)sed -n '/^const vec2 EDGE_RAYS/,/;/{s/.*\[16\](//;s/vec2(\([^)]*\))/{\1}/g;s/);//;s/\(\.[0-9]*\)/\1f/gp}' $< > $@
+	$(Q)PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=shaders /usr/bin/python3 -m lanes.constant $< EDGE_RAYS > $@.part && mv $@.part $@
 
 # sheend that fails where $SHEEN_FAULTS asks it to, and counts what its own code (no library's) takes from
 # the heap: what is installed cannot.

@@ -5,6 +5,7 @@ import sys
 import unittest
 
 from lanes_host import FLOATS, HEAD, LOCAL, N, STRIDE, UNSET, WHOLE, Failure, run_programs, translated
+from lanes.constant import rows
 from lanes_random import random_program
 
 MASK = 2**32 - 1
@@ -253,6 +254,16 @@ class Lanes(unittest.TestCase):
         with self.assertRaises(Failure) as caught:
             translated("refused", '# 7 "view.glsl"\nvoid main() {\n\n# 3 "hit.glsl" 2\n    put(x, 0u);\n}')
         self.assertEqual(str(caught.exception), "hit.glsl:3: x is not declared")
+
+    def test_a_constant_in_c(self):
+        text = ("const float A = 1.0;\nconst vec2 B[2] = vec2[2](\n    vec2(-0.5, 1.25),\n    vec2(0.75, .5));\n"
+                "const vec2 C[1] = vec2[1](vec2(A, 1.0));\n")
+        self.assertEqual(rows(text, "B"), [["-0.5f", "1.25f"], ["0.75f", ".5f"]])
+        for name, words in (("A", "line 1: A is no array of float vectors"), ("C", "line 5: a number with a point is wanted"),
+                            ("D", "there is no constant D")):
+            with self.assertRaises(Failure) as caught:
+                rows(text, name)
+            self.assertEqual(str(caught.exception), words)
 
 
 if __name__ == "__main__":
