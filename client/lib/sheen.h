@@ -39,8 +39,9 @@
  * owns everything that it returns, except where a comment says otherwise.
  *
  * Compatibility: a later version of the library with the same soname may add members at the end of
- * the structs that begin with `size`, but not of other structs. `size` is the struct's sizeof in the
- * program, which the defaults set, and at least 16. The library never touches bytes beyond `size`.
+ * the structs that begin with `size`, but not of other structs. New members never use padding of the
+ * earlier struct, so that `size` tells which members a program has. `size` is the struct's sizeof in
+ * the program, which the defaults set, and at least 16. The library never touches bytes beyond it.
  *   - Program compiled with an older sheen.h: members that it does not have get their defaults when the
  *     struct is an argument, and are not written when the struct is a result.
  *   - Program compiled with a newer sheen.h: members that the library does not have must be zero in an

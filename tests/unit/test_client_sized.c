@@ -212,6 +212,64 @@ static void defaults_are_the_same_both_ways(void **state)
     assert_int_equal(older.size, offsetof(struct sheen_request, camera));
 }
 
+#if UINTPTR_MAX == UINT64_MAX
+/* What each version added to the structs of sheen.h: the first and the last new member, and the
+ * struct's sizeof in that version. The rows of a struct stand in order. A row of a released version
+ * never changes; a version that adds members adds rows. */
+#define ADDED(name, first, last, size)                                                             \
+    {                                                                                              \
+#name, offsetof(struct name, first),                                                       \
+            offsetof(struct name, last) + sizeof(((struct name *)0)->last), size,                  \
+            sizeof(struct name)                                                                    \
+    }
+static const struct {
+    const char *name;
+    size_t first, end, size, size_now;
+} VERSIONS[] = {
+    ADDED(sheen_connect_options, size, native_threads, 128), /* 0.1 */
+    ADDED(sheen_server, size, max_in_flight, 64),
+    ADDED(sheen_model_info, size, findings, 5400),
+    ADDED(sheen_request, size, undecoded, 3280),
+    ADDED(sheen_frame, size, threads, 3824),
+    ADDED(sheen_stats, size, threads, 784),
+    /* Structs without `size` never change: each has one row. */
+    ADDED(sheen_error, status, text, 644),
+    ADDED(sheen_progress, report, context, 16),
+    ADDED(sheen_finding, kind, face, 20),
+    ADDED(sheen_valence, valence, count, 8),
+    ADDED(sheen_camera, projection, ortho_height, 128),
+    ADDED(sheen_pattern, kind, image_id, 280),
+    ADDED(sheen_light, kind, pattern, 360),
+    ADDED(sheen_lines, family, eye, 64),
+    ADDED(sheen_show, kind, without_legend, 48),
+    ADDED(sheen_extreme, has_value, v, 80),
+    ADDED(sheen_times, tables_us, total_us, 56),
+    ADDED(sheen_latency, frames, p99_us, 32),
+};
+
+static void members_stay_where_they_are(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof(VERSIONS) / sizeof(*VERSIONS); i++) {
+        bool follows = i > 0 && strcmp(VERSIONS[i].name, VERSIONS[i - 1].name) == 0;
+        bool is_newest = i + 1 == sizeof(VERSIONS) / sizeof(*VERSIONS) ||
+                         strcmp(VERSIONS[i].name, VERSIONS[i + 1].name) != 0;
+        if (VERSIONS[i].first < (follows ? VERSIONS[i - 1].size : 0))
+            fail_msg("%s: a new member begins in the older struct", VERSIONS[i].name);
+        if (VERSIONS[i].end > VERSIONS[i].size || VERSIONS[i].size - VERSIONS[i].end >= 8 ||
+            (is_newest && VERSIONS[i].size_now != VERSIONS[i].size))
+            fail_msg("%s: its last member ends at %zu of %zu bytes now, instead of %zu",
+                     VERSIONS[i].name, VERSIONS[i].end, VERSIONS[i].size_now, VERSIONS[i].size);
+    }
+}
+#else
+static void members_stay_where_they_are(void **state)
+{
+    (void)state;
+    skip();
+}
+#endif
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -220,6 +278,7 @@ int main(void)
         cmocka_unit_test(a_newer_program_asks_for_what_is_known),
         cmocka_unit_test(a_size_that_was_never_set_is_refused),
         cmocka_unit_test(defaults_are_the_same_both_ways),
+        cmocka_unit_test(members_stay_where_they_are),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
