@@ -489,17 +489,7 @@ static const struct option_row ROWS[] = {
     {0},
 };
 
-static const struct option_row *const TABLES_LIST[] = {ROWS,
-                                                       OPTIONS_JPEG,
-                                                       OPTIONS_SIZE,
-                                                       OPTIONS_SCENE,
-                                                       OPTIONS_SURFACE,
-                                                       OPTIONS_SCHEDULE,
-                                                       OPTIONS_MODEL,
-                                                       OPTIONS_COMMON,
-                                                       OPTIONS_RECONNECT,
-                                                       OPTIONS_OUTPUT,
-                                                       NULL};
+static const struct option_row *const TABLES_LIST[] = {ROWS, OPTIONS_OF_FRAMES, NULL};
 
 const struct command COMMAND_STREAM = {
     .name = "stream",

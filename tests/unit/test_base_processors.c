@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 
 #include "server/base/processors.h"
+#include "tests/unit/file_tree.h"
 
 static char folder[64];
 
@@ -29,20 +30,9 @@ static int teardown(void **state)
     return system(command);
 }
 
-/* A file below the folder, in folders made as needed. */
 static void put(const char *path, const char *text)
 {
-    char whole[300], *slash;
-    snprintf(whole, sizeof whole, "%s%s", folder, path);
-    for (slash = strchr(whole + strlen(folder) + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = 0;
-        mkdir(whole, 0700);
-        *slash = '/';
-    }
-    FILE *file = fopen(whole, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
+    put_below(folder, path, text);
 }
 
 static unsigned allowed(cpu_set_t *set)

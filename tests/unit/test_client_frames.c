@@ -7,6 +7,17 @@
 
 /* ---- frames ---- */
 
+/* Greets, reads a request, and begins its answer: FRAME of a PNG file of so many bytes. Returns the
+ * request's number. */
+static uint32_t begin_png(int fd, uint64_t data_bytes)
+{
+    greet(fd);
+    uint32_t seq = read_message(fd, NULL, 0).seq;
+    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, data_bytes);
+    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    return seq;
+}
+
 static void serve_file_in_two(int fd)
 {
     greet(fd);
@@ -54,47 +65,32 @@ static void a_file_arrives_whole(void **state)
 
 static void serve_gone_mid_frame(int fd)
 {
-    greet(fd);
-    uint32_t seq = read_message(fd, NULL, 0).seq;
-    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 1000);
-    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    uint32_t seq = begin_png(fd, 1000);
     send_header(fd, MESSAGE_DATA, MESSAGE_END, 1000, seq);
     send_bytes(fd, "half", 4);
 }
 
 static void serve_too_much_data(int fd)
 {
-    greet(fd);
-    uint32_t seq = read_message(fd, NULL, 0).seq;
-    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
-    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    uint32_t seq = begin_png(fd, 4);
     send_data(fd, seq, (const uint8_t *)"01234", 5, MESSAGE_END);
 }
 
 static void serve_no_end(int fd)
 {
-    greet(fd);
-    uint32_t seq = read_message(fd, NULL, 0).seq;
-    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
-    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    uint32_t seq = begin_png(fd, 4);
     send_data(fd, seq, (const uint8_t *)"0123", 4, 0);
 }
 
 static void serve_early_end(int fd)
 {
-    greet(fd);
-    uint32_t seq = read_message(fd, NULL, 0).seq;
-    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
-    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    uint32_t seq = begin_png(fd, 4);
     send_data(fd, seq, (const uint8_t *)"012", 3, MESSAGE_END);
 }
 
 static void serve_empty_data(int fd)
 {
-    greet(fd);
-    uint32_t seq = read_message(fd, NULL, 0).seq;
-    const sheen_Frame frame = frame_of(sheen_Encoding_ENCODING_PNG, 4);
-    send_message(fd, MESSAGE_FRAME, seq, &frame);
+    uint32_t seq = begin_png(fd, 4);
     send_data(fd, seq, (const uint8_t *)"", 0, 0);
 }
 

@@ -16,6 +16,7 @@
 #include "client/lib/machine_memory.h"
 #include "client/lib/private_daemon.h"
 #include "client/lib/sheen.h"
+#include "tests/unit/file_tree.h"
 
 static char folder[64], script_path[96], report_path[96];
 
@@ -162,20 +163,9 @@ static void arguments_and_files(void **state)
     no_child_is_left();
 }
 
-/* A file below the folder, in folders made as needed. */
 static void put(const char *path, const char *text)
 {
-    char whole[300], *slash;
-    snprintf(whole, sizeof(whole), "%s%s", folder, path);
-    for (slash = strchr(whole + strlen(folder) + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = 0;
-        mkdir(whole, 0700);
-        *slash = '/';
-    }
-    FILE *file = fopen(whole, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
+    put_below(folder, path, text);
 }
 
 static void remove_tree(void)

@@ -182,13 +182,19 @@ static void check_model_info(const uint8_t *bytes, size_t size)
         .has_up = true, .up = {0, 0, 1}, .has_fov_deg = true, .fov_deg = 35                        \
     }
 
-static void check_render_least(const uint8_t *bytes, size_t size)
+static sheen_Render least_render(sheen_Encoding encoding)
 {
     sheen_Render render = {.width_px = 1280,
                            .height_px = 720,
                            .planes = sheen_Plane_PLANE_COLOUR,
-                           .encoding = sheen_Encoding_ENCODING_PNG};
+                           .encoding = encoding};
     count_id(render.model_sha256);
+    return render;
+}
+
+static void check_render_least(const uint8_t *bytes, size_t size)
+{
+    sheen_Render render = least_render(sheen_Encoding_ENCODING_PNG);
     same_message(MESSAGE_RENDER, 4, &render, bytes, size);
 }
 
@@ -229,43 +235,31 @@ static void check_render_full(const uint8_t *bytes, size_t size)
 
 static void check_render_interactive(const uint8_t *bytes, size_t size)
 {
-    sheen_Render render = {.width_px = 1280,
-                           .height_px = 720,
-                           .planes = sheen_Plane_PLANE_COLOUR,
-                           .encoding = sheen_Encoding_ENCODING_PNG,
-                           .has_request_class = true,
-                           .request_class = sheen_RequestClass_CLASS_INTERACTIVE,
-                           .has_view = true,
-                           .view = 3,
-                           .has_deadline_ms = true,
-                           .deadline_ms = 200};
-    count_id(render.model_sha256);
+    sheen_Render render = least_render(sheen_Encoding_ENCODING_PNG);
+    render.has_request_class = true;
+    render.request_class = sheen_RequestClass_CLASS_INTERACTIVE;
+    render.has_view = true;
+    render.view = 3;
+    render.has_deadline_ms = true;
+    render.deadline_ms = 200;
     same_message(MESSAGE_RENDER, 8, &render, bytes, size);
 }
 
 static void check_render_jpeg(const uint8_t *bytes, size_t size)
 {
-    sheen_Render render = {.width_px = 1280,
-                           .height_px = 720,
-                           .planes = sheen_Plane_PLANE_COLOUR,
-                           .encoding = sheen_Encoding_ENCODING_JPEG,
-                           .has_jpeg_quality = true,
-                           .jpeg_quality = 80,
-                           .has_jpeg_subsampling = true,
-                           .jpeg_subsampling = sheen_JpegSubsampling_JPEG_420};
-    count_id(render.model_sha256);
+    sheen_Render render = least_render(sheen_Encoding_ENCODING_JPEG);
+    render.has_jpeg_quality = true;
+    render.jpeg_quality = 80;
+    render.has_jpeg_subsampling = true;
+    render.jpeg_subsampling = sheen_JpegSubsampling_JPEG_420;
     same_message(MESSAGE_RENDER, 10, &render, bytes, size);
 }
 
 static void check_render_aliased(const uint8_t *bytes, size_t size)
 {
-    sheen_Render render = {.width_px = 1280,
-                           .height_px = 720,
-                           .planes = sheen_Plane_PLANE_COLOUR,
-                           .encoding = sheen_Encoding_ENCODING_PNG,
-                           .has_aliased = true,
-                           .aliased = true};
-    count_id(render.model_sha256);
+    sheen_Render render = least_render(sheen_Encoding_ENCODING_PNG);
+    render.has_aliased = true;
+    render.aliased = true;
     same_message(MESSAGE_RENDER, 11, &render, bytes, size);
 }
 

@@ -116,6 +116,11 @@ extern const struct option_row OPTIONS_SURFACE[];  /* surface, show, show-range 
 extern const struct option_row OPTIONS_SCHEDULE[]; /* class, deadline */
 extern const struct option_row OPTIONS_JPEG[];     /* jpeg-quality, jpeg-subsampling */
 
+/* The tables of commands that render a model's frames, after a command's own rows. */
+#define OPTIONS_OF_FRAMES                                                                          \
+    OPTIONS_JPEG, OPTIONS_SIZE, OPTIONS_SCENE, OPTIONS_SURFACE, OPTIONS_SCHEDULE, OPTIONS_MODEL,   \
+        OPTIONS_COMMON, OPTIONS_RECONNECT, OPTIONS_OUTPUT
+
 /* Parses argv; argv[0] is the command's name. OPTIONS_WRONG: `why` has one line that names the
  * option. OPTIONS_HELP: call options_help(). */
 enum options_result options_parse(const struct command *command, int argc, char **argv,
