@@ -46,7 +46,7 @@ class Authority:
                 self.path(name + ".key"))
 
     def issue(self, name, subject=None, seconds=86400):
-        """(certificate, key), good for so many seconds from now."""
+        """Issues a certificate that is valid for so many seconds from now. Returns (certificate, key)."""
         def stamp(offset):
             return time.strftime("%Y%m%d%H%M%SZ", time.gmtime(time.time() + offset))
 
@@ -60,8 +60,8 @@ class Authority:
         return cert, key
 
     def revoke(self, *names, due=172800):
-        """Writes the list of all that has been revoked, and returns its path. The next one is due in
-        so many seconds."""
+        """Writes the list of all revoked certificates, and returns its path. The list expires after so many
+        seconds."""
         by = ("-config", self.path("config"), "-cert", self.cert, "-keyfile", self.path("ca.key"))
         for name in names:
             openssl("ca", *by, "-revoke", self.path(name + ".pem"))
@@ -70,7 +70,7 @@ class Authority:
 
 
 def context(authority, pair=None):
-    """A client's side: whom it trusts, and what it shows."""
+    """The ssl.SSLContext of a client: the authorities that it trusts, and the certificate that it presents."""
     tls = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     tls.load_verify_locations(authority.cert)
     if pair:

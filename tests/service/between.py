@@ -11,7 +11,7 @@ FORWARD, HOLD, CUT = range(3)
 
 
 def read(source, size):
-    """Exactly so many bytes, or none at the end."""
+    """Reads exactly so many bytes. Returns no bytes at the end of the connection."""
     out = b""
     while len(out) < size:
         part = source.recv(size - len(out))
@@ -26,17 +26,17 @@ def close(*sockets):
         try:
             each.shutdown(socket.SHUT_RDWR)
         except OSError:
-            pass  # it has gone by itself
+            pass  # it has closed already
 
 
 class Between:
-    """`judge(connection, kind, seq, body, client)` says what becomes of a client's message: FORWARD,
-    HOLD (it is dropped) or CUT (both sides are closed); `connection` counts from 0, `client` is the
-    client's socket. `cut_after`: so many bytes of the daemon's answers on the first connection."""
+    """A relay. `judge(connection, kind, seq, body, client)` decides about each message of a client: FORWARD, HOLD
+    (the message is dropped) or CUT (both sides are closed). `connection` counts from 0, `client` is the client's
+    socket. `cut_after`: the first connection is closed after so many bytes of the daemon's answers."""
 
     def __init__(self, daemon, judge=lambda *_: FORWARD, cut_after=None, n_accepted=None):
         self.daemon, self.judge, self.cut_after = daemon, judge, cut_after
-        self.n_accepted = n_accepted  # connections beyond wait and are never served
+        self.n_accepted = n_accepted  # connections beyond this number wait and are never served
         self.n_connections = 0
         self.sockets = []
         self.folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
@@ -56,7 +56,7 @@ class Between:
             try:
                 client, _ = self.listener.accept()
             except OSError:
-                return  # finished
+                return  # the relay is finished
             server = socket.socket(socket.AF_UNIX)
             self.sockets += client, server
             server.connect(self.daemon.path)
@@ -77,7 +77,7 @@ class Between:
                 if what == FORWARD:
                     server.sendall(header + body)
         except OSError:
-            pass  # one of them has gone
+            pass  # one of the two connections has closed
         close(client, server)
 
     def answers(self, connection, client, server):
@@ -90,7 +90,7 @@ class Between:
                     if left == 0:
                         break
         except OSError:
-            pass  # one of them has gone
+            pass  # one of the two connections has closed
         close(client, server)
 
     def __enter__(self):
@@ -107,7 +107,7 @@ class Between:
 
 
 def cut_at(kind, number=1, connections=(0,)):
-    """Loses these connections at their so many-th message of a kind."""
+    """A judge that closes these connections at the number-th message of this kind."""
     seen = {}
 
     def judge(connection, got, *_):
@@ -121,5 +121,5 @@ def cut_at(kind, number=1, connections=(0,)):
 
 
 def frame_number(body):
-    """Of a stream's RENDER: its view; the first goes without."""
+    """The number of a stream's frame, from its RENDER: the view, which the first frame leaves out."""
     return wire.decode(body).get(15, [0])[0]

@@ -16,14 +16,14 @@ BUILD = os.environ["SHEEN_BUILD"]
 SHEEND = os.path.join(BUILD, "sheend")
 SHEEN = os.path.join(BUILD, "sheen")
 DEVICE = os.environ.get("SHEEN_TEST_DEVICE", "software")
-MESA = mesa.device()  # for what a GL device alone does
+MESA = mesa.device()  # for tests of what only a GL device does
 MODELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "models")
 
 with open(SHEEND, "rb") as _file:
     _code = _file.read()
-SANITIZED = b"__asan_init" in _code or b"__tsan_init" in _code  # they hoard memory
+SANITIZED = b"__asan_init" in _code or b"__tsan_init" in _code  # sanitizers keep freed memory
 
-# A closed cube: small, and with extraordinary vertices.
+# A closed cube: small, but with extraordinary vertices.
 CUBE = (b"v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
         b"f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
 
@@ -44,7 +44,7 @@ def run(*arguments, env=None, timeout=60):
 
 
 def resident_kb(pid):
-    """Memory in use; nothing under a sanitizer, which hoards it."""
+    """The process's resident memory; 0 in a build with a sanitizer, which keeps freed memory."""
     with open(f"/proc/{pid}/status", encoding="ascii") as status:
         kb = int(next(line for line in status if line.startswith("VmRSS")).split()[1])
     return 0 if SANITIZED else kb
@@ -64,7 +64,7 @@ class Daemon:
         self.process = subprocess.Popen([*under, self.program, *listen, "--device", DEVICE, *arguments],
                                         stdout=subprocess.DEVNULL, stderr=self.stderr,
                                         env={**os.environ, **(env or {})})
-        atexit.register(self.process.kill)  # where a test fails before it stops its daemon
+        atexit.register(self.process.kill)  # ends the daemon if a test fails before it stops the daemon
         banner = self.wait_for_banner()
         found = re.search(r"tcp:127\.0\.0\.1:\d+", banner)
         self.tcp = found.group() if found else None
@@ -99,7 +99,7 @@ class Daemon:
         return self.process.wait(timeout)
 
     def stop(self):
-        """Ends it and returns its exit code."""
+        """Ends the daemon and returns its exit code."""
         if self.process.poll() is None:
             self.terminate()
         try:
@@ -116,7 +116,7 @@ class Daemon:
 
 
 class DaemonCase(unittest.TestCase):
-    """Tests that share one daemon; after each it must still serve, and at the end leave well."""
+    """Tests that share one daemon. After each test the daemon must still serve, and at the end exit with code 0."""
     arguments = ()
 
     @classmethod
@@ -144,7 +144,7 @@ class DaemonCase(unittest.TestCase):
         self.assert_serves()
 
     def assert_refused(self, client, code, words="", seq=None):
-        """The next answer is this ERROR, in one line."""
+        """Expects that the next answer is this ERROR with a text of one line."""
         with self.assertRaises(wire.Refused) as caught:
             client.receive()
         self.assertEqual(caught.exception.code, code, caught.exception)

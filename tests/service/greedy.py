@@ -1,6 +1,6 @@
-"""A client that asks for as much as it is given: greedy.py ADDRESS CONNECTIONS WIDTH HEIGHT. Each connection
-always has eight unanswered interactive frames. Says "begun" when all have asked, runs until its standard input
-ends, and then says how many frames it had and how many were replaced."""
+"""A client that asks for as much as it is given: greedy.py ADDRESS CONNECTIONS WIDTH HEIGHT. Each connection always
+has eight unanswered interactive frames. The program prints "begun" when every connection has asked, runs until its
+standard input ends, and then prints how many frames it received and how many were replaced."""
 import selectors
 import sys
 

@@ -1,4 +1,4 @@
-"""Many clients at once in one thread: each asks, and every answer is counted and timed."""
+"""Many clients at once in one thread. Each keeps asking; every answer is counted and timed."""
 import random
 import selectors
 import struct
@@ -9,7 +9,7 @@ from wire import BATCH, INTERACTIVE, Client
 
 
 class LoadClient:
-    """Never blocks. Keeps its requests until their answers have come, each exactly once."""
+    """A client that never blocks, and remembers its requests until each has been answered exactly once."""
 
     def __init__(self, address, model, noise, kind, width, height, encoding=wire.RAW):
         self.client = Client(address, minor=1)
@@ -17,7 +17,7 @@ class LoadClient:
         self.socket.setblocking(False)
         self.model, self.noise, self.kind = model, noise, kind
         self.shape = {"width": width, "height": height, "encoding": encoding, "kind": kind}
-        self.asked = {}  # number: when
+        self.asked = {}  # number of the request: time when it was sent
         self.input, self.output = bytearray(), bytearray()
         self.expected = 0  # bytes of DATA still to come
         self.latencies, self.frames, self.superseded, self.errors = [], 0, 0, []
@@ -35,7 +35,7 @@ class LoadClient:
             self.ask()
 
     def go_on(self):
-        """After an answer. One who drags sends more now and then than is drawn."""
+        """Asks again after an answer. An interactive client sometimes sends more requests than are drawn."""
         if self.kind == BATCH:
             self.ask()
             return
@@ -45,7 +45,7 @@ class LoadClient:
                 self.ask()
 
     def answered(self, seq):
-        return time.monotonic() - self.asked.pop(seq)  # KeyError: twice, or never asked
+        return time.monotonic() - self.asked.pop(seq)  # KeyError: a second answer, or one without a request
 
     def take(self, kind, flags, seq, body):
         if kind == wire.FRAME:
@@ -97,7 +97,7 @@ class LoadClient:
 
 
 def run_load(clients, seconds):
-    """Lets them ask for so long, then waits until all is answered."""
+    """Lets the clients ask for so many seconds, then waits until every request is answered."""
     selector = selectors.DefaultSelector()
     end = time.monotonic() + seconds
     for client in clients:

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""The number of Mesa's software device among the EGL devices of this machine, for sheend's --device; none: exit code 1."""
+"""Prints the number of Mesa's software device among this machine's EGL devices, for sheend's --device. Exit code 1 if
+there is none."""
 import ctypes
 import sys
 
 
 def device():
-    """Its number, as text; None when there is none."""
+    """The device's number as text, or None if there is none."""
     try:
         egl = ctypes.CDLL("libEGL.so.1")
     except OSError:

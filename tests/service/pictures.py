@@ -1,4 +1,4 @@
-"""One picture of two by two pixels in the formats that light images come in."""
+"""One picture of two by two pixels, in every format of light images."""
 import struct
 
 RED, GREEN, BLUE, YELLOW = PIXELS = ((255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0))
@@ -21,26 +21,26 @@ def plain_ppm():
 
 
 def pfm():
-    """Floats, the bottom row first."""
+    """Floats, bottom row first."""
     rows = (BLUE, YELLOW, RED, GREEN)
     return b"PF\n2 2\n-1.0\n" + struct.pack("<12f", *(c / 255 for pixel in rows for c in pixel))
 
 
 def bmp():
-    """The bottom row first, rows of eight bytes."""
+    """Bottom row first; a row has eight bytes."""
     rows = bgr((BLUE, YELLOW)) + bytes(2) + bgr((RED, GREEN)) + bytes(2)
     return (b"BM" + struct.pack("<IHHI", 54 + len(rows), 0, 0, 54) +
             struct.pack("<IiiHHIIiiII", 40, 2, 2, 1, 24, 0, len(rows), 2835, 2835, 0, 0) + rows)
 
 
 def tga(side=2, kind=2, pixels=None):
-    """The top row first."""
+    """Top row first."""
     pixels = bgr(PIXELS) if pixels is None else pixels
     return struct.pack("<BBBHHBHHHHBB", 0, 0, kind, 0, 0, 0, 0, 0, side, side, 24, 0x20) + pixels
 
 
 def packed_tga():
-    """A run of one for each pixel."""
+    """Each pixel is a run of length one."""
     return tga(kind=10, pixels=b"".join(b"\x80" + bgr((pixel,)) for pixel in PIXELS))
 
 
@@ -50,7 +50,7 @@ def hdr():
 
 
 def gif():
-    """Codes of three bits, begun anew (4) before they grow to four; 5 ends them."""
+    """Codes of three bits. The code 4 (restart) comes before codes would grow to four bits; 5 ends the picture."""
     bits = sum(code << 3 * i for i, code in enumerate((4, 0, 1, 4, 2, 3, 5)))
     data = bits.to_bytes(3, "little")
     return (b"GIF89a" + struct.pack("<HHBBB", 2, 2, 0x91, 0, 0) + rgb(PIXELS) + b"," +
@@ -58,9 +58,9 @@ def gif():
 
 
 def webp():
-    """Without loss: codes of one bit for green, red and blue, of none for alpha and distances."""
-    fields = [(1, 14), (1, 14), (0, 4), (0, 3)]  # sides less one; no alpha, no transform, no cache
-    fields += 3 * [(1, 1), (1, 1), (0, 1), (0, 1), (255, 8)]  # 0 and 255
+    """Lossless WebP: codes of one bit for green, red and blue, and of no bits for alpha and distances."""
+    fields = [(1, 14), (1, 14), (0, 4), (0, 3)]  # the sides minus one; no alpha, no transform, no cache
+    fields += 3 * [(1, 1), (1, 1), (0, 1), (0, 1), (255, 8)]  # the values 0 and 255
     fields += [(1, 1), (0, 1), (1, 1), (255, 8), (1, 1), (0, 1), (0, 1), (0, 1)]
     fields += [(c // 255, 1) for r, g, b in PIXELS for c in (g, r, b)]
     bits = at = 0

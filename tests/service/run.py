@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Black-box tests of the daemon: run.py BUILD_DIR [unittest names]. Python's standard library only."""
+"""Black-box tests of the daemon: run.py BUILD_DIR [unittest names]. Needs only Python's standard library."""
 import os
 import sys
 import unittest
 
 
 class Result(unittest.TextTestResult):
-    """Counts what passed; what fails before a test begins is in `errors` and in no other count."""
+    """Counts the passed tests. What fails before a test begins is in `errors` and in no other count."""
     passed = 0
 
     def addSuccess(self, test):

@@ -1,5 +1,5 @@
-"""What the service must show under load for a while: make soak. SHEEN_SOAK_S says how long each part
-takes (default 60). Prints the figures; judges them by ratios within the run."""
+"""The service under load for a longer time: make soak. SHEEN_SOAK_S is the length of each part (default 60). Prints
+the figures, and judges them by ratios within the run."""
 import math
 import os
 import resource
@@ -28,7 +28,7 @@ class Soak(unittest.TestCase):
             model = other.upload(CUBE, "cube.obj", share=True)
             other.render(model)
             interactive, batch = make_clients((daemon.unix, daemon.tcp), model, 64, 8)
-            run_load(interactive + batch, 10)  # warm
+            run_load(interactive + batch, 10)  # the first frames, not measured
             for client in interactive + batch:
                 client.latencies = []
             warm_kb, before = resident_kb(daemon.process.pid), other.stats()
@@ -85,7 +85,7 @@ class Soak(unittest.TestCase):
 
 
     def test_a_65th_among_64_and_a_thousand_idle(self):
-        """It drags as the others do: it waits as long as they, and has its share of the frames."""
+        """A further interactive client waits as long as the other 64, and gets an equal share of the frames."""
         daemon = Daemon()
         hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
         resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 4096), hard))
@@ -94,7 +94,7 @@ class Soak(unittest.TestCase):
             other.render(model)
             idle = [Client(daemon.tcp if i % 2 else daemon.unix, minor=1) for i in range(1000)]
             active, _ = make_clients((daemon.unix, daemon.tcp), model, 64, 0)
-            run_load(active, 5)  # warm
+            run_load(active, 5)  # the first frames, not measured
             (late,), _ = make_clients((daemon.unix,), model, 1, 0, seed=2)
             for client in active:
                 client.latencies = []
@@ -115,11 +115,12 @@ class Soak(unittest.TestCase):
 
 
 class Greedy(unittest.TestCase):
-    """One who turns a model, at 20 frames a second, alone and beside many connections of somebody else, who ask
-    for frames of the same size. His frames take less than half of the device's time, which is his share."""
+    """A client that turns a model at 20 frames a second: alone, and beside many connections of another identity that
+    ask for frames of the same size. The client's frames take less than half of the device's time, which is its
+    share."""
 
     def turn(self, client, model, seconds):
-        """Latencies in seconds."""
+        """Returns the latencies in seconds."""
         times, end, due = [], time.monotonic() + seconds, time.monotonic()
         while time.monotonic() < end:
             self.angle += 0.01
@@ -140,7 +141,7 @@ class Greedy(unittest.TestCase):
              self.daemon.tcp, str(connections), *map(str, self.size)], env={**os.environ, "SHEEN_BUILD": BUILD},
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.assertEqual(greedy.stdout.readline(), "begun\n")
-        os.setpriority(os.PRIO_PROCESS, greedy.pid, 10)  # as if it ran on another machine
+        os.setpriority(os.PRIO_PROCESS, greedy.pid, 10)  # a separate process, like a client on another machine
         self.turn(client, model, 1)
         times = self.turn(client, model, seconds)
         greedy.stdin.close()
@@ -171,7 +172,8 @@ class Greedy(unittest.TestCase):
 
 class SoakMisbehaviour(test_load.Misbehaviour):
     def test_each_costs_only_itself(self):
-        """The others' p99 within 1.5 times of what it is without."""
+        """The 99th percentile of the others' latencies is at most 1.5 times of what it is without the misbehaving
+        client."""
         seconds = max(5, SECONDS // 6)
         for misbehave, _, _ in self.CASES:
             quiet = self.run_beside(None, seconds)

@@ -1,4 +1,4 @@
-"""Who may come in: nobody without credentials, and he learns nothing."""
+"""Who may connect. A client without credentials is refused and learns nothing."""
 import contextlib
 import hashlib
 import os
@@ -55,7 +55,7 @@ def tls_address(daemon):
 
 
 class Tls(Case):
-    """One daemon that takes certificates and tokens."""
+    """One daemon that accepts certificates and tokens."""
 
     @classmethod
     def setUpClass(cls):
@@ -85,7 +85,7 @@ class Tls(Case):
         return one
 
     def assert_turned_away(self, words, act):
-        """act() ends without an answer, the log says why, and the daemon serves on."""
+        """Expects that act() gets no answer, that the log has the reason, and that the daemon still serves."""
         self.daemon.wait_for("msg=listening")
         before = len(self.daemon.errors())
         with self.assertRaises((EOFError, OSError)):
@@ -100,10 +100,10 @@ class Tls(Case):
         with self.client(token=self.token) as client:
             client.stats()
 
-    # --- who comes in
+    # --- clients that are admitted
 
     def test_connections_of_one_certificate(self):
-        """They are counted by who shows it, from whatever address."""
+        """Connections are counted for each certificate, whatever address they come from."""
         daemon = Daemon("--listen", "tls:127.0.0.1:0", "--tls-cert", self.server[0], "--tls-key",
                         self.server[1], "--client-ca", self.ours.cert, "--tokens", self.tokens,
                         "--max-peer-connections", "2")
@@ -137,7 +137,7 @@ class Tls(Case):
         self.daemon.wait_for("identity=token:farm")
 
     def test_the_same_bytes_as_without(self):
-        """Megabytes both ways, with four requests in flight."""
+        """Sends megabytes in both directions, with four requests in flight."""
         sheet = grid(150)
         with self.client(self.anna) as tls, Client(self.daemon.unix) as plain:
             model = tls.upload(sheet, "sheet.obj")
@@ -160,7 +160,7 @@ class Tls(Case):
                 client.send(bytes([byte]))
             client.expect(wire.HELLO_OK, 1)
 
-    # --- who does not
+    # --- clients that are refused
 
     def test_nothing_shown(self):
         self.assert_turned_away("neither a certificate", self.client)
@@ -178,7 +178,7 @@ class Tls(Case):
     def test_certificate_of_another_authority(self):
         stranger = self.other.issue("anna", "/CN=anna")
         self.assert_turned_away("TLS: ", lambda: self.client(stranger))
-        # A right token does not help: what is shown must be true.
+        # A valid token does not help a client that presents an invalid certificate.
         self.assert_turned_away("TLS: ", lambda: self.client(stranger, token=self.token))
 
     def test_expired_certificate(self):
@@ -199,7 +199,7 @@ class Tls(Case):
                     answer = b""
                     while part := one.recv(1000):
                         answer += part
-                # At most a TLS alert.
+                # At most a TLS alert is sent.
                 self.assertLess(len(answer), 8)
                 raise EOFError
 
@@ -217,7 +217,7 @@ class Tls(Case):
             self.assert_turned_away("no HELLO", act)
 
     def crowd(self, address, n, source):
-        """So many silent connections from a loopback address of their own."""
+        """Opens so many silent connections from one loopback address."""
         host, port = address[4:].rsplit(":", 1)
         made = [socket.create_connection((host, int(port)), timeout=10, source_address=(source, 0))
                 for _ in range(n)]
@@ -232,21 +232,22 @@ class Tls(Case):
         return daemon, tls_address(daemon)
 
     def test_many_strangers(self):
-        """From wherever they come, and come again, everybody with credentials is served at once."""
+        """However many connections without credentials there are, and wherever they come from, a client with
+        credentials is served at once."""
         daemon, address = self.daemon_of()
         tls = context(self.ours, self.anna)
         for i in range(12):
             crowd = [self.crowd(address, 20, f"127.0.{i + 1}.{k + 2}") for k in range(5)]
             with Client(address, tls=tls) as client:
                 client.stats()
-            self.assertEqual(crowd[0][0].recv(1), b"")  # the oldest of an address that has most
+            self.assertEqual(crowd[0][0].recv(1), b"")  # closed: the oldest connection of an address that has most
         daemon.wait_for("too many connections that do not say who they are: the oldest leaves")
         with Client(daemon.unix) as client:
             client.stats()
         self.assertEqual(daemon.stop(), 0)
 
     def test_strangers_of_one_address(self):
-        """They take each other's places, the silent ones first, and no places of others."""
+        """Connections without credentials replace each other, silent ones first, and never replace others."""
         daemon, address = self.daemon_of("--max-peer-strangers", "3", "--max-penalty", "0",
                                          "--handshake-timeout", "60")
         begun = Client(address, tls=context(self.ours), greet=False)
@@ -266,8 +267,8 @@ class Tls(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def test_penalty(self):
-        """An address that comes without credentials again and again is turned away at once, until its
-        penalty is over; one credential that is good makes up for a few visits without."""
+        """An address that repeatedly connects without credentials is refused at once until its penalty is over. One
+        connection with valid credentials makes up for a few without."""
         daemon, address = self.daemon_of("--max-penalty", "16")
         tls, port = context(self.ours, self.anna), int(address.rsplit(":", 1)[1])
 
@@ -292,8 +293,8 @@ class Tls(Case):
         before = daemon.errors().count('msg="session opened"')
         for _ in range(5):
             visit("127.0.0.7")
-        self.assertEqual(daemon.errors().count('msg="session opened"'), before)  # not even begun
-        with Client(address, tls=tls) as client:  # others' address is no matter
+        self.assertEqual(daemon.errors().count('msg="session opened"'), before)  # no session was begun
+        with Client(address, tls=tls) as client:  # penalties of other addresses do not count for this one
             client.stats()
         self.assertEqual(daemon.stop(), 0)
 
@@ -305,7 +306,7 @@ class Tls(Case):
         self.assert_turned_away("", act)
 
     def test_nothing_before_hello(self):
-        """Inside TLS, but not one word more to a stranger: no ERROR, no version."""
+        """Within TLS a client without credentials gets nothing either: no ERROR, no version."""
         for data in (wire.message(wire.STATS_QUERY, 1), b"\n" * 16, wire.message(99, 1),
                      wire.message(wire.HELLO, 1, b"short"), wire.hello()[:-3] + b"\xff\xff\xff",
                      wire.message(wire.HELLO, 1, wire.hello()[16:], major=2)):
@@ -317,7 +318,7 @@ class Tls(Case):
             self.assert_turned_away("", act)
 
     def test_a_recorded_connection(self):
-        """Every byte of a good client, sent again."""
+        """A replay of all bytes that a client with credentials has sent."""
         recorded = bytearray()
         with socket.create_server(("127.0.0.1", 0)) as relay:
             def pass_on():
@@ -359,7 +360,7 @@ def proxy_header(source, command=0x21, family=0x11, extra=b""):
 
 
 class Balancer(Case):
-    """Connections that a balancer hands on, who alone may say whose they are."""
+    """Connections through a load balancer. Only the balancer may tell the client's address."""
 
     def setUp(self):
         ca = Authority(self.path(self.id()))
@@ -377,14 +378,15 @@ class Balancer(Case):
         host, port = address[4:].rsplit(":", 1)
         one = socket.create_connection((host, int(port)), timeout=10, source_address=(source, 0))
         self.addCleanup(one.close)
-        with contextlib.suppress(ConnectionResetError, BrokenPipeError):  # closed before its end
-            for at in range(0, len(header), 9):  # as it comes, in pieces
+        # the daemon may close before the header's end
+        with contextlib.suppress(ConnectionResetError, BrokenPipeError):
+            for at in range(0, len(header), 9):  # the header arrives in pieces
                 one.sendall(header[at:at + 9])
                 time.sleep(0.01)
         return one
 
     def client(self, one, tls=True):
-        """A client of wire.py over a connection that is there already."""
+        """A client of wire.py that uses an existing connection."""
         client = Client.__new__(Client)
         client.socket, client.seq = one, 1
         if tls:
@@ -407,10 +409,11 @@ class Balancer(Case):
             with self.subTest(header=header):
                 self.client(self.connect(self.address, source, header)).stats()
                 self.daemon.wait_for(f"peer={peer}")
-        self.client(self.connect(self.address, "127.0.0.3", b"")).stats()  # no balancer
+        # this address is no balancer, so no header is expected
+        self.client(self.connect(self.address, "127.0.0.3", b"")).stats()
 
     def test_plain_tcp_by_address(self):
-        """Of clients behind one that ends TLS itself, each address is an owner."""
+        """For clients behind a balancer that ends TLS itself, each address is an owner."""
         owners = [self.client(self.connect(self.daemon.tcp, "127.0.0.2", proxy_header(source)), False)
                   for source in ("192.0.2.7", "192.0.2.7", "192.0.2.8")]
         model = owners[0].upload(CUBE, "cube.obj")
@@ -444,7 +447,7 @@ class Balancer(Case):
         self.client(self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.7"))).stats()
 
     def test_penalties_are_of_clients(self):
-        """A balancer is not turned away for what its clients do, they are."""
+        """Penalties apply to the balancer's clients and not to the balancer."""
         for _ in range(20):
             one = self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.66") + b"no TLS" * 9)
             self.assert_closed(one, "")
@@ -452,13 +455,13 @@ class Balancer(Case):
         self.client(self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.7"))).stats()
         one = self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.66"))
         self.assert_closed(one, "")
-        for _ in range(20):  # its own probes
+        for _ in range(20):  # the balancer's own health checks
             self.connect(self.address, "127.0.0.2", proxy_header("0.0.0.0", command=0x20)).close()
         self.client(self.connect(self.address, "127.0.0.2", proxy_header("192.0.2.7"))).stats()
 
 
 class Lasting(Case):
-    """Credentials that end, and reloads."""
+    """Credentials that expire, and reloads."""
 
     def setUp(self):
         shutil.rmtree(self.path("ca"), ignore_errors=True)
@@ -481,14 +484,15 @@ class Lasting(Case):
             client.socket.settimeout(10)
             self.assertTrue(client.at_end())
         daemon.wait_for('text="cert:CN=brief has expired"')
-        # Without --tokens the handshake itself asks for a certificate.
+        # Without --tokens a client must present a certificate during the handshake.
         with self.assertRaises((EOFError, OSError)):
             Client(self.address, tls=context(self.ca))
         daemon.wait_for("peer did not return a certificate")
         self.assertEqual(daemon.stop(), 0)
 
     def test_a_revoked_certificate(self):
-        """Turned away, and a reload ends the connections that it has; nobody else's."""
+        """A client with a revoked certificate is refused, and a reload closes its existing connections, but no
+        others."""
         anna, berta = (context(self.ca, self.ca.issue(name)) for name in ("anna", "berta"))
         daemon = self.start("--client-ca", self.ca.cert, "--tls-crl", self.ca.revoke())
         with Client(self.address, tls=anna) as first, Client(self.address, tls=berta) as other:
@@ -516,7 +520,7 @@ class Lasting(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def test_a_new_authority(self):
-        """Nobody stays whom only the one before would let in."""
+        """A reload closes connections that only the previous authority would admit."""
         authority = self.path("authority.pem")
         shutil.copy(self.ca.cert, authority)
         shutil.rmtree(self.path("next"), ignore_errors=True)
@@ -538,7 +542,7 @@ class Lasting(Case):
             daemon.wait_for(f"{self.tokens}:1: a line is")
             client.stats()
             fresh = secrets.token_urlsafe(32)
-            self.write("tokens", token_line("farm", fresh))  # the same name, another token
+            self.write("tokens", token_line("farm", fresh))  # the same name with another token
             daemon.process.send_signal(signal.SIGHUP)
             self.assertTrue(client.at_end())
             daemon.wait_for('text="token:farm has been taken back"')
@@ -570,12 +574,12 @@ class Lasting(Case):
             daemon.process.send_signal(signal.SIGHUP)
             self.assertIn(self.server[0], daemon.wait_for("the old one stays"))
             self.assertNotEqual(served(), first)
-            client.stats()  # connections outlive their certificate's file
+            client.stats()  # connections remain after their certificate's file was replaced
         self.assertEqual(daemon.stop(), 0)
 
 
 class Starts(Case):
-    """A daemon that would serve everybody does not start, and says what to set."""
+    """A daemon that would admit everybody does not start; the error text names the options to set."""
 
     def assert_refused(self, words, *arguments, check=("--check-config",)):
         done = run("--device", "software", *arguments, *check)
@@ -659,7 +663,7 @@ class Peers(Case):
         daemon.wait_for(f"user {os.getuid()} is in neither allow-uid nor allow-gid")
 
     def test_lists(self):
-        """With a list, those who are on it and nobody else."""
+        """With a list, the users on it are admitted and no others."""
         uid, gid = str(os.getuid()), str(os.getgid())
         for arguments, welcome in ((("--allow-uid", "4242"), False), (("--allow-gid", "4242"), False),
                                    (("--allow-uid", "4242", "--allow-uid", uid), True),
@@ -692,7 +696,8 @@ class Peers(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def try_as(self, uid, group=65534):
-        """What a HELLO of this user to the socket "s" brings: bytes of answer, or the failure."""
+        """Connects as this user to the socket "s" and sends HELLO. Returns the number of bytes of the answer, or the
+        failure."""
         script = ("import os, socket, sys\n"
                   "os.setgroups([int(sys.argv[2])]); os.setgid(65534); os.setuid(int(sys.argv[3]))\n"
                   "s = socket.socket(socket.AF_UNIX); s.connect(sys.argv[1])\n"
@@ -716,7 +721,7 @@ class Peers(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def in_namespace(self, *options, **named):
-        """A daemon in a user namespace of its own."""
+        """A daemon within a user namespace."""
         under = ["unshare", "--user", *options]
         done = subprocess.run([*under, "true"], capture_output=True, text=True, timeout=20)
         if done.returncode != 0:
@@ -730,7 +735,7 @@ class Peers(Case):
         self.assertNotIn("session opened", said)
 
     def test_users_that_cannot_be_told_apart(self):
-        """Nobody is mapped: all users of the machine look alike, the list's only one too."""
+        """No user is mapped: all users of the machine have the same number there, also the only one of the list."""
         with open("/proc/sys/kernel/overflowuid", encoding="ascii") as file:
             overflow = file.read().strip()
         for arguments in ((), ("--allow-uid", overflow), ("--allow-gid", overflow)):
@@ -753,7 +758,7 @@ class Peers(Case):
         os.chmod(self.folder, 0o755)
         with open("/proc/sys/kernel/overflowuid", encoding="ascii") as file:
             overflow = file.read().strip()
-        # A group that is not mapped is none that is listed, whoever is in it.
+        # A group that is not mapped never counts as listed, whoever is in it.
         daemon = self.in_namespace("--map-root-user", path=self.path("s"),
                                    arguments=("--allow-uid", overflow, "--allow-gid", overflow))
         self.assertRegex(self.try_as(1234), GONE)
@@ -764,7 +769,7 @@ class Peers(Case):
 
 
 class ClientCommand(Case):
-    """sheen itself, over TLS."""
+    """The command sheen over TLS."""
 
     def test_it(self):
         ca, other = Authority(self.path("ca")), Authority(self.path("other"))
@@ -801,7 +806,7 @@ class ClientCommand(Case):
             self.assertEqual(done.returncode, 0, done.stderr)
             with open(self.path("a.png"), "rb") as file:
                 self.assertEqual(file.read(), want)
-        # What to look at is on the side that refused.
+        # The text tells on which side the cause is.
         stranger = "lost server: .*; it may not know this client: see --cert and --key, or --token-file"
         distrust = "lost server: TLS: certificate verify failed: .*{}.*; this client does not trust the server: see --ca"
         assert_fails(4, stranger, *ours)

@@ -1,4 +1,4 @@
-"""The real client against the real daemon, over every way to reach it."""
+"""The real client with the real daemon, over each kind of address."""
 import base64
 import hashlib
 import json
@@ -109,7 +109,8 @@ class Client(unittest.TestCase):
             self.assertNotIn("exception", done.stderr)
 
     def test_gltf_with_a_file_beside_it(self):
-        """The picture is that of the file that holds all, the model the container's bytes."""
+        """The picture is the same as that of the file with an embedded buffer. The model's identity is the hash of
+        the GLB that the client makes."""
         with open(os.path.join(MODELS, "fender.gltf"), "rb") as file:
             gltf = json.load(file)
         uri = gltf["buffers"][0]["uri"]
@@ -149,7 +150,7 @@ class Client(unittest.TestCase):
             self.assertFalse(os.path.exists(self.path("c.png")))
 
     def test_json_names_every_option(self):
-        """What is given comes back as used, and render --help has no option that does not."""
+        """Every option's value is in --json, and render --help has no option whose value is missing there."""
         image = self.path("light.png")
         self.render("light.png", "--server", self.daemon.unix)
         first = ("--light", "plane:one-sided", "--light-center", "0,0,9", "--light-u", "8,0,0",
@@ -219,7 +220,7 @@ class Client(unittest.TestCase):
         self.assertEqual(options - not_of_the_frame, set(said))
 
     def test_json_asked_again(self):
-        """What --json says of a view that was chosen is, asked for, the same file to the byte."""
+        """If the view that --json reports is requested explicitly, the picture's file is the same, byte for byte."""
         found, picture = self.render("a.exr", "--server", self.daemon.unix, "--aov", "P,N")
         places = {"--" + name: found["camera"][name] for name in ("eye", "target", "up")}
         for name in ("center", "u", "v"):
@@ -231,7 +232,8 @@ class Client(unittest.TestCase):
                                      "P,N")[1], picture)
 
     def test_cameras_in_part(self):
-        """--fov and --ortho alone change the camera that frames the model; --up alone frames it."""
+        """--fov and --ortho alone change the default camera, which frames the model; --up alone changes how it frames
+        the model."""
         whole = self.render("a.png", "--server", self.daemon.unix)
         views = {whole[1]}
         for option, value, key, want in (("--fov", "20", "fov_deg", 20),
@@ -266,7 +268,7 @@ class Client(unittest.TestCase):
                                   text=True) as client:
                 with wire.Client(daemon.unix) as watcher:
                     while watcher.stats()[5] == [0] and client.poll() is None:
-                        time.sleep(0.01)  # until the model that it has asked for is there
+                        time.sleep(0.01)  # waits until the daemon has the model
                 daemon.terminate()
                 answer, errors = client.communicate(timeout=60)
             with self.subTest(ending=ending):
@@ -284,11 +286,11 @@ class Client(unittest.TestCase):
         self.assertEqual(len(json.loads(done.stdout)["frames"]), 5)
 
     def test_version(self):
-        """What a bug report needs: the program's and the wire's."""
+        """sheen --version prints what a bug report needs: the versions of the program and of the protocol."""
         self.assertRegex(sheen("--version").stdout, r"^sheen \d+\.\d+\.\d+, protocol 1\.\d+\n$")
 
     def test_readme_shares_a_daemon(self):
-        """Its block is pasted as it stands: the client must not come before the daemon."""
+        """The block of README.md works when it is pasted as it is: the client waits until the daemon listens."""
         with open(os.path.join(MODELS, "..", "..", "README.md"), encoding="utf-8") as file:
             block = re.search(r"## Share a daemon\n\n((?:    .*\n)+)", file.read()).group(1)
         for theirs, ours in (("/tmp/", self.folder + "/"), (" build/", f" {BUILD}/"),
@@ -302,7 +304,7 @@ class Client(unittest.TestCase):
         self.assertIn("requests", done.stdout)
 
     def test_example_lights_are_seen(self):
-        """What each shows is on the fender: another pattern makes another picture."""
+        """The pattern of every example light is visible on the fender: another pattern gives another picture."""
         lights = json.loads(sheen("lights", "--json").stdout)["lights"]
         self.assertEqual(len(lights), 4)
         for light in lights:
@@ -325,7 +327,7 @@ class Client(unittest.TestCase):
             self.assertEqual(sheen(*command, "-q", "--server", self.daemon.unix).stderr, "")
 
     def test_nothing_to_see(self):
-        """Said once, and not with -q; every way to draw tells."""
+        """The notice appears once, not with -q, and with every command that draws."""
         away = ("--eye", "0,0,5000", "--target", "0,0,9000", "--up", "0,1,0")
         for surface in ("exact", "polygon:1", "wireframe:1"):
             for size in ("320x240", "2000x1000"):
@@ -367,7 +369,7 @@ class Client(unittest.TestCase):
             daemon.stop()
 
     def test_server_that_hangs_up_within_a_frame(self):
-        """A relay that passes the daemon's answers on and cuts them at some byte."""
+        """A relay that passes the daemon's answers on and closes the connection after some byte of them."""
         for cut in (10, 60, 400, 2000):
             with socket.create_server(("127.0.0.1", 0)) as server:
                 address = f"tcp:127.0.0.1:{server.getsockname()[1]}"
@@ -381,7 +383,7 @@ class Client(unittest.TestCase):
 
 
 def pixels_of(png):
-    """Compressed as they are, without the texts that say what made them."""
+    """The compressed pixels, without the texts that tell how the picture was made."""
     pixels, at = b"", 8
     while at < len(png):
         end = at + 12 + int.from_bytes(png[at:at + 4], "big")
@@ -391,7 +393,7 @@ def pixels_of(png):
 
 
 def relay(server, address, cut):
-    """Passes bytes both ways until `cut` bytes of answers have passed, then closes."""
+    """Passes bytes both ways until `cut` bytes of answers have been passed, then closes."""
     ours, _ = server.accept()
     host, port = address[4:].rsplit(":", 1)
     with ours, socket.create_connection((host, int(port))) as theirs:

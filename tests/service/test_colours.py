@@ -1,4 +1,4 @@
-"""How colours mix: as linear light, premultiplied by alpha."""
+"""Colours mix as linear light, premultiplied by alpha."""
 import os
 import re
 import shutil
@@ -10,7 +10,7 @@ from test_client import sheen
 from test_surface import read_png
 
 PLANE = os.path.join(MODELS, "plane.obj")
-# A plane that fills the picture, so that no pixel is at an edge, and a light above it.
+# A plane that fills the picture, so that no pixel is at an edge, and a light above the plane.
 VIEW = ("--size", "40x30", "--eye", "0,-2,3", "--target", "0,0,0", "--fov", "10")
 HERE = ("--light-u", "1,0,0", "--light-v", "0,1,0")
 PLANE_LIGHT = ("--light", "plane", "--light-center", "0,0,4", *HERE)
@@ -26,7 +26,7 @@ class Colours(DaemonCase):
         return path
 
     def pixels(self, *arguments):
-        """Rows of pixels, three channels each, or four where any is not opaque."""
+        """The rows of pixels, with three channels, or four if any pixel is not opaque."""
         width, _, rows = read_png(self.draw("a.png", *arguments))
         n = len(rows[0]) // width
         return [[tuple(row[n * x:n * x + n]) for x in range(width)] for row in rows]
@@ -39,23 +39,23 @@ class Colours(DaemonCase):
         self.assertLessEqual(max(abs(a - b) for a, b in zip(found, want)), most, (found, want))
 
     def test_a_light_thinner_than_a_pixel_is_a_share_of_it(self):
-        """Rays that run along the light's plane meet it far from linearly; of 20 x 20 samples of
-        the pixel 0.42 are on the light, which is displayed as 173."""
+        """Where rays run along the light's plane, places on the light change far from linearly within a pixel. 0.42
+        of 20 x 20 samples of the pixel are on the light, which is displayed as 173."""
         rows = self.pixels(*VIEW, "--light", "rectangle", "--light-center", "0,2.7,4", "--light-u",
                            "0.05,0.005,0", "--light-v=-.1,1,0", "--pattern", "stripes:duty=1",
                            "--miss", "#000000")
         self.assert_near(rows[6][19], (173,) * 3, 2)
 
     def test_a_corner_has_its_share(self):
-        """White before black: the outermost pixel at a plain square's corner, whose centre sees
-        nothing; 0.415 of it shows surface, which is displayed as 172."""
+        """White in front of black: the outermost pixel at the corner of a plain square, whose centre sees nothing.
+        0.415 of it shows surface, which is displayed as 172."""
         rows = self.pixels("--size", "320x240", "--light", "plane", "--light-center", "0,0,90",
                            *HERE, "--pattern", "stripes:duty=1", "--miss", "#ffffff", "--empty",
                            "#000000")
         self.assert_near(rows[65][304], (172,) * 3, 8)
 
     def test_fine_stripes_are_half_the_light(self):
-        """And stand out from the grey that is empty: half the light is displayed as 188."""
+        """Half the light is displayed as 188, which differs from the grey of `empty`."""
         self.assert_near(self.middle(*PLANE_LIGHT, "--pattern", "stripes:count=5000"),
                          (188, 188, 188))
 
@@ -75,7 +75,7 @@ class Colours(DaemonCase):
         self.assertEqual(self.middle(*far, *one), (255, 0, 0, 102))
 
     def test_opacity_paints_no_clear_colour(self):
-        """Half of the base is what is seen, in the base's own colour."""
+        """Half of the light is the base, in the base's own colour."""
         red, green, blue, alpha = self.middle(
             *PLANE_LIGHT, "--pattern", "stripes:duty=1,fg=#ff000000,opacity=.5", "--base",
             "#0000ff")
@@ -83,7 +83,7 @@ class Colours(DaemonCase):
         self.assertGreater(blue, 200)
 
     def test_an_edge_shows_each_light_once(self):
-        """Two lights of alpha 0.4 over each other make 0.64, at an edge its share of the pixel."""
+        """Two lights of alpha 0.4, one over the other, give 0.64; at an edge the pixel's share of that."""
         both = [word for z in (4, 5) for word in
                 ("--light", "plane", "--light-center", f"0,0,{z}", *HERE, "--pattern",
                  "stripes:duty=1,fg=#ff000066")]
@@ -97,10 +97,10 @@ class Colours(DaemonCase):
         self.assertEqual(max(pixel[3] for pixel in found), 163)
 
     def test_images_at_borders(self):
-        """They go round with what goes round, repeat on planes, and else end with their border's
-        colour. An orthographic view of the plane, mirrored by it towards azimuth 180 degrees."""
+        """Images wrap around on lights that close, repeat on planes, and elsewhere continue their border's colour. An
+        orthographic view of the plane, which reflects it towards azimuth 180 degrees."""
         view = ("--size", "9x9", "--eye", "3,0,3", "--target", "0,0,0", "--ortho", "0.002")
-        at = ("--light-center", "-4.75,0,4")  # from 0.75 further along x the ray comes
+        at = ("--light-center", "-4.75,0,4")  # the ray comes from x = 0.75, relative to the centre
         red, blue, both = (255, 0, 0), (0, 0, 255), (188, 0, 188)
         for size, options, want in (
                 ("1 2", ("--lines", "zebra:0,0,1"), both),
@@ -125,7 +125,7 @@ class Colours(DaemonCase):
 
     @unittest.skipUnless(shutil.which("oiiotool"), "no oiiotool here")
     def test_files_say_how_colours_are_meant(self):
-        """EXR is linear and premultiplied, and says so; PNG is sRGB with straight alpha."""
+        """EXR holds linear, premultiplied values and says so; PNG holds sRGB with straight alpha."""
         away = ("--size", "8x6", "--eye", "0,-2,3", "--target", "0,-4,6", "--empty")
         for colour, straight, light in (
                 ("#808080", (128, 128, 128), (0.2158, 0.2158, 0.2158, 1)),

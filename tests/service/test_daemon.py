@@ -98,7 +98,7 @@ class Options(unittest.TestCase):
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             write("listen = tcp:0.0.0.0:1\n")
             self.assert_fails(2, "loopback", "--config", path, "--check-config")
-            # What the command line says goes first.
+            # Options on the command line override those in the file.
             done = run("--config", path, "--listen", f"unix:{folder}/b.sock", "--check-config")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assert_fails(2, "cannot read", "--config", folder + "/none")
@@ -157,7 +157,7 @@ class Sockets(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_waits_for_a_predecessor_that_dies(self):
-        """Its sockets answer for a moment yet."""
+        """The sockets of a daemon that is dying still answer for a moment."""
         unix, tcp = socket.socket(socket.AF_UNIX), socket.create_server(("127.0.0.1", 0))
         unix.bind(self.path)
         unix.listen()
@@ -231,7 +231,7 @@ class Sockets(unittest.TestCase):
 
 class Shutdown(unittest.TestCase):
     def assert_told(self, client):
-        """A client without a request in flight hears why its connection ends."""
+        """A client without a request in flight is told why its connection closes."""
         with self.assertRaises(wire.Refused) as caught:
             client.receive()
         self.assertEqual((caught.exception.code, caught.exception.seq),
@@ -274,7 +274,7 @@ class Shutdown(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_slow_readers_get_whole_frames(self):
-        """More than any socket's buffer, read slowly, while the daemon would like to end."""
+        """The data exceeds any socket's buffer and is read slowly, while the daemon is told to end."""
         daemon = Daemon()
         size = 2000 * 2000 * 4
         with Client(daemon.unix, timeout=60) as one, Client(daemon.tcp, timeout=60) as two:
@@ -305,14 +305,14 @@ class Shutdown(unittest.TestCase):
             daemon.terminate()
             start = time.monotonic()
             while daemon.process.poll() is None and time.monotonic() - start < 10:
-                client.read(1)  # never a stall
+                client.read(1)  # reads so often that the daemon sees no stall
                 time.sleep(0.05)
             self.assertGreater(time.monotonic() - start, 1.5)
             self.assertLess(time.monotonic() - start, 5)
         self.assertEqual(daemon.stop(), 0)
 
     def test_what_takes_too_long_is_refused(self):
-        """Half a minute of work or more is left when the daemon's second for it is over."""
+        """When the daemon's second for draining is over, there is at least half a minute of work left."""
         daemon = Daemon("--drain-timeout", "1")
         with Client(daemon.unix, timeout=60, minor=1) as client, \
              Client(daemon.tcp, timeout=60, minor=1) as quick:
@@ -336,11 +336,11 @@ class Shutdown(unittest.TestCase):
         daemon.stop()
 
     def test_a_tile_after_the_time_is_the_last(self):
-        """One frame of many tiles, between which the daemon looks at the clock."""
+        """One frame of many tiles; the daemon looks at the clock between tiles."""
         daemon = Daemon("--drain-timeout", "0")
         with Client(daemon.unix, timeout=60, minor=1) as client:
             model = client.upload(CUBE, "cube.obj")
-            client.render(model)  # all is compiled
+            client.render(model)  # all programs are compiled now
             seq = client.ask(model, 12000, 12000, kind=wire.BATCH)
             time.sleep(0.3)
             daemon.terminate()
@@ -369,7 +369,7 @@ class Shutdown(unittest.TestCase):
         daemon = Daemon("--drain-timeout", "1")
         with Client(daemon.unix, timeout=60) as client:
             model = client.upload(CUBE, "cube.obj")
-            seq = client.ask(model, 2000, 2000)  # its answer is more than the socket takes
+            seq = client.ask(model, 2000, 2000)  # the answer is larger than the socket's buffer
             client.expect(wire.FRAME, seq)
             daemon.terminate()
             self.assertEqual(daemon.wait(20), 0)
@@ -438,7 +438,7 @@ class Budget(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_least_recently_used_goes_first(self):
-        """Room for two sheets of about 3.4 MB with their tables, not for three."""
+        """The budget has room for two sheets of about 3.4 MB each with their tables, and not for three."""
         sheets = [grid(70) + f"# {i}\n".encode() for i in range(3)]
         daemon = Daemon("--memory-budget", "8M")
         with Client(daemon.unix) as client:
@@ -446,7 +446,7 @@ class Budget(unittest.TestCase):
             for model in ids:
                 client.render(model)
             self.assertEqual(client.stats()[5], [2])
-            client.render(ids[0])  # now the second is the oldest
+            client.render(ids[0])  # now the second model is the least recently used
             client.render(client.upload(sheets[2], "2.obj"))
             self.assertEqual(client.stats()[5], [2])
             self.assertEqual(client.render(ids[0]).tables_us, 0)
@@ -516,7 +516,7 @@ class SessionFd(unittest.TestCase):
 
 class Load(unittest.TestCase):
     def test_clients_in_parallel(self):
-        """Eight clients that come, ask and go: every frame is right, nothing is left behind."""
+        """Eight clients connect, ask and leave: every frame is right, and nothing of them remains."""
         daemon = Daemon()
         with Client(daemon.unix) as client:
             want = client.render(client.upload(CUBE, "cube.obj")).data
@@ -539,7 +539,8 @@ class Load(unittest.TestCase):
         with Client(daemon.unix) as client:
             stats = client.stats()
             self.assertEqual(stats[3], [8 * 6 * 4 + 1])
-            self.assertEqual((stats[5], stats[15]), ([2], [0]))  # an owner for each way
+            # two models: clients of the Unix socket and of TCP are different owners
+            self.assertEqual((stats[5], stats[15]), ([2], [0]))
             time.sleep(0.3)
             self.assertEqual(client.stats()[2], [1])
             descriptors = len(os.listdir(f"/proc/{daemon.process.pid}/fd"))

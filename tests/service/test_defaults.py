@@ -1,4 +1,4 @@
-"""What is drawn when nothing is said: the default light and camera over all models, end to end."""
+"""What is drawn without options: the default light and camera for all models, through the whole program."""
 import glob
 import json
 import math
@@ -15,7 +15,7 @@ from daemon import MODELS, SHEEN, DaemonCase
 POSITION, PTEX, LIGHT = 2, 8, 16
 SHAPES = os.path.join(MODELS, "..", "..", "..", "shared", "shapes")
 FRONT, TOP = 1, 5
-# A panel that stands, a little bent: thin in y, so that z is guessed to be up.
+# A panel that stands upright and is slightly bent: thin in y, so that z is guessed to be up.
 DOOR = b"".join(b"v %g %g %g\n" % (x, 0.04 * x * x, z) for z in (0, 1, 2) for x in (-1, 0, 1)) + \
     b"f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9 8\n"
 
@@ -29,7 +29,7 @@ def doubles(body):
 
 
 def camera(eye=None, target=None, fov=None, view=None, zoom=None):
-    """A Camera: zoom is (factor, x, y)."""
+    """The field `camera` of a RENDER; zoom is (factor, x, y)."""
     parts = [(1, eye and vec3(eye)), (2, target and vec3(target)), (4, fov), (6, view)]
     parts += zip((7, 8, 9), zoom or ())
     return wire.field(4, b"".join(wire.field(number, value) for number, value in parts
@@ -37,7 +37,7 @@ def camera(eye=None, target=None, fov=None, view=None, zoom=None):
 
 
 class Picture:
-    """The planes of a frame, as lists of pixels; None where there is nothing."""
+    """The planes of a frame as lists of pixels; None for a pixel that shows nothing."""
 
     def __init__(self, client, model, width, height, extra=b""):
         self.width, self.height = width, height
@@ -58,7 +58,7 @@ class Picture:
         return doubles(self.camera[2][0])
 
     def fill(self):
-        """The larger share of the picture's sides that the model takes; whether it touches them."""
+        """Returns the larger share of the picture's sides that the model takes, and whether it touches the border."""
         places = [(i % self.width, i // self.width) for i, hit in enumerate(self.hit) if hit]
         shares, touches = [], False
         for side, size in enumerate((self.width, self.height)):
@@ -80,7 +80,7 @@ class Defaults(DaemonCase):
             return self.client.upload(file.read(), os.path.basename(path))
 
     def test_all_models(self):
-        """Everywhere there is light; the model fills the picture and does not touch its border."""
+        """Every pixel of the surface meets the light. The model fills the picture and does not touch its border."""
         n = 0
         for path in sorted(glob.glob(os.path.join(MODELS, "*.obj")) +
                            glob.glob(os.path.join(MODELS, "*.gltf")) +
@@ -105,7 +105,7 @@ class Defaults(DaemonCase):
         self.assertGreaterEqual(n, 20)
 
     def test_one_eye(self):
-        """A point of the surface shows the same place of the light, wherever the eye turns."""
+        """A point of the surface shows the same place of the light, whatever the camera looks at."""
         rng = random.Random(5)
         for name in ("fender.obj", "body.obj"):
             model = self.upload(os.path.join(MODELS, name))
@@ -121,7 +121,7 @@ class Defaults(DaemonCase):
                     self.assertLess(abs(a - b), 1e-5)
 
     def test_zoom(self):
-        """What is at a place of the picture comes to the middle; the eye and the light stay."""
+        """The given place of the picture comes to the middle; eye and light do not change."""
         model = self.upload(os.path.join(MODELS, "fender.obj"))
         for view in (None, TOP):
             overview = Picture(self.client, model, 161, 121, camera(view=view))
@@ -139,7 +139,7 @@ class Defaults(DaemonCase):
                 self.assertAlmostEqual(tangents[0] / tangents[1], 20, 9)
 
     def test_views(self):
-        """Each looks from where it says, and fills the picture."""
+        """Each named view looks from its direction, and the model fills the picture."""
         model = self.upload(os.path.join(MODELS, "body.obj"))  # z up
         third = math.sqrt(1 / 3)
         for view, (toward, up) in enumerate((((0, 1, 0), (0, 0, 1)), ((0, -1, 0), (0, 0, 1)),
@@ -183,7 +183,7 @@ class Said(DaemonCase):
         self.assertIn(": 90x60, 4 faces, ", text)
 
     def test_the_devices_own_limit(self):
-        """A side within the protocol's range, over what the device draws."""
+        """A side that the protocol allows and the device does not."""
         _, text = self.sheen(self.door, "--size", "60x60000", code=2)
         self.assertRegex(text, r"height is 60000; it must be from 1 to \d+ pixels, the device's own "
                                r"limit")
@@ -198,7 +198,7 @@ class Said(DaemonCase):
             file.write(DOOR)
 
     def sheen(self, model, *options, code=0):
-        """What --json says, and what is said to people."""
+        """The options' effects, by --json and by the texts for people."""
         done = subprocess.run([SHEEN, "render", model, "-o", os.path.join(self.folder, "a.png"),
                                "--size", "90x60", "--server", self.daemon.unix, "--json", *options],
                               capture_output=True, text=True, timeout=60, check=False)
@@ -206,7 +206,7 @@ class Said(DaemonCase):
         return json.loads(done.stdout) if code == 0 else None, done.stderr
 
     def test_up(self):
-        """A file that says which way is up is believed; a guess is told, and what is given counts."""
+        """The up that a file gives is used; a guessed up is reported; a given up wins."""
         said, text = self.sheen(os.path.join(MODELS, "fender.gltf"))
         self.assertEqual((said["up"], said["up_source"]), ([0, 1, 0], "file"))
         self.assertEqual(said["camera"]["up"], [0, 1, 0])
@@ -223,7 +223,7 @@ class Said(DaemonCase):
             self.assertNotIn("guessed", text)
 
     def test_light_share(self):
-        """A light that most of what is seen misses says so, once, with what to do."""
+        """If most of the visible surface misses the light, one notice says so and what to do."""
         said, text = self.sheen(self.door, "--up", "z")
         self.assertEqual((said["light_share"], said["light"]["kind"]), (1, "tunnel"))
         self.assertNotIn("is met on", text)
@@ -243,7 +243,8 @@ class Said(DaemonCase):
             self.assertNotIn("is met on", text)
 
     def test_every_command_that_draws_says_it(self):
-        """The file's warnings, the guessed up, the light that is hardly met, nothing to see: once."""
+        """The warnings of the file, the guessed up, a light that is hardly met, and a picture without surface: each
+        is reported once."""
         bad = os.path.join(self.folder, "bad.obj")
         with open(bad, "wb") as file:
             file.write(DOOR + b"f 1 2\n")
@@ -272,7 +273,7 @@ class Said(DaemonCase):
                     self.assertEqual(done.stderr, "")
 
     def test_straight_down(self):
-        """No --up is needed; the lines are those of every other camera."""
+        """--up is not needed for such a camera; the lines are the same as for every other camera."""
         whole, _ = self.sheen(os.path.join(MODELS, "fender.obj"))
         for height, back in ((4000, 1), (-4000, -1)):
             said, _ = self.sheen(os.path.join(MODELS, "fender.obj"), "--eye", f"500,0,{height}",

@@ -1,4 +1,4 @@
-"""deploy/: its commands run as its READMEs say, and what it names is there."""
+"""deploy/: the commands in its READMEs run as they stand, and the files that it names exist."""
 import json
 import os
 import re
@@ -22,14 +22,14 @@ def read(*path):
 
 
 def commands(folder, kind):
-    """The lines of a README's blocks of this kind."""
+    """The lines of a README's code blocks of this kind."""
     blocks = re.findall(rf"^```sh {kind}\n(.*?)^```$", read(folder, "README.md"), re.M | re.S)
     assert blocks, (folder, kind)
     return "".join(blocks).splitlines()
 
 
 def shell(command, **env):
-    # The READMEs say build/; the build under test may be another.
+    # The READMEs name build/; the build under test may be another folder.
     command = re.sub(r"^build/", BUILD + "/", command)
     return subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True,
                           timeout=60, env={**os.environ, **env})
@@ -55,7 +55,7 @@ class Readmes(unittest.TestCase):
             self.assertEqual(self.assert_all_run(lines, DESTDIR=folder), len(lines))
             there = {os.path.join(path, name)[len(folder):]
                      for path, _, names in os.walk(folder) for name in names}
-        # The unit's own commands find what was installed.
+        # The unit's own commands, with the installed programs.
         for path in re.findall(r"--config (\S+)", read("systemd", "sheend.service")):
             self.assertIn(path, there)
 
@@ -66,7 +66,7 @@ class Readmes(unittest.TestCase):
 
 class Tls(unittest.TestCase):
     def test_the_readme(self):
-        """Certificates, a daemon and its clients, word for word but for the port."""
+        """Certificates, a daemon and its clients: the README's commands word for word, except for the port."""
         with tempfile.TemporaryDirectory() as folder:
             def in_folder(line):
                 return f"cd {folder} && PATH={BUILD}:$PATH {line}"
@@ -123,15 +123,15 @@ class Systemd(unittest.TestCase):
     def test_the_drain_ends_before_its_time_to_stop(self):
         drain, = re.findall(r"(?m)^drain-timeout = (\d+)$", read("systemd", "sheend.conf"))
         stop, = re.findall(r"(?m)^TimeoutStopSec=(\d+)$", read("systemd", "sheend.service"))
-        self.assertGreaterEqual(int(stop), int(drain) + 4 + 5)  # and some to spare
+        self.assertGreaterEqual(int(stop), int(drain) + 4 + 5)  # a margin
 
     def test_clients_keep_their_users(self):
-        """A user namespace of the daemon's own would make one of them all."""
+        """In a user namespace of its own the daemon could not tell users apart."""
         for unit in ("sheend.service", "sheend.socket", "sheend-metrics.socket"):
             self.assertNotRegex(read("systemd", unit), r"(?m)^\s*PrivateUsers\s*=")
 
     def system_calls(self):
-        """The unit's list by name: sets with '@' are systemd's, '~' takes away."""
+        """The list of system calls of the unit's SystemCallFilter; '@' names a set of systemd's, '~' removes."""
         def expand(name):
             if not name.startswith("@"):
                 return {name}
@@ -154,11 +154,11 @@ class Systemd(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("systemd-analyze"), "no systemd-analyze here")
     def test_it_renders_with_the_units_system_calls(self):
-        """The unit's SystemCallFilter as a seccomp program of our own, for want of a systemd."""
+        """The unit's SystemCallFilter as a seccomp program made here, because there may be no systemd."""
         numbers = self.numbers(self.system_calls())
         self.assertGreater(len(numbers), 150)
         eperm = 0x00050000 | 1
-        program = struct.pack("HBBI", 0x20, 0, 0, 0)  # load the number
+        program = struct.pack("HBBI", 0x20, 0, 0, 0)  # loads the number of the system call
         for number in numbers:
             program += struct.pack("HBBI", 0x15, 0, 1, number) + struct.pack("HBBI", 0x06, 0, 0,
                                                                             0x7fff0000)

@@ -1,6 +1,5 @@
-"""Faults: a GPU that is lost, memory, descriptors and disks that end, and processes that are killed.
-
-Some are injected into the test build (faults.c). SHEEN_KILLS says how many processes are killed."""
+"""Faults: a lost GPU, exhausted memory, descriptors and disks, and killed processes. Some faults are injected into
+the test build (faults.c). SHEEN_KILLS is the number of processes to kill."""
 import os
 import random
 import resource
@@ -16,7 +15,7 @@ from test_operations import get, metrics_address, read_metrics
 from test_untrusted import children, is_alive, workers
 
 FENDER = os.path.join(MODELS, "fender.obj")
-UPLOADS_BYTES, QUEUED = 8, 15  # of STATS
+UPLOADS_BYTES, QUEUED = 8, 15  # a field of STATS
 
 
 class FaultyDaemon(Daemon):
@@ -38,7 +37,7 @@ class LostGpu(unittest.TestCase):
         return client
 
     def draw(self, client, model, **named):
-        """A frame's bytes, and how often it was lost before."""
+        """Returns a frame's bytes, and how often the frame was lost before."""
         lost = 0
         while True:
             try:
@@ -65,7 +64,8 @@ class LostGpu(unittest.TestCase):
             self.assertEqual(server.stop(), 0)
 
     def test_all_comes_back(self):
-        """Model, light image and polygons, and a frame of many tiles goes on after the lost one."""
+        """After a loss the model, the light image and the polygons are uploaded again, and a frame of many tiles
+        continues."""
         square = b"P6\n2 2\n255\n" + bytes((255, 0, 0, 0, 255, 0, 0, 0, 255, 90, 90, 90))
         pictures = []
         for faults in ("gpu.lost:9:0", "gpu.lost:9:8"):
@@ -86,8 +86,8 @@ class LostGpu(unittest.TestCase):
         self.assertEqual(pictures[0], pictures[1])
 
     def test_lost_between_two_slices(self):
-        """Polygons that take several steps to come to the device and to be drawn, for two at once:
-        who is drawn then asks again, the other goes on by itself."""
+        """Two frames of polygons that take several steps to upload and to draw. The frame that is being drawn at the
+        loss must be requested again; the other one continues by itself."""
         level6 = wire.field(40, 1) + wire.field(41, 6)
         pictures = []
         for faults in ("gpu.lost:9:0", "gpu.lost:9:3"):
@@ -114,7 +114,8 @@ class LostGpu(unittest.TestCase):
         self.assertEqual(pictures, pictures[:1] * 4)
 
     def test_polygons_go_between_two_tiles(self):
-        """Others have taken their room on the device: the frame gets them again and goes on."""
+        """Other polygons have taken the frame's room on the device: the frame gets its polygons again and
+        continues."""
         server = self.serve("gpu.polygons:4:3")
         client = self.client(server)
         model = client.upload(CUBE, "cube.obj")
@@ -168,7 +169,7 @@ class Shortage(unittest.TestCase):
         self.output = os.path.join(self.folder.name, "out.png")
 
     def test_memory(self):
-        """Costs one request; the next one works."""
+        """The fault fails one request; the next request works."""
         for fault, encoding in (("model.build", wire.ZSTD), ("encode", wire.ZSTD),
                                 ("encode", wire.JPEG)):
             server = FaultyDaemon(f"{fault}:1:1")
@@ -182,7 +183,7 @@ class Shortage(unittest.TestCase):
             self.assertEqual(server.stop(), 0)
 
     def test_no_descriptor_to_accept_with(self):
-        """The client waits in the queue through five failures, and the log has two lines, not five."""
+        """The client waits in the queue through five failures, and the log has two lines about them, not five."""
         server = FaultyDaemon("accept.emfile:1:5")
         with wire.Client(server.unix) as client:
             client.render(client.upload(CUBE, "cube.obj"))
@@ -194,7 +195,7 @@ class Shortage(unittest.TestCase):
         self.assertEqual(server.stop(), 0)
 
     def test_descriptors(self):
-        """Who comes when there are none waits until one is free; nobody is thrown out."""
+        """A client that connects while no descriptor is free waits for one; no other client is disconnected."""
         server = Daemon()
         pid = server.process.pid
         with wire.Client(server.unix) as first:
@@ -233,7 +234,7 @@ class Shortage(unittest.TestCase):
         self.assertEqual(server.stop(), 0)
 
     def test_broken_pipe(self):
-        """A daemon whose log and whose client go away at once."""
+        """The readers of the daemon's log and of its answers both go away."""
         reader, writer = os.pipe()
         server = subprocess.Popen([Daemon.program, "--device", "software", "--log-level", "debug",
                                    "--listen", f"unix:{self.folder.name}/s"], stderr=writer)
@@ -250,7 +251,7 @@ class Shortage(unittest.TestCase):
 
 
 class Stuck(unittest.TestCase):
-    """A daemon that shuts down waits for nobody beyond its time."""
+    """A daemon that shuts down waits for nothing beyond its time limit."""
 
     def told_at_the_end(self, server, client, seq):
         with client:
@@ -313,7 +314,7 @@ class Stuck(unittest.TestCase):
 
 
 class Sending(unittest.TestCase):
-    """A socket that takes a byte, nothing, or breaks, at every so-many-th write."""
+    """A socket that accepts one byte, no byte, or fails, at every n-th write."""
 
     def serve(self, faults):
         server = FaultyDaemon(faults)
@@ -372,7 +373,7 @@ class TakenOver(unittest.TestCase):
 
 
 class Killed(unittest.TestCase):
-    """kill -9 of the daemon or its client while a model is uploaded, built and drawn."""
+    """kill -9 of the daemon or of its client while a model is uploaded, built and drawn."""
     ROUNDS = int(os.environ.get("SHEEN_KILLS", "6"))
 
     def setUp(self):
@@ -401,7 +402,7 @@ class Killed(unittest.TestCase):
         self.wait_until(lambda: not any(is_alive(pid) for pid in pids), f"{pids} live on")
 
     def family(self, pid):
-        """A process's children and theirs, as far as they have not ended."""
+        """A process's children and their descendants that have not ended."""
         found = []
         try:
             for child in children(pid):

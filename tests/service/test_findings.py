@@ -1,4 +1,4 @@
-"""What a model's file has that it is probably not meant to have: said once, drawn all the same."""
+"""Probable mistakes in a model's file are reported once, and the model is drawn all the same."""
 import json
 import os
 import tempfile
@@ -14,7 +14,7 @@ INSIDE_OUT = HEAD + b"\n".join(b"f " + b" ".join(reversed(line.split()[1:]))
                                for line in CUBE[len(HEAD):].splitlines()) + b"\n"
 TRIANGLES = HEAD + b"f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\n"
 
-# Faces of it, and what is found: kind, count, line.
+# For each case: the file, its number of faces, and the findings as (kind, count, line).
 CASES = {
     "repeated": (CUBE.replace(b"f 4 1 5 8", b"f 4 1 5 5\nf 4 5 8"), 7, [("repeated-corner", 1, 14)]),
     "two": (CUBE + b"f 2 5\nf 1 1 2\n", 6, [("few-corners", 2, 15)]),
@@ -33,7 +33,7 @@ CASES = {
 
 
 def apart(obj):
-    """The same faces with vertices of their own."""
+    """The same faces, each with vertices of its own."""
     vertices = [line for line in obj.splitlines() if line.startswith(b"v ")]
     lines, faces = [], []
     for line in obj.splitlines():
@@ -107,7 +107,7 @@ class Findings(unittest.TestCase):
             self.assertEqual(len(done.stderr.splitlines()), 1)
 
     def test_weld(self):
-        """Joined and as it is, one file is two models, whichever came first, each with its own answer."""
+        """With and without --weld one file is two models, each with its own answer, whichever came first."""
         model = self.write("apart.obj", apart(CUBE))
         pictures = {}
         for options in (("--weld",), (), ("--weld",), ()):

@@ -1,6 +1,5 @@
-"""Clients that break the protocol, on purpose or by dying, and what the daemon makes of them.
-
-After every test the daemon must serve others (DaemonCase.tearDown)."""
+"""Clients that break the protocol on purpose or by dying. After every test the daemon must serve others
+(DaemonCase.tearDown)."""
 import hashlib
 import os
 import random
@@ -12,7 +11,7 @@ import wire
 from daemon import CUBE, Daemon, DaemonCase, grid, resident_kb
 from wire import Client, field, message
 
-ALONE = True  # tests/run.sh runs nothing beside these tests
+ALONE = True  # tests/run.sh runs nothing else at the same time as these tests
 
 
 class Hostile(DaemonCase):
@@ -36,15 +35,15 @@ class Hostile(DaemonCase):
             self.assert_closed(client, wire.ERROR_PROTOCOL, "SHEN", 0)
 
     def test_wrong_magic_behind_a_request(self):
-        """In one read: the number of the request before is no number of what cannot be read."""
+        """Both arrive in one read. The error about the garbage must not have the number of the request before it."""
         for client in self.each():
             client.send(message(wire.STATS_QUERY, 2) + b"garbage-garbage-")
             client.expect(wire.STATS, 2)
             self.assert_closed(client, wire.ERROR_PROTOCOL, "SHEN", 0)
 
     def test_names_that_look_like_others(self):
-        """Marks that turn text and other unseen characters reach neither log nor terminal. A daemon of its own: the log leaves
-        lines out where hundreds come in a second."""
+        """Characters that change the direction of text, and other invisible ones, reach neither log nor terminal. The
+        test has a daemon of its own, because a log with hundreds of lines in a second would leave lines out."""
         daemon = Daemon()
         with Client(daemon.unix) as client:
             name = "a\u202egnp\u2028x\U000e0041.obj"
@@ -123,7 +122,7 @@ class Hostile(DaemonCase):
                     self.assert_closed(client, wire.ERROR_PROTOCOL, words, 2)
 
     def test_over_a_bound(self):
-        """limits.h: going over a limit costs an ERROR message that names it."""
+        """limits.h: a value above a limit is answered with an ERROR that names the limit."""
         light = field(5, b"")
         places = field(5, field(6, field(1, 4) + field(12, 0.5) * 17))
         for extra, words in ((light * 9, "lights has 9 entries; it may have at most 8"),
@@ -211,7 +210,7 @@ class Uploads(DaemonCase):
                 self.assertEqual(client.expect(wire.UPLOAD_STATE, seq)[1], [0])
                 client.send(message(wire.UPLOAD_CHUNK, seq, CUBE))
                 self.assert_refused(client, wire.ERROR_REQUEST, "SHA-256", seq)
-                # The connection goes on, and nothing is known by the wrong name.
+                # The connection remains, and no file is known by the wrong id.
                 client.stats()
                 client.send(wire.render(90, wrong))
                 self.assert_refused(client, wire.ERROR_UNKNOWN_MODEL, wrong.hex(), 90)
@@ -228,7 +227,8 @@ class Uploads(DaemonCase):
                 self.assertTrue(client.at_end())
 
     def test_two_states_and_cancel_between(self):
-        """An upload has an answer to its beginning and one to its last byte; CANCEL does nothing to it."""
+        """An upload has an answer to its beginning and an answer to its last byte. CANCEL does nothing to an
+        upload."""
         with Client(self.daemon.unix, minor=1) as client:
             data = CUBE + b"# " + os.urandom(8).hex().encode()
             seq = self.begin(client, data)
@@ -238,10 +238,10 @@ class Uploads(DaemonCase):
             self.assertEqual(client.expect(wire.UPLOAD_STATE, seq), {1: [1], 2: [len(data)]})
             seq = self.begin(client, data)
             self.assertEqual(client.expect(wire.UPLOAD_STATE, seq), {1: [1], 2: [len(data)]})
-            client.stats()  # and no other
+            client.stats()  # and no other answer
 
     def test_requests_before_hello_is_answered(self):
-        """Half-closed behind them, too."""
+        """Also if clients have closed their sending side after the messages."""
         with Client(self.daemon.unix, greet=False) as client:
             client.send(wire.hello(minor=1) + message(wire.STATS_QUERY, 2) +
                         message(wire.STATS_QUERY, 3))
@@ -252,7 +252,7 @@ class Uploads(DaemonCase):
             self.assertTrue(client.at_end())
 
     def test_a_number_that_is_not_answered_yet(self):
-        """From 1.4 on it must not be used again; peers of before may."""
+        """From 1.4 on the number must not be used again before its answer; older peers may do so."""
         for minor in (1, 3):
             with Client(self.daemon.unix, minor=minor) as client:
                 model = client.upload(CUBE, "cube.obj")
@@ -261,7 +261,7 @@ class Uploads(DaemonCase):
                 client.read_frame(9)
         with Client(self.daemon.unix, minor=4) as client:
             model = client.upload(CUBE, "cube.obj")
-            for _ in range(2):  # answered in between
+            for _ in range(2):  # answered in the meantime
                 client.send(wire.render(9, model))
                 client.read_frame(9)
             client.send(wire.render(9, model, 700, 700) + wire.render(9, model))
@@ -302,7 +302,7 @@ class Uploads(DaemonCase):
             with Client(self.daemon.unix) as client:
                 seq = self.begin(client, b"", size=size)
                 self.assert_refused(client, code, "", seq)
-                # Chunks that were on their way are dropped, then the connection goes on.
+                # Chunks that were already sent are dropped; then the connection goes on.
                 client.send(message(wire.UPLOAD_CHUNK, seq, b"abc"))
                 client.stats()
 
@@ -313,7 +313,7 @@ class Uploads(DaemonCase):
                 self.assert_refused(client, wire.ERROR_REQUEST, "name")
 
     def test_announced_and_gone(self):
-        """A gigabyte announced by many costs nothing and stays with nobody."""
+        """Many clients announce a gigabyte: that takes no memory, and nobody keeps any."""
         for _ in range(20):
             with Client(self.daemon.unix) as client:
                 seq = self.begin(client, os.urandom(10), size=1 << 30)
@@ -330,7 +330,7 @@ class Uploads(DaemonCase):
                                   ("far.obj", CUBE + b"f 1 2 99\n", "far.obj")):
             with Client(self.daemon.unix) as client, self.subTest(name=name):
                 model = client.upload(data, name)
-                for _ in range(2):  # the second time from memory, with the same words
+                for _ in range(2):  # the second time from memory, with the same text
                     client.send(wire.render(50, model))
                     self.assert_refused(client, wire.ERROR_MODEL, words, 50)
                 client.send(message(wire.MODEL_QUERY, 51, field(1, model)))
@@ -338,7 +338,7 @@ class Uploads(DaemonCase):
                 client.stats()
 
     def test_refused_by_the_limit_surface(self):
-        """A part that knows no files finds this; the words name the file all the same."""
+        """The fault is found by a part of the daemon that knows no files; the text names the file all the same."""
         fan = b"v 0 0 0\n" + b"".join(b"v %d 1 %d\n" % (i, i * i % 97) for i in range(5000))
         fan += b"".join(b"f 1 %d %d\n" % (i + 2, i + 3) for i in range(4999))
         with Client(self.daemon.unix) as client:
@@ -399,7 +399,8 @@ class Renders(DaemonCase):
             client.render(model)
 
     def test_a_column_after_a_row(self):
-        """The device's planes hold the largest frame so far, which is no square of both."""
+        """The device's planes must be as large as the largest frame so far, and not have the largest width times the
+        largest height."""
         with Client(self.daemon.unix) as client:
             model = client.upload(CUBE, "cube.obj")
             before = resident_kb(self.daemon.process.pid)
@@ -411,7 +412,8 @@ class Renders(DaemonCase):
             self.assertLess(resident_kb(self.daemon.process.pid), before + (512 << 10))
 
     def test_thin_frames_each_longer_than_the_last(self):
-        """What planes may waste is measured by what was asked for, not by what they have come to."""
+        """The memory that planes may waste is measured by the frames that were requested, not by the planes' present
+        size."""
         with Client(self.daemon.unix) as client:
             model = client.upload(CUBE, "cube.obj")
             held = [512, 512]
@@ -465,8 +467,8 @@ class Renders(DaemonCase):
             self.assertEqual(packed.data[24:28], b"\x28\xb5\x2f\xfd")
 
     def test_jpeg_options(self):
-        """A lower quality and fewer samples of colour are fewer bytes; a client of minor version 1,
-        which cannot have meant them, gets what it always got."""
+        """Lower quality and fewer samples of colour give fewer bytes. A client of minor version 1 cannot set these
+        options and gets the same bytes as ever."""
         quality, subsampling = wire.field(30, 40), wire.field(31, 2)
         with Client(self.daemon.tcp, minor=2) as client, Client(self.daemon.tcp, minor=1) as older:
             model = client.upload(CUBE, "cube.obj")
@@ -487,7 +489,7 @@ class Renders(DaemonCase):
                 self.assert_refused(client, wire.ERROR_REQUEST, words, seq)
 
     def test_many_ahead(self):
-        """More requests than are taken at once are answered all the same."""
+        """More requests than are read at once are all answered."""
         with Client(self.daemon.unix) as client:
             model = client.upload(CUBE, "cube.obj")
             client.send(b"".join(wire.render(100 + i, model) for i in range(50)))
@@ -522,12 +524,12 @@ class Renders(DaemonCase):
             client.render(client.upload(data, "sheet.obj"))
 
     def test_reads_no_more(self):
-        """A client that asks and does not read costs bounded memory and nobody else's time."""
+        """A client that asks and does not read costs a bounded amount of memory and delays nobody."""
         pid = self.daemon.process.pid
         for address in self.addresses():
             with Client(address, timeout=3) as client:
                 model = client.upload(CUBE, "cube.obj")
-                client.render(model, width=1000, height=1000)  # warm
+                client.render(model, width=1000, height=1000)  # the first frame, not measured
                 before = resident_kb(pid)
                 ask = b"".join(wire.render(100 + i, model, width=1000, height=1000)
                                for i in range(1000))
@@ -553,7 +555,7 @@ class Renders(DaemonCase):
             frames = [[client.read_frame(20 + i) for i in range(4)] for client in (one, two)]
             self.assertEqual({frame.data for row in frames for frame in row},
                              {frames[0][0].data})
-            # Built once, for both.
+            # Built once, for both clients.
             self.assertEqual(sum(frame.tables_us > 0 for row in frames for frame in row), 1)
             self.assertEqual(one.render(models[0]).tables_us, 0)
             self.assertEqual(one.stats()[5], two.stats()[5])
@@ -567,7 +569,7 @@ class Renders(DaemonCase):
             before = other.stats()[3][0]
             for _ in range(5):
                 other.render(model, width=32, height=32)
-            # For each of these five, no more than the two that the busy one may have in flight.
+            # For each of these five frames, at most the two frames that the busy client may have in flight.
             self.assertLessEqual(other.stats()[3][0] - before, 5 + 5 * 2)
             for i in range(40):
                 busy.read_frame(50 + i)

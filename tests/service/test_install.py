@@ -1,4 +1,5 @@
-"""make install: what it brings, that it builds nothing again, and that programs build with what it brought."""
+"""make install: the files that it installs, that it builds nothing, and that programs can be built with the installed
+library."""
 import base64
 import json
 import os
@@ -58,7 +59,7 @@ def install(folder):
 
 
 def built():
-    """When what make builds was built: not what tests write meanwhile."""
+    """When each file that make builds was changed; without files that tests write in the meantime."""
     times = {}
     for folder in ("", "gen", "manual", "obj/client", "obj/server", "obj/protocol", "obj/deploy"):
         top = os.path.join(BUILD, folder)
@@ -96,7 +97,7 @@ class Installed(unittest.TestCase):
 class Files(Installed):
     def test_the_list(self):
         self.assertEqual(self.there(), FILES)
-        self.assertEqual(install(self.root).returncode, 0)  # over what is there
+        self.assertEqual(install(self.root).returncode, 0)  # installs over an existing installation
         self.assertEqual(self.there(), FILES)
 
     def test_nothing_is_built_again(self):
@@ -121,7 +122,7 @@ class Files(Installed):
             self.assertNotIn(ROOT.encode() + b"/", text)
 
     def test_two_folders_give_equal_objects(self):
-        """Programs hold the paths that their objects hold, above all for the debugger."""
+        """Programs contain the paths that their objects contain, mostly for the debugger."""
         made = []
         env = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
         for folder in ("one", "another_folder"):
@@ -147,7 +148,7 @@ class Files(Installed):
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_the_command_renders(self):
-        """With its own sheend, which finds its workers; the loader is told nothing."""
+        """The installed sheen uses the installed sheend, which finds its workers. The loader needs no path."""
         picture = os.path.join(self.work, "a.png")
         env = {name: value for name, value in os.environ.items()
                if name not in ("LD_LIBRARY_PATH", "SHEEN_DAEMON", "SHEEN_SERVER")}
@@ -175,7 +176,7 @@ class Library(Installed):
         shared = self.names("nm", "-D", "--defined-only", os.path.join(self.libdir, "libsheen.so"))
         self.assertEqual(sorted(name for kind, name in shared if kind != "A"),
                          [name + "@@SHEEN_0.1" for name in declared])
-        if not SANITIZED:  # they add names of their own
+        if not SANITIZED:  # sanitizers add names of their own
             static = self.names("nm", "-g", "--defined-only", os.path.join(self.libdir, "libsheen.a"))
             self.assertEqual(sorted(name for _, name in static), declared)
 

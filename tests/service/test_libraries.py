@@ -1,5 +1,5 @@
-"""Machines that lack a library of the GPU's: processors draw, and a device that is asked for by its number is refused
-with one clear error, where libepoxy would abort."""
+"""Machines without a library of the GPU: the daemon draws on processors, and a device that is requested by its number
+is refused with one clear error, where libepoxy would abort."""
 import json
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Light images: every format that is said to be read is, and what is none is told so."""
+"""Light images: every documented format is read, and a file of no format is refused with a clear text."""
 import os
 import re
 import subprocess
@@ -14,7 +14,7 @@ NO_FORMAT = "it is not an image format that is read: "
 
 class LightImages(DaemonCase):
     def draw(self, client, data, name):
-        """A cube's frame under this image."""
+        """A frame of the cube under this image."""
         image = client.upload(data, name, wire.IMAGE)
         return client.render(client.upload(CUBE, "cube.obj"), extra=image_pattern(image)).data
 
@@ -46,14 +46,14 @@ class LightImages(DaemonCase):
             files = self.rendered(client)
             drawn = {name: self.draw(client, data, name) for name, data in files.items()}
             self.assertEqual(drawn["a.tif"], drawn["a.png"])
-            # Neither may be taken for no image at all, which a black one would look like.
+            # Neither frame may equal that without an image, which a black image would look like.
             self.assertEqual(len({frames["a.ppm"], *drawn.values()}), 4)
 
     def test_names_tell_nothing(self):
         with Client(self.daemon.unix) as client:
             want = self.draw(client, pictures.ppm(), "a.ppm")
             for i, name in enumerate(("a.obj", "null", "a.avi", "a")):
-                # Another file each time, so that it is read again.
+                # Another file each time, so that the daemon reads it again.
                 self.assertEqual(self.draw(client, pictures.ppm() + bytes([i]), name), want)
 
     def test_what_is_no_image(self):
@@ -77,7 +77,7 @@ class LightImages(DaemonCase):
             self.assert_refused(client, wire.ERROR_REQUEST, "size_bytes", 7)
 
     def test_cut_files(self):
-        """Behind what tells the format, in the middle, and before the last byte of all."""
+        """Cuts the file after the bytes that tell its format, in the middle, and before its last byte."""
         with Client(self.daemon.unix) as client:
             files = {**pictures.EXACT, **pictures.LINEAR, **self.rendered(client)}
             for name, data in files.items():
@@ -90,7 +90,7 @@ class LightImages(DaemonCase):
                             self.assertEqual(refused.code, wire.ERROR_IMAGE)
                             for words in ("sandbox", "crashed", NO_FORMAT):
                                 self.assertNotIn(words, refused.text)
-                        else:  # its end says nothing of the picture
+                        else:  # the end of this format is not part of the picture
                             self.assertGreater(cut, least)
 
     def test_the_client_lists_what_the_daemon_reads(self):

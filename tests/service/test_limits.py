@@ -1,5 +1,5 @@
-"""Every limit of `sheend --help`, hit: what is over it is refused in words that name it, or ends the
-connection with the reason in the log, and costs nobody else anything."""
+"""Every limit of `sheend --help` is reached once: what exceeds it is refused with a text that names the limit, or the
+connection is closed with the reason in the log. Other clients notice nothing."""
 import contextlib
 import math
 import os
@@ -19,11 +19,11 @@ from test_untrusted import children, image_pattern, workers
 from wire import BATCH, INTERACTIVE, Client, field, message
 
 MIB = 1 << 20
-LONG_MESSAGE_BYTES = 16 + 262144 - 4096  # beyond the room that every client has for its messages
+LONG_MESSAGE_BYTES = 16 + 262144 - 4096  # more than the buffer that every client has for its messages
 
 
 def interlaced_png(width, height):
-    """RGBA, black, in the seven passes of Adam7, each row predicted by Paeth."""
+    """A black RGBA picture in the seven passes of Adam7; Paeth predicts each row."""
     def chunk(kind, data):
         return (struct.pack(">I", len(data)) + kind + data +
                 struct.pack(">I", zlib.crc32(kind + data)))
@@ -40,7 +40,7 @@ def interlaced_png(width, height):
 
 
 class Table(unittest.TestCase):
-    """What the table's values mean is in tests/unit/test_ops_limits.c."""
+    """tests/unit/test_ops_limits.c tests the meaning of the table's values."""
 
     def test_help_and_file_have_the_same_limits(self):
         text = run("--help").stdout
@@ -74,7 +74,7 @@ class Table(unittest.TestCase):
 
 class Descriptors(unittest.TestCase):
     def test_who_is_connected_is_served(self):
-        """With 48 descriptors: fewer clients are taken, and none of the work for them fails."""
+        """With 48 descriptors fewer clients are accepted, and no work for those fails."""
         daemon = Daemon("--metrics", "tcp:127.0.0.1:0", under=("prlimit", "--nofile=48:48"))
         daemon.wait_for("few descriptors")
         with Client(daemon.unix, minor=1) as first, contextlib.ExitStack() as others:
@@ -104,7 +104,7 @@ class Descriptors(unittest.TestCase):
 
 
 class Workers(unittest.TestCase):
-    """What the process that reads a file may take: its sender is told which limit it was."""
+    """The limits of the process that reads a file: the file's sender is told which limit was exceeded."""
 
     def refused(self, arguments, words, act=lambda daemon: None):
         daemon = Daemon(*arguments, tcp=False)
@@ -135,7 +135,7 @@ class Workers(unittest.TestCase):
         self.refused(("--worker-time", "1"), "not done in 1 s", stop_its_process)
 
     def test_worker_cpu(self):
-        """A megabyte that takes seconds: an interlaced picture."""
+        """A megabyte that takes seconds to decode: an interlaced picture."""
         daemon = Daemon("--worker-cpu", "1", tcp=False)
         with Client(daemon.unix, timeout=60) as client:
             model = client.upload(CUBE, "cube.obj")
@@ -149,8 +149,8 @@ class Workers(unittest.TestCase):
 
     @staticmethod
     def slow(comment=""):
-        """Vertices of up to 64 faces, at which a crease ends or which are sharp: what such surfaces
-        tend to is found by iteration, for each number of faces and its kind."""
+        """Vertices of up to 64 faces at which a crease ends, or which are sharp. The limit of their rings is found by
+        iteration, once for each number of faces and each kind."""
         lines, tags, first = [], [], 0
         for n in [*range(24, 65)] * 2:
             lines += ["v 0 0 1"] + [f"v {math.cos(math.pi * k / n)} {math.sin(math.pi * k / n)} "
@@ -178,8 +178,8 @@ class Workers(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_who_takes_back_waits_no_more(self):
-        """Frames that are asked for and taken back while a model is built leave nothing behind."""
-        n = 1000  # of some 100 KB each
+        """Frames that are requested and cancelled while a model is being built leave no memory behind."""
+        n = 1000  # requests of some 100 KB each
         daemon = Daemon("--tables-cpu", "8", "--threads", "2", tcp=False)
         with Client(daemon.unix, minor=1, timeout=60) as client:
             model = client.upload(self.slow(), "slow.obj")
@@ -192,7 +192,7 @@ class Workers(unittest.TestCase):
                                      (message(wire.CANCEL, 1000 + i) if kind == BATCH else b"")
                                      for i in range(first, first + 100)
                                      for kind in (INTERACTIVE if i % 2 else BATCH,)))
-                for _ in range(99 if first == 0 else 100):  # one waits until it is superseded
+                for _ in range(99 if first == 0 else 100):  # one is superseded only later
                     seq, _ = client.answer()
                     self.assertNotEqual(seq, query)
             self.assertLess(resident_kb(daemon.process.pid) - before, 20 * 1024)
@@ -201,7 +201,7 @@ class Workers(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_builds_have_turns(self):
-        """Who asks for many slow models holds up who asks for one by those that have begun."""
+        """A client that asks for many slow models delays another client by those that have begun, and by no more."""
         n_slow = 8
         daemon = Daemon("--tables-cpu", "1", "--threads", "2")
         with Client(daemon.tcp, minor=1, timeout=60) as many, Client(daemon.unix) as one:
@@ -209,7 +209,7 @@ class Workers(unittest.TestCase):
             quick = one.upload(CUBE, "cube.obj")
             many.send(b"".join(wire.message(wire.MODEL_QUERY, 100 + i, wire.field(1, model))
                                for i, model in enumerate(slow)))
-            many.stats()  # all of them have been read
+            many.stats()  # all these queries have been read
             one.query(quick)
             refused = 0
             many.send(wire.message(wire.STATS_QUERY, 200))
@@ -225,19 +225,19 @@ class Workers(unittest.TestCase):
 
 
     def test_slow_builds_of_one_hold_nobody_up(self):
-        """Whoever has nothing running is built for at once, before any of the slow ones is done."""
+        """A client without a running build is served before any of the slow builds ends."""
         daemon = Daemon("--tables-cpu", "600", "--threads", "2")
         with Client(daemon.tcp, minor=1, timeout=60) as many, Client(daemon.unix) as one:
             sheets = [grid(90 + i) for i in range(3)]
             slow = [many.upload(self.slow(str(i)), "slow.obj") for i in range(6)]
             many.send(b"".join(wire.message(wire.MODEL_QUERY, 100 + i, wire.field(1, model))
                                for i, model in enumerate(slow)))
-            many.stats()  # all of them have been read
+            many.stats()  # all these queries have been read
             for sheet in sheets:
                 one.query(one.upload(sheet, "sheet.obj"))
             seq = many.next_seq()
             many.send(wire.message(wire.STATS_QUERY, seq))
-            many.expect(wire.STATS, seq)  # and no model before
+            many.expect(wire.STATS, seq)  # no model was answered before
         daemon.process.kill()
 
 
@@ -276,7 +276,7 @@ class Memory(DaemonCase):
         self.assert_refused(client, wire.ERROR_TOO_BIG, f"--peer-memory of {12 * MIB}", seq)
 
     def test_frames_count_what_polygons_are_drawn_on(self):
-        """Whole, or tile by tile where the class allows it."""
+        """In one piece, or tile by tile if the class allows that."""
         client = self.client()
         model = client.upload(CUBE, "cube.obj")
         polygons = field(40, 1) + field(41, 1)
@@ -296,7 +296,7 @@ class Memory(DaemonCase):
         client.render(model, extra=light(good))
 
     def test_announcing_takes_nothing(self):
-        """Eight announce all that there is: what has not come leaves room for who comes next."""
+        """Eight clients announce the whole budget: memory that has not been received is free for the next client."""
         for _ in range(8):
             client = self.client()
             client.expect(wire.UPLOAD_STATE, self.begin(client, 4 * MIB))
@@ -306,8 +306,8 @@ class Memory(DaemonCase):
         self.assertLess(before, MIB)
 
     def test_peer_memory(self):
-        """Uploads under way of one user: 12 MB, then no more until some are given up. Another
-        address has its own."""
+        """The unfinished uploads of one user: 12 MB, and no more until some are given up. Another address has its own
+        share."""
         holders = []
         for _ in range(3):
             client = self.client()
@@ -332,7 +332,7 @@ class Memory(DaemonCase):
         other.render(other.upload(CUBE + b"# late\n", "late.obj"))
 
     def test_messages_on_their_way_count(self):
-        """Each a byte short of its end: the user has room for 48 of them."""
+        """Each upload lacks one byte; the user has room for 48 of them."""
         clients, before = [], self.client().stats()[23][0]
         for _ in range(48):
             client = self.client()
@@ -350,7 +350,7 @@ class Memory(DaemonCase):
         chunk = message(wire.UPLOAD_CHUNK, seq, bytes(262144))
         other.send(chunk[:5000])
         self.assert_refused(other, wire.ERROR_OVERLOADED, "--peer-memory", seq)
-        other.send(chunk[5000:] + chunk)  # it had sent them already, perhaps
+        other.send(chunk[5000:] + chunk)  # the client may have sent these chunks already
         other.stats()
         far = self.client(self.daemon.tcp)
         far.upload(CUBE + b"#" * 300000, "far.obj")
@@ -362,7 +362,7 @@ class Memory(DaemonCase):
         other.upload(CUBE + b"#" * 200000, "long.obj")
 
     def test_no_room_out_of_turn(self):
-        """A long message that breaks the protocol is refused by its header."""
+        """A long message that breaks the protocol is refused when its header has been read."""
         for greet, words in ((False, "the first message must be HELLO"),
                              (True, "no upload of its number is under way")):
             client = Client(self.daemon.unix, greet=greet)
@@ -372,7 +372,7 @@ class Memory(DaemonCase):
             self.assertTrue(client.at_end())
 
     def test_frames_wait_for_memory(self):
-        """More frames at once than the budget holds: all of them come in the end."""
+        """More frames at once than the budget holds: all are drawn in the end."""
         clients = [self.client(address) for address in self.addresses() for _ in range(4)]
         model = clients[0].upload(CUBE, "cube.obj")
         asked = [(client, client.ask(model, 1000, 1000, encoding=wire.ZSTD, kind=kind))
@@ -382,11 +382,11 @@ class Memory(DaemonCase):
             for seq in answers:
                 self.assertIsInstance(answers[seq], wire.Frame, answers[seq])
                 self.assertIn((client, seq), asked)
-        self.assertLess(clients[0].stats()[23][0], 2 * MIB)  # all but the model given back
+        self.assertLess(clients[0].stats()[23][0], 2 * MIB)  # everything except the model has been freed
 
     def test_no_frame_waits_for_one_behind_it(self):
-        """The second has no room beside its model. The third's memory must not be what it waits
-        for: its answer comes behind the second's."""
+        """The second frame has no room beside its model. It must not wait for the memory of the third frame, whose
+        answer comes after the second's."""
         client = self.client()
         model = client.upload(grid(170), "large.obj")
         client.query(model)
@@ -399,7 +399,7 @@ class Memory(DaemonCase):
         self.assertIsInstance(answers[seqs[2]], wire.Frame)
 
     def test_unread_stills_of_one_leave_room(self):
-        """One user's, on connections that do not read: who comes from elsewhere does not wait."""
+        """One user's connections do not read their frames; a client of another address does not wait for them."""
         clients = [self.client() for _ in range(6)]
         other = self.client(self.daemon.tcp)
         model, theirs = clients[0].upload(CUBE, "cube.obj"), other.upload(CUBE, "cube.obj")
@@ -430,14 +430,14 @@ class Memory(DaemonCase):
 
 class Polygons(unittest.TestCase):
     def polygons(self, clients, model, level):
-        """Asks for one frame of each client at once; what they answer."""
+        """Requests one frame for each client at the same time, and returns the answers."""
         extra = field(40, 1) + field(41, level)
         asked = [client.ask(model, 64, 48, extra=extra) for client in clients]
         return [client.read_frame(seq).data for client, seq in zip(clients, asked)]
 
     def test_polygons_are_made_once(self):
-        """Of one model and level there is one copy here and one on the device, whoever draws them: the
-        budget has no room for another. They are evicted before their model is, and made again."""
+        """There is one copy of the polygons of a model and level in main memory and one on the device, whichever
+        client draws them; the budget has no room for another. They are evicted before their model, and made again."""
         daemon = Daemon("--memory-budget", "24M")
         clients = [Client(daemon.unix, minor=1) for _ in range(4)]
         sheets = [clients[0].upload(grid(20) + b"# %d\n" % i, "sheet.obj", share=True)
@@ -453,7 +453,7 @@ class Polygons(unittest.TestCase):
         self.assertLess(used, 2.1 * of_each)
         self.polygons(clients[:1], sheets[1], 4)
         self.assertLess(clients[0].stats()[23][0], before + 4 * of_each)
-        clients[0].render(sheets[0])  # is still there
+        clients[0].render(sheets[0])  # the model is still there
         self.assertEqual(self.polygons(clients, sheets[0], 4), frames)
         for client in clients:
             client.socket.close()
@@ -509,7 +509,7 @@ class Output(unittest.TestCase):
                                           r'peer=("unix uid=\d+ gid=\d+ pid=\d+"|127\.0\.0\.1:\d+) ')
         with Client(daemon.unix) as client:
             self.assertEqual(client.stats()[19], [1])
-            self.assertEqual(client.stats()[2], [1])  # sessions
+            self.assertEqual(client.stats()[2], [1])  # the field of connected clients
             client.render(client.upload(CUBE, "cube.obj"))
         self.assertEqual(daemon.stop(), 0)
 
@@ -518,14 +518,14 @@ class Output(unittest.TestCase):
             return client.stats()[3][0]
 
     def deaf(self, daemon, address, *requests):
-        """A client that asks and reads nothing."""
+        """A client that sends requests and reads nothing."""
         client = Client(address, minor=1)
         self.addCleanup(client.socket.close)
         model = client.upload(CUBE, "cube.obj")
         client.render(model)
         for i, (width, named) in enumerate(requests):
             while i and self.frames(daemon) < 1 + i:
-                time.sleep(0.02)  # an interactive one would overtake
+                time.sleep(0.02)  # so that an interactive request does not overtake this one
             client.ask(model, width, width, **named)
         return client
 
@@ -555,12 +555,12 @@ class Output(unittest.TestCase):
         self.assert_disconnected(daemon, "no byte read for stall-timeout", 10)
 
     def test_one_unsent_interactive_frame(self):
-        """However many it asks for, one frame waits for the socket, one behind it for its turn."""
+        """However many frames it asks for, one waits for the socket, and one behind it for its turn."""
         daemon = Daemon()
         pid = daemon.process.pid
         client = self.deaf(daemon, daemon.unix)
         model = client.upload(CUBE, "cube.obj")
-        client.render(model, 1000, 1000, kind=INTERACTIVE)  # the device has its planes
+        client.render(model, 1000, 1000, kind=INTERACTIVE)  # the device has planes of this size from here on
         asked = []
         before = resident_kb(pid)
         for view in range(12):
@@ -568,7 +568,7 @@ class Output(unittest.TestCase):
         with Client(daemon.unix) as other:
             time.sleep(1.5)
             stats = other.stats()
-            self.assertLess(stats[3][0], 6)  # frames: a few of this size, no twelve
+            self.assertLess(stats[3][0], 6)  # a few frames of this size, not twelve
             self.assertLess(stats[23][0], 3 * 4 * 1000 * 1000)
         self.assertLess(resident_kb(pid) - before, 64 * 1024)
         self.assertEqual([client.answer()[0] for _ in asked], asked)
@@ -576,7 +576,7 @@ class Output(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_kernels_take_no_frames_ahead(self):
-        """A TCP socket's buffer would hold several of these; they would be out of date there."""
+        """A TCP socket's buffer would hold several of these frames, which would be out of date when they are read."""
         daemon = Daemon()
         with Client(daemon.tcp, minor=1, buffer=4096) as client, Client(daemon.unix) as other:
             model = client.upload(CUBE, "cube.obj")
@@ -586,7 +586,7 @@ class Output(unittest.TestCase):
                 time.sleep(0.02)
             time.sleep(0.5)
             self.assertEqual(other.stats()[3][0] - before, 1)
-            # Through a window of 4 kB the rest takes 15 s, and on a busy machine the client's patience.
+            # Through a window of 4 kB the rest takes 15 s, and on a busy machine longer than the client waits.
             client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
             self.assertEqual([client.answer()[0] for _ in asked], asked)
         self.assertEqual(daemon.stop(), 0)
@@ -627,7 +627,7 @@ class Input(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_a_byte_a_second_is_no_message(self):
-        """Each byte is in time for stall-timeout, the message is not."""
+        """Each byte arrives within stall-timeout, but the message takes longer than message-timeout."""
         daemon = Daemon("--message-timeout", "1")
         with Client(daemon.unix) as slow, Client(daemon.tcp) as other:
             whole = message(wire.STATS_QUERY, 2)
@@ -640,7 +640,7 @@ class Input(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_thrown_away_in_time(self):
-        """Each of the long messages that there is no memory for has its own time."""
+        """Every long message that finds no memory has its own time limit."""
         daemon = Daemon("--message-timeout", "1", "--memory-budget", "4M")
         with Client(daemon.unix) as holder, Client(daemon.unix) as client:
             for who, size in ((holder, 4 * MIB), (client, 2 * MIB)):
@@ -652,7 +652,7 @@ class Input(unittest.TestCase):
                 while third.stats()[23][0] < 4 * MIB - MIB // 8 and time.monotonic() < deadline:
                     time.sleep(0.01)
             chunks = message(wire.UPLOAD_CHUNK, 2, bytes(262144)) * 8
-            for at in range(0, len(chunks), 100000):  # ends of messages within what comes at once
+            for at in range(0, len(chunks), 100000):  # each read contains the end of a message
                 client.send(chunks[at:at + 100000])
                 time.sleep(0.1)
             with self.assertRaises(wire.Refused) as caught:
@@ -673,14 +673,14 @@ class Input(unittest.TestCase):
 
 class Idle(unittest.TestCase):
     def test_a_thousand(self):
-        """Connections that only stay cost little memory, and a client beside them nothing."""
+        """Connections that send nothing cost little memory, and cost a client beside them nothing."""
         daemon = Daemon("--max-peer-connections", "1000")
         pid = daemon.process.pid
         soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
         resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 4096), hard))
         self.addCleanup(resource.setrlimit, resource.RLIMIT_NOFILE, (soft, hard))
         with Client(daemon.unix) as client:
-            model = client.upload(grid(200), "sheet.obj")  # chunks of 256 KiB went through
+            model = client.upload(grid(200), "sheet.obj")  # the buffers for chunks of 256 KiB have been used
             client.render(model)
             before = resident_kb(pid)
             clients = []

@@ -1,4 +1,4 @@
-"""Many at once, and some among them that misbehave, for a few seconds; soak_load.py has it long."""
+"""Many clients at once, some of which misbehave, for a few seconds. soak_load.py does the same for longer."""
 import contextlib
 import os
 import random
@@ -15,12 +15,12 @@ from daemon import CUBE, Daemon
 from load import LoadClient, make_clients, run_load
 from wire import INTERACTIVE, Client, message
 
-ALONE = True  # tests/run.sh runs nothing beside these tests
+ALONE = True  # tests/run.sh runs nothing else at the same time as these tests
 
 
 class Many(unittest.TestCase):
     def test_every_request_is_answered_once(self):
-        """64 that drag and 8 that queue. LoadClient holds each to exactly one answer."""
+        """64 interactive and 8 batch clients. LoadClient expects exactly one answer to each request."""
         daemon = Daemon()
         with Client(daemon.unix) as other:
             model = other.upload(CUBE, "cube.obj", share=True)
@@ -44,7 +44,7 @@ class Many(unittest.TestCase):
 
 
 class Misbehaviour(unittest.TestCase):
-    """Each costs only itself: the log says why, and others get every answer."""
+    """Misbehaviour costs only the client that misbehaves: the log has the reason, and others get every answer."""
     arguments = ("--message-timeout", "1", "--stall-timeout", "2", "--interactive-soft", "100K",
                  "--interactive-seconds", "1", "--handshake-timeout", "1")
 
@@ -61,7 +61,7 @@ class Misbehaviour(unittest.TestCase):
                 time.sleep(0.2)
 
     def lies_about_lengths(self):
-        while not self.gone.wait(0.01):  # others share this process and its processor
+        while not self.gone.wait(0.01):  # other clients run in this process
             with Client(self.daemon.unix, minor=1) as client, contextlib.suppress(OSError):
                 client.send(message(wire.RENDER, 2, bytes(100), length=1 << 30))
                 client.socket.recv(1000)
@@ -69,7 +69,7 @@ class Misbehaviour(unittest.TestCase):
     def floods(self):
         flood = b"".join(wire.render(9 + i, self.model, kind=INTERACTIVE, view=i)
                          for i in range(200))
-        while not self.gone.wait(0.01):  # others share this process and its processor
+        while not self.gone.wait(0.01):  # other clients run in this process
             with Client(self.daemon.unix, minor=1) as client, contextlib.suppress(OSError):
                 client.upload(CUBE, "cube.obj")
                 client.send(flood)
@@ -77,15 +77,15 @@ class Misbehaviour(unittest.TestCase):
                     pass
 
     def closes_half(self):
-        while not self.gone.wait(0.01):  # others share this process and its processor
+        while not self.gone.wait(0.01):  # other clients run in this process
             with Client(self.daemon.tcp, minor=1) as client, contextlib.suppress(OSError):
                 client.send(message(wire.STATS_QUERY, 2)[:9])
                 client.socket.shutdown(socket.SHUT_WR)
                 client.socket.recv(1000)
 
     def is_stopped(self):
-        """By SIGSTOP, while a frame larger than any socket's buffer is due: from the first frame on there always
-        is one."""
+        """Stops the client by SIGSTOP while a frame larger than any socket's buffer is due, which is always so from
+        the first frame on."""
         ask = ("import wire; client = wire.Client({!r}, minor=1)\n"
                "ask = lambda: client.ask({!r}, 1000, 1000, kind=wire.STILL)\n"
                "due = ask()\n"
@@ -104,14 +104,14 @@ class Misbehaviour(unittest.TestCase):
         process.stdout.close()
 
     def wait_for_log(self, reason, n):
-        """n lines hold these words, soon."""
+        """Expects that n lines of the log soon contain these words."""
         end = time.monotonic() + 20
         while self.daemon.errors().count(reason) < n:
             self.assertLess(time.monotonic(), end, self.daemon.errors()[-4000:])
             time.sleep(0.05)
 
     def run_beside(self, misbehave, seconds, reason=None):
-        """A client's latencies while another misbehaves, until the log says what it did."""
+        """The latencies of a client while another misbehaves, until the log reports it."""
         n_before = self.daemon.errors().count(reason) if reason else 0
         self.gone = threading.Event()
         thread = threading.Thread(target=misbehave) if misbehave else None
@@ -157,4 +157,4 @@ class Misbehaviour(unittest.TestCase):
                     end = time.monotonic() + 5
                     while client.stats()[2] != [1] and time.monotonic() < end:
                         time.sleep(0.05)
-                    self.assertEqual(client.stats()[2], [1])  # nobody else is left
+                    self.assertEqual(client.stats()[2], [1])  # no other client is connected any more

@@ -1,4 +1,4 @@
-"""Manual pages and completions say what --help says, and the shells understand them."""
+"""Manual pages and completions agree with --help, and the shells understand the completions."""
 import os
 import pty
 import re
@@ -25,7 +25,7 @@ def output(*command):
 
 
 def options_of(text):
-    """(letter or '', name, takes a value) of each row of a --help."""
+    """(letter or '', name, takes a value) for each option of a --help."""
     rows = re.findall(r"^[ *] {1,5}(?:-(\w), )?--([a-z-]+)( \S)?", text, re.M)
     return [(letter, name, value != "") for letter, name, value in rows]
 
@@ -39,7 +39,7 @@ def daemon_options():
 
 
 def items(page):
-    """What stands in bold at the head of a page's lists, and behind it in italics."""
+    """The bold words at the head of each entry of a page's lists, with the italic words behind them."""
     return {term.replace("\\-", "-"): argument for term, argument in
             re.findall(r"^\.TP\n\\fB(.*?)\\fR(?: \\fI(.*?)\\fR)?$", page, re.M)}
 
@@ -70,7 +70,7 @@ class Pages(unittest.TestCase):
             path = os.path.join(folder, "sheend.conf")
             for _, option, _ in daemon_options():
                 with open(path, "w", encoding="ascii") as file:
-                    file.write(f"{option} = \x7f\n")  # no option's value
+                    file.write(f"{option} = \x7f\n")  # bold words that are no option
                 done = subprocess.run([SHEEND, "--config", path, "--check-config"],
                                       capture_output=True, text=True, timeout=60)
                 with self.subTest(option=option):
@@ -101,7 +101,7 @@ class Pages(unittest.TestCase):
 
 
 class Completions(unittest.TestCase):
-    """Every option in every shell's file; the shells themselves are asked below."""
+    """Every option is in each shell's file. The tests below run the shells themselves."""
     def test_bash(self):
         text = read("sheen.bash")
         for command in COMMANDS:
@@ -144,7 +144,8 @@ class Completions(unittest.TestCase):
 
 
     def test_what_zsh_and_fish_say(self):
-        """The first part of a help text, whole, and its default if that is short and the only one."""
+        """zsh and fish show the first part of a help text, whole, and its default if that is short and the only
+        one."""
         said = {"size": "width and height of the picture (default: 1280x720)",
                 "fov": "vertical field of view, from 1e-6 to 179 degrees (default: 35)",
                 "cert": "PEM file with the certificate to present to a TLS server",
@@ -159,7 +160,7 @@ class Completions(unittest.TestCase):
 
 
 class Terminal:
-    """An interactive shell that is typed into."""
+    """An interactive shell on a pseudo-terminal, to which the test types."""
     def __init__(self, *command):
         self.pid, self.fd = pty.fork()
         if self.pid == 0:
@@ -169,7 +170,7 @@ class Terminal:
         self.seen = ""
 
     def type(self, text, until, timeout=60):
-        """Types, and reads until what came since matches."""
+        """Types the text, and reads until the new output matches."""
         os.write(self.fd, text.encode())
         seen, end = "", time.monotonic() + timeout
         while not re.search(until, seen):
@@ -185,7 +186,7 @@ class Terminal:
 
 class Bash(unittest.TestCase):
     def complete(self, program, *words):
-        """What bash offers for the last word, cut as readline cuts it."""
+        """The words that bash offers for the last word, cut as readline cuts it."""
         cut = [piece for word in words for piece in (re.findall(r"[:=]|[^:=]+", word) or [""])]
         quoted = " ".join("'" + word + "'" for word in (program, *cut))
         script = (f". {MANUAL}/{program}.bash; COMP_WORDS=({quoted}); "
@@ -249,7 +250,7 @@ class Zsh(unittest.TestCase):
                              "sheen stream m.obj --class inter": "interactive",
                              "sheend --tls-ce": "--tls-cert"}.items():
             with self.subTest(line=line):
-                # The line as it is after completion, read back by the shell.
+                # The completed line, printed by the shell.
                 shell.type(f"\x15{line}\t\x01print -r -- '\x05|'\n",
                            r"\n" + re.escape(line[:line.rfind(' ') + 1] + wanted) + r"\|")
 

@@ -1,4 +1,4 @@
-"""The native device as its users choose it: threads and instruction sets."""
+"""The native device as its users choose it: number of threads and instruction set."""
 import hashlib
 import json
 import os
@@ -31,7 +31,7 @@ class Chosen(unittest.TestCase):
         self.picture = os.path.join(folder.name, "a.exr")
 
     def render(self, *arguments):
-        """What --json says, and the file's digest."""
+        """The object of --json, and the SHA-256 of the file."""
         done = sheen("render", BODY, "-o", self.picture, "--size", "300x200", "--device", "native", "--aov",
                      "P,N,ptex,light,k,coverage", "--json", *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -75,7 +75,7 @@ class Chosen(unittest.TestCase):
                                "--native-isa", "v4"], env=faults, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 5)
         self.assertTrue(done.stderr.endswith("sheend: " + wanted), done.stderr)
-        if has("v3"):  # what is there is taken without a word
+        if has("v3"):  # the set of this processor is accepted without a notice
             done = sheen("render", BODY, "-o", self.picture, "--device", "native", "--size", "64x48", "--json",
                          env=faults)
             self.assertEqual(json.loads(done.stdout)["device"], ISAS["v3"], done.stderr)

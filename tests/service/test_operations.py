@@ -1,4 +1,4 @@
-"""What the people who run the daemon rely on: service manager, reload, logs, metrics, health."""
+"""What operators of the daemon rely on: service manager, reload, log, metrics, health."""
 import ctypes
 import fcntl
 import hashlib
@@ -19,7 +19,7 @@ from wire import Client
 
 
 def fetch(address, request="GET /metrics HTTP/1.1\r\n\r\n", timeout=10):
-    """(status, body) of a request to a tcp: or unix: address; None when it just closes."""
+    """(status, body) of a request to a tcp: or unix: address; None if the connection is closed without an answer."""
     if isinstance(request, str):
         request = request.encode()
     if address.startswith("unix:"):
@@ -56,7 +56,7 @@ def metrics_address(daemon):
 
 
 def read_metrics(text):
-    """{name{labels}: value}, from text that is held to the format's rules."""
+    """{name{labels}: value} of a text, which must follow the format's rules."""
     values, types, helped = {}, {}, set()
     label = r'[a-z_]+="(?:[^"\\\n]|\\["\\n])*"'
     sample = re.compile(rf'^([a-z_]+)(\{{{label}(?:,{label})*\}})? (\d+(?:\.\d+)?)$')
@@ -96,7 +96,7 @@ class Notify:
         return self.socket.recv(4096).decode()
 
     def count(self, seconds):
-        """Pings within so many seconds from now."""
+        """The number of pings within so many seconds from now."""
         self.socket.setblocking(False)
         try:
             while True:
@@ -128,7 +128,7 @@ def stop_thread(thread):
 
 
 def threads(pid, name):
-    """The threads of a process that have this name, oldest first; a driver's threads inherit it."""
+    """The threads of a process with this name, oldest first. A driver's threads inherit the name."""
     found = []
     for task in sorted(map(int, os.listdir(f"/proc/{pid}/task"))):
         with open(f"/proc/{pid}/task/{task}/comm", encoding="ascii") as file:
@@ -166,7 +166,7 @@ class ServiceManager(unittest.TestCase):
         manager.socket.close()
 
     def test_watchdog_starves_when_the_gl_thread_hangs(self):
-        """ptrace stops this one thread in the middle of a frame."""
+        """ptrace stops this single thread in the middle of a frame."""
         manager = Notify(self.folder, watchdog_us=200000)
         daemon = Daemon("--stuck-after", "1", "--metrics", f"unix:{self.folder}/metrics",
                         env=manager.env)
@@ -198,7 +198,8 @@ class ServiceManager(unittest.TestCase):
         manager.socket.close()
 
     def test_watchdog_starves_when_a_reader_hangs(self):
-        """Not while it waits for the process that reads: that has its own limit of time."""
+        """A daemon that waits for the process that reads a file is not stuck, because that process has its own time
+        limit."""
         manager = Notify(self.folder, watchdog_us=200000)
         daemon = Daemon("--stuck-after", "1", "--metrics", f"unix:{self.folder}/metrics",
                         env=manager.env)
@@ -232,7 +233,7 @@ class ServiceManager(unittest.TestCase):
         manager.socket.close()
 
     def start_activated(self, sockets, names="", pid="os.getpid()", n=None, options=()):
-        """As a service manager does it: sockets from descriptor 3 on, and three variables."""
+        """Starts the daemon like a service manager: sockets from descriptor 3 on, and three variables."""
         high = [fcntl.fcntl(one.fileno(), fcntl.F_DUPFD, 50) for one in sockets]
         script = ("import os, sys\n"
                   f"for i, fd in enumerate({high}): os.dup2(fd, 3 + i); os.close(fd)\n"
@@ -259,7 +260,7 @@ class ServiceManager(unittest.TestCase):
                 one.bind(("127.0.0.1", 0))
             for one in (unix, tcp, web):
                 one.listen()
-            # A client may connect before there is a daemon: nothing is lost.
+            # A client may connect before the daemon runs; nothing that it sends is lost.
             early = Client("unix:" + path, greet=False)
             early.send(wire.hello())
             process = self.start_activated([unix, tcp, web], "sheen:sheen:metrics")
@@ -277,7 +278,7 @@ class ServiceManager(unittest.TestCase):
             self.assertFalse(os.path.exists(os.path.join(self.folder, "sheen.sock")))
 
     def test_metrics_socket_beyond_the_loopback(self):
-        """The service manager's are no more open than the daemon's own."""
+        """Sockets of a service manager are not more open than the daemon's own."""
         for options, answers in (((), False), (("--metrics-open",), True)):
             with self.subTest(options=options), socket.socket(socket.AF_UNIX) as unix, socket.socket() as web:
                 path = os.path.join(self.folder, f"given-{answers}.sock")
@@ -297,7 +298,7 @@ class ServiceManager(unittest.TestCase):
                     self.assertIn("--metrics-open", process.stderr.read())
 
     def test_sockets_for_somebody_else(self):
-        """LISTEN_PID of another process: an inherited environment."""
+        """LISTEN_PID is that of another process: the environment was inherited."""
         path = os.path.join(self.folder, "given.sock")
         with socket.socket(socket.AF_UNIX) as unix:
             unix.bind(path)
@@ -351,7 +352,7 @@ class Reload(unittest.TestCase):
             self.assertIn(words, hang_up("the old one stays"))
         os.unlink(self.path)
         self.assertIn("cannot read", hang_up("the old one stays"))
-        os.mkfifo(self.path)  # which nobody writes to
+        os.mkfifo(self.path)  # nobody writes to it
         self.assertIn("no plain file", hang_up("the old one stays"))
         os.unlink(self.path)
         with Client(daemon.unix) as idle:
@@ -526,21 +527,21 @@ class Metrics(unittest.TestCase):
         return connection
 
     def read_to_end(self, connection):
-        """A reset raises."""
+        """Reads to the end of the connection. A reset raises an exception."""
         answer = b""
         while part := connection.recv(65536):
             answer += part
         return answer
 
     def test_a_refusal_is_read_to_its_end(self):
-        """Whatever of the request the daemon has not read."""
+        """The client reads the whole refusal, although the daemon has not read the whole request."""
         for status, request in ((431, b"GET / HTTP/1.1\r\nA: " + 100000 * b"a"),
                                 (405, b"POST / HTTP/1.1\r\n\r\n" + 100000 * b"a")):
             connection = self.connect()
             connection.sendall(request)
             time.sleep(0.1)
             self.assertTrue(self.read_to_end(connection).startswith(b"HTTP/1.1 %d " % status))
-            connection.sendall(1000 * b"a")  # it goes on for a while
+            connection.sendall(1000 * b"a")  # the daemon still reads for a while
 
     def test_who_does_not_close_takes_no_place(self):
         staying = [self.connect() for _ in range(32)]
@@ -550,7 +551,7 @@ class Metrics(unittest.TestCase):
         for _ in range(2):
             self.assertEqual(get(self.address, "/healthz")[0], 200)
         start = time.monotonic()
-        with self.assertRaises(OSError):  # nor does the last of them for long
+        with self.assertRaises(OSError):  # nor does the daemon read from the last of them for long
             while True:
                 staying[-1].send(b"a")
                 self.assertLess(time.monotonic(), start + 5)
@@ -565,7 +566,7 @@ class Metrics(unittest.TestCase):
             self.assertTrue(slow.recv(100).startswith(b"HTTP/1.1 200 OK\r\n"))
 
     def test_idle_peers_keep_no_probe_out(self):
-        """The oldest makes room; the others have their time, and no more."""
+        """The oldest connection is closed for a new one; the others have their time limit and no more."""
         silent = [self.connect() for _ in range(32)]
         start = time.monotonic()
         time.sleep(0.2)
@@ -581,7 +582,8 @@ class Metrics(unittest.TestCase):
         self.assertEqual(get(self.address, "/healthz")[0], 200)
 
     def test_probes_among_many_that_come_at_once(self):
-        """They lie in the queue, the probe first, and the daemon accepts many before it looks for events."""
+        """The connections wait in the queue, the probe first, and the daemon accepts many before it looks for
+        events."""
         for _ in range(3):
             self.daemon.process.send_signal(signal.SIGSTOP)
             try:
@@ -608,7 +610,7 @@ class Metrics(unittest.TestCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_loopback_only(self):
-        """And the advice is one that can be taken."""
+        """The address that the error text advises is accepted."""
         for address in ("tcp:0.0.0.0:9477", "tcp:192.0.2.1:9477", "tcp:[::]:9477"):
             with self.subTest(address=address):
                 done = run("--metrics", address, "--check-config")
@@ -628,7 +630,7 @@ class Metrics(unittest.TestCase):
         self.assertIn("cannot find the address of 'a..b'", done.stderr)
 
     def test_beyond_the_loopback_when_told_to(self):
-        """By an option or the configuration; and what is read there names nobody."""
+        """Allowed by an option or in the configuration. The metrics name no client."""
         with tempfile.NamedTemporaryFile("w", suffix=".conf") as config:
             config.write("metrics = tcp:0.0.0.0:0\nmetrics-open = yes\n")
             config.flush()
@@ -670,7 +672,7 @@ class Stats(unittest.TestCase):
         self.assertAlmostEqual(stats["p99"]["total_us"], times[19], delta=times[19] * 0.035 + 1)
         self.assertLessEqual(stats["p50"]["total_us"], stats["p95"]["total_us"])
         self.assertLessEqual(stats["p95"]["total_us"], stats["p99"]["total_us"])
-        # A daemon this young is taken for a second old.
+        # An age below a second counts as one second.
         window_s = max(stats["window_us"] / 1e6, 1)
         self.assertAlmostEqual(stats["frames_per_s"] * window_s, 20, places=6)
         self.assertGreater(stats["requests_per_s"], stats["frames_per_s"])
@@ -682,7 +684,7 @@ class Stats(unittest.TestCase):
             self.assertEqual(latency["batch"][p + "_us"], 0)
         sent = stats["sent_bytes_per_s"] * window_s
         self.assertGreater(sent, 20 * 64 * 48 * 4)
-        self.assertLessEqual(sent, stats["sent_bytes"] + 0.001)  # a quotient's rounding
+        self.assertLessEqual(sent, stats["sent_bytes"] + 0.001)  # the rounding of a quotient
         table = subprocess.run([SHEEN, "stats", "--server", daemon.unix], capture_output=True,
                                text=True, timeout=60).stdout
         for words in ("frames/s", "bytes/s", "p50", "p95", "p99", "ms a frame", "interactive"):

@@ -1,4 +1,4 @@
-"""Whose a model is, and model files that lie at the daemon."""
+"""To whom a model belongs, and model files in the daemon's own folder."""
 import os
 import re
 import secrets
@@ -24,7 +24,7 @@ class Owners(Case):
         self.assertEqual(caught.exception.code, wire.ERROR_UNKNOWN_MODEL)
 
     def assert_unsent(self, client, data, **named):
-        """The daemon takes it for a file that it has never seen."""
+        """Expects that the daemon asks for the whole file, as if it had never seen it."""
         seq = client.next_seq()
         client.send(wire.upload_begin(seq, wire.hashlib.sha256(data).digest(), len(data), "x.obj",
                                       **named))
@@ -37,7 +37,7 @@ class Owners(Case):
         with Client(daemon.unix) as owner, Client(daemon.unix) as again, Client(daemon.tcp) as other:
             model = owner.upload(CUBE, "secret-name.obj")
             want = owner.render(model).data
-            self.assertEqual(again.render(model).data, want)  # the same user
+            self.assertEqual(again.render(model).data, want)  # another connection of the same user
             self.assert_unknown(other, model)
             self.assert_unsent(other, CUBE)
             self.assertEqual(other.render(model).data, want)
@@ -86,8 +86,8 @@ class Owners(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def test_one_subject_of_two_authorities(self):
-        """Who is called the same by another authority is another person, even where the authorities are
-        called the same."""
+        """An identity of the same name from another authority is another person, even if the authorities have the
+        same name."""
         ours, theirs = Authority(self.path("ours")), Authority(self.path("theirs"))
         both = self.path("both.pem")
         with open(both, "w", encoding="ascii") as bundle:
@@ -126,8 +126,8 @@ class Owners(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def test_a_wrong_name_spoils_nothing(self):
-        """The ending tells the format; whoever comes first with a wrong one, perhaps on purpose, must not
-        decide for those who come with the right one."""
+        """The file name's extension tells the format. A client that was first with a wrong extension, perhaps on
+        purpose, must not decide for others who use the right one."""
         folder = self.path("models")
         os.makedirs(folder)
         with open(os.path.join(folder, "cube.obj"), "wb") as file:
@@ -142,7 +142,7 @@ class Owners(Case):
                 self.assertIn("wrong.glb", caught.exception.text)
 
             spoil(CUBE, True)
-            other.find("cube.obj")  # the daemon's own file
+            other.find("cube.obj")  # the file in the daemon's folder
             first.query(first.upload(CUBE, "cube.obj"))
             for number, share in enumerate((False, True)):
                 data = CUBE + b"# %d\n" % number
@@ -160,8 +160,8 @@ class Owners(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def test_a_shared_file_keeps_its_name(self):
-        """Somebody else's name for the same bytes decides nothing for who has brought them, whoever came
-        first, nor for the daemon that has read them already."""
+        """Another client's name for the same bytes has no effect for a client that has uploaded them, whoever was
+        first, and none on the model that the daemon has read already."""
         for who_shares in ("clients", "daemon"):
             with self.subTest(who_shares):
                 daemon = Daemon(*(["--share-models"] if who_shares == "daemon" else []))
@@ -176,7 +176,8 @@ class Owners(Case):
                             bad.query(model)
                         self.assertIn("bad.glb", caught.exception.text)
                         self.assertEqual(good.query(model)[2], [b"good.obj"])
-                        self.assertEqual(bad.query(model)[2], [b"good.obj"])  # his own is no file
+                        # the name of this client's upload is not used
+                        self.assertEqual(bad.query(model)[2], [b"good.obj"])
                         bad.upload(data, "bad.glb", share=share)
                         self.assertEqual(good.query(model)[2], [b"good.obj"])
                 self.assertEqual(daemon.stop(), 0)
@@ -204,7 +205,7 @@ class Owners(Case):
 
 
 class Room(unittest.TestCase):
-    """Who makes room in the store: there are two owners, whoever comes over TCP and the user."""
+    """Who must make room in the store. There are two owners: the clients over TCP, and the user."""
 
     def setUp(self):
         self.daemon = Daemon("--memory-budget", "8M")
@@ -216,7 +217,7 @@ class Room(unittest.TestCase):
         self.assertEqual(self.daemon.stop(), 0)
 
     def stream(self, n, share=False):
-        """One owner's models, each of a third of the budget."""
+        """Draws n models of one owner, each of which takes a third of the budget."""
         for i in range(n):
             self.last = self.many.upload(grid(65) + b"# %d\n" % i, "large.obj", share=share)
             self.many.render(self.last)
@@ -230,7 +231,7 @@ class Room(unittest.TestCase):
             self.assertEqual(self.many.render(self.last).tables_us, 0)
 
     def test_who_holds_most_makes_room(self):
-        """Also for one who has little, and has used it before all of that."""
+        """Models of another owner who holds little remain, even if they were used earlier."""
         small = self.other.upload(CUBE, "cube.obj")
         self.other.render(small)
         self.stream(3)
@@ -241,7 +242,7 @@ class Room(unittest.TestCase):
         self.assertEqual(self.many.render(self.last).tables_us, 0)
 
     def test_entries_too(self):
-        """There are 4096 of them."""
+        """The table has room for 4096 owners."""
         small = self.other.upload(CUBE, "cube.obj")
         self.other.render(small)
         for i in range(4100):
@@ -285,7 +286,7 @@ class Files(Case):
             self.assertEqual(one.query(one.find("cars/hood.obj"))[2], [b"hood.obj"])
 
     def test_nothing_else(self):
-        """One text for all, so that nobody learns what lies elsewhere."""
+        """All have the same text, so that nobody learns which files exist elsewhere."""
         texts = set()
         with Client(self.daemon.unix) as client:
             for name in ("none.obj", "../outside.obj", "cars/../../outside.obj", "/etc/passwd",
@@ -319,7 +320,7 @@ class Files(Case):
             self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.path("a.png"), "rb") as a, open(self.path("b.png"), "rb") as b:
             self.assertEqual(a.read(), b.read())
-        for model in ("server:none.obj", self.path("none.obj")):  # there or here: a bad model
+        for model in ("server:none.obj", self.path("none.obj")):  # at the daemon or here: a bad model
             for command in (("info",), ("render", "-o", self.path("c.png")), ("stream", "--frames", "2")):
                 with self.subTest(model=model, command=command[0]):
                     done = sheen(*command, model)
@@ -336,7 +337,7 @@ class Files(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def test_a_cancelled_query_builds_nothing(self):
-        """It is taken back before the file is there; who asks later waits for the only build."""
+        """The query is cancelled before the file has been read. A later query starts the only build."""
         daemon = Daemon("--models", self.models, "--metrics", "tcp:127.0.0.1:0")
         with Client(daemon.unix, minor=1) as client:
             client.send(wire.message(wire.MODEL_QUERY, 7, wire.field(1, bytes(32)) +
@@ -352,7 +353,7 @@ class Files(Case):
         self.assertEqual(daemon.stop(), 0)
 
     def test_ends_while_it_reads(self):
-        """A client that has gone, and a daemon that shuts down, before the file is there."""
+        """A client that disconnects, and a daemon that shuts down, before the file has been read."""
         daemon = Daemon("--models", self.models)
         for _ in range(5):
             with Client(daemon.unix) as client:

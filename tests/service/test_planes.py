@@ -1,11 +1,11 @@
-"""What has been evaluated of a view serves every class."""
+"""Planes that were evaluated for a view are used by every class."""
 import os
 
 import wire
 from daemon import MODELS, Daemon, DaemonCase
 from wire import BATCH, INTERACTIVE, STILL, Client, field
 
-SIZE = (400, 300)  # two tiles of stills on a software device
+SIZE = (400, 300)  # two tiles of a still on a software device
 RELIT = field(6, field(1, 1))  # highlight lines
 
 
@@ -15,8 +15,8 @@ class Planes(DaemonCase):
             self.fender = file.read()
 
     def test_every_class(self):
-        """Whichever class was drawn first, the next has no stage one and two, and shows what a
-        daemon shows that has drawn nothing before."""
+        """Whichever class drew a view first, the next frame of it runs neither stage one nor stage two, and equals
+        that of a new daemon."""
         fresh = {}
         for kind in (STILL, INTERACTIVE, BATCH):
             daemon = Daemon()
@@ -28,7 +28,7 @@ class Planes(DaemonCase):
             self.assertEqual(daemon.stop(), 0)
         with Client(self.daemon.unix, minor=1) as client:
             for n, first in enumerate((INTERACTIVE, STILL, BATCH)):
-                # Another model each time, so that nothing is there.
+                # Another model each time, so that no planes are kept.
                 model = client.upload(self.fender + b"# %d\n" % n, "fender.obj")
                 frame = client.render(model, *SIZE, kind=first)
                 self.assertGreater(min(frame.visibility_us, frame.evaluate_us), 0)
@@ -41,7 +41,7 @@ class Planes(DaemonCase):
         self.assertEqual(len(set(fresh.values())), 1)
 
     def test_larger_frames(self):
-        """Those of more than 32 tiles are not kept, and cost the others nothing."""
+        """Planes of frames with more than 32 tiles are not kept, and do not remove those of other frames."""
         with Client(self.daemon.unix, minor=1) as client:
             model = client.upload(self.fender, "fender.obj")
             client.render(model, *SIZE, kind=STILL)
@@ -52,11 +52,11 @@ class Planes(DaemonCase):
             self.assertEqual((frame.visibility_us, frame.evaluate_us), (0, 0))
 
     def test_without_antialiasing(self):
-        """A frame of one sample of the surface has planes that no frame with edges may take; the
-        other way round they serve. Coverage is refused."""
+        """Planes of a frame with one sample of the surface are not used by frames with antialiasing, but the reverse.
+        The coverage plane is refused."""
         aliased, one_sample = field(17, 1), field(12, 1)
         with Client(self.daemon.unix, minor=4) as client:
-            # A model that nothing is kept of.
+            # A model of which no planes are kept.
             model = client.upload(self.fender + b"# aliased\n", "fender.obj")
             frames = {}
             for name, extra, is_kept in (("aliased", aliased, False), ("exact", b"", False),

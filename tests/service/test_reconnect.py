@@ -1,4 +1,4 @@
-"""The client goes on with the next daemon: nothing is lost, nothing counted twice."""
+"""The client continues with the next daemon: no frame is lost, and none is counted twice."""
 import hashlib
 import json
 import os
@@ -44,7 +44,7 @@ class Reconnect(unittest.TestCase):
         return Daemon(*arguments, folder=self.folder, tcp=False)
 
     def stream(self, daemon, *arguments, frames):
-        """One that has had some of its frames."""
+        """Starts a stream, and waits until it has received some of its frames."""
         client = start("stream", FENDER, "--server", daemon.unix, "--frames", str(frames), "--json",
                        "--up", "z", *arguments)
         with Client(daemon.unix) as other:
@@ -59,7 +59,7 @@ class Reconnect(unittest.TestCase):
 
 class NextDaemon(Reconnect):
     def test_after_three_seconds(self):
-        """Longer than one try; every frame comes, from one or the other."""
+        """The gap is longer than one attempt. Every frame arrives, from one daemon or the other."""
         daemon = self.daemon()
         client = self.stream(daemon, "--size", "400x300", frames=60)
         self.assertEqual(daemon.stop(), 0)
@@ -73,7 +73,7 @@ class NextDaemon(Reconnect):
         self.assertEqual(after.stop(), 0)
 
     def test_after_a_kill(self):
-        """The socket's file is still there; -q says nothing of it all."""
+        """The socket's file still exists. With -q nothing is printed about the interruption."""
         for quiet in (False, True):
             daemon = self.daemon()
             client = self.stream(daemon, "--size", "400x300", *["-q"] * quiet, frames=60)
@@ -93,7 +93,7 @@ class NextDaemon(Reconnect):
             daemon.stop()
 
     def test_a_client_that_is_told_at_once(self):
-        """In the answer to its HELLO, before it has asked where the daemon keeps its model."""
+        """The refusal answers the client's HELLO, before the client has asked for a model in the daemon's folder."""
         path, picture = self.file("sheen.sock"), self.file("a.png")
         for command in (("render", "-o", picture), ("stream", "--frames", "3")):
             with socket.socket(socket.AF_UNIX) as listener:
@@ -137,7 +137,7 @@ class NextDaemon(Reconnect):
         self.assertNotIn("connecting again", said)
 
     def test_none_was_ever_there(self):
-        """A wrong address fails at once, whatever the time to reconnect in."""
+        """A wrong address fails at once, whatever --reconnect is."""
         for address in ("unix:" + self.file("none"), "tcp:127.0.0.1:1"):
             for command in (("render", FENDER, "-o", self.file("a.png")), ("info", FENDER),
                             ("stream", FENDER, "--frames", "2"),
@@ -149,7 +149,7 @@ class NextDaemon(Reconnect):
                     self.assertIn("no server at", done.stderr)
 
     def test_a_model_that_has_changed(self):
-        """Frames of two models are not one stream."""
+        """Frames of two versions of a model must not be in one stream."""
         models = self.file("models")
         os.mkdir(models)
         shutil.copy(FENDER, os.path.join(models, "part.obj"))
@@ -169,8 +169,8 @@ class NextDaemon(Reconnect):
 
 
     def test_what_a_balancer_sees(self):
-        """The id that a connection begins with: the file's, or of the name of a file at the server;
-        the same when it begins anew, when the client knows more."""
+        """The id at the beginning of a connection: that of the file, or that of the name of a file at the server. A
+        new connection begins with the same id, although the client knows more by then."""
         daemon = self.daemon("--models", MODELS)
         with open(FENDER, "rb") as file:
             own = hashlib.sha256(file.read()).digest()
@@ -193,7 +193,7 @@ class NextDaemon(Reconnect):
 
 
 class Broken(Reconnect):
-    """One daemon, and a connection to it that breaks at a chosen place."""
+    """One daemon, and a relay to it that closes connections at a chosen message."""
 
     @classmethod
     def setUpClass(cls):
@@ -245,7 +245,7 @@ class Broken(Reconnect):
             with self.subTest(command=command[0]), Between(self.served, judge) as between:
                 self.run_through(between, command[0], FENDER, *command[1:], *SMALL, "--pattern",
                                  "image:" + image)
-                self.assertEqual(uploads, [2, 2])  # the model and the image, once each
+                self.assertEqual(uploads, [2, 2])  # the model and the image, each uploaded once on each connection
             uploads[:] = [0, 0]
             cut = cut_at(wire.RENDER, 2)
 
@@ -257,14 +257,14 @@ class Broken(Reconnect):
                                               self.served.unix).stdout)["ptex_faces"])
 
     def test_inside_a_frame(self):
-        """Half of it has come."""
+        """Half of the frame has arrived."""
         with Between(self.served, cut_after=200000) as between:
             done = self.run_through(between, "stream", FENDER, "--frames", "30", "--json", "--size",
                                     "400x300")
             self.assertEqual(numbers(done.stdout), list(range(30)))
 
     def test_answers_in_another_order(self):
-        """Frame 3 is answered, as late, while frame 2 is not: 2 is asked again, 3 is not."""
+        """Frame 3 is answered as late while frame 2 is unanswered: frame 2 is requested again, frame 3 is not."""
         asked = []
 
         def judge(connection, kind, seq, body, client):
@@ -287,7 +287,7 @@ class Broken(Reconnect):
         self.assertEqual(numbers(done.stdout), [0, 1, 2, 4, 5, 6, 7])
 
     def test_every_loss_after_an_answer_is_the_first(self):
-        """More losses than there may be in a row."""
+        """More losses in all than are allowed in a row."""
         with Between(self.served, cut_at(wire.RENDER, 3, range(6))) as between:
             done = sheen("stream", FENDER, "--frames", "12", "--json", "--up", "z", *SMALL, "--server",
                          between.unix)
@@ -297,7 +297,7 @@ class Broken(Reconnect):
             self.assertEqual(numbers(done.stdout), list(range(12)))
 
     def test_a_request_that_ends_every_server(self):
-        """It goes to four, not round for ever."""
+        """The client tries four servers and no more."""
         with Between(self.served, cut_at(wire.RENDER, 1, range(100))) as between:
             done = sheen("render", FENDER, "-o", self.file("a.png"), *SMALL, "--server",
                          between.unix)
@@ -306,7 +306,7 @@ class Broken(Reconnect):
                           done.stderr.splitlines()[-1])
 
     def test_a_server_that_is_silent_costs_its_time(self):
-        """A try that nobody serves ends with the time to reconnect in."""
+        """An attempt that nobody serves ends with the time limit of --reconnect."""
         with Between(self.served, cut_at(wire.RENDER), n_accepted=1) as between:
             done = sheen("render", FENDER, "-o", self.file("a.png"), *SMALL, "--reconnect", "1",
                          "--server", between.unix)
@@ -320,7 +320,7 @@ class Broken(Reconnect):
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
     def test_closed_at_the_first_hello(self):
-        """Who is not let in does not knock for half a minute."""
+        """A client that is not admitted does not keep trying."""
         with Between(self.served, cut_at(wire.HELLO, 1, range(100))) as between:
             done = sheen("info", FENDER, "--server", between.unix)
             self.assertEqual((done.returncode, between.n_connections), (4, 1))

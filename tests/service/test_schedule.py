@@ -1,4 +1,4 @@
-"""Who is served when: classes, views, credits, cancelling and deadlines, through real sockets."""
+"""The order of service: classes, views, credits, cancelling and deadlines, through real sockets."""
 import signal
 import time
 
@@ -14,7 +14,7 @@ class Schedule(DaemonCase):
         client = Client(self.daemon.unix, minor=1, **named)
         self.addCleanup(client.socket.close)
         self.model = client.upload(CUBE, "cube.obj")
-        client.render(self.model)  # its tables are there
+        client.render(self.model)  # the model's tables are ready
         return client
 
     def stats(self):
@@ -22,8 +22,8 @@ class Schedule(DaemonCase):
             return client.stats()
 
     def wait_until_begun(self, client):
-        """What it has asked for is being drawn."""
-        client.stats()  # answered before the frame, and after the request has been read
+        """Waits until the frame that the client has requested is being drawn."""
+        client.stats()  # answered after the request has been read, and before the frame
         while self.stats()[15][0] > 0:
             time.sleep(0.005)
 
@@ -40,14 +40,15 @@ class Schedule(DaemonCase):
         others = [client.ask(self.model, kind=INTERACTIVE, view=3) for _ in range(4)]
         still = client.ask(self.model, kind=STILL, view=3)
         answers = [client.answer() for _ in range(6)]
-        # The replaced are told at once, before the frame that is being drawn; each by its next.
+        # Replaced requests are answered at once, before the frame that is being drawn; each names its successor.
         self.assertEqual(answers[:4], list(zip(others, others[1:] + [still])))
         self.assertEqual({seq for seq, what in answers[4:] if isinstance(what, wire.Frame)},
                          {first, still})
         self.assertEqual(self.stats()[16][0] - before, 4)
 
     def test_what_is_not_replaced(self):
-        """Other views, stills without a view, batches, and another connection's same view."""
+        """A newer request does not replace requests of other views, stills without a view, batches, or another
+        connection's requests of the same view."""
         client, other = self.client(), self.client()
         busy = client.ask(self.model, **LARGE, kind=INTERACTIVE, view=1)
         self.wait_until_begun(client)
@@ -113,7 +114,7 @@ class Schedule(DaemonCase):
             self.assertEqual(got, seq)
             self.assert_refused_with(what, wire.ERROR_CANCELLED, "taken back")
         self.assertEqual([client.answer()[0] for _ in range(2)], [waiting[0], waiting[2]])
-        for seq in (waiting[0], 12345):  # answered, unknown: nothing happens
+        for seq in (waiting[0], 12345):  # already answered, or unknown: nothing happens
             client.send(message(wire.CANCEL, seq))
         client.stats()
 
@@ -136,7 +137,7 @@ class Schedule(DaemonCase):
         answers = dict(client.answer() for _ in range(3))
         for seq in (late, unbuilt):
             self.assert_refused_with(answers[seq], wire.ERROR_DEADLINE, "")
-            # Why is not known: a daemon with nothing else to do may take longer, too.
+            # The text does not tell the cause, since an idle daemon may take longer, too.
             self.assertEqual(answers[seq].text, "not drawn within its deadline_ms of 1")
         self.assertIsInstance(answers[slow], wire.Frame)
         self.assertIsInstance(client.render(self.model, deadline=60000), wire.Frame)
@@ -151,7 +152,7 @@ class Schedule(DaemonCase):
     def test_credits(self):
         client = self.client()
         self.assertEqual(client.credits, 16)
-        for _ in range(2):  # they come back with the answers
+        for _ in range(2):  # credits return with the answers
             asked = [client.ask(self.model, 100, 100, kind=BATCH) for _ in range(16)]
             self.assertEqual([client.answer()[0] for _ in asked], asked)
         asked = range(100, 117)
@@ -164,7 +165,7 @@ class Schedule(DaemonCase):
         self.assertTrue(client.at_end())
 
     def test_minor_version_0(self):
-        """Sees neither class nor view nor deadline, gets everything in order, and may have sent as
+        """A client of minor version 0 has no classes, views or deadlines, gets all answers in order, and may send as
         much as it likes."""
         with Client(self.daemon.unix) as client:
             model = client.upload(CUBE, "cube.obj")
@@ -196,15 +197,15 @@ class Schedule(DaemonCase):
         slow.read_frame(seq)
 
     def begin_polygons(self, client, **named):
-        """A frame of 3.3 million triangles, many steps, that is being drawn: its model, and what it
-        is asked with."""
+        """Begins a frame of 3.3 million triangles, which takes many steps. Returns its model and the arguments of the
+        request."""
         sheet = client.upload(grid(20), "sheet.obj")
-        client.render(self.model)  # nothing is kept
+        client.render(self.model)  # so that no planes are kept
         asked = {"model": sheet, "extra": field(40, 1) + field(41, 6)}
         return asked, self.ask_polygons(client, asked, **named)
 
     def ask_polygons(self, client, asked, kind=STILL, view=None, deadline=None):
-        seq = client.next_seq()  # fields in rising order: the surface comes last
+        seq = client.next_seq()  # protobuf fields in ascending order: the surface comes last
         later = b"".join(field(number, value) for number, value in
                          ((14, kind), (15, view), (16, deadline)) if value is not None)
         client.send(message(wire.RENDER, seq, field(1, asked["model"]) + field(2, 64) +
@@ -220,10 +221,10 @@ class Schedule(DaemonCase):
                 before = self.stats()[3][0]
                 for _ in range(5):
                     other.render(self.model, kind=INTERACTIVE)
-                # The polygons' frame is not among them: they were drawn between its slices.
+                # The polygons' frame is not among them: these frames were drawn between its slices.
                 self.assertEqual(self.stats()[3][0] - before, 5)
                 whole = slow.read_frame(first).data
-                slow.render(self.model)  # nothing is kept
+                slow.render(self.model)  # so that no planes are kept
                 again = self.ask_polygons(slow, asked, kind=kind)
                 self.assertEqual(slow.read_frame(again).data, whole)
 
@@ -231,8 +232,8 @@ class Schedule(DaemonCase):
         client, other = self.client(), self.client()
         asked, first = self.begin_polygons(client)
         whole = client.read_frame(first).data
-        client.render(self.model)  # nothing is kept
-        for _ in range(30):  # more than may be under way at once
+        client.render(self.model)  # so that no planes are kept
+        for _ in range(30):  # more frames than may be unfinished at once
             seq = self.ask_polygons(client, asked, deadline=20)
             got, what = client.answer()
             self.assertEqual(got, seq)
@@ -240,7 +241,7 @@ class Schedule(DaemonCase):
         seq = self.ask_polygons(client, asked, kind=INTERACTIVE, view=1)
         self.wait_until_begun(client)
         newer = [self.ask_polygons(client, asked, kind=INTERACTIVE, view=1) for _ in range(3)]
-        for older, by in zip(newer, newer[1:]):  # at once: before the frame that is being drawn
+        for older, by in zip(newer, newer[1:]):  # answered at once, before the frame that is being drawn
             self.assertEqual(client.answer(), (older, by))
         client.send(message(wire.CANCEL, seq))
         got, what = client.answer()
@@ -251,7 +252,7 @@ class Schedule(DaemonCase):
         self.assertIsInstance(other.render(self.model), wire.Frame)
 
     def test_polygons_that_the_device_has_dropped(self):
-        """It keeps 32 meshes; the frame that needs another one again is the same as before."""
+        """The device keeps 32 meshes. A frame that needs a removed mesh again is the same as before."""
         client = self.client()
         frames = []
         for i in (0, 1, 2, 3, 4, 0):
@@ -261,9 +262,9 @@ class Schedule(DaemonCase):
         self.assertEqual(frames[0], frames[5])
 
     def test_many_connections_have_one_share(self):
-        """A user's frame of eight tiles, among 48 such frames that 24 connections of another identity
-        have asked for: half of the tiles are his, so that eight frames at most end before, which had
-        begun, and those that are drawn beside his."""
+        """A frame of eight tiles of one user, among 48 such frames that 24 connections of another identity have
+        requested. The user gets half of the tiles, so that at most eight other frames end earlier: those that had
+        begun, and those that are drawn in turn with the user's."""
         size = {"width": 720, "height": 720, "kind": STILL}
         one = self.client()
         many = []
@@ -275,7 +276,7 @@ class Schedule(DaemonCase):
         many[0].render(model)
         asked = [(client, client.ask(model, **size)) for client in many for _ in range(2)]
         for client in many:
-            client.stats()  # the requests before have been read
+            client.stats()  # the earlier requests have been read
         before = self.stats()[3][0]
         one.render(self.model, **size)
         self.assertLess(self.stats()[3][0] - before, 14)
@@ -283,7 +284,7 @@ class Schedule(DaemonCase):
             self.assertEqual(client.answer()[0], seq)
 
     def test_interactive_frames_of_many_lights_are_cut(self):
-        """Others' frames are drawn between the tiles of one that costs much."""
+        """The frames of other clients are drawn between the tiles of an expensive frame."""
         slow, other = self.client(), self.client()
         lights = b"".join(field(5, field(4, 2) + field(6, field(1, 0) + field(2, 30.0 + i)))
                           for i in range(8))
@@ -298,8 +299,8 @@ class Schedule(DaemonCase):
         self.assertEqual(slow.read_frame(seq).data, whole)
 
     def test_messages_of_many_connections_are_handled_in_turns(self):
-        """All at once: 640 requests of 40 connections of one identity, and after them one of another.
-        Its answer says how many have been answered before."""
+        """40 connections of one identity send 640 requests at once, then a connection of another identity sends one.
+        The position of its answer is measured."""
         many = [Client(self.daemon.tcp, minor=1) for _ in range(40)]
         one = Client(self.daemon.unix, minor=1)
         for client in *many, one:
@@ -320,7 +321,7 @@ class Schedule(DaemonCase):
                 self.assert_refused_with(client.answer()[1], wire.ERROR_UNKNOWN_MODEL, "upload")
 
     def test_a_client_that_has_gone_leaves_the_device(self):
-        """Eight lights over 16 million pixels, or a mesh of millions: the next client does not wait
+        """Eight lights over 16 million pixels, or a mesh of millions of triangles: the next client does not wait
         until they are done."""
         lights = b"".join(field(5, field(6, field(1, 0) + field(2, 30.0))) for _ in range(8))
         polygons = field(40, 1) + field(41, 6)
@@ -332,7 +333,7 @@ class Schedule(DaemonCase):
                     model = gone.upload(grid(40), "sheet.obj")
                     gone.render(model)
                     seq = gone.next_seq()
-                    # Fields in rising order: the surface comes last.
+                    # protobuf fields in ascending order: the surface comes last
                     gone.send(message(wire.RENDER, seq, field(1, model) + field(2, 4096) +
                                       field(3, 4096) + (extra if extra is lights else b"") +
                                       field(9, 1) + field(10, 0) + field(14, INTERACTIVE) +

@@ -1,6 +1,6 @@
-"""Random sequences of messages, right and wrong ones, against a daemon. What is right has one answer to each
-request; what is wrong ends its own connection and nobody else's. Sessions are made from a fixed seed:
-SHEEN_FUZZ_SEED (7). `make fuzz` lets it run for SHEEN_FUZZ_S seconds against a daemon with AddressSanitizer."""
+"""Random sequences of messages, valid and invalid ones, against a daemon. Each valid request has one answer; an
+invalid message closes its own connection and no other. Sessions are made from a fixed seed: SHEEN_FUZZ_SEED (7).
+`make fuzz` runs this for SHEEN_FUZZ_S seconds against a daemon with AddressSanitizer."""
 import hashlib
 import os
 import random
@@ -23,13 +23,13 @@ EDGES = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-30, 1e30, -1e300, 5e-324, float("inf"), f
 
 
 class Script:
-    """The bytes of a session, and what its answers must be."""
+    """The bytes of a session, and the answers that it must get."""
 
     def __init__(self, noise, models):
         self.noise, self.models = noise, models
         self.minor = noise.choice((0, 1, 2, 3, 4, 4, 4, 9))
-        self.seq, self.parts, self.answers = 1, [], {1: 1}  # answers: number of request: how many
-        self.is_right = True  # the daemon must answer all that is asked
+        self.seq, self.parts, self.answers = 1, [], {1: 1}  # number of a request: number of its answers
+        self.is_right = True  # False after an invalid message, whose answers are not predicted
         self.parts.append(wire.hello(1, minor=self.minor))
         in_flight = 4 if self.minor == 0 else 16
         for _ in range(noise.randrange(1, in_flight)):
@@ -51,7 +51,7 @@ class Script:
         return noise.choice(EDGES) if noise.random() < 0.02 else noise.uniform(-10, 10)
 
     def one_of(self, n):
-        """Below n, now and then n."""
+        """A random number below n, sometimes n itself."""
         return n if self.noise.random() < 0.02 else self.noise.randrange(n)
 
     def vector(self):
@@ -120,7 +120,7 @@ class Script:
         return bytes(data)
 
     def upload(self):
-        """One answer to its beginning and one to its last byte; a daemon that has the file gives one."""
+        """An answer to the beginning and one to the last byte; a single answer if the daemon has the file."""
         noise, data = self.noise, self.cage()
         sha = hashlib.sha256(data).digest()
         if noise.random() < 0.1:
@@ -137,7 +137,7 @@ class Script:
         del self.models[1:-20]
 
     def oddity(self):
-        """Breaks the protocol."""
+        """Adds a message that breaks the protocol."""
         noise = self.noise
         self.is_right = False
         self.parts.append(noise.choice((
@@ -152,7 +152,7 @@ class Script:
 
     def bytes(self):
         data = bytearray(b"".join(self.parts))
-        if self.noise.random() < 0.3:  # damaged anywhere
+        if self.noise.random() < 0.3:  # damages a random byte
             self.is_right = False
             for _ in range(self.noise.choice((1, 1, 4))):
                 at = self.noise.randrange(len(data))
@@ -170,7 +170,7 @@ class Script:
 
 class Sequences(unittest.TestCase):
     def run_session(self, daemon, script, noise):
-        """Returns how often each number was answered, or None where the session was left unread."""
+        """Returns how often each number was answered, or None if the session was left unread."""
         data = script.bytes()
         leaves = noise.random() < 0.1
         address = daemon.unix if noise.random() < 0.5 else daemon.tcp
@@ -184,7 +184,7 @@ class Sequences(unittest.TestCase):
                 if leaves:
                     return None
                 client.socket.shutdown(socket.SHUT_WR)
-            except OSError:  # it has been closed for what it sent
+            except OSError:  # the daemon has closed the connection because of what was sent
                 self.assertFalse(script.is_right)
                 return None
             return self.read_answers(client, script.is_right)

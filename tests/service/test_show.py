@@ -1,4 +1,4 @@
-"""False colour end to end: --show."""
+"""False colour by --show, through the whole program."""
 import json
 import math
 import os
@@ -11,7 +11,7 @@ from test_client import sheen
 
 CURVATURE, GAUSSIAN, MEAN, NORMAL, PTEX, DRAFT = range(1, 7)
 COLOUR, P, PTEX_PLANE, K, COVERAGE = 1, 2, 8, 32, 128
-WIDTH, HEIGHT = 160, 110  # low enough for no legend
+WIDTH, HEIGHT = 160, 110  # too low for a legend
 EMPTY = bytes((128, 128, 128, 255))
 BODY, PLANE = os.path.join(MODELS, "body.obj"), os.path.join(MODELS, "plane.obj")
 
@@ -39,7 +39,7 @@ def pixels(data):
 
 
 def whole(data):
-    """The pixels that one thing covers, surface or emptiness; and how many were left out."""
+    """The pixels that are covered by surface or emptiness alone, and how many others there are."""
     cover = struct.unpack(f"<{WIDTH * HEIGHT}f", data[-4 * WIDTH * HEIGHT:])
     found = [pixel for pixel, share in zip(pixels(data), cover) if share in (0, 1)]
     return found, WIDTH * HEIGHT - len(found)
@@ -52,7 +52,8 @@ class Show(DaemonCase):
             return client.render(model, WIDTH, HEIGHT, planes=planes, extra=extra).data
 
     def test_a_convex_body_is_blue_by_its_mean(self):
-        """And only the planes that were asked for come back, the same as without --show."""
+        """The picture is blue where the body is convex. The answer has the requested planes only, and they are the
+        same as without --show."""
         data = self.render(BODY, show(MEAN), COLOUR | K)
         self.assertEqual(len(data), WIDTH * HEIGHT * 12)
         curvature = data[4 * WIDTH * HEIGHT:]
@@ -72,7 +73,8 @@ class Show(DaemonCase):
         self.assertGreater(red, len(gaussian) / 2, "a body's Gaussian curvature is positive")
 
     def test_extremes(self):
-        """As the planes of the same frame say, and where the Ptex plane is asked for its place."""
+        """The extremes equal those of the planes of the same frame; with the Ptex plane they have a place on the
+        surface."""
         def place(extreme):
             found = wire.decode(extreme)
             numbers = [struct.unpack("<d", found[k][0])[0] if k in found else None
@@ -124,7 +126,8 @@ class Show(DaemonCase):
         self.assertGreater(len(set(pixels(self.render(PLANE, show(PTEX))))), 36)
 
     def test_outlines_are_antialiased(self):
-        """As a picture of eight times the size shows them, and better than one sample a pixel."""
+        """Outlines are close to those of a picture eight times as large, and closer than with one sample for each
+        pixel."""
         scale, one_sample = 8, wire.field(12, 1)
         with wire.Client(self.daemon.unix) as client:
             model = client.upload(read(BODY), "body.obj")
@@ -137,7 +140,7 @@ class Show(DaemonCase):
         errors, n = [0, 0], 0
         for i, share in enumerate(cover):
             x, y = i % WIDTH * scale, i // WIDTH * scale
-            if share in (0, 1) or y > HEIGHT * scale * 2 // 3:  # the large one has a legend
+            if share in (0, 1) or y > HEIGHT * scale * 2 // 3:  # the large picture has a legend
                 continue
             n += 1
             for k in range(3):
@@ -193,7 +196,7 @@ class Command(DaemonCase):
             self.assertTrue(0 <= extreme["pixel"][0] < 320 and 0 <= extreme["pixel"][1] < 240)
             self.assertEqual(len(extreme["position"]), 3)
             self.assertNotIn("ptex", extreme)
-        # A flat one is alike all over, and one that is not seen has no value.
+        # On a flat model all values are equal; a model that is not visible has none.
         for arguments, value in (((), 90), (("--eye", "0,0,9", "--target", "0,0,20", "--up",
                                              "0,1,0"), None)):
             path = os.path.join(self.daemon.folder, "out.png")
@@ -209,7 +212,7 @@ class Command(DaemonCase):
             self.assertNotIn("show_least", done.stdout)
 
     def test_no_legend(self):
-        """The picture without it, but for its corner; its text says so."""
+        """Without the legend the picture is the same except in the corner, and the file's text says so."""
         for legend in ("on", "off"):
             _, path = self.command("--show", "mean", "--legend", legend, "-q")
             self.assertEqual(b"legend=off" in read(path), legend == "off")

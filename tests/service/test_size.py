@@ -1,5 +1,5 @@
-"""Models of a size: a large one renders, one that does not fit is refused with the numbers, and what is
-counted for them is what they take."""
+"""Large models: one is drawn, one that does not fit is refused with the numbers, and the memory that is counted for
+models is the memory that they take."""
 import os
 import re
 import tempfile
@@ -11,8 +11,8 @@ from daemon import CUBE, SANITIZED, SHEEN, Daemon, DaemonCase, grid, resident_kb
 from test_client import sheen
 from test_untrusted import image_pattern
 
-LARGE = 200  # faces along an edge: 40,000
-MEMORY_BYTES, TABLE_BYTES = 23, 16  # fields of Stats and ModelInfo
+LARGE = 200  # faces along an edge; 40,000 in all
+MEMORY_BYTES, TABLE_BYTES = 23, 16  # field numbers of Stats and ModelInfo
 
 
 class Large(DaemonCase):
@@ -25,10 +25,10 @@ class Large(DaemonCase):
 
 
 class Counted(unittest.TestCase):
-    """What a model takes of the budget."""
+    """The share of the memory budget that a model takes."""
 
     def counted(self, device):
-        """Bytes of the budget that a model takes, and bytes of its tables."""
+        """Returns the bytes of the budget that a model takes, and the bytes of its tables."""
         daemon = Daemon("--device", device, tcp=False)
         with wire.Client(daemon.unix) as client:
             before = client.stats()[MEMORY_BYTES][0]
@@ -40,7 +40,7 @@ class Counted(unittest.TestCase):
         return taken, tables
 
     def test_tables_on_demand(self):
-        """Nodes and what they look like as a whole (152 bytes), and room for patches (256) that are kept."""
+        """Nodes with their bounds and curvatures (152 bytes each), and room for cached patches (256)."""
         taken, tables = self.counted("native")
         self.assertGreater(taken, LARGE * LARGE * (152 + 256))
         self.assertLess(taken, LARGE * LARGE * 600)
@@ -48,17 +48,17 @@ class Counted(unittest.TestCase):
 
     @unittest.skipUnless(mesa.device(), "no Mesa here")
     def test_both_copies_of_stored_tables(self):
-        """Those on the GL device and those that they are made from."""
+        """The tables on the GL device, and those in main memory from which they are uploaded."""
         taken, tables = self.counted(mesa.device())
         self.assertGreater(tables, 10 << 20)
         self.assertGreater(taken, 2 * tables)
-        # Beside the copies 88 bytes a node: what it looks like as a whole.
+        # In addition to the copies 88 bytes for each node: its bounds and curvatures.
         self.assertLess(taken, 2.4 * tables)
 
 
 @unittest.skipUnless(os.path.exists(SHEEN), "no client in this build")
 class Private(unittest.TestCase):
-    """A command's own daemon has the budget that the command gives it, and says how much would do."""
+    """A private daemon has the budget that the command gives it, and its error tells a sufficient one."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="sheen-test-")
@@ -94,13 +94,13 @@ class Private(unittest.TestCase):
             file.write(grid(10))
         done = self.render("--memory-budget", "4M", size="2000x2000")
         self.assert_more_is_enough(done, "2000x2000")
-        # All of the budget is one client's, over what a shared daemon gives each (--peer-memory).
+        # The whole budget may be one client's, above the limit of a client of a shared daemon (--peer-memory).
         self.assertEqual(self.render("--memory-budget", "5G").returncode, 0)
 
 
     def assert_more_is_enough(self, done, size):
-        """One message for one shortage: of the budget, with a value that will do; nobody else is there
-        to wait for."""
+        """Expects one message, about the budget, with a value that is enough, because there are no other clients to
+        wait for."""
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertRegex(done.stderr, r"^sheen: a frame needs \d+ bytes beside \d+ in use, and this "
                                       r"command's daemon has a memory budget of \d+: give more, as "
@@ -109,7 +109,7 @@ class Private(unittest.TestCase):
         self.assertEqual(self.render("--memory-budget", more, size=size).returncode, 0)
 
     def test_a_frame_that_just_does_not_fit(self):
-        """With the planes alone, with the file's bytes, and with the model's tables over the budget."""
+        """Too little for the planes alone, for the planes and the file, and for these and the model's tables."""
         with open(self.model, "wb") as file:
             file.write(grid(10))
         for budget in (8194879, 8194880, 8300000):
@@ -119,7 +119,7 @@ class Private(unittest.TestCase):
 
 
 class TooLarge(DaemonCase):
-    """The file fits into the budget, its tables do not: 40,000 faces take 23 MB."""
+    """The budget has room for the file, but not for its tables: 40,000 faces take 23 MB."""
     arguments = ("--memory-budget", "6M")
 
     def test_is_refused_by_need_and_budget(self):
@@ -144,7 +144,7 @@ class TooLarge(DaemonCase):
         self.assertEqual(daemon.stop(), 0)
 
     def test_its_operator_is_to_be_asked(self):
-        """A client of a shared daemon cannot start it anew."""
+        """A client of a shared daemon cannot restart it with more memory."""
         path = os.path.join(self.daemon.folder, "large.obj")
         with open(path, "wb") as file:
             file.write(grid(LARGE))
@@ -163,15 +163,16 @@ class TooLarge(DaemonCase):
 
 
 class Resident(unittest.TestCase):
-    """Memory of the budget in use (STATS) beside what the process has more. A model counts as what it may
-    come to: room for patches that a view of it keeps, of which a single view fills a part."""
+    """The memory that STATS counts, compared with the growth of the process. A model counts with all memory that it
+    may take later: a single view fills only a part of the room for patches."""
 
     def grown(self, make, n):
-        """By how many bytes n models made by make(client, number) grow the daemon: taken, counted."""
+        """How many bytes n models made by make(client, number) add to the daemon: to the process, and to the
+        count."""
         daemon = Daemon(tcp=False)
         with wire.Client(daemon.unix, minor=1, timeout=60) as client:
             client.render(client.upload(grid(3), "first.obj"))
-            make(client, n)  # what comes with the first of its kind
+            make(client, n)  # memory that only the first models of a kind take
             taken, counted = resident_kb(daemon.process.pid), client.stats()[MEMORY_BYTES][0]
             for i in range(n):
                 make(client, i)
@@ -181,7 +182,7 @@ class Resident(unittest.TestCase):
         return taken, counted
 
     def assert_counted(self, make, n, least=0.85):
-        """Taken is at most what is counted, and at least that share of it."""
+        """Expects that the process grows by no more than is counted, and at least by this share of it."""
         taken, counted = self.grown(make, n)
         self.assertLess(taken, 1.15 * counted + (2 << 20), (taken, counted))
         if not SANITIZED:
@@ -192,7 +193,7 @@ class Resident(unittest.TestCase):
             lambda client, i: client.render(client.upload(CUBE + b"# %d\n" % i, "cube.obj")), 200, 0.4)
 
     def test_tiny_models(self):
-        """Without surface: what they take is objects, not tables."""
+        """Models without surface take memory for objects and none for tables."""
         hole = grid(1) + b"t interpolateboundary 1/0/0 0\n"
         self.assert_counted(
             lambda client, i: client.query(client.upload(hole + b"# %d\n" % i, "none.obj")), 1000, 0.4)

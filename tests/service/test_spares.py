@@ -1,6 +1,5 @@
-"""Memory of frames: a warm one takes none from the heap, and what was kept goes back.
-
-build/sheend-faults counts the blocks that sheend's own code takes (allocations.c)."""
+"""Memory of frames: after a few frames of a kind, a further one takes no block from the heap, and kept memory is
+freed in the end. build/sheend-faults counts the blocks that sheend's own code takes (allocations.c)."""
 import math
 import mmap
 import os
@@ -37,26 +36,26 @@ def vector(*values):
 
 
 def camera_at(angle):
-    """A view of its own for each frame: nothing is kept, pieces are chosen and drawn again."""
+    """Another camera for each frame: no planes are kept, and the surface's pieces are chosen and drawn again."""
     return wire.field(4, wire.field(1, vector(25 * math.cos(angle), 25 * math.sin(angle), 12)) +
                       wire.field(2, vector(0, 0, 0)) + wire.field(3, vector(0, 0, 1)))
 
 
 def light_at(x):
-    """A light of its own for each frame: the camera stays, so its planes are kept."""
+    """Another light for each frame: the camera stays, so that planes are kept."""
     light = (wire.field(1, vector(x, 0, 20)) + wire.field(2, vector(40, 0, 0)) +
              wire.field(3, vector(0, 40, 0)))
     return wire.field(5, light)
 
 
 def clear():
-    """Nothing where no surface is: some strips of a PNG file are opaque, and are encoded again."""
+    """Transparent where no surface is: some strips of a PNG file are opaque and are encoded again."""
     return wire.field(8, b"".join(wire.varint(i << 3 | 5) + struct.pack("<f", 0)
                                   for i in range(1, 5)))
 
 
 def most_resident_kb(pid):
-    """The largest it ever was; 0 where the machine does not say or a sanitizer hoards memory."""
+    """The largest resident memory so far; 0 where the system does not tell it, or a sanitizer keeps freed memory."""
     with open(f"/proc/{pid}/status", encoding="ascii") as file:
         found = re.search(r"VmHWM:\s+(\d+) kB", file.read())
     return int(found.group(1)) if found and resident_kb(pid) else 0
@@ -64,8 +63,8 @@ def most_resident_kb(pid):
 
 class WarmFrames(unittest.TestCase):
     def serve(self, *arguments):
-        """A daemon with the model, and a client that did not upload it: the room that an upload's
-        messages took is made smaller when its client waits for a second, also amid warm frames."""
+        """A daemon with the model, and a client that did not upload it. The buffer that an upload's messages used is
+        made smaller when its client has waited for a second, which may fall into the measured frames."""
         server = CountingDaemon(*arguments)
         self.addCleanup(server.stop)
         client = wire.Client(server.unix, minor=1)
@@ -77,15 +76,15 @@ class WarmFrames(unittest.TestCase):
         return server, client, model
 
     def least_allocations(self, count):
-        """Of a few runs. On a busy machine frames may be so far apart that spares are let go between
-        two of them; what each frame takes is in all runs."""
+        """The least count of a few runs. On a busy machine frames may be so far apart that kept memory is freed
+        between two of them; blocks that each frame takes are counted in every run."""
         counts = []
         while 0 not in counts and len(counts) < 8:
             counts.append(count())
         return min(counts)
 
     def warm_allocations(self, server, client, frames):
-        """Taken by the second half of these frames; each is the arguments of one."""
+        """The blocks that the second half of these frames takes. An entry has the arguments of one frame."""
         def count():
             for i, (model, named) in enumerate(frames):
                 if i == len(frames) // 2:
@@ -131,8 +130,8 @@ class WarmFrames(unittest.TestCase):
                                  (name, encoding))
 
     def two_in_flight(self, server, client, model, encoding):
-        """Taken in the middle of 40 frames of a turning camera, of which one draws while the one
-        before is encoded and sent."""
+        """The blocks that are taken in the middle of 40 frames of a turning camera, while one frame is drawn and the
+        previous one is encoded and sent."""
         ends, asked = [], []
         for i in range(40):
             asked.append(client.ask(model, 320, 240, encoding, extra=camera_at(0.1 * i),
@@ -146,7 +145,7 @@ class WarmFrames(unittest.TestCase):
     def test_nor_do_two_in_flight(self):
         server, client, model = self.serve()
         for encoding in wire.RAW, wire.ZSTD, wire.JPEG, wire.PNG:
-            # How many frames are on their way at once is up to the clock, too.
+            # The number of frames in progress at a time also depends on the clock.
             count = lambda: self.two_in_flight(server, client, model, encoding)
             self.assertEqual(self.least_allocations(count), 0, encoding)
 
@@ -159,10 +158,10 @@ class WarmFrames(unittest.TestCase):
         server, client, model = self.serve()
         client.render(model, width=3840, height=2160, planes=COLOUR | P | N)
         client.socket.close()
-        most = most_resident_kb(server.process.pid)  # some may have gone back by now
+        most = most_resident_kb(server.process.pid)  # some memory may have been freed by now
         end = time.monotonic() + 40
         while resident_kb(server.process.pid) * 1024 > most * 1024 - 64 * MIB:
             if most == 0:
-                break  # a sanitizer hoards memory
+                break  # a sanitizer keeps freed memory
             self.assertLess(time.monotonic(), end, "spares were kept for 40 s")
             time.sleep(0.5)

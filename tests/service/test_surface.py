@@ -1,4 +1,4 @@
-"""--surface: polygons and their wireframe beside the exact surface, and levels."""
+"""--surface: polygons and wireframe compared with the exact surface, and `sheen levels`."""
 import json
 import math
 import os
@@ -32,14 +32,14 @@ class Planes:
 
 
 def off_deg(a, b):
-    """(largest, mean) angle between the normals where both show one Ptex face."""
+    """(largest, mean) angle between the normals of pixels that show the same Ptex face in both."""
     angles = [2 * math.degrees(math.asin(min(1, math.dist(a.normal[k], b.normal[k]) / 2)))
               for k in range(WIDTH * HEIGHT) if a.face[k] == b.face[k] != NONE]
     return max(angles), sum(angles) / len(angles)
 
 
 def read_png(path):
-    """Width, height and the RGB or RGBA rows of an 8-bit PNG without interlace."""
+    """Width, height, and the RGB or RGBA rows of an 8-bit PNG without interlacing."""
     with open(path, "rb") as file:
         data = file.read()
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
@@ -90,7 +90,7 @@ class Surface(DaemonCase):
                 last = mean
             self.assertLess(last, 2e-3)
             self.assertLess(largest, 0.3)
-            # Only the exact surface is antialiased at its edges and in its sharp bends.
+            # Only the exact surface is antialiased at edges and where its curvature is high.
             near = sum(max(abs(a - b) for a, b in zip(polygons.colour[4 * k:4 * k + 3],
                                                       exact.colour[4 * k:4 * k + 3])) <= 8
                        for k in range(WIDTH * HEIGHT))
@@ -109,7 +109,7 @@ class Surface(DaemonCase):
             for k in range(WIDTH * HEIGHT):
                 r, g, b, _ = wires.colour[4 * k:4 * k + 4]
                 self.assertTrue(r == g == b)
-            # It leaves nothing of itself behind.
+            # The command leaves no daemon behind.
             self.assertEqual(Planes(client, model, b"").colour, exact.colour)
 
     def test_refused(self):
@@ -157,7 +157,7 @@ class Surface(DaemonCase):
             self.assertIn(f"up to {answer['levels'][0]['max_deg']:.3g} deg", text.stdout)
 
     def check_panels(self, rows, height):
-        """The exact panel is the same picture in each row, the others are not; text below."""
+        """The exact panel is the same picture in each row, the other panels differ; text stands below."""
         gap, step = 6, (height - 6) // 3
 
         def panel(column, row):

@@ -1,4 +1,4 @@
-"""sheen stream -o: every frame in a file of its own, whole, once."""
+"""sheen stream -o: every frame is in a file of its own, complete, and once."""
 import json
 import os
 import resource
@@ -37,7 +37,7 @@ class Turntable(DaemonCase):
         return {name: read(os.path.join(self.folder, name)) for name in os.listdir(self.folder)}
 
     def test_frames_are_pictures(self):
-        """In every format; where the light moves alone the first is what render draws."""
+        """In every format. Where only the light moves, the first frame equals that of `sheen render`."""
         for ending in ("png", "exr", "jpg", "tif"):
             done = self.stream("a_%03d." + ending, "--frames", "4", "--orbit", "90", "--json")
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -63,7 +63,7 @@ class Turntable(DaemonCase):
         self.assertNotIn("written", done.stdout)
 
     def test_none_is_lost_or_written_twice(self):
-        """The connection breaks again and again."""
+        """The connection is interrupted again and again."""
         self.assertEqual(self.stream("%d.png", "--frames", "12").returncode, 0)
         whole = self.files()
         for name in whole:
@@ -78,7 +78,7 @@ class Turntable(DaemonCase):
         self.assertEqual([frame["number"] for frame in told["frames"]], list(range(12)))
 
     def silhouettes(self, model, *arguments, n=8):
-        """Of each frame: left, top, right and bottom of what is not empty, and the size."""
+        """For each frame: left, top, right and bottom of its pixels that are not empty, and its size."""
         done = sheen("stream", model, "-o", os.path.join(self.folder, "s%d.png"), "--frames", str(n),
                      "--empty", "#ff00ff", "--size", "120x80", "--server", self.daemon.unix,
                      *arguments)
@@ -93,7 +93,7 @@ class Turntable(DaemonCase):
     def test_all_of_it_stays_in_the_picture(self):
         for name in ("body.obj", "fender.obj", "door.obj"):
             path = os.path.join(MODELS, name)
-            if name == "door.obj":  # thin, far from the origin, guessed to be y up
+            if name == "door.obj":  # thin, far from the origin, and y is guessed to be up
                 path = os.path.join(self.folder, name)
                 with open(path, "w", encoding="ascii") as file:
                     file.write("v 50 7 0\nv 52 7 0\nv 52 7.1 2\nv 50 7 2\nf 1 2 3 4\n")
@@ -109,7 +109,7 @@ class Turntable(DaemonCase):
                 self.assertGreater(len(widths), 1, "it turns")
 
     def test_a_plan_turns_in_its_plane(self):
-        """About z, though up in the picture is y: after 90 degrees it is as tall as it was wide."""
+        """Turns about z, though up in the picture is y: after 90 degrees the model is as high as it was wide."""
         first, _, _, turned, *_ = self.silhouettes(BODY, "--view", "top", "--orbit", "30", n=4)
         wide, tall = first[2] - first[0], first[3] - first[1]
         self.assertGreater(wide, 2 * tall)
@@ -117,7 +117,7 @@ class Turntable(DaemonCase):
         self.assertLessEqual(abs(turned[2] - turned[0] - tall), 1)
 
     def test_colours_of_one_range(self):
-        """The first frame's, unless one is given, so that a colour is one value in all frames."""
+        """All frames have the range of the first one unless a range is given, so that a colour means one value."""
         ranges = []
 
         def judge(connection, kind, seq, body, client):
@@ -151,7 +151,7 @@ class Turntable(DaemonCase):
         self.assertIn(words, done.stderr)
 
     def test_no_folder(self):
-        """Known before anybody is connected to."""
+        """These errors are found before the client connects."""
         done = self.stream("nowhere/%d.png", "--frames", "2", "--json", server="unix:/no/such")
         self.assert_fails(done, "nowhere/0.png: cannot be written")
 
@@ -162,7 +162,7 @@ class Turntable(DaemonCase):
         self.assertEqual(sorted(os.listdir(self.folder)), ["0.png", "1.png", "2.png", "3.png"])
 
     def test_a_full_disk(self):
-        """No half a file, and none under a temporary name."""
+        """No partial file, and no file with a temporary name."""
         done = self.stream("%d.tif", "--frames", "3", "--json", "-q", restore_signals=False,
                            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (999, 999)))
         self.assert_fails(done, "0.tif: cannot be written: File too large")
@@ -170,7 +170,7 @@ class Turntable(DaemonCase):
 
     def test_late_frames_have_no_file(self):
         def judge(connection, kind, seq, body, client):
-            if kind == wire.RENDER and len(seen) == 3:  # the first tells the camera
+            if kind == wire.RENDER and len(seen) == 3:  # the first frame tells the camera
                 client.sendall(wire.message(wire.ERROR, seq, wire.field(1, wire.ERROR_DEADLINE) +
                                             wire.field(2, "too late")))
                 seen.append(seq)

@@ -1,4 +1,4 @@
-"""Files that attack their parser, and processes that die: the sender's error, and nothing else."""
+"""Files that attack their parser, and processes that die: the sender gets an error, and nothing else happens."""
 import contextlib
 import os
 import signal
@@ -20,7 +20,7 @@ def image_pattern(sha256):
 
 
 def children(pid):
-    """Of all threads of a process."""
+    """The child processes of all threads of a process."""
     found = []
     for thread in os.listdir(f"/proc/{pid}/task"):
         with open(f"/proc/{pid}/task/{thread}/children", encoding="ascii") as file:
@@ -32,7 +32,7 @@ def workers(pid):
     """The running worker programs of a daemon, by name. Each is the child of its starter."""
     found = {}
     for starter in children(pid):
-        with contextlib.suppress(OSError):  # ended meanwhile
+        with contextlib.suppress(OSError):  # the process has ended in the meantime
             for child in children(starter):
                 found[os.path.basename(os.readlink(f"/proc/{child}/exe"))] = child
     return found
@@ -55,7 +55,7 @@ def wait_for_end(pids):
 
 
 def tiff(tile):
-    """64 x 64 pixels in one tile that is far larger, and whose bytes are not there."""
+    """A picture of 64 x 64 pixels with one tile that is much larger, and whose bytes are missing."""
     entries = ((256, 4, 64), (257, 4, 64), (258, 3, 8), (259, 3, 1), (262, 3, 1), (277, 3, 4),
                (322, 4, tile), (323, 4, tile), (324, 4, 8), (325, 4, 16))
     return (b"II*\0" + struct.pack("<IH", 8, len(entries)) +
@@ -159,13 +159,13 @@ class Untrusted(DaemonCase):
                 with contextlib.suppress(FileNotFoundError):  # the client's connection is being closed
                     targets.append(os.readlink(f"/proc/{process}/fd/{fd}"))
             kept = [target for target in targets if "memfd:sheend-" in target]
-            # One picture was written at a time: its input waits for the next one.
+            # Pictures were written one at a time, so one file of input is kept for the next.
             self.assertEqual(len(kept), 1 if process == pid else 0, kept)
             self.assertFalse([target for target in kept if "input" not in target])
 
 
 class Slow(DaemonCase):
-    """A file that takes its time holds up nobody but its sender."""
+    """A file that takes long delays nobody but its sender."""
     arguments = ("--threads", "1")
 
     def test_frames_of_others_go_on(self):
@@ -188,7 +188,7 @@ class Slow(DaemonCase):
 
 
 class Ends(unittest.TestCase):
-    """Workers end with their daemon, however it ends."""
+    """Workers end with their daemon, however the daemon ends."""
 
     def test_workers_end_with_the_daemon(self):
         for kill in (signal.SIGTERM, signal.SIGKILL):

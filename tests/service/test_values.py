@@ -1,4 +1,4 @@
-"""Values as protocol/README.md says: of pixels that show nothing, of curvature, of enums."""
+"""Values follow protocol/README.md: of pixels that show nothing, of curvature, of enums."""
 import math
 import struct
 
@@ -13,7 +13,7 @@ WIDTH, HEIGHT = 64, 48
 
 class Values(DaemonCase):
     def test_blank(self):
-        """A light-only change draws no surface anew and knows it all the same."""
+        """A frame after a change of the light draws no surface again, and still tells the surface's values."""
         def vec3(x, y, z):
             return field(1, float(x)) + field(2, float(y)) + field(3, float(z))
 
@@ -42,7 +42,7 @@ class Values(DaemonCase):
                 plane[k] for plane in planes)
             if ptex[0] != 0xffffffff:
                 n_hit += 1
-                # The cube's normals point out of it: it bends away from them everywhere.
+                # The cube's normals point outwards, so it curves away from them everywhere.
                 self.assertLess(curvature[1], 0)
                 self.assertLessEqual(curvature[0], curvature[1])
                 self.assertGreater(coverage[0], 0)
@@ -54,8 +54,8 @@ class Values(DaemonCase):
         self.assertEqual((planes[7][0], planes[0][0]), ((0,), (128, 128, 128, 255)))  # a corner
 
     def test_unknown_numbers(self):
-        """Of enums and planes: ERROR_REQUEST, and the connection goes on. A count over its bound
-        ends it."""
+        """An unknown enum or plane is answered ERROR_REQUEST, and the connection goes on. A count above its bound
+        closes the connection."""
         with Client(self.daemon.unix, minor=1) as client:
             model = client.upload(CUBE, "cube.obj")
             for seq, (name, request) in enumerate((

@@ -1,6 +1,5 @@
-"""A client of sheen's protocol in plain Python: enough to be right, and to be wrong on purpose.
-
-Written from protocol/README.md, not from the C code, so that the two check each other."""
+"""A client of sheen's protocol in plain Python, which can also break the protocol on purpose. Written from
+protocol/README.md and not from the C code, so that each judges the other."""
 import hashlib
 import socket
 import ssl
@@ -29,7 +28,7 @@ def varint(value):
 
 
 def field(number, value):
-    """One field: int, float (double), bytes, str, or a nested list of fields as bytes."""
+    """One field: int, float (as double), bytes, str, or a nested list of fields as bytes."""
     if isinstance(value, float):
         return varint(number << 3 | 1) + struct.pack("<d", value)
     if isinstance(value, int):
@@ -40,7 +39,7 @@ def field(number, value):
 
 
 def decode(body):
-    """Fields by number: lists of int, bytes (length-delimited, double and float as raw bytes)."""
+    """Fields by number: lists of int, or of bytes (for length-delimited, double and float fields)."""
     fields, at = {}, 0
 
     def take_varint():
@@ -122,7 +121,7 @@ class Client:
             host, port = address[4:].rsplit(":", 1)
             target = (host, int(port))
         self.socket.settimeout(timeout)
-        if buffer:  # what the kernel takes for a client that does not read
+        if buffer:  # the receive buffer of a client that does not read
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
         self.socket.connect(target)
         if tls:
@@ -155,7 +154,7 @@ class Client:
         return bytes(out)
 
     def receive(self):
-        """(type, flags, seq, body) of the next message but PROGRESS."""
+        """(type, flags, seq, body) of the next message that is not PROGRESS."""
         while True:
             header = self.read(16)
             assert header[:4] == MAGIC, header
@@ -174,7 +173,7 @@ class Client:
         return decode(body)
 
     def at_end(self):
-        """True when the daemon has closed and nothing is left to read."""
+        """True if the daemon has closed and no byte is left to read."""
         try:
             return self.socket.recv(1) == b""
         except (ConnectionResetError, ssl.SSLError):
@@ -198,7 +197,7 @@ class Client:
         return self.expect(MODEL_INFO, seq)
 
     def find(self, name, sha256=bytes(32)):
-        """The id of a model file at the daemon."""
+        """The id of a model file in the daemon's folder."""
         seq = self.next_seq()
         self.send(message(MODEL_QUERY, seq, field(1, sha256) + field(2, name)))
         return self.expect(MODEL_INFO, seq)[1][0]
@@ -223,7 +222,7 @@ class Client:
         return frame
 
     def answer(self):
-        """The next answer to a RENDER: (number, what): a Frame, the number that superseded it, or
+        """The next answer to a RENDER as (number, what): a Frame, the number of the request that superseded it, or
         the Refused."""
         try:
             kind, _, seq, body = self.receive()
