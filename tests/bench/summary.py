@@ -1,5 +1,5 @@
-"""summary.py FOLDER: the ratios of every benchmark whose figures lie there, each beside that of the
-run before. More is better of those that end in "ratio", less of the others."""
+"""summary.py FOLDER: the ratios of all benchmarks whose figures are in the folder, each beside that of the previous
+run. For ratios whose name ends in "ratio" more is better, for the others less."""
 import json
 import pathlib
 import sys

@@ -1,5 +1,5 @@
-"""test_sheen_bench.py BUILD: build/sheen-bench runs, keeps figures, and needs EGL, libepoxy and the C
-library alone."""
+"""test_sheen_bench.py BUILD: build/sheen-bench runs, writes figures, and needs only EGL, libepoxy and the C
+library."""
 import json
 import pathlib
 import re
@@ -12,7 +12,7 @@ BUILD = pathlib.Path(sys.argv.pop())
 PROGRAM = str(BUILD / "sheen-bench")
 MAY_NEED = {"linux-vdso.so.1", "libc.so.6", "libm.so.6", "libdl.so.2", "libepoxy.so.0", "libEGL.so.1",
             "libGLdispatch.so.0"}
-# What a build with sanitizers adds.
+# libraries that a build with sanitizers adds
 SANITIZERS = {"libasan.so.8", "libubsan.so.1", "libstdc++.so.6", "libgcc_s.so.1"}
 
 

@@ -1,10 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the control cages in this folder: python3 tests/models/make_models.py [FOLDER]
-
-Standard library only, and deterministic: the same bytes on every machine. Coordinates are rounded
-to multiples of 2^-12, which single precision (glTF) and the decimals of OBJ both hold exactly, so
-that fender.obj and fender.gltf are one cage.
-"""
+"""Makes the control cages in this folder: python3 tests/models/make_models.py [FOLDER]. Needs only Python's standard
+library, and gives the same bytes on every machine. Coordinates are rounded to multiples of 2^-12, which single
+precision (glTF) and OBJ's decimals both represent exactly, so that fender.obj and fender.gltf are the same cage."""
 import base64
 import json
 import math
@@ -45,7 +42,7 @@ def write_obj(path, cage, tags=(), comment=""):
 
 
 def fan(faces):
-    """FB_ngon_encoding: a fan for each polygon, no two in a row with the same first vertex."""
+    """FB_ngon_encoding: a fan of triangles for each polygon; two fans in a row have different first vertices."""
     triangles, previous = [], None
     for face in faces:
         if face[0] == previous:
@@ -57,7 +54,7 @@ def fan(faces):
 
 
 def write_gltf(path, cage, pieces, name):
-    """One mesh of several primitives with their own vertices: the reader must weld the seams."""
+    """One mesh of several primitives with separate vertices, whose seams the reader must weld."""
     size = (len(cage.faces) + pieces - 1) // pieces
     data, views, accessors, primitives = b"", [], [], []
 
@@ -100,7 +97,7 @@ def write_gltf(path, cage, pieces, name):
 # Fender ----------------------------------------------------------------------------------------
 
 class Layout:
-    """A flat layout of quads whose vertices are joined by name."""
+    """A flat layout of quads, whose vertices are identified by name."""
 
     def __init__(self):
         self.points, self.numbers, self.faces = [], {}, []
@@ -112,7 +109,7 @@ class Layout:
         return self.numbers[key]
 
     def split(self):
-        """Every quad into four; new points halfway."""
+        """Divides every quad into four, with new points at the middles."""
         points, middle, faces = list(self.points), {}, []
 
         def between(*vertices):
@@ -191,8 +188,8 @@ def counter_clockwise(points, face):
 
 
 def relax(layout, rounds):
-    """Moves every interior point towards the mean of its edge and face neighbours; keeps the
-    boundary but for the arch, which is put back onto its circle."""
+    """Moves every interior point towards the mean of its edge and face neighbours. The boundary is unchanged, except
+    for the arch, whose points are put back onto its circle."""
     edges, around = {}, {}
     for face in layout.faces:
         for a, b in zip(face, face[1:] + face[:1]):
@@ -216,7 +213,7 @@ def relax(layout, rounds):
 
 
 def on_the_arch(layout):
-    """The split leaves the middles of the arch's edges on its chords."""
+    """After the division, the middles of the arch's edges lie on its chords; moves them onto the circle."""
     for v, (x, y) in enumerate(layout.points):
         radius = math.hypot(x - ARCH_X, y - ARCH_Y)
         if radius < ARCH_R * 1.01 and y > -1:
@@ -234,8 +231,8 @@ def fender_height(x, y):
 
 
 def limit_points(points, faces):
-    """Where the surface passes for each control point: Catmull-Clark's limit masks for quads, a
-    cubic B-spline along the boundary."""
+    """The point of the surface for each control point: Catmull-Clark's limit masks for quads, and a cubic B-spline
+    along the boundary."""
     edges, diagonals, counts = {}, {}, {}
     for face in faces:
         for k, v in enumerate(face):
@@ -259,7 +256,7 @@ def limit_points(points, faces):
 
 
 def fit_height(points, faces, height):
-    """Lifts the control points until the surface, and not the cage, lies on the height."""
+    """Moves the control points in height until the surface (and not the cage) has the given height."""
     points = [(x, y, height(x, y)) for x, y in points]
     for _ in range(12):
         limits = limit_points(points, faces)
@@ -293,7 +290,7 @@ def grid_cage(n, point):
 
 
 def body():
-    """A cube of 4 x 4 quads a side, blown up to a car-like blob."""
+    """A cube of 4 x 4 quads on each side, inflated to the shape of a car."""
     n, points, faces = 4, [], []
     numbers = {}
 
@@ -335,7 +332,7 @@ def sheet():
 
 
 def plane():
-    """Its vertices are moved within the plane, far from any regular pattern."""
+    """The vertices are moved within the plane, far from any regular pattern."""
     state = 12345
 
     def random():
@@ -354,7 +351,7 @@ def plane():
 
 
 def pole():
-    """A dome: 24 triangles round its pole, four rings of quads below."""
+    """A dome: 24 triangles around its pole, and four rings of quads below them."""
     valence, rings = 24, 5
     points = [(0.0, 0.0, 1.0)]
     for ring in range(1, rings + 1):
@@ -372,8 +369,8 @@ def pole():
 
 
 def ngons():
-    """A pentagonal drum of two storeys with one corner cut off above and one below: triangles,
-    quads, pentagons and hexagons, closed."""
+    """A closed pentagonal drum of two storeys with one corner cut off above and one below: triangles, quads,
+    pentagons and hexagons."""
     points, storeys = [], []
     for z, radius in ((-0.8, 0.85), (0.0, 1.0), (0.8, 0.85)):
         storeys.append([])
@@ -389,7 +386,7 @@ def ngons():
             faces.append([low[k], low[m], high[m], high[k]])
 
     def cut(corner):
-        """Puts a triangle in place of a vertex: one new vertex on each of its edges."""
+        """Replaces a vertex by a triangle with a new vertex on each of the vertex's edges."""
         on_edge = {}
         after = {}
         for face in faces:
@@ -418,8 +415,8 @@ def tetra():
 
 
 def creases():
-    """The blob with every kind of tag: sharpness that varies along a crease and runs out on the way,
-    darts, three and more creases at a vertex, sharp vertices, a hole."""
+    """The body with every kind of tag: a crease whose sharpness varies and ends, darts, three and more creases at a
+    vertex, sharp vertices, and a hole."""
     cage = body()
     edges = sorted({tuple(sorted((f[k], f[k - 1]))) for f in cage.faces for k in range(len(f))})
     tags, state = [], 1
@@ -433,7 +430,7 @@ def creases():
     for a, b in edges:
         if random(4) == 0:
             tags.append("t crease 2/1/0 %d %d %g" % (a, b, sharpness[random(8)]))
-    # A plain crease, for strips: a ring of edges round the blob, all alike.
+    # A crease of constant sharpness, for strips: a ring of edges around the body.
     ring = [e for e in edges if all(abs(cage.positions[v][0]) < 1e-9 for v in e)]
     tags += ["t crease 2/1/0 %d %d 4.5" % e for e in ring]
     for vertex, value in ((3, 0.6), (17, 1.8), (40, 10.0), (55, 3.0)):
@@ -443,7 +440,7 @@ def creases():
 
 
 def smooth_triangles():
-    """The drum of ngons() with OpenSubdiv's smooth triangles, some of their edges sharp."""
+    """The drum of ngons() with OpenSubdiv's smooth triangles, and some sharp edges on them."""
     cage = ngons()
     edges = sorted({tuple(sorted((f[k], f[k - 1]))) for f in cage.faces if len(f) == 3 for k in range(3)})
     tags = ["t smoothtriangles 0/0/1 smooth", "t creasemethod 0/0/1 chaikin"]
@@ -453,7 +450,7 @@ def smooth_triangles():
 
 
 def nonmanifold():
-    """A fin on a sheet, two sheets that touch in a vertex, and two quads wound against each other."""
+    """A fin on a sheet, two sheets that share a vertex, and two quads with opposite windings."""
     points, faces = [], []
 
     def strip(origin, flip=False):
@@ -481,7 +478,7 @@ def nonmanifold():
 
 
 def triangles():
-    """A waved sheet of plain triangles with a boundary: inner vertices of 4 to 8 triangles."""
+    """A waved sheet of plain triangles with a boundary; inner vertices have 4 to 8 triangles."""
     n, state = 10, 7
 
     def random():

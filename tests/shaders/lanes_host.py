@@ -1,5 +1,5 @@
-"""Programs in the dialect of shaders/lanes, translated, compiled for each width of vectors that this processor has, and
-run over two workgroups whose size is no multiple of a width."""
+"""Compiles programs in the dialect of shaders/lanes for each width of vectors that this processor has, and runs them
+over two workgroups whose size is no multiple of a width."""
 import os
 import subprocess
 import sys
@@ -14,7 +14,7 @@ from lanes.program import program_text  # noqa: E402
 
 LOCAL, GROUPS = 20, 2
 N = LOCAL * GROUPS
-UNSET = 0xDEADBEEF  # what no invocation has written
+UNSET = 0xDEADBEEF  # the value of outputs that no invocation has written
 
 # Two whole numbers and a float in, the same out, and a list with counters, for each invocation `i`.
 HEAD = """layout(local_size_x = %d) in;
@@ -73,7 +73,7 @@ int main(void)
 
 
 class Answer:
-    """What one program has written: whole[k][i], floats[i] as their bits, counters x, y, z, n and the list."""
+    """What one program has written: whole[k][i], floats[i] as bits, the counters x, y, z, n, and the list."""
 
     def __init__(self, line):
         words = [int(word) for word in line.split()]
@@ -83,7 +83,7 @@ class Answer:
 
 
 def widths():
-    """Compiler flags for each number of lanes that can run here."""
+    """The compiler flags for each number of lanes that this processor can run."""
     with open("/proc/cpuinfo", encoding="ascii") as file:
         text = file.read().split()
     if "sse4_2" not in text:
@@ -101,7 +101,7 @@ def translated(name, text):
 
 
 def run_programs(programs, only_widest=False):
-    """{lanes: [Answer of each]} of [(name, text)]."""
+    """Runs [(name, text)]. Returns {lanes: [Answer of each program]}."""
     text = '#include "server/render/native/programs/glsl.hpp"\n' + "\n".join(
         translated(name, body).replace("Edges_block", name + "_edges") for name, body in programs)
     text += HOST % {"local": LOCAL, "groups": GROUPS, "stride": STRIDE, "unset": UNSET,

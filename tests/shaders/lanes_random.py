@@ -1,11 +1,11 @@
-"""Programs at random in the dialect of shaders/lanes, and an interpreter of them: one invocation at a time."""
+"""Random programs in the dialect of shaders/lanes, and an interpreter that runs them, one invocation at a time."""
 import random
 
 from lanes_host import STRIDE, WHOLE
 
 MASK = 2**32 - 1
 FUNCTIONS = 3
-MOST_STEPS = 400  # of a program that would take more, another is made
+MOST_STEPS = 400  # a program that takes more steps is replaced by another
 
 
 class Break(Exception):
@@ -35,7 +35,7 @@ TESTS = {"<": lambda a, b: a < b, ">=": lambda a, b: a >= b, "==": lambda a, b: 
 
 
 class Maker:
-    """Trees of tuples. Variables are whole numbers; each name is declared once."""
+    """Makes programs as trees of tuples. All variables are unsigned integers; each name is declared once."""
 
     def __init__(self, random_numbers):
         self.random, self.n_names = random_numbers, 0
@@ -106,7 +106,7 @@ class Maker:
 
 
 def text_of(node):
-    """An expression."""
+    """Evaluates an expression."""
     kind = node[0]
     if kind == "name":
         return node[1]
@@ -155,7 +155,7 @@ def lines_of(body, depth=1):
 
 
 class Run:
-    """One invocation. `kept` is the array that the function which runs now reads and changes."""
+    """Runs one invocation. `kept` is the array that the running function reads and changes."""
 
     def __init__(self, functions):
         self.functions, self.kept, self.steps = functions, [1, 2, 3, 4], 0
@@ -233,7 +233,7 @@ def invocation(functions, i):
 
 
 def random_program(seed):
-    """(text, what invocation i puts) of a program that does not take too long."""
+    """(text, values of invocation i) of a program that does not take too many steps."""
     for attempt in range(1000):
         maker = Maker(random.Random("%d %d" % (seed, attempt)))
         functions = [maker.function(k) for k in range(FUNCTIONS)]

@@ -1,5 +1,5 @@
-"""test_lanes.py: what shaders/lanes makes of small programs comes to what each invocation would come to alone, computed
-here; and what the dialect does not allow is refused with its place."""
+"""test_lanes.py: programs translated by shaders/lanes give the values that each invocation gives alone, which are
+computed here. A program outside of the dialect is refused with its place."""
 import struct
 import sys
 import unittest
@@ -17,19 +17,20 @@ def bits(number):
 
 
 def rounded(number):
-    """To a float."""
+    """The value as a float in single precision."""
     return struct.unpack("<f", struct.pack("<f", number))[0]
 
 
 class Case:
-    """of(i): what invocation i puts: two whole numbers, a float or None. counters, at: of the list, where they count."""
+    """A program. of(i) are the values of invocation i: two unsigned integers, and a float or None. counters and at:
+    the counters of the list, and its elements, for programs that use them."""
 
     def __init__(self, text, of, counters=None, at=None):
         self.text, self.of, self.counters, self.at = text, of, counters, at
 
 
 def trips(i):
-    """Of the loop below."""
+    """The number of the loop's iterations below."""
     total, k = 0, 0
     while k < A[i] % 13:
         k += 1
@@ -54,7 +55,7 @@ def inner_loops(i):
 
 
 def early(i):
-    """What changes before the return stays changed."""
+    """Changes before the return remain."""
     a = A[i]
     if a % 3 == 0:
         return a + 1, 1
@@ -123,13 +124,13 @@ CASES = {
         counters=[0, sum(a > 500 for a in A), sum(a <= 500 for a in A), 0]),
     "arrays": Case(
         """void main() { uint a = whole_in(0), b = whole_in(1); uint array[4] = uint[4](11u, 22u, 33u, 44u);
-           array[a % 4u] += b % 100u; put(array[a % 4u], array[a % 9u]); }""",  # beyond the last: the last
+           array[a % 4u] += b % 100u; put(array[a % 4u], array[a % 9u]); }""",  # an index beyond the end: the last
         lambda i: (*picked(i), None)),
     "constants": Case(
         """const uint TABLE[3] = uint[3](5u, 6u, 9u); const int SIDE = 2; const int AREA = SIDE * SIDE + 1;
            void main() { put(TABLE[whole_in(0) % 3u], uint(AREA)); }""",
         lambda i: ([5, 6, 9][A[i] % 3], 5, None)),
-    "division": Case(  # lanes that are not active divide by 0
+    "division": Case(  # inactive lanes divide by 0
         """void main() { uint a = whole_in(0) % 3u, r = 9u; if (a != 0u) r = 1000u / a; put(r, a == 0u ? 1u : whole_in(1) % a); }""",
         lambda i: (1000 // (A[i] % 3) if A[i] % 3 else 9, B[i] % (A[i] % 3) if A[i] % 3 else 1, None)),
     "swizzles": Case(
@@ -160,7 +161,7 @@ CASES = {
         """void main() { uint a = whole_in(0); put(0u, 0u); if (a % 2u == 0u) { uint at = atomicAdd(edges.n, 1u); edges.at[at] = a; }
            atomicMax(edges.x, a); }""",
         lambda i: (0, 0, None), counters=[max(A), 0, 0, sum(a % 2 == 0 for a in A)], at=[a for a in A if a % 2 == 0]),
-    "beyond_a_list": Case(  # nothing is written there, and what is read is the last
+    "beyond_a_list": Case(  # nothing is written beyond the end, and a read there gives the last element
         """void main() { edges.at[160u + whole_in(0)] = 1u; edges.at[159] = 5u; put(edges.at[whole_in(0) + 160u], 0u); }""",
         lambda i: (5, 0, None), at=[UNSET] * 159 + [5]),
     "barriers": Case(
@@ -172,11 +173,11 @@ CASES = {
 
 
 def beside(i, step):
-    """Of the same workgroup."""
+    """The invocations of the same workgroup."""
     return i // LOCAL * LOCAL + (i + step) % LOCAL
 
 
-# (text after HEAD, of which the first line is 1; line that is refused; what is said)
+# (text after HEAD, whose first line is line 1; the line that is refused; words of the error)
 REFUSED = [
     ("void main() {\n    switch (1) { }\n}", 2, "';' is wanted"),
     ("void main() {\n    do { } while (true);\n}", 2, "';' is wanted"),
@@ -228,11 +229,12 @@ class Lanes(unittest.TestCase):
                     self.check_case(case, answer)
 
     def test_random_programs(self):
-        """Branches, loops, returns, arrays and calls at random: as an interpreter comes to invocation by invocation."""
+        """Random branches, loops, returns, arrays and calls give what the interpreter gives, invocation by
+        invocation."""
         programs = [random_program(seed) for seed in range(8)]
         texts = [("random_%d" % k, text) for k, (text, _) in enumerate(programs)]
         n_values = len({tuple(of(i) for i in range(N)) for _, of in programs})
-        self.assertGreater(n_values, 5)  # they do something
+        self.assertGreater(n_values, 5)  # the programs compute different values
         for lanes, answers in run_programs(texts, only_widest=True).items():
             for k, (answer, (text, of)) in enumerate(zip(answers, programs)):
                 for i in range(N):
@@ -250,7 +252,7 @@ class Lanes(unittest.TestCase):
                 self.assertIn(words, said)
 
     def test_places(self):
-        """The preprocessor's marks say in which file a line stands."""
+        """The preprocessor's line markers tell in which file a line stands."""
         with self.assertRaises(Failure) as caught:
             translated("refused", '# 7 "view.glsl"\nvoid main() {\n\n# 3 "hit.glsl" 2\n    put(x, 0u);\n}')
         self.assertEqual(str(caught.exception), "hit.glsl:3: x is not declared")
