@@ -1,5 +1,5 @@
 #!/bin/sh
-# Format, static analysis, and who may know whom (CONTRIBUTING.md).
+# Checks format, static analysis, and the rules about includes (CONTRIBUTING.md).
 set -u
 failed=0
 fail() {
@@ -7,7 +7,7 @@ fail() {
     failed=1
 }
 
-# Files of a folder that hold a pattern, but for those named after it.
+# Reports files of these folders that contain the pattern, except in the files or folders where it belongs.
 only_in() { # pattern, what it is, folders to search, then files or folders where it belongs
     pattern=$1 what=$2 folders=$3
     shift 3
@@ -31,8 +31,8 @@ marked=$(git grep -nE '^(<<<<<<<|>>>>>>>)( |$)' -- . 2>/dev/null)
 [ -z "$marked" ] || fail "a merge is not finished:
 $marked"
 
-# Who may know whom: what a folder's files may include, from the lowest room to the highest, and why. A room
-# that stands in nobody's list is known by nobody.
+# Which folders the files of a folder may include, and why, from the lowest folder to the highest. A folder that
+# is in no other folder's list may not be included.
 room() { # folder, folders it may include, why
     folder=$1 allowed=$2 why=$3
     found=$(grep -nE '#include "[^"]*/' "$folder"/*.[ch] "$folder"/*.[ch]pp 2>/dev/null |
@@ -74,7 +74,7 @@ room server/render/native/polygons "$common|server/render|server/render/native" 
 room server/render/native/programs '' 'what shaders/lanes writes includes this and no more'
 room server/render/native/rays "$common|server/surface|server/render|server/render/native" 'rays of pixels come after the surface'
 room server/render/native/lanes "$common|server/surface|server/render|server/render/native|server/render/native/polygons|server/render/native/rays" 'one unit for each instruction set'
-# The rooms of the daemon itself, each above those that stand before it.
+# The folders of the service. Each may include folders listed before it and none after it.
 room server/net "$common|protocol" 'connections do not know what is said over them'
 room server/threads "$common|protocol|server/cage|server/image|server/net|server/render|server/sandbox" \
     'threads run what others give them'
@@ -124,18 +124,18 @@ only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32
     'server client protocol' server/output/png.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf/
 
-# The frame's way, file by file.
+# The list of files that a frame passes (CONTRIBUTING.md).
 for file in $(grep -oE '`(server|client|protocol)/[a-z0-9/_]+\.[a-z]+`' CONTRIBUTING.md | tr -d '`'); do
     [ -e "$file" ] || fail "CONTRIBUTING.md names $file, which is not there"
 done
 
-# No file may include what includes it, over however many files. NAME.c and NAME.h count as one file.
-# Prints each circle in its order, one that shares no file with those before.
+# No file may include itself through other files. NAME.c and NAME.h count as one file. Prints each circle in the
+# order of its includes; circles that share a file with an earlier one are left out.
 # shellcheck disable=SC2086
 circles=$(grep -E '^#include "(server|client|protocol)/' $(printf '%s\n' $files | grep -E '^(server|client|protocol)/') |
     sed -E 's/^([^:]*):#include "([^"]*)".*/\1 \2/; s/\.[a-z]+( |$)/\1/g' |
     awk '$1 != $2 && !seen[$1, $2]++ { to[$1] = to[$1] " " $2; left[$1] = 1 }
-        # The first of the files that a file includes and that are left.
+        # The first remaining file that a file includes.
         function next_of(file, i, n, list) {
             n = split(to[file], list, " ")
             for (i = 1; i <= n; i++)
@@ -143,7 +143,7 @@ circles=$(grep -E '^#include "(server|client|protocol)/' $(printf '%s\n' $files 
                     return list[i]
             return ""
         }
-        # Takes out the files that include no other file that is left: they are in no circle.
+        # Removes files that include no remaining file, because they are in no circle.
         function peel(file, again) {
             do {
                 again = 0
@@ -162,7 +162,7 @@ circles=$(grep -E '^#include "(server|client|protocol)/' $(printf '%s\n' $files 
                         start = file
                 if (start == "")
                     exit
-                # Far enough along, every file is in the circle.
+                # After enough steps the walk is within the circle.
                 for (i in left)
                     start = next_of(start)
                 text = file = start
@@ -180,13 +180,14 @@ circles=$(grep -E '^#include "(server|client|protocol)/' $(printf '%s\n' $files 
 [ -z "$circles" ] || fail "files that include each other in a circle:
 $circles"
 
-# A folder that is larger is several rooms.
+# A larger folder should be divided.
 for folder in $(printf '%s\n' $files | grep -E '^(server|client|protocol)/' | sed 's|/[^/]*$||' | sort -u); do
     lines=$(printf '%s\n' $files | grep -E "^$folder/[^/]*$" | xargs cat | wc -l)
     [ "$lines" -le 3500 ] || fail "$folder has $lines lines, more than 3500"
 done
 
-# cppcheck reads no system header; without the macros of lists it takes their loops' variables for unset.
+# cppcheck reads no system headers. Without the macros of lists it reports the variables of their loops as
+# uninitialised.
 queue=$(echo '#include <sys/queue.h>' | cc -E - | sed -n 's/^# 1 "\(.*queue\.h\)".*/\1/p' | head -n 1)
 cppcheck --quiet --std=c11 --language=c --inline-suppr --error-exitcode=1 -I. --include="$queue" \
     --enable=warning,performance,portability --suppress=missingInclude \

@@ -1,17 +1,17 @@
 #!/bin/bash
-# run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]: runs the tests of one kind, or all, or of these the
-# one of that name, and ends with their sum, "N passed, N failed". Each program's full output is kept in
-# BUILD/tests/NAME.log. Programs that judge nothing but answers run side by side, one more than there are
-# processors, since some of them mostly wait. The service's tests whose file says ALONE run one by one after
-# them, since they also judge who is served first, or how soon.
+# run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]: runs the tests of one kind, or all, or only the one
+# named NAME. The last line is the sum, "N passed, N failed". Each program's whole output is kept in
+# BUILD/tests/NAME.log. Programs that do not depend on time run in parallel, one more than there are
+# processors, because some of them mostly wait. Tests of the service whose file contains ALONE run one by one
+# after the others, because they also judge the order and the time of answers.
 set -u
 kind=$1 build=$2 only=${3:-}
 at_once=$(($(nproc) + 1))
 shapes=../shared/shapes
-# In builds with sanitizers: what libraries lose by themselves is not ours to report.
+# In builds with sanitizers, leaks and races of other libraries are not reported.
 export LSAN_OPTIONS="suppressions=tests/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp:print_suppressions=0"
-# What oracles judge: as sheend's --device and --native-isa, or mesa, which is Mesa's software device.
+# The device that oracles judge, as in sheend's --device and --native-isa; mesa: Mesa's software device.
 mesa=$(/usr/bin/python3 tests/service/mesa.py)
 device=${DEVICE:-native}
 [ "$device" != mesa ] || device=$mesa
@@ -25,7 +25,7 @@ count() {
         -e 's/^\[  PASSED  \] \([0-9]*\) test.*/\1 0/p' "$1" | tail -n 1
 }
 
-# Runs one program; leaves its counts in BUILD/tests/NAME.count, so that programs may run side by side.
+# Runs one program, and writes its counts to BUILD/tests/NAME.count, so that programs may run in parallel.
 run() { # name, command...
     name=$1
     shift
@@ -43,7 +43,7 @@ run() { # name, command...
     [ "$bad" = 0 ] || { tail -n 40 "$log"; }
 }
 
-# The same beside others, as soon as fewer than $at_once are at work.
+# As run, in the background, as soon as fewer than $at_once programs are running.
 beside() { # name, command...
     while [ "$(jobs -rp | wc -l)" -ge "$at_once" ]; do
         wait -n
@@ -51,8 +51,8 @@ beside() { # name, command...
     run "$@" &
 }
 
-# Runs a command whose `sheen` asks one daemon for all its pictures. Each `sheen` would start a daemon of
-# its own without, which takes longer than most pictures do; the service's tests look at that.
+# Runs a command that calls `sheen`, with one daemon for all its pictures. Otherwise each `sheen` would start a
+# private daemon, which takes longer than most pictures; the service's tests cover private daemons.
 served() { # command...
     address=unix:$build/tests/$name.sock
     rm -f "${address#unix:}"
@@ -69,18 +69,18 @@ served() { # command...
     return "$code"
 }
 
-# Oracles take and leave hundreds of megabytes for each frame. They keep them, since a page that the system gives
-# anew costs more than what is written into it.
+# Oracles allocate and free hundreds of megabytes for each frame. They keep freed memory, because a new page from
+# the system costs more than the writing into it.
 oracle_program() { # command...
     MALLOC_MMAP_THRESHOLD_=1073741824 MALLOC_TRIM_THRESHOLD_=2147483647 "$@"
 }
 
-# The same on Mesa's software device.
+# Runs a command on Mesa's software device.
 on_mesa() { # command...
     SHEEN_TEST_DEVICE=$mesa SHEEN_TEST_ISA=auto "$@"
 }
 
-# The Catmull-Clark cages there; and all, since any cage is one.
+# The shapes that match a pattern.
 shapes_of() { # pattern
     [ -d "$shapes" ] || return 0
     for shape in "$shapes"/$1; do
@@ -92,7 +92,7 @@ unit() {
     for test in tests/unit/test_*.c; do
         name=$(basename "$test" .c)
         case $name in
-        # OpenImageIO's own losses are only told from ours by whole stacks.
+        # Leaks of OpenImageIO are distinguished from sheen's by complete stacks only.
         test_image) beside "$name" env ASAN_OPTIONS=fast_unwind_on_malloc=0 "$build/tests/$name" ;;
         *) beside "$name" "$build/tests/$name" ;;
         esac
@@ -100,7 +100,7 @@ unit() {
     beside lanes /usr/bin/python3 tests/shaders/test_lanes.py "$build"
 }
 
-# Every input that fuzzing has left, over the code of this build.
+# Replays the corpora of the fuzz targets.
 fuzz() {
     for corpus in tests/fuzz/corpus/*; do
         name=fuzz_$(basename "$corpus")
@@ -112,7 +112,7 @@ bench() {
     beside sheen_bench /usr/bin/python3 tests/bench/test_sheen_bench.py "$build"
 }
 
-# The service's tests of the files that $1, an option of grep, finds by ALONE; $2 runs each.
+# Tests of the service, whose files grep finds by ALONE with option $1 (-L: without, -l: with); $2 runs each.
 service_by() { # option, how
     for module in $(grep "$1" '^ALONE' tests/service/test_*.py); do
         name=$(basename "$module" .py)
@@ -174,7 +174,7 @@ oracle() {
     [ "$SHEEN_TEST_DEVICE" = "$mesa" ] || oracle_on_mesa
 }
 
-# The part that is judged on Mesa's software device, too: README.md says how it was chosen.
+# The tests that also run on Mesa's software device. README.md tells how they were chosen.
 oracle_on_mesa() {
     beside mesa_frames on_mesa served "$build/tests/test_frames" "$build/sheen" tests/models/body.obj \
         tests/models/creases.obj
