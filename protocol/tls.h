@@ -69,9 +69,8 @@ void tls_end(struct tls_channel *channel);
 
 /* The peer's certificate, which the handshake has verified. */
 struct tls_peer {
-    char subject[TLS_NAME_BYTES],
-        /* Names in the form of RFC 2253; issuer is "" if it is too long. */
-        issuer[TLS_NAME_BYTES];
+    /* Names in the form of RFC 2253; issuer is "" if it is too long. */
+    char subject[TLS_NAME_BYTES], issuer[TLS_NAME_BYTES];
     /* SHA-256 of the issuer's public key, which distinguishes two authorities with the same
      * name. */
     uint8_t issuer_key[TLS_KEY_HASH_BYTES];

@@ -14,7 +14,7 @@
 struct slices {
     struct pool *pool;
     struct turns builds;
-    unsigned n_running, most_running; /* slices submitted to the pool */
+    unsigned n_running, most_running; /* slices submitted to the pool: now, and at most */
 };
 
 /* A build that has work for the pool; a member of the build. */

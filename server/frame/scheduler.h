@@ -33,7 +33,7 @@ enum { N_CLASSES = 3 };
 /* A party that has used less than its share draws for so long without a break: a frame of several
  * tiles does not wait before each of them for a tile of another party. */
 #define SCHEDULER_SAVED_US 32000
-/* Of the device's time for stills, and for batches, while they wait. */
+/* The share of the device's time that stills, and also batches, get while they wait. */
 #define SCHEDULER_SHARE_PERCENT 20
 
 enum schedule_state {

@@ -57,6 +57,7 @@ struct renderer_device {
                                            struct error *error);
     void (*image_destroy)(struct renderer *renderer, struct renderer_image *image);
 
+    /* Memory in bytes, as the functions renderer_..._bytes() of renderer.h tell it. */
     size_t (*model_bytes)(const struct limit_tables *tables);
     size_t (*image_bytes)(const struct image *image);
     uint64_t (*paused_bytes)(uint32_t width_px, uint32_t height_px, uint64_t tile_px);
