@@ -11,7 +11,7 @@ import time
 import unittest
 
 import wire
-from daemon import CUBE, SHEEND, Daemon, grid, run
+from daemon import CUBE, SHEEND, Daemon, grid, judges_time, run
 from test_untrusted import workers
 from wire import Client
 
@@ -255,7 +255,7 @@ class Shutdown(unittest.TestCase):
             self.assertEqual(daemon.stop(), 0)
 
     def test_new_requests_are_refused(self):
-        daemon = Daemon()
+        daemon = Daemon("--drain-timeout", str(30 * wire.PATIENCE))
         with Client(daemon.unix, timeout=60) as client:
             model = client.upload(CUBE, "cube.obj")
             client.send(wire.render(5, model, width=3000, height=3000))
@@ -275,7 +275,7 @@ class Shutdown(unittest.TestCase):
 
     def test_slow_readers_get_whole_frames(self):
         """The data exceeds any socket's buffer and is read slowly, while the daemon is told to end."""
-        daemon = Daemon()
+        daemon = Daemon("--drain-timeout", str(30 * wire.PATIENCE))
         size = 2000 * 2000 * 4
         with Client(daemon.unix, timeout=60) as one, Client(daemon.tcp, timeout=60) as two:
             model = one.upload(CUBE, "cube.obj", share=True)
@@ -296,6 +296,7 @@ class Shutdown(unittest.TestCase):
             self.assert_told(two)
         self.assertEqual(daemon.stop(), 0)
 
+    @judges_time
     def test_readers_that_are_too_slow_are_left(self):
         daemon = Daemon("--drain-timeout", "2")
         with Client(daemon.unix, timeout=60) as client:
@@ -311,6 +312,7 @@ class Shutdown(unittest.TestCase):
             self.assertLess(time.monotonic() - start, 5)
         self.assertEqual(daemon.stop(), 0)
 
+    @judges_time
     def test_what_takes_too_long_is_refused(self):
         """When the daemon's second for draining is over, there is at least half a minute of work left."""
         daemon = Daemon("--drain-timeout", "1")

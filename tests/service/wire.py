@@ -16,6 +16,7 @@ RAW, ZSTD, PNG, EXR, JPEG, TIFF = range(6)
 MODEL, IMAGE = 0, 1
 ONE_STRIPES = 0
 PATTERN_IMAGE = 3
+PATIENCE = 1  # times the timeout of every client; daemon.py raises it for slow builds
 
 
 def varint(value):
@@ -120,7 +121,7 @@ class Client:
             self.socket = socket.socket()
             host, port = address[4:].rsplit(":", 1)
             target = (host, int(port))
-        self.socket.settimeout(timeout)
+        self.socket.settimeout(timeout * PATIENCE)
         if buffer:  # the receive buffer of a client that does not read
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
         self.socket.connect(target)
