@@ -1,6 +1,6 @@
 #!/bin/sh
-# coverage.sh BUILD NAME...: replays the corpora in a build with --coverage and prints the share of
-# lines that they reach, of each file and of all. Fails below 85 of 100.
+# coverage.sh BUILD NAME...: replays the corpora in a build with --coverage, and prints the share of lines that
+# they reach, for each file and for all files. Fails if the share of all is below 85 of 100.
 set -eu
 build=$1
 shift
@@ -8,7 +8,7 @@ find "$build" -name '*.gcda' -delete
 for name in "$@"; do
     "$build/tests/fuzz_$name" "tests/fuzz/corpus/$name" >/dev/null
 done
-# The protocol, the readers, and what workers hand back.
+# The protocol, the readers, and the code that reads answers of workers.
 for object in "$build"/obj/protocol/*.gcno "$build"/obj/server/cage/*.gcno \
     "$build"/obj/server/cage/build/*.gcno "$build"/obj/server/cage/read/*.gcno "$build"/obj/server/cage/read/gltf/*.gcno "$build"/obj/server/sandbox/stream.*.gcno \
     "$build"/obj/server/sandbox/job.*.gcno "$build"/obj/server/sandbox/*_code.*.gcno; do

@@ -1,6 +1,6 @@
 #!/bin/sh
-# fuzz.sh BUILD SECONDS NAME...: fuzzes each target so long, as many at once as there are processors.
-# What they find new is added to BUILD/found/NAME; an input that fails is left there as NAME-crash-*.
+# fuzz.sh BUILD SECONDS NAME...: fuzzes each target for SECONDS, as many in parallel as there are processors.
+# New inputs are added to BUILD/found/NAME; an input that fails is kept there as NAME-crash-*.
 set -u
 build=$1 seconds=$2
 shift 2

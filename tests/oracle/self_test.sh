@@ -1,6 +1,6 @@
 #!/bin/sh
-# self_test.sh FOLDER: the oracles in FOLDER, run on frames made by FOLDER/fake_sheen, must pass what
-# is right and find each fault that is put in. Ends with "N passed, N failed".
+# self_test.sh FOLDER: runs the oracles in FOLDER on frames made by FOLDER/fake_sheen. They must accept right
+# frames and find each inserted fault. Ends with "N passed, N failed".
 set -u
 folder=$1
 fake=$folder/fake_sheen
@@ -37,7 +37,7 @@ verdict() { # name, whether it holds
     fi
 }
 
-# run PROGRAM MODEL-or-nothing FAULTS: output into $work/log, exit code into $code
+# run PROGRAM MODEL-or-nothing FAULTS: writes the output to $work/log and sets $code to the exit code
 run() {
     case $1 in
     test_limit | test_twin | test_refine) FAKE_FAULTS=$3 "$folder/$1" "$2" >"$work/log" 2>&1 ;;
@@ -53,7 +53,7 @@ clean() { # program, model
     verdict "$1 passes a right frame" "$code"
 }
 
-# finds PROGRAM MODEL FAULTS MESSAGE...: exit code 1, and every message in a FAILED line
+# finds PROGRAM MODEL FAULTS MESSAGE...: expects exit code 1 and each message in a FAILED line
 finds() {
     program=$1 model=$2 faults=$3
     shift 3
@@ -99,7 +99,7 @@ finds test_mirror "" normal,position,bend,miss,colour \
     "normal (rad)" "|z|" "light s, t" "bend of a stripe edge" "wrong side of the light" \
     "wrong colour"
 
-# The formulas of lines are broken instead, for the program itself.
+# These faults are in the oracle's own formulas of lines; the frames are those of the real program.
 fake=$folder/../sheen
 clean test_lines "$work/cube.obj"
 finds test_lines "$work/cube.obj" mirror,turn,side,isophote,duty,eye \

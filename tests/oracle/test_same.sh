@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_same.sh SHEEN SHEEND MODEL...: one frame asked of a private daemon, of a daemon on a Unix
-# socket and of one on loopback TCP is the same file, byte for byte, as PNG and as EXR; and a
-# daemon's second frame of a model uploads nothing and builds no table.
+# test_same.sh SHEEN SHEEND MODEL...: a private daemon, a daemon on a Unix socket and a daemon on loopback
+# TCP give the same file for a frame, byte by byte, as PNG and as EXR. For the second frame of a model nothing
+# is uploaded and no table is built.
 set -u
 if [ $# -lt 3 ]; then
     echo "usage: test_same.sh SHEEN SHEEND MODEL..." >&2
@@ -63,7 +63,7 @@ uploaded() { # bytes that the daemon at $address has taken in
     "$sheen" stats --server "$address" --json >"$work/stats.json" && number uploads_bytes "$work/stats.json"
 }
 
-# render MODEL FILE [option]...: JSON into FILE.json
+# render MODEL FILE [option]...: writes the JSON to FILE.json
 render() {
     model=$1 file=$2
     shift 2
@@ -102,12 +102,12 @@ through_daemon() { # name; the daemon is up at $address
     done
 }
 
-# The client stays small: what it links is not the daemon's.
+# The client is small: it links none of the daemon's libraries.
 heavy=$(ldd "$sheen" | grep -iE 'OpenImageIO|libE?GL|libepoxy|tinygltf')
 [ -z "$heavy" ]
 check $? "the client links $heavy"
 
-# What a patch may take on the GPU, all told.
+# The limits of a patch's memory on the GPU.
 "$sheen" info "$1" --json >"$work/info.json"
 regular=$(number regular_bytes "$work/info.json") corner=$(number corner_bytes "$work/info.json")
 [ "${regular:-0}" -gt 0 ] && [ "${regular:-0}" -le 320 ]

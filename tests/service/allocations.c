@@ -1,6 +1,6 @@
-/* Counts the blocks that the code of build/sheend-faults itself takes from the heap, in the first
- * eight bytes of the file $SHEEN_ALLOCATIONS, where a test reads them while the daemon runs. The
- * linker leads its calls here (--wrap); those of libraries go their own way. */
+/* Counts the heap blocks that the code of build/sheend-faults takes, in the first eight bytes of
+ * the file $SHEEN_ALLOCATIONS, where a test reads them while the daemon runs. The linker redirects
+ * that code's calls to the wrappers here (--wrap); calls of libraries are not redirected. */
 #include <fcntl.h>
 #include <stdatomic.h>
 #include <stdint.h>
@@ -21,9 +21,9 @@ char *__wrap_strdup(const char *text);
 char *__wrap_strndup(const char *text, size_t most);
 /* NOLINTEND */
 
-static _Atomic(uint64_t) *count; /* NULL: nobody asks */
+static _Atomic(uint64_t) *count; /* NULL: no test counts */
 
-/* Before main(): no thread runs yet. */
+/* Runs before main(), while there is one thread. */
 __attribute__((constructor)) static void open_count(void)
 {
     const char *path = getenv("SHEEN_ALLOCATIONS");

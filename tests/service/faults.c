@@ -1,8 +1,8 @@
-/* fault_at() of build/sheend-faults, as $SHEEN_FAULTS asks: "NAME:FIRST:TIMES,..." makes NAME fail
- * at its FIRST-th place and at each FIRST-th after it, TIMES times in all. The faults that happen
- * are told on standard error. Places outside of sheend's own code, in a thread that builds a model's
- * tables: "tables.stuck" does not come back; "taken.over", "taken.over.gl" on a GL device, tries
- * forbidden system calls. */
+/* fault_at() of build/sheend-faults. $SHEEN_FAULTS has "NAME:FIRST:TIMES,...": the fault point NAME
+ * fails at its FIRST-th call and at each FIRST-th call after it, TIMES times in all. Faults that
+ * happen are reported on standard error. Two faults lie outside of sheend's own code, in a thread
+ * that builds a model's tables: at "tables.stuck" the thread never returns, and at "taken.over" (on
+ * a GL device "taken.over.gl") it tries forbidden system calls. */
 #include "server/base/fault.h"
 
 #include <stdatomic.h>
@@ -23,7 +23,7 @@ static struct fault {
 } faults[MAX_FAULTS];
 static int n_faults;
 
-/* Before main(): no thread runs yet. */
+/* Runs before main(), while there is one thread. */
 __attribute__((constructor)) static void read_faults(void)
 {
     const char *at = getenv("SHEEN_FAULTS");

@@ -1,5 +1,5 @@
-/* Linked into a daemon that is built with sanitizers: drivers stay loaded until the end, so that
- * the leak checker finds what their static variables point to. */
+/* Linked into a daemon with sanitizers: keeps drivers loaded until the end, so that the leak
+ * checker finds the memory that their static variables point to. */
 int dlclose(void *handle);
 
 int dlclose(void *handle)

@@ -1,5 +1,5 @@
-/* For LD_PRELOAD: a machine that lacks the libraries named in $SHEEN_NO_LIBRARIES, with a space
- * before and after each. */
+/* For LD_PRELOAD: simulates a machine without the libraries named in $SHEEN_NO_LIBRARIES, which has
+ * a space before and after each name. */
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ void *dlopen(const char *name, int flags)
     char word[256];
     snprintf(word, sizeof word, " %s ", name ? name : "");
     if (name && missing && strstr(missing, word))
-        name = "libmissing.so.0"; /* so that dlerror() has its say */
+        name = "libmissing.so.0"; /* so that dlerror() returns a text */
     memcpy(&open, &symbol, sizeof open);
     return open(name, flags);
 }
