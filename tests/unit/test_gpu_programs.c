@@ -4,57 +4,21 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <string.h>
 
 #include <cmocka.h>
 
-#include "server/render/gl/device.h"
 #include "server/render/gl/device_internal.h"
 #include "server/render/gl/frame_state.h"
 #include "server/render/gl/model.h"
-#include "server/render/renderer.h"
 #include "server/render/gl/context/quirks.h"
-#include "server/scene/defaults.h"
-#include "tests/unit/cage_tables.h"
-
-struct scene {
-    struct limit_tables tables;
-    struct renderer *renderer;
-    struct renderer_model *model;
-    struct frame_request request;
-};
+#include "tests/unit/request_scene.h"
 
 static const char tetrahedron[] = "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\n"
                                   "f 1 3 2\nf 1 4 3\nf 1 2 4\nf 2 3 4\n";
 
 static void scene_init(struct scene *scene, const char *text)
 {
-    struct error error = {0};
-    const struct renderer_options options = {.device = "auto"};
-    *scene = (struct scene){.request = {.width_px = 48,
-                                        .height_px = 40,
-                                        .n_lights = 1,
-                                        .lights = {{.pattern = {.count = 40,
-                                                                .duty = 0.5,
-                                                                .opacity = 1,
-                                                                .foreground = {1, 1, 1, 1}}}},
-                                        .planes = PLANE_COLOUR}};
-    build(text, strlen(text), &scene->tables);
-    scene->renderer = renderer_create(&gl_device, &options, &error);
-    if (!scene->renderer)
-        fail_msg("%s", error.text);
-    scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
-    assert_non_null(scene->model);
-    const struct limit_tables *tables = &scene->tables;
-    scene_default_camera(tables, NULL, VIEW_AROUND, 48, 40, &scene->request.camera);
-    scene_default_light(tables->box_min, tables->box_max, NULL, &scene->request.lights[0]);
-}
-
-static void scene_finish(struct scene *scene)
-{
-    renderer_model_destroy(scene->renderer, scene->model);
-    renderer_destroy(scene->renderer);
-    limit_tables_finish(&scene->tables);
+    scene_open(scene, text, 48, 40, false);
 }
 
 static enum frame_step step(struct scene *scene, struct frame_work *work, struct frame *frame)

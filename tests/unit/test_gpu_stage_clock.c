@@ -3,55 +3,19 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <string.h>
 #include <time.h>
 
 #include <cmocka.h>
 
-#include "server/render/gl/device.h"
-#include "server/render/renderer.h"
-#include "server/scene/defaults.h"
-#include "tests/unit/cage_tables.h"
+#include "tests/unit/request_scene.h"
 
 static const char CUBE[] = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n"
                            "v 1 1 1\nv -1 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\n"
                            "f 3 4 8 7\nf 4 1 5 8\n";
 
-struct scene {
-    struct limit_tables tables;
-    struct renderer *renderer;
-    struct renderer_model *model;
-    struct frame_request request;
-};
-
 static void scene_init(struct scene *scene, bool device_times)
 {
-    struct error error = {0};
-    struct renderer_options options = {.device = "auto", .device_times = device_times};
-    *scene = (struct scene){.request = {.width_px = 640,
-                                        .height_px = 480,
-                                        .n_lights = 1,
-                                        .lights = {{.pattern = {.kind = PATTERN_STRIPES,
-                                                                .count = 40,
-                                                                .duty = 0.5,
-                                                                .opacity = 1}}},
-                                        .planes = PLANE_COLOUR}};
-    build(CUBE, strlen(CUBE), &scene->tables);
-    scene->renderer = renderer_create(&gl_device, &options, &error);
-    if (!scene->renderer)
-        fail_msg("%s", error.text);
-    scene->model = renderer_model_create(scene->renderer, &scene->tables, &error);
-    assert_non_null(scene->model);
-    const struct limit_tables *tables = &scene->tables;
-    scene_default_camera(tables, NULL, VIEW_AROUND, 640, 480, &scene->request.camera);
-    scene_default_light(tables->box_min, tables->box_max, NULL, &scene->request.lights[0]);
-}
-
-static void scene_finish(struct scene *scene)
-{
-    renderer_model_destroy(scene->renderer, scene->model);
-    renderer_destroy(scene->renderer);
-    limit_tables_finish(&scene->tables);
+    scene_open(scene, CUBE, 640, 480, device_times);
 }
 
 static uint64_t now_us(void)
