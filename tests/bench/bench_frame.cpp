@@ -4,8 +4,8 @@
  * alternately, and the camera moves a little in every round, so that no planes are reused. Ours is
  * visibility + evaluate + shade, filtered; "wall" is the elapsed time of the same from the request
  * on; "all" includes reading the picture back. "off" is ours without antialiasing, that is, with
- * one sample of the surface for each pixel like the peers, but with filtered lines. --device native
- * leaves out OpenSubdiv, which draws in our GL context. The light is a rectangle above the model
+ * one sample of the surface for each pixel like the peers, but with filtered lines. OpenSubdiv draws in
+ * our GL context and is left out where our device has none (native). The light is a rectangle above the model
  * with 40 stripes. How similar the pictures are is printed beside the times. */
 #include "tests/bench/peers.h"
 #include "tests/bench/question.h"
@@ -192,34 +192,41 @@ void measure_size(report *report, tables *tables, const contest &contest, size s
     compare_all(report, &tables->alike, contest, size);
 }
 
-/* Everything from the cage to the first picture of each. */
-void measure_cold(report *report, table *cold, contest *contest, const std::string &path, size size)
+/* Tables, the device and our first picture from the cage. */
+std::vector<std::string> start_ours(report *report, contest *contest,
+                                    const std::shared_ptr<const cage> &cage, size size)
 {
-    std::shared_ptr<const cage> cage = read_cage_file(path);
     std::string device = report->given().device();
     double tables = time_ms([&] { contest->its_scene.reset(new scene(cage)); });
     double start =
         time_ms([&] { contest->ours.reset(new drawing(*contest->its_scene, device.c_str())); });
     frame_request request = request_of(*contest, size);
     double first = time_ms([&] { contest->ours->cost(request); });
-    std::vector<std::string> row = {contest->name, count((double)cage->n_faces), number(tables, 1),
-                                    number(start, 1), number(first, 1)};
     report->figure(contest->name + " tables_ms", tables);
     report->figure(contest->name + " start_ms", start);
     report->figure(contest->name + " first_frame_ms", first);
+    note_device(report, contest->ours->info());
+    return {contest->name, count((double)cage->n_faces), number(tables, 1), number(start, 1),
+            number(first, 1)};
+}
+
+/* The same by every peer; adds to the row. */
+void start_peers(report *report, contest *contest, const cage &cage, size size,
+                 std::vector<std::string> *row)
+{
+    frame_request request = request_of(*contest, size);
     for (const frame_peer_kind &kind : contest->kinds) {
-        std::string lacks = kind.lacks(*cage);
+        report->note(kind.name, kind.about);
+        std::string lacks = kind.lacks(cage);
         if (!lacks.empty())
             std::printf("%s: %s draws it without%s\n", contest->name.c_str(), kind.name.c_str(),
                         lacks.c_str());
-        double build =
-            time_ms([&] { contest->peers.push_back(kind.build(*cage, *contest->ours)); });
+        double build = time_ms([&] { contest->peers.push_back(kind.build(cage, *contest->ours)); });
         double their_first = time_ms([&] { contest->peers.back()->draw_ms(request); });
-        row.insert(row.end(), {number(build, 1), number(their_first, 1)});
+        row->insert(row->end(), {number(build, 1), number(their_first, 1)});
         report->figure(contest->name + " " + kind.name + "_build_ms", build);
         report->figure(contest->name + " " + kind.name + "_first_frame_ms", their_first);
     }
-    cold->row(row);
 }
 
 tables make_tables(const std::vector<frame_peer_kind> &kinds)
@@ -240,26 +247,28 @@ tables make_tables(const std::vector<frame_peer_kind> &kinds)
 
 void ask(report *report)
 {
-    const std::vector<frame_peer_kind> kinds = frame_peers(report->given().device() != "native");
-    tables tables = make_tables(kinds);
-    for (const frame_peer_kind &kind : kinds)
-        report->note(kind.name, kind.about);
+    std::unique_ptr<tables> tables;
     for (const std::string &path : bench_models(report->given())) {
         contest contest;
         contest.name = model_name(path);
-        contest.kinds = kinds;
         std::vector<size> sizes = {{640, 480}, {1280, 720}, {1920, 1080}};
-        measure_cold(report, &tables.cold, &contest, path, sizes[0]);
-        note_device(report, contest.ours->info());
-        bool large = contest.ours->info().software;
-        if (report->given().other("large", large ? "no" : "yes") == "yes")
+        std::shared_ptr<const cage> cage = read_cage_file(path);
+        std::vector<std::string> cold = start_ours(report, &contest, cage, sizes[0]);
+        const struct renderer_info &device = contest.ours->info();
+        /* Known once the device is open: auto and software choose it. */
+        contest.kinds = frame_peers(device.n_threads == 0);
+        if (!tables)
+            tables.reset(new struct tables(make_tables(contest.kinds)));
+        start_peers(report, &contest, *cage, sizes[0], &cold);
+        tables->cold.row(cold);
+        if (report->given().other("large", device.software ? "no" : "yes") == "yes")
             sizes.push_back({3840, 2160});
         for (size size : sizes)
-            measure_size(report, &tables, contest, size);
+            measure_size(report, tables.get(), contest, size);
     }
-    tables.cold.print();
-    tables.warm.print();
-    tables.alike.print();
+    tables->cold.print();
+    tables->warm.print();
+    tables->alike.print();
 }
 
 const question frame_question("frame",
