@@ -42,7 +42,7 @@ struct contest {
 };
 
 /* The view that all draw. It is the default view, except for OpenSubdiv's car, which is seen as in
- * earlier measurements: close by the front wheel, turned through 30 degrees. */
+ * earlier measurements: close by the front wheel, with a field of view of 30 degrees. */
 frame_request request_of(const contest &contest, size size)
 {
     frame_request request = contest.its_scene->request(size.width, size.height);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <OpenImageIO/imageio.h>
+#include <png.h>
 
 namespace
 {
@@ -137,12 +137,13 @@ std::shared_ptr<const line_image> make_image(chance *chance, const std::string &
         for (double part : {colour.r, colour.g, colour.b, colour.a})
             bytes.push_back((uint8_t)std::lround(255 * part));
     }
-    OIIO::ImageSpec spec(image->width_px, image->height_px, 4, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    auto output = OIIO::ImageOutput::create(path);
-    if (!output || !output->open(path, spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
-        throw std::runtime_error(path + ": cannot be written");
+    png_image file = {};
+    file.version = PNG_IMAGE_VERSION;
+    file.width = (png_uint_32)image->width_px;
+    file.height = (png_uint_32)image->height_px;
+    file.format = PNG_FORMAT_RGBA;
+    if (!png_image_write_to_file(&file, path.c_str(), 0, bytes.data(), 0, nullptr))
+        throw std::runtime_error(path + ": " + file.message);
     return image;
 }
 

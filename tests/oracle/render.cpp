@@ -11,7 +11,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <OpenImageIO/imageio.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 
 extern char **environ;
 
@@ -20,43 +23,61 @@ namespace
 
 const int time_limit_s = 120;
 
-int channel_index(const OIIO::ImageSpec &spec, const char *name)
-{
-    for (int i = 0; i < spec.nchannels; i++)
-        if (spec.channelnames[(size_t)i] == name)
-            return i;
-    throw std::runtime_error(std::string("no channel ") + name);
-}
-
-/* The whole picture as stored in the file, decoded once. */
-class native_picture
+/* A file whose channels are all read at once, each into its own vector. */
+class exr_file
 {
   public:
-    explicit native_picture(OIIO::ImageInput *input) : spec(input->spec())
+    explicit exr_file(const std::string &path)
+        : file(path.c_str()), window(file.header().dataWindow())
     {
-        stride = spec.pixel_bytes(true);
-        bytes.resize(stride * (size_t)spec.image_pixels());
-        if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeUnknown, bytes.data()))
-            throw std::runtime_error(input->geterror());
     }
-    /* A channel of type T; an error unless the file gives its type as `promised`. */
-    template <typename T>
-    void extract(const char *name, OIIO::TypeDesc promised, std::vector<T> *values) const
+    int width_px() const
     {
-        int index = channel_index(spec, name);
-        if (spec.channelformat(index) != promised)
+        return window.max.x - window.min.x + 1;
+    }
+    int height_px() const
+    {
+        return window.max.y - window.min.y + 1;
+    }
+    /* A channel of 32 bits a value, which the file must have as this type. */
+    template <typename T>
+    void want(const char *name, Imf::PixelType promised, std::vector<T> *values)
+    {
+        if (channel(name).type != promised)
             throw std::runtime_error(std::string("channel ") + name + " is of type " +
-                                     spec.channelformat(index).c_str());
-        size_t offset = spec.pixel_bytes(0, index, true);
-        values->resize((size_t)spec.image_pixels());
-        for (size_t i = 0; i < values->size(); i++)
-            std::memcpy(&(*values)[i], &bytes[i * stride + offset], sizeof(T));
+                                     std::to_string(channel(name).type));
+        insert(name, promised, values);
+    }
+    /* A channel of any type, as floats. */
+    void want_floats(const char *name, std::vector<float> *values)
+    {
+        channel(name);
+        insert(name, Imf::FLOAT, values);
+    }
+    void read()
+    {
+        file.setFrameBuffer(wanted);
+        file.readPixels(window.min.y, window.max.y);
     }
 
   private:
-    const OIIO::ImageSpec &spec;
-    size_t stride;
-    std::vector<unsigned char> bytes;
+    const Imf::Channel &channel(const char *name) const
+    {
+        const Imf::Channel *found = file.header().channels().findChannel(name);
+        if (!found)
+            throw std::runtime_error(std::string("no channel ") + name);
+        return *found;
+    }
+    template <typename T> void insert(const char *name, Imf::PixelType type, std::vector<T> *values)
+    {
+        static_assert(sizeof(T) == 4, "a float or uint32_t");
+        values->resize((size_t)width_px() * (size_t)height_px());
+        wanted.insert(name, Imf::Slice::Make(type, values->data(), window));
+    }
+
+    Imf::InputFile file;
+    const Imath::Box2i window;
+    Imf::FrameBuffer wanted;
 };
 
 bool names_plane(const std::string &aov, const std::string &plane)
@@ -64,20 +85,9 @@ bool names_plane(const std::string &aov, const std::string &plane)
     return ("," + aov + ",").find("," + plane + ",") != std::string::npos;
 }
 
-void read_channel(OIIO::ImageInput *input, const char *channel, std::vector<float> *values)
+/* From linear light to sRGB. */
+void display_colour(planes *planes)
 {
-    int index = channel_index(input->spec(), channel);
-    values->resize((size_t)input->spec().image_pixels());
-    if (!input->read_image(0, 0, index, index + 1, OIIO::TypeFloat, values->data()))
-        throw std::runtime_error(std::string("channel ") + channel + ": " + input->geterror());
-}
-
-void read_colour(OIIO::ImageInput *input, planes *planes)
-{
-    read_channel(input, "R", &planes->red);
-    read_channel(input, "G", &planes->green);
-    read_channel(input, "B", &planes->blue);
-    read_channel(input, "A", &planes->alpha);
     for (std::vector<float> *colour : {&planes->red, &planes->green, &planes->blue})
         for (size_t i = 0; i < colour->size(); i++) {
             float alpha = planes->alpha[i];
@@ -85,7 +95,7 @@ void read_colour(OIIO::ImageInput *input, planes *planes)
         }
 }
 
-void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
+void read_all(exr_file *file, const std::string &aov, planes *planes)
 {
     struct {
         const char *plane, *channel;
@@ -109,14 +119,19 @@ void read_all(OIIO::ImageInput *input, const std::string &aov, planes *planes)
         {"dlight", "light.dtdx", &planes->dtdx},
         {"dlight", "light.dtdy", &planes->dtdy},
     };
-    native_picture picture(input);
     for (auto &w : wanted)
         if (names_plane(aov, w.plane))
-            picture.extract(w.channel, OIIO::TypeFloat, w.values);
+            file->want(w.channel, Imf::FLOAT, w.values);
     if (names_plane(aov, "ptex"))
-        picture.extract("ptex.face", OIIO::TypeUInt32, &planes->face);
-    if (names_plane(aov, "light") || names_plane(aov, "coverage"))
-        read_colour(input, planes);
+        file->want("ptex.face", Imf::UINT, &planes->face);
+    if (names_plane(aov, "light") || names_plane(aov, "coverage")) {
+        file->want_floats("R", &planes->red);
+        file->want_floats("G", &planes->green);
+        file->want_floats("B", &planes->blue);
+        file->want_floats("A", &planes->alpha);
+    }
+    file->read();
+    display_colour(planes);
 }
 
 /* The child's exit code; or kills the child and returns -1 after the time limit. */
@@ -145,18 +160,16 @@ std::string read_text(const std::string &path)
 
 planes read_planes(const std::string &path, const std::string &aov)
 {
-    auto input = OIIO::ImageInput::open(path);
-    if (!input)
-        throw std::runtime_error(path + ": " + OIIO::geterror());
-    planes planes;
-    planes.width_px = input->spec().width;
-    planes.height_px = input->spec().height;
     try {
-        read_all(input.get(), aov, &planes);
+        exr_file file(path);
+        planes planes;
+        planes.width_px = file.width_px();
+        planes.height_px = file.height_px();
+        read_all(&file, aov, &planes);
+        return planes;
     } catch (const std::exception &failure) {
         throw std::runtime_error(path + ": " + failure.what());
     }
-    return planes;
 }
 
 program_result run_program(const std::vector<std::string> &arguments,

@@ -3,31 +3,35 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <OpenImageIO/imageio.h>
+#include <png.h>
 
 #include "tests/oracle/render.h"
 #include "tests/oracle/srgb.h"
 
 static picture read_picture(const std::string &path)
 {
-    auto input = OIIO::ImageInput::open(path);
-    if (!input)
-        throw std::runtime_error(path + ": " + OIIO::geterror());
-    const OIIO::ImageSpec &spec = input->spec();
+    png_image image = {};
+    image.version = PNG_IMAGE_VERSION;
     picture picture;
-    picture.width_px = spec.width;
-    picture.height_px = spec.height;
-    picture.rgb.resize((size_t)spec.image_pixels() * 3);
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, picture.rgb.data()))
-        throw std::runtime_error(path + ": " + input->geterror());
-    return picture;
+    if (png_image_begin_read_from_file(&image, path.c_str())) {
+        picture.width_px = (int)image.width;
+        picture.height_px = (int)image.height;
+        image.format = PNG_FORMAT_RGBA;
+        std::vector<uint8_t> rgba(PNG_IMAGE_SIZE(image));
+        if (png_image_finish_read(&image, nullptr, rgba.data(), 0, nullptr)) {
+            for (size_t i = 0; i < rgba.size(); i += 4)
+                picture.rgb.insert(picture.rgb.end(), &rgba[i], &rgba[i] + 3);
+            return picture;
+        }
+    }
+    throw std::runtime_error(path + ": " + image.message);
 }
 
 picture render_picture(const std::string &sheen, const std::string &model, int width_px,
                        int height_px, const std::vector<std::string> &options)
 {
     temporary_folder folder;
-    std::string file = folder.file("frame.tif");
+    std::string file = folder.file("frame.png");
     std::string size = std::to_string(width_px) + "x" + std::to_string(height_px);
     std::vector<std::string> command = {sheen, "render", model, "-o", file, "-q", "--size", size};
     command.insert(command.end(), options.begin(), options.end());
