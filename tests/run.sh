@@ -134,7 +134,7 @@ oracle() {
     [ -d "$shapes" ] || echo "note: $shapes is not here: the oracles judge tests/models only"
     cages=$(shapes_of 'catmark_*.obj') all=$(shapes_of '*.obj')
     # shellcheck disable=SC2046,SC2086 # lists of files without spaces
-    [ -z "$cages" ] || beside frames_shapes served "$build/tests/test_frames" "$build/sheen" $cages
+    [ -z "$cages" ] || beside frames_shapes served "$build/tests/test_frames" --library $cages
     beside frames_models served "$build/tests/test_frames" "$build/sheen" tests/models/*.obj \
         tests/models/*.gltf
     beside oracle_self served sh tests/oracle/self_test.sh "$build/tests"

@@ -1,7 +1,10 @@
 #include "tests/oracle/frame_loop.h"
 
 #include <cstdio>
+#include <memory>
 #include <stdexcept>
+
+#include "tests/oracle/frame_client.h"
 
 namespace
 {
@@ -38,7 +41,33 @@ std::string render_view(const std::string &sheen, const std::string &model_path,
     return "";
 }
 
-void for_each_frame(const std::string &sheen, const std::vector<std::string> &models,
+frame_source frames_by_command(const std::string &sheen)
+{
+    return [sheen](const model &model, view *view, planes *planes) {
+        int exit_code;
+        return render_view(sheen, model.path, view, "P,N,ptex", {}, planes, &exit_code);
+    };
+}
+
+frame_source frames_by_library()
+{
+    auto client = std::make_shared<std::unique_ptr<frame_client>>(); /* of the latest model */
+    auto path = std::make_shared<std::string>();
+    return [client, path](const model &model, view *view, planes *planes) -> std::string {
+        try {
+            if (*path != model.path)
+                client->reset(new frame_client(model.path));
+            *path = model.path;
+            *planes = (*client)->draw(view);
+            return "";
+        } catch (const std::exception &failure) {
+            path->clear();
+            return model.path + " " + view->name + ": " + failure.what();
+        }
+    };
+}
+
+void for_each_frame(const frame_source &draw, const std::vector<std::string> &models,
                     const view_list &views, verdict *verdict, const frame_judge &judge)
 {
     for (const std::string &path : models) {
@@ -51,9 +80,7 @@ void for_each_frame(const std::string &sheen, const std::vector<std::string> &mo
         }
         for (view &view : views(model)) {
             planes planes;
-            int exit_code;
-            std::string wrong =
-                render_view(sheen, path, &view, "P,N,ptex", {}, &planes, &exit_code);
+            std::string wrong = draw(model, &view, &planes);
             if (verdict->check(wrong.empty(), wrong))
                 judge(model, view, planes);
         }

@@ -1,5 +1,5 @@
-/* The loop of all oracles that judge frames: read each model, choose views, run `sheen render`, and
- * pass model, view and planes on. */
+/* How oracles get a frame by `sheen render`, and the loop of those that judge frames of many models:
+ * read each model, choose views, draw, and pass model, view and planes on. */
 #ifndef SHEEN_TESTS_ORACLE_FRAME_LOOP_H
 #define SHEEN_TESTS_ORACLE_FRAME_LOOP_H
 
@@ -21,10 +21,17 @@ std::string render_view(const std::string &sheen, const std::string &model_path,
                         const std::string &aov, const std::vector<std::string> &more_options,
                         planes *planes, int *exit_code);
 
+/* Draws one view, and fills in its camera if sheen chooses it. Returns an error text, empty on success. */
+using frame_source = std::function<std::string(const model &, view *, planes *)>;
+/* By `sheen render`. */
+frame_source frames_by_command(const std::string &sheen);
+/* By libsheen from the daemon at $SHEEN_SERVER; no file is written or read. */
+frame_source frames_by_library();
+
 using view_list = std::function<std::vector<view>(const model &)>;
 
 /* Calls the function for every model and each of its views. Every failure is counted. */
-void for_each_frame(const std::string &sheen, const std::vector<std::string> &models,
+void for_each_frame(const frame_source &draw, const std::vector<std::string> &models,
                     const view_list &views, verdict *verdict, const frame_judge &judge);
 
 #endif

@@ -65,21 +65,25 @@ void draw_triangle(canvas *canvas, uint32_t face, const vertex &a, const vertex 
     int x0, x1, y0, y1;
     sample_range(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), picture.width, &x0, &x1);
     sample_range(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), picture.height, &y0, &y1);
-    for (int y = y0; y <= y1; y++)
-        for (int x = x0; x <= x1; x++) {
-            double wa = edge(b, c, x + 0.5, y + 0.5) / area;
-            double wb = edge(c, a, x + 0.5, y + 0.5) / area;
-            double wc = edge(a, b, x + 0.5, y + 0.5) / area;
+    const double scale = 1 / area; /* a sample's weights change by the same step along each row */
+    const double step_a = scale * (b.y - c.y), step_b = scale * (c.y - a.y),
+                 step_c = scale * (a.y - b.y);
+    for (int y = y0; y <= y1; y++) {
+        double wa = scale * edge(b, c, x0 + 0.5, y + 0.5);
+        double wb = scale * edge(c, a, x0 + 0.5, y + 0.5);
+        double wc = scale * edge(a, b, x0 + 0.5, y + 0.5);
+        raster::sample *row = &picture.samples[(size_t)y * (size_t)picture.width];
+        for (int x = x0; x <= x1; x++, wa += step_a, wb += step_b, wc += step_c) {
             if (wa < 0 || wb < 0 || wc < 0)
                 continue;
-            wa *= inverse[0], wb *= inverse[1], wc *= inverse[2];
-            double sum = wa + wb + wc;
-            double depth = (wa * a.depth + wb * b.depth + wc * c.depth) / sum;
-            raster::sample &s = picture.samples[(size_t)y * (size_t)picture.width + (size_t)x];
-            if (depth < s.depth)
-                s = {depth, face, (float)((wa * a.u + wb * b.u + wc * c.u) / sum),
-                     (float)((wa * a.v + wb * b.v + wc * c.v) / sum)};
+            double ka = wa * inverse[0], kb = wb * inverse[1], kc = wc * inverse[2];
+            double whole = 1 / (ka + kb + kc);
+            double depth = (ka * a.depth + kb * b.depth + kc * c.depth) * whole;
+            if (depth < row[x].depth)
+                row[x] = {depth, face, (float)((ka * a.u + kb * b.u + kc * c.u) * whole),
+                          (float)((ka * a.v + kb * b.v + kc * c.v) * whole)};
         }
+    }
 }
 
 void draw_cells(canvas *canvas, const osd_oracle &oracle, const square &q, int n)
