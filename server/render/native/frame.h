@@ -51,7 +51,7 @@ enum piece_kind {
 
 /* A piece of the surface that covers at least one pixel's centre. */
 struct native_piece {
-    const struct native_patch *patch; /* PIECE_OF_PATCH; NULL: not made yet, or not kept */
+    const struct native_patch *patch; /* PIECE_OF_PATCH; NULL: not found yet, or not kept */
     uint32_t node;
     float s, t, size;        /* the part, in the patch's parameters */
     uint16_t x0, y0, x1, y1; /* px of the picture that it may cover, inclusive */
@@ -79,6 +79,7 @@ struct native_triangle {
 struct native_entry {
     float nearest; /* nearness */
     uint32_t quad;
+    uint8_t x0, y0, x1, y1; /* px of the tile that it may touch, inclusive */
 };
 
 struct native_thread {

@@ -22,7 +22,7 @@ struct native_device {
     const float *grid_s[GRID_SHAPES], *grid_t[GRID_SHAPES];
     uint32_t *first_entry; /* per part: where each tile's entries begin */
     size_t first_entry_capacity;
-    bool left_gaps;
+    struct native_frame drawn; /* the last one */
 };
 
 void *native_allocate(size_t bytes)
@@ -252,7 +252,12 @@ void native_device_rows(struct native_device *device, uint32_t n_rows,
 
 bool native_device_left_gaps(const struct native_device *device)
 {
-    return device->left_gaps;
+    return device->drawn.left_gaps;
+}
+
+const struct native_frame *native_device_drawn(const struct native_device *device)
+{
+    return &device->drawn;
 }
 
 unsigned native_device_threads(const struct native_device *device)
@@ -264,8 +269,6 @@ struct native_thread *native_device_thread(struct native_device *device, unsigne
 {
     return &device->thread[number];
 }
-
-/* --- */
 
 void native_rays_init(struct native_rays *rays, const struct view *view)
 {
@@ -441,13 +444,13 @@ bool native_draw(struct native_device *device, struct native_model *model, const
         native_team_run(device->team, work, &job);
         uint64_t at = times_now();
         frame->out_of_memory = frame->out_of_memory || (!frame->too_many && !solve_gaps(frame));
-        device->left_gaps = frame->left_gaps;
         times_add(&frame->thread[0].times.gaps_us, &at);
         if (times)
             add_times(frame, times);
     } else {
         frame->out_of_memory = true;
     }
+    device->drawn = *frame;
     if (frame->out_of_memory)
         return error_set(error, ERROR_SERVER, "out of memory for a frame");
     return !frame->too_many || patch_grids_too_many(error);

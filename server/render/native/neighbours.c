@@ -53,14 +53,18 @@ const struct native_patch *native_patch_of(const struct native_frame *frame,
 
 const struct native_patch *native_patch_of_piece(const struct native_frame *frame,
                                                  struct native_tile_room *room,
-                                                 const struct native_piece *piece)
+                                                 struct native_piece *piece)
 {
-    if (piece->patch)
-        return piece->patch;
+    const struct native_patch *patch = __atomic_load_n(&piece->patch, __ATOMIC_RELAXED);
+    if (patch)
+        return patch;
     const struct limit_node *node = &frame->model->tables->nodes[piece->node];
     bool is_last = node->kind == LIMIT_STRIP && !piece->square; /* comes after all levels */
-    return native_patch_of(frame, room, piece->node,
-                           native_patch_index(node, piece->level + is_last, piece->square));
+    uint32_t index = native_patch_index(node, piece->level + is_last, piece->square);
+    patch = native_patch_find(frame->model, piece->node, index);
+    if (patch) /* every thread finds the same */
+        __atomic_store_n(&piece->patch, patch, __ATOMIC_RELAXED);
+    return patch ? patch : native_patch_of(frame, room, piece->node, index);
 }
 
 struct native_part_of_node native_patch_at(const struct limit_node *node, double x, double y)

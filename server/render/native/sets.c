@@ -14,6 +14,8 @@
     void native_triangles_##set(struct native_slice *, uint32_t);                                  \
     uint32_t native_groups_##set(const struct native_seen *, uint32_t, uint32_t, float *,          \
                                  uint32_t *);                                                      \
+    void native_see_rays_##set(const struct native_frame *, struct native_tile_room *,             \
+                               struct native_ray_room *);                                          \
     void native_meet_rays_##set(const struct native_frame *, struct native_tile_room *,            \
                                 struct native_ray_room *);                                         \
     void native_describe_rays_##set(const struct native_frame *, struct native_tile_room *,        \
@@ -26,8 +28,9 @@
     {                                                                                              \
         .name = #set, .words = in_words, .lanes = n_lanes, .pieces = native_pieces_##set,          \
         .tile = native_tile_##set, .gaps = native_gaps_##set, .groups = native_groups_##set,       \
-        .meet_rays = native_meet_rays_##set, .describe_rays = native_describe_rays_##set,          \
-        .place = native_place_##set, .triangles = native_triangles_##set, .programs = {            \
+        .see_rays = native_see_rays_##set, .meet_rays = native_meet_rays_##set,                    \
+        .describe_rays = native_describe_rays_##set, .place = native_place_##set,                  \
+        .triangles = native_triangles_##set, .programs = {                                         \
             native_edges_find_##set,                                                               \
             native_edges_recheck_##set,                                                            \
             native_ends_find_##set,                                                                \

@@ -152,10 +152,10 @@ static bool meet_rounded(const struct native_drawing *d, struct error *error)
                                     error))
         return false;
     /* The list of edges found is no longer needed. */
-    native_sort_pixels(listed->at.words, listed->n, list_of(d, NATIVE_FOUND_EDGES)->at.words);
+    native_sort_pixels(listed->at.words, listed->n, &d->place,
+                       list_of(d, NATIVE_FOUND_EDGES)->at.words);
     rounded.hit = (float(*)[HIT_WORDS])(void *)t->hits;
-    return native_meet_rounded(d->device, d->shown->model, d->exact_view, &d->place, &t->planes,
-                               &rounded, error);
+    return native_meet_rounded(d->device, &rounded, error);
 }
 
 bool native_edges(const struct native_drawing *d, struct error *error)

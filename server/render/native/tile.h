@@ -64,7 +64,7 @@ struct native_tile_room {
     int32_t piece[SEEN_PX], place[SEEN_PX];
     struct native_tile_planes planes;
     struct native_found_patch patch[TILE_PATCHES];
-    const struct native_piece **local; /* the tile's pieces in the order of drawing */
+    struct native_piece **local; /* the tile's pieces in the order of drawing */
     const struct native_quad **quad;
     uint32_t *count; /* [n_local + 2]: first pixel of each piece in pixel[] */
     uint32_t *order;
@@ -97,10 +97,10 @@ bool native_walk(const struct limit_tables *tables, uint32_t *node, double *x, d
 const struct native_patch *native_patch_of(const struct native_frame *frame,
                                            struct native_tile_room *room, uint32_t node,
                                            uint32_t index);
-/* The sub-patch of a PIECE_OF_PATCH. */
+/* The sub-patch of a PIECE_OF_PATCH, which the piece then names if the model keeps it. */
 const struct native_patch *native_patch_of_piece(const struct native_frame *frame,
                                                  struct native_tile_room *room,
-                                                 const struct native_piece *piece);
+                                                 struct native_piece *piece);
 
 /* The sub-patch of a node at a place. */
 struct native_part_of_node native_patch_at(const struct limit_node *node, double x, double y);

@@ -36,7 +36,7 @@ static void place_borders(const struct limit_node *node, struct one_place *place
 
 /* Sets the piece's patch as seen from the ray through the middle of its box. */
 static void place_piece(const struct native_frame *frame, struct native_tile_room *room,
-                        const struct native_piece *piece, struct piece_view *view)
+                        struct native_piece *piece, struct piece_view *view)
 {
     const struct native_patch *patch = native_patch_of_piece(frame, room, piece);
     const struct limit_node *node = &frame->model->tables->nodes[piece->node];
@@ -280,7 +280,7 @@ void LANE_NAME(native_evaluate)(const struct native_frame *frame, struct native_
     size_t n = list_shown(room);
     for (size_t k = 0; k < n; k++) {
         uint32_t l = room->order[k], i = room->count[l], end = room->count[l + 1];
-        const struct native_piece *piece = room->local[l];
+        struct native_piece *piece = room->local[l];
         fetch_ahead(room, k, n);
         if (piece->kind != PIECE_OF_PATCH) { /* each pixel has its own sub-patch */
             for (; i < end; i++)

@@ -1,5 +1,6 @@
 /* Projects pieces of the surface to quads and grids in the picture, and finds the tiles they lie in. */
 #include "server/render/native/lanes/entries.h"
+#include "server/render/native/lanes/project.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,22 +20,6 @@ struct reach {
     float x0, x1, y0, y1, farthest, nearest;
 };
 
-/* A node in camera space. */
-struct placed {
-    float at[3], before;
-    float camera[3][3]; /* native_seen_node.camera */
-};
-
-static struct placed place_node(const struct native_frame *frame, uint32_t node)
-{
-    struct native_seen_node seen;
-    native_see_node(frame, &frame->model->tables->nodes[node], &seen);
-    struct placed placed = {
-        {(float)seen.at[0], (float)seen.at[1], (float)seen.at[2]}, (float)seen.before, {{0}}};
-    memcpy(placed.camera, seen.camera, sizeof seen.camera);
-    return placed;
-}
-
 static float least(four a)
 {
     float x = a[0] < a[1] ? a[0] : a[1], y = a[2] < a[3] ? a[2] : a[3];
@@ -48,7 +33,7 @@ static float largest(four a)
 }
 
 /* Projects a quad's corners, given relative to the node's origin. False if one lies behind the eye. */
-static bool project_corners(const struct native_rays *rays, const struct placed *node,
+static bool project_corners(const struct native_rays *rays, const struct placed_node *node,
                             const float corner[3][4], struct native_quad *quad, struct reach *reach)
 {
     four p[3], at[3];
@@ -75,38 +60,18 @@ static bool project_corners(const struct native_rays *rays, const struct placed 
 
 /* Projects the vertices of a grid over a piece. False if one lies behind the eye. */
 static bool project_grid(const struct native_frame *frame, const struct native_patch *patch,
-                         const struct native_piece *piece, const struct placed *node, uint32_t grid,
-                         float *vertex, struct reach *reach)
+                         const struct native_piece *piece, const struct placed_node *node,
+                         uint32_t grid, float *vertex, struct reach *reach)
 {
     const struct native_rays *rays = &frame->rays;
     uint32_t n = (grid_cells[grid / GRID_SIDES] + 1u) * (grid_cells[grid % GRID_SIDES] + 1u);
-    float *to_x = vertex, *to_y = to_x + n + LANES, *to_nearness = to_y + n + LANES, turn[3][3];
-    for (int a = 0; a < 3; a++)
-        for (int k = 0; k < 3; k++)
-            turn[a][k] = patch->scale * node->camera[a][k];
+    float *to_x = vertex, *to_y = to_x + n + LANES, *to_nearness = to_y + n + LANES;
+    const struct projection on = projection_of(rays, node, patch);
     vfloat x0 = v_float(INFINITY), x1 = -x0, y0 = x0, y1 = x1, farthest = x0, nearest = x1, z0 = x0;
     for (uint32_t i = 0; i < n; i += LANES) {
         vfloat s = v_load(frame->grid_s[grid] + i) * piece->size + piece->s;
-        vfloat t = v_load(frame->grid_t[grid] + i) * piece->size + piece->t, p[3], at[3];
-        for (int k = 0; k < 3; k++) {
-            vfloat row[4];
-            for (int j = 0; j < 4; j++) {
-                const float *c = patch->c[k][j];
-                row[j] = ((c[3] * s + c[2]) * s + c[1]) * s + c[0];
-            }
-            p[k] = ((row[3] * t + row[2]) * t + row[1]) * t + row[0];
-        }
-        for (int a = 0; a < 3; a++)
-            at[a] = p[0] * turn[a][0] + p[1] * turn[a][1] + p[2] * turn[a][2];
-        vfloat before = node->before - at[2], z = at[2] + node->at[2], nearness = before;
-        vfloat px = v_float(1 / rays->start_px);
-        if (rays->perspective) {
-            vfloat inverse = 1 / z;
-            nearness = before * inverse;
-            px = inverse * (1 / rays->slope_px);
-        }
-        vfloat x = (at[0] + node->at[0]) * px + rays->centre_px[0];
-        vfloat y = (at[1] + node->at[1]) * px + rays->centre_px[1];
+        vfloat t = v_load(frame->grid_t[grid] + i) * piece->size + piece->t, x, y, z, nearness;
+        project(&on, s, t, &x, &y, &z, &nearness);
         v_store(to_x + i, x);
         v_store(to_y + i, y);
         v_store(to_nearness + i, nearness);
@@ -137,18 +102,28 @@ static bool is_looked_at(const struct tile *around, const int box[4])
            box[1] < (int)(around->y + around->height);
 }
 
-/* Finds the pixels whose centres a box may hold, inside the picture. False if none of them is looked at. */
-static bool pixels_of(const struct native_frame *frame, const struct reach *r, int box[4])
+/* Cuts a box of pixels to the picture. False if none of them is looked at. */
+static bool cut_to_picture(const struct native_frame *frame, int x0, int y0, int x1, int y1,
+                           int box[4])
 {
-    const struct tile *around = &frame->around;
-    int x0 = (int)ceilf(r->x0 - 0.5f - SLACK_PX), x1 = (int)floorf(r->x1 - 0.5f + SLACK_PX);
-    int y0 = (int)ceilf(r->y0 - 0.5f - SLACK_PX), y1 = (int)floorf(r->y1 - 0.5f + SLACK_PX);
     int width = (int)frame->view->width_px, height = (int)frame->view->height_px;
     box[0] = x0 < 0 ? 0 : x0;
     box[1] = y0 < 0 ? 0 : y0;
     box[2] = x1 < width ? x1 : width - 1;
     box[3] = y1 < height ? y1 : height - 1;
-    return is_looked_at(around, box);
+    return is_looked_at(&frame->around, box);
+}
+
+/* Finds the pixels whose centres a piece may cover, or if there are none those that it touches: rays of these may meet
+ * it (rays/rays.h). False if none of them is looked at. */
+static bool pixels_of(const struct native_frame *frame, const struct reach *r, int box[4])
+{
+    float x0 = r->x0 - SLACK_PX, x1 = r->x1 + SLACK_PX;
+    float y0 = r->y0 - SLACK_PX, y1 = r->y1 + SLACK_PX;
+    return cut_to_picture(frame, (int)ceilf(x0 - 0.5f), (int)ceilf(y0 - 0.5f),
+                          (int)floorf(x1 - 0.5f), (int)floorf(y1 - 0.5f), box) ||
+           cut_to_picture(frame, (int)floorf(x0), (int)floorf(y0), (int)floorf(x1), (int)floorf(y1),
+                          box);
 }
 
 /* --- */
@@ -203,8 +178,9 @@ static const struct native_patch *understand(const struct native_frame *frame,
 
 /* Places a piece as a cell, a grid or triangles. 0: not in a place that is looked at; -1: no memory. */
 static int draw_piece(const struct native_frame *frame, struct native_thread *thread,
-                      const struct placed *node, uint32_t grid, const struct native_patch *patch,
-                      struct native_piece *piece, struct native_quad *quad, float *nearest)
+                      const struct placed_node *node, uint32_t grid,
+                      const struct native_patch *patch, struct native_piece *piece,
+                      struct native_quad *quad, float *nearest)
 {
     float own[3][4];
     const float(*corner)[4] = (const float(*)[4])frame->model->tables->heads[piece->node].corner;
@@ -273,7 +249,7 @@ static bool reserve(struct native_thread *thread, size_t n_chosen)
 static bool draw_chosen(const struct native_frame *frame, struct native_thread *thread,
                         size_t n_chosen)
 {
-    struct placed node = {{0}, 0, {{0}}};
+    struct placed_node node = {{0}, 0, {{0}}};
     uint32_t last = UINT32_MAX;
     for (size_t i = 0; i < n_chosen; i++) {
         const struct patch_grid *chosen = &thread->grids.chosen[i];
@@ -313,6 +289,28 @@ static struct tiles tiles_under(const struct native_frame *frame, const struct n
                           (uint32_t)(y1 > last_y ? last_y : y1)};
 }
 
+static uint8_t in_tile(int at, int size)
+{
+    return (uint8_t)(at < 0 ? 0 : at < size ? at : size - 1);
+}
+
+/* The entry of a quad in the frame's tile at column x, row y. Its box has the pixels whose centres the quad covers,
+ * unless it covers none, so it may also touch those around. */
+static struct native_entry entry_of(const struct native_frame *frame,
+                                    const struct native_thread *thread, uint32_t quad, uint32_t x,
+                                    uint32_t y)
+{
+    const struct native_quad *box = &thread->quad[quad];
+    int left = (int)((frame->first_x + x) * TILE_WIDTH);
+    int top = (int)((frame->first_y + y) * TILE_HEIGHT);
+    return (struct native_entry){thread->nearest[quad],
+                                 quad,
+                                 in_tile(box->x0 - left - 1, TILE_WIDTH),
+                                 in_tile(box->y0 - top - 1, TILE_HEIGHT),
+                                 in_tile(box->x1 - left + 1, TILE_WIDTH),
+                                 in_tile(box->y1 - top + 1, TILE_HEIGHT)};
+}
+
 /* Sorts the thread's quads from `first` on by the tiles they lie in (counting sort). */
 static bool sort_by_tile(const struct native_frame *frame, struct native_thread *thread,
                          struct native_part *part, size_t first)
@@ -336,7 +334,7 @@ static bool sort_by_tile(const struct native_frame *frame, struct native_thread 
         for (uint32_t y = t.y0; y <= t.y1; y++)
             for (uint32_t x = t.x0; x <= t.x1; x++)
                 thread->entry[count[y * frame->tiles_x + x + 1]++] =
-                    (struct native_entry){thread->nearest[i], (uint32_t)i};
+                    entry_of(frame, thread, (uint32_t)i, x, y);
     }
     thread->n_entries = n;
     return true;

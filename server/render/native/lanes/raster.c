@@ -1,44 +1,22 @@
 #include "server/render/native/lanes/raster.h"
+#include "server/render/native/lanes/half.h"
 
 #include <math.h>
-
-/* A triangle covers pixels this far beyond its edges, since neighbours round shared vertices differently. */
-static const float SLACK_PX = 1.0f / 512;
-static const float STEPS = 65535; /* of a position along a piece */
 
 /* Pixels of the room, inclusive. */
 struct box {
     int x0, y0, x1, y1;
 };
 
-/* One of a cell's two triangles: with p its first vertex, q and r the others, a point is p + b (q - p) + c (r - p).
- * Unit: pixels of the room, whose centres are whole numbers. */
-struct half {
-    float bx, by, b0, cx, cy, c0; /* b = bx x + by y + b0 + least_b; the same for c */
-    float least_b, least_c; /* inside: b and c exceed these, b + c is below the sum of all three */
-    float most;
-    float rise_b, rise_c; /* of the nearness */
-};
-
-LANE_INLINE struct half half_of(const struct native_tile_room *room, const float x[4],
-                                const float y[4], const float nearness[4], int p, int q, int r)
+/* Pixels' centres are whole numbers in the room. */
+LANE_INLINE float left_of(const struct native_tile_room *room)
 {
-    float left = (float)((int)room->tile.x - APRON) + 0.5f;
-    float top = (float)((int)room->tile.y - APRON) + 0.5f, at_x = x[p] - left, at_y = y[p] - top;
-    float qx = x[q] - x[p], qy = y[q] - y[p], rx = x[r] - x[p], ry = y[r] - y[p];
-    float area = qx * ry - rx * qy, inverse = area != 0 ? 1 / area : 0;
-    struct half h = {
-        .bx = ry * inverse, .by = -rx * inverse, .cx = -qy * inverse, .cy = qx * inverse};
-    h.least_b = -SLACK_PX * (fabsf(h.bx) + fabsf(h.by));
-    h.least_c = -SLACK_PX * (fabsf(h.cx) + fabsf(h.cy));
-    h.b0 = -(h.bx * at_x + h.by * at_y) - h.least_b;
-    h.c0 = -(h.cx * at_x + h.cy * at_y) - h.least_c;
-    h.most = area != 0
-                 ? 1 + SLACK_PX * (fabsf(h.bx + h.cx) + fabsf(h.by + h.cy)) - h.least_b - h.least_c
-                 : -1;
-    h.rise_b = nearness[q] - nearness[p];
-    h.rise_c = nearness[r] - nearness[p];
-    return h;
+    return (float)((int)room->tile.x - APRON) + 0.5f;
+}
+
+LANE_INLINE float top_of(const struct native_tile_room *room)
+{
+    return (float)((int)room->tile.y - APRON) + 0.5f;
 }
 
 /* Column of each lane in a block. */
@@ -50,12 +28,6 @@ LANE_INLINE vfloat block_x(void)
 LANE_INLINE vfloat block_y(void)
 {
     return v_to_float(v_count() / BLOCK_WIDTH);
-}
-
-/* Positive inside; b and c without their least. */
-LANE_INLINE vfloat inside(const struct half *h, vfloat b, vfloat c)
-{
-    return v_min(v_min(b, c), h->most - (b + c));
 }
 
 /* Whether anything there is farther than the nearest corner of the cell. */
@@ -71,7 +43,7 @@ LANE_INLINE bool may_show(const struct native_tile_room *room, const struct box 
     return any;
 }
 
-/* Draws both triangles of a cell whose first corner is at (s,t), in STEPS, and whose size is (ds,dt). */
+/* Draws both triangles of a cell whose first corner is at (s,t), in PLACE_STEPS, and whose size is (ds,dt). */
 LANE_INLINE void draw_cell(struct native_tile_room *room, const float x[4], const float y[4],
                            const float nearness[4], const struct box *box, float s, float t,
                            float ds, float dt, int piece)
@@ -80,8 +52,8 @@ LANE_INLINE void draw_cell(struct native_tile_room *room, const float x[4], cons
         return;
     /* A pixel's result depends on its own place only, not on where boxes begin, so any division into tiles gives the
      * same picture. */
-    const struct half first = half_of(room, x, y, nearness, 0, 1, 2);
-    const struct half second = half_of(room, x, y, nearness, 3, 2, 1);
+    const struct half first = half_of(left_of(room), top_of(room), x, y, nearness, 0, 1, 2);
+    const struct half second = half_of(left_of(room), top_of(room), x, y, nearness, 3, 2, 1);
     for (int px = box->x0; px <= box->x1; px += BLOCK_WIDTH) {
         vfloat at_x = block_x() + (float)px, at_y = block_y() + (float)box->y0;
         vfloat first_b = first.bx * at_x + first.b0, first_c = first.cx * at_x + first.c0;
@@ -105,8 +77,8 @@ LANE_INLINE void draw_cell(struct native_tile_room *room, const float x[4], cons
                 continue;
             u = v_select(is_first, u, 1 - u);
             v = v_select(is_first, v, 1 - v);
-            vint q = v_round(v_clamp(u * ds + s, 0, STEPS));
-            vint r = v_round(v_clamp(v * dt + t, 0, STEPS));
+            vint q = v_round(v_clamp(u * ds + s, 0, PLACE_STEPS));
+            vint r = v_round(v_clamp(v * dt + t, 0, PLACE_STEPS));
             v_store_block(room->nearness + at, SEEN_PITCH, in, own);
             v_store_int_block(room->piece + at, SEEN_PITCH, in, v_int(piece));
             v_store_int_block(room->place + at, SEEN_PITCH, in, q | r << 16);
@@ -147,7 +119,7 @@ static void draw_grid(struct native_tile_room *room, const float *vertex,
     int across = grid_cells[quad->grid / GRID_SIDES], down = grid_cells[quad->grid % GRID_SIDES];
     int n = (across + 1) * (down + 1);
     const float *x = vertex + quad->first, *y = x + n + LANES, *nearness = y + n + LANES;
-    float ds = STEPS / (float)across, dt = STEPS / (float)down;
+    float ds = PLACE_STEPS / (float)across, dt = PLACE_STEPS / (float)down;
     for (int j = 0; j < down; j++) {
         for (int i = 0; i < across; i++) {
             int a = j * (across + 1) + i, c = a + across + 1;
@@ -170,7 +142,7 @@ static void draw_triangle(struct native_tile_room *room, const struct native_tri
         return;
     const float x[4] = {t->x[0], t->x[1], t->x[2]}, y[4] = {t->y[0], t->y[1], t->y[2]};
     const float nearness[4] = {t->nearness[0], t->nearness[1], t->nearness[2]};
-    const struct half h = half_of(room, x, y, nearness, 0, 1, 2);
+    const struct half h = half_of(left_of(room), top_of(room), x, y, nearness, 0, 1, 2);
     for (int py = box.y0; py <= box.y1; py++) {
         for (int px = box.x0; px <= box.x1; px++) {
             float inner_b = h.bx * (float)px + h.by * (float)py + h.b0;
@@ -189,8 +161,8 @@ static void draw_triangle(struct native_tile_room *room, const struct native_tri
             room->nearness[at] = own;
             room->piece[at] = piece;
             room->place[at] =
-                (int32_t)((uint32_t)(fminf(fmaxf(s / inverse, 0), 1) * STEPS + 0.5f) |
-                          (uint32_t)(fminf(fmaxf(r / inverse, 0), 1) * STEPS + 0.5f) << 16);
+                (int32_t)((uint32_t)(fminf(fmaxf(s / inverse, 0), 1) * PLACE_STEPS + 0.5f) |
+                          (uint32_t)(fminf(fmaxf(r / inverse, 0), 1) * PLACE_STEPS + 0.5f) << 16);
         }
     }
 }
@@ -210,5 +182,6 @@ void LANE_NAME(native_raster)(struct native_tile_room *room, const struct native
     int left = (int)room->tile.x - APRON, top = (int)room->tile.y - APRON;
     struct box box = {quad->x0 - left, quad->y0 - top, quad->x1 - left, quad->y1 - top};
     if (cut_box(room, &box))
-        draw_cell(room, quad->x, quad->y, quad->nearness, &box, 0, 0, STEPS, STEPS, piece);
+        draw_cell(room, quad->x, quad->y, quad->nearness, &box, 0, 0, PLACE_STEPS, PLACE_STEPS,
+                  piece);
 }

@@ -205,6 +205,7 @@ static void go_on(const struct native_frame *frame, struct native_ray_room *room
         if (!native_walk(frame->model->tables, &task->at.node, &x, &y))
             continue;
         native_ray_begin(&frame->model->tables->nodes[task->at.node], x, y, &task->at);
+        task->patch = NULL;
         task->px = room->px[first + (uint32_t)k];
         task->ray = (uint32_t)room->ray[first + (uint32_t)k];
         room->n_tasks++;

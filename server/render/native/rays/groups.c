@@ -21,7 +21,8 @@ static uint32_t hash(const struct native_ray_place *at)
 
 static struct native_ray_patch *patch_at(const struct native_model *model,
                                          struct native_ray_room *room,
-                                         const struct native_ray_place *at)
+                                         const struct native_ray_place *at,
+                                         const struct native_patch *patch)
 {
     for (uint32_t k = hash(at);; k = (k + 1) & (RAY_PATCHES - 1)) {
         struct native_ray_patch *found = &room->patch[k];
@@ -32,7 +33,7 @@ static struct native_ray_patch *patch_at(const struct native_model *model,
         if (found->node != at->node || found->index != at->index)
             continue;
         if (!found->patch && !(at->index & RAY_AT_VERTEX))
-            found->patch = native_patch_find(model, at->node, at->index);
+            found->patch = patch ? patch : native_patch_find(model, at->node, at->index);
         return found;
     }
 }
@@ -45,9 +46,10 @@ static void prefetch(const struct native_patch *patch)
 }
 
 static uint32_t group_of(const struct native_model *model, struct native_ray_room *room,
-                         const struct native_ray_place *at)
+                         const struct native_ray_task *task)
 {
-    struct native_ray_patch *found = patch_at(model, room, at);
+    const struct native_ray_place *at = &task->at;
+    struct native_ray_patch *found = patch_at(model, room, at, task->patch);
     if (found->sorting != room->sorting) {
         found->sorting = room->sorting;
         found->group = (uint16_t)room->n_groups;
@@ -69,7 +71,7 @@ void native_group_rays(const struct native_model *model, struct native_ray_room 
         const struct native_ray_place *at = &room->task[i].at;
         /* Consecutive tasks are often on the same sub-patch. */
         if (i == 0 || room->group[last].node != at->node || room->group[last].index != at->index)
-            last = group_of(model, room, at);
+            last = group_of(model, room, &room->task[i]);
         room->group_of[i] = (uint16_t)last;
         room->group[last].n++;
     }

@@ -1,24 +1,31 @@
 #include "server/render/native/native.h"
 #include "server/render/native/rays/rays.h"
 
-/* Sorts by columns or rows of squares, of which there are 1,024. */
-static void sort_by(const uint32_t *from, uint32_t n, int shift, uint32_t *to)
+enum { COLUMNS = 1024 };
+/* A number below COLUMNS by which pixels are sorted. */
+static uint32_t column_of(uint32_t listed, uint32_t origin, int shift)
 {
-    enum { COLUMNS = 1024 };
+    return ((listed & 0x7fffffff) + origin) >> shift & (COLUMNS - 1);
+}
+
+static void sort_by(const uint32_t *from, uint32_t n, uint32_t origin, int shift, uint32_t *to)
+{
     uint32_t first[COLUMNS + 1] = {0};
     for (uint32_t i = 0; i < n; i++)
-        first[(from[i] >> shift & (COLUMNS - 1)) + 1]++;
+        first[column_of(from[i], origin, shift) + 1]++;
     for (int k = 0; k < COLUMNS; k++)
         first[k + 1] += first[k];
     for (uint32_t i = 0; i < n; i++)
-        to[first[from[i] >> shift & (COLUMNS - 1)]++] = from[i];
+        to[first[column_of(from[i], origin, shift)]++] = from[i];
 }
 
-void native_sort_pixels(uint32_t *pixel, uint32_t n, uint32_t *room)
+void native_sort_pixels(uint32_t *pixel, uint32_t n, const struct tile *tile, uint32_t *room)
 {
-    enum { SIDE_BITS = 6 };
-    sort_by(pixel, n, SIDE_BITS, room);
-    sort_by(room, n, 16 + SIDE_BITS, pixel); /* pixels at edges come last */
+    uint32_t origin = tile->x % TILE_WIDTH | tile->y % TILE_HEIGHT << 16;
+    sort_by(pixel, n, origin, 5, room);
+    sort_by(room, n, origin, 16 + 5, pixel);
+    sort_by(pixel, n, origin, 7, room);
+    sort_by(room, n, origin, 16 + 7, pixel);
 }
 
 /* Each thread takes pixels about TURNS times, at least LEAST_PX. */
@@ -26,10 +33,20 @@ enum { TURNS = 8, LEAST_PX = 32 };
 
 struct rounded_job {
     struct native_device *device;
-    struct native_frame frame;
+    const struct native_frame *frame;
     const struct native_rounded *rounded;
     uint32_t next, at_once; /* pixels */
 };
+
+/* The first pixel after `first` that lies in another tile, or `end`. */
+static uint32_t end_of_tile(const struct rounded_job *job, uint32_t first, uint32_t end)
+{
+    uint32_t pixel, tile = native_listed_tile(job->frame, job->rounded->pixel[first], &pixel), i;
+    for (i = first + 1; i < end; i++)
+        if (native_listed_tile(job->frame, job->rounded->pixel[i], &pixel) != tile)
+            break;
+    return i;
+}
 
 static void meet_rounded(void *owner, unsigned number)
 {
@@ -37,26 +54,22 @@ static void meet_rounded(void *owner, unsigned number)
     struct native_thread *thread = native_device_thread(job->device, number);
     native_forget_patches(thread);
     native_forget_ray_patches(thread->rays);
-    for (uint32_t first, left; (first = __atomic_fetch_add(&job->next, job->at_once,
-                                                           __ATOMIC_RELAXED)) < job->rounded->n;) {
-        left = job->rounded->n - first;
-        native_meet_pixels(&job->frame, thread, job->rounded, first,
-                           left < job->at_once ? left : job->at_once);
+    for (uint32_t first, end; (first = __atomic_fetch_add(&job->next, job->at_once,
+                                                          __ATOMIC_RELAXED)) < job->rounded->n;) {
+        uint32_t left = job->rounded->n - first;
+        for (end = first + (left < job->at_once ? left : job->at_once); first < end;) {
+            uint32_t next = end_of_tile(job, first, end);
+            native_meet_pixels(job->frame, thread, job->rounded, first, next - first);
+            first = next;
+        }
     }
 }
 
-bool native_meet_rounded(struct native_device *device, struct native_model *model,
-                         const struct view *view, const struct tile *tile,
-                         const struct native_planes *planes, const struct native_rounded *rounded,
+bool native_meet_rounded(struct native_device *device, const struct native_rounded *rounded,
                          struct error *error)
 {
-    struct rounded_job job = {.device = device,
-                              .frame = {.model = model,
-                                        .set = native_device_set(device),
-                                        .view = view,
-                                        .tile = *tile,
-                                        .planes = planes},
-                              .rounded = rounded};
+    struct rounded_job job = {
+        .device = device, .frame = native_device_drawn(device), .rounded = rounded};
     if (!rounded->n || !rounded->side)
         return true;
     for (unsigned i = 0; i < native_device_threads(device); i++) {
@@ -69,7 +82,6 @@ bool native_meet_rounded(struct native_device *device, struct native_model *mode
     /* Few enough that no thread waits long for the last pixels of another. */
     job.at_once = rounded->n / (TURNS * native_device_threads(device)) + LEAST_PX;
     job.at_once = job.at_once < RAYS_PX ? job.at_once : RAYS_PX;
-    native_rays_init(&job.frame.rays, view);
     native_device_run(device, meet_rounded, &job);
     return true;
 }

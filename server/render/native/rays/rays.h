@@ -1,9 +1,12 @@
 /* Rays spread over pixels that one sample cannot show (shaders/rounded.glsl), and the places where they meet the
- * surface (shaders/rounded_solve.comp.glsl). Internal to the folder.
+ * surface. Internal to the folder.
  *
- * A thread takes RAYS_PX pixels at a time. Their rays need places to start from: tasks. All tasks of these pixels
- * that start on the same sub-patch form a group, which lanes solve together, because they read the same coefficients.
- * The hit of a ray does not depend on the other rays. */
+ * A thread takes at most RAYS_PX pixels of one tile at a time. It draws the tile's pieces, cut finely, at the points of
+ * the picture through which these pixels' rays run. The piece at a ray's point gives the place where the ray starts:
+ * a task. A drawn piece is not exactly the surface, so a piece beside the point is tried as well where it lies in front,
+ * and a ray that misses its piece starts again from the rays beside it. All tasks that start on the same sub-patch
+ * form a group, which lanes solve together, because they read the same coefficients. The hit of a ray depends on the
+ * other rays only where it misses the piece at its point. */
 #ifndef SHEEN_RENDER_NATIVE_RAYS_RAYS_H
 #define SHEEN_RENDER_NATIVE_RAYS_RAYS_H
 
@@ -28,6 +31,7 @@ struct native_ray_task {
     struct native_ray_place at;
     float px;
     uint32_t ray;
+    const struct native_patch *patch; /* of the place; NULL: not known */
 };
 
 /* Tasks on one sub-patch: [first, first + n) of the sorted ones. */
@@ -37,11 +41,22 @@ struct native_ray_group {
     const struct native_patch *patch; /* NULL: the model does not keep it yet, or at a vertex */
 };
 
-struct native_ray_pixel {
-    uint32_t x, y; /* px of the tile */
-    float front;   /* smallest depth of the pixels beside it; RAYS_FARTHEST: they show nothing */
-    unsigned asks; /* number of rays that are not finished */
+/* A piece that rays may meet: nearness (0: none), the piece as a number (native_ray_piece_of), and the place on it
+ * (native_tile_room.place). One for each ray. */
+struct native_ray_pieces {
+    float nearness[RAYS_AT_ONCE + RAYS_END];
+    int32_t piece[RAYS_AT_ONCE + RAYS_END], place[RAYS_AT_ONCE + RAYS_END];
 };
+
+/* The number of piece k of a thread. */
+enum { RAY_PIECE_BITS = 24 };
+static inline int32_t native_ray_piece_of(unsigned thread, uint32_t k)
+{
+    return (int32_t)(thread << RAY_PIECE_BITS | k);
+}
+
+/* Columns of a tile that are listed, 64 in a word. */
+enum { RAY_ROW_WORDS = TILE_WIDTH / 64 };
 
 /* An entry of the hash table of sub-patches that rays have reached: the group of its tasks in sorting number
  * `sorting`. */
@@ -53,10 +68,17 @@ struct native_ray_patch {
 
 /* A thread's memory for RAYS_PX pixels. */
 struct native_ray_room {
-    struct native_ray_pixel pixel[RAYS_PX];
+    uint32_t tile; /* the frame's tile in which the pixels lie */
     uint32_t n_pixels, n_rays, rays_per_px;
+    /* Which pixels of the tile are those, and the first ray of each. */
+    uint64_t listed[TILE_HEIGHT][RAY_ROW_WORDS];
+    uint16_t first_ray[TILE_PX];
+    struct native_ray_pieces on;     /* the nearest piece that each ray's point lies on */
+    struct native_ray_pieces beside; /* the nearest one beside it, which may bulge out to it */
+    unsigned asks[RAYS_PX];          /* rays of each pixel that are looked for */
     /* For each ray: its pixel, px of the picture, and its offset from that pixel's centre. */
-    float x[RAYS_AT_ONCE], y[RAYS_AT_ONCE], off_x[RAYS_AT_ONCE], off_y[RAYS_AT_ONCE];
+    float x[RAYS_AT_ONCE], y[RAYS_AT_ONCE];
+    float off_x[RAYS_AT_ONCE + RAYS_END], off_y[RAYS_AT_ONCE + RAYS_END];
     /* The nearest hit of each ray, and its depth; RAYS_FARTHEST: none. */
     float z[RAYS_AT_ONCE];
     struct native_ray_place met[RAYS_AT_ONCE];
@@ -84,20 +106,36 @@ void native_forget_ray_patches(struct native_ray_room *room);
 /* Sorts room->task by sub-patch. */
 void native_group_rays(const struct native_model *model, struct native_ray_room *room);
 
-/* Sorts listed pixels by squares of the picture, so that pixels that are met together lie near each other. `room` is
- * memory for n pixels. */
-void native_sort_pixels(uint32_t *pixel, uint32_t n, uint32_t *room);
+/* A listed pixel (shaders/rounded.glsl), px of what is drawn. */
+static inline uint32_t native_listed_x(uint32_t listed)
+{
+    return listed & 0xffff;
+}
 
-/* Meets the rays of n pixels, at most RAYS_PX, from `first` on; thread->rays must exist. */
+static inline uint32_t native_listed_y(uint32_t listed)
+{
+    return listed >> 16 & 0x7fff;
+}
+
+static inline bool native_listed_at_edge(uint32_t listed)
+{
+    return listed >> 31;
+}
+
+/* The frame's tile in which a listed pixel lies; *pixel: its place there, x + TILE_WIDTH y. */
+uint32_t native_listed_tile(const struct native_frame *frame, uint32_t listed, uint32_t *pixel);
+
+/* Sorts listed pixels by the picture's tiles, and within these by smaller squares; `tile` is what is drawn. `room` is
+ * memory for n pixels. */
+void native_sort_pixels(uint32_t *pixel, uint32_t n, const struct tile *tile, uint32_t *room);
+
+/* Meets the rays of n pixels of one tile, at most RAYS_PX, from `first` on; thread->rays must exist. */
 void native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
                         const struct native_rounded *rounded, uint32_t first, uint32_t n);
 
-/* Meets the rays of pixels with the surface, by all threads. `planes` are those that native_draw() found for the same
- * view and tile, with `node` UINT32_MAX where nothing is met. Writes every hit. False with ERROR_SERVER when memory
- * is short. */
-bool native_meet_rounded(struct native_device *device, struct native_model *model,
-                         const struct view *view, const struct tile *tile,
-                         const struct native_planes *planes, const struct native_rounded *rounded,
+/* Meets the rays of pixels with the surface, by all threads. The device's last frame (native_device_drawn) must be of
+ * what is drawn. Writes every hit. False with ERROR_SERVER when memory is short. */
+bool native_meet_rounded(struct native_device *device, const struct native_rounded *rounded,
                          struct error *error);
 
 #endif
