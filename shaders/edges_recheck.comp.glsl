@@ -4,9 +4,10 @@
 // A pixel must be rechecked in any of these cases. A piece contradicts what the centre of a pixel around shows by
 // more than OFF: it covers a centre that does not show it, or ends before a centre that does. Three pieces are
 // around, or two pieces and a pixel that shows nothing: a piece knows only its own ends, and anything may lie between
-// these. Beside a pixel that shows nothing, two ends of one piece run through the pixel: the piece may turn where
-// they meet. Beside a pixel that shows nothing, the piece ends at a crease whose other side faces the eye too: that
-// side may be visible, though narrower than a pixel.
+// these. Beside a pixel that shows nothing, not exactly one end of the only piece runs through the pixel: with two, the
+// piece may turn where they meet; with none, something that no centre around shows may lie there. Beside a pixel that
+// shows nothing, the piece ends at a crease whose other side faces the eye too: that side may be visible, though
+// narrower than a pixel.
 
 layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 
@@ -74,7 +75,7 @@ void main()
             n++;
         }
     }
-    bool needs_recheck = n > 2 || (beside_empty && (n > 1 || seen_beyond || (n == 1 && ends_in_pixel(piece[0]) > 1)));
+    bool needs_recheck = n > 2 || (beside_empty && (n > 1 || seen_beyond || (n == 1 && ends_in_pixel(piece[0]) != 1)));
     for (int k = 0; k < 9 && !needs_recheck; k++) {
         Hit hit = hit_at(p + AROUND[k]);
         if (hit.depth >= 0.0)
