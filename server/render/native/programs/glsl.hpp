@@ -1042,22 +1042,65 @@ template <class T> INLINE vec4<T> quad_of(const uint32_t *words, vint first)
                    (T)gather(words, first + 2), (T)gather(words, first + 3));
 }
 #endif
+// The words of lanes. Groups of pixels have four pixels of a row in four lanes (shaders/groups.glsl); where the words of
+// all lanes lie together in this way, four at a time are loaded and stored, which is faster than gathers and scatters.
+struct place {
+    vint word;
+    bool in_fours;
+};
+INLINE place place_of(vint word)
+{
+#if LANES == 16 && defined(__AVX512F__)
+    __m512i fours = _mm512_add_epi32(_mm512_shuffle_epi32((__m512i)word, _MM_PERM_AAAA),
+                                     _mm512_broadcast_i32x4(_mm_setr_epi32(0, 1, 2, 3)));
+    return {word, _mm512_cmpeq_epi32_mask((__m512i)word, fours) == 0xffff};
+#elif LANES == 8 && defined(__AVX2__)
+    __m256i fours = _mm256_add_epi32(_mm256_shuffle_epi32((__m256i)word, 0),
+                                     _mm256_setr_epi32(0, 1, 2, 3, 0, 1, 2, 3));
+    return {word, _mm256_movemask_epi8(_mm256_cmpeq_epi32((__m256i)word, fours)) == -1};
+#else
+    return {word, false};
+#endif
+}
+INLINE vint load_words(const uint32_t *words, const place &at)
+{
+#if (LANES == 16 && defined(__AVX512F__)) || (LANES == 8 && defined(__AVX2__))
+    if (at.in_fours)
+        return (vint)load_quads(words, at.word, 0);
+#endif
+    return gather(words, at.word);
+}
+INLINE void store_words(uint32_t *words, const place &at, vint value, vbool m)
+{
+#if (LANES == 16 && defined(__AVX512F__)) || (LANES == 8 && defined(__AVX2__))
+    if (at.in_fours) {
+        for (int k = 0; k < LANES; k += 4) {
+            __m128i four, of_four;
+            memcpy(&four, (const char *)&value + 4 * k, sizeof four);
+            memcpy(&of_four, (const char *)&m + 4 * k, sizeof of_four);
+            _mm_maskstore_epi32((int *)words + at.word[k], of_four, four);
+        }
+        return;
+    }
+#endif
+    scatter(words, at.word, value, m);
+}
 template <class T> struct image2D : image {
 };
 template <class T> INLINE vec4<T> imageLoad(const image2D<T> &of, const vec2<vint> &p)
 {
-    vint word = pixel_word(of, p);
+    place at = place_of(pixel_word(of, p));
     auto channel = [&](int i) {
-        return i < of.channels ? (T)gather(of.words + (size_t)i * of.channel_words, word) : T{};
+        return i < of.channels ? (T)load_words(of.words + (size_t)i * of.channel_words, at) : T{};
     };
     return vec4<T>(channel(0), channel(1), channel(2), channel(3));
 }
 template <class T>
 INLINE void imageStore(const image2D<T> &of, const vec2<vint> &p, const vec4<T> &value, vbool m)
 {
-    vint word = pixel_word(of, p);
+    place at = place_of(pixel_word(of, p));
     for (int i = 0; i < of.channels; i++)
-        scatter(of.words + (size_t)i * of.channel_words, word, (vint)value[i], m);
+        store_words(of.words + (size_t)i * of.channel_words, at, (vint)value[i], m);
 }
 template <class T> INLINE vec4<T> texelFetch(const image2D<T> &of, const vec2<vint> &p)
 {
@@ -1071,7 +1114,7 @@ INLINE void imageStore(const bytes2D &of, const vec2<vint> &p, const vec4<vfloat
     vint word = {};
     for (int i = 0; i < 4; i++)
         word |= to_int(round(255.0f * clamp(value[i], lanes(0.0f), lanes(1.0f)))) << (8 * i);
-    scatter(of.words, pixel_word(of, p), word, m);
+    store_words(of.words, place_of(pixel_word(of, p)), word, m);
 }
 // An image by linear interpolation within a level, which is a whole number.
 struct picture2D : native_picture {
