@@ -305,7 +305,7 @@ OSD_PATCHES_OBJ := $(call obj,tests/bench/osd_patches.cpp)
 $(BUILD)/tests/bench_frame: $(call obj,$(patsubst %,tests/bench/%.cpp,frame_peers osd_drawing)) $(OSD_PATCHES_OBJ) $(EMBREE_OBJ)
 $(BUILD)/tests/bench_frame: BENCH_LIBS := -losdGPU $(BENCH_LIBS) -lembree3
 $(BUILD)/tests/bench_tables: $(call obj,tests/bench/tables_peers.cpp) $(OSD_PATCHES_OBJ)
-$(BUILD)/tests/bench_wire: $(call obj,tests/bench/daemon.cpp)
+$(BUILD)/tests/bench_png $(BUILD)/tests/bench_wire: $(call obj,tests/bench/daemon.cpp)
 $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_MAIN) $(ORACLE_SHARED) $(TEST_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD $@)

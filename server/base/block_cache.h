@@ -15,7 +15,7 @@ struct block_cache;
 struct block_cache *block_cache_create(size_t most_bytes);
 void block_cache_destroy(struct block_cache *block_cache); /* NULL is safe */
 
-/* As malloc() and free(), which they call directly if `block_cache` is NULL. A block must be given
+/* As malloc() and free(). NULL as `block_cache`: from and to the heap. A block must be given
  * back to the cache that it was taken from. */
 void *block_cache_take(struct block_cache *block_cache, size_t size);
 void block_cache_give(struct block_cache *block_cache, void *block); /* NULL is safe */

@@ -8,6 +8,7 @@
 #include <vector>
 
 extern "C" {
+#include "server/base/block_cache.h"
 #include "server/threads/workers.h"
 }
 
@@ -75,7 +76,7 @@ void measure_pictures(report *report, workers *workers)
                     check(workers_write_image(workers, &picture, &block, 1, nullptr, &bytes, &size,
                                               &error),
                           error);
-                    free(bytes);
+                    block_cache_give(nullptr, bytes);
                 });
             });
         table.row({f.name, number(pair.a.median(), 1), number(pair.b.median(), 1),

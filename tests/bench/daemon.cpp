@@ -2,7 +2,6 @@
 
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <stdexcept>
 
 #include <csignal>
@@ -25,13 +24,15 @@ daemon_process::daemon_process(const std::string &program, const std::string &de
     posix_spawn_file_actions_destroy(&actions);
     if (failed)
         throw std::runtime_error(program + ": cannot be started");
+    const std::string host = "tcp:127.0.0.1:", digits = "0123456789";
     std::string said;
-    std::smatch found;
     for (int waited = 0; waited < 1500; waited++, usleep(10000)) {
         std::ifstream file(said_path);
         said.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-        if (std::regex_search(said, found, std::regex("tcp:127\\.0\\.0\\.1:[1-9][0-9]*"))) {
-            tcp_address = found.str();
+        size_t at = said.find(host);
+        size_t end = at == said.npos ? at : said.find_first_not_of(digits, at + host.size());
+        if (end != said.npos) { /* the whole port is there */
+            tcp_address = said.substr(at, end - at);
             return;
         }
     }

@@ -1,5 +1,5 @@
 """test_sheen_bench.py BUILD: build/sheen-bench runs, writes figures, and needs only EGL, libepoxy and the C
-library."""
+library; and every program of `make bench` runs with the options that it has by itself."""
 import json
 import pathlib
 import re
@@ -67,6 +67,25 @@ class Bench(unittest.TestCase):
                 ran = run(*arguments)
                 self.assertEqual(ran.returncode, code)
                 self.assertIn(says, ran.stderr)
+
+
+@unittest.skipIf({"sanitize", "thread"} & set(BUILD.parts), "the peers lose memory of their own")
+class Defaults(unittest.TestCase):
+    """On the device that a user gets who names none, with few runs and small models."""
+    MODELS = ["tests/models/plane.obj"]
+    OPTIONS = {"wire": [*MODELS, "--frames", "1"], "size": ["--faces", "1024"], "worker": [], "paper": [], "closeup": []}
+
+    def test_every_program_measures(self):
+        programs = sorted(path for path in (BUILD / "tests").glob("bench_*") if "." not in path.name)
+        self.assertEqual(len(programs), len(list(pathlib.Path("tests/bench").glob("bench_*.cpp"))))
+        for program in programs:
+            question = program.name.removeprefix("bench_")
+            with self.subTest(question), tempfile.TemporaryDirectory() as folder:
+                ran = subprocess.run([program, "--runs", "1", "--folder", folder, *self.OPTIONS.get(question, self.MODELS)],
+                                     capture_output=True, text=True, timeout=300)
+                self.assertEqual((ran.returncode, ran.stderr), (0, ""))
+                figures = json.loads(pathlib.Path(folder, f"{program.name}.json").read_text())["figures"]
+                self.assertGreater(len(figures), 1)
 
 
 result = unittest.main(exit=False).result
