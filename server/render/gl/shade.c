@@ -16,11 +16,12 @@ static struct shade_key key_of(const struct frame_request *request, const struct
     const struct pattern *pattern = &light->pattern;
     const struct gl_image *image =
         pattern->kind == PATTERN_IMAGE ? gl_image_of(pattern->image) : NULL;
-    if (which == SHADED_SHARE) /* the same program for every pattern */
+    const uint8_t kind = family_is_at_infinity(family) ? 0 : (uint8_t)light->kind;
+    if (which == SHADED_SHARE || which == SHADED_PLANES) /* the same programs for every pattern */
         return (struct shade_key){
-            .family = (uint8_t)family, .light = (uint8_t)light->kind, .which = (uint8_t)which};
+            .family = (uint8_t)family, .light = kind, .which = (uint8_t)which};
     return (struct shade_key){.family = (uint8_t)family,
-                              .light = family_is_at_infinity(family) ? 0 : (uint8_t)light->kind,
+                              .light = kind,
                               .pattern = (uint8_t)pattern->kind,
                               .soft = pattern->soft > 0 && pattern->kind != PATTERN_RAINBOW &&
                                       pattern->kind != PATTERN_IMAGE,
