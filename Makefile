@@ -1,31 +1,31 @@
-# sheen's menu:
+# The targets:
 #   make            build/sheend, its workers build/sheend-cage and build/sheend-image, build/sheen
-#   make demo       install what is missing, build, render the demo model to a PNG
-#   make check      install what is missing, build, lint, run every test
+#   make demo       installs missing packages, builds, renders the demo model to a PNG
+#   make check      installs missing packages, builds, lints, runs every test
 #   make unit | oracle | service    one kind of test
-#   make oracle     DEVICE=native|mesa|N ISA=v2|v3|v4: what the oracles judge (native, the widest)
-#   make test       T=NAME: one row of what `make check` prints; tests/README.md says which there are
-#   make fuzz       SECONDS=60: fuzz each target of tests/fuzz so long (needs clang-14: sh deploy/deps.sh fuzz), and a
-#                   daemon with AddressSanitizer by sequences of messages
-#   make fuzz-coverage   lines of protocol/, the readers and the workers' messages that the corpora reach
-#   make soak       the service under load, SECONDS of each part (60), and 102 processes killed; prints
-#                   figures, judges ratios
-#   make bench      how fast, each question by a program of tests/bench, RUNS=9 of each; figures to
-#                   build/bench, and at the end every ratio beside the last run's
-#   make sheen-bench   the renderer's questions without peers, for a machine with EGL, libepoxy and no more
-#   make arm64      compiles the native device for arm64, where vectors have 4 lanes; nothing runs there
+#   make oracle     DEVICE=native|mesa|N ISA=v2|v3|v4: the device that the oracles judge (default: native, the widest set)
+#   make test       T=NAME: one row of what `make check` prints; see tests/README.md
+#   make fuzz       SECONDS=60: fuzzes each target of tests/fuzz for so long (needs clang-14: sh deploy/deps.sh fuzz),
+#                   and a daemon with AddressSanitizer by sequences of messages
+#   make fuzz-coverage   the lines of protocol/, the readers and the workers' messages that the corpora reach
+#   make soak       the service under load, SECONDS for each part (60), and 102 killed processes; prints
+#                   figures and judges ratios
+#   make bench      measures speed by the programs of tests/bench, RUNS=9 of each; writes figures to
+#                   build/bench, and in the end prints every ratio beside that of the previous run
+#   make sheen-bench   one program with the renderer's benchmarks, for a machine that has only EGL and libepoxy
+#   make arm64      compiles the native device for arm64, where vectors have 4 lanes, but runs nothing
 #   make lint       format, static analysis, dependency rules
-#   make format     let clang-format rewrite the sources
-#   make deps       install Debian packages (needs root or sudo)
-#   make install    PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=: programs, libsheen, manual pages, completions,
-#                   systemd's units; builds nothing again
+#   make format     formats the sources with clang-format
+#   make deps       installs Debian packages (needs root or sudo)
+#   make install    PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=: installs programs, libsheen, manual pages,
+#                   completions and systemd's units; builds nothing that `make` has built
 #   make clean
 # SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize, SANITIZE=thread
 # with ThreadSanitizer into build/thread. FUZZ=1 and COVERAGE=1 are the builds of make fuzz and
 # make fuzz-coverage.
 
 VERSION := 0.1.0
-# Of the manual pages: the version's day, so that equal sources give equal files.
+# The date in manual pages is that of the version, so that equal sources give equal files.
 DATE := 2026-11-30
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
@@ -36,7 +36,7 @@ FUZZ ?=
 COVERAGE ?=
 SECONDS ?= 60
 RUNS ?= 9
-# Programs at work at once in `make check` and `make demo`.
+# The number of commands that `make check` and `make demo` run in parallel.
 JOBS ?= $(shell nproc)
 
 comma := ,
@@ -54,13 +54,13 @@ CWARN := $(WARN) -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
 # Guards of the stack and of jumps, as far as the compiler has them for its processor.
 GUARDS := $(foreach flag,-fstack-clash-protection -fcf-protection,\
             $(shell $(CC) -Werror $(flag) -x c -S -o /dev/null /dev/null 2>/dev/null && echo $(flag)))
-# No contraction: the tables must not depend on the processor that built them.
-# Two folders give equal programs.
+# Without contraction of floating-point operations, tables do not depend on the processor that builds them.
+# With -ffile-prefix-map two folders give equal programs.
 BASE := $(OPT) -g $(if $(COVERAGE),,-ffile-prefix-map=$(CURDIR)=.) -ffp-contract=off -fstack-protector-strong $(GUARDS) -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
         -I. -I$(BUILD)/gen -MMD -MP -DSHEEN_VERSION=\"$(VERSION)\" -pthread
 CFLAGS += -std=c11 -D_GNU_SOURCE $(CWARN) $(BASE)
-# The check of vptr makes a pipe, which workers may not.
-# GCC 12 takes std::regex under a sanitizer for uninitialised.
+# UBSan's check of vptr makes a pipe, which worker processes may not do.
+# With a sanitizer GCC 12 warns falsely that std::regex is uninitialised.
 CXXFLAGS += -std=c++17 $(WARN) $(BASE) $(if $(SANITIZE),-fno-sanitize=vptr -Wno-maybe-uninitialized)
 LDFLAGS += $(OPT) -pthread -Wl,-z,relro,-z,now
 
@@ -76,11 +76,11 @@ PROTOCOL_SRC := $(wildcard protocol/*.c)
 CAGE_SRC := $(wildcard server/cage/*.c)
 CAGE_READ_SRC := $(wildcard server/cage/build/*.c server/cage/read/*.c server/cage/read/gltf/*.c server/cage/read/gltf/*.cpp)
 SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/surface/subdivision/*.c)
-# Between messages and scenes: for those who speak to clients.
+# Converts between messages and scenes: only for programs that speak the protocol.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
 SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))
 RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/native/rays/*.c)
-# Compiled once for each instruction set: its name, its lanes, and what tells the compiler.
+# These sources are compiled once for each instruction set: its name, its lanes, and its compiler flags.
 LANES_SRC := $(wildcard server/render/native/lanes/*.c)
 ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
 LANE_SETS := v2 v3 v4
@@ -91,20 +91,21 @@ else
 LANE_SETS := base
 LANES_base := -DLANES=4
 endif
-# GCC 12 takes what its own intrinsics leave undefined on purpose for an error, and warns that vectors are passed
-# in other registers than by older compilers: no function here is called from outside of its unit. -g1: lines and
-# functions, since names of what a translator wrote help nobody, and take a quarter of the compiler's time.
-# ThreadSanitizer ends every function by a handler of exceptions, which would need the runtime of C++ in sheend.
+# GCC 12 warns about values that its own intrinsics leave undefined on purpose, and about vectors that are passed in
+# other registers than by older compilers, which is harmless because no function here is called from another unit.
+# -g1: lines and functions only, because names of generated variables are useless and take a quarter of the
+# compiler's time. -fno-exceptions: ThreadSanitizer ends every function by a handler of exceptions, which would
+# need the runtime of C++ in sheend.
 LANES_CXXFLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),-O2) $(if $(SANITIZE),-fno-exceptions) -g1 -Wno-uninitialized -Wno-maybe-uninitialized -Wno-psabi -Wno-unused -Wno-unused-parameter -Wno-shadow
-# Frames need not be the same bytes from one instruction set to the next.
+# Frames of two instruction sets need not have the same bytes.
 LANES_FLAGS := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-O3) -ffp-contract=fast -fno-math-errno -fno-trapping-math
 IMAGE_SRC := $(wildcard server/image/*.c)
 IMAGE_LIBRARY_SRC := $(wildcard server/image/*.cpp)
-# What sheend shares with its workers, and what is theirs alone: each has a main and tasks.
+# Code that sheend shares with its worker programs, and code of the worker programs only; each has a main and tasks.
 WORKER_SHARED_SRC := server/sandbox/stream.c server/sandbox/job.c server/sandbox/pass.c server/sandbox/filter.c \
                      server/sandbox/cage_code.c server/sandbox/image_code.c
 ZYGOTE_SRC := server/sandbox/zygote.c server/sandbox/sandbox.c server/sandbox/threads.c
-# The rooms of the daemon alone.
+# The folders of the daemon only.
 SERVICE_SRC := $(foreach room,net session frame assets output threads ops,$(wildcard server/$(room)/*.c))
 CLIENT_LIB_SRC := $(wildcard client/lib/*.c client/lib/*/*.c)
 CLIENT_CLI_SRC := $(wildcard client/cli/*.c client/cli/*/*.c)
@@ -113,17 +114,17 @@ SHADERS := $(sort $(wildcard shaders/*.glsl))
 
 PROTOCOL_OBJ := $(call obj,$(PROTOCOL_SRC)) $(BUILD)/obj/gen/sheen.pb.c.o
 CORE_OBJ := $(call obj,$(CAGE_SRC) $(SURFACE_SRC) server/base/error.c)
-# The programs of shaders/ that run on processors, written as C++ by shaders/lanes.
+# The shader programs that run on processors; shaders/lanes translates them to C++.
 NATIVE_PROGRAMS := $(shell sed -nE 's/^(native|both) +([a-z_]+) .*/\2/p' shaders/programs)
 LANES_OBJ := $(foreach set,$(LANE_SETS),$(patsubst %.c,$(BUILD)/obj/%.$(set).o,$(LANES_SRC)) \
              $(patsubst %,$(BUILD)/obj/gen/lanes/%.$(set).o,$(NATIVE_PROGRAMS)))
 RENDER_OBJ := $(LANES_OBJ) $(call obj,$(SCENE_SRC) $(RENDER_SRC) server/base/processors.c protocol/control_group.c protocol/ranges.c) $(BUILD)/obj/gen/shaders.c.o
 SERVER_OBJ := $(call obj,$(filter-out server/base/error.c,$(wildcard server/base/*.c)) $(SERVICE_SRC) $(CONVERT_SRC)) $(RENDER_OBJ) $(CORE_OBJ) \
               $(call obj,$(IMAGE_SRC) $(WORKER_SHARED_SRC) server/sandbox/confine.c) $(PROTOCOL_OBJ)
-# With sanitizers, drivers stay loaded until the end: the leak checker must find what they hold.
+# With sanitizers, drivers stay loaded until the end, so that the leak checker finds their memory.
 KEEP_MODULES := $(if $(SANITIZE),$(call obj,tests/service/keep_modules.c))
 SERVER_OBJ += $(KEEP_MODULES)
-# What parses files from strangers: linked into the workers alone.
+# Code that parses files of clients: linked into the worker programs only.
 CAGE_TASKS_OBJ := $(call obj,$(CAGE_READ_SRC) server/sandbox/cage_tasks.c)
 IMAGE_TASKS_OBJ := $(call obj,$(IMAGE_LIBRARY_SRC) server/sandbox/image_tasks.c)
 WORKER_OBJ := $(call obj,server/base/error.c server/sandbox/stream.c server/sandbox/job.c server/sandbox/pass.c server/sandbox/filter.c $(ZYGOTE_SRC))
@@ -131,8 +132,8 @@ CAGE_WORKER_OBJ := $(call obj,server/sandbox/cage_main.c $(CAGE_SRC) server/sand
                    $(CAGE_TASKS_OBJ) $(WORKER_OBJ)
 IMAGE_WORKER_OBJ := $(call obj,server/sandbox/image_main.c $(IMAGE_SRC) server/sandbox/image_code.c) \
                     $(IMAGE_TASKS_OBJ) $(WORKER_OBJ)
-# libsheen and the command. What both need of the protocol's text and numbers is in each: libsheen shows
-# nothing but what sheen.h declares.
+# libsheen and the command. Both contain the protocol's code for texts and numbers, because libsheen exports only
+# what sheen.h declares.
 LIBSHEEN_OBJ := $(call obj,$(CLIENT_LIB_SRC)) $(PROTOCOL_OBJ)
 $(LIBSHEEN_OBJ): CFLAGS += -fPIC -fvisibility=hidden
 $(LIBSHEEN_OBJ): Makefile # objects of before had no such flags
@@ -160,7 +161,7 @@ $(BUILD)/sheend-cage: $(CAGE_WORKER_OBJ)
 $(BUILD)/sheend-image: $(IMAGE_WORKER_OBJ)
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) -o $@ $^ $(IMAGE_WORKER_LIBS)
-# The command has libsheen inside: it starts wherever it is copied to, and asks no loader for a folder.
+# The command contains libsheen, so that it can be copied anywhere and needs no library path.
 $(BUILD)/sheen: $(CLI_OBJ) $(BUILD)/libsheen.a
 	$(call say,LD $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CLIENT_LIBS)
@@ -168,15 +169,15 @@ $(BUILD)/libsheen.so.0: $(LIBSHEEN_OBJ) client/lib/sheen.map
 	$(call say,LD $@)
 	$(Q)$(CC) $(LDFLAGS) -shared -Wl,-soname,libsheen.so.0 -Wl,--version-script=client/lib/sheen.map \
 	    $(if $(SANITIZE),,-Wl,-z,defs) -o $@ $(LIBSHEEN_OBJ) $(LIBSHEEN_LIBS)
-# One object, in which hidden names are local: they meet no name of a program's.
+# A single object whose hidden names are local, so that they do not clash with names of a program.
 $(BUILD)/obj/libsheen.o: $(LIBSHEEN_OBJ)
 	$(Q)$(LD) -r -o $@ $^ && objcopy --localize-hidden $@
 $(BUILD)/libsheen.a: $(BUILD)/obj/libsheen.o
 	$(call say,AR $@)
 	$(Q)rm -f $@ && ar rcsD $@ $^
 
-# Manual pages and completions, written by two programs that have the tables of options inside. Neither is
-# installed: so sheen and sheend need no option that nobody but a build would use.
+# Two programs that contain the tables of options write the manual pages and completions. They are not installed,
+# so that sheen and sheend need no option that only the build would use.
 MANUAL_SHARED := $(call obj,$(patsubst %,deploy/manual/%.c,page shell output))
 $(BUILD)/sheen-pages: $(call obj,deploy/manual/sheen_pages.c) $(MANUAL_SHARED) \
                       $(filter-out %/cli/main.c.o,$(CLI_OBJ)) $(BUILD)/libsheen.a
@@ -198,7 +199,7 @@ $(BUILD)/obj/%.c.o: %.c | $(GEN)
 	@mkdir -p $(@D)
 	$(call say,CC $<)
 	$(Q)$(CC) $(CFLAGS) -c -o $@ $<
-# One unit for each instruction set.
+# Compiles a source for one instruction set.
 define lanes_of
 $(BUILD)/obj/%.$(1).o: %.c
 	@mkdir -p $$(@D)
@@ -225,23 +226,23 @@ $(BUILD)/gen/lanes/%.cpp: $(SHADERS) shaders/programs shaders/listed.py $(wildca
 $(BUILD)/gen/shaders.c: $(SHADERS) shaders/programs shaders/listed.py shaders/embed.py
 	@mkdir -p $(@D)
 	$(Q)PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 shaders/embed.py $(SHADERS) > $@.part && mv $@.part $@
-# A constant of a shader as the rows of a C array: server/render/native/rays/ask.c has the same places of rays.
+# A constant of a shader as the rows of a C array, so that server/render/native/rays/ask.c uses the same rays.
 $(BUILD)/gen/edge_rays.inc: shaders/rounded.glsl shaders/lanes/constant.py shaders/lanes/parse.py
 	@mkdir -p $(@D)
 	$(Q)PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=shaders /usr/bin/python3 -m lanes.constant $< EDGE_RAYS > $@.part && mv $@.part $@
 
-# sheend that fails where $SHEEN_FAULTS asks it to, and counts what its own code (no library's) takes from
-# the heap: what is installed cannot.
+# A sheend with the faults of $SHEEN_FAULTS, which also counts the heap blocks that its own code (not that of
+# libraries) takes. It is not installed.
 $(BUILD)/sheend-faults: $(call obj,tests/service/faults.c tests/service/taken_over.c tests/service/allocations.c) $(filter-out %/server/base/fault.c.o,$(SERVER_OBJ))
 	$(call say,LD $@)
 	$(Q)$(CC) $(LDFLAGS) -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup,--wrap=limit_build_faces -o $@ $^ $(SERVER_LIBS)
 
 # --- tests ---------------------------------------------------------------------------------------
-# Every test links everything but the two mains.
+# Every test links everything except the two mains.
 LIB_OBJ := $(filter-out %/server/ops/main.c.o $(KEEP_MODULES),$(SERVER_OBJ)) \
            $(CAGE_TASKS_OBJ) $(IMAGE_TASKS_OBJ) $(call obj,$(ZYGOTE_SRC)) $(filter-out %/client/cli/main.c.o,$(call obj,$(CLIENT_SRC)))
 TEST_LIB := $(BUILD)/libtests.a
-# 150 programs of 20 MB of symbols each take a minute to link. `make check TEST_LINK=` keeps the symbols. gold, which is
+# Without symbols, because linking 150 programs with 20 MB of symbols each takes a minute. `make check TEST_LINK=` keeps them. gold, which is
 # part of binutils too, takes half the processor time of the usual linker. The objects of tests hold lines and functions
 # only (-g1): a link leaves their debug information out, and writing all of it takes a quarter of the compiler's time.
 TEST_LINK := $(if $(FUZZ)$(SANITIZE)$(COVERAGE),,-fuse-ld=gold -Wl,--strip-debug)
@@ -260,7 +261,7 @@ $(BUILD)/tests/test_%: $(BUILD)/obj/tests/unit/test_%.c.o $(KEEP_MODULES) $(TEST
 	@mkdir -p $(@D)
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) -o $@ $< $(KEEP_MODULES) $(TEST_LIB) -lcmocka $(TEST_LIBS)
-# Hides libraries from the loader: tests/service/test_libraries.py.
+# Hides libraries from the loader (tests/service/test_libraries.py).
 $(BUILD)/tests/no_library.so: tests/service/no_library.c
 	@mkdir -p $(@D)
 	$(call say,LD $@)
@@ -275,7 +276,7 @@ $(ORACLE_TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/oracle/%.cpp.o $(ORACLE_SH
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) -o $@ $< $(ORACLE_SHARED) $(TEST_LIB) $(ORACLE_LIBS) $(TEST_LIBS)
 
-# Each target with libFuzzer, or with a main that replays its corpus.
+# Each fuzz target is linked with libFuzzer, or with a main that replays its corpus.
 FUZZ_NAMES := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 FUZZ_TARGETS := $(patsubst %,$(BUILD)/tests/fuzz_%,$(FUZZ_NAMES))
 FUZZ_SHARED := $(call obj,tests/fuzz/alloc_fail.c tests/fuzz/cage.c tests/fuzz/cplusplus.cpp \
@@ -296,12 +297,12 @@ $(FUZZ_TARGETS): $(BUILD)/tests/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.c.o $(FUZ
 	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) $(FUZZ_LINK) -o $@ $^ $(CAGE_WORKER_LIBS) $(SERVER_LIBS) $(CLIENT_LIBS)
 $(BUILD)/tests/fuzz_config: FUZZ_LINK += -Wl,--wrap=getaddrinfo
 
-# Every question of the benchmarks is one bench_NAME.cpp, and a program with the peers it names.
+# Every question of the benchmarks is a file bench_NAME.cpp and a program, with the peers listed below.
 BENCH_QUESTIONS := $(patsubst tests/bench/bench_%.cpp,%,$(wildcard tests/bench/bench_*.cpp))
 BENCH := $(patsubst %,$(BUILD)/tests/bench_%,$(BENCH_QUESTIONS))
 BENCH_MAIN := $(call obj,$(patsubst %,tests/bench/%.cpp,main bench timing sheet))
 BENCH_LIBS := $(ORACLE_LIBS) $(TEST_LIBS)
-# The peer gets what its users would give it: all of this processor.
+# The peer is compiled as its users would do it, for this processor.
 EMBREE_OBJ := $(call obj,tests/bench/embree.cpp)
 $(EMBREE_OBJ): CXXFLAGS += -O3 -march=native -ffp-contract=fast
 OSD_PATCHES_OBJ := $(call obj,tests/bench/osd_patches.cpp)
@@ -314,8 +315,8 @@ $(BENCH): $(BUILD)/tests/%: $(BUILD)/obj/tests/bench/%.cpp.o $(BENCH_MAIN) $(ORA
 	$(call say,LD $@)
 	$(Q)$(CXX) $(LDFLAGS) $(TEST_LINK) -o $@ $(filter %.o,$^) $(TEST_LIB) $(BENCH_LIBS)
 
-# The questions of the renderer without peers, for a machine that has EGL, libepoxy and nothing
-# else. What is in C++ brings its runtime along.
+# The benchmarks of the renderer without peers, for a machine that has only EGL and libepoxy. The C++ runtime is
+# linked statically.
 SHEEN_BENCH_OBJ := $(call obj,$(patsubst %,tests/bench/bench_%.cpp,closeup frame light paper size tables)) \
                    $(BENCH_MAIN) \
                    $(call obj,tests/bench/no_peers.cpp tests/bench/no_gltf.c) \
@@ -327,7 +328,7 @@ $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 	$(Q)$(CXX) $(LDFLAGS) -static-libstdc++ -static-libgcc -o $@ $^ -lepoxy -lm
 sheen-bench: $(BUILD)/sheen-bench
 
-# The native device for another processor, compiled and not linked: the libraries of the rest are this machine's.
+# The native device for another processor is compiled and not linked, because the other libraries are this machine's.
 native-units: $(LANES_OBJ) $(call obj,$(wildcard server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/native/rays/*.c server/render/*.c))
 arm64:
 	$(MAKE) BUILD=build/arm64 CC="$(filter ccache,$(CC)) aarch64-linux-gnu-gcc" CXX="$(filter ccache,$(CXX)) aarch64-linux-gnu-g++" \
@@ -341,7 +342,7 @@ service: all $(BUILD)/sheend-faults $(BUILD)/tests/no_library.so
 	bash tests/run.sh service $(BUILD)
 oracle: all $(ORACLE_TESTS)
 	DEVICE=$(DEVICE) ISA=$(ISA) bash tests/run.sh oracle $(BUILD)
-# A unit program and a corpus are built alone, what else tests need by the kind that the name tells.
+# Builds only what the named test needs: a unit program, a fuzz target, or what its kind needs.
 test: all $(if $(wildcard tests/unit/$(T).c)$(filter fuzz_%,$(T)),$(BUILD)/tests/$(T),\
           $(if $(filter lanes,$(T)),,$(if $(filter service_%,$(T)),$(BUILD)/sheend-faults $(BUILD)/tests/no_library.so,$(ORACLE_TESTS))))
 	bash tests/run.sh all $(BUILD) $(or $(T),$(error T=NAME: see tests/README.md))
@@ -365,7 +366,7 @@ soak: all $(BUILD)/sheend-faults
 	SHEEN_SOAK_S=$(SECONDS) /usr/bin/python3 tests/service/run.py $(BUILD) soak_load
 	SHEEN_KILLS=34 /usr/bin/python3 tests/service/run.py $(BUILD) test_faults.Killed
 
-# One after the other: each wants the machine for itself.
+# The programs run one after the other, because each needs the machine for itself.
 bench: all $(BENCH) $(BUILD)/sheen-bench
 	for bench in $(BENCH); do $$bench --runs $(RUNS) --folder $(BUILD)/bench || exit 1; done
 	/usr/bin/python3 tests/bench/summary.py $(BUILD)/bench
@@ -385,7 +386,7 @@ demo:
 deps:
 	sh deploy/deps.sh
 
-# What is installed knows PREFIX and LIBDIR, so these files are made where they go: nothing is built again.
+# Files that depend on PREFIX and LIBDIR are made in their final place, so that nothing is built again.
 DEST := $(DESTDIR)$(PREFIX)
 DEST_LIB := $(DESTDIR)$(LIBDIR)
 install: all
