@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs the Debian packages that building, running and testing sheen take. Does nothing when all
-# are there, so that it needs root only once. `deps.sh fuzz` adds what make fuzz takes.
+# Installs the Debian packages for building, running and testing sheen. Does nothing if all are
+# installed, so that it needs root only once. `deps.sh fuzz` adds the packages of make fuzz.
 set -eu
 packages="gcc g++ gcc-aarch64-linux-gnu g++-aarch64-linux-gnu libc6-dev-arm64-cross make pkg-config python3 python3-protobuf protobuf-compiler nanopb libnanopb-dev
  libepoxy-dev libegl-dev libegl1 libopengl0 libgl1-mesa-dri glslang-tools libopenimageio-dev libtinygltf-dev

@@ -1,6 +1,6 @@
 #!/bin/sh
-# pictures.sh MODEL FOLDER: the pictures of README.md. three_looks.jpg shows what its first commands do,
-# contact_sheet.jpg every line family, light and pattern.
+# pictures.sh MODEL FOLDER: draws the pictures of README.md. three_looks.jpg shows the results of its first
+# commands, contact_sheet.jpg every line family, light and pattern.
 # Needs oiiotool (Debian: openimageio-tools) and the programs of `make`.
 set -eu
 [ $# = 2 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
