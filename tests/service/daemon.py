@@ -22,10 +22,11 @@ MODELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "models"
 with open(SHEEND, "rb") as _file:
     _code = _file.read()
 SANITIZED = b"__asan_init" in _code or b"__tsan_init" in _code  # sanitizers keep freed memory
-# ThreadSanitizer makes frames many times slower: clients wait longer, and tests of time are left out.
+# ThreadSanitizer makes frames many times slower: clients and the daemon wait longer, and tests of time are left out.
 SLOWED = b"__tsan_init" in _code
 if SLOWED:
     wire.PATIENCE = 10
+LONGER = {"--drain-timeout": "300", "--stall-timeout": "300"} if SLOWED else {}
 judges_time = unittest.skipIf(SLOWED, "ThreadSanitizer makes frames many times slower")
 
 # A closed cube: small, but with extraordinary vertices.
@@ -65,8 +66,10 @@ class Daemon:
         self.path = path or os.path.join(self.folder, "sheen.sock")
         self.unix = "unix:" + self.path
         listen = ["--listen", self.unix] + (["--listen", "tcp:127.0.0.1:0"] if tcp else [])
+        longer = [word for name in LONGER if name not in arguments for word in (name, LONGER[name])]
         self.stderr = tempfile.TemporaryFile("w+")
-        self.process = subprocess.Popen([*under, self.program, *listen, "--device", DEVICE, *arguments],
+        self.process = subprocess.Popen([*under, self.program, *listen, "--device", DEVICE, *longer,
+                                         *arguments],
                                         stdout=subprocess.DEVNULL, stderr=self.stderr,
                                         env={**os.environ, **(env or {})})
         atexit.register(self.process.kill)  # ends the daemon if a test fails before it stops the daemon

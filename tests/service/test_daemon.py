@@ -255,7 +255,7 @@ class Shutdown(unittest.TestCase):
             self.assertEqual(daemon.stop(), 0)
 
     def test_new_requests_are_refused(self):
-        daemon = Daemon("--drain-timeout", str(30 * wire.PATIENCE))
+        daemon = Daemon()
         with Client(daemon.unix, timeout=60) as client:
             model = client.upload(CUBE, "cube.obj")
             client.send(wire.render(5, model, width=3000, height=3000))
@@ -275,7 +275,7 @@ class Shutdown(unittest.TestCase):
 
     def test_slow_readers_get_whole_frames(self):
         """The data exceeds any socket's buffer and is read slowly, while the daemon is told to end."""
-        daemon = Daemon("--drain-timeout", str(30 * wire.PATIENCE))
+        daemon = Daemon()
         size = 2000 * 2000 * 4
         with Client(daemon.unix, timeout=60) as one, Client(daemon.tcp, timeout=60) as two:
             model = one.upload(CUBE, "cube.obj", share=True)
