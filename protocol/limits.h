@@ -20,8 +20,11 @@
 #define PROTOCOL_MAX_SIZE_PX 65536u /* width and height; the device's limit may be lower */
 #define PROTOCOL_MAX_JPEG_PX 65500u /* width and height of a JPEG file: libjpeg's limit */
 
-/* The range of a daemon's memory budget, which a client chooses for its private daemon. */
-#define PROTOCOL_LEAST_MEMORY_BYTES (4ull * 1024 * 1024)
+/* The range of a daemon's memory budget, which a client chooses for its private daemon. The least is what
+ * the daemon itself takes that draws on processors, and a little more; a daemon that draws by a driver
+ * needs more, and says how much. */
+#define PROTOCOL_DAEMON_BYTES (32ull * 1024 * 1024)
+#define PROTOCOL_LEAST_MEMORY_BYTES (PROTOCOL_DAEMON_BYTES + 4ull * 1024 * 1024)
 #define PROTOCOL_MOST_MEMORY_BYTES (UINT64_MAX / 4) /* so that sums of a few do not overflow */
 
 /* The native device of a daemon: its threads, and its instruction sets. */

@@ -18,8 +18,10 @@ enum account_class {
     ACCOUNT_INPUT,       /* uploads and long messages being received, files being read */
     ACCOUNT_INTERACTIVE, /* interactive frames, from the first tile to the last byte sent */
     ACCOUNT_PATIENT,     /* the same for stills and batches, which may wait for other frames */
+    ACCOUNT_DEVICE,      /* what the device draws frames into, and keeps for later frames */
+    ACCOUNT_SPARES,      /* memory of sent frames that is kept for the next ones */
 };
-enum { N_ACCOUNT_CLASSES = ACCOUNT_PATIENT + 1 };
+enum { N_ACCOUNT_CLASSES = ACCOUNT_SPARES + 1 };
 
 #define ACCOUNT_NO_LIMIT UINT64_MAX
 

@@ -10,14 +10,27 @@
 #include "server/base/block_cache.h"
 
 struct memory {
-    struct store *store;             /* holds the budget, and evicts assets to make room */
+    struct store *store; /* holds the budget, and evicts assets to make room */
+    struct render_thread *render_thread;
     struct block_cache *block_cache; /* memory of charges; NULL: malloc() */
     struct client_quotas quotas;
+    /* Charged to the store's account for what nobody in particular uses: what the device holds, and
+     * spare blocks. */
+    uint64_t held_bytes, spare_bytes;
+    struct task drop; /* the device frees what it holds */
+    bool is_dropping;
 };
 
 /* In a private daemon the only client may use the whole budget, so quotas have no limit. */
 void memory_init(struct memory *memory, struct store *store, const struct asset_limits *limits,
-                 bool is_private, struct block_cache *block_cache);
+                 bool is_private, struct render_thread *render_thread,
+                 struct block_cache *block_cache);
+
+/* Charges what the device holds now (renderer_held_bytes()), after each step of a frame. When nothing
+ * else makes room, the device has to give it up. */
+void memory_set_held(struct memory *memory, uint64_t bytes);
+/* Brings the account of spare blocks up to date. */
+void memory_count(struct memory *memory);
 
 /* The charge of one frame. It may outlive the request and its session. */
 struct memory_charge;
@@ -28,14 +41,22 @@ enum memory_result {
     MEMORY_FAILED,
 };
 
+/* What a frame takes, bytes: its planes and their encoding; and on the device, to be drawn into. */
+struct memory_frame {
+    uint64_t bytes, device_bytes;
+};
+
 /* Charges the memory of a frame. `class` is ACCOUNT_INTERACTIVE or ACCOUNT_PATIENT. All patient
  * frames together may use half of the budget (or one frame), those of one identity a quarter and
- * one frame. In a shared daemon the caller has checked `bytes` against the limits memory_budget and
+ * one frame. In a shared daemon the caller has checked them against the limits memory_budget and
  * peer_memory. `asker` is as in store_reserve(). Sets *charge if charged, *error if failed. */
 enum memory_result memory_charge_frame(struct memory *memory, struct client_quota *quota,
                                        const uint8_t asker[static OWNER_BYTES],
-                                       enum account_class class, uint64_t bytes,
+                                       enum account_class class, const struct memory_frame *frame,
                                        struct memory_charge **charge, struct error *error);
+/* The device holds what it needed for the frame, or needs it no more: from now on it counts as what
+ * the device holds (memory_set_held()). */
+void memory_charge_drawn(struct memory_charge *charge);
 /* Reduces a charge to `bytes`. */
 void memory_charge_shrink(struct memory_charge *charge, uint64_t bytes);
 void memory_charge_release(void *charge); /* NULL is safe */

@@ -43,8 +43,8 @@ enum asset_state {
 
 /* The limits of models, images and other memory. */
 struct asset_limits {
-    /* Bytes of everything together: files, tables, polygons, texels and frames, in main memory and
-     * on the device. */
+    /* Bytes of everything together: the daemon itself, files, tables, polygons, texels and frames, in
+     * main memory and on the device. */
     uint64_t memory_budget;
     /* Bytes for each identity: uploads, long messages being received, and frames. */
     uint64_t peer_memory;
@@ -64,6 +64,7 @@ struct asset {
     char name[STORE_NAME_BYTES];
     uint8_t *file; /* malloc'd, or NULL */
     size_t file_bytes;
+    uint64_t work_bytes; /* charged beside them while ASSET_BUILDING */
     struct model *model;
     struct light_image *image;
     struct renderer_polygons *polygons; /* polygons in main memory */
@@ -103,7 +104,10 @@ struct asset_waiter {
 struct store_counts {
     uint32_t models, images; /* ready */
     uint64_t model_bytes;    /* tables on the device */
-    uint64_t used_bytes, budget_bytes;
+    /* Parts of the budget that are in use: files, tables, texels, messages and frames; what frames are
+     * drawn on; spare blocks; what the daemon itself takes. */
+    uint64_t used_bytes, device_bytes, spare_bytes, daemon_bytes;
+    uint64_t budget_bytes;
     /* Since the start: uses of a ready asset, and uses that had to wait. */
     uint64_t hits, misses, evictions;
 };
@@ -131,7 +135,20 @@ bool store_is_known_as(const struct asset *asset, const char *name);
 /* From now on every client may use the asset. */
 void store_share(struct asset *asset);
 
-/* The root of all accounts; its limit is the memory budget. */
+/* What of the memory budget the daemon itself takes, at most all of it: its programs' code and data, and
+ * the stacks of its threads. Call it before anything is charged. */
+void store_set_daemon_bytes(struct store *store, uint64_t bytes);
+
+/* Called before the store takes so many bytes: first to bring the accounts of what others keep up to
+ * date and to give up what is cheap to have again, then, is_last_resort, when not even the eviction
+ * of all unused assets would make room. The loop's thread. */
+struct store_relief {
+    void (*relieve)(void *owner, uint64_t bytes, bool is_last_resort);
+    void *owner;
+};
+void store_set_relief(struct store *store, const struct store_relief *relief);
+
+/* The root of all accounts; its limit is the memory budget less what the daemon itself takes. */
 struct account *store_account(struct store *store);
 
 /* Charges `bytes`, which are about to be allocated for `what` (a file's name), to `account`, which

@@ -38,6 +38,8 @@ static void build_finished(void *owner, void *result, const struct error *failur
     while (store->building[at] != asset)
         at++;
     store->building[at] = store->building[--store->n_building];
+    account_refund(&asset->account, ACCOUNT_INPUT, asset->work_bytes);
+    asset->work_bytes = 0;
     asset->users++; /* the waiters that wake up must not evict it */
     build_ended(asset, failure);
     asset->users--;
@@ -60,9 +62,31 @@ static bool build_may_need(void *owner, size_t bytes, struct error *error)
     const struct store *store = asset->store;
     return bytes <= store->account.limit || store->is_private ||
            error_set(error, ERROR_MODEL,
-                     "it needs at least %zu bytes and the daemon's memory budget is %" PRIu64
-                     ": ask its operator for more (sheend --memory-budget)",
+                     "it needs at least %zu bytes and the daemon's memory budget has %" PRIu64
+                     " for it: ask its operator for more (sheend --memory-budget)",
                      bytes, store->account.limit);
+}
+
+/* Charges what building a model takes beside its file and its tables: the cage, its topology and the
+ * plan of the tables. In a private daemon it is charged in any case, so that the need of the tables,
+ * which is told to the client, comes on top. */
+static bool reserve_work(struct asset *asset, struct error *error)
+{
+    enum { WORK_PER_FILE_BYTE = 12 };
+    struct store *store = asset->store;
+    const uint64_t bytes = (uint64_t)asset->file_bytes * WORK_PER_FILE_BYTE;
+    struct error why;
+    if (asset->kind != ASSET_MODEL)
+        return true;
+    if (store->is_private)
+        account_charge(&asset->account, ACCOUNT_INPUT, bytes);
+    else if (!build_may_need(asset, bytes, &why))
+        return error_set(error, ERROR_MODEL, "%s: %s", asset->name, why.text);
+    else if (!store_reserve(store, asset->share->id, &asset->account, ACCOUNT_INPUT, bytes,
+                            asset->name, ERROR_MODEL, error))
+        return false;
+    asset->work_bytes = bytes;
+    return true;
 }
 
 /* Has the client that asked for this build another one running? */
@@ -114,7 +138,8 @@ static void start_builds(struct store *store)
         };
         struct error error = {0};
         store->building[store->n_building++] = asset;
-        if (!(asset->kind == ASSET_MODEL ? model_build_start(&order, &error)
+        if (!reserve_work(asset, &error) ||
+            !(asset->kind == ASSET_MODEL ? model_build_start(&order, &error)
                                          : light_image_build_start(&order, &error)))
             build_finished(asset, NULL, &error);
     }

@@ -32,6 +32,17 @@ struct store *store_create(struct pool *pool, struct pool *readers,
     return store;
 }
 
+void store_set_daemon_bytes(struct store *store, uint64_t bytes)
+{
+    store->daemon_bytes = bytes;
+    store->account.limit = store->limits->memory_budget - bytes;
+}
+
+void store_set_relief(struct store *store, const struct store_relief *relief)
+{
+    store->relief = *relief;
+}
+
 struct account *store_account(struct store *store)
 {
     return &store->account;
@@ -289,8 +300,13 @@ bool store_is_building(const struct store *store)
 
 struct store_counts store_count(const struct store *store)
 {
-    struct store_counts counts = {.used_bytes = account_used(&store->account),
-                                  .budget_bytes = store->account.limit,
+    const uint64_t *used = store->account.used;
+    const uint64_t device = used[ACCOUNT_DEVICE], spares = used[ACCOUNT_SPARES];
+    struct store_counts counts = {.used_bytes = account_used(&store->account) - device - spares,
+                                  .device_bytes = device,
+                                  .spare_bytes = spares,
+                                  .daemon_bytes = store->daemon_bytes,
+                                  .budget_bytes = store->limits->memory_budget,
                                   .hits = store->n_hits,
                                   .misses = store->n_misses,
                                   .evictions = store->n_evictions};

@@ -18,6 +18,8 @@ struct store {
     const struct asset_limits *limits;
     bool is_private;        /* the daemon is private */
     struct account account; /* root of all accounts */
+    struct store_relief relief;
+    uint64_t daemon_bytes; /* of the budget, not in the account */
     uint32_t max_image_px;
     size_t n_assets;
     struct store_shares shares;

@@ -85,26 +85,42 @@ bool store_make_room(struct store *store, const uint8_t *asker, const struct sto
 static bool refuse_private(const struct store *store, uint64_t bytes, const char *what,
                            enum error_kind permanent, struct error *error)
 {
-    const uint64_t mib = 1 << 20, used = account_used(&store->account);
+    const uint64_t mib = 1 << 20, budget = store->limits->memory_budget;
+    const uint64_t used = account_used(&store->account) + store->daemon_bytes;
     return error_set(error, permanent,
                      "%s needs %" PRIu64 " bytes beside %" PRIu64
                      " in use, and this command's daemon has a memory budget of %" PRIu64
                      ": give more, as --memory-budget %" PRIu64 "M, if the machine has it",
-                     what, bytes, used, store->account.limit, (used + bytes) / 8 * 9 / mib + 1);
+                     what, bytes, used, budget, (used + bytes) / 8 * 9 / mib + 1);
+}
+
+static void relieve(struct store *store, uint64_t bytes, bool is_last_resort)
+{
+    if (store->relief.relieve)
+        store->relief.relieve(store->relief.owner, bytes, is_last_resort);
+}
+
+static bool make_room(struct store *store, const uint8_t *asker, uint64_t bytes)
+{
+    const struct store_want want = {SHARE_BYTES, bytes};
+    relieve(store, bytes, false);
+    if (store_make_room(store, asker, &want))
+        return true;
+    relieve(store, bytes, true);
+    return store_make_room(store, asker, &want);
 }
 
 bool store_reserve(struct store *store, const uint8_t asker[static OWNER_BYTES],
                    struct account *account, enum account_class class, uint64_t bytes,
                    const char *what, enum error_kind permanent, struct error *error)
 {
-    const struct store_want want = {SHARE_BYTES, bytes};
     const uint64_t budget = store->account.limit;
     if (bytes > budget && !store->is_private)
         return error_set(error, permanent,
-                         "%s needs %" PRIu64 " bytes and the daemon's memory budget is %" PRIu64
-                         ": ask its operator for more (sheend --memory-budget)",
+                         "%s needs %" PRIu64 " bytes and the daemon's memory budget has %" PRIu64
+                         " for it: ask its operator for more (sheend --memory-budget)",
                          what, bytes, budget);
-    if (bytes <= budget && store_make_room(store, asker, &want)) {
+    if (bytes <= budget && make_room(store, asker, bytes)) {
         account_charge(account, class, bytes);
         return true;
     }

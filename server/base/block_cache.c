@@ -126,6 +126,13 @@ void block_cache_trim(struct block_cache *block_cache)
     }
 }
 
+void block_cache_drop(struct block_cache *block_cache)
+{
+    /* What was used since the last trim is unused at the second. */
+    block_cache_trim(block_cache);
+    block_cache_trim(block_cache);
+}
+
 size_t block_cache_bytes(struct block_cache *block_cache)
 {
     pthread_mutex_lock(&block_cache->lock);
@@ -138,9 +145,7 @@ void block_cache_destroy(struct block_cache *block_cache)
 {
     if (!block_cache)
         return;
-    /* Call it twice: what was used since the last trim is unused at the second. */
-    block_cache_trim(block_cache);
-    block_cache_trim(block_cache);
+    block_cache_drop(block_cache);
     pthread_mutex_destroy(&block_cache->lock);
     free(block_cache);
 }

@@ -22,6 +22,8 @@ void block_cache_give(struct block_cache *block_cache, void *block); /* NULL is 
 
 /* Frees blocks that were not used since the last call. */
 void block_cache_trim(struct block_cache *block_cache);
+/* Frees all blocks that are kept. */
+void block_cache_drop(struct block_cache *block_cache);
 /* The bytes that are kept now. */
 size_t block_cache_bytes(struct block_cache *block_cache);
 

@@ -23,6 +23,8 @@ enum request_class request_class_of(sheen_RequestClass request_class);
 /* The memory in bytes that the device keeps between the tiles of a frame: 0 for the exact surface,
  * which keeps none. `render` has passed message_check_render(). */
 uint64_t request_paused_bytes(const struct request_host *host, const sheen_Render *render);
+/* The memory in bytes that the device needs to draw the frame on. */
+uint64_t request_device_bytes(const struct request_host *host, const sheen_Render *render);
 
 /* Start a request. It answers `reply` later, or before these functions return; if the client goes
  * first, it never does. */

@@ -25,6 +25,19 @@ uint64_t request_paused_bytes(const struct request_host *host, const sheen_Rende
                                        render->height_px, cut_for(host, render).tile_px);
 }
 
+uint64_t request_device_bytes(const struct request_host *host, const sheen_Render *render)
+{
+    const struct cut cut = cut_for(host, render);
+    const uint32_t measured = PLANE_LIGHT | PLANE_CURVATURE | PLANE_LIGHT_CHANGE;
+    const struct renderer_frame_size size = {.width_px = render->width_px,
+                                             .height_px = render->height_px,
+                                             .tile_px = cut.tile_px,
+                                             .in_place = cut.in_place,
+                                             .several_lights = render->lights_count > 1,
+                                             .measures = message_render_planes(render) & measured};
+    return renderer_frame_bytes(render_thread_device(host->render_thread), &size);
+}
+
 /* --- into the queue */
 
 static bool is_abandoned(void *owner)
@@ -234,6 +247,7 @@ static void step_run(struct task *task, void *context)
         request->step = renderer_step(context, request->model.asset->model->gpu,
                                       &request->frame_work, &request->frame, &request->failure);
     request->step_us = clock_now_us() - start_us;
+    request->held_bytes = renderer_held_bytes(context);
 }
 
 /* Records that the device has the polygons of this frame. */
@@ -255,6 +269,10 @@ static void step_done(struct task *task)
     struct request_host *host = request->host;
     scheduler_stepped(&host->scheduler, &request->entry, request->step_us,
                       request->step == FRAME_MORE);
+    memory_set_held(host->memory, request->held_bytes);
+    /* The device has the planes of an exact frame after its first tile. */
+    if (request->step != FRAME_MORE || request->frame_request.surface.kind == SURFACE_EXACT)
+        memory_charge_drawn(request->charge);
     if (request->frame_work.has_drawn && request->step != FRAME_FAILED) {
         note_polygons(request);
         costs_learn(&host->costs, request->cost_key, next_tile_px(request), request->step_us);
@@ -287,8 +305,10 @@ static bool take_memory(struct request *request)
     struct request_host *host = request->host;
     if (request->charge)
         return true;
+    const struct memory_frame frame = {request->frame_bytes,
+                                       request_device_bytes(host, &request->render)};
     switch (memory_charge_frame(host->memory, request->client->quota, request->asker,
-                                account_class(request), request->frame_bytes, &request->charge,
+                                account_class(request), &frame, &request->charge,
                                 &request->failure)) {
     case MEMORY_CHARGED:
         return true;

@@ -11,11 +11,13 @@
 #define KIB ((uint64_t)1 << 10)
 #define MIB ((uint64_t)1 << 20)
 #define GIB ((uint64_t)1 << 30)
-/* The lowest values that still let a client be served. Memory: a frame of 640 x 480 pixels in
- * colour, the bytes that it is encoded to (JPEG: at most 6 a pixel) and a small model. Frame: the
+/* The lowest values that still let a client be served. Memory of one: a frame of 640 x 480 pixels in
+ * colour, the bytes that it is encoded to (JPEG: at most 6 a pixel) and a small model. Budget: the
+ * daemon itself, a frame of 160 x 120 pixels with what it is drawn on, and a small model. Frame: the
  * colour plane of 640 x 480 pixels. File: a small model. Output: about what a socket's buffer takes
  * at once. */
-#define LEAST_MEMORY PROTOCOL_LEAST_MEMORY_BYTES
+#define LEAST_MEMORY (PROTOCOL_LEAST_MEMORY_BYTES - PROTOCOL_DAEMON_BYTES)
+#define LEAST_BUDGET PROTOCOL_LEAST_MEMORY_BYTES
 #define LEAST_FRAME (640u * 480 * 4)
 #define LEAST_FILE (64 * KIB)
 #define LEAST_OUTPUT (64 * KIB)
@@ -26,17 +28,17 @@
 
 const struct limits_row LIMITS[] = {
     {"memory-budget", UNIT_BYTES,
-     "memory for files, models, images, long messages and frames together, in main memory\n"
-     "and on the device",
-     LEAST_MEMORY, MOST_BYTES, 4 * GIB, AT(assets.memory_budget)},
+     "memory for the daemon itself, files, models, images, long messages and frames together,\n"
+     "in main memory and on the device. A frame is drawn on another 100 to 200 bytes a pixel",
+     LEAST_BUDGET, MOST_BYTES, 4 * GIB, AT(assets.memory_budget)},
     {"peer-memory", UNIT_BYTES,
      "memory for uploads, long messages and frames of one user (Unix socket), certificate or\n"
      "token. Stored models and images do not count: if room is needed, those of clients that\n"
      "hold more than an equal share of the budget are evicted first",
      LEAST_MEMORY, MOST_BYTES, 2 * GIB, AT(assets.peer_memory)},
     {"spare-memory", UNIT_BYTES,
-     "memory of sent frames that is kept for the next frames, in addition to the budget; what\n"
-     "is not used for 5 s is freed",
+     "memory of sent frames that is kept for the next frames, within the budget; what is not\n"
+     "used for 5 s, or is needed for something else, is freed",
      0, MOST_BYTES, 256 * MIB, AT(spare_memory)},
     {"max-upload", UNIT_BYTES, "largest model or image file", LEAST_FILE, PROTOCOL_MAX_UPLOAD_BYTES,
      PROTOCOL_MAX_UPLOAD_BYTES, AT(session.max_upload)},

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "server/base/clock.h"
+#include "server/base/resident.h"
 #include "server/base/log.h"
 #include "server/base/quote.h"
 #include "server/threads/pool.h"
@@ -147,26 +148,20 @@ static void write_store(const struct daemon *daemon, struct text_buffer *text)
     put(text, "images", "gauge", counts.images, "Light images ready to be used.");
     put(text, "model_cache_bytes", "gauge", counts.used_bytes,
         "Memory of files, tables, texels, messages and frames, on the GPU too.");
-    put(text, "model_cache_limit_bytes", "gauge", counts.budget_bytes, "The most they may take.");
+    put(text, "model_cache_limit_bytes", "gauge", counts.budget_bytes,
+        "The most that they and the next three may take.");
+    put(text, "device_bytes", "gauge", counts.device_bytes,
+        "Memory that frames are drawn on, kept for later frames of the same view.");
+    put(text, "spare_bytes", "gauge", counts.spare_bytes,
+        "Memory of sent frames, kept for the next ones.");
+    put(text, "daemon_bytes", "gauge", counts.daemon_bytes,
+        "Memory of the budget that is set aside for the daemon itself.");
     put(text, "model_cache_hits_total", "counter", counts.hits,
         "Uses of a model or image that was ready.");
     put(text, "model_cache_misses_total", "counter", counts.misses,
         "Uses that had to wait for a build.");
     put(text, "model_cache_evictions_total", "counter", counts.evictions,
         "Models and images forgotten to make room.");
-}
-
-/* Resident memory in bytes, 0 when /proc cannot be read. */
-static uint64_t resident_bytes(void)
-{
-    unsigned long long all = 0, resident = 0;
-    FILE *file = fopen("/proc/self/statm", "re");
-    if (!file)
-        return 0;
-    if (fscanf(file, "%llu %llu", &all, &resident) != 2)
-        resident = 0;
-    fclose(file);
-    return resident * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
 static uint64_t count_descriptors(void)

@@ -1,5 +1,6 @@
 /* The life of the service. */
 #include <errno.h>
+#include <malloc.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,6 +103,7 @@ static void tick(void *owner)
     if (now - service->trimmed_us > TRIM_US) {
         service->trimmed_us = now;
         block_cache_trim(daemon->block_cache);
+        malloc_trim(0); /* pages within the heap that are free */
     }
     if (service->proxied)
         proxied_tick(service->proxied, now, daemon->sessions.limits.handshake_s * 1000000);

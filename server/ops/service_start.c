@@ -1,8 +1,11 @@
 /* Devices and threads of the service, and what each room needs of the others. */
 #include <errno.h>
+#include <inttypes.h>
 #include <string.h>
 
+#include "protocol/limits.h"
 #include "server/assets/model_file.h"
+#include "server/base/resident.h"
 #include "server/net/http.h"
 #include "server/ops/descriptors.h"
 #include "server/ops/device_choice.h"
@@ -74,16 +77,38 @@ static bool start_threads(struct service *service, struct error *error)
                              &daemon->limits.assets, service->single, error));
 }
 
+/* What the daemon itself takes of the budget, and still takes when it has served for a while: what the device's
+ * drivers have taken by now, too. */
+static uint64_t daemon_bytes(const struct service *service)
+{
+    uint64_t resident = service->has_driver ? resident_bytes() : 0;
+    return resident > PROTOCOL_DAEMON_BYTES ? resident : PROTOCOL_DAEMON_BYTES;
+}
+
+/* Sets aside what the daemon takes. False if the budget leaves too little. */
+static bool divide_budget(struct service *service, struct error *error)
+{
+    uint64_t own = daemon_bytes(service), budget = service->daemon.limits.assets.memory_budget;
+    uint64_t least = own + PROTOCOL_LEAST_MEMORY_BYTES - PROTOCOL_DAEMON_BYTES;
+    if (budget < least)
+        return error_set(error, ERROR_REQUEST,
+                         "memory-budget is %" PRIu64 "; on this device it must be at least %" PRIu64
+                         ", of which the daemon and its drivers take %" PRIu64,
+                         budget, least, own);
+    store_set_daemon_bytes(service->daemon.store, own);
+    return true;
+}
+
 /* Hands to each folder's part what it needs of the others. */
 static void connect_rooms(struct service *service)
 {
     struct daemon *daemon = &service->daemon;
     const struct limits *limits = &daemon->limits;
-    uint64_t max_upload_bytes = limits->assets.memory_budget < limits->session.max_upload
-                                    ? limits->assets.memory_budget
-                                    : limits->session.max_upload;
+    uint64_t room = store_account(daemon->store)->limit;
+    uint64_t max_upload_bytes =
+        room < limits->session.max_upload ? room : limits->session.max_upload;
     memory_init(&daemon->memory, daemon->store, &limits->assets, service->single,
-                daemon->block_cache);
+                daemon->render_thread, daemon->block_cache);
     daemon->requests = (struct request_host){
         .pool = daemon->pool,
         .render_thread = daemon->render_thread,
@@ -127,7 +152,7 @@ bool service_start(struct service *service, struct error *error)
     struct daemon *daemon = &service->daemon;
     const struct service_options *options = &service->options;
     jpeg_keep_defaults();
-    if (!start_threads(service, error))
+    if (!start_threads(service, error) || !divide_budget(service, error))
         return false;
     connect_rooms(service);
     if (*options->models &&

@@ -60,7 +60,11 @@ struct renderer_device {
     /* Memory in bytes, as the functions renderer_..._bytes() of renderer.h tell it. */
     size_t (*model_bytes)(const struct limit_tables *tables);
     size_t (*image_bytes)(const struct image *image);
+    uint64_t (*frame_bytes)(const struct renderer_frame_size *size);
     uint64_t (*paused_bytes)(uint32_t width_px, uint32_t height_px, uint64_t tile_px);
+
+    uint64_t (*held_bytes)(const struct renderer *renderer);
+    void (*drop_held)(struct renderer *renderer);
 
     /* Sets work->state, if the device needs one, and work->in_place. */
     bool (*begin)(struct renderer *renderer, struct frame_work *work, struct error *error);

@@ -66,6 +66,22 @@ size_t renderer_image_bytes(const struct renderer_device *device, const struct i
     return device->image_bytes(image);
 }
 
+uint64_t renderer_frame_bytes(const struct renderer_device *device,
+                              const struct renderer_frame_size *size)
+{
+    return device->frame_bytes(size);
+}
+
+uint64_t renderer_held_bytes(const struct renderer *renderer)
+{
+    return renderer->device->held_bytes(renderer);
+}
+
+void renderer_drop_held(struct renderer *renderer)
+{
+    renderer->device->drop_held(renderer);
+}
+
 uint64_t renderer_paused_bytes(const struct renderer_device *device, uint32_t width_px,
                                uint32_t height_px, uint64_t tile_px)
 {

@@ -58,9 +58,18 @@ size_t renderer_model_bytes(const struct renderer_device *device,
                             const struct limit_tables *tables);
 /* for an image and its smaller copies */
 size_t renderer_image_bytes(const struct renderer_device *device, const struct image *image);
+/* to draw a frame. The device may keep all of it afterwards, for later frames of the same view. */
+uint64_t renderer_frame_bytes(const struct renderer_device *device,
+                              const struct renderer_frame_size *size);
 /* for a frame of polygons between its steps, in tiles of this size */
 uint64_t renderer_paused_bytes(const struct renderer_device *device, uint32_t width_px,
                                uint32_t height_px, uint64_t tile_px);
+
+/* The memory in bytes that the device holds for frames now, and may hold on to. */
+uint64_t renderer_held_bytes(const struct renderer *renderer);
+/* Frees what is held for frames, kept views too: later frames are drawn anew. Safe between the steps
+ * of a frame. */
+void renderer_drop_held(struct renderer *renderer);
 
 /* Checks the request (ERROR_REQUEST names the field and its range), cuts the frame into tiles and
  * allocates its planes. If a frame is given up between two steps, call frame_work_finish() and

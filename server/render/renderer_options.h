@@ -37,4 +37,13 @@ struct renderer_info {
     uint32_t max_width_px, max_height_px;
 };
 
+/* What the memory for a frame depends on. */
+struct renderer_frame_size {
+    uint32_t width_px, height_px;
+    uint64_t tile_px; /* of struct frame_work, as the next */
+    bool in_place;
+    bool several_lights;
+    bool measures; /* planes of lights or curvature */
+};
+
 #endif

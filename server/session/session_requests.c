@@ -96,6 +96,9 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
     struct codec_layout all;
     codec_layout_init(&all, render->width_px, render->height_px, message_render_planes(render));
     uint64_t bytes = frame_bytes(session, render);
+    /* With what the device draws on, beside the daemon itself. */
+    uint64_t everything = bytes + request_device_bytes(session->host->requests, render) +
+                          memory->memory_budget - store_account(session->host->store)->limit;
     const char *all_of_it = render->surface == sheen_SurfaceKind_SURFACE_EXACT
                                 ? "planes and their encoding"
                                 : "planes, their encoding and what polygons are drawn on";
@@ -104,7 +107,8 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
         uint64_t needed, limit;
     } checks[] = {
         {"planes", "max-frame", all.raw_bytes, limits->max_frame},
-        {all_of_it, "memory-budget", bytes, memory->memory_budget},
+        {"planes, their encoding, what they are drawn on and the daemon itself", "memory-budget",
+         everything, memory->memory_budget},
         {all_of_it, "peer-memory", bytes, memory->peer_memory},
     };
     size_t n_checks = session->host->is_private ? 1 : sizeof checks / sizeof *checks;

@@ -44,6 +44,14 @@ def grid(n):
     return ("\n".join(lines) + "\n").encode()
 
 
+DAEMON_MIB = 32  # of a budget, for the daemon itself
+
+
+def budget(mib):
+    """--memory-budget for a daemon on processors that has so much beside itself."""
+    return f"{DAEMON_MIB + mib}M"
+
+
 def run(*arguments, env=None, timeout=60):
     return subprocess.run([SHEEND, *arguments], capture_output=True, text=True, timeout=timeout,
                           env={**os.environ, **(env or {})})

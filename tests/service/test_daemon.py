@@ -11,7 +11,7 @@ import time
 import unittest
 
 import wire
-from daemon import CUBE, SHEEND, Daemon, grid, judges_time, run
+from daemon import CUBE, SHEEND, Daemon, budget, grid, judges_time, run
 from test_untrusted import workers
 from wire import Client
 
@@ -37,7 +37,7 @@ class Options(unittest.TestCase):
                                   ("--device", "--device"), ("device", "--device", "fast"),
                                   ("memory-budget", "--memory-budget", "much"),
                                   ("memory-budget", "--memory-budget", "0"),
-                                  ("memory-budget is '1'; it must be bytes from 4194304 to ",
+                                  ("memory-budget is '1'; it must be bytes from 37748736 to ",
                                    "--memory-budget", "1"),
                                   ("memory-budget", "--memory-budget", "-1"),
                                   ("memory-budget", "--memory-budget", "99999999999999T"),
@@ -422,7 +422,7 @@ class Timeouts(unittest.TestCase):
 
 class Budget(unittest.TestCase):
     def test_need_and_budget_are_named(self):
-        daemon = Daemon("--memory-budget", "4M")
+        daemon = Daemon("--memory-budget", budget(4))
         with Client(daemon.unix) as client:
             model = client.upload(grid(150), "sheet.obj")
             client.send(wire.render(5, model))
@@ -442,7 +442,7 @@ class Budget(unittest.TestCase):
     def test_least_recently_used_goes_first(self):
         """The budget has room for two sheets of about 3.4 MB each with their tables, and not for three."""
         sheets = [grid(70) + f"# {i}\n".encode() for i in range(3)]
-        daemon = Daemon("--memory-budget", "8M")
+        daemon = Daemon("--memory-budget", budget(9))
         with Client(daemon.unix) as client:
             ids = [client.upload(data, f"{i}.obj") for i, data in enumerate(sheets[:2])]
             for model in ids:

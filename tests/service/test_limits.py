@@ -14,7 +14,7 @@ import unittest
 import zlib
 
 import wire
-from daemon import CUBE, SANITIZED, Daemon, DaemonCase, grid, resident_kb, run
+from daemon import CUBE, SANITIZED, Daemon, DaemonCase, budget, grid, resident_kb, run
 from test_untrusted import children, image_pattern, workers
 from wire import BATCH, INTERACTIVE, Client, field, message
 
@@ -242,7 +242,7 @@ class Workers(unittest.TestCase):
 
 
 class Memory(DaemonCase):
-    arguments = ("--memory-budget", "24M", "--peer-memory", "12M", "--max-upload", "4M",
+    arguments = ("--memory-budget", "400M", "--peer-memory", "12M", "--max-upload", "4M",
                  "--max-frame", "8M", "--max-image-side", "100")
 
     def client(self, address=None):
@@ -387,16 +387,19 @@ class Memory(DaemonCase):
     def test_no_frame_waits_for_one_behind_it(self):
         """The second frame has no room beside its model. It must not wait for the memory of the third frame, whose
         answer comes after the second's."""
-        client = self.client()
+        daemon = Daemon("--memory-budget", budget(45), tcp=False)
+        client = Client(daemon.unix)
         model = client.upload(grid(170), "large.obj")
         client.query(model)
         self.assertGreater(client.stats()[23][0], 15 * MIB)
-        seqs = [client.ask(model, 400, 300, encoding=wire.PNG),
-                client.ask(model, 1200, 1200, encoding=wire.ZSTD), client.ask(model)]
+        seqs = [client.ask(model, 300, 200, encoding=wire.PNG),
+                client.ask(model, 500, 500, encoding=wire.ZSTD), client.ask(model)]
         answers = dict(client.answer() for _ in seqs)
         self.assertIsInstance(answers[seqs[0]], wire.Frame)
         self.assertEqual(answers[seqs[1]].code, wire.ERROR_OVERLOADED)
         self.assertIsInstance(answers[seqs[2]], wire.Frame)
+        client.socket.close()
+        self.assertEqual(daemon.stop(), 0)
 
     def test_unread_stills_of_one_leave_room(self):
         """One user's connections do not read their frames; a client of another address does not wait for them."""
@@ -416,15 +419,15 @@ class Memory(DaemonCase):
 
     def test_polygons_count(self):
         client = self.client()
-        model = client.upload(grid(20), "sheet.obj")
-        polygons = lambda level: client.send(
+        model, large = client.upload(grid(20), "sheet.obj"), client.upload(grid(44), "large.obj")
+        polygons = lambda model, level: client.send(
             message(wire.RENDER, client.next_seq(), field(1, model) + field(2, 64) + field(3, 48) +
                     field(9, 1) + field(10, 0) + field(40, 1) + field(41, level)))
         before = client.stats()[23][0]
-        polygons(4)  # 400 faces x 17 x 17 vertices of 32 bytes, and their indices
+        polygons(model, 4)  # 400 faces x 17 x 17 vertices of 32 bytes, and their indices
         client.read_frame(client.seq)
         self.assertGreater(client.stats()[23][0] - before, 400 * 17 * 17 * 32)
-        polygons(6)
+        polygons(large, 6)
         self.assert_refused(client, wire.ERROR_REQUEST, "--memory-budget", client.seq)
 
 
@@ -438,7 +441,7 @@ class Polygons(unittest.TestCase):
     def test_polygons_are_made_once(self):
         """There is one copy of the polygons of a model and level in main memory and one on the device, whichever
         client draws them; the budget has no room for another. They are evicted before their model, and made again."""
-        daemon = Daemon("--memory-budget", "24M")
+        daemon = Daemon("--memory-budget", budget(24))
         clients = [Client(daemon.unix, minor=1) for _ in range(4)]
         sheets = [clients[0].upload(grid(20) + b"# %d\n" % i, "sheet.obj", share=True)
                   for i in range(3)]
@@ -641,7 +644,7 @@ class Input(unittest.TestCase):
 
     def test_thrown_away_in_time(self):
         """Every long message that finds no memory has its own time limit."""
-        daemon = Daemon("--message-timeout", "1", "--memory-budget", "4M")
+        daemon = Daemon("--message-timeout", "1", "--memory-budget", budget(4))
         with Client(daemon.unix) as holder, Client(daemon.unix) as client:
             for who, size in ((holder, 4 * MIB), (client, 2 * MIB)):
                 who.send(wire.upload_begin(2, bytes(32), size, "a.obj"))

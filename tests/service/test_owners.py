@@ -8,7 +8,7 @@ import unittest
 
 import wire
 from authority import Authority, context
-from daemon import CUBE, SHEEN, Daemon, grid
+from daemon import CUBE, SHEEN, Daemon, budget, grid
 from test_access import Case, tls_address, token_line
 from test_operations import get, metrics_address, read_metrics
 from wire import Client
@@ -208,7 +208,7 @@ class Room(unittest.TestCase):
     """Who must make room in the store. There are two owners: the clients over TCP, and the user."""
 
     def setUp(self):
-        self.daemon = Daemon("--memory-budget", "8M")
+        self.daemon = Daemon("--memory-budget", budget(12))
         self.many, self.other = Client(self.daemon.unix), Client(self.daemon.tcp)
 
     def tearDown(self):

@@ -7,7 +7,7 @@ import unittest
 
 import mesa
 import wire
-from daemon import CUBE, SANITIZED, SHEEN, Daemon, DaemonCase, grid, resident_kb
+from daemon import CUBE, DAEMON_MIB, SANITIZED, SHEEN, Daemon, DaemonCase, budget, grid, resident_kb, run
 from test_client import sheen
 from test_untrusted import image_pattern
 
@@ -73,26 +73,26 @@ class Private(unittest.TestCase):
                      "native", *arguments)
 
     def test_what_it_asks_for_is_enough(self):
-        done = self.render("--memory-budget", "6M")
+        done = self.render("--memory-budget", budget(6), size="64x48")
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertNotIn("sheend", done.stderr)
-        asked = re.search(r"large.obj needs (\d+) bytes .* budget of 6291456: give more, as "
+        asked = re.search(r"large.obj needs (\d+) bytes .* budget of 39845888: give more, as "
                           r"(--memory-budget) (\d+M)", done.stderr)
         self.assertIsNotNone(asked, done.stderr)
         self.assertGreater(int(asked.group(1)), 20 << 20)
-        self.assertEqual(self.render(*asked.groups()[1:]).returncode, 0)
+        self.assertEqual(self.render(*asked.groups()[1:], size="64x48").returncode, 0)
         self.assertTrue(os.path.exists(self.picture))
 
     def test_a_file_and_a_frame_over_it(self):
         with open(self.model, "ab") as file:
             file.write(b"# " + b"x" * (4 << 20))
-        done = self.render("--memory-budget", "4M")
+        done = self.render("--memory-budget", budget(4))
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("give it a larger --memory-budget", done.stderr)
         with open(self.model, "wb") as file:
             file.write(grid(10))
-        done = self.render("--memory-budget", "4M", size="2000x2000")
+        done = self.render("--memory-budget", budget(4), size="2000x2000")
         self.assert_more_is_enough(done, "2000x2000")
         # The whole budget may be one client's, above the limit of a client of a shared daemon (--peer-memory).
         self.assertEqual(self.render("--memory-budget", "5G").returncode, 0)
@@ -112,35 +112,43 @@ class Private(unittest.TestCase):
         """Too little for the planes alone, for the planes and the file, and for these and the model's tables."""
         with open(self.model, "wb") as file:
             file.write(grid(10))
-        for budget in (8194879, 8194880, 8300000):
-            with self.subTest(budget=budget):
-                self.assert_more_is_enough(self.render("--memory-budget", str(budget),
+        done = self.render("--memory-budget", budget(4), size="1000x1000")
+        frame = int(re.search(r"a frame needs (\d+) bytes", done.stderr).group(1))
+        for more in (-1, 0, 100000):
+            with self.subTest(more=more):
+                self.assert_more_is_enough(self.render("--memory-budget", str((DAEMON_MIB << 20) + frame + more),
                                                        size="1000x1000"), "1000x1000")
 
 
 class TooLarge(DaemonCase):
     """The budget has room for the file, but not for its tables: 40,000 faces take 23 MB."""
-    arguments = ("--memory-budget", "6M")
+    arguments = ("--memory-budget", budget(6))
 
     def test_is_refused_by_need_and_budget(self):
         with wire.Client(self.daemon.unix) as client:
             with self.assertRaises(wire.Refused) as caught:
-                client.render(client.upload(grid(LARGE), "large.obj"), 320, 240)
+                client.render(client.upload(grid(LARGE), "large.obj"))
         text = caught.exception.text
         self.assertNotIn("\n", text)
         self.assertIn("--memory-budget", text)
         self.assertNotIn("--device", text)
-        found = re.search(r"needs (?:at least )?(\d+) bytes.* budget (?:is|of) (\d+)", text)
+        found = re.search(r"needs (?:at least )?(\d+) bytes.* budget has (\d+)", text)
         self.assertIsNotNone(found, text)
         self.assertGreater(int(found.group(1)), int(found.group(2)))
         self.assertEqual(int(found.group(2)), 6 << 20)
 
     @unittest.skipUnless(mesa.device(), "no Mesa here")
     def test_stored_tables_name_the_device_that_needs_less(self):
-        daemon = Daemon("--device", mesa.device(), *self.arguments, tcp=False)
+        """There drivers take a part of the budget, so that sheend starts with no less than it says."""
+        device = ("--device", mesa.device(), "--listen", self.daemon.unix + "2", "--memory-budget")
+        done = run(*device, "36M")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        least = int(re.search(r"memory-budget is 37748736; on this device it must be at least (\d+), of which "
+                              r"the daemon and its drivers take \d+\n$", done.stderr).group(1))
+        daemon = Daemon("--device", mesa.device(), "--memory-budget", str(least + (31 << 19)), tcp=False)
         with wire.Client(daemon.unix) as client:
             with self.assertRaisesRegex(wire.Refused, "--memory-budget.*; with --device native"):
-                client.render(client.upload(grid(LARGE), "large.obj"), 320, 240)
+                client.render(client.upload(grid(LARGE), "large.obj"))
         self.assertEqual(daemon.stop(), 0)
 
     def test_its_operator_is_to_be_asked(self):
@@ -157,7 +165,7 @@ class TooLarge(DaemonCase):
     def test_a_model_that_fits_renders_afterwards(self):
         with wire.Client(self.daemon.unix) as client:
             with self.assertRaises(wire.Refused):
-                client.render(client.upload(grid(LARGE), "large.obj"), 320, 240)
+                client.render(client.upload(grid(LARGE), "large.obj"))
             frame = client.render(client.upload(grid(10), "small.obj"))
             self.assertEqual(len(frame.data), 64 * 48 * 4)
 

@@ -100,7 +100,7 @@ static bool apply_memory_budget(struct options *options, const char *value, char
 {
     return number_parse(value, PROTOCOL_LEAST_MEMORY_BYTES, PROTOCOL_MOST_MEMORY_BYTES, true,
                         &options->memory_budget_bytes) ||
-           options_refuse(why, "must be bytes, 4M or more, as 4000000000, 800M or 4G");
+           options_refuse(why, "must be bytes, 36M or more, as 4000000000, 800M or 4G");
 }
 
 static bool apply_json(struct options *options, const char *value, char *why)

@@ -14,6 +14,7 @@
 #include "server/render/gl/gather.h"
 #include "server/render/gl/visibility.h"
 #include "server/render/gl/frame.h"
+#include "server/render/gl/kept.h"
 #include "server/render/gl/light_image.h"
 #include "server/render/gl/model.h"
 
@@ -166,6 +167,19 @@ static enum frame_step step(struct renderer *renderer, struct renderer_model *mo
     return gl_frame_step(renderer, model, work, frame, error);
 }
 
+static uint64_t held_bytes(const struct renderer *renderer)
+{
+    const struct gl_renderer *r = (const struct gl_renderer *)(const void *)renderer;
+    return r->context.is_lost ? 0 : planes_bytes(r);
+}
+
+static void drop_held(struct renderer *renderer)
+{
+    struct gl_renderer *r = gl_renderer_of(renderer);
+    if (!r->context.is_lost)
+        planes_drop(r);
+}
+
 const struct renderer_device gl_device = {
     .create = create,
     .destroy = destroy,
@@ -175,7 +189,10 @@ const struct renderer_device gl_device = {
     .image_destroy = gl_image_destroy,
     .model_bytes = limit_tables_bytes,
     .image_bytes = gl_image_bytes,
+    .frame_bytes = gl_frame_bytes,
     .paused_bytes = gl_paused_bytes,
+    .held_bytes = held_bytes,
+    .drop_held = drop_held,
     .begin = gl_frame_begin,
     .step = step,
 };

@@ -109,6 +109,18 @@ static void cut_frame(struct gl_frame *own)
         tiles_cut(request->width_px, request->height_px, own->work->tile_px, own->work->in_place);
 }
 
+/* A frame in several tiles in place has a target for all of them beside the lists of a tile. */
+uint64_t gl_frame_bytes(const struct renderer_frame_size *size)
+{
+    const struct tile_size tile =
+        tiles_cut(size->width_px, size->height_px, size->tile_px, size->in_place);
+    if (tile.width == size->width_px && tile.height == size->height_px)
+        return target_bytes(tile.width, tile.height);
+    const struct tile_size drawn = tile_size_with_margin(&tile, size->width_px, size->height_px);
+    return target_bytes(drawn.width, drawn.height) +
+           (size->in_place ? target_bytes(size->width_px, size->height_px) : 0);
+}
+
 uint64_t gl_paused_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px)
 {
     const struct tile_size tile = tiles_cut(width_px, height_px, tile_px, false);

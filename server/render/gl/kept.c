@@ -61,6 +61,35 @@ void planes_choose(struct gl_renderer *r, const struct gl_model *model, struct g
                       : PLANES_APART);
 }
 
+static void drop(struct target *target, struct kept_view *kept)
+{
+    target_finish(target);
+    *kept = (struct kept_view){0};
+}
+
+void planes_drop(struct gl_renderer *r)
+{
+    drop(&r->target, &r->kept);
+    for (int i = 0; i < PLANES_KINDS; i++)
+        drop(&r->resting[i].target, &r->resting[i].kept);
+    r->collecting.frame = 0;
+}
+
+static uint64_t bytes_of(const struct target *target)
+{
+    return target->width == 0 ? 0
+                              : target_bytes(target->width, target->height) +
+                                    (uint64_t)target->max_rounded * ROUNDED_BYTES;
+}
+
+uint64_t planes_bytes(const struct gl_renderer *r)
+{
+    uint64_t bytes = bytes_of(&r->target);
+    for (int i = 0; i < PLANES_KINDS; i++)
+        bytes += bytes_of(&r->resting[i].target);
+    return bytes;
+}
+
 /* --- tiles into one */
 
 /* The lists that are collected, and how many of their entries a workgroup takes (list.glsl). */

@@ -28,4 +28,9 @@ void collect_end(struct gl_renderer *r, const struct gl_model *model,
 void planes_keep(struct gl_renderer *r, const struct gl_model *model,
                  const struct frame_request *request);
 
+/* Frees all planes: no view is kept. */
+void planes_drop(struct gl_renderer *r);
+/* The device memory of all planes, bytes. */
+uint64_t planes_bytes(const struct gl_renderer *r);
+
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "server/render/native/device_internal.h"
+#include "server/render/native/frame/memory.h"
 #include "server/render/native/patches.h"
 
 /* Largest side of a picture: no table of the device is longer. */
@@ -76,13 +77,6 @@ static size_t model_bytes(const struct limit_tables *tables)
     return native_model_most_bytes(tables, NATIVE_PATCH_BYTES);
 }
 
-static uint64_t paused_bytes(uint32_t width_px, uint32_t height_px, uint64_t tile_px)
-{
-    const struct tile_size tile = tiles_cut(width_px, height_px, tile_px, false);
-    const struct tile_size drawn = tile_size_with_margin(&tile, width_px, height_px);
-    return native_seen_bytes(drawn.width, drawn.height);
-}
-
 const struct renderer_device native_renderer_device = {
     .on_demand = true,
     .create = create,
@@ -93,7 +87,10 @@ const struct renderer_device native_renderer_device = {
     .image_destroy = native_image_destroy,
     .model_bytes = model_bytes,
     .image_bytes = native_image_bytes,
-    .paused_bytes = paused_bytes,
+    .frame_bytes = native_frame_bytes,
+    .paused_bytes = native_frame_paused_bytes,
+    .held_bytes = native_frame_held_bytes,
+    .drop_held = native_frame_drop_held,
     .begin = native_frame_begin,
     .step = native_frame_step,
 };

@@ -62,10 +62,6 @@ static void lay_out_lists(struct native_target *t, struct layout *layout)
     }
 }
 
-/* Words per pixel of what always exists, without groups. */
-enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 4 + NATIVE_LISTS - 2 };
-enum { LIGHT_WORDS_PER_PX = 2 * 6 + 4, MEASURE_WORDS_PER_PX = 2 + 2 + 4 };
-
 /* Memory of which less than half is used is freed first, unless it is small: tiles at the right and lower border are
  * smaller than the others, and the next frame needs the whole again. */
 static bool reserve(struct native_words *words, size_t n)

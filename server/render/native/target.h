@@ -20,6 +20,10 @@ enum native_list_of {
     NATIVE_LISTS
 };
 
+/* Words per pixel of what always exists, without groups; of frames of several lights; of measured planes. */
+enum { WORDS_PER_PX = 1 + 4 + 2 + 1 + 2 + 1 + 3 + 4 + NATIVE_LISTS - 2 };
+enum { LIGHT_WORDS_PER_PX = 2 * 6 + 4, MEASURE_WORDS_PER_PX = 2 + 2 + 4 };
+
 /* Zero it before the first use. A row of a plane has `width` words. */
 struct native_target {
     uint32_t width, height;

@@ -1,0 +1,56 @@
+"""--memory-budget bounds what the daemon takes: a mixed load at small budgets, and its resident memory meanwhile."""
+import random
+import threading
+import time
+import unittest
+
+import wire
+from daemon import CUBE, DAEMON_MIB, SANITIZED, Daemon, budget, grid, resident_kb
+from test_untrusted import image_pattern
+from wire import BATCH, INTERACTIVE, Client
+
+LOAD_S, WARM_UP_S = 9, 2
+SIZES = ((64, 48), (160, 120), (320, 240), (640, 480), (1280, 720), (1600, 1000))
+ENCODINGS = (wire.RAW, wire.ZSTD, wire.PNG, wire.JPEG)
+
+
+def ppm(side):
+    return f"P6\n{side} {side}\n255\n".encode() + bytes(range(256)) * (side * side * 3 // 256) + bytes(side * side * 3 % 256)
+
+
+class Resident(unittest.TestCase):
+    def load(self, daemon, seed, ends, done):
+        """One client: models, pictures of all sizes and kinds; who is refused goes on."""
+        noise = random.Random(seed)
+        with Client(daemon.unix, minor=1) as client:
+            while time.monotonic() < ends:
+                try:
+                    model = client.upload(noise.choice((CUBE, grid(noise.randrange(2, 90)))), "a.obj")
+                    for _ in range(noise.randrange(1, 6)):
+                        size, extra = noise.choice(SIZES), b""
+                        if noise.random() < 0.2:
+                            extra = image_pattern(client.upload(ppm(noise.randrange(1, 400)), "i.ppm", wire.IMAGE))
+                        client.render(model, *size, encoding=noise.choice(ENCODINGS), extra=extra,
+                                      planes=1, kind=noise.choice((INTERACTIVE, wire.STILL, BATCH)))
+                        done.append(size)
+                except wire.Refused as refusal:
+                    self.assertIn(refusal.code, (wire.ERROR_TOO_BIG, wire.ERROR_OVERLOADED, wire.ERROR_MODEL, wire.ERROR_IMAGE,
+                                                 wire.ERROR_REQUEST, wire.ERROR_UNKNOWN_MODEL), refusal)
+
+    @unittest.skipIf(SANITIZED, "sanitizers hoard memory")
+    def test_stays_within_the_budget(self):
+        for mib in (4, 96):  # the least, and one in which frames, views and models push each other out
+            with self.subTest(budget=budget(mib)):
+                daemon, done = Daemon("--memory-budget", budget(mib), tcp=False), []
+                ends = time.monotonic() + LOAD_S
+                clients = [threading.Thread(target=self.load, args=(daemon, seed, ends, done)) for seed in range(3)]
+                for client in clients:
+                    client.start()
+                most_kb = 0
+                time.sleep(WARM_UP_S)
+                while any(client.is_alive() for client in clients):
+                    most_kb = max(most_kb, resident_kb(daemon.process.pid))
+                    time.sleep(0.01)
+                self.assertGreater(len(done), 5)  # and not all of it refused
+                self.assertLess(most_kb, (DAEMON_MIB + mib) * 1024 * 1.15)
+                self.assertEqual(daemon.stop(), 0)
