@@ -8,6 +8,10 @@
 set -u
 kind=$1 build=$2 only=${3:-}
 at_once=$(($(nproc) + 1))
+# These rows start first, so that none of them is left to run alone at the end.
+long_rows="frames_shapes test_native_frames service_limits service_faults oracle_self filter lines areas \
+service_access sheen_bench test_gpu_sources"
+turn=long
 shapes=../shared/shapes
 # In builds with sanitizers, leaks and races of other libraries are not reported.
 export LSAN_OPTIONS="suppressions=tests/lsan.supp:print_suppressions=0"
@@ -59,8 +63,13 @@ run() { # name, command...
     [ "$bad" = 0 ] || { tail -n 40 "$log"; }
 }
 
-# As run, in the background, as soon as fewer than $at_once programs are running.
+# As run, in the background, as soon as fewer than $at_once programs are running. Does nothing when it is not the
+# row's turn.
 beside() { # name, command...
+    case " $long_rows " in
+    *" $1 "*) [ "$turn" = long ] || return 0 ;;
+    *) [ "$turn" = short ] || return 0 ;;
+    esac
     while [ "$(jobs -rp | wc -l)" -ge "$at_once" ]; do
         wait -n
     done
@@ -151,7 +160,7 @@ service_alone() {
 }
 
 oracle() {
-    [ -d "$shapes" ] || echo "note: $shapes is not here: the oracles judge tests/models only"
+    [ -d "$shapes" ] || [ "$turn" = short ] || echo "note: $shapes is not here: the oracles judge tests/models only"
     cages=$(shapes_of 'catmark_*.obj') all=$(shapes_of '*.obj')
     # shellcheck disable=SC2046,SC2086 # lists of files without spaces
     [ -z "$cages" ] || beside frames_shapes served "$build/tests/test_frames" --library $cages
@@ -203,26 +212,26 @@ oracle_on_mesa() {
     beside mesa_lines on_mesa served "$build/tests/test_lines" "$build/sheen" tests/models/body.obj
 }
 
-# The longest first.
+# Runs the rows of these kinds in parallel, the longest first.
+in_parallel() { # kind...
+    for turn in long short; do
+        for rows; do
+            "$rows"
+        done
+    done
+    wait
+}
+
 case $kind in
 all)
-    oracle
-    service
-    unit
-    fuzz
-    bench
-    wait
+    in_parallel oracle service unit fuzz bench
     service_alone
     ;;
 service)
-    service
-    wait
+    in_parallel service
     service_alone
     ;;
-unit | fuzz | bench | oracle)
-    "$kind"
-    wait
-    ;;
+unit | fuzz | bench | oracle) in_parallel "$kind" ;;
 *)
     echo "usage: run.sh unit|fuzz|bench|service|oracle|all BUILD [NAME]" >&2
     exit 2
