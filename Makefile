@@ -51,12 +51,13 @@ OPT += -fsanitize=fuzzer-no-link
 endif
 WARN := -Wall -Wextra -Werror -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-qual
 CWARN := $(WARN) -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
+SYMBOLS := -g
 # Guards of the stack and of jumps, as far as the compiler has them for its processor.
 GUARDS := $(foreach flag,-fstack-clash-protection -fcf-protection,\
             $(shell $(CC) -Werror $(flag) -x c -S -o /dev/null /dev/null 2>/dev/null && echo $(flag)))
 # Without contraction of floating-point operations, tables do not depend on the processor that builds them.
 # With -ffile-prefix-map two folders give equal programs.
-BASE := $(OPT) -g $(if $(COVERAGE),,-ffile-prefix-map=$(CURDIR)=.) -ffp-contract=off -fstack-protector-strong $(GUARDS) -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
+BASE := $(OPT) $(SYMBOLS) $(if $(COVERAGE),,-ffile-prefix-map=$(CURDIR)=.) -ffp-contract=off -fstack-protector-strong $(GUARDS) -D_FORTIFY_SOURCE=$(if $(FUZZ)$(SANITIZE)$(COVERAGE),0,2) \
         -I. -I$(BUILD)/gen -MMD -MP -DSHEEN_VERSION=\"$(VERSION)\" -pthread
 CFLAGS += -std=c11 -D_GNU_SOURCE $(CWARN) $(BASE)
 # UBSan's check of vptr makes a pipe, which worker processes may not do.
@@ -332,7 +333,7 @@ sheen-bench: $(BUILD)/sheen-bench
 native-units: $(LANES_OBJ) $(call obj,$(wildcard server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/native/rays/*.c server/render/*.c))
 arm64:
 	$(MAKE) BUILD=build/arm64 CC="$(filter ccache,$(CC)) aarch64-linux-gnu-gcc" CXX="$(filter ccache,$(CXX)) aarch64-linux-gnu-g++" \
-	    OPT=-O1 LANES_FLAGS="$(filter-out -O3,$(LANES_FLAGS)) -O1" native-units
+	    OPT=-O1 SYMBOLS= LANES_FLAGS="$(filter-out -O3,$(LANES_FLAGS)) -O1" native-units
 
 .PHONY: tests test unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench sheen-bench native-units arm64 lint format demo deps install clean
 tests: all $(BUILD)/sheend-faults $(BUILD)/tests/no_library.so $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH) $(BUILD)/sheen-bench
