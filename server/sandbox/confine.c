@@ -159,9 +159,9 @@ static const long DRIVER_CALLS[] = {
 static const long SANITIZER_CALLS[] = {
     SYS_mmap,        SYS_mprotect, SYS_openat,       SYS_clone, SYS_ptrace,          SYS_prctl,
     SYS_sigaltstack, SYS_getppid,  SYS_rt_sigaction, SYS_kill,  SYS_set_robust_list, SYS_rseq,
-    SYS_ioctl,       SYS_mincore,
+    SYS_ioctl,       SYS_mincore,  SYS_getdents64,
 #ifdef __x86_64__
-    SYS_open,        SYS_pipe,
+    SYS_open,        SYS_pipe,     SYS_getdents,
 #endif
 };
 
