@@ -1,5 +1,5 @@
-/* Another program of sheen as a child process, with one socket to its parent. Client and daemon start
- * theirs by it.
+/* Another program of sheen as a child process, with one socket to its parent: a client starts
+ * its private daemon by it.
  *
  * Thread: any; no other thread need hold still, since nothing of this process is changed. */
 #ifndef SHEEN_PROTOCOL_CHILD_H

@@ -76,7 +76,7 @@ room server/render/native/rays "$common|server/surface|server/render|server/rend
 room server/render/native/lanes "$common|server/surface|server/render|server/render/native|server/render/native/polygons|server/render/native/rays" 'one unit for each instruction set'
 # The folders of the service. Each may include folders listed before it and none after it.
 room server/net "$common|protocol" 'connections do not know what is said over them'
-room server/threads "$common|protocol|server/cage|server/image|server/net|server/render|server/sandbox" \
+room server/threads "$common|server/cage|server/image|server/net|server/render|server/sandbox" \
     'threads run what others give them'
 room server/output "$common|protocol|server/image|server/render|server/scene|server/threads" \
     'an encoder knows pictures, no client'
@@ -102,7 +102,6 @@ no_include server/ops 'server/render/([^gn]|g[^l]|(gl|native)/[^d]|(gl|native)/d
 no_include server/render 'server/surface/(bicubic|texels)' 'of which degree patches are is the business of server/surface'
 no_include server/scene 'server/surface/(bicubic|texels|patch|evaluate|bound)' 'a request knows the size of a surface, not the surface'
 no_include server/assets 'server/surface/(bicubic|texels|patch|evaluate|bound|node|subdivision/[^b])' 'models are built and kept, not looked into'
-no_include server/threads 'protocol/([^c]|c[^h])' 'of the protocol threads know how a child is started alone'
 no_include server/threads 'server/sandbox/([a-z]*_tasks|sandbox)\.h' 'what parses files from strangers is for the workers alone'
 no_include client/cli 'client/lib/([^s]|s[^h])' 'of libsheen the command knows sheen.h alone'
 no_include client/cli 'protocol/(address|codec|frame|message|tls)\.' 'of the protocol the command knows no byte: libsheen says it'

@@ -4,7 +4,7 @@
 #include <sys/resource.h>
 
 enum {
-    PER_JOB = 4, /* input, answer, and both ends of a pipe */
+    PER_JOB = 5, /* input twice, answer, and both ends of a pipe */
     OWN = 128,   /* listeners, devices and libraries: more than are used */
     MARGIN = 9,  /* a program that is started again (3), kept input files (4), a client that is
                           turned away, a model's file */

@@ -37,7 +37,7 @@ struct job {
 
 /* The descriptors that are sent with a job. */
 enum job_fd {
-    JOB_INPUT,  /* at least input_bytes long */
+    JOB_INPUT,  /* input_bytes long; can only be read */
     JOB_ANSWER, /* empty */
     JOB_END,    /* a pipe to which the job's end is written */
     N_JOB_FDS,

@@ -3,7 +3,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -24,13 +23,29 @@ static bool is_idle(const char *thread)
     return !end || end[1] != ' ' || end[2] == 'S';
 }
 
+/* The name of the calling thread's folder: in a namespace of processes of its own the thread has another
+ * number there than gettid() gives. */
+static bool own_folder(char name[static 32])
+{
+    char path[64];
+    ssize_t n = readlink("/proc/thread-self", path, sizeof path - 1); /* PID/task/TID */
+    if (n <= 0)
+        return false;
+    path[n] = 0;
+    const char *slash = strrchr(path, '/');
+    snprintf(name, 32, "%.31s", slash ? slash + 1 : path);
+    return true;
+}
+
 static bool all_idle(void)
 {
+    char own[32];
+    if (!own_folder(own))
+        return false;
     DIR *threads = opendir("/proc/self/task");
     bool idle = threads != NULL;
     for (const struct dirent *entry; idle && (entry = readdir(threads));)
-        idle = entry->d_name[0] == '.' || strtol(entry->d_name, NULL, 10) == gettid() ||
-               is_idle(entry->d_name);
+        idle = entry->d_name[0] == '.' || strcmp(entry->d_name, own) == 0 || is_idle(entry->d_name);
     if (threads)
         closedir(threads);
     return idle;

@@ -194,6 +194,15 @@ static bool serve(struct zygote *zygote)
     }
 }
 
+/* Overwrites the environment, which may hold secrets of whoever started the daemon: it lies where every
+ * job's process could read it. */
+static void forget_environment(void)
+{
+    for (char **entry = environ; entry && *entry; entry++)
+        explicit_bzero(*entry, strlen(*entry));
+    clearenv();
+}
+
 int zygote_main(int argc, char **argv, const struct zygote_task tasks[static N_JOB_KINDS])
 {
     static struct zygote zygote;
@@ -205,6 +214,7 @@ int zygote_main(int argc, char **argv, const struct zygote_task tasks[static N_J
                 name);
         return 2;
     }
+    forget_environment();
     sigset_t set;
     zygote = (struct zygote){.name = name, .tasks = tasks, .pid = getpid()};
     sigemptyset(&set);

@@ -2,15 +2,19 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <linux/close_range.h>
+#include <sched.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "protocol/child.h"
 #include "server/sandbox/pass.h"
 #include "server/sandbox/zygote.h"
 
@@ -39,15 +43,62 @@ static void stop(pid_t *pid)
     *pid = 0;
 }
 
+/* The first process of namespaces of its own: no network, no capability outside of them, no number of
+ * another process. Where the kernel or the service manager refuses them, a process like others. */
+static pid_t fork_apart(void)
+{
+    const long apart =
+        CLONE_NEWUSER | CLONE_NEWNET | CLONE_NEWPID | CLONE_NEWNS | CLONE_NEWIPC | CLONE_NEWUTS;
+    long pid = syscall(SYS_clone, apart | SIGCHLD, 0, 0, 0, 0);
+    return pid >= 0 ? (pid_t)pid : fork();
+}
+
+/* Becomes the program, or tells errno through the pipe. */
+static _Noreturn void become(const char *path, int socket_fd, int failed_fd)
+{
+    char program[PATH_MAX];
+    char *const argv[] = {program, NULL};
+    sigset_t none;
+    snprintf(program, sizeof program, "%s", path);
+    for (int number = 1; number < NSIG; number++)
+        signal(number, SIG_DFL);
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, NULL);
+    int null_fd = open("/dev/null", O_RDWR | O_CLOEXEC);
+    if (null_fd >= 0 && dup2(null_fd, 0) == 0 && dup2(null_fd, 1) == 1 &&
+        dup2(socket_fd, ZYGOTE_FD) == ZYGOTE_FD &&
+        close_range(ZYGOTE_FD + 1, ~0u, CLOSE_RANGE_CLOEXEC) == 0)
+        execv(program, argv);
+    int failed = errno;
+    _exit(write(failed_fd, &failed, sizeof failed) < 0);
+}
+
+/* A descriptor above ZYGOTE_FD in the place of fd, which is closed; -1 with errno. */
+static int lift(int fd)
+{
+    int high_fd = fcntl(fd, F_DUPFD_CLOEXEC, ZYGOTE_FD + 1);
+    close(fd);
+    return high_fd;
+}
+
 static int start(const char *path, int socket_fd, pid_t *pid)
 {
-    int high_fd = fcntl(socket_fd, F_DUPFD_CLOEXEC, ZYGOTE_FD + 1);
-    if (high_fd < 0)
+    int told[2], failed = 0;
+    if (pipe2(told, O_CLOEXEC) < 0)
         return errno;
-    const char *const argv[] = {path, NULL};
-    const struct child_files files = {high_fd, ZYGOTE_FD, -1};
-    int failed = child_start(pid, path, argv, &files);
-    close(high_fd);
+    told[1] = lift(told[1]);
+    *pid = told[1] < 0 ? -1 : fork_apart();
+    if (*pid == 0)
+        become(path, socket_fd, told[1]);
+    if (*pid < 0)
+        failed = errno;
+    if (told[1] >= 0)
+        close(told[1]);
+    if (!failed && read(told[0], &failed, sizeof failed) != sizeof failed)
+        failed = 0; /* the program runs: the pipe closed */
+    close(told[0]);
+    if (failed && *pid > 0)
+        wait_for(*pid);
     if (failed)
         *pid = 0;
     return failed;
@@ -64,9 +115,10 @@ static void serve(int fd, const char *path)
         if (pass_receive(fd, &request, sizeof request, fds, &n) <= 0)
             break;
         stop(&pid);
-        failed = n == 1 ? start(path, fds[0], &pid) : 0;
-        while (n > 0)
-            close(fds[--n]);
+        int socket_fd = n == 1 ? lift(fds[0]) : -1;
+        failed = socket_fd >= 0 ? start(path, socket_fd, &pid) : 0;
+        if (socket_fd >= 0)
+            close(socket_fd);
     } while (pass_send(fd, &failed, sizeof failed, NULL, 0));
     stop(&pid);
 }

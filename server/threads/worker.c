@@ -247,16 +247,34 @@ static bool renew_answer(struct worker_call *call, struct error *error)
            error_set(error, ERROR_SERVER, "cannot make a file in memory: %s", strerror(errno));
 }
 
+/* The job's process gets the input by a descriptor that can only be read: its mapping can be neither
+ * written nor made writable. -1 with *error. */
+static int read_only(int fd, struct error *error)
+{
+    char path[32];
+    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    int only = open(path, O_RDONLY | O_CLOEXEC);
+    if (only < 0)
+        error_set(error, ERROR_SERVER, "cannot open a file in memory: %s", strerror(errno));
+    return only;
+}
+
 /* Sends the job and waits for it, one time. */
 static bool attempt(struct worker *worker, const struct worker_call *call, const struct job *job,
                     struct job_end *job_end, struct error *error)
 {
     int ends[2];
     unsigned starts;
-    if (pipe2(ends, O_CLOEXEC) < 0)
+    const int input_fd = read_only(call->input_fd, error);
+    if (input_fd < 0)
+        return false;
+    if (pipe2(ends, O_CLOEXEC) < 0) {
+        close(input_fd);
         return error_set(error, ERROR_SERVER, "cannot make a pipe: %s", strerror(errno));
-    const int fds[N_JOB_FDS] = {call->input_fd, call->answer_fd, ends[1]};
+    }
+    const int fds[N_JOB_FDS] = {input_fd, call->answer_fd, ends[1]};
     bool ok = submit(worker, job, fds, &starts, error);
+    close(input_fd);
     close(ends[1]); /* only the program keeps this end: if it dies, the pipe closes */
     if (ok && !await(ends[0], job, job_end))
         ok = error_set(error, ERROR_SERVER, "%s has died: try again", program_name(worker));
@@ -329,7 +347,8 @@ bool worker_run(struct worker *worker, struct worker_call *call, enum job_kind k
                 struct error *error)
 {
     const off_t input_bytes = sink_flush(&call->input) ? lseek(call->input_fd, 0, SEEK_CUR) : -1;
-    if (input_bytes <= 0)
+    /* A file of before may be longer: nothing of that job is left in it. */
+    if (input_bytes <= 0 || ftruncate(call->input_fd, input_bytes) < 0)
         return error_set(error, ERROR_SERVER, "%s: no memory to hand it on: try again later", name);
     const struct job job = {kind, *limits, (uint64_t)input_bytes};
     struct job_end job_end = {0};

@@ -11,10 +11,12 @@
 #include <cmocka.h>
 #include <dirent.h>
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 
@@ -344,6 +346,59 @@ static void test_inputs_are_lent(void **state)
     assert_int_not_equal(echo_lent(5), first);
 }
 
+/* Runs a job of this name with a file that an earlier job may have left. */
+static bool run_lent(const char *name, struct error *error)
+{
+    struct worker_call call;
+    assert_true(worker_call_init_lent(&call, worker, error));
+    job_write_file(&call.input, name, "bytes", 5);
+    bool ok = worker_run(worker, &call, JOB_READ_CAGE, &JOB_LIMITS, name, ERROR_MODEL, error);
+    worker_call_finish(&call);
+    return ok;
+}
+
+static void test_an_input_is_cut_and_fixed(void **state)
+{
+    (void)state;
+    struct error error = {0};
+    echo_lent(100000); /* leaves a longer file */
+    if (!run_lent("input-is-fixed", &error))
+        fail_msg("%s", error.text);
+    assert_false(run_lent("behind-the-input", &error));
+    assert_non_null(strstr(error.text, "crashed (signal 7)")); /* SIGBUS: nothing is there */
+}
+
+static bool can_have_namespaces(void)
+{
+    long pid =
+        syscall(SYS_clone, CLONE_NEWUSER | CLONE_NEWNET | CLONE_NEWPID | SIGCHLD, 0, 0, 0, 0);
+    if (pid == 0)
+        _exit(0);
+    return pid > 0 && waitpid((pid_t)pid, NULL, 0) == pid;
+}
+
+static void test_a_program_stands_apart(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {"user", "net", "pid", "mnt", "ipc", "uts"};
+    char path[64], ours[64], theirs[64], byte;
+    assert_works();
+    pid_t program = worker_program();
+    for (size_t i = 0; can_have_namespaces() && i < sizeof kinds / sizeof *kinds; i++) {
+        snprintf(path, sizeof path, "/proc/self/ns/%s", kinds[i]);
+        ssize_t n = readlink(path, ours, sizeof ours);
+        snprintf(path, sizeof path, "/proc/%d/ns/%s", program, kinds[i]);
+        assert_int_equal(readlink(path, theirs, sizeof theirs), n);
+        assert_memory_not_equal(ours, theirs, (size_t)n);
+    }
+    snprintf(path, sizeof path, "/proc/%d/environ", program);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fread(&byte, 1, 1, file) == 1)
+        assert_int_equal(byte, 0);
+    fclose(file);
+}
+
 /* A thread that is busy for a while and then waits, like the idle threads of libraries. */
 struct busy {
     atomic_bool done;
@@ -407,6 +462,8 @@ int main(void)
         cmocka_unit_test(test_many_at_once),
         cmocka_unit_test(test_nothing_stays),
         cmocka_unit_test(test_inputs_are_lent),
+        cmocka_unit_test(test_an_input_is_cut_and_fixed),
+        cmocka_unit_test(test_a_program_stands_apart),
         cmocka_unit_test(test_forks_among_idle_threads_only),
         cmocka_unit_test(test_no_program),
     };

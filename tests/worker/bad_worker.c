@@ -156,6 +156,31 @@ static void answer_allocate(struct sink *answer)
     answer_write_error(answer, &error);
 }
 
+/* The page in which the job's input begins. */
+static uint8_t *input_page;
+
+/* Says yes when the input can be neither written nor taken away from the daemon's file. */
+static void answer_input_is_fixed(struct sink *answer)
+{
+    struct error error = {0};
+    bool writable = mprotect(input_page, 4096, PROT_READ | PROT_WRITE) == 0;
+    bool removable = madvise(input_page, 4096, MADV_REMOVE) == 0;
+    error_set(&error, ERROR_MODEL, "writable %d, removable %d", writable, removable);
+    if (writable || removable)
+        answer_write_error(answer, &error);
+    else
+        answer_write_ok(answer);
+}
+
+/* Reads behind its input, where an earlier job may have left something. */
+static void answer_behind_the_input(struct sink *answer)
+{
+    const uint8_t *more = mremap(input_page, 4096, 1 << 20, MREMAP_MAYMOVE);
+    answer_write_ok(answer);
+    if (more != MAP_FAILED)
+        sink_bytes(answer, more + 4096, 4096);
+}
+
 /* Computes for a second. */
 static void answer_spin(struct sink *answer)
 {
@@ -204,6 +229,8 @@ static const struct {
     {"much", answer_much},
     {"allocate", answer_allocate},
     {"spin", answer_spin},
+    {"input-is-fixed", answer_input_is_fixed},
+    {"behind-the-input", answer_behind_the_input},
     {"stderr", answer_stderr},
     {"wrong-kind", answer_wrong_kind},
     {"long-error", answer_long_error},
@@ -215,6 +242,7 @@ static void run(struct source *input, struct sink *answer)
 {
     const char *name;
     size_t size;
+    input_page = (uint8_t *)((uintptr_t)input->at & ~(uintptr_t)4095);
     const void *bytes = job_take_file(input, &name, &size);
     for (size_t i = 0; i < sizeof ATTEMPTS / sizeof *ATTEMPTS; i++)
         if (strcmp(name, ATTEMPTS[i].name) == 0)
