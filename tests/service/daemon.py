@@ -22,9 +22,10 @@ MODELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "models"
 with open(SHEEND, "rb") as _file:
     _code = _file.read()
 SANITIZED = b"__asan_init" in _code or b"__tsan_init" in _code  # sanitizers keep freed memory
-# ThreadSanitizer makes frames many times slower: clients and the daemon wait longer, and tests of time are left out.
+# Sanitizers make frames slower, so that clients wait longer. With ThreadSanitizer the daemon waits longer, too, and
+# tests of time are left out.
 SLOWED = b"__tsan_init" in _code
-if SLOWED:
+if SANITIZED:
     wire.PATIENCE = 10
 LONGER = {"--drain-timeout": "300", "--stall-timeout": "300"} if SLOWED else {}
 judges_time = unittest.skipIf(SLOWED, "ThreadSanitizer makes frames many times slower")
