@@ -206,6 +206,12 @@ void request_acquire(struct request *request, struct needed *needed, enum asset_
     needed->asset =
         store_find(request->host->store, request->assets_of, request->asker, kind, sha256);
     request->n_awaited++;
+    if (!needed->asset) { /* evicted when room was made for another asset of this request */
+        error_set(&request->failure, ERROR_SERVER,
+                  "the model or an image of this frame had to make room: try again later");
+        request_stop_awaiting(request);
+        return;
+    }
     switch (store_acquire(needed->asset, request->asker, &needed->waiter, &request->failure)) {
     case ACQUIRE_WAIT:
         return;

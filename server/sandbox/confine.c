@@ -33,6 +33,7 @@ static const long FREE_CALLS[] = {
     SYS_restart_syscall,
     SYS_rt_sigprocmask,
     SYS_rt_sigreturn,
+    SYS_rseq, /* at the end of a thread */
     SYS_getpid,
     SYS_gettid,
     SYS_exit,
@@ -105,7 +106,6 @@ static const long DRIVER_CALLS[] = {
     SYS_ioctl,
     /* threads: set-up of a new one */
     SYS_set_robust_list,
-    SYS_rseq,
     SYS_sched_setaffinity,
     SYS_sched_getparam,
     SYS_sched_getscheduler,

@@ -37,6 +37,29 @@ class Resident(unittest.TestCase):
                     self.assertIn(refusal.code, (wire.ERROR_TOO_BIG, wire.ERROR_OVERLOADED, wire.ERROR_MODEL, wire.ERROR_IMAGE,
                                                  wire.ERROR_REQUEST, wire.ERROR_UNKNOWN_MODEL), refusal)
 
+    def test_views_that_are_dropped_change_no_byte(self):
+        """Three clients' frames have no room beside each other, so that what each is drawn on goes between its tiles."""
+        frames = ((700, 500, wire.STILL), (300, 300, INTERACTIVE), (680, 520, BATCH))
+        pictures = {}
+        for room in ("--memory-budget", "1G"), ("--memory-budget", budget(66)):
+            daemon, got = Daemon(*room, tcp=False), []
+
+            def draw(width, height, kind):
+                with Client(daemon.unix, minor=1) as client:
+                    model = client.upload(grid(30), "sheet.obj")
+                    for _ in range(4):
+                        got.append((kind, client.render(model, width, height, kind=kind).data))
+
+            clients = [threading.Thread(target=draw, args=frame) for frame in frames]
+            for client in clients:
+                client.start()
+            for client in clients:
+                client.join()
+            self.assertEqual(len(got), 12)
+            for kind, data in got:
+                self.assertEqual(pictures.setdefault(kind, data), data)
+            self.assertEqual(daemon.stop(), 0)
+
     @unittest.skipIf(SANITIZED, "sanitizers hoard memory")
     def test_stays_within_the_budget(self):
         for mib in (4, 96):  # the least, and one in which frames, views and models push each other out
