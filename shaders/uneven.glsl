@@ -70,11 +70,25 @@ float bend_of(Sample at, Met met, ivec2 p)
     return 0.5 * change / turn + 0.25 * bend;
 }
 
+// Whether the light may end within so many reaches of the parallelogram: the surface bends less than that.
+const float END_REACHES = 3.0;
+
+bool may_end(Met met)
+{
+    if (FAMILY != REFLECTION && FAMILY != HIGHLIGHT)
+        return false;
+    if (LIGHT == PLANE)  // at its horizon
+        return END_REACHES * 0.5 * (abs(met.dtau.x) + abs(met.dtau.y)) > met.tau;
+    if (LIGHT != RECTANGLE)
+        return false;
+    vec2 place = abs(met.q / size.xy), reach = END_REACHES * reach_of(met) / size.xy;
+    return all(lessThan(place, 0.5 + reach)) && any(greaterThan(place, 0.5 - reach));
+}
+
 bool is_bent(Sample at, Met met, ivec2 p, Hit hit, Uneven uneven)
 {
     float turn = turn_over_pixel(p, hit);
-    bool may_end = (FAMILY == REFLECTION || FAMILY == HIGHLIGHT) && (LIGHT == RECTANGLE || LIGHT == PLANE);
     if (turn > MOST_TURN)
-        return uneven.light > LEAST_UNEVEN || turn > LARGE_TURN || may_end;
+        return uneven.light > LEAST_UNEVEN || turn > LARGE_TURN || may_end(met);
     return uneven.light > LEAST_UNEVEN && bend_of(at, met, p) > LEAST_BEND;
 }
