@@ -7,7 +7,7 @@
 // these. Beside a pixel that shows nothing, not exactly one end of the only piece runs through the pixel: with two, the
 // piece may turn where they meet; with none, something that no centre around shows may lie there. Beside a pixel that
 // shows nothing, the piece ends at a crease whose other side faces the eye too: that side may be visible, though
-// narrower than a pixel.
+// narrower than a pixel. Pixels beyond the picture may show nothing; but a piece without an end fills its pixel there.
 
 layout(local_size_x = 32) in;  // EDGES_PER_GROUP
 
@@ -56,10 +56,11 @@ void main()
     ivec2 p = list_place(listed.at[i]);
     Piece piece[2];
     int n = 0;
-    bool beside_empty = false, seen_beyond = false;
+    bool beside_empty = false, beside_unknown = false, seen_beyond = false;
     for (int k = 0; k < 9 && n < 3; k++) {
         Hit hit = hit_at(p + AROUND[k]);
-        beside_empty = beside_empty || hit.depth <= 0.0;
+        beside_empty = beside_empty || hit.depth == 0.0;
+        beside_unknown = beside_unknown || hit.depth < 0.0;  // beyond the picture
         if (!mirrors(hit))
             continue;
         seen_beyond = seen_beyond || is_crease_seen_beyond(p, AROUND[k]);
@@ -75,7 +76,9 @@ void main()
             n++;
         }
     }
-    bool needs_recheck = n > 2 || (beside_empty && (n > 1 || seen_beyond || (n == 1 && ends_in_pixel(piece[0]) != 1)));
+    int ends = n == 1 ? ends_in_pixel(piece[0]) : 0;
+    bool is_unclear = n > 1 || seen_beyond || ends > 1, is_hidden = n == 1 && ends == 0;
+    bool needs_recheck = n > 2 || ((beside_empty || beside_unknown) && is_unclear) || (beside_empty && is_hidden);
     for (int k = 0; k < 9 && !needs_recheck; k++) {
         Hit hit = hit_at(p + AROUND[k]);
         if (hit.depth >= 0.0)
