@@ -58,9 +58,7 @@ const struct native_patch *native_patch_of_piece(const struct native_frame *fram
     const struct native_patch *patch = __atomic_load_n(&piece->patch, __ATOMIC_RELAXED);
     if (patch)
         return patch;
-    const struct limit_node *node = &frame->model->tables->nodes[piece->node];
-    bool is_last = node->kind == LIMIT_STRIP && !piece->square; /* comes after all levels */
-    uint32_t index = native_patch_index(node, piece->level + is_last, piece->square);
+    uint32_t index = native_piece_index(&frame->model->tables->nodes[piece->node], piece);
     patch = native_patch_find(frame->model, piece->node, index);
     if (patch) /* every thread finds the same */
         __atomic_store_n(&piece->patch, patch, __ATOMIC_RELAXED);
@@ -151,9 +149,8 @@ void native_begin_on(const struct native_model *model, struct native_task *task,
         native_begin_at(model, task, x, y);
         return;
     }
-    bool is_last = node->kind == LIMIT_STRIP && !piece->square; /* comes after all levels */
     task->part = (struct native_part_of_node){
-        .index = native_patch_index(node, piece->level + is_last, piece->square),
+        .index = native_piece_index(node, piece),
         .scale_x = (int8_t)(node->kind == LIMIT_CORNER ? piece->level : 0),
         .scale_y = (int8_t)(node->kind == LIMIT_REGULAR ? 0 : piece->level),
         .origin_x = piece->square == 1 || piece->square == 2,
@@ -164,8 +161,6 @@ void native_begin_on(const struct native_model *model, struct native_task *task,
     if (task->patch)
         prefetch(task->patch);
 }
-
-/* --- */
 
 /* A place relative to a Ptex face's corner: a along the edge that begins there, b backwards along the edge that ends
  * there. Near an extraordinary vertex these keep their digits. */

@@ -14,7 +14,7 @@
     void native_triangles_##set(struct native_slice *, uint32_t);                                  \
     uint32_t native_groups_##set(const struct native_seen *, uint32_t, uint32_t, float *,          \
                                  uint32_t *);                                                      \
-    void native_see_rays_##set(const struct native_frame *, struct native_tile_room *,             \
+    bool native_see_rays_##set(const struct native_frame *, struct native_tile_room *,             \
                                struct native_ray_room *);                                          \
     void native_meet_rays_##set(const struct native_frame *, struct native_tile_room *,            \
                                 struct native_ray_room *);                                         \

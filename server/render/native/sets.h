@@ -2,6 +2,7 @@
 #ifndef SHEEN_RENDER_NATIVE_SETS_H
 #define SHEEN_RENDER_NATIVE_SETS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "server/render/native/planes.h"
@@ -27,10 +28,10 @@ struct native_set {
     void (*gaps)(struct native_frame *frame, struct native_thread *thread);
     uint32_t (*groups)(const struct native_seen *seen, uint32_t first, uint32_t end, float *columns,
                        uint32_t *groups);
-    /* Finds the pieces that the room's rays may meet: room->on and room->beside. */
-    void (*see_rays)(const struct native_frame *frame, struct native_tile_room *tile,
+    /* Finds the pieces that the room's rays may meet: room->on and room->beside. False when memory is short. */
+    bool (*see_rays)(const struct native_frame *frame, struct native_tile_room *tile,
                      struct native_ray_room *room);
-    /* Meets the rays of room->task with the surface and removes the tasks. A hit in front of a ray's earlier hit is
+    /* Meets the rays of room->group and of room->task with the surface and removes both. A hit in front of a ray's earlier hit is
      * kept in room->met. */
     void (*meet_rays)(const struct native_frame *frame, struct native_tile_room *tile,
                       struct native_ray_room *room);

@@ -97,6 +97,13 @@ bool native_walk(const struct limit_tables *tables, uint32_t *node, double *x, d
 const struct native_patch *native_patch_of(const struct native_frame *frame,
                                            struct native_tile_room *room, uint32_t node,
                                            uint32_t index);
+/* The index of a PIECE_OF_PATCH's sub-patch (patches.h). */
+static inline uint32_t native_piece_index(const struct limit_node *node,
+                                          const struct native_piece *piece)
+{
+    bool is_last = node->kind == LIMIT_STRIP && !piece->square; /* comes after all levels */
+    return native_patch_index(node, piece->level + is_last, piece->square);
+}
 /* The sub-patch of a PIECE_OF_PATCH, which the piece then names if the model keeps it. */
 const struct native_patch *native_patch_of_piece(const struct native_frame *frame,
                                                  struct native_tile_room *room,

@@ -16,7 +16,7 @@ void LANE_NAME(native_place)(struct native_slice *slice, struct native_polygon_t
                              uint32_t number);
 void LANE_NAME(native_triangles)(struct native_slice *slice, uint32_t number);
 
-void LANE_NAME(native_see_rays)(const struct native_frame *frame, struct native_tile_room *tile,
+bool LANE_NAME(native_see_rays)(const struct native_frame *frame, struct native_tile_room *tile,
                                 struct native_ray_room *room);
 void LANE_NAME(native_meet_rays)(const struct native_frame *frame, struct native_tile_room *tile,
                                  struct native_ray_room *room);

@@ -6,16 +6,18 @@
 
 #include "server/render/native/lanes.h"
 
-/* A triangle covers pixels this far beyond its edges, since neighbours round shared vertices differently. */
+/* A triangle covers pixels this far beyond its edges: neighbours round shared vertices differently, by up to 2^-10 px
+ * at 30,000 px from the picture's corner, and no gap may open between them. */
 #define SLACK_PX (1.0f / 512)
 #define PLACE_STEPS 65535.0f /* of a position along a piece */
 
 /* One of a cell's two triangles: with p its first vertex, q and r the others, a point is p + b (q - p) + c (r - p).
  * The unit is a pixel. */
 struct half {
-    float bx, by, b0, cx, cy, c0; /* b = bx x + by y + b0 + least_b; the same for c */
-    float least_b, least_c; /* inside: b and c exceed these, b + c is below the sum of all three */
-    float most;
+    /* b' = bx x + by y + b0 is b - least_b, and c' = cx x + cy y + c0 is c - least_c. A point is inside where b' > 0,
+     * c' > 0 and b' + c' < most; with SLACK_PX = 0 these would be b > 0, c > 0 and b + c < 1. */
+    float bx, by, b0, cx, cy, c0;
+    float least_b, least_c, most;
     float rise_b, rise_c; /* of the nearness */
 };
 
@@ -40,7 +42,7 @@ LANE_INLINE struct half half_of(float left, float top, const float x[4], const f
     return h;
 }
 
-/* Positive inside; b and c without their least. */
+/* Positive inside; b and c are b' and c'. */
 LANE_INLINE vfloat inside(const struct half *h, vfloat b, vfloat c)
 {
     return v_min(v_min(b, c), h->most - (b + c));

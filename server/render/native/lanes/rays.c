@@ -271,22 +271,32 @@ static void meet_at_vertex(const struct native_frame *frame, struct native_tile_
     }
 }
 
+/* Meets the rays of all groups. Those that go on become tasks, unless it is the last time. */
+static void meet_groups(const struct native_frame *frame, struct native_tile_room *tile,
+                        struct native_ray_room *room, bool is_last)
+{
+    struct native_seen_node seen;
+    for (uint32_t k = 0; k < room->n_groups; k++) {
+        const struct native_ray_group *group = &room->group[k];
+        native_see_node(frame, &frame->model->tables->nodes[group->node], &seen);
+        if (group->index & RAY_AT_VERTEX)
+            meet_at_vertex(frame, tile, room, group, &seen);
+        else
+            meet_group(frame, tile, room, group, &seen, is_last);
+    }
+    room->n_groups = 0;
+}
+
 void LANE_NAME(native_meet_rays)(const struct native_frame *frame, struct native_tile_room *tile,
                                  struct native_ray_room *room)
 {
-    struct native_seen_node seen;
+    meet_groups(frame, tile, room, false);
     for (int i = 0; i < PATCHES && room->n_tasks; i++) {
         native_group_rays(frame->model, room);
-        room->n_tasks = 0; /* from here on: the tasks that go on */
-        for (uint32_t k = 0; k < room->n_groups; k++) {
-            const struct native_ray_group *group = &room->group[k];
-            native_see_node(frame, &frame->model->tables->nodes[group->node], &seen);
-            if (group->index & RAY_AT_VERTEX)
-                meet_at_vertex(frame, tile, room, group, &seen);
-            else
-                meet_group(frame, tile, room, group, &seen, i == PATCHES - 1);
-        }
+        room->n_tasks = 0;
+        meet_groups(frame, tile, room, i == PATCHES - 1);
     }
+    room->n_tasks = 0;
 }
 
 /* --- */

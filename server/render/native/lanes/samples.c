@@ -8,27 +8,22 @@
 #include <math.h>
 #include <string.h>
 
-/* A cell of a piece is cut into at most 3 x 3 cells, so that 16 places are enough. */
+/* The cells of the grids that patch_grids.h chooses lie within half a pixel of the surface: a ray may meet the surface
+ * so far outside of the cell. */
+static const float CELL_PX = 0.5f;
+/* A cell of one sub-patch is cut into 1, 2 x 2 or 3 x 3 smaller ones: the fewest that lie within CLOSE_PX of the
+ * surface, if there are any. 3 x 3 cells have 16 corners. */
 enum { MOST_CUTS = 3, PLACES = 16 };
-/* Cells are cut until they lie so close to the surface, px. */
 static const float CLOSE_PX = 0.125f;
-/* Rounding moves a cell less than this, px. */
+/* Rounding moves a cell's corners less than this, px. */
 static const float LEAST_BULGE_PX = 1.0f / 64;
-/* Pieces that are not of one sub-patch stay whole: patch_grids.h. */
-static const float WHOLE_PX = 0.5f;
 
-/* A cell or a triangle in the picture: corners in px of the tile, their nearness, and how far the surface may lie
- * outside of it, px. */
-struct drawn {
-    float x[4], y[4], nearness[4], bulge;
-    int piece;
-};
-
-/* The pixels of a tile that a shape of n corners may touch, inclusive. False if there is none. */
+/* Pixels of a tile, inclusive. */
 struct touched {
     int x0, y0, x1, y1;
 };
 
+/* Finds the pixels that a shape of n corners may touch if it extends by `bulge` px. False if there is none. */
 LANE_INLINE bool touch(const float *x, const float *y, int n, float bulge, struct touched *out)
 {
     float x0 = x[0], x1 = x[0], y0 = y[0], y1 = y[0];
@@ -38,12 +33,15 @@ LANE_INLINE bool touch(const float *x, const float *y, int n, float bulge, struc
         y0 = y[k] < y0 ? y[k] : y0;
         y1 = y[k] > y1 ? y[k] : y1;
     }
-    if (!(x1 + bulge >= 0 && y1 + bulge >= 0 && x0 - bulge < TILE_WIDTH &&
-          y0 - bulge < TILE_HEIGHT))
+    x0 -= bulge;
+    y0 -= bulge;
+    x1 += bulge;
+    y1 += bulge;
+    if (!(x1 >= 0 && y1 >= 0 && x0 < TILE_WIDTH && y0 < TILE_HEIGHT))
         return false;
-    *out = (struct touched){(int)fmaxf(x0 - bulge, 0), (int)fmaxf(y0 - bulge, 0),
-                            (int)fminf(x1 + bulge, TILE_WIDTH - 1),
-                            (int)fminf(y1 + bulge, TILE_HEIGHT - 1)};
+    *out = (struct touched){x0 > 0 ? (int)x0 : 0, y0 > 0 ? (int)y0 : 0,
+                            x1 < TILE_WIDTH ? (int)x1 : TILE_WIDTH - 1,
+                            y1 < TILE_HEIGHT ? (int)y1 : TILE_HEIGHT - 1};
     return true;
 }
 
@@ -78,76 +76,106 @@ LANE_INLINE void put(struct native_ray_pieces *to, uint32_t at, vmask is, vfloat
     v_store_int_masked(to->place + at, is, place);
 }
 
-/* Positive within `bulge` px of the half; b and c without their least. */
-LANE_INLINE vfloat beside(const struct half *h, float bulge, vfloat b, vfloat c)
+/* A cell of a piece: corners in px of the tile, their nearness, and how far the surface may lie outside of it, px. It
+ * begins at s, t of the piece and is ds x dt large there, in PLACE_STEPS. */
+struct cell {
+    float x[4], y[4], nearness[4], bulge;
+    float s, t, ds, dt;
+    int piece;
+};
+
+/* What all pixels of a cell share. */
+struct halves {
+    struct half half[2];
+    float more_b[2], more_c[2], more[2]; /* what `bulge` px add to b, c and most */
+    float lowest, highest;               /* nearness */
+};
+
+LANE_INLINE float least_of(const float a[4])
 {
-    float more_b = bulge * (fabsf(h->bx) + fabsf(h->by));
-    float more_c = bulge * (fabsf(h->cx) + fabsf(h->cy));
-    float more = bulge * (fabsf(h->bx + h->cx) + fabsf(h->by + h->cy));
-    return v_min(v_min(b + more_b, c + more_c), h->most - (b + c) + more);
+    float x = a[0] < a[1] ? a[0] : a[1], y = a[2] < a[3] ? a[2] : a[3];
+    return x < y ? x : y;
 }
 
-/* A cell of a piece, which begins at s, t of the piece and is ds x dt large there, in PLACE_STEPS. */
-struct cell {
-    struct drawn drawn;
-    float s, t, ds, dt;
-};
+LANE_INLINE float largest_of(const float a[4])
+{
+    float x = a[0] > a[1] ? a[0] : a[1], y = a[2] > a[3] ? a[2] : a[3];
+    return x > y ? x : y;
+}
+
+/* Divides a cell into n triangles: 1 if it is itself a triangle, else 2. The second begins at the opposite corner, so s
+ * and t decrease along its sides. */
+static void halve(const struct cell *cell, int n, struct halves *out)
+{
+    out->half[0] = half_of(0, 0, cell->x, cell->y, cell->nearness, 0, 1, 2);
+    out->half[1] = (struct half){.most = -1}; /* nothing is inside */
+    if (n == 2)
+        out->half[1] = half_of(0, 0, cell->x, cell->y, cell->nearness, 3, 2, 1);
+    for (int i = 0; i < 2; i++) {
+        const struct half *h = &out->half[i];
+        out->more_b[i] = cell->bulge * (fabsf(h->bx) + fabsf(h->by));
+        out->more_c[i] = cell->bulge * (fabsf(h->cx) + fabsf(h->cy));
+        out->more[i] = cell->bulge * (fabsf(h->bx + h->cx) + fabsf(h->by + h->cy));
+    }
+    out->lowest = least_of(cell->nearness);
+    out->highest = largest_of(cell->nearness);
+}
 
 /* Draws a cell at the rays of one pixel, from `first` on. */
 static void draw_pixel(struct native_ray_room *room, const struct cell *cell,
-                       const struct half half[2], int x, int y, uint32_t first)
+                       const struct halves *of, int x, int y, uint32_t first)
 {
-    const float *near = cell->drawn.nearness;
-    float lowest = fminf(fminf(near[0], near[1]), fminf(near[2], near[3]));
-    float highest = fmaxf(fmaxf(near[0], near[1]), fmaxf(near[2], near[3]));
     for (uint32_t k = 0; k < room->rays_per_px; k += LANES) {
         vmask lanes = v_mask(v_first(room->rays_per_px - k));
         /* All rays have a nearer piece. */
-        if (!v_bits(lanes & v_less(v_load(room->on.nearness + first + k), v_float(highest))))
+        if (!v_bits(lanes & v_less(v_load(room->on.nearness + first + k), v_float(of->highest))))
             continue;
         vfloat at_x = v_load(room->off_x + first + k) + ((float)x + 0.5f);
         vfloat at_y = v_load(room->off_y + first + k) + ((float)y + 0.5f);
         vfloat b[2], c[2], in[2], near_by[2];
         for (int i = 0; i < 2; i++) {
-            b[i] = half[i].bx * at_x + half[i].by * at_y + half[i].b0;
-            c[i] = half[i].cx * at_x + half[i].cy * at_y + half[i].c0;
-            in[i] = inside(&half[i], b[i], c[i]);
-            near_by[i] = beside(&half[i], cell->drawn.bulge, b[i], c[i]);
+            const struct half *h = &of->half[i];
+            b[i] = h->bx * at_x + h->by * at_y + h->b0;
+            c[i] = h->cx * at_x + h->cy * at_y + h->c0;
+            in[i] = inside(h, b[i], c[i]);
+            near_by[i] = v_min(v_min(b[i] + of->more_b[i], c[i] + of->more_c[i]),
+                               h->most - (b[i] + c[i]) + of->more[i]);
         }
         vmask is_on = lanes & v_less(v_float(0), v_max(in[0], in[1]));
         vmask is_near = lanes & v_less(v_float(0), v_max(near_by[0], near_by[1])) & v_not(is_on);
         if (!v_bits(is_on | is_near))
             continue;
+        /* A point beside both halves belongs to the one whose sides are nearer. */
         vmask is_first =
             (is_on & v_less(v_float(0), in[0])) | (is_near & v_at_most(near_by[1], near_by[0]));
-        vfloat u = v_select(is_first, b[0] + half[0].least_b, b[1] + half[1].least_b);
-        vfloat v = v_select(is_first, c[0] + half[0].least_c, c[1] + half[1].least_c);
-        vfloat nearness = v_select(is_first, u * half[0].rise_b + (v * half[0].rise_c + near[0]),
-                                   u * half[1].rise_b + (v * half[1].rise_c + near[3]));
+        vfloat u = v_select(is_first, b[0] + of->half[0].least_b, b[1] + of->half[1].least_b);
+        vfloat v = v_select(is_first, c[0] + of->half[0].least_c, c[1] + of->half[1].least_c);
+        vfloat nearness = v_select(
+            is_first, u * of->half[0].rise_b + (v * of->half[0].rise_c + cell->nearness[0]),
+            u * of->half[1].rise_b + (v * of->half[1].rise_c + cell->nearness[3]));
         u = v_select(is_first, u, 1 - u);
         v = v_select(is_first, v, 1 - v);
         vint s = v_round(v_clamp(v_clamp(u, 0, 1) * cell->ds + cell->s, 0, PLACE_STEPS));
         vint t = v_round(v_clamp(v_clamp(v, 0, 1) * cell->dt + cell->t, 0, PLACE_STEPS));
-        put(&room->on, first + k, is_on, nearness, cell->drawn.piece, s | t << 16);
+        put(&room->on, first + k, is_on, nearness, cell->piece, s | t << 16);
         if (v_bits(is_near))
-            put(&room->beside, first + k, is_near, v_clamp(nearness, lowest, highest),
-                cell->drawn.piece, s | t << 16);
+            put(&room->beside, first + k, is_near, v_clamp(nearness, of->lowest, of->highest),
+                cell->piece, s | t << 16);
     }
 }
 
 static void draw_cell(struct native_ray_room *room, const struct cell *cell)
 {
-    const struct drawn *d = &cell->drawn;
     struct touched in;
-    if (!touch(d->x, d->y, 4, d->bulge, &in) || !any_listed(room, &in))
+    if (!touch(cell->x, cell->y, 4, cell->bulge, &in) || !any_listed(room, &in))
         return;
-    const struct half half[2] = {half_of(0, 0, d->x, d->y, d->nearness, 0, 1, 2),
-                                 half_of(0, 0, d->x, d->y, d->nearness, 3, 2, 1)};
+    struct halves of;
+    halve(cell, 2, &of);
     for (int y = in.y0; y <= in.y1; y++)
         for (int word = in.x0 / 64; word <= in.x1 / 64; word++)
             for (uint64_t left = listed_in(room, y, word, in.x0, in.x1); left; left &= left - 1) {
                 int x = 64 * word + __builtin_ctzll(left);
-                draw_pixel(room, cell, half, x, y, room->first_ray[y * TILE_WIDTH + x]);
+                draw_pixel(room, cell, &of, x, y, room->first_ray[y * TILE_WIDTH + x]);
             }
 }
 
@@ -167,16 +195,15 @@ struct source {
 static int cuts_of(const struct source *of, const struct cell *cell, float *bulge)
 {
     const struct native_rays *rays = &of->frame->rays;
-    *bulge = WHOLE_PX;
+    *bulge = CELL_PX;
     if (!of->patch)
         return 1;
-    const float *near = cell->drawn.nearness;
-    float nearest = fmaxf(fmaxf(near[0], near[1]), fmaxf(near[2], near[3]));
-    float px = native_pixel_units(rays, rays->far - before_of(rays, nearest));
-    float size = of->piece->size * fmaxf(cell->ds, cell->dt) * (1 / PLACE_STEPS);
+    float px = native_pixel_units(rays, rays->far - before_of(rays, largest_of(cell->nearness)));
+    float size = of->piece->size * (cell->ds > cell->dt ? cell->ds : cell->dt) / PLACE_STEPS;
     float off = of->patch->bend * of->patch->scale * size * size / (8 * px);
     int cuts = off <= CLOSE_PX ? 1 : off <= 4 * CLOSE_PX ? 2 : MOST_CUTS;
-    *bulge = fminf(off / (float)(cuts * cuts), WHOLE_PX) + LEAST_BULGE_PX;
+    off = off / (float)(cuts * cuts) + LEAST_BULGE_PX;
+    *bulge = off < CELL_PX ? off : CELL_PX;
     return cuts;
 }
 
@@ -204,12 +231,12 @@ static void draw_cut(const struct source *of, const struct cell *cell, int cuts,
             struct cell part = {.ds = cell->ds / (float)cuts, .dt = cell->dt / (float)cuts};
             part.s = cell->s + (float)i * part.ds;
             part.t = cell->t + (float)j * part.dt;
-            part.drawn.piece = cell->drawn.piece;
-            part.drawn.bulge = bulge;
+            part.piece = cell->piece;
+            part.bulge = bulge;
             for (int k = 0; k < 4; k++) {
-                part.drawn.x[k] = x[corner[k]];
-                part.drawn.y[k] = y[corner[k]];
-                part.drawn.nearness[k] = nearness[corner[k]];
+                part.x[k] = x[corner[k]];
+                part.y[k] = y[corner[k]];
+                part.nearness[k] = nearness[corner[k]];
             }
             draw_cell(of->room, &part);
         }
@@ -220,39 +247,41 @@ static void draw_cut(const struct source *of, const struct cell *cell, int cuts,
 static void draw_whole(const struct source *of, struct cell *cell)
 {
     struct touched in;
-    if (!touch(cell->drawn.x, cell->drawn.y, 4, WHOLE_PX, &in) || !any_listed(of->room, &in))
+    if (!touch(cell->x, cell->y, 4, CELL_PX, &in) || !any_listed(of->room, &in))
         return;
-    int cuts = cuts_of(of, cell, &cell->drawn.bulge);
+    int cuts = cuts_of(of, cell, &cell->bulge);
     if (cuts > 1)
-        draw_cut(of, cell, cuts, cell->drawn.bulge);
+        draw_cut(of, cell, cuts, cell->bulge);
     else
         draw_cell(of->room, cell);
 }
 
-/* Depth may change so much over such a triangle that positions need perspective; its piece is met from there by
- * Newton's method, so one place for all rays of a pixel is enough. */
+/* Draws a triangle of a piece that is cut at the near plane or extends far beyond the picture. Depth may change by
+ * orders of magnitude over it, so the place at a pixel is interpolated with perspective. All rays of the pixel get the
+ * place of its centre, from which Newton's method finds theirs. */
 static void draw_triangle(const struct source *of, const struct native_triangle *t, int piece)
 {
-    struct cell cell = {.drawn = {.bulge = WHOLE_PX, .piece = piece}};
+    struct cell cell = {.bulge = CELL_PX, .piece = piece};
     struct touched in;
     for (int k = 0; k < 4; k++) {
         int from = k < 3 ? k : 2;
-        cell.drawn.x[k] = t->x[from] - of->left;
-        cell.drawn.y[k] = t->y[from] - of->top;
-        cell.drawn.nearness[k] = t->nearness[from];
+        cell.x[k] = t->x[from] - of->left;
+        cell.y[k] = t->y[from] - of->top;
+        cell.nearness[k] = t->nearness[from];
     }
-    if (!touch(cell.drawn.x, cell.drawn.y, 3, WHOLE_PX, &in))
+    if (!touch(cell.x, cell.y, 3, CELL_PX, &in))
         return;
-    const struct half half[2] = {
-        half_of(0, 0, cell.drawn.x, cell.drawn.y, cell.drawn.nearness, 0, 1, 2), {.most = -1}};
+    struct halves of_cell;
+    halve(&cell, 1, &of_cell);
+    const struct half *half = &of_cell.half[0];
     for (int y = in.y0; y <= in.y1; y++)
         for (int word = in.x0 / 64; word <= in.x1 / 64; word++)
             for (uint64_t left = listed_in(of->room, y, word, in.x0, in.x1); left;
                  left &= left - 1) {
                 int x = 64 * word + __builtin_ctzll(left);
                 float at_x = (float)x + 0.5f, at_y = (float)y + 0.5f;
-                float b = half[0].bx * at_x + half[0].by * at_y + half[0].b0 + half[0].least_b;
-                float c = half[0].cx * at_x + half[0].cy * at_y + half[0].c0 + half[0].least_c;
+                float b = half->bx * at_x + half->by * at_y + half->b0 + half->least_b;
+                float c = half->cx * at_x + half->cy * at_y + half->c0 + half->least_c;
                 b = fminf(fmaxf(b, 0), 1);
                 c = fminf(fmaxf(c, 0), 1 - b);
                 float weight[3] = {(1 - b - c) * t->inverse_z[0], b * t->inverse_z[1],
@@ -262,7 +291,8 @@ static void draw_triangle(const struct source *of, const struct native_triangle 
                          (weight[0] * t->s[0] + weight[1] * t->s[1] + weight[2] * t->s[2]);
                 cell.t = PLACE_STEPS * inverse *
                          (weight[0] * t->t[0] + weight[1] * t->t[1] + weight[2] * t->t[2]);
-                draw_pixel(of->room, &cell, half, x, y, of->room->first_ray[y * TILE_WIDTH + x]);
+                draw_pixel(of->room, &cell, &of_cell, x, y,
+                           of->room->first_ray[y * TILE_WIDTH + x]);
             }
 }
 
@@ -272,15 +302,15 @@ static void draw_grid(const struct source *of, const float *vertex, uint32_t gri
     int n = (across + 1) * (down + 1);
     const float *x = vertex, *y = x + n + LANES, *nearness = y + n + LANES;
     struct cell cell = {.ds = PLACE_STEPS / (float)across, .dt = PLACE_STEPS / (float)down};
-    cell.drawn.piece = piece;
+    cell.piece = piece;
     for (int j = 0; j < down; j++) {
         for (int i = 0; i < across; i++) {
             int first = j * (across + 1) + i;
             const int corner[4] = {first, first + 1, first + across + 1, first + across + 2};
             for (int k = 0; k < 4; k++) {
-                cell.drawn.x[k] = x[corner[k]] - of->left;
-                cell.drawn.y[k] = y[corner[k]] - of->top;
-                cell.drawn.nearness[k] = nearness[corner[k]];
+                cell.x[k] = x[corner[k]] - of->left;
+                cell.y[k] = y[corner[k]] - of->top;
+                cell.nearness[k] = nearness[corner[k]];
             }
             cell.s = (float)i * cell.ds;
             cell.t = (float)j * cell.dt;
@@ -289,15 +319,12 @@ static void draw_grid(const struct source *of, const float *vertex, uint32_t gri
     }
 }
 
-static void draw_quad(struct source *of, const struct native_thread *thread, uint32_t i,
-                      struct native_tile_room *tile)
+static void draw_quad(struct source *of, const struct native_thread *thread,
+                      const struct native_quad *quad, struct native_tile_room *tile, int k)
 {
-    const struct native_quad *quad = &thread->quad[i];
-    int k = native_ray_piece_of(thread->number, i);
-    of->piece = &thread->piece[i];
     if (quad->grid == QUAD_TRIANGLES) {
-        for (uint32_t n = 0; n < quad->n_triangles; n++)
-            draw_triangle(of, &thread->triangle[quad->first + n], k);
+        for (uint32_t i = 0; i < quad->n_triangles; i++)
+            draw_triangle(of, &thread->triangle[quad->first + i], k);
         return;
     }
     bool is_of_patch = of->piece->kind == PIECE_OF_PATCH;
@@ -307,16 +334,27 @@ static void draw_quad(struct source *of, const struct native_thread *thread, uin
         draw_grid(of, thread->vertex + quad->first, quad->grid, k);
         return;
     }
-    struct cell cell = {.drawn = {.piece = k}, .ds = PLACE_STEPS, .dt = PLACE_STEPS};
+    struct cell cell = {.piece = k, .ds = PLACE_STEPS, .dt = PLACE_STEPS};
     for (int c = 0; c < 4; c++) {
-        cell.drawn.x[c] = quad->x[c] - of->left;
-        cell.drawn.y[c] = quad->y[c] - of->top;
-        cell.drawn.nearness[c] = quad->nearness[c];
+        cell.x[c] = quad->x[c] - of->left;
+        cell.y[c] = quad->y[c] - of->top;
+        cell.nearness[c] = quad->nearness[c];
     }
     draw_whole(of, &cell);
 }
 
-/* Draws those of a part's pieces in the tile that may touch listed pixels. */
+/* Whether a listed pixel lies in a square that the entry touches: most entries lie in none, and this is quick. */
+LANE_INLINE bool is_near_listed(const struct native_ray_room *room,
+                                const struct native_entry *entry)
+{
+    uint32_t squares = 0;
+    uint32_t columns = (2u << entry->x1 / RAY_SQUARE) - (1u << entry->x0 / RAY_SQUARE);
+    for (int y = entry->y0 / RAY_SQUARE; y <= entry->y1 / RAY_SQUARE; y++)
+        squares |= room->squares[y];
+    return squares & columns;
+}
+
+/* Draws those of a part's pieces in the tile that may touch listed pixels, and lists them. */
 static void draw_part(struct source *of, const struct native_part *part,
                       struct native_tile_room *tile)
 {
@@ -325,16 +363,24 @@ static void draw_part(struct source *of, const struct native_part *part,
     for (uint32_t i = first[0]; i < first[1]; i++) {
         const struct native_entry *entry = &thread->entry[i];
         const struct touched in = {entry->x0, entry->y0, entry->x1, entry->y1};
-        if (any_listed(of->room, &in))
-            draw_quad(of, thread, entry->quad, tile);
+        if (!is_near_listed(of->room, entry) || !any_listed(of->room, &in))
+            continue;
+        of->piece = tile->local[tile->n_local] = &thread->piece[entry->quad];
+        draw_quad(of, thread, &thread->quad[entry->quad], tile, (int)tile->n_local++);
     }
 }
 
-void LANE_NAME(native_see_rays)(const struct native_frame *frame, struct native_tile_room *tile,
+bool LANE_NAME(native_see_rays)(const struct native_frame *frame, struct native_tile_room *tile,
                                 struct native_ray_room *room)
 {
+    size_t n = 0;
+    for (uint32_t p = 0; p < frame->n_parts; p++)
+        n += frame->part[p].first_entry[room->tile + 1] - frame->part[p].first_entry[room->tile];
+    tile->n_local = 0;
     memset(room->on.nearness, 0, room->n_rays * sizeof *room->on.nearness);
     memset(room->beside.nearness, 0, room->n_rays * sizeof *room->beside.nearness);
+    if (!LANE_NAME(native_reserve_local)(tile, n))
+        return false;
     uint32_t x = frame->first_x + room->tile % frame->tiles_x;
     uint32_t y = frame->first_y + room->tile / frame->tiles_x;
     struct source of = {.frame = frame,
@@ -343,4 +389,5 @@ void LANE_NAME(native_see_rays)(const struct native_frame *frame, struct native_
                         .top = (float)(y * TILE_HEIGHT)};
     for (uint32_t p = 0; p < frame->n_parts; p++)
         draw_part(&of, &frame->part[p], tile);
+    return true;
 }

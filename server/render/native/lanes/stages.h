@@ -16,6 +16,9 @@ LANE_INLINE float before_of(const struct native_rays *rays, float nearness)
     return rays->perspective ? rays->far * nearness / (1 + nearness) : nearness;
 }
 
+/* Makes room for n pieces of a tile: room->local, ->quad, ->count and ->order. False when memory is short. */
+bool LANE_NAME(native_reserve_local)(struct native_tile_room *room, size_t n);
+
 /* Evaluates the pixels, sorted by piece: those whose guess leads to a place on its sub-patch are written; the others
  * become strays. */
 void LANE_NAME(native_evaluate)(const struct native_frame *frame, struct native_tile_room *room);

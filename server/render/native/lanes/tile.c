@@ -131,8 +131,7 @@ static uint32_t depth_step(const struct depth_steps *steps, float nearest)
     return step > 0 ? step < DEPTH_STEPS - 1 ? (uint32_t)step : DEPTH_STEPS - 1 : 0;
 }
 
-/* Room for the tile's pieces. False: no memory. */
-static bool reserve_local(struct native_tile_room *room, size_t n)
+bool LANE_NAME(native_reserve_local)(struct native_tile_room *room, size_t n)
 {
     size_t local = room->local_capacity, quad = local, count = local, order = local;
     if (!native_grow(&room->local, &local, n + 2, sizeof(struct native_piece *)) ||
@@ -153,7 +152,7 @@ static bool list_local(const struct native_frame *frame, struct native_tile_room
     size_t n = 0;
     for (uint32_t p = 0; p < frame->n_parts; p++)
         n += frame->part[p].first_entry[number + 1] - frame->part[p].first_entry[number];
-    if (!reserve_local(room, n))
+    if (!LANE_NAME(native_reserve_local)(room, n))
         return false;
     room->n_local = n;
     for (int pass = 0; pass < 2; pass++) {

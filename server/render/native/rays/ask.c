@@ -6,8 +6,8 @@
 
 #include "server/render/native/denormals.h"
 
-/* A ray that meets nothing on the piece it runs through starts again from where the rays beside it have met the
- * surface, so often. */
+/* A ray that meets nothing, though a piece lies at its point, tries the hits of its four neighbours in the pixel in
+ * turn, in BESIDE_ROUNDS rounds: in the second, neighbours may have found theirs in the first. */
 enum { BESIDE_ROUNDS = 2, BESIDE = 4 };
 /* A piece beside a ray's point counts if it lies in front of the piece there by so many px of depth. */
 static const float IN_FRONT_PX = 0.5f;
@@ -15,15 +15,7 @@ static const float IN_FRONT_PX = 0.5f;
 static const float EDGE_RAYS[][2] = {
 #include "edge_rays.inc" /* of shaders/rounded.glsl */
 };
-static_assert(NATIVE_MAX_THREADS <= 1 << (31 - RAY_PIECE_BITS), "numbers of pieces");
-static_assert(GRIDS_MAX_VERTICES / 4 < 1 << RAY_PIECE_BITS, "numbers of pieces");
 static_assert(sizeof EDGE_RAYS / sizeof *EDGE_RAYS == NATIVE_MAX_RAYS, "a place for each ray");
-
-/* The depth at a nearness, units. */
-static float depth_at(const struct native_rays *rays, float nearness)
-{
-    return rays->perspective ? rays->far / (1 + nearness) : rays->far - nearness;
-}
 
 static void add_task(struct native_ray_room *room, const struct native_ray_task *begin,
                      uint32_t ray)
@@ -31,22 +23,6 @@ static void add_task(struct native_ray_room *room, const struct native_ray_task 
     struct native_ray_task *task = &room->task[room->n_tasks++];
     *task = *begin;
     task->ray = ray;
-}
-
-/* Adds a task on the piece that a ray may meet. */
-static void ask_piece(const struct native_frame *frame, struct native_ray_room *room,
-                      const struct native_ray_pieces *pieces, uint32_t ray)
-{
-    struct native_task at = {0};
-    uint32_t piece = (uint32_t)pieces->piece[ray];
-    const struct native_thread *placed_by = &frame->thread[piece >> RAY_PIECE_BITS];
-    native_begin_on(frame->model, &at, &placed_by->piece[piece & ((1u << RAY_PIECE_BITS) - 1)],
-                    pieces->place[ray]);
-    const struct native_ray_task begin = {
-        .at = {at.node, at.part.at_vertex ? RAY_AT_VERTEX : (uint16_t)at.part.index, at.s, at.t},
-        .patch = at.patch,
-        .px = native_pixel_units(&frame->rays, depth_at(&frame->rays, pieces->nearness[ray]))};
-    add_task(room, &begin, ray);
 }
 
 static void meet_tasks(const struct native_frame *frame, struct native_thread *thread)
@@ -57,14 +33,12 @@ static void meet_tasks(const struct native_frame *frame, struct native_thread *t
 
 static void ask_on(const struct native_frame *frame, struct native_thread *thread)
 {
-    struct native_ray_room *room = thread->rays;
-    for (uint32_t ray = 0; ray < room->n_rays; ray++)
-        if (room->on.nearness[ray] > 0)
-            ask_piece(frame, room, &room->on, ray);
+    native_group_pieces(frame, thread->tile, thread->rays);
     meet_tasks(frame, thread);
 }
 
-/* The pieces beside rays, where these lie in front of what the rays have met. */
+/* Tries the pieces beside rays where they lie in front of what the rays have met. A ray that has not yet met the piece
+ * at its point may still do so from its neighbours' hits, so that piece's depth counts. */
 static void ask_bulges(const struct native_frame *frame, struct native_thread *thread)
 {
     struct native_ray_room *room = thread->rays;
@@ -73,11 +47,11 @@ static void ask_bulges(const struct native_frame *frame, struct native_thread *t
         float nearness = room->beside.nearness[ray];
         if (!(nearness > 0))
             continue;
-        float z = depth_at(rays, nearness), own = room->z[ray];
+        float z = native_ray_depth(rays, nearness), own = room->z[ray];
         if (own == RAYS_FARTHEST && room->on.nearness[ray] > 0)
-            own = depth_at(rays, room->on.nearness[ray]);
+            own = native_ray_depth(rays, room->on.nearness[ray]);
         if (z < own - IN_FRONT_PX * native_pixel_units(rays, z))
-            ask_piece(frame, room, &room->beside, ray);
+            native_ray_start(frame, thread->tile, room, &room->beside, ray);
     }
     meet_tasks(frame, thread);
 }
@@ -148,13 +122,15 @@ static void begin_pixels(const struct native_frame *frame, struct native_ray_roo
     room->rays_per_px = (uint32_t)(side * side);
     room->n_rays = room->n_pixels * room->rays_per_px;
     memset(room->listed, 0, sizeof room->listed);
+    memset(room->squares, 0, sizeof room->squares);
     for (uint32_t i = 0, ray = 0; i < n; i++) {
         uint32_t listed = rounded->pixel[first + i], pixel;
         uint32_t tile = native_listed_tile(frame, listed, &pixel);
         room->tile = tile;
         room->listed[pixel / TILE_WIDTH][pixel % TILE_WIDTH / 64] |= (uint64_t)1 << pixel % 64;
+        room->squares[pixel / TILE_WIDTH / RAY_SQUARE] |= 1u << pixel % TILE_WIDTH / RAY_SQUARE;
         room->first_ray[pixel] = (uint16_t)ray;
-        bool is_spread = side == 4 && native_listed_at_edge(listed);
+        bool is_spread = side * side == NATIVE_MAX_RAYS && native_listed_at_edge(listed);
         for (int k = 0; k < side * side; k++, ray++) {
             room->x[ray] = (float)(frame->tile.x + native_listed_x(listed));
             room->y[ray] = (float)(frame->tile.y + native_listed_y(listed));
@@ -167,22 +143,25 @@ static void begin_pixels(const struct native_frame *frame, struct native_ray_roo
     }
 }
 
-void native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
+bool native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
                         const struct native_rounded *rounded, uint32_t first, uint32_t n)
 {
     struct native_ray_room *room = thread->rays;
     denormals saved = denormals_flush();
     begin_pixels(frame, room, rounded, first, n);
     float(*hit)[HIT_WORDS] = rounded->hit + (size_t)first * room->rays_per_px;
-    frame->set->see_rays(frame, thread->tile, room);
+    bool ok = frame->set->see_rays(frame, thread->tile, room);
     room->n_tasks = 0;
-    ask_on(frame, thread);
-    ask_bulges(frame, thread);
-    ask_again(frame, thread, rounded->side);
+    if (ok) {
+        ask_on(frame, thread);
+        ask_bulges(frame, thread);
+        ask_again(frame, thread, rounded->side);
+    }
     memset(hit, 0, room->n_rays * sizeof *hit);
     for (uint32_t i = 0; i < room->n_rays; i++)
         if (room->z[i] < RAYS_FARTHEST)
             add_task(room, &(struct native_ray_task){.at = room->met[i]}, i);
     frame->set->describe_rays(frame, thread->tile, room, hit);
     denormals_restore(saved);
+    return ok;
 }

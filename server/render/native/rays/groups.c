@@ -93,6 +93,76 @@ void native_group_rays(const struct native_model *model, struct native_ray_room 
     memset(room->ray + room->n_tasks, 0, RAYS_END * sizeof *room->ray);
 }
 
+void native_ray_start(const struct native_frame *frame, const struct native_tile_room *tile,
+                      struct native_ray_room *room, const struct native_ray_pieces *pieces,
+                      uint32_t ray)
+{
+    struct native_task at = {0};
+    struct native_ray_task *task = &room->task[room->n_tasks++];
+    float depth = native_ray_depth(&frame->rays, pieces->nearness[ray]);
+    native_begin_on(frame->model, &at, tile->local[pieces->piece[ray]], pieces->place[ray]);
+    *task = (struct native_ray_task){
+        .at = {at.node, at.part.at_vertex ? RAY_AT_VERTEX : (uint16_t)at.part.index, at.s, at.t},
+        .px = native_pixel_units(&frame->rays, depth),
+        .ray = ray,
+        .patch = at.patch};
+}
+
+/* Begins the group of each piece that n[k] rays start on. n[k] becomes the first of them, or NOT_SORTED. */
+enum { NOT_SORTED = UINT32_MAX };
+static uint32_t begin_groups(const struct native_frame *frame, const struct native_tile_room *tile,
+                             struct native_ray_room *room, uint32_t *n)
+{
+    uint32_t first = 0;
+    room->n_groups = 0;
+    for (size_t k = 0; k < tile->n_local; k++) {
+        const struct native_piece *piece = tile->local[k];
+        if (n[k] == 0)
+            continue;
+        if (piece->kind != PIECE_OF_PATCH) {
+            n[k] = NOT_SORTED;
+            continue;
+        }
+        struct native_ray_group *group = &room->group[room->n_groups++];
+        *group = (struct native_ray_group){
+            .node = piece->node, .first = first, .n = n[k], .patch = piece->patch};
+        group->index =
+            (uint16_t)native_piece_index(&frame->model->tables->nodes[piece->node], piece);
+        n[k] = first;
+        first += group->n;
+    }
+    return first;
+}
+
+void native_group_pieces(const struct native_frame *frame, struct native_tile_room *tile,
+                         struct native_ray_room *room)
+{
+    const struct native_ray_pieces *on = &room->on;
+    uint32_t *next = tile->count, n;
+    memset(next, 0, tile->n_local * sizeof *next);
+    for (uint32_t ray = 0; ray < room->n_rays; ray++)
+        if (on->nearness[ray] > 0)
+            next[on->piece[ray]]++;
+    n = begin_groups(frame, tile, room, next);
+    for (uint32_t ray = 0; ray < room->n_rays; ray++) {
+        if (!(on->nearness[ray] > 0))
+            continue;
+        uint32_t *to = &next[on->piece[ray]], place = (uint32_t)on->place[ray];
+        if (*to == NOT_SORTED) {
+            native_ray_start(frame, tile, room, on, ray);
+            continue;
+        }
+        const struct native_piece *piece = tile->local[on->piece[ray]];
+        const float step = piece->size * (1 / 65535.0f);
+        room->s[*to] = piece->s + (float)(place & 0xffff) * step;
+        room->t[*to] = piece->t + (float)(place >> 16) * step;
+        room->px[*to] =
+            native_pixel_units(&frame->rays, native_ray_depth(&frame->rays, on->nearness[ray]));
+        room->ray[(*to)++] = (int32_t)ray;
+    }
+    memset(room->ray + n, 0, RAYS_END * sizeof *room->ray);
+}
+
 void native_ray_begin(const struct limit_node *node, double x, double y,
                       struct native_ray_place *place)
 {

@@ -36,6 +36,7 @@ struct rounded_job {
     const struct native_frame *frame;
     const struct native_rounded *rounded;
     uint32_t next, at_once; /* pixels */
+    bool out_of_memory;
 };
 
 /* The first pixel after `first` that lies in another tile, or `end`. */
@@ -59,7 +60,8 @@ static void meet_rounded(void *owner, unsigned number)
         uint32_t left = job->rounded->n - first;
         for (end = first + (left < job->at_once ? left : job->at_once); first < end;) {
             uint32_t next = end_of_tile(job, first, end);
-            native_meet_pixels(job->frame, thread, job->rounded, first, next - first);
+            if (!native_meet_pixels(job->frame, thread, job->rounded, first, next - first))
+                __atomic_store_n(&job->out_of_memory, true, __ATOMIC_RELAXED);
             first = next;
         }
     }
@@ -83,5 +85,6 @@ bool native_meet_rounded(struct native_device *device, const struct native_round
     job.at_once = rounded->n / (TURNS * native_device_threads(device)) + LEAST_PX;
     job.at_once = job.at_once < RAYS_PX ? job.at_once : RAYS_PX;
     native_device_run(device, meet_rounded, &job);
-    return true;
+    return !job.out_of_memory ||
+           error_set(error, ERROR_SERVER, "out of memory for the rays of pixels");
 }

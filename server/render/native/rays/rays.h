@@ -3,9 +3,9 @@
  *
  * A thread takes at most RAYS_PX pixels of one tile at a time. It draws the tile's pieces, cut finely, at the points of
  * the picture through which these pixels' rays run. The piece at a ray's point gives the place where the ray starts:
- * a task. A drawn piece is not exactly the surface, so a piece beside the point is tried as well where it lies in front,
- * and a ray that misses its piece starts again from the rays beside it. All tasks that start on the same sub-patch
- * form a group, which lanes solve together, because they read the same coefficients. The hit of a ray depends on the
+ * a task. A drawn piece is not exactly the surface, so a piece beside the point is tried as well where it lies in
+ * front, and a ray that misses its piece starts again from the rays beside it. All tasks that start on the same
+ * sub-patch form a group, which lanes solve together, because they read the same coefficients. The hit of a ray depends on the
  * other rays only where it misses the piece at its point. */
 #ifndef SHEEN_RENDER_NATIVE_RAYS_RAYS_H
 #define SHEEN_RENDER_NATIVE_RAYS_RAYS_H
@@ -15,7 +15,11 @@
 
 struct native_device;
 
-enum { RAYS_PX = 512, RAYS_AT_ONCE = RAYS_PX * NATIVE_MAX_RAYS, RAYS_END = 16 /* a vector's */ };
+enum {
+    RAYS_PX = 512,
+    RAYS_AT_ONCE = RAYS_PX * NATIVE_MAX_RAYS,
+    RAYS_END = 16 /* so that a whole vector may be read at the end */
+};
 enum { RAY_PATCHES = 4 * RAYS_AT_ONCE };
 
 /* A place on a sub-patch: `index` as in patches.h; RAY_AT_VERTEX: beyond all levels of a CORNER. */
@@ -41,22 +45,15 @@ struct native_ray_group {
     const struct native_patch *patch; /* NULL: the model does not keep it yet, or at a vertex */
 };
 
-/* A piece that rays may meet: nearness (0: none), the piece as a number (native_ray_piece_of), and the place on it
+/* A piece that rays may meet: nearness (0: none), an index of native_tile_room.local, and the place on that piece
  * (native_tile_room.place). One for each ray. */
 struct native_ray_pieces {
     float nearness[RAYS_AT_ONCE + RAYS_END];
     int32_t piece[RAYS_AT_ONCE + RAYS_END], place[RAYS_AT_ONCE + RAYS_END];
 };
 
-/* The number of piece k of a thread. */
-enum { RAY_PIECE_BITS = 24 };
-static inline int32_t native_ray_piece_of(unsigned thread, uint32_t k)
-{
-    return (int32_t)(thread << RAY_PIECE_BITS | k);
-}
-
-/* Columns of a tile that are listed, 64 in a word. */
-enum { RAY_ROW_WORDS = TILE_WIDTH / 64 };
+/* Columns of a tile that are listed, 64 in a word; and squares of the tile in which any pixel is listed. */
+enum { RAY_ROW_WORDS = TILE_WIDTH / 64, RAY_SQUARE = 8, RAY_SQUARES = TILE_HEIGHT / RAY_SQUARE };
 
 /* An entry of the hash table of sub-patches that rays have reached: the group of its tasks in sorting number
  * `sorting`. */
@@ -70,12 +67,13 @@ struct native_ray_patch {
 struct native_ray_room {
     uint32_t tile; /* the frame's tile in which the pixels lie */
     uint32_t n_pixels, n_rays, rays_per_px;
-    /* Which pixels of the tile are those, and the first ray of each. */
+    /* A bit for each pixel of the tile, set if it is among those, and the first ray of each. */
     uint64_t listed[TILE_HEIGHT][RAY_ROW_WORDS];
+    uint32_t squares[RAY_SQUARES]; /* of each row of squares, a bit for each column */
     uint16_t first_ray[TILE_PX];
     struct native_ray_pieces on;     /* the nearest piece that each ray's point lies on */
     struct native_ray_pieces beside; /* the nearest one beside it, which may bulge out to it */
-    unsigned asks[RAYS_PX];          /* rays of each pixel that are looked for */
+    unsigned asks[RAYS_PX];          /* of each pixel, bit k: ray k has no hit and is tried again */
     /* For each ray: its pixel, px of the picture, and its offset from that pixel's centre. */
     float x[RAYS_AT_ONCE], y[RAYS_AT_ONCE];
     float off_x[RAYS_AT_ONCE + RAYS_END], off_y[RAYS_AT_ONCE + RAYS_END];
@@ -103,8 +101,21 @@ struct native_part_of_node native_part_of_index(const struct limit_node *node, u
 
 /* Forgets the patches of an earlier frame. */
 void native_forget_ray_patches(struct native_ray_room *room);
-/* Sorts room->task by sub-patch. */
+/* Sorts room->task by sub-patch into room->group. */
 void native_group_rays(const struct native_model *model, struct native_ray_room *room);
+/* Sorts the rays of room->on by their pieces into room->group. Those on pieces that are not of one sub-patch become
+ * tasks. */
+void native_group_pieces(const struct native_frame *frame, struct native_tile_room *tile,
+                         struct native_ray_room *room);
+/* Adds a task for a ray at the place of one of `pieces`. */
+void native_ray_start(const struct native_frame *frame, const struct native_tile_room *tile,
+                      struct native_ray_room *room, const struct native_ray_pieces *pieces,
+                      uint32_t ray);
+/* The depth at a nearness, units. */
+static inline float native_ray_depth(const struct native_rays *rays, float nearness)
+{
+    return rays->perspective ? rays->far / (1 + nearness) : rays->far - nearness;
+}
 
 /* A listed pixel (shaders/rounded.glsl), px of what is drawn. */
 static inline uint32_t native_listed_x(uint32_t listed)
@@ -129,8 +140,9 @@ uint32_t native_listed_tile(const struct native_frame *frame, uint32_t listed, u
  * memory for n pixels. */
 void native_sort_pixels(uint32_t *pixel, uint32_t n, const struct tile *tile, uint32_t *room);
 
-/* Meets the rays of n pixels of one tile, at most RAYS_PX, from `first` on; thread->rays must exist. */
-void native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
+/* Meets the rays of n pixels of one tile, at most RAYS_PX, from `first` on; thread->rays must exist. False when memory
+ * is short. */
+bool native_meet_pixels(const struct native_frame *frame, struct native_thread *thread,
                         const struct native_rounded *rounded, uint32_t first, uint32_t n);
 
 /* Meets the rays of pixels with the surface, by all threads. The device's last frame (native_device_drawn) must be of
