@@ -83,6 +83,8 @@ struct text {
     uint32_t width_px, height_px;
     float *coverage; /* [height_px][width_px], 0 to 1 */
 };
+/* The most lines of one picture. */
+enum { TEXT_MAX_LINES = 8 };
 /* Limit of a mask's sides and of its distance from the start of the baseline. */
 #define TEXT_MAX_PX (1u << 15)
 

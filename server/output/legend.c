@@ -1,5 +1,6 @@
 #include "server/output/legend.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -60,30 +61,36 @@ static void draw_bar(uint8_t *rgba, uint32_t width_px, const struct box *box,
         }
 }
 
-struct legend_target {
-    uint8_t *rgba;
-    uint32_t width_px, height_px;
-    struct workers *workers;
-    struct block_cache *block_cache;
-    struct error *error;
-};
-
-static bool write_text(const struct legend_target *target, int x, int y, int size_px,
-                       enum text_align align, const char *line)
+/* Writes the title and the marks. One worker draws all of them, since starting one takes far longer
+ * than a line of text. */
+static bool write_texts(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct box *bar,
+                        int panel_y, int font, const struct legend *legend, struct workers *workers,
+                        struct block_cache *block_cache, struct error *error)
 {
-    struct text text;
-    if (!workers_draw_text(target->workers, target->block_cache, &text, line, size_px,
-                           target->error))
+    static_assert(1 + LEGEND_MAX_MARKS <= TEXT_MAX_LINES, "lines of a legend");
+    const char *lines[TEXT_MAX_LINES] = {legend->title};
+    struct text texts[TEXT_MAX_LINES];
+    for (unsigned i = 0; i < legend->n_marks; i++)
+        lines[1 + i] = legend->marks[i].text;
+    if (!workers_draw_texts(workers, block_cache, lines, 1 + legend->n_marks, font, texts, error))
         return false;
-    text_draw(&text, target->rgba, target->width_px, target->height_px, x, y, align, TEXT_COLOUR);
-    block_cache_give(target->block_cache, text.coverage);
+    text_draw(&texts[0], rgba, width_px, height_px, bar->x, panel_y + (int)(TITLE_BASELINE * font),
+              TEXT_LEFT, TEXT_COLOUR);
+    for (unsigned i = 0; i < legend->n_marks; i++) {
+        const struct legend_mark *mark = &legend->marks[i];
+        enum text_align align = mark->at <= 0   ? TEXT_LEFT
+                                : mark->at >= 1 ? TEXT_RIGHT
+                                                : TEXT_CENTRE;
+        text_draw(&texts[1 + i], rgba, width_px, height_px, bar->x + (int)(mark->at * bar->width),
+                  panel_y + (int)(MARKS_BASELINE * font), align, TEXT_COLOUR);
+    }
+    block_cache_give(block_cache, texts[0].coverage);
     return true;
 }
 
 bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const struct legend *legend,
                  struct workers *workers, struct block_cache *block_cache, struct error *error)
 {
-    const struct legend_target target = {rgba, width_px, height_px, workers, block_cache, error};
     int font = (int)(height_px / FONT_SHARE);
     font = font < MIN_FONT_PX ? MIN_FONT_PX : font;
     struct box panel = {.width = PANEL_WIDTH * font, .height = (int)(PANEL_HEIGHT * font)};
@@ -96,15 +103,6 @@ bool legend_draw(uint8_t *rgba, uint32_t width_px, uint32_t height_px, const str
                             panel.width - 2 * margin, (int)(BAR_HEIGHT * font)};
     darken(rgba, width_px, &panel);
     draw_bar(rgba, width_px, &bar, legend);
-    bool ok = write_text(&target, bar.x, panel.y + (int)(TITLE_BASELINE * font), font, TEXT_LEFT,
-                         legend->title);
-    for (unsigned i = 0; ok && i < legend->n_marks; i++) {
-        const struct legend_mark *mark = &legend->marks[i];
-        enum text_align align = mark->at <= 0   ? TEXT_LEFT
-                                : mark->at >= 1 ? TEXT_RIGHT
-                                                : TEXT_CENTRE;
-        ok = write_text(&target, bar.x + (int)(mark->at * bar.width),
-                        panel.y + (int)(MARKS_BASELINE * font), font, align, mark->text);
-    }
-    return ok;
+    return write_texts(rgba, width_px, height_px, &bar, panel.y, font, legend, workers, block_cache,
+                       error);
 }

@@ -158,9 +158,9 @@ bool text_take(struct source *source, float *coverage, struct text *text)
     taken.height_px = source_u32(source);
     *text = (struct text){0};
     if (!source->ok || taken.width_px > TEXT_MAX_PX || taken.height_px > TEXT_MAX_PX ||
-        source->left != (size_t)taken.width_px * taken.height_px * sizeof *coverage)
+        source->left / sizeof *coverage < (size_t)taken.width_px * taken.height_px)
         return false;
-    const size_t size = source->left;
+    const size_t size = (size_t)taken.width_px * taken.height_px * sizeof *coverage;
     memcpy(coverage, source_bytes(source, size), size);
     if (!text_check(&taken))
         return false;

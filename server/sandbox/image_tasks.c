@@ -45,17 +45,22 @@ static void write_image(struct source *input, struct sink *answer)
 
 static void draw_text(struct source *input, struct sink *answer)
 {
-    const uint32_t size_px = source_u32(input);
-    const char *line = source_text(input);
+    const int size_px = (int)source_u32(input);
+    const uint32_t n = source_u32(input);
     struct error error = {0};
-    struct text text;
-    if (!text_create(&text, line, (int)size_px, &error)) {
+    struct text texts[TEXT_MAX_LINES] = {0};
+    bool ok = n <= TEXT_MAX_LINES || error_set(&error, ERROR_SERVER, "too many lines of text");
+    for (uint32_t i = 0; ok && i < n; i++)
+        ok = text_create(&texts[i], source_text(input), size_px, &error);
+    if (!ok)
         answer_write_error(answer, &error);
-        return;
+    else
+        answer_write_ok(answer);
+    for (uint32_t i = 0; i < n && i < TEXT_MAX_LINES; i++) {
+        if (ok)
+            text_write(answer, &texts[i]);
+        text_finish(&texts[i]);
     }
-    answer_write_ok(answer);
-    text_write(answer, &text);
-    text_finish(&text);
 }
 
 const struct zygote_task image_tasks[N_JOB_KINDS] = {

@@ -222,34 +222,41 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
     return ok;
 }
 
-/* Reads the mask from the rest of an answer. */
-static bool take_text(struct source *answer, struct block_cache *block_cache, struct text *text,
-                      struct error *error)
+/* Reads n masks from the rest of an answer. */
+static bool take_texts(struct source *answer, struct block_cache *block_cache, size_t n,
+                       struct text *texts, struct error *error)
 {
-    float *coverage = block_cache_take(block_cache, answer->left);
-    if (!coverage)
-        return error_set(error, ERROR_SERVER, "no memory for a line of text: try again later");
-    if (text_take(answer, coverage, text))
+    float *block = block_cache_take(block_cache, answer->left), *coverage = block;
+    if (!block)
+        return error_set(error, ERROR_SERVER, "no memory for lines of text: try again later");
+    bool ok = true;
+    for (size_t i = 0; ok && i < n; i++) {
+        ok = text_take(answer, coverage, &texts[i]);
+        coverage += (size_t)texts[i].width_px * texts[i].height_px;
+    }
+    if (ok && answer->left == 0)
         return true;
-    block_cache_give(block_cache, coverage);
-    return error_set(error, ERROR_SERVER, "a line of text came back broken");
+    block_cache_give(block_cache, block);
+    return error_set(error, ERROR_SERVER, "lines of text came back broken");
 }
 
-bool workers_draw_text(struct workers *workers, struct block_cache *block_cache, struct text *text,
-                       const char *line, int size_px, struct error *error)
+bool workers_draw_texts(struct workers *workers, struct block_cache *block_cache,
+                        const char *const *lines, size_t n, int size_px, struct text *texts,
+                        struct error *error)
 {
     const struct job_limits limits = limits_within_budget(workers, WORKERS_LEAST_MEMORY_BYTES);
     struct worker_call call;
-    *text = (struct text){0};
     bool ok = begin_job(workers, &call, NULL, error);
     if (ok) {
         sink_u32(&call.input, (uint32_t)size_px);
-        sink_text(&call.input, line);
+        sink_u32(&call.input, (uint32_t)n);
+        for (size_t i = 0; i < n; i++)
+            sink_text(&call.input, lines[i]);
     }
     ok = ok &&
-         worker_run(workers->images, &call, JOB_DRAW_TEXT, &limits, "a line of text", ERROR_SERVER,
+         worker_run(workers->images, &call, JOB_DRAW_TEXT, &limits, "lines of text", ERROR_SERVER,
                     error) &&
-         take_text(&call.answer, block_cache, text, error);
+         take_texts(&call.answer, block_cache, n, texts, error);
     end_job(workers, &call);
     return ok;
 }

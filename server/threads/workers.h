@@ -67,8 +67,10 @@ bool workers_write_image(struct workers *workers, const struct picture *picture,
                          const struct picture_block *blocks, size_t n_blocks,
                          struct block_cache *block_cache, uint8_t **bytes, size_t *size,
                          struct error *error);
-/* text_create() in a worker. The mask is from `block_cache`. */
-bool workers_draw_text(struct workers *workers, struct block_cache *block_cache, struct text *text,
-                       const char *line, int size_px, struct error *error);
+/* text_create() of 1 to TEXT_MAX_LINES lines in one worker. The masks lie in one block from
+ * `block_cache`, which begins with texts[0].coverage and which the caller gives back. */
+bool workers_draw_texts(struct workers *workers, struct block_cache *block_cache,
+                        const char *const *lines, size_t n, int size_px, struct text *texts,
+                        struct error *error);
 
 #endif

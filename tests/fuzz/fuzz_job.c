@@ -73,7 +73,7 @@ static void try_text(struct source *source)
     const size_t had = source->left;
     float *coverage = malloc(had > 0 ? had : 1);
     if (coverage && text_take(source, coverage, &text)) {
-        MUST(had == FOUR_NUMBERS + sizeof(float) * text.width_px * text.height_px);
+        MUST(had - source->left == FOUR_NUMBERS + sizeof(float) * text.width_px * text.height_px);
         if (text.width_px * text.height_px < 4096)
             text_draw(&text, rgba[0][0], 16, 16, 8, 8, TEXT_CENTRE, white);
     }
