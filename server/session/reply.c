@@ -6,7 +6,8 @@ struct reply {
     TAILQ_ENTRY(reply) link;
     struct block_cache *block_cache;
     uint32_t seq;
-    enum request_class request_class;
+    bool asks_frame;
+    enum request_class request_class; /* of the frame that is asked for */
     bool ready, last;
     uint8_t *message; /* header and body */
     size_t length;
@@ -19,15 +20,25 @@ void reply_list_init(struct reply_list *list, struct block_cache *block_cache)
     TAILQ_INIT(&list->replies);
 }
 
-struct reply *reply_expect(struct reply_list *list, uint32_t seq, enum request_class request_class)
+struct reply *reply_expect(struct reply_list *list, uint32_t seq)
 {
     struct reply *reply = block_cache_take(list->block_cache, sizeof *reply);
     if (!reply)
         return NULL;
-    *reply = (struct reply){
-        .block_cache = list->block_cache, .seq = seq, .request_class = request_class};
+    *reply = (struct reply){.block_cache = list->block_cache, .seq = seq};
     TAILQ_INSERT_TAIL(&list->replies, reply, link);
     list->n++;
+    return reply;
+}
+
+struct reply *reply_expect_frame(struct reply_list *list, uint32_t seq,
+                                 enum request_class request_class)
+{
+    struct reply *reply = reply_expect(list, seq);
+    if (reply) {
+        reply->asks_frame = true;
+        reply->request_class = request_class;
+    }
     return reply;
 }
 
@@ -139,8 +150,8 @@ static void send_reply(struct reply_list *list, struct reply *reply, struct conn
     reply->encoded = NULL; /* owned by the connection from here on */
 }
 
-/* May the reply leave now? owed[c]: a frame of class c that was asked for earlier has not left
- * yet. */
+/* May the reply leave now? owed[c]: the reply to an earlier request for a frame of class c has not
+ * left yet. */
 static bool is_due(const struct reply_list *list, const struct reply *reply,
                    const bool owed[static N_CLASSES])
 {
@@ -167,7 +178,7 @@ void reply_send_due(struct reply_list *list, struct conn *conn)
             drop(list, reply);
             sent = true;
         } else {
-            owed[reply->request_class] = true;
+            owed[reply->request_class] |= reply->asks_frame;
             is_over |= list->is_ordered; /* no reply may overtake this one */
         }
         reply = next;

@@ -28,10 +28,13 @@ struct reply_list {
 /* Starts an empty list. Nothing is allocated. */
 void reply_list_init(struct reply_list *list, struct block_cache *block_cache);
 
-/* Adds a reply for the request with number `seq`. `request_class` is the class of its frame, and
- * CLASS_STILL for requests without a frame. NULL when memory is short: then the connection must
- * end. */
-struct reply *reply_expect(struct reply_list *list, uint32_t seq, enum request_class request_class);
+/* Adds a reply for the request with number `seq`, which asks for no frame. NULL when memory is
+ * short: then the connection must end. */
+struct reply *reply_expect(struct reply_list *list, uint32_t seq);
+/* As reply_expect() for a request that asks for a frame of this class: later frames of the class
+ * wait until the reply has left, whatever it is. */
+struct reply *reply_expect_frame(struct reply_list *list, uint32_t seq,
+                                 enum request_class request_class);
 /* True if a reply to the request with this number is still owed. */
 bool reply_list_owes(const struct reply_list *list, uint32_t seq);
 /* The number of the request that the reply answers. */

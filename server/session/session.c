@@ -25,7 +25,7 @@ void session_refuse(struct session *session, uint32_t seq, sheen_ErrorCode code,
     }
     if (session->end == END_CLIENT)
         session->end = code == sheen_ErrorCode_ERROR_SHUTTING_DOWN ? END_DRAIN : END_PROTOCOL;
-    struct reply *reply = session->refused ? NULL : session_expect_reply(session, seq, CLASS_STILL);
+    struct reply *reply = session->refused ? NULL : session_expect_reply(session, seq);
     if (!session->refused && code != sheen_ErrorCode_ERROR_SHUTTING_DOWN)
         session_log_disconnect(session, text);
     session->refused = true;

@@ -50,7 +50,9 @@ void session_reply_error(struct session *session, struct reply *reply, sheen_Err
 bool session_is_sending(const struct session *session);
 
 /* Adds a reply that is owed. NULL when memory is short; then the connection is closed. */
-struct reply *session_expect_reply(struct session *session, uint32_t seq,
+struct reply *session_expect_reply(struct session *session, uint32_t seq);
+/* As session_expect_reply(), for a request that asks for a frame of this class. */
+struct reply *session_expect_frame(struct session *session, uint32_t seq,
                                    enum request_class request_class);
 /* Answer a request at once. */
 void session_reply_now(struct session *session, uint32_t seq, uint8_t type, const void *body);

@@ -91,18 +91,27 @@ static bool on_is_sending(void *owner)
 const struct request_events session_request_events = {on_answered, on_refused, on_drawn,
                                                       on_progressed, on_is_sending};
 
-struct reply *session_expect_reply(struct session *session, uint32_t seq,
-                                   enum request_class request_class)
+static struct reply *or_close(struct session *session, struct reply *reply)
 {
-    struct reply *reply = reply_expect(&session->replies, seq, request_class);
     if (!reply)
         conn_close(&session->conn);
     return reply;
 }
 
+struct reply *session_expect_reply(struct session *session, uint32_t seq)
+{
+    return or_close(session, reply_expect(&session->replies, seq));
+}
+
+struct reply *session_expect_frame(struct session *session, uint32_t seq,
+                                   enum request_class request_class)
+{
+    return or_close(session, reply_expect_frame(&session->replies, seq, request_class));
+}
+
 void session_reply_now(struct session *session, uint32_t seq, uint8_t type, const void *body)
 {
-    struct reply *reply = session_expect_reply(session, seq, CLASS_STILL);
+    struct reply *reply = session_expect_reply(session, seq);
     if (reply)
         session_reply(session, reply, type, body);
 }
@@ -110,7 +119,7 @@ void session_reply_now(struct session *session, uint32_t seq, uint8_t type, cons
 void session_reply_error_now(struct session *session, uint32_t seq, sheen_ErrorCode code,
                              const char *text)
 {
-    struct reply *reply = session_expect_reply(session, seq, CLASS_STILL);
+    struct reply *reply = session_expect_reply(session, seq);
     if (reply)
         session_reply_error(session, reply, code, text);
 }

@@ -151,7 +151,7 @@ void session_render(struct session *session, uint32_t seq, sheen_Render *render)
     if (!frame_fits(session, seq, render))
         return;
     struct reply *reply =
-        session_expect_reply(session, seq, request_class_of(render->request_class));
+        session_expect_frame(session, seq, request_class_of(render->request_class));
     if (reply)
         request_render(&session->requests, reply, seq, render, frame_bytes(session, render));
 }
@@ -163,7 +163,7 @@ void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery
         session_reply_error_now(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
         return;
     }
-    struct reply *reply = session_expect_reply(session, seq, CLASS_STILL);
+    struct reply *reply = session_expect_reply(session, seq);
     if (reply)
         request_query(&session->requests, reply, seq, query);
 }

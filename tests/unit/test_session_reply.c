@@ -271,7 +271,7 @@ static void test_frame_is_cut_into_data(void **state)
     struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_RAW);
     uint64_t size = encoded->size, seen = 0;
     assert_true(size > 5ull * PROTOCOL_MAX_DATA_BYTES);
-    struct reply *reply = reply_expect(&f->replies, 7, CLASS_STILL);
+    struct reply *reply = reply_expect_frame(&f->replies, 7, CLASS_STILL);
     sheen_Frame message = frame_message(encoded);
     assert_true(reply_fill_frame(reply, &message, encoded));
     reply_send_due(&f->replies, &f->conn);
@@ -307,7 +307,7 @@ static void test_order_of_requests(void **state)
     struct reply *a[3];
     const sheen_UploadState done = {true, 1};
     for (uint32_t i = 0; i < 3; i++)
-        a[i] = reply_expect(&f->replies, 10 + i, CLASS_STILL);
+        a[i] = reply_expect(&f->replies, 10 + i);
     assert_int_equal(f->replies.n, 3);
     for (int i = 2; i > 0; i--) {
         assert_true(reply_fill(a[i], MESSAGE_UPLOAD_STATE, &done));
@@ -321,14 +321,66 @@ static void test_order_of_requests(void **state)
     assert_int_equal(f->replies.n, 0);
 }
 
+static void fill_picture(struct fixture *f, struct reply *reply)
+{
+    struct encoded *encoded = encode(f, 1, sheen_Encoding_ENCODING_PNG);
+    sheen_Frame message = frame_message(encoded);
+    message.planes = 1;
+    assert_true(reply_fill_frame(reply, &message, encoded));
+    reply_send_due(&f->replies, &f->conn);
+}
+
+/* Reads a FRAME message and all of its DATA. */
+static void expect_frame(struct fixture *f, uint32_t seq)
+{
+    uint8_t *body = malloc(PROTOCOL_MAX_DATA_BYTES);
+    assert_non_null(body);
+    struct message_header header = read_header(f, body, PROTOCOL_MAX_DATA_BYTES);
+    assert_int_equal(header.type, MESSAGE_FRAME);
+    assert_int_equal(header.seq, seq);
+    do {
+        header = read_header(f, body, PROTOCOL_MAX_DATA_BYTES);
+        assert_int_equal(header.type, MESSAGE_DATA);
+        assert_int_equal(header.seq, seq);
+    } while (!(header.flags & MESSAGE_END));
+    free(body);
+}
+
+/* A frame waits for earlier frames of its class, and for no other reply. */
+static void test_frames_wait_for_frames_of_their_class(void **state)
+{
+    struct fixture *f = *state;
+    uint8_t body[PROTOCOL_MAX_SMALL_BODY_BYTES];
+    const sheen_UploadState done = {true, 1};
+    f->replies.is_ordered = false;
+    struct reply *other = reply_expect(&f->replies, 1),
+                 *batch = reply_expect_frame(&f->replies, 2, CLASS_BATCH),
+                 *first = reply_expect_frame(&f->replies, 3, CLASS_STILL),
+                 *second = reply_expect_frame(&f->replies, 4, CLASS_STILL),
+                 *quick = reply_expect_frame(&f->replies, 5, CLASS_INTERACTIVE);
+    fill_picture(f, quick);
+    expect_frame(f, 5);
+    fill_picture(f, second);
+    expect_silence(f);
+    fill_picture(f, first);
+    expect_frame(f, 3);
+    expect_frame(f, 4);
+    assert_true(reply_fill(other, MESSAGE_UPLOAD_STATE, &done));
+    reply_send_due(&f->replies, &f->conn);
+    assert_int_equal(read_header(f, body, sizeof body).seq, 1);
+    expect_silence(f);
+    fill_picture(f, batch);
+    expect_frame(f, 2);
+    assert_int_equal(f->replies.n, 0);
+}
+
 static void test_nothing_after_the_last(void **state)
 {
     struct fixture *f = *state;
     uint8_t body[PROTOCOL_MAX_SMALL_BODY_BYTES];
     const sheen_UploadState done = {true, 1};
-    struct reply *first = reply_expect(&f->replies, 1, CLASS_STILL),
-                 *last = reply_expect(&f->replies, 2, CLASS_STILL),
-                 *late = reply_expect(&f->replies, 3, CLASS_STILL);
+    struct reply *first = reply_expect(&f->replies, 1), *last = reply_expect(&f->replies, 2),
+                 *late = reply_expect(&f->replies, 3);
     reply_mark_last(last);
     assert_true(reply_fill(last, MESSAGE_UPLOAD_STATE, &done));
     assert_true(reply_fill(late, MESSAGE_UPLOAD_STATE, &done));
@@ -350,14 +402,16 @@ static void test_closed_with_a_frame_unsent(void **state)
     struct fixture *f = *state;
     struct encoded *encoded = encode(f, CODEC_ALL_PLANES, sheen_Encoding_ENCODING_RAW);
     sheen_Frame message = frame_message(encoded);
-    assert_true(reply_fill_frame(reply_expect(&f->replies, 1, CLASS_STILL), &message, encoded));
+    assert_true(
+        reply_fill_frame(reply_expect_frame(&f->replies, 1, CLASS_STILL), &message, encoded));
     reply_send_due(&f->replies, &f->conn);
     assert_true(conn_unsent_bytes(&f->conn) > 0);
     conn_close(&f->conn);
     assert_int_equal(conn_unsent_bytes(&f->conn), 0);
     encoded = encode(f, 1, sheen_Encoding_ENCODING_PNG);
     message = frame_message(encoded);
-    assert_true(reply_fill_frame(reply_expect(&f->replies, 2, CLASS_STILL), &message, encoded));
+    assert_true(
+        reply_fill_frame(reply_expect_frame(&f->replies, 2, CLASS_STILL), &message, encoded));
     reply_send_due(&f->replies, &f->conn);
 }
 
@@ -369,6 +423,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_png_files, setup, teardown),
         cmocka_unit_test_setup_teardown(test_frame_is_cut_into_data, setup, teardown),
         cmocka_unit_test_setup_teardown(test_order_of_requests, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_frames_wait_for_frames_of_their_class, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(test_nothing_after_the_last, setup, teardown),
         cmocka_unit_test_setup_teardown(test_closed_with_a_frame_unsent, setup, teardown),
     };
