@@ -24,7 +24,8 @@
  * the daemon itself takes that draws on processors, and a little more; a daemon that draws by a driver
  * needs more, and says how much. */
 #define PROTOCOL_DAEMON_BYTES (32ull * 1024 * 1024)
-#define PROTOCOL_LEAST_MEMORY_BYTES (PROTOCOL_DAEMON_BYTES + 4ull * 1024 * 1024)
+#define PROTOCOL_LEAST_MEMORY_MIB 36 /* a plain number, so that help texts can name it */
+#define PROTOCOL_LEAST_MEMORY_BYTES (PROTOCOL_LEAST_MEMORY_MIB * 1024ull * 1024)
 #define PROTOCOL_MOST_MEMORY_BYTES (UINT64_MAX / 4) /* so that sums of a few do not overflow */
 
 /* The native device of a daemon: its threads, and its instruction sets. */

@@ -124,7 +124,7 @@ struct sheen_connect_options {
     /* Private daemon: the device that draws. "auto" or NULL: a GPU, else the processors; "software"
      * or "native": the processors; or the number of an EGL device. */
     const char *device;
-    /* Private daemon: the memory for files, tables and frames together, in bytes, at least 4 MiB;
+    /* Private daemon: the memory for files, tables and frames together, in bytes, at least 36 MiB;
      * 0: half of the memory that this machine has or that the program's control group allows. */
     uint64_t memory_budget_bytes;
     uint32_t timeout_ms;         /* longest time without a transferred byte; 0: no limit */

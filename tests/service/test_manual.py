@@ -151,7 +151,7 @@ class Completions(unittest.TestCase):
                 "cert": "PEM file with the certificate to present to a TLS server",
                 "show-range": "value at which the colours of --show end, on both sides",
                 "memory-budget": "memory of the private daemon for the model, its tables, images and frames together, "
-                                 "in main memory and on the device, at least 4M"}
+                                 "in main memory and on the device, at least 36M"}
         zsh, fish = read("_sheen"), read("sheen.fish")
         for name, words in said.items():
             with self.subTest(option=name):

@@ -109,6 +109,27 @@ static void help_says_its_own_default_size(void **state)
     }
 }
 
+/* The least --memory-budget in --help is taken; one byte less is refused, with the same words. */
+static void help_says_the_least_memory(void **state)
+{
+    (void)state;
+    struct options options;
+    char why[OPTIONS_WHY_BYTES], line[80], words[40];
+    const char *row = strstr(help_of(&COMMAND_INFO), "--memory-budget BYTES");
+    assert_non_null(row);
+    const char *least = strstr(row, "at least ");
+    assert_non_null(least);
+    unsigned long long mib = strtoull(least + strlen("at least "), NULL, 10);
+    snprintf(words, sizeof(words), "at least %lluM;", mib);
+    assert_memory_equal(least, words, strlen(words));
+    snprintf(line, sizeof(line), "m.obj --memory-budget %lluM", mib);
+    assert_int_equal(parse(&COMMAND_INFO, line, &options, why), OPTIONS_RUN);
+    snprintf(line, sizeof(line), "m.obj --memory-budget %llu", (mib << 20) - 1);
+    assert_int_equal(parse(&COMMAND_INFO, line, &options, why), OPTIONS_WRONG);
+    snprintf(words, sizeof(words), "%lluM or more", mib);
+    assert_non_null(strstr(why, words));
+}
+
 /* Each word that the shells offer for an option is accepted by that option. */
 static void completed_words_are_values(void **state)
 {
@@ -141,6 +162,7 @@ int main(void)
         cmocka_unit_test(help_has_the_commands_exit_codes),
         cmocka_unit_test(help_has_the_ranges),
         cmocka_unit_test(help_says_its_own_default_size),
+        cmocka_unit_test(help_says_the_least_memory),
         cmocka_unit_test(completed_words_are_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,6 +7,11 @@
 #include "protocol/limits.h"
 #include "protocol/number.h"
 
+/* The least --memory-budget as it is written on a command line. */
+#define LEAST_MEMORY_OF(mib) #mib "M"
+#define LEAST_MEMORY_EXPANDED(mib) LEAST_MEMORY_OF(mib)
+#define LEAST_MEMORY LEAST_MEMORY_EXPANDED(PROTOCOL_LEAST_MEMORY_MIB)
+
 static bool apply_vec3(struct options *options, const char *value, double *target, unsigned given,
                        char *why)
 {
@@ -100,7 +105,8 @@ static bool apply_memory_budget(struct options *options, const char *value, char
 {
     return number_parse(value, PROTOCOL_LEAST_MEMORY_BYTES, PROTOCOL_MOST_MEMORY_BYTES, true,
                         &options->memory_budget_bytes) ||
-           options_refuse(why, "must be bytes, 36M or more, as 4000000000, 800M or 4G");
+           options_refuse(why,
+                          "must be bytes, " LEAST_MEMORY " or more, as 4000000000, 800M or 4G");
 }
 
 static bool apply_json(struct options *options, const char *value, char *why)
@@ -425,7 +431,7 @@ const struct option_row OPTIONS_COMMON[] = {
      apply_native_isa, "auto v2 v3 v4"},
     {"memory-budget", 0, "BYTES",
      "memory of the private daemon for the model, its tables, images and frames\n"
-     "together, in main memory and on the device, at least 4M; for example 800M or\n"
+     "together, in main memory and on the device, at least " LEAST_MEMORY "; for example 800M or\n"
      "16G (default: half of the memory that the machine has or that the control\n"
      "group allows)",
      apply_memory_budget, NULL},
