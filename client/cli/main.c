@@ -41,11 +41,11 @@ int main(int argc, char **argv)
     const char *name = argc > 1 ? argv[1] : "";
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
         print_help(stdout);
-        return 0;
+        return end_output(0);
     }
     if (strcmp(name, "--version") == 0) {
         printf("sheen %s\n", sheen_version());
-        return 0;
+        return end_output(0);
     }
     for (size_t i = 0; i < N_COMMANDS; i++) {
         if (!is_called(COMMANDS[i], name))
@@ -57,7 +57,7 @@ int main(int argc, char **argv)
             return end_output(COMMANDS[i]->run(&options));
         case OPTIONS_HELP:
             options_help(COMMANDS[i], stdout);
-            return 0;
+            return end_output(0);
         case OPTIONS_WRONG:
             fprintf(stderr, "sheen %s: %s; see sheen %s --help\n", name, why, name);
             return EXIT_WRONG_USAGE;

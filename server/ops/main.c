@@ -35,6 +35,16 @@ static int fail(const struct error *error)
                                          : EXIT_SERVICE;
 }
 
+/* The end after help, version or the answer of --check-config: a failure if standard output cannot
+ * be written. */
+static int end_output(void)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return EXIT_DONE;
+    fputs("sheend: standard output cannot be written\n", stderr);
+    return EXIT_SERVICE;
+}
+
 /* Memory that is freed goes back to the system, so that the resident size stays near what the memory budget
  * counts. By itself the allocator raises these thresholds to the largest block that was ever freed, and keeps a
  * heap for each thread. */
@@ -55,9 +65,9 @@ int main(int argc, char **argv)
         break;
     case OPTIONS_CHECK:
         puts("the configuration is good");
-        return EXIT_DONE;
+        return end_output();
     case OPTIONS_DONE:
-        return EXIT_DONE;
+        return end_output();
     case OPTIONS_WRONG:
         return fail(&error);
     }

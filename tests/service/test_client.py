@@ -99,6 +99,17 @@ class Client(unittest.TestCase):
         self.assert_fails(3, "light.png", "render", FENDER, "-o", self.path("x.png"), "--pattern",
                           "image:" + self.path("light.png"))
 
+    def test_output_to_a_full_disk(self):
+        for program, code, *arguments in (
+                (SHEEN, 3, "--help"), (SHEEN, 3, "help"), (SHEEN, 3, "--version"), (SHEEN, 3, "render", "--help"),
+                (SHEEN, 3, "lights"), (SHEEND, 4, "--help"), (SHEEND, 4, "--version"),
+                (SHEEND, 4, "--check-config")):
+            with self.subTest(arguments=arguments), open("/dev/full", "w", encoding="ascii") as full:
+                done = subprocess.run([program, *arguments], stdout=full, stderr=subprocess.PIPE, text=True,
+                                      timeout=60)
+                self.assertEqual(done.returncode, code, done.stderr)
+                self.assertIn("standard output cannot be written", done.stderr)
+
     def test_an_obj_that_is_called_gltf(self):
         for name, data, words in (("obj.gltf", CUBE, ".obj"), ("cut.gltf", b'{"asset":', "JSON")):
             with open(self.path(name), "wb") as file:
