@@ -253,6 +253,11 @@ enum sheen_status client_render(struct client *client, const struct options *opt
     } while (status && client_resume(client, options, &status));
     if (!status)
         client_answered(client);
+    else if (status == SHEEN_LATE && request->deadline_ms)
+        failure_set(&client->error, status,
+                    "the frame was not drawn within --deadline %u (milliseconds): give it more "
+                    "time, or ask again when the daemon has less to do",
+                    request->deadline_ms);
     return status;
 }
 

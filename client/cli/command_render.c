@@ -133,6 +133,6 @@ const struct command COMMAND_RENDER = {
         "--token-file token\n",
     .takes_model = true,
     .check = check,
-    .codes = CODE_FILES | CODE_SERVER,
+    .codes = CODE_FILES | CODE_SERVER | CODE_LATE,
     .run = run,
 };

@@ -11,7 +11,7 @@ import time
 import unittest
 
 import wire
-from daemon import BUILD, CUBE, MODELS, SHEEN, SHEEND, Daemon
+from daemon import BUILD, CUBE, MODELS, SHEEN, SHEEND, Daemon, grid
 
 FENDER = os.path.join(MODELS, "fender.obj")
 
@@ -109,6 +109,15 @@ class Client(unittest.TestCase):
                                       timeout=60)
                 self.assertEqual(done.returncode, code, done.stderr)
                 self.assertIn("standard output cannot be written", done.stderr)
+
+    def test_missed_deadline(self):
+        """The first frame waits for the tables of a model that the daemon does not have yet."""
+        with open(self.path("sheet.obj"), "wb") as file:
+            file.write(grid(300))
+        done = sheen("render", self.path("sheet.obj"), "-o", self.path("x.png"), "--deadline", "1",
+                     "--server", self.daemon.unix)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("within --deadline 1 ", done.stderr)
 
     def test_an_obj_that_is_called_gltf(self):
         for name, data, words in (("obj.gltf", CUBE, ".obj"), ("cut.gltf", b'{"asset":', "JSON")):

@@ -62,6 +62,8 @@ static void help_has_the_commands_exit_codes(void **state)
         }
         assert_string_equal(found, cases[i].codes);
     }
+    assert_non_null(strstr(help_of(&COMMAND_RENDER), "or --deadline passed"));
+    assert_null(strstr(help_of(&COMMAND_STATS), "--deadline"));
     const char *text = help_of(&COMMAND_LEVELS);
     assert_non_null(strstr(text, "usage: sheen levels "));
     assert_non_null(strstr(text, "old name, figure7, still works"));

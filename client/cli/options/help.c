@@ -72,7 +72,9 @@ size_t options_codes(const struct command *command,
     else if (command->codes & CODE_OUTPUT)
         codes[n++] = (struct exit_code){3, "standard output cannot be written"};
     if (command->codes & CODE_SERVER) {
-        codes[n++] = (struct exit_code){4, "no or lost server"};
+        codes[n++] = (struct exit_code){4, command->codes & CODE_LATE
+                                               ? "no or lost server, or --deadline passed"
+                                               : "no or lost server"};
         codes[n++] = (struct exit_code){5, "device failed"};
     }
     return n;

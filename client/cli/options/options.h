@@ -82,6 +82,7 @@ enum command_codes {
     /* 3: also for a bad model or image, and an output file that cannot be written. */
     CODE_FILES = 1 << 1,
     CODE_SERVER = 1 << 2, /* 4 and 5 */
+    CODE_LATE = 1 << 3,   /* 4: also when --deadline passes */
 };
 
 struct command {
