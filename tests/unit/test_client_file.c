@@ -124,6 +124,53 @@ static void places_that_take_no_file(void **state)
     assert_int_equal(file_check_writable("/dev/null", &error), SHEEN_BAD_IMAGE);
 }
 
+static void assert_links(const char *path, bool is_link)
+{
+    struct stat about;
+    assert_int_equal(lstat(path, &about), 0);
+    assert_int_equal(S_ISLNK(about.st_mode), is_link);
+}
+
+/* A link stays a link, and the file to which it leads is written, whether it exists or not. */
+static void links_are_followed(void **state)
+{
+    (void)state;
+    struct sheen_error error;
+    assert_int_equal(mkdir("real", 0700), 0);
+    assert_int_equal(file_write("real/a.png", (const uint8_t *)"old", 3, &error), SHEEN_OK);
+    assert_int_equal(symlink("a.png", "real/b.png"), 0);
+    assert_int_equal(symlink("real/b.png", "chain.png"), 0);
+    assert_int_equal(symlink("../fresh.png", "real/dangling.png"), 0);
+    assert_int_equal(symlink("real", "folder"), 0);
+    assert_int_equal(symlink("loop.png", "loop.png"), 0);
+    assert_int_equal(symlink("no/such/folder.png", "astray.png"), 0);
+    assert_int_equal(file_check_writable("chain.png", &error), SHEEN_OK);
+    assert_int_equal(file_write("chain.png", (const uint8_t *)"new", 3, &error), SHEEN_OK);
+    assert_holds("real/a.png", "new");
+    assert_links("chain.png", true);
+    assert_links("real/b.png", true);
+    assert_links("real/a.png", false);
+    assert_int_equal(file_check_writable("folder/dangling.png", &error), SHEEN_OK);
+    assert_int_equal(file_write("folder/dangling.png", (const uint8_t *)"abc", 3, &error),
+                     SHEEN_OK);
+    assert_links("folder/dangling.png", true);
+    assert_links("fresh.png", false);
+    assert_holds("fresh.png", "abc");
+    static const char *const nowhere[] = {"loop.png", "astray.png"};
+    for (size_t i = 0; i < sizeof nowhere / sizeof *nowhere; i++) {
+        assert_int_equal(file_check_writable(nowhere[i], &error), SHEEN_BAD_IMAGE);
+        assert_int_equal(file_write(nowhere[i], (const uint8_t *)"x", 1, &error), SHEEN_BAD_IMAGE);
+        assert_links(nowhere[i], true);
+        unlink(nowhere[i]);
+    }
+    assert_int_equal(files_in_folder(), 4); /* no temporary file is left */
+    static const char *const made[] = {"fresh.png",  "folder",     "chain.png",
+                                       "real/b.png", "real/a.png", "real/dangling.png"};
+    for (size_t i = 0; i < sizeof made / sizeof *made; i++)
+        unlink(made[i]);
+    assert_int_equal(rmdir("real"), 0);
+}
+
 static void files_that_cannot_be_read(void **state)
 {
     (void)state;
@@ -185,6 +232,7 @@ int main(void)
         cmocka_unit_test(a_stale_temporary_is_stepped_over),
         cmocka_unit_test(a_full_disk_leaves_what_was_there),
         cmocka_unit_test(places_that_take_no_file),
+        cmocka_unit_test(links_are_followed),
         cmocka_unit_test(files_that_cannot_be_read),
         cmocka_unit_test(links_are_refused_anywhere_in_a_path),
     };

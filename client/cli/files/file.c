@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@
 #include "client/cli/base/failure.h"
 
 #define TEMPORARY_TRIES 100
+#define MAX_LINKS 40 /* symbolic links that are followed in a row, as the kernel does */
 
 enum sheen_status file_read_line(const char *path, char *line, size_t size,
                                  struct sheen_error *error)
@@ -36,19 +38,51 @@ static char *folder_of(const char *path)
     return slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
 }
 
+/* The path that the text of the symbolic link at `path` means. The caller frees it. NULL and errno
+ * when memory is short. */
+static char *path_of_link(const char *path, const char *text)
+{
+    char *end = NULL;
+    const char *slash = text[0] == '/' ? NULL : strrchr(path, '/');
+    int folder_length = slash ? (int)(slash - path) + 1 : 0;
+    return asprintf(&end, "%.*s%s", folder_length, path, text) < 0 ? NULL : end;
+}
+
+/* The file that is written for `path`: where `path` is a symbolic link, the end of the chain of
+ * links, whether it exists or not. The caller frees it. NULL and errno on failure. */
+static char *target_of(const char *path)
+{
+    char text[PATH_MAX], *target = strdup(path);
+    for (int i = 0; target; i++) {
+        ssize_t n = readlink(target, text, sizeof(text) - 1);
+        if (n < 0)
+            return target; /* no link */
+        text[n] = 0;
+        char *next = i < MAX_LINKS ? path_of_link(target, text) : NULL;
+        free(target);
+        target = next;
+        if (i == MAX_LINKS)
+            errno = ELOOP;
+    }
+    return NULL;
+}
+
+static enum sheen_status refuse_writing(const char *path, int reason, struct sheen_error *error)
+{
+    return failure_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path, strerror(reason));
+}
+
 enum sheen_status file_check_writable(const char *path, struct sheen_error *error)
 {
     struct stat about;
     if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
         return failure_set(error, SHEEN_BAD_IMAGE, "%s: is there and is not a plain file", path);
-    char *folder = folder_of(path);
-    if (!folder)
-        return failure_set(error, SHEEN_NO_MEMORY, "no memory for a path");
-    int reason = access(folder, W_OK | X_OK) == 0 ? 0 : errno;
+    char *target = target_of(path);
+    char *folder = target ? folder_of(target) : NULL;
+    int reason = folder && access(folder, W_OK | X_OK) == 0 ? 0 : errno;
     free(folder);
-    return reason ? failure_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path,
-                                strerror(reason))
-                  : SHEEN_OK;
+    free(target);
+    return reason ? refuse_writing(path, reason, error) : SHEEN_OK;
 }
 
 static bool write_all(int fd, const uint8_t *bytes, size_t n_bytes)
@@ -102,27 +136,30 @@ static int name_temporary(const char *path, int nameless, char **name)
     return -1;
 }
 
-enum sheen_status file_write(const char *path, const uint8_t *bytes, size_t n_bytes,
-                             struct sheen_error *error)
+/* Writes the file at `path`, which is no link. Returns errno's value, 0 for success. */
+static int write_whole(const char *path, const uint8_t *bytes, size_t n_bytes)
 {
     char *name = NULL;
     int nameless = open_nameless(path);
     int fd = nameless >= 0 ? nameless : name_temporary(path, -1, &name);
     bool is_written = fd >= 0 && write_all(fd, bytes, n_bytes) &&
                       (nameless < 0 || name_temporary(path, nameless, &name) >= 0);
-    int reason = errno;
-    if (fd >= 0 && close(fd) != 0 && is_written) {
-        is_written = false;
+    int reason = is_written ? 0 : errno;
+    if (fd >= 0 && close(fd) != 0 && !reason)
         reason = errno;
-    }
-    if (is_written && rename(name, path) != 0) {
-        is_written = false;
+    if (!reason && rename(name, path) != 0)
         reason = errno;
-    }
-    if (!is_written && name)
+    if (reason && name)
         unlink(name);
     free(name);
-    return is_written ? SHEEN_OK
-                      : failure_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path,
-                                    strerror(reason));
+    return reason;
+}
+
+enum sheen_status file_write(const char *path, const uint8_t *bytes, size_t n_bytes,
+                             struct sheen_error *error)
+{
+    char *target = target_of(path);
+    int reason = target ? write_whole(target, bytes, n_bytes) : errno;
+    free(target);
+    return reason ? refuse_writing(path, reason, error) : SHEEN_OK;
 }

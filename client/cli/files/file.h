@@ -18,7 +18,8 @@ enum sheen_status file_read_line(const char *path, char *line, size_t size,
 enum sheen_status file_check_writable(const char *path, struct sheen_error *error);
 
 /* Writes a temporary file in the same folder and renames it, so that `path` is either unchanged or
- * whole. SHEEN_BAD_IMAGE on failure; the temporary file is then removed. If the file system allows,
+ * whole. Where `path` is a symbolic link, this is done for the file to which the link leads, and the
+ * link stays; that file need not exist. SHEEN_BAD_IMAGE on failure; the temporary file is then removed. If the file system allows,
  * the temporary file has no name until it is whole, so that a killed process leaves none. */
 enum sheen_status file_write(const char *path, const uint8_t *bytes, size_t n_bytes,
                              struct sheen_error *error);
