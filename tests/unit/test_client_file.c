@@ -116,6 +116,13 @@ static void places_that_take_no_file(void **state)
     assert_non_null(strstr(error.text, "no/such/folder/a.png"));
     assert_int_equal(file_write("no/such/folder/a.png", (const uint8_t *)"x", 1, &error),
                      SHEEN_BAD_IMAGE);
+    assert_int_equal(file_write("base.obj", (const uint8_t *)"x", 1, &error), SHEEN_OK);
+    for (mode_t mode = 0600; mode <= 0700; mode += 0100) {
+        assert_int_equal(chmod("base.obj", mode), 0);
+        assert_int_equal(file_check_writable("base.obj/a.png", &error), SHEEN_BAD_IMAGE);
+        assert_non_null(strstr(error.text, "base.obj/a.png: cannot be written: Not a directory"));
+    }
+    unlink("base.obj");
     assert_int_equal(mkdir("folder.png", 0700), 0);
     assert_int_equal(file_check_writable("folder.png", &error), SHEEN_BAD_IMAGE);
     assert_int_equal(file_write("folder.png", (const uint8_t *)"x", 1, &error), SHEEN_BAD_IMAGE);

@@ -72,6 +72,17 @@ static enum sheen_status refuse_writing(const char *path, int reason, struct she
     return failure_set(error, SHEEN_BAD_IMAGE, "%s: cannot be written: %s", path, strerror(reason));
 }
 
+/* Why no file can be made in `folder`, as errno's value; 0: it can. */
+static int folder_refuses(const char *folder)
+{
+    struct stat about;
+    if (stat(folder, &about) != 0)
+        return errno;
+    if (!S_ISDIR(about.st_mode))
+        return ENOTDIR;
+    return access(folder, W_OK | X_OK) == 0 ? 0 : errno;
+}
+
 enum sheen_status file_check_writable(const char *path, struct sheen_error *error)
 {
     struct stat about;
@@ -79,7 +90,7 @@ enum sheen_status file_check_writable(const char *path, struct sheen_error *erro
         return failure_set(error, SHEEN_BAD_IMAGE, "%s: is there and is not a plain file", path);
     char *target = target_of(path);
     char *folder = target ? folder_of(target) : NULL;
-    int reason = folder && access(folder, W_OK | X_OK) == 0 ? 0 : errno;
+    int reason = folder ? folder_refuses(folder) : errno;
     free(folder);
     free(target);
     return reason ? refuse_writing(path, reason, error) : SHEEN_OK;
