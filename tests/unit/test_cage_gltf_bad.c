@@ -408,6 +408,25 @@ static void test_bombs(void **state)
                     "part.glb: a top-level key of the JSON is spelt with escapes");
 }
 
+/* What does not begin like JSON is not searched for the faults of JSON. */
+static void test_not_json(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"hello { \"C:\\models\" }", "[{\"b\\u0075ffers\":[]}]",
+                                        "\xef\xbb\xbf \n", " "};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        expect_bytes_bad(texts[i], strlen(texts[i]),
+                         "part.glb: not a glTF file: it begins neither with '{' (JSON) nor with "
+                         "'glTF' (GLB)");
+        struct bytes file = make_glb(texts[i], NULL, 0);
+        expect_bytes_bad(file.data, file.size,
+                         "part.glb: the JSON of the GLB does not begin with '{'");
+        free(file.data);
+    }
+    expect_text_bad("\xef\xbb\xbf {\"b\\u0075ffers\":[]}",
+                    "part.glb: a top-level key of the JSON is spelt with escapes");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -424,6 +443,7 @@ int main(void)
         cmocka_unit_test(test_truncated),
         cmocka_unit_test(test_bad_json),
         cmocka_unit_test(test_bombs),
+        cmocka_unit_test(test_not_json),
     };
     return cmocka_run_group_tests_name("cage/gltf_bad", tests, NULL, NULL);
 }

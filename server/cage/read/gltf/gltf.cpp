@@ -57,16 +57,6 @@ bool skip_image(tinygltf::Image *, const int, std::string *, std::string *, int,
     return true;
 }
 
-/* True if the text begins like a JSON object. Otherwise the error says so, instead of a parser's
- * message. */
-bool looks_like_json(const char *text, size_t size)
-{
-    size_t at = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-    while (at < size && memchr(" \t\r\n", text[at], 4))
-        at++;
-    return at < size && text[at] == '{';
-}
-
 /* The library's message without its internal names, such as "[json.exception.parse_error.101]".
  * *broken: the JSON itself is malformed. */
 std::string plain_problem(const std::string &problem, bool *broken)
@@ -88,9 +78,6 @@ struct Container {
 void parse(Reader &reader, const gltf_container &container)
 {
     const char *text = reinterpret_cast<const char *>(container.bytes);
-    if (!container.binary && !looks_like_json(text, container.size))
-        reader.refuse("not a glTF file: it begins neither with '{' (JSON) nor with 'glTF' (GLB); "
-                      "an OBJ file needs a name that ends in .obj");
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks({no_file, same_path, no_reading, no_writing, nullptr});
     loader.SetImageLoader(skip_image, nullptr);

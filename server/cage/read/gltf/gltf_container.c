@@ -114,6 +114,15 @@ static void copy_glb(unsigned char *to, size_t size, const struct chunks *chunks
            aligned(chunks->bin_size) - chunks->bin_size);
 }
 
+/* True if the text begins like a JSON object, behind a byte order mark and blanks. */
+static bool looks_like_json(const unsigned char *text, size_t size)
+{
+    size_t at = size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+    while (at < size && memchr(" \t\r\n", text[at], 4))
+        at++;
+    return at < size && text[at] == '{';
+}
+
 bool gltf_container_init(struct gltf_container *container, const void *bytes, size_t size,
                          const char *name, struct error *error)
 {
@@ -124,6 +133,15 @@ bool gltf_container_init(struct gltf_container *container, const void *bytes, si
     container->binary = size >= 4 && memcmp(bytes, "glTF", 4) == 0;
     if (container->binary && !find_chunks(&chunks, bytes, size, name, error))
         return false;
+    bool is_json = looks_like_json(chunks.json, chunks.json_size);
+    if (!is_json && container->binary)
+        return error_set(error, ERROR_MODEL, "%s: the JSON of the GLB does not begin with '{'",
+                         name);
+    if (!is_json)
+        return error_set(error, ERROR_MODEL,
+                         "%s: not a glTF file: it begins neither with '{' (JSON) nor with 'glTF' "
+                         "(GLB); an OBJ file needs a name that ends in .obj",
+                         name);
     size_t json_at = container->binary ? GLB_HEADER_BYTES : 0;
     size_t all = json_at + aligned(chunks.json_size);
     if (chunks.bin_size > 0)
