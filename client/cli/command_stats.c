@@ -109,14 +109,14 @@ static void print_table(const struct sheen_stats *stats)
     printf("%-10s %" PRIu64 " superseded, %" PRIu64 " cancelled, %" PRIu64 " late; %" PRIu64
            " clients disconnected\n",
            "", stats->superseded, stats->cancelled, stats->late, stats->disconnected);
-    printf("%-10s interactive %.1f, still %.1f, batch %.1f s\n", "renderer",
+    printf("%-10s device time spent, s: interactive %.1f, still %.1f, batch %.1f\n", "renderer",
            (double)stats->interactive_us / 1e6, (double)stats->still_us / 1e6,
            (double)stats->batch_us / 1e6);
-    printf("%-10s %" PRIu64 " bytes of the budget in use\n", "memory", stats->memory_bytes);
-    printf("%-10s %u, %" PRIu64 " bytes on the GPU; %u images\n", "models", stats->models,
+    printf("%-10s %" PRIu64 " bytes in use, of --memory-budget\n", "memory", stats->memory_bytes);
+    printf("%-10s %u, %" PRIu64 " bytes on the device; %u images\n", "models", stats->models,
            stats->model_bytes, stats->images);
-    printf("%-10s %" PRIu64 " bytes in, %" PRIu64 " bytes out\n", "traffic", stats->uploads_bytes,
-           stats->sent_bytes);
+    printf("%-10s %" PRIu64 " bytes uploaded, %" PRIu64 " bytes sent\n", "traffic",
+           stats->uploads_bytes, stats->sent_bytes);
     printf("%-10s %.1f requests/s, %.1f frames/s, %.0f bytes/s over the last %.0f s\n", "rates",
            per_second(stats, stats->window_requests), per_second(stats, stats->window_frames),
            per_second(stats, stats->window_sent_bytes), window_s(stats));
@@ -131,6 +131,8 @@ static void print_table(const struct sheen_stats *stats)
     print_times("p50", &stats->p50);
     print_times("p95", &stats->p95);
     print_times("p99", &stats->p99);
+    puts("mean: of the last 64 frames, 0 for a stage that a frame did not need; p50, p95, p99: of\n"
+         "the last minute's frames that needed the stage");
 }
 
 /* stats asks one particular daemon: the numbers of another are no answer. */

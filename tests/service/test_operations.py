@@ -687,6 +687,9 @@ class Stats(unittest.TestCase):
         self.assertLessEqual(sent, stats["sent_bytes"] + 0.001)  # the rounding of a quotient
         table = subprocess.run([SHEEN, "stats", "--server", daemon.unix], capture_output=True,
                                text=True, timeout=60).stdout
-        for words in ("frames/s", "bytes/s", "p50", "p95", "p99", "ms a frame", "interactive"):
+        for words in ("frames/s", "bytes/s", "p50", "p95", "p99", "ms a frame", "interactive", "bytes on the device;",
+                      "bytes uploaded, ", "bytes in use, of --memory-budget", "device time spent, s: interactive",
+                      "frames that needed the stage"):
             self.assertIn(words, table)
+        self.assertNotIn("GPU", table.split("models", 1)[1])
         self.assertEqual(daemon.stop(), 0)
