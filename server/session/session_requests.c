@@ -111,17 +111,19 @@ static bool frame_fits(struct session *session, uint32_t seq, const sheen_Render
          everything, memory->memory_budget},
         {all_of_it, "peer-memory", bytes, memory->peer_memory},
     };
-    size_t n_checks = session->host->is_private ? 1 : sizeof checks / sizeof *checks;
+    bool is_private = session->host->is_private;
+    size_t n_checks = is_private ? 1 : sizeof checks / sizeof *checks;
     for (size_t i = 0; i < n_checks; i++) {
         char text[MESSAGE_TEXT_BYTES];
         if (checks[i].needed <= checks[i].limit)
             continue;
         snprintf(text, sizeof text,
-                 "%ux%u px: %s take %llu bytes, over this daemon's --%s of %llu: ask for a smaller "
-                 "frame or fewer planes",
+                 "%ux%u px: %s take %llu bytes, over %s daemon's --%s of %llu: ask for a smaller "
+                 "frame or fewer planes%s",
                  render->width_px, render->height_px, checks[i].what,
-                 (unsigned long long)checks[i].needed, checks[i].name,
-                 (unsigned long long)checks[i].limit);
+                 (unsigned long long)checks[i].needed, is_private ? "a private" : "this",
+                 checks[i].name, (unsigned long long)checks[i].limit,
+                 is_private ? ", or start sheend with a larger one and name it by --server" : "");
         session_reply_error_now(session, seq, sheen_ErrorCode_ERROR_TOO_BIG, text);
         return false;
     }

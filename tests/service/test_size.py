@@ -72,6 +72,14 @@ class Private(unittest.TestCase):
         return sheen("render", self.model, "-o", self.picture, "--size", size, "--device",
                      "native", *arguments)
 
+    def test_a_frame_over_its_limit(self):
+        """A command cannot give its private daemon another --max-frame: the error says what can be done."""
+        done = self.render("--quiet", size="20000x20000")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertRegex(done.stderr, "over a private daemon's --max-frame of 1073741824: ask for a smaller frame .*"
+                                      "start sheend with a larger one and name it by --server")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
     def test_what_it_asks_for_is_enough(self):
         done = self.render("--memory-budget", budget(6), size="64x48")
         self.assertEqual(done.returncode, 3, done.stderr)
