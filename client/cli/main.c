@@ -36,36 +36,67 @@ static bool is_called(const struct command *command, const char *name)
            (command->old_name && strcmp(name, command->old_name) == 0);
 }
 
+/* NULL: there is no such command. */
+static const struct command *command_of(const char *name)
+{
+    for (size_t i = 0; i < N_COMMANDS; i++)
+        if (is_called(COMMANDS[i], name))
+            return COMMANDS[i];
+    return NULL;
+}
+
+static int refuse_command(const char *name)
+{
+    fprintf(stderr, "sheen: '%s' is no command; see sheen --help\n", name);
+    return EXIT_WRONG_USAGE;
+}
+
+/* sheen help [COMMAND] */
+static int help(const char *name)
+{
+    const struct command *command = name ? command_of(name) : NULL;
+    if (name && !command)
+        return refuse_command(name);
+    if (command)
+        options_help(command, stdout);
+    else
+        print_help(stdout);
+    return end_output(0);
+}
+
+static int run(const struct command *command, int argc, char **argv)
+{
+    struct options options;
+    char why[OPTIONS_WHY_BYTES];
+    switch (options_parse(command, argc, argv, &options, why)) {
+    case OPTIONS_RUN:
+        return end_output(command->run(&options));
+    case OPTIONS_HELP:
+        options_help(command, stdout);
+        return end_output(0);
+    case OPTIONS_WRONG:
+        break;
+    }
+    fprintf(stderr, "sheen %s: %s; see sheen %s --help\n", argv[0], why, argv[0]);
+    return EXIT_WRONG_USAGE;
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
-        print_help(stdout);
-        return end_output(0);
-    }
+    if (strcmp(name, "help") == 0)
+        return help(argc > 2 ? argv[2] : NULL);
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)
+        return help(NULL);
     if (strcmp(name, "--version") == 0) {
         printf("sheen %s\n", sheen_version());
         return end_output(0);
     }
-    for (size_t i = 0; i < N_COMMANDS; i++) {
-        if (!is_called(COMMANDS[i], name))
-            continue;
-        struct options options;
-        char why[OPTIONS_WHY_BYTES];
-        switch (options_parse(COMMANDS[i], argc - 1, argv + 1, &options, why)) {
-        case OPTIONS_RUN:
-            return end_output(COMMANDS[i]->run(&options));
-        case OPTIONS_HELP:
-            options_help(COMMANDS[i], stdout);
-            return end_output(0);
-        case OPTIONS_WRONG:
-            fprintf(stderr, "sheen %s: %s; see sheen %s --help\n", name, why, name);
-            return EXIT_WRONG_USAGE;
-        }
-    }
+    const struct command *command = command_of(name);
+    if (command)
+        return run(command, argc - 1, argv + 1);
     if (*name)
-        fprintf(stderr, "sheen: '%s' is no command; see sheen --help\n", name);
-    else
-        print_help(stderr);
+        return refuse_command(name);
+    print_help(stderr);
     return EXIT_WRONG_USAGE;
 }

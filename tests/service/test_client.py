@@ -99,6 +99,15 @@ class Client(unittest.TestCase):
         self.assert_fails(3, "light.png", "render", FENDER, "-o", self.path("x.png"), "--pattern",
                           "image:" + self.path("light.png"))
 
+    def test_help(self):
+        for command in ("render", "stats", "figure7"):
+            self.assertEqual(sheen("help", command).stdout, sheen(command, "--help").stdout)
+        self.assertIn("usage: sheen render", sheen("help", "render").stdout)
+        self.assertEqual(sheen("help").stdout, sheen("--help").stdout)
+        done = sheen("help", "draw")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("'draw' is no command", done.stderr)
+
     def test_output_to_a_full_disk(self):
         for program, code, *arguments in (
                 (SHEEN, 3, "--help"), (SHEEN, 3, "help"), (SHEEN, 3, "--version"), (SHEEN, 3, "render", "--help"),
