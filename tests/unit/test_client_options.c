@@ -139,6 +139,20 @@ static void cameras_in_part(void **state)
     assert_true(camera->auto_view && !camera->auto_up && camera->up[1] == 1);
 }
 
+/* '=' is refused only where it is attached to a letter. */
+static void values_that_begin_with_an_equals_sign(void **state)
+{
+    (void)state;
+    struct options options;
+    char why[OPTIONS_WHY_BYTES];
+    static const char *const lines[] = {"m.obj -o =a.png", "m.obj --output==a.png",
+                                        "m.obj --output =a.png"};
+    for (size_t i = 0; i < sizeof(lines) / sizeof(*lines); i++) {
+        assert_int_equal(parse(&COMMAND_RENDER, lines[i], &options, why), OPTIONS_RUN);
+        assert_string_equal(options.output, "=a.png");
+    }
+}
+
 static void bad_command_lines_name_the_option(void **state)
 {
     (void)state;
@@ -221,7 +235,7 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_LEVELS, "m.obj -o a.png --class batch", "--class"},
         {&COMMAND_RENDER, "m.obj -o a.png --pattern dots", "--pattern 'dots'"},
         {&COMMAND_RENDER, "m.obj -o a.png --empty red", "#rrggbb"},
-        {&COMMAND_RENDER, "m.obj -o a.png --nonsense", "--nonsense"},
+        {&COMMAND_RENDER, "m.obj -o a.png --nonsense", "--nonsense is no option here"},
         {&COMMAND_RENDER, "m.obj -o a.png -x", "-x"},
         {&COMMAND_RENDER, "m.obj -o a.png --device gpu", "--device 'gpu'"},
         {&COMMAND_RENDER, "m.obj -o a.png --device 0 --server unix:/s", "unix:/s"},
@@ -231,7 +245,14 @@ static void bad_command_lines_name_the_option(void **state)
         {&COMMAND_INFO, "m.obj --memory-budget 4GB", "800M or 4G"},
         {&COMMAND_INFO, "m.obj --memory-budget 37748735", "36M or more"},
         {&COMMAND_INFO, "m.obj --memory-budget 99999999T", "36M or more"},
-        {&COMMAND_RENDER, "m.obj -o a.png --json=yes", "--json=yes"},
+        {&COMMAND_RENDER, "m.obj -o a.png --json=yes", "--json takes no value"},
+        {&COMMAND_RENDER, "m.obj -o a.png --wel=1", "--weld takes no value"},
+        {&COMMAND_RENDER, "m.obj -o a.png --line",
+         "--line is no option here (did you mean --lines?)"},
+        {&COMMAND_RENDER, "m.obj -o a.png --native", "(did you mean --native-isa?)"},
+        {&COMMAND_RENDER, "m.obj -o a.png --dedaline=5", "(did you mean --deadline?)"},
+        {&COMMAND_RENDER, "m.obj -o=a.png", "-o takes its value without '=': -o a.png"},
+        {&COMMAND_RENDER, "m.obj -qo=a.png", "-o takes its value without '=': -o a.png"},
         {&COMMAND_STREAM, "m.obj", "--frames"},
         {&COMMAND_STREAM, "m.obj --frames 0", "--frames '0'"},
         {&COMMAND_STREAM, "m.obj --frames 1000001", "--frames"},
@@ -277,6 +298,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(good_command_lines),
         cmocka_unit_test(cameras_in_part),
+        cmocka_unit_test(values_that_begin_with_an_equals_sign),
         cmocka_unit_test(bad_command_lines_name_the_option),
         cmocka_unit_test(the_environment_names_a_server),
     };

@@ -149,6 +149,82 @@ static enum options_result wrong(char *why, const char *format, const char *what
     return OPTIONS_WRONG;
 }
 
+#define NAME_LETTERS 32 /* letters of a given name that are compared */
+
+/* The number of letters to insert, remove or replace that make `name` of the first n letters of
+ * `given`; n is at most NAME_LETTERS. */
+static size_t distance(const char *given, size_t n, const char *name)
+{
+    size_t row[NAME_LETTERS + 1];
+    for (size_t i = 0; i <= n; i++)
+        row[i] = i;
+    for (; *name; name++) {
+        size_t diagonal = row[0]++;
+        for (size_t i = 1; i <= n; i++) {
+            size_t replaced = diagonal + (given[i - 1] != *name);
+            size_t moved = 1 + (row[i] < row[i - 1] ? row[i] : row[i - 1]);
+            diagonal = row[i];
+            row[i] = replaced < moved ? replaced : moved;
+        }
+    }
+    return row[n];
+}
+
+/* The option whose name is nearest to `given`, which has the form --NAME or --NAME=VALUE. NULL: no
+ * name continues the given one or differs from it in few letters. */
+static const struct option_row *nearest(const char *given, const struct option_row *const *rows,
+                                        size_t n)
+{
+    const struct option_row *found = NULL;
+    size_t least = SIZE_MAX;
+    if (strncmp(given, "--", 2) != 0)
+        return NULL;
+    given += 2;
+    size_t length = strcspn(given, "=");
+    if (length == 0 || length > NAME_LETTERS)
+        return NULL;
+    for (size_t i = 0; i < n; i++) {
+        size_t letters = distance(given, length, rows[i]->name);
+        bool is_like = strncmp(given, rows[i]->name, length) == 0 || letters <= (length + 1) / 3;
+        if (is_like && letters < least) {
+            least = letters;
+            found = rows[i];
+        }
+    }
+    return found;
+}
+
+static bool refuse_unknown(const char *given, const struct option_row *const *rows, size_t n,
+                           char *why)
+{
+    const struct option_row *meant = nearest(given, rows, n);
+    return meant ? options_refuse(why, "%.100s is no option here (did you mean --%s?)", given,
+                                  meant->name)
+                 : options_refuse(why, "%.150s is no option here", given);
+}
+
+/* The row that getopt chose. NULL with the reason in `why` if it chose none, or if the value has a
+ * fault of form. */
+static const struct option_row *
+chosen_row(int chosen, const char *given, const struct option_row *const *rows, size_t n, char *why)
+{
+    bool has_no_value = chosen == ':', is_unknown = chosen == '?';
+    const struct option_row *row =
+        row_of(is_unknown && optopt >= FIRST_LONG ? optopt : chosen, rows, n);
+    if (has_no_value)
+        options_refuse(why, "%.150s needs a value", given);
+    else if (!row)
+        refuse_unknown(given, rows, n, why);
+    else if (is_unknown)
+        options_refuse(why, "--%s takes no value", row->name);
+    else if (chosen < FIRST_LONG && optarg && *optarg == '=' && optarg != given)
+        options_refuse(why, "-%c takes its value without '=': -%c %.100s", chosen, chosen,
+                       optarg + 1);
+    else
+        return row;
+    return NULL;
+}
+
 static enum options_result parse_options(int argc, char **argv,
                                          const struct option_row *const *rows, size_t n,
                                          struct options *options, char *why)
@@ -162,12 +238,9 @@ static enum options_result parse_options(int argc, char **argv,
         int chosen = getopt_long(argc, argv, shorts, longs, NULL);
         if (chosen == -1)
             return OPTIONS_RUN;
-        const char *given = argv[optind - 1];
-        if (chosen == ':')
-            return wrong(why, "%s needs a value", given);
-        const struct option_row *row = chosen == '?' ? NULL : row_of(chosen, rows, n);
+        const struct option_row *row = chosen_row(chosen, argv[optind - 1], rows, n, why);
         if (!row)
-            return wrong(why, "%s is no option here", given);
+            return OPTIONS_WRONG;
         if (strcmp(row->name, "help") == 0)
             return OPTIONS_HELP;
         char reason[OPTIONS_WHY_BYTES];
