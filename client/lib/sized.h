@@ -10,7 +10,8 @@
 enum sheen_status sized_check(const void *theirs, const char *name, struct sheen_error *error);
 
 /* sized_check(), then copies the program's struct into *ours, which has n_ours bytes and must hold
- * the defaults. SHEEN_BAD_ARGUMENT if the program sets members that this library does not have. */
+ * the defaults. Then ours->size is n_ours. SHEEN_BAD_ARGUMENT if the program sets members
+ * that this library does not have. */
 enum sheen_status sized_take(void *ours, size_t n_ours, const void *theirs, const char *name,
                              struct sheen_error *error);
 

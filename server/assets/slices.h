@@ -1,7 +1,7 @@
 /* Shares the threads of the pool among builds. Each build hands over its work in slices of a few
  * milliseconds, and the builds take turns (turns.h), so that no build delays another, however
  * large.
- * Thread: the loop's. */
+ * Thread: the one that runs the loop (server/net/loop.h). */
 #ifndef SHEEN_ASSETS_SLICES_H
 #define SHEEN_ASSETS_SLICES_H
 
@@ -21,10 +21,12 @@ struct slices {
 struct slice_source {
     struct turn turn;
     void *build;
-    /* Returns the next slice to submit, or NULL if all are done or running. The slice's done() must
-     * call slices_done(). */
+    /* Returns the next slice to submit, or NULL if there is none now: all slices are done or running.
+     * After NULL it is called again only when one of its slices is done, or after slices_join(). A
+     * slice's done() must call slices_done(). */
     struct task *(*next)(struct slice_source *source);
-    bool is_dry; /* next() returned NULL after the latest slice was done; private to slices.c */
+    bool
+        is_dry; /* the latest call of next() returned NULL: do not call it now; private to slices.c */
 };
 
 void slices_init(struct slices *slices, struct pool *pool);

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* The two arguments of user_namespace_read(): for user ids and for group ids. */
 #define USER_NAMESPACE_USERS "/proc/self/uid_map", "/proc/sys/kernel/overflowuid"
 #define USER_NAMESPACE_GROUPS "/proc/self/gid_map", "/proc/sys/kernel/overflowgid"
 

@@ -1,7 +1,7 @@
 /* Watches the daemon while it serves. The monitor feeds the service manager's watchdog as long as
  * the render thread, the pool and the readers make progress, and it serves health and metrics over
  * HTTP.
- * Thread: the loop's. */
+ * Thread: the one that runs the loop (server/net/loop.h). */
 #ifndef SHEEN_OPS_MONITOR_H
 #define SHEEN_OPS_MONITOR_H
 
@@ -25,8 +25,10 @@ bool monitor_adopt(struct monitor *monitor, int fd, enum listener_reach reach, s
 /* The address that is served; "" if none is. */
 const char *monitor_address(const struct monitor *monitor);
 
-/* http_limit(), if there is an address. */
+/* Limits the HTTP connections to `most` at the same time, 1 to HTTP_MAX_CONNECTIONS (http_limit());
+ * without an address it does nothing. */
 void monitor_limit(struct monitor *monitor, unsigned most);
+/* Changes stuck_us of monitor_create(). */
 void monitor_set_stuck(struct monitor *monitor, uint64_t stuck_us);
 
 #endif

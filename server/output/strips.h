@@ -15,8 +15,9 @@ struct strip_layout {
 };
 
 /* Cuts a picture into strips of about PROTOCOL_STRIP_BYTES of RGBA with 8 bits each. The number of
- * rows of a strip is a multiple of `multiple`, except that of the last. Both sides are from 1 to
- * PROTOCOL_MAX_SIZE_PX. layout->bound stays 0: the encoder sets it. */
+ * rows of a strip, except the last, is a multiple of `multiple`, which is from 1 to 16 (JPEG: the rows
+ * of a block, 8 or 16; PNG: 1). Both sides are from 1 to PROTOCOL_MAX_SIZE_PX. layout->bound
+ * stays 0: the encoder sets it. */
 void strip_layout_init(struct strip_layout *layout, uint32_t width_px, uint32_t height_px,
                        uint32_t multiple);
 

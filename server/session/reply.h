@@ -2,7 +2,7 @@
  * comes; the reply is sent when it is ready. Frames of one class leave in the order of their
  * requests; all other replies leave as soon as they are ready. For a peer of minor version 0 all
  * replies leave in the order of the requests.
- * Thread: the loop's. */
+ * Thread: the one that runs the loop (server/net/loop.h). */
 #ifndef SHEEN_SESSION_REPLY_H
 #define SHEEN_SESSION_REPLY_H
 

@@ -1,7 +1,8 @@
 /* A cache of records of one size, which are made when they are first needed and found by keys of 39
- * bits. It has a limited number of records. The least recently used records are dropped, a segment
- * at a time, but only between two uses (record_cache_turn()): during a use records do not move. If
- * one use fills the cache, its further records are not kept.
+ * bits. It has a limited number of records. They lie in segments: blocks of 2 MiB, or of 64 KiB and
+ * less in caches below 16 MiB. The least recently used segments lose all their records, but only
+ * between two uses (record_cache_turn()): during a use records do not move. If one use fills the
+ * cache, its further records are not kept.
  *
  * Thread: any number may find and add at the same time; create, turn, bytes and destroy need all
  * others to have stopped. */
@@ -31,7 +32,9 @@ const void *record_cache_find(struct record_cache *cache, uint64_t key);
  * in the meantime. NULL if there is no room. */
 const void *record_cache_add(struct record_cache *cache, uint64_t key, const void *record);
 
-/* Ends a use and begins the next. If less than a quarter of the room is left, frees half of it. */
+/* Ends a use and begins the next. If less than a quarter of the room is left, the cache forgets the
+ * records of half of its segments, rounded up, those that were not used for longest; a cache of one
+ * segment forgets all its records. The memory of these segments stays allocated, for new records. */
 void record_cache_turn(struct record_cache *cache);
 
 /* Main memory in bytes: of a cache now, and of a full cache. */

@@ -13,8 +13,8 @@
 enum sheen_status file_read_line(const char *path, char *line, size_t size,
                                  struct sheen_error *error);
 
-/* False, with SHEEN_BAD_IMAGE in *error, if `path` could not be written: its folder is missing or
- * not writable, or `path` is not a plain file. An early check, before the work. */
+/* Checks early, before the work, whether `path` can be written. SHEEN_BAD_IMAGE if its folder is
+ * missing or not writable, or if `path` exists and is not a regular file; SHEEN_NO_MEMORY. */
 enum sheen_status file_check_writable(const char *path, struct sheen_error *error);
 
 /* Writes a temporary file in the same folder and renames it, so that `path` is either unchanged or

@@ -13,12 +13,18 @@ struct gl_renderer;
 struct paused_tiles;
 struct polygon_mesh;
 
-/* Creates the set. NULL when memory is short. The renderer releases it once; any thread. */
+/* Creates the set, for the renderer; NULL when memory is short. The set counts its holders: the
+ * renderer, which calls paused_tiles_release() once, and each paused tile, until tile_give_back().
+ * The last holder frees it, so that a frame may give its tile back after the renderer is destroyed.
+ * Any thread. */
 struct paused_tiles *paused_tiles_create(void);
 void paused_tiles_release(struct paused_tiles *set);
-/* Takes into use the planes with the drawn part of the frame's tile, if there are any. */
+/* Takes into use the planes with the drawn part of the frame's tile. If nothing is drawn of the tile
+ * yet, or what was drawn was lost with the device, the tile begins from its start. */
 void tile_resume(struct gl_renderer *r, struct gl_frame *own);
-/* Sets the drawn part aside until the frame's next step; other frames may use the planes in use. */
+/* Sets the drawn part aside until the frame's next step; other frames may use the planes in use.
+ * False with ERROR_SERVER if MAX_PAUSED_TILES other frames have a part set aside: the drawn part is
+ * then not kept, and the frame fails. */
 bool tile_pause(struct gl_renderer *r, const struct gl_model *model, struct gl_frame *own,
                 struct error *error);
 /* Releases the planes, because the frame needs the drawn part no longer. Any thread. */
