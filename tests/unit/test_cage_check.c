@@ -288,7 +288,8 @@ static void test_choice_of_reader(void **state)
     assert_false(cage_read(&cage, "glTF", 4, "upload", &error));
     assert_non_null(strstr(error.text, "upload: truncated: a GLB has at least 20 bytes"));
     assert_false(cage_read(&cage, "{}", 2, "upload.obj", &error));
-    assert_non_null(strstr(error.text, "upload.obj: no vertex and no face, as of no OBJ file"));
+    assert_non_null(
+        strstr(error.text, "upload.obj: is not an OBJ file: it has no vertex and no face"));
 }
 
 static void test_empty_and_long_names(void **state)

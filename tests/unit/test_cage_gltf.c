@@ -139,8 +139,8 @@ static void test_collapse(void **state)
                   .positions = moved, .n_positions = 10, .indices = to_triangle, .n_indices = 6});
     assert_int_equal(cage.n_faces, 1);
     EXPECT_FACE(&cage, 0, 6, 1, 4);
-    assert_string_equal(cage.warnings, "part.glb: face 0 (counting from 0): a face that repeats a "
-                                       "corner loses it");
+    assert_string_equal(cage.warnings, "part.glb: face 0 (counting from 0): a face names a vertex "
+                                       "twice in a row: the second is dropped");
     cage_finish(&cage);
 
     static const uint16_t to_nothing[] = {1, 6, 7, 1, 7, 2, 0, 1, 4, 0, 4, 3};
@@ -161,7 +161,8 @@ static void test_collapse(void **state)
     assert_true(cage.crease[0].sharpness == 2);
     assert_string_equal(cage.warnings,
                         "part.glb: face 0 (counting from 0): a face with fewer than 3 different "
-                        "corners is passed over\npart.glb: a crease on no edge is passed over");
+                        "corners is ignored\n"
+                        "part.glb: a crease whose vertices share no edge is ignored");
     cage_finish(&cage);
 }
 
@@ -185,7 +186,7 @@ static void test_repeated_corners(void **state)
     assert_int_equal(cage.finding[0].face, 0);
     assert_non_null(strstr(cage.warnings,
                            "part.glb: face 0 (counting from 0): a face with fewer than 3 different "
-                           "corners is passed over; 3 in all, this is the first"));
+                           "corners is ignored; 3 in all, this is the first"));
     cage_finish(&cage);
     static const uint16_t in_polygons[] = {0, 1, 1, 0, 1, 3, 1, 2, 5, 1, 5, 1};
     read_good(&cage, &(struct sample){.indices = in_polygons, .n_indices = 12});

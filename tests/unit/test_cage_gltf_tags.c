@@ -149,7 +149,8 @@ static void test_crease_on_no_edge(void **state)
     assert_int_equal(cage.n_creases, 1);
     assert_int_equal(cage.crease[0].vertex[1], 1);
     assert_true(cage.crease[0].sharpness == 2);
-    assert_string_equal(cage.warnings, "part.glb: a crease on no edge is passed over");
+    assert_string_equal(cage.warnings,
+                        "part.glb: a crease whose vertices share no edge is ignored");
     cage_finish(&cage);
 }
 

@@ -144,8 +144,9 @@ static void test_geometry_errors(void **state)
         const char *text, *message;
     } bad[] = {
         {"", "part.obj: the file is empty"},
-        {"# nothing\n", "part.obj: no vertex and no face, as of no OBJ file; what is read is OBJ, "
-                        "glTF and GLB, the last two from .gltf and .glb"},
+        {"# nothing\n",
+         "part.obj: is not an OBJ file: it has no vertex and no face. sheen reads OBJ; "
+         "glTF and GLB need a name that ends in .gltf or .glb"},
         {SQUARE, "part.obj: no face at all (4 vertices): a cage needs at least one face"},
         {"v\n", "part.obj:1: v has 0 coordinates, needs 3"},
         {SQUARE "v 1\n", "part.obj:5: v has 1 coordinate, needs 3"},
@@ -210,7 +211,7 @@ static void test_bytes_that_are_no_text(void **state)
     struct cage cage;
     struct error error = {0};
     assert_false(cage_read(&cage, other, sizeof other - 1, "part.obj", &error));
-    assert_non_null(strstr(error.text, "part.obj: byte 42 is 0, as in no OBJ file"));
+    assert_non_null(strstr(error.text, "part.obj: is not an OBJ file: byte 42 is 0, "));
 }
 
 /* Tags */

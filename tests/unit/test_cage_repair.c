@@ -15,7 +15,7 @@
 /* Lines 1 to 6: vertices 0 to 5, 0 1 2 below 3 4 5. */
 #define SIX "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
 #define KEYHOLE_TEXT                                                                               \
-    "a face with a vertex at corners that are no neighbours (a keyhole: split it) is passed over"
+    "a face with a vertex at corners that are no neighbours (a keyhole: split it) is ignored"
 
 static void expect_finding(const struct cage *cage, size_t i, enum cage_finding_kind kind,
                            uint32_t count, uint32_t line)
@@ -40,9 +40,11 @@ static void test_repeated_corners(void **state)
     EXPECT_FACE(&cage, 3, 0, 1, 4);
     EXPECT_FACE(&cage, 4, 2, 5, 4);
     expect_finding(&cage, 0, CAGE_FOUND_REPEATED_CORNER, 4, 8);
-    assert_memory_equal(
-        cage.warnings,
-        "part.obj:8: a face that repeats a corner loses it; 4 in all, this is the first", 78);
+    assert_memory_equal(cage.warnings,
+                        "part.obj:8: a face names a vertex twice in a row: the second is dropped; "
+                        "4 in all, this is "
+                        "the first",
+                        97);
     cage_finish(&cage);
 }
 
@@ -58,7 +60,7 @@ static void test_faces_passed_over(void **state)
     expect_finding(&cage, 0, CAGE_FOUND_FEW_CORNERS, 3, 7);
     expect_finding(&cage, 1, CAGE_FOUND_KEYHOLE, 1, 11);
     assert_string_equal(cage.warnings,
-                        "part.obj:7: a face with fewer than 3 different corners is passed over; 3 "
+                        "part.obj:7: a face with fewer than 3 different corners is ignored; 3 "
                         "in all, this is the first\n"
                         "part.obj:11: " KEYHOLE_TEXT);
     cage_finish(&cage);
@@ -104,14 +106,15 @@ static void test_tags_without_element(void **state)
     expect_finding(&cage, 1, CAGE_FOUND_CREASE, 7, 10);
     expect_finding(&cage, 2, CAGE_FOUND_CORNER, 2, 16);
     expect_finding(&cage, 3, CAGE_FOUND_HOLE, 2, 17);
-    assert_string_equal(cage.warnings,
-                        "part.obj:9: a face with fewer than 3 different corners is passed over\n"
-                        "part.obj:10: a crease on no edge is passed over; 7 in all, this is the "
-                        "first\n"
-                        "part.obj:16: a corner tag on no vertex is passed over; 2 in all, this is "
-                        "the first\n"
-                        "part.obj:17: a hole of no face is passed over; 2 in all, this is the "
-                        "first");
+    assert_string_equal(
+        cage.warnings,
+        "part.obj:9: a face with fewer than 3 different corners is ignored\n"
+        "part.obj:10: a crease whose vertices share no edge is ignored; 7 in all, this "
+        "is the first\n"
+        "part.obj:16: a corner tag of a vertex that does not exist is ignored; 2 in "
+        "all, this is the first\n"
+        "part.obj:17: a hole of a face that does not exist is ignored; 2 in all, this "
+        "is the first");
     cage_finish(&cage);
 }
 

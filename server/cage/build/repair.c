@@ -22,14 +22,15 @@ struct repair {
 static const struct {
     const char *what, *cost;
 } WORDS[N_CAGE_FINDINGS] = {
-    [CAGE_FOUND_REPEATED_CORNER] = {"a face that repeats a corner", "loses it"},
-    [CAGE_FOUND_FEW_CORNERS] = {"a face with fewer than 3 different corners", "is passed over"},
+    [CAGE_FOUND_REPEATED_CORNER] = {"a face names a vertex twice in a row:",
+                                    "the second is dropped"},
+    [CAGE_FOUND_FEW_CORNERS] = {"a face with fewer than 3 different corners", "is ignored"},
     [CAGE_FOUND_KEYHOLE] = {"a face with a vertex at corners that are no neighbours (a keyhole: "
                             "split it)",
-                            "is passed over"},
-    [CAGE_FOUND_CREASE] = {"a crease on no edge", "is passed over"},
-    [CAGE_FOUND_CORNER] = {"a corner tag on no vertex", "is passed over"},
-    [CAGE_FOUND_HOLE] = {"a hole of no face", "is passed over"},
+                            "is ignored"},
+    [CAGE_FOUND_CREASE] = {"a crease whose vertices share no edge", "is ignored"},
+    [CAGE_FOUND_CORNER] = {"a corner tag of a vertex that does not exist", "is ignored"},
+    [CAGE_FOUND_HOLE] = {"a hole of a face that does not exist", "is ignored"},
 };
 
 static void count(struct repair *repair, enum cage_finding_kind kind, uint32_t line, uint32_t face)

@@ -178,6 +178,8 @@ static bool read_all(struct obj_reader *reader)
     return true;
 }
 
+#define OTHER_FORMATS "sheen reads OBJ; glTF and GLB need a name that ends in .gltf or .glb"
+
 bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, const char *name,
               struct error *error)
 {
@@ -185,8 +187,8 @@ bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, cons
     if (zero)
         return error_set(
             error, ERROR_MODEL,
-            "%s: byte %zu is 0, as in no OBJ file: it is damaged, UTF-16 or of another "
-            "kind; what is read is OBJ, glTF and GLB",
+            "%s: is not an OBJ file: byte %zu is 0, so the file is damaged, UTF-16 or of another "
+            "kind. " OTHER_FORMATS,
             name, (size_t)(zero - (const char *)bytes));
     locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (!c_locale)
@@ -204,10 +206,9 @@ bool obj_read(struct cage_builder *builder, const void *bytes, size_t size, cons
     builder->plain_triangles = has_triangles_alone(&builder->cage);
     const struct cage *cage = &builder->cage;
     if (ok && cage->n_vertices == 0 && cage->n_faces == 0)
-        ok = error_set(error, ERROR_MODEL,
-                       "%s: no vertex and no face, as of no OBJ file; what is read is OBJ, glTF "
-                       "and GLB, the last two from .gltf and .glb",
-                       name);
+        ok =
+            error_set(error, ERROR_MODEL,
+                      "%s: is not an OBJ file: it has no vertex and no face. " OTHER_FORMATS, name);
     freelocale(c_locale);
     return ok;
 }
