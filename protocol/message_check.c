@@ -135,7 +135,7 @@ static bool check_view(const sheen_Camera *camera, char *text)
     const sheen_Vec3 view = {camera->target.x - camera->eye.x, camera->target.y - camera->eye.y,
                              camera->target.z - camera->eye.z};
     if (camera->has_eye && is_zero(&view))
-        return refuse(text, "camera.eye and camera.target are the same point");
+        return refuse(text, "camera.eye and camera.target (--eye, --target) are the same point");
     static const sheen_Vec3 y_axis = {0, 1, 0};
     if (camera->has_up &&
         (is_zero(&camera->up) || (camera->has_eye && is_parallel(&view, &camera->up))))

@@ -139,11 +139,13 @@ bool limits_set(struct limits *limits, const struct limits_row *row, const char 
         put(limits, row, number);
         return true;
     }
-    if (row->unit == UNIT_BYTES)
+    if (row->unit == UNIT_BYTES) {
+        char range[LIMITS_RANGE_BYTES];
+        limits_range(row, range);
         return error_set(error, ERROR_REQUEST,
-                         "%s is '%s'; it must be bytes from %" PRIu64 " to %" PRIu64
-                         ", as 4000000000, 800M or 4G",
-                         row->name, value, row->low, row->high);
+                         "%s is '%s'; it must be %s: bytes, as 4000000000, 800M or 4G", row->name,
+                         value, range);
+    }
     return error_set(error, ERROR_REQUEST,
                      "%s is '%s'; it must be a whole number from %" PRIu64 " to %" PRIu64,
                      row->name, value, row->low, row->high);

@@ -186,10 +186,11 @@ static enum options_result walk(int argc, char **argv, struct settings *settings
                                    NULL, 0};
     optind = 1;
     opterr = 0;
-    for (int c, index; (c = getopt_long(argc, argv, "", longs, &index)) != -1;) {
+    for (int c, index; (c = getopt_long(argc, argv, ":", longs, &index)) != -1;) {
         if (c != 0) {
             error_set(error, ERROR_REQUEST,
-                      "'%s' is no option or lacks its value; sheend --help lists them",
+                      c == ':' ? "%s needs a value; sheend --help lists the options"
+                               : "'%s' is no option; sheend --help lists them",
                       argv[optind - 1]);
             return OPTIONS_WRONG;
         }

@@ -33,11 +33,12 @@ class Options(unittest.TestCase):
         self.assertRegex(run("--version").stdout, r"^sheend \d+\.\d+\.\d+, protocol 1\.\d+\n$")
 
     def test_wrong_usage(self):
-        for words, *arguments in (("--nothing", "--nothing"), ("stray", "stray"),
-                                  ("--device", "--device"), ("device", "--device", "fast"),
+        for words, *arguments in (("'--nothing' is no option; ", "--nothing"), ("stray", "stray"),
+                                  ("'--listn' is no option; ", "--listn", "x"),
+                                  ("--device needs a value; ", "--device"), ("device", "--device", "fast"),
                                   ("memory-budget", "--memory-budget", "much"),
                                   ("memory-budget", "--memory-budget", "0"),
-                                  ("memory-budget is '1'; it must be bytes from 37748736 to ",
+                                  ("memory-budget is '1'; it must be 36M or more: bytes, ",
                                    "--memory-budget", "1"),
                                   ("memory-budget", "--memory-budget", "-1"),
                                   ("memory-budget", "--memory-budget", "99999999999999T"),
