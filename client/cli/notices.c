@@ -33,10 +33,10 @@ void notices_print(struct client *client, const struct options *options,
         return;
     client_print_warnings(client, info->warnings);
     if (frame->up_source == SHEEN_UP_GUESSED)
-        progress_note(
-            &client->progress,
-            "up: %s, guessed from the model's box; where it is wrong, --up %s, or another",
-            frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "y" : "z");
+        progress_note(&client->progress,
+                      "up is taken as %s (a guess from the model's box); if that is wrong, give "
+                      "--up %s or another direction",
+                      frame->up[2] != 0 ? "z" : "y", frame->up[2] != 0 ? "y" : "z");
     if (frame->blank)
         fprintf(stderr, "sheen: warning: no pixel shows the surface: see --eye, --target, --zoom, "
                         "--fov and --ortho; without them a camera frames the model\n");

@@ -163,6 +163,7 @@ class Client(unittest.TestCase):
             file.write(b"more than the buffer says")
         same = json.loads(sheen("info", model, "--json", "--server", self.daemon.unix).stdout)
         self.assertEqual(same["sha256"], info["sha256"])
+        self.assert_fails(3, "sheen: the model's name is empty", "info", "")
         os.rename(beside, self.path("fender.bin"))
         self.assert_fails(3, "fender.bin: No such file", "info", model)
         os.symlink("../../fender.bin", beside)

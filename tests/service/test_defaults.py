@@ -213,7 +213,7 @@ class Said(DaemonCase):
         self.assertNotIn("guessed", text)
         said, text = self.sheen(self.door)
         self.assertEqual((said["up"], said["up_source"]), ([0, 1, 0], "guessed"))
-        self.assertIn("up: y, guessed", text)
+        self.assertIn("up is taken as y (a guess", text)
         self.assertIn("--up z", text)
         for word, up in (("z", [0, 0, 1]), ("-z", [0, 0, -1]), ("+x", [1, 0, 0]),
                          ("-y", [0, -1, 0]), ("0,0,3", [0, 0, 3])):
@@ -255,9 +255,9 @@ class Said(DaemonCase):
         away = ("--eye", "0,-9,1", "--target", "0,-18,1")
         low = ("--light-center", "0,9,0", "--light-u", "1,0,0", "--light-v", "0,0,1")
         for command in commands:
-            for options, words in (((), ("up: y, guessed",)), (("--up", "y"), ()),
-                                   (low, ("up: y, guessed", "the light is met on")),
-                                   (away, ("up: y, guessed", "no pixel shows the surface"))):
+            for options, words in (((), ("up is taken as y (a guess",)), (("--up", "y"), ()),
+                                   (low, ("up is taken as y (a guess", "the light is met on")),
+                                   (away, ("up is taken as y (a guess", "no pixel shows the surface"))):
                 with self.subTest(command=command[0], options=options):
                     asked = (SHEEN, *command, *options, "--size", "90x60", "--server",
                              self.daemon.unix, "--json")

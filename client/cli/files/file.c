@@ -87,7 +87,7 @@ enum sheen_status file_check_writable(const char *path, struct sheen_error *erro
 {
     struct stat about;
     if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
-        return failure_set(error, SHEEN_BAD_IMAGE, "%s: is there and is not a plain file", path);
+        return failure_set(error, SHEEN_BAD_IMAGE, "%s: exists and is not a regular file", path);
     char *target = target_of(path);
     char *folder = target ? folder_of(target) : NULL;
     int reason = folder ? folder_refuses(folder) : errno;

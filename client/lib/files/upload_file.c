@@ -15,10 +15,12 @@ enum sheen_status sheen_read_file(enum sheen_file_kind kind, const char *path, u
                           "n_bytes not NULL");
     *bytes = NULL;
     *n_bytes = 0;
+    const enum sheen_status bad = is_model ? SHEEN_BAD_MODEL : SHEEN_BAD_IMAGE;
+    if (!*path)
+        return status_set(error, bad, "the %s's name is empty", is_model ? "model" : "image");
     uint8_t *read = NULL;
     size_t n_read = 0;
-    enum sheen_status status =
-        read_file(path, is_model ? SHEEN_BAD_MODEL : SHEEN_BAD_IMAGE, &read, &n_read, error);
+    enum sheen_status status = read_file(path, bad, &read, &n_read, error);
     if (!status && is_model)
         status = gltf_pack(path, &read, &n_read, error);
     if (status) {
