@@ -49,7 +49,7 @@ void native_model_destroy(struct native_model *model); /* NULL is safe */
 size_t native_model_bytes(const struct native_model *model);
 /* The largest main memory of a model with these tables. */
 size_t native_model_most_bytes(const struct limit_tables *tables, size_t patch_bytes);
-/* Call it before a frame: frees the least recently used patches if room is short. */
+/* Call it before a frame: forgets the least recently used patches if room is short. */
 void native_model_turn(struct native_model *model);
 
 /* The index of a sub-patch in its node. STRIP: `level` 1 to levels + 1, from the far side to the crease; CORNER:
