@@ -80,7 +80,7 @@ SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/
 # Converts between messages and scenes: only for programs that speak the protocol.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
 SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))
-RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/native/rays/*.c)
+RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/frame/*.c server/render/native/clip/*.c server/render/native/polygons/*.c server/render/native/rays/*.c)
 # These sources are compiled once for each instruction set: its name, its lanes, and its compiler flags.
 LANES_SRC := $(wildcard server/render/native/lanes/*.c)
 ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
@@ -330,7 +330,7 @@ $(BUILD)/sheen-bench: $(SHEEN_BENCH_OBJ)
 sheen-bench: $(BUILD)/sheen-bench
 
 # The native device for another processor is compiled and not linked, because the other libraries are this machine's.
-native-units: $(LANES_OBJ) $(call obj,$(wildcard server/render/native/*.c server/render/native/frame/*.c server/render/native/polygons/*.c server/render/native/rays/*.c server/render/*.c))
+native-units: $(LANES_OBJ) $(call obj,$(wildcard server/render/native/*.c server/render/native/frame/*.c server/render/native/clip/*.c server/render/native/polygons/*.c server/render/native/rays/*.c server/render/*.c))
 arm64:
 	$(MAKE) BUILD=build/arm64 CC="$(filter ccache,$(CC)) aarch64-linux-gnu-gcc" CXX="$(filter ccache,$(CXX)) aarch64-linux-gnu-g++" \
 	    OPT=-O1 SYMBOLS= LANES_FLAGS="$(filter-out -O3,$(LANES_FLAGS)) -O1" native-units

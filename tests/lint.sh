@@ -67,10 +67,11 @@ room server/render/gl/context "$common|server/image" 'a context knows nothing of
 room server/render/gl/programs "$common|server/scene" 'a program is a text and a name, whatever it draws'
 room server/render/gl "$common|server/image|server/scene|server/render|server/render/gl/context|server/render/gl/programs" \
     'a device draws, it serves nobody'
-room server/render/native "$common|protocol|server/image|server/scene|server/surface|server/render|server/render/native/frame|server/render/native/lanes|server/render/native/polygons|server/render/native/programs|server/render/native/rays" \
+room server/render/native "$common|protocol|server/image|server/scene|server/surface|server/render|server/render/native/clip|server/render/native/frame|server/render/native/lanes|server/render/native/polygons|server/render/native/programs|server/render/native/rays" \
     'processors draw without GL'
+room server/render/native/clip "$common|server/surface|server/render|server/render/native" 'clipping knows pieces'
 room server/render/native/frame "$common|server/scene|server/render|server/render/native|server/render/native/polygons" 'what a frame goes through'
-room server/render/native/polygons "$common|server/render|server/render/native" 'polygons come after the surface'
+room server/render/native/polygons "$common|server/render|server/render/native|server/render/native/clip" 'polygons come after the surface'
 room server/render/native/programs '' 'what shaders/lanes writes includes this and no more'
 room server/render/native/rays "$common|server/surface|server/render|server/render/native" 'rays of pixels come after the surface'
 room server/render/native/lanes "$common|server/surface|server/render|server/render/native|server/render/native/polygons|server/render/native/rays" 'one unit for each instruction set'

@@ -6,7 +6,7 @@
 #define SHEEN_RENDER_NATIVE_POLYGONS_FILL_H
 
 #include "server/render/mesh.h"
-#include "server/render/native/clip.h"
+#include "server/render/native/clip/clip.h"
 #include "server/render/native/frame.h"
 
 struct native_device;

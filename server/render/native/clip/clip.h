@@ -1,6 +1,6 @@
 /* Clips triangles at the near plane, and at planes far beyond the picture's sides. In double precision. Pure. */
-#ifndef SHEEN_RENDER_NATIVE_CLIP_H
-#define SHEEN_RENDER_NATIVE_CLIP_H
+#ifndef SHEEN_RENDER_NATIVE_CLIP_CLIP_H
+#define SHEEN_RENDER_NATIVE_CLIP_CLIP_H
 
 #include "server/render/view.h"
 

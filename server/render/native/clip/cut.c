@@ -1,6 +1,6 @@
 /* Draws pieces that the near plane cuts or that reach far beyond the picture: cuts their triangles in double
  * precision to what can be drawn. */
-#include "server/render/native/clip.h"
+#include "server/render/native/clip/clip.h"
 #include "server/render/native/frame.h"
 #include "server/render/native/tile.h"
 

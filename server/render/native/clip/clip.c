@@ -1,4 +1,4 @@
-#include "server/render/native/clip.h"
+#include "server/render/native/clip/clip.h"
 
 #include <string.h>
 
