@@ -25,8 +25,7 @@ struct slice_source {
      * After NULL it is called again only when one of its slices is done, or after slices_join(). A
      * slice's done() must call slices_done(). */
     struct task *(*next)(struct slice_source *source);
-    bool
-        is_dry; /* the latest call of next() returned NULL: do not call it now; private to slices.c */
+    bool is_dry; /* the latest call of next() returned NULL; private to slices.c */
 };
 
 void slices_init(struct slices *slices, struct pool *pool);

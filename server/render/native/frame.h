@@ -58,6 +58,12 @@ struct native_piece {
     uint8_t kind, level, square;
 };
 
+/* The patch of a piece, which any thread of the frame may have found; NULL: none has yet. */
+static inline const struct native_patch *native_piece_patch(const struct native_piece *piece)
+{
+    return __atomic_load_n(&piece->patch, __ATOMIC_ACQUIRE);
+}
+
 /* A piece in the form in which it is drawn, in one cache line. */
 struct native_quad {
     float x[4], y[4]; /* QUAD_CELL: px of the corners (0,0) (1,0) (0,1) (1,1) */

@@ -36,7 +36,7 @@ void native_device_destroy(struct native_device *device); /* NULL is safe */
 const char *native_device_name(const struct native_device *device);
 /* True if the last tile had more pixels in gaps than are solved, so that another cut into tiles may show more. */
 bool native_device_left_gaps(const struct native_device *device);
-/* The last frame; its threads still have its pieces. */
+/* The last frame; its threads still have its pieces. Valid as long as what native_draw() was given. */
 const struct native_frame *native_device_drawn(const struct native_device *device);
 unsigned native_device_threads(const struct native_device *device);
 struct native_thread *native_device_thread(struct native_device *device, unsigned number);

@@ -55,13 +55,13 @@ const struct native_patch *native_patch_of_piece(const struct native_frame *fram
                                                  struct native_tile_room *room,
                                                  struct native_piece *piece)
 {
-    const struct native_patch *patch = __atomic_load_n(&piece->patch, __ATOMIC_RELAXED);
+    const struct native_patch *patch = native_piece_patch(piece);
     if (patch)
         return patch;
     uint32_t index = native_piece_index(&frame->model->tables->nodes[piece->node], piece);
     patch = native_patch_find(frame->model, piece->node, index);
     if (patch) /* every thread finds the same */
-        __atomic_store_n(&piece->patch, patch, __ATOMIC_RELAXED);
+        __atomic_store_n(&piece->patch, patch, __ATOMIC_RELEASE);
     return patch ? patch : native_patch_of(frame, room, piece->node, index);
 }
 
@@ -157,7 +157,7 @@ void native_begin_on(const struct native_model *model, struct native_task *task,
         .origin_y = piece->square >= 2};
     task->s = piece->s + (float)s * piece->size;
     task->t = piece->t + (float)t * piece->size;
-    task->patch = piece->patch;
+    task->patch = native_piece_patch(piece);
     if (task->patch)
         prefetch(task->patch);
 }

@@ -268,7 +268,7 @@ static void fetch_ahead(const struct native_tile_room *room, size_t i, size_t n)
     if (i + PIECE_AHEAD < n)
         __builtin_prefetch(room->local[room->order[i + PIECE_AHEAD]]);
     const struct native_patch *patch =
-        i + PATCH_AHEAD < n ? room->local[room->order[i + PATCH_AHEAD]]->patch : NULL;
+        i + PATCH_AHEAD < n ? native_piece_patch(room->local[room->order[i + PATCH_AHEAD]]) : NULL;
     for (int line = 0; patch && line < 4; line++)
         __builtin_prefetch((const char *)patch + 64 * line);
 }

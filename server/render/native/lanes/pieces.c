@@ -20,18 +20,6 @@ struct reach {
     float x0, x1, y0, y1, farthest, nearest;
 };
 
-static float least(four a)
-{
-    float x = a[0] < a[1] ? a[0] : a[1], y = a[2] < a[3] ? a[2] : a[3];
-    return x < y ? x : y;
-}
-
-static float largest(four a)
-{
-    float x = a[0] > a[1] ? a[0] : a[1], y = a[2] > a[3] ? a[2] : a[3];
-    return x > y ? x : y;
-}
-
 /* Projects a quad's corners, given relative to the node's origin. False if one lies behind the eye. */
 static bool project_corners(const struct native_rays *rays, const struct placed_node *node,
                             const float corner[3][4], struct native_quad *quad, struct reach *reach)
@@ -53,9 +41,12 @@ static bool project_corners(const struct native_rays *rays, const struct placed_
     memcpy(quad->x, &x, sizeof x);
     memcpy(quad->y, &y, sizeof y);
     memcpy(quad->nearness, &nearness, sizeof nearness);
-    *reach = (struct reach){least(x),   largest(x),      least(y),
-                            largest(y), least(nearness), largest(nearness)};
-    return !rays->perspective || least(z) > 0;
+    float depth[4];
+    memcpy(depth, &z, sizeof depth);
+    *reach =
+        (struct reach){least_of(quad->x),   largest_of(quad->x),      least_of(quad->y),
+                       largest_of(quad->y), least_of(quad->nearness), largest_of(quad->nearness)};
+    return !rays->perspective || least_of(depth) > 0;
 }
 
 /* Projects the vertices of a grid over a piece. False if one lies behind the eye. */

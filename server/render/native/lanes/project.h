@@ -7,6 +7,19 @@
 #include "server/render/native/frame.h"
 #include "server/render/native/lanes.h"
 
+/* Of a quad's four corners. */
+LANE_INLINE float least_of(const float a[4])
+{
+    float x = a[0] < a[1] ? a[0] : a[1], y = a[2] < a[3] ? a[2] : a[3];
+    return x < y ? x : y;
+}
+
+LANE_INLINE float largest_of(const float a[4])
+{
+    float x = a[0] > a[1] ? a[0] : a[1], y = a[2] > a[3] ? a[2] : a[3];
+    return x > y ? x : y;
+}
+
 /* A node in camera space. */
 struct placed_node {
     float at[3], before;

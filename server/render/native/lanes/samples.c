@@ -91,18 +91,6 @@ struct halves {
     float lowest, highest;               /* nearness */
 };
 
-LANE_INLINE float least_of(const float a[4])
-{
-    float x = a[0] < a[1] ? a[0] : a[1], y = a[2] < a[3] ? a[2] : a[3];
-    return x < y ? x : y;
-}
-
-LANE_INLINE float largest_of(const float a[4])
-{
-    float x = a[0] > a[1] ? a[0] : a[1], y = a[2] > a[3] ? a[2] : a[3];
-    return x > y ? x : y;
-}
-
 /* Divides a cell into n triangles: 1 if it is itself a triangle, else 2. The second begins at the opposite corner, so s
  * and t decrease along its sides. */
 static void halve(const struct cell *cell, int n, struct halves *out)
@@ -164,19 +152,45 @@ static void draw_pixel(struct native_ray_room *room, const struct cell *cell,
     }
 }
 
-static void draw_cell(struct native_ray_room *room, const struct cell *cell)
+/* Sets a cell's place to that of a triangle at a pixel's centre, interpolated with perspective. */
+static void place_in(const struct native_triangle *t, const struct half *half, int x, int y,
+                     struct cell *cell)
+{
+    float at_x = (float)x + 0.5f, at_y = (float)y + 0.5f;
+    float b = half->bx * at_x + half->by * at_y + half->b0 + half->least_b;
+    float c = half->cx * at_x + half->cy * at_y + half->c0 + half->least_c;
+    b = fminf(fmaxf(b, 0), 1);
+    c = fminf(fmaxf(c, 0), 1 - b);
+    const float weight[3] = {(1 - b - c) * t->inverse_z[0], b * t->inverse_z[1],
+                             c * t->inverse_z[2]};
+    float to_steps = PLACE_STEPS / (weight[0] + weight[1] + weight[2]);
+    cell->s = to_steps * (weight[0] * t->s[0] + weight[1] * t->s[1] + weight[2] * t->s[2]);
+    cell->t = to_steps * (weight[0] * t->t[0] + weight[1] * t->t[1] + weight[2] * t->t[2]);
+}
+
+/* Draws a cell at the listed pixels of `in`. If it is a triangle, its place is another at each of them. */
+LANE_INLINE void draw_touched(struct native_ray_room *room, struct cell *cell,
+                              const struct halves *of, const struct touched *in,
+                              const struct native_triangle *triangle)
+{
+    for (int y = in->y0; y <= in->y1; y++)
+        for (int word = in->x0 / 64; word <= in->x1 / 64; word++)
+            for (uint64_t left = listed_in(room, y, word, in->x0, in->x1); left; left &= left - 1) {
+                int x = 64 * word + __builtin_ctzll(left);
+                if (triangle)
+                    place_in(triangle, &of->half[0], x, y, cell);
+                draw_pixel(room, cell, of, x, y, room->first_ray[y * TILE_WIDTH + x]);
+            }
+}
+
+static void draw_cell(struct native_ray_room *room, struct cell *cell)
 {
     struct touched in;
     if (!touch(cell->x, cell->y, 4, cell->bulge, &in) || !any_listed(room, &in))
         return;
     struct halves of;
     halve(cell, 2, &of);
-    for (int y = in.y0; y <= in.y1; y++)
-        for (int word = in.x0 / 64; word <= in.x1 / 64; word++)
-            for (uint64_t left = listed_in(room, y, word, in.x0, in.x1); left; left &= left - 1) {
-                int x = 64 * word + __builtin_ctzll(left);
-                draw_pixel(room, cell, &of, x, y, room->first_ray[y * TILE_WIDTH + x]);
-            }
+    draw_touched(room, cell, &of, &in, NULL);
 }
 
 /* --- */
@@ -271,29 +285,9 @@ static void draw_triangle(const struct source *of, const struct native_triangle 
     }
     if (!touch(cell.x, cell.y, 3, CELL_PX, &in))
         return;
-    struct halves of_cell;
-    halve(&cell, 1, &of_cell);
-    const struct half *half = &of_cell.half[0];
-    for (int y = in.y0; y <= in.y1; y++)
-        for (int word = in.x0 / 64; word <= in.x1 / 64; word++)
-            for (uint64_t left = listed_in(of->room, y, word, in.x0, in.x1); left;
-                 left &= left - 1) {
-                int x = 64 * word + __builtin_ctzll(left);
-                float at_x = (float)x + 0.5f, at_y = (float)y + 0.5f;
-                float b = half->bx * at_x + half->by * at_y + half->b0 + half->least_b;
-                float c = half->cx * at_x + half->cy * at_y + half->c0 + half->least_c;
-                b = fminf(fmaxf(b, 0), 1);
-                c = fminf(fmaxf(c, 0), 1 - b);
-                float weight[3] = {(1 - b - c) * t->inverse_z[0], b * t->inverse_z[1],
-                                   c * t->inverse_z[2]};
-                float inverse = 1 / (weight[0] + weight[1] + weight[2]);
-                cell.s = PLACE_STEPS * inverse *
-                         (weight[0] * t->s[0] + weight[1] * t->s[1] + weight[2] * t->s[2]);
-                cell.t = PLACE_STEPS * inverse *
-                         (weight[0] * t->t[0] + weight[1] * t->t[1] + weight[2] * t->t[2]);
-                draw_pixel(of->room, &cell, &of_cell, x, y,
-                           of->room->first_ray[y * TILE_WIDTH + x]);
-            }
+    struct halves halves;
+    halve(&cell, 1, &halves);
+    draw_touched(of->room, &cell, &halves, &in, t);
 }
 
 static void draw_grid(const struct source *of, const float *vertex, uint32_t grid, int piece)

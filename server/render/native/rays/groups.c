@@ -125,7 +125,7 @@ static uint32_t begin_groups(const struct native_frame *frame, const struct nati
         }
         struct native_ray_group *group = &room->group[room->n_groups++];
         *group = (struct native_ray_group){
-            .node = piece->node, .first = first, .n = n[k], .patch = piece->patch};
+            .node = piece->node, .first = first, .n = n[k], .patch = native_piece_patch(piece)};
         group->index =
             (uint16_t)native_piece_index(&frame->model->tables->nodes[piece->node], piece);
         n[k] = first;
