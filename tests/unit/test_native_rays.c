@@ -41,9 +41,9 @@ static void meet_all(struct native_device *device, struct native_model *model,
 }
 
 /* At silhouettes a ray may touch the surface in one computation and miss it in the other by
- * rounding. Of 1.2 million rays 12 were missed, 16 invented and 7 on another sheet, at most 5 of one
- * view. */
-enum { MOST_OF_VIEW = 8, MOST_OF_ALL = 24 };
+ * rounding. Of 1.2 million rays at most 12 were missed, 20 invented and 7 on another sheet, at most 5
+ * of one view. */
+enum { MOST_OF_VIEW = 8, MOST_MISSED = 18, MOST_INVENTED = 26, MOST_ELSEWHERE = 12 };
 
 struct found {
     int rays, missed, invented, other_sheet;
@@ -62,9 +62,8 @@ static void compare_rays(const struct planes *large, const uint32_t *pixel, stru
     }
 }
 
-static void test_rays_are_centres(void **state)
+static void judge_set(const struct native_set *set)
 {
-    (void)state;
     static const enum look looks[] = {PLAIN, ORTHOGRAPHIC, CLOSE, INSIDE, TOP};
     static uint32_t pixel[SMALL_PX];
     struct planes large, small;
@@ -73,7 +72,7 @@ static void test_rays_are_centres(void **state)
     struct found all = {0, 0, 0, 0};
     for (int m = 0; m < N_MODELS; m++) {
         struct limit_tables tables = {0};
-        struct native_device *device = open_device(NULL, 2);
+        struct native_device *device = open_device(set->name, 2);
         build_file(MODELS[m], &tables);
         struct native_model *model = open_model(&tables);
         for (size_t l = 0; l < sizeof looks / sizeof *looks; l++) {
@@ -95,13 +94,21 @@ static void test_rays_are_centres(void **state)
         native_device_destroy(device);
         limit_tables_finish(&tables);
     }
-    printf("all: of %d rays %d missed, %d invented, %d on another sheet\n", all.rays, all.missed,
-           all.invented, all.other_sheet);
+    printf("%s: of %d rays %d missed, %d invented, %d on another sheet\n", set->words, all.rays,
+           all.missed, all.invented, all.other_sheet);
     assert_true(all.rays > 1000000);
-    assert_true(all.missed <= MOST_OF_ALL && all.invented <= MOST_OF_ALL);
-    assert_true(all.other_sheet <= MOST_OF_ALL);
+    assert_true(all.missed <= MOST_MISSED && all.invented <= MOST_INVENTED);
+    assert_true(all.other_sheet <= MOST_ELSEWHERE);
     planes_finish(&large);
     planes_finish(&small);
+}
+
+static void test_rays_are_centres(void **state)
+{
+    (void)state;
+    const struct native_set *set;
+    for (unsigned k = 0; (set = native_set_at(k)); k++)
+        judge_set(set);
 }
 
 int main(void)
