@@ -23,9 +23,13 @@ fan::fan(const fan_shape &shape, uint64_t seed)
     int rays = shape.closed ? shape.sectors : shape.sectors + 1;
     double total = shape.closed ? 2 * M_PI : shape.sectors == 1 ? M_PI / 2 : M_PI;
     double step = total / shape.sectors, across = 0.1 * std::fmin(1, step);
+    if (shape.gentle > 0)
+        across = shape.gentle;
     auto add = [&](double x, double y) {
+        double saddle = 0.3 * (x * x - 0.5 * y * y);
+        double dx = across * noise(random), dy = across * noise(random), dz = noise(random);
         position.push_back(
-            {x + across * noise(random), y + across * noise(random), 0.3 * noise(random)});
+            {x + dx, y + dy, shape.gentle > 0 ? saddle + shape.gentle * dz : 0.3 * dz});
         return (uint32_t)position.size() - 1;
     };
     add(0, 0);

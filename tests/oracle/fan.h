@@ -19,6 +19,8 @@ struct fan_shape {
     bool closed;
     std::vector<std::pair<int, float>> creases; /* ray and sharpness, from the vertex outwards */
     float sharpness;                            /* of the vertex */
+    /* The points' heights are those of a saddle plus a random number up to this; 0: random alone. */
+    double gentle = 0;
 };
 
 /* The vertex is vertex 0. The face of sector k at the vertex is face 4 k, which is also its Ptex
