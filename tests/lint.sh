@@ -62,6 +62,7 @@ room server/surface/subdivision "$common|server/cage|server/surface|server/surfa
 room server/image "$common|protocol" 'pictures are data'
 room server/sandbox "$common|server/cage|server/cage/read|server/image" 'the worker programs see files alone'
 room server/scene "$common|protocol|server/cage|server/surface" 'a request is data'
+room server/curves "$common|server/scene|server/surface" 'numbers on surfaces: no cage, no device, no client'
 room server/render "$common|protocol|server/image|server/scene|server/surface" 'what every device needs, so no GL'
 room server/render/gl/context "$common|server/image" 'a context knows nothing of what is drawn in it'
 room server/render/gl/programs "$common|server/scene" 'a program is a text and a name, whatever it draws'
@@ -83,7 +84,7 @@ room server/output "$common|protocol|server/image|server/render|server/scene|ser
     'an encoder knows pictures, no client'
 room server/assets "$common|protocol|server/cage|server/net|server/render|server/scene|server/surface|server/surface/subdivision|server/threads" \
     'models and images serve every frame, and know none'
-room server/frame "$common|protocol|server/assets|server/output|server/scene" \
+room server/frame "$common|protocol|server/assets|server/curves|server/output|server/scene" \
     'a frame tells its session by events (request.h), so it includes none'
 room server/session "$common|protocol|server/assets|server/frame|server/net|server/output|server/threads" \
     'a session is one client'"'"'s messages; the main service hands it what it needs'
@@ -112,7 +113,7 @@ only_in '\b(socket|bind|listen|accept4?|connect|send|sendto|sendmsg|recv|recvfro
 only_in '\b(posix_spawnp?|vfork|exec[lv][a-z]*|system|popen)\(|[=?:] v?fork\(' 'child processes' 'server client protocol' \
     protocol/child.c server/sandbox/zygote.c server/threads/starter.c
 only_in '\bSSL_|openssl/ssl' 'TLS' 'server client protocol' protocol/tls.c
-only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/render server/image server/sandbox protocol' \
+only_in 'pthread_|<threads\.h>' 'threads' 'server/cage server/surface server/scene server/curves server/render server/image server/sandbox protocol' \
     server/render/native/team.c server/surface/subdivision/maker.c
 only_in '<[a-z0-9]*intrin\.h>|\b_mm[0-9]*_' 'intrinsics' 'server client protocol' server/render/native/
 only_in '\b(strcpy|strcat|sprintf|vsprintf|gets|atoi|atof|alloca)\(' 'banned functions' \
