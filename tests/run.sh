@@ -176,6 +176,7 @@ oracle() {
         $(printf '%s\n' $all | grep -v loop_val2_interior)
     beside deep "$build/tests/test_deep"
     beside sectors "$build/tests/test_sectors"
+    beside line_position "$build/tests/test_line_position"
     beside random_cages "$build/tests/test_random_cages"
     car=$shapes/catmark_car.obj
     [ -f "$car" ] || car=tests/models/creases.obj
