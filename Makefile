@@ -17,8 +17,10 @@
 #   make lint       format, static analysis, dependency rules
 #   make format     formats the sources with clang-format
 #   make deps       installs Debian packages (needs root or sudo)
-#   make install    PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=: installs programs, libsheen, manual pages,
-#                   completions and systemd's units; builds nothing that `make` has built
+#   make install    PREFIX=/usr/local LIBDIR=PREFIX/lib PYTHONDIR=PREFIX/lib/python3.N/dist-packages DESTDIR=:
+#                   installs programs, libsheen, the Python package, manual pages, completions and systemd's
+#                   units; builds nothing that `make` has built
+#   make wheel      build/python/sheen-VERSION-py3-none-any.whl, for pip; needs no network
 #   make clean
 # SANITIZE=1 builds everything with AddressSanitizer and UBSan into build/sanitize, SANITIZE=thread
 # with ThreadSanitizer into build/thread. FUZZ=1 and COVERAGE=1 are the builds of make fuzz and
@@ -29,6 +31,8 @@ VERSION := 0.1.0
 DATE := 2026-11-30
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
+# Where Debian's Python looks for packages that are installed below PREFIX.
+PYTHONDIR ?= $(PREFIX)/lib/$(if $(filter /usr,$(PREFIX)),python3,$(shell /usr/bin/python3 -c 'import sys; print("python%d.%d" % sys.version_info[:2])'))/dist-packages
 CC ?= gcc
 CXX ?= g++
 SANITIZE ?=
@@ -152,7 +156,8 @@ TEST_LIBS := $(SERVER_LIBS) $(CAGE_WORKER_LIBS) $(IMAGE_WORKER_LIBS) -lpng -ljan
 PROGRAMS := $(BUILD)/sheend $(BUILD)/sheend-cage $(BUILD)/sheend-image $(BUILD)/sheen
 LIBRARIES := $(BUILD)/libsheen.so.0 $(BUILD)/libsheen.a
 MANUAL := $(BUILD)/manual/made
-all: $(PROGRAMS) $(LIBRARIES) $(MANUAL)
+PACKAGE := $(BUILD)/python/made
+all: $(PROGRAMS) $(LIBRARIES) $(MANUAL) $(PACKAGE)
 
 $(BUILD)/sheend: $(SERVER_OBJ)
 	$(call say,LD $@)
@@ -192,6 +197,11 @@ $(MANUAL): $(BUILD)/sheen-pages $(BUILD)/sheend-pages
 	@mkdir -p $(@D)
 	$(call say,MAN $(@D))
 	$(Q)rm -f $(@D)/* && $(BUILD)/sheen-pages $(DATE) $(@D) && $(BUILD)/sheend-pages $(DATE) $(@D) && touch $@
+
+# The Python package, whose messages are made from the files of the protocol, and a wheel of it.
+$(PACKAGE): $(wildcard client/python/*.py client/python/sheen/*) protocol/sheen.proto protocol/sheen.options protocol/README.md Makefile
+	$(call say,PY $(@D)/sheen)
+	$(Q)PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 client/python/package.py $(VERSION) $(@D) && touch $@
 
 $(BUILD)/obj/gen/%.c.o: $(BUILD)/gen/%.c
 	@mkdir -p $(@D)
@@ -336,7 +346,7 @@ arm64:
 	$(MAKE) BUILD=build/arm64 CC="$(filter ccache,$(CC)) aarch64-linux-gnu-gcc" CXX="$(filter ccache,$(CXX)) aarch64-linux-gnu-g++" \
 	    OPT=-O1 SYMBOLS= LANES_FLAGS="$(filter-out -O3,$(LANES_FLAGS)) -O1" native-units
 
-.PHONY: tests test unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench sheen-bench native-units arm64 lint format demo deps install clean
+.PHONY: tests test unit service oracle check soak fuzz fuzz-targets fuzz-coverage bench sheen-bench native-units arm64 lint format demo deps install wheel clean
 tests: all $(BUILD)/sheend-faults $(BUILD)/tests/no_library.so $(UNIT_TESTS) $(ORACLE_TESTS) $(FUZZ_TARGETS) $(BENCH) $(BUILD)/sheen-bench
 unit: all $(UNIT_TESTS) $(FUZZ_TARGETS)
 	bash tests/run.sh unit $(BUILD)
@@ -399,6 +409,8 @@ install: all
 	ln -sf libsheen.so.0 $(DEST_LIB)/libsheen.so
 	install -Dm644 -t $(DEST_LIB) $(BUILD)/libsheen.a
 	install -Dm644 -t $(DEST)/include client/lib/sheen.h
+	install -Dm644 -t $(DESTDIR)$(PYTHONDIR)/sheen $(BUILD)/python/sheen/*.py $(BUILD)/python/sheen/py.typed
+	install -Dm644 -t $(DESTDIR)$(PYTHONDIR)/sheen-$(VERSION).dist-info $(BUILD)/python/sheen-$(VERSION).dist-info/METADATA
 	install -d $(DEST_LIB)/pkgconfig
 	sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR:$(PREFIX)/%=$${prefix}/%)|; s|@VERSION@|$(VERSION)|' \
 	    client/lib/sheen.pc.in > $(DEST_LIB)/pkgconfig/sheen.pc
@@ -414,6 +426,9 @@ install: all
 	install -m644 -t $(DEST)/lib/systemd/system deploy/systemd/sheend.socket deploy/systemd/sheend-metrics.socket
 	install -Dm644 deploy/systemd/sheend.sysusers $(DEST)/lib/sysusers.d/sheend.conf
 	install -Dm644 -t $(DEST)/share/doc/sheen deploy/systemd/sheend.conf
+
+wheel: $(PACKAGE)
+	@echo "$(BUILD)/python/sheen-$(VERSION)-py3-none-any.whl"
 
 clean:
 	rm -rf build

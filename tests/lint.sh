@@ -125,6 +125,17 @@ only_in '#include <zlib|\b(deflate[A-Za-z0-9]*|inflate[A-Za-z0-9]*|crc32|adler32
     'server client protocol' server/output/png.c
 only_in '#include <tiny_?gltf|tinygltf::' 'tinygltf code' 'server client protocol' server/cage/read/gltf/
 
+# The types of the Python package.
+if command -v mypy >/dev/null; then
+    made=$(mktemp -d)
+    PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 client/python/package.py 0 "$made/package" &&
+        (cd "$made/package" && mypy --strict --enable-incomplete-feature=Unpack --cache-dir="$made/cache" -p sheen) >"$made/found" 2>&1 ||
+        fail "mypy: $(cat "$made/found")"
+    rm -rf "$made"
+else
+    echo "lint: NOT CHECKED: the types of client/python, because mypy is not installed (sh deploy/deps.sh)"
+fi
+
 # The list of files that a frame passes (CONTRIBUTING.md).
 for file in $(grep -oE '`(server|client|protocol)/[a-z0-9/_]+\.[a-z]+`' CONTRIBUTING.md | tr -d '`'); do
     [ -e "$file" ] || fail "CONTRIBUTING.md names $file, which is not there"

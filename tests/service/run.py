@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Black-box tests of the daemon: run.py BUILD_DIR [unittest names]. Needs only Python's standard library."""
+"""Black-box tests of the daemon: run.py BUILD_DIR [unittest names]. Needs only Python's standard library,
+and the package of client/python, which needs numpy."""
 import os
 import sys
 import unittest
@@ -19,7 +20,8 @@ def main():
         sys.exit("usage: run.py BUILD_DIR [test_module.Class.test ...]")
     os.environ["SHEEN_BUILD"] = os.path.abspath(sys.argv[1])
     folder = os.path.dirname(os.path.abspath(__file__))
-    sys.path.insert(0, folder)
+    sys.path[:0] = [folder, os.path.join(os.environ["SHEEN_BUILD"], "python")]
+    sys.dont_write_bytecode = True
     loader = unittest.defaultTestLoader
     names = sys.argv[2:]
     suite = loader.loadTestsFromNames(names) if names else loader.discover(folder)

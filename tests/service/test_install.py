@@ -1,19 +1,26 @@
 """make install: the files that it installs, that it builds nothing, and that programs can be built with the installed
 library."""
 import base64
+import hashlib
+import importlib.metadata
 import json
 import os
 import re
 import shutil
 import stat
 import subprocess
+import sys
 import tempfile
 import unittest
+import zipfile
 
 from daemon import BUILD, MODELS, SANITIZED, SHEEN, Daemon
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 PREFIX, LIBDIR = "/opt/sheen", "/opt/sheen/lib/here"
+PYTHON = f"lib/python3.{sys.version_info.minor}/dist-packages"
+MODULES = ("__init__", "__main__", "connection", "daemon", "errors", "files", "frame", "header", "messages", "options",
+           "planes", "protobuf", "scene", "session", "values", "version")
 EXAMPLES = os.path.join(ROOT, "client", "examples")
 STRICT = ["-Wall", "-Wextra", "-pedantic", "-Werror"]
 COMMANDS = ("info", "levels", "lights", "patterns", "render", "stats", "stream")
@@ -30,6 +37,9 @@ FILES = sorted([
     "lib/here/libsheen.a",
     "lib/here/pkgconfig/sheen.pc",
     "include/sheen.h",
+    *(f"{PYTHON}/sheen/{module}.py" for module in MODULES),
+    f"{PYTHON}/sheen/py.typed",
+    f"{PYTHON}/sheen-{VERSION}.dist-info/METADATA",
     "share/man/man1/sheen.1",
     *(f"share/man/man1/sheen-{command}.1" for command in COMMANDS),
     "share/man/man5/sheend.conf.5",
@@ -157,6 +167,53 @@ class Files(Installed):
                               env=env, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(os.path.exists(picture))
+
+
+class Python(Installed):
+    def render(self, folder):
+        """Python with this folder of packages uses the installed sheend."""
+        text = ("import sheen; session = sheen.connect(device='software'); "
+                f"frame = session.render({os.path.join(MODELS, 'plane.obj')!r}, size=(64, 48)); session.close(); "
+                "print(sheen.__file__, frame.colour.shape)")
+        env = {name: value for name, value in os.environ.items() if name not in ("SHEEN_DAEMON", "SHEEN_SERVER")}
+        done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60, cwd=self.work,
+                              env={**env, "PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1",
+                                   "PATH": self.path("bin") + ":" + os.environ["PATH"]})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, f"{folder}/sheen/__init__.py (48, 64, 4)\n")
+
+    def test_package(self):
+        self.render(self.path(PYTHON))
+        found = [(each.name, each.version) for each in importlib.metadata.distributions(path=[self.path(PYTHON)])]
+        self.assertEqual(found, [("sheen", VERSION)])
+
+    def test_wheel(self):
+        """Its files are those that are installed, with the right hashes; two folders give equal wheels."""
+        name = f"sheen-{VERSION}-py3-none-any.whl"
+        wheels = []
+        for folder in ("one", "two"):
+            made = os.path.join(self.work, folder)
+            subprocess.run([sys.executable, os.path.join(ROOT, "client/python/package.py"), VERSION, made], check=True,
+                           timeout=60, env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})
+            with open(os.path.join(made, name), "rb") as file:
+                wheels.append(file.read())
+        with open(os.path.join(BUILD, "python", name), "rb") as file:
+            self.assertEqual([file.read()] * 2, wheels)
+        target = os.path.join(self.work, "site")
+        with zipfile.ZipFile(os.path.join(made, name)) as wheel:
+            wheel.extractall(target)
+            record = wheel.read(f"sheen-{VERSION}.dist-info/RECORD").decode()
+            names = sorted(wheel.namelist())
+        self.assertEqual(sorted(row.split(",")[0] for row in record.splitlines()), names)
+        for row in record.splitlines()[:-1]:
+            file_name, digest, size = row.split(",")
+            with open(os.path.join(target, file_name), "rb") as file:
+                data = file.read()
+            found = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).decode().rstrip("=")
+            self.assertEqual(("sha256=" + found, str(len(data))), (digest, size))
+        self.assertEqual([each for each in names if ".dist-info" not in each],
+                         sorted([*(f"sheen/{module}.py" for module in MODULES), "sheen/py.typed"]))
+        self.render(target)
 
 
 class Library(Installed):

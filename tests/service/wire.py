@@ -1,16 +1,16 @@
-"""A client of sheen's protocol in plain Python, which can also break the protocol on purpose. Written from
-protocol/README.md and not from the C code, so that each judges the other."""
+"""A client of sheen's protocol that can also break the protocol on purpose. It encodes and decodes by the package of
+client/python, which is written from protocol/README.md and not from the C code, so that each judges the other."""
 import hashlib
 import socket
 import ssl
-import struct
 
-MAGIC = b"SHEN"
-(HELLO, HELLO_OK, UPLOAD_BEGIN, UPLOAD_CHUNK, UPLOAD_STATE, MODEL_QUERY, MODEL_INFO, RENDER, FRAME,
- DATA, PROGRESS, STATS_QUERY, STATS, ERROR, SUPERSEDED, CANCEL) = range(1, 17)
-(ERROR_PROTOCOL, ERROR_VERSION, ERROR_REQUEST, ERROR_MODEL, ERROR_IMAGE, ERROR_UNKNOWN_MODEL,
- ERROR_TOO_BIG, ERROR_OVERLOADED, ERROR_SHUTTING_DOWN, ERROR_DEVICE, ERROR_CANCELLED,
- ERROR_DEADLINE, ERROR_GPU_LOST) = range(1, 14)
+from sheen.header import HEADER, MAGIC
+from sheen.messages import ErrorCode, Type
+from sheen.protobuf import decode_fields as decode
+from sheen.protobuf import field, varint
+
+# HELLO, FRAME, ERROR_REQUEST and so on, as in the specification.
+globals().update({**Type.__members__, **ErrorCode.__members__})
 STILL, INTERACTIVE, BATCH = range(3)
 RAW, ZSTD, PNG, EXR, JPEG, TIFF = range(6)
 MODEL, IMAGE = 0, 1
@@ -19,57 +19,9 @@ PATTERN_IMAGE = 3
 PATIENCE = 1  # times the timeout of every client; daemon.py raises it for slow builds
 
 
-def varint(value):
-    out = bytearray()
-    while value > 127:
-        out.append(value & 127 | 128)
-        value >>= 7
-    out.append(value)
-    return bytes(out)
-
-
-def field(number, value):
-    """One field: int, float (as double), bytes, str, or a nested list of fields as bytes."""
-    if isinstance(value, float):
-        return varint(number << 3 | 1) + struct.pack("<d", value)
-    if isinstance(value, int):
-        return varint(number << 3) + varint(value)
-    if isinstance(value, str):
-        value = value.encode()
-    return varint(number << 3 | 2) + varint(len(value)) + value
-
-
-def decode(body):
-    """Fields by number: lists of int, or of bytes (for length-delimited, double and float fields)."""
-    fields, at = {}, 0
-
-    def take_varint():
-        nonlocal at
-        value = shift = 0
-        while True:
-            byte = body[at]
-            at += 1
-            value |= (byte & 127) << shift
-            shift += 7
-            if byte < 128:
-                return value
-
-    while at < len(body):
-        key = take_varint()
-        kind = key & 7
-        if kind == 0:
-            value = take_varint()
-        else:
-            size = {1: 8, 5: 4}.get(kind) or take_varint()
-            value = body[at:at + size]
-            at += size
-        fields.setdefault(key >> 3, []).append(value)
-    return fields
-
-
 def message(kind, seq, body=b"", flags=0, magic=MAGIC, major=1, length=None):
     length = len(body) if length is None else length
-    return magic + struct.pack("<BBHII", major, kind, flags, length, seq) + body
+    return HEADER.pack(magic, major, kind, flags, length, seq) + body
 
 
 def hello(seq=1, model=bytes(32), minor=0, token=None):
@@ -157,10 +109,8 @@ class Client:
     def receive(self):
         """(type, flags, seq, body) of the next message that is not PROGRESS."""
         while True:
-            header = self.read(16)
-            assert header[:4] == MAGIC, header
-            major, kind, flags, length, seq = struct.unpack("<BBHII", header[4:])
-            assert major == 1
+            magic, major, kind, flags, length, seq = HEADER.unpack(self.read(HEADER.size))
+            assert (magic, major) == (MAGIC, 1), (magic, major)
             body = self.read(length)
             if kind == ERROR:
                 fields = decode(body)

@@ -1,0 +1,27 @@
+"""sheen: exact reflection lines on subdivision surfaces, as numpy arrays.
+
+    import sheen
+    with sheen.connect() as session:                       # $SHEEN_SERVER, else a private sheend
+        hood = session.upload("hood.obj")
+        frame = session.render(hood, size=(1280, 720), planes=("colour", "position", "normal"))
+        frame.normal                                       # (720, 1280, 3) float32, NaN where nothing is hit
+        session.render(hood, camera=frame.camera.orbit(10), lines="zebra").save("zebra.png")
+
+The package speaks to the daemon by its protocol (protocol/README.md of the sources), without the C library."""
+from sheen.errors import (BadArgument, BadImage, BadModel, BadPeer, BadRequest, BadVersion, Cancelled, DeviceFailed,
+                          Error, GpuLost, Late, Lost, NoServer, Overloaded, ShuttingDown, Superseded, Timeout, TooBig,
+                          UnknownModel)
+from sheen.frame import Extreme, Frame
+from sheen.messages import HelloOk, ModelInfo, Stats, Times
+from sheen.options import Options
+from sheen.planes import PLANES
+from sheen.scene import Camera, Light, Lines, Pattern
+from sheen.session import Model, Session
+from sheen.version import __version__
+
+connect = Session
+
+__all__ = ["BadArgument", "BadImage", "BadModel", "BadPeer", "BadRequest", "BadVersion", "Camera", "Cancelled",
+           "DeviceFailed", "Error", "Extreme", "Frame", "GpuLost", "HelloOk", "Late", "Light", "Lines", "Lost", "Model",
+           "ModelInfo", "NoServer", "Options", "Overloaded", "PLANES", "Pattern", "Session", "ShuttingDown", "Stats",
+           "Superseded", "Timeout", "Times", "TooBig", "UnknownModel", "__version__", "connect"]
