@@ -370,6 +370,7 @@ fuzz:
 	sh tests/fuzz/fuzz.sh build/fuzz $(SECONDS) $(FUZZ_NAMES)
 	$(MAKE) SANITIZE=1 all
 	SHEEN_FUZZ_S=$(SECONDS) /usr/bin/python3 tests/service/run.py build/sanitize test_sequences
+	SHEEN_FUZZ_S=$(SECONDS) /usr/bin/python3 tests/service/run.py build/sanitize test_cages
 fuzz-coverage:
 	$(MAKE) COVERAGE=1 fuzz-targets
 	sh tests/fuzz/coverage.sh build/coverage $(FUZZ_NAMES)
