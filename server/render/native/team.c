@@ -22,36 +22,65 @@ struct native_team {
     bool breaks_up;
 };
 
-/* Called with the mutex held: the last thread to arrive wakes all others. */
+/* About 20 microseconds: most waits within a frame are shorter, and to be woken by the kernel takes longer. */
+enum { LOOKS = 1000 };
+
+/* Waits a moment for a counter to change, without the mutex. */
+static void look_at(const unsigned long *counter, unsigned long before)
+{
+    for (int i = 0; i < LOOKS && __atomic_load_n(counter, __ATOMIC_RELAXED) == before; i++) {
+#if defined(__x86_64__)
+        __builtin_ia32_pause();
+#endif
+    }
+}
+
+static void advance(unsigned long *counter)
+{
+    __atomic_fetch_add(counter, 1, __ATOMIC_RELAXED);
+}
+
+/* The last thread to arrive wakes all others. */
 static void meet(struct native_team *team)
 {
+    pthread_mutex_lock(&team->mutex);
     unsigned long meeting = team->n_meetings;
-    if (++team->n_here == team->n_threads) {
+    bool is_last = ++team->n_here == team->n_threads;
+    if (is_last) {
         team->n_here = 0;
-        team->n_meetings++;
+        advance(&team->n_meetings);
         pthread_cond_broadcast(&team->all_here);
     }
+    pthread_mutex_unlock(&team->mutex);
+    if (is_last)
+        return;
+    look_at(&team->n_meetings, meeting);
+    pthread_mutex_lock(&team->mutex);
     while (team->n_meetings == meeting)
         pthread_cond_wait(&team->all_here, &team->mutex);
+    pthread_mutex_unlock(&team->mutex);
+}
+
+/* False if the team breaks up instead. */
+static bool await_run(struct native_team *team, unsigned long n_done)
+{
+    look_at(&team->n_runs, n_done);
+    pthread_mutex_lock(&team->mutex);
+    while (team->n_runs == n_done && !team->breaks_up)
+        pthread_cond_wait(&team->begins, &team->mutex);
+    bool begins = !team->breaks_up;
+    pthread_mutex_unlock(&team->mutex);
+    return begins;
 }
 
 static void *serve(void *argument)
 {
     const struct member *member = argument;
     struct native_team *team = member->team;
-    unsigned long n_done = 0;
-    pthread_mutex_lock(&team->mutex);
-    for (;; n_done++) {
-        while (team->n_runs == n_done && !team->breaks_up)
-            pthread_cond_wait(&team->begins, &team->mutex);
-        if (team->breaks_up)
-            break;
-        pthread_mutex_unlock(&team->mutex);
+    for (unsigned long n_done = 0; await_run(team, n_done); n_done++) {
         team->work(team->owner, member->number);
-        pthread_mutex_lock(&team->mutex);
         meet(team);
     }
-    pthread_mutex_unlock(&team->mutex);
     return NULL;
 }
 
@@ -111,7 +140,7 @@ void native_team_run(struct native_team *team, void (*work)(void *owner, unsigne
     pthread_mutex_lock(&team->mutex);
     team->work = work;
     team->owner = owner;
-    team->n_runs++;
+    advance(&team->n_runs);
     pthread_cond_broadcast(&team->begins);
     pthread_mutex_unlock(&team->mutex);
     work(owner, 0);
@@ -120,7 +149,5 @@ void native_team_run(struct native_team *team, void (*work)(void *owner, unsigne
 
 void native_team_meet(struct native_team *team)
 {
-    pthread_mutex_lock(&team->mutex);
     meet(team);
-    pthread_mutex_unlock(&team->mutex);
 }
