@@ -80,8 +80,8 @@ uint32_t tile_max_rounded(const struct tile *tile)
     return (uint32_t)(most < pixels ? most : pixels);
 }
 
-uint32_t tile_share_stride(const struct tile *tile)
+uint32_t tiles_share_stride(uint32_t width_px, uint32_t height_px)
 {
     enum { ALL_PX = 1 << 18, STRIDE = 8 };
-    return (uint64_t)tile->width * tile->height < ALL_PX ? 1 : STRIDE;
+    return (uint64_t)width_px * height_px < ALL_PX ? 1 : STRIDE;
 }

@@ -54,8 +54,8 @@ bool tile_is_same(const struct tile *a, const struct tile *b);
 enum { ROUNDED_IN_ANY_CUT = 32768 };
 uint32_t tile_max_rounded(const struct tile *tile);
 
-/* The share of a light is counted at every pixel of a small tile and at one in so many of a large
+/* The share of a light is counted at every pixel of a small picture and at one in so many of a large
  * one. */
-uint32_t tile_share_stride(const struct tile *tile);
+uint32_t tiles_share_stride(uint32_t width_px, uint32_t height_px);
 
 #endif

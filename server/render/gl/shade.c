@@ -247,7 +247,7 @@ static void share_light(struct gl_renderer *r, const struct frame_request *reque
     if (i + 1 == request->n_lights)
         glNamedBufferSubData(r->target.unsolved, 0, sizeof nothing, nothing);
     glProgramUniform1ui(program, glGetUniformLocation(program, "stride"),
-                        tile_share_stride(inside));
+                        tiles_share_stride(request->width_px, request->height_px));
     glProgramUniform4i(program, glGetUniformLocation(program, "inside"), (GLint)inside->x,
                        (GLint)inside->y, (GLint)inside->width, (GLint)inside->height);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, r->target.unsolved);

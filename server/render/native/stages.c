@@ -266,7 +266,7 @@ static void count_light(const struct native_drawing *d, struct native_bindings *
     const int32_t inside[4] = {(int32_t)in->x, (int32_t)in->y, (int32_t)in->width,
                                (int32_t)in->height};
     memcpy(b->inside, inside, sizeof inside);
-    b->stride = tile_share_stride(in);
+    b->stride = tiles_share_stride(d->request->width_px, d->request->height_px);
     share->seen_px = share->met_px = 0;
     share->met = list_of(d, NATIVE_FOUND_EDGES)->at;
     run_program(d, native_device_programs(d->device)->share, b, b->groups->n, GROUPS_PER_WORKGROUP,
