@@ -34,8 +34,9 @@ static const float (*level_texels(struct limit_patch *patch, const struct limit_
     return texels + 1;
 }
 
-void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *tables,
-                          const struct limit_node *node, int n, double x, double y)
+/* Sets all but the points of the level, which patch->texels has. */
+static void choose_patch(struct limit_patch *patch, const struct limit_node *node, int n, double x,
+                         double y)
 {
     patch->node = node;
     patch->s = x;
@@ -43,9 +44,9 @@ void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *
     patch->level_x = patch->level_y = patch->depth = 0;
     patch->turn = 0;
     patch->is_vertex = false;
+    patch->level = n;
     patch->points.column = NULL;
-    const float(*texels)[4] = level_texels(patch, tables, node, n);
-    patch->points.rows = texels;
+    patch->points.rows = patch->texels;
     if (node->kind == LIMIT_CORNER) {
         patch->level_x = patch->level_y = n;
         patch->s = ldexp(x, n);
@@ -53,8 +54,8 @@ void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *
         bool far_x = patch->s >= 1, far_y = patch->t >= 1;
         patch->s -= far_x;
         patch->t -= far_y;
-        patch->points.rows = far_y ? texels + 3 : texels;
-        patch->points.column = far_x ? NULL : texels + 15;
+        patch->points.rows = far_y ? patch->texels + 3 : patch->texels;
+        patch->points.column = far_x ? NULL : patch->texels + 15;
     } else if (node->kind == LIMIT_STRIP) {
         /* Patch n = 1..levels covers 2^-n <= y <= 2^(1-n), patch levels + 1 the rest. */
         bool is_last = n > node->levels;
@@ -63,9 +64,22 @@ void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *
     }
 }
 
-/* The level of a node that contains (x,y). A number beyond the last level of a CORNER stands for
- * its vertex. */
-static int level_at(const struct limit_node *node, double x, double y)
+void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *tables,
+                          const struct limit_node *node, int n, double x, double y)
+{
+    patch->texels = level_texels(patch, tables, node, n);
+    choose_patch(patch, node, n, x, y);
+}
+
+void limit_patch_in_level(struct limit_patch *patch, const struct limit_patch *kept, double x,
+                          double y)
+{
+    patch->texels = kept->texels;
+    patch->points.scale = kept->points.scale;
+    choose_patch(patch, kept->node, kept->level, x, y);
+}
+
+int limit_level_at(const struct limit_node *node, double x, double y)
 {
     if (node->kind == LIMIT_REGULAR)
         return 0;
@@ -93,7 +107,7 @@ bool limit_patch_find(const struct limit_tables *tables, const struct limit_plac
         return false;
     unsigned turn = (node->rotation - place->corner) & 3;
     turn_place(turn, a, b, &x, &y);
-    int n = level_at(node, x, y);
+    int n = limit_level_at(node, x, y);
     bool is_vertex = node->kind == LIMIT_CORNER && n > (int)limit_levels(node);
     limit_patch_of_level(patch, tables, node, is_vertex ? n - 1 : n, x, y);
     patch->turn = turn;

@@ -36,18 +36,29 @@ struct limit_patch {
     int depth; /* the node's side is 2^-depth of that of the place's node */
     /* Beyond the last level of a CORNER: the patch is the extraordinary vertex itself. */
     bool is_vertex;
-    struct limit_level made; /* tables on demand: the points */
+    int level;                /* as in limit_patch_of_level() */
+    const float (*texels)[4]; /* the points of the whole level */
+    struct limit_level made;  /* tables on demand: the points */
 };
 
 /* Finds the patch at a place. False in a hole. */
 bool limit_patch_find(const struct limit_tables *tables, const struct limit_place *place,
                       struct limit_patch *patch);
 
+/* The level of a node that contains local (x,y), as limit_patch_of_level() numbers levels; beyond the last one of a
+ * CORNER it is the number of levels + 1, which stands for the vertex. */
+int limit_level_at(const struct limit_node *node, double x, double y);
+
 /* Gets the patch of level n (from 1) of a CORNER or STRIP that contains local (x,y), or that of a
  * REGULAR node, with n = 0. The last patch of a STRIP has number `levels` + 1. On the seam of two
  * levels either is allowed. */
 void limit_patch_of_level(struct limit_patch *patch, const struct limit_tables *tables,
                           const struct limit_node *node, int n, double x, double y);
+
+/* Gets the patch of the same level as `kept` that contains local (x,y), without making points again: it points to
+ * those of `kept`, which came from limit_patch_of_level(). */
+void limit_patch_in_level(struct limit_patch *patch, const struct limit_patch *kept, double x,
+                          double y);
 
 /* Gets the 16 control points of a patch, a uniform bicubic B-spline: grid[4 (j + 1) + (i + 1)], i
  * along s and j along t, both from -1 to 2, in the node's frame and in the model's units. Returns
