@@ -1,0 +1,87 @@
+/* A surface prepared for many evaluations at any place: its leaves (nodes with points), and the points of their
+ * first levels, which tables on demand would make anew for each evaluation. Levels beyond those are made when they
+ * are needed. Optionally the surface is moved by a rigid motion.
+ *
+ * kept_surface_fill() may run for different leaves at the same time, everything else of kept_surface_init() and
+ * kept_surface_finish() by one thread; a filled surface is read-only, and any thread may read it. */
+#ifndef SHEEN_CURVES_KEPT_SURFACE_H
+#define SHEEN_CURVES_KEPT_SURFACE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "server/base/error.h"
+#include "server/surface/evaluate.h"
+#include "server/surface/patch.h"
+
+/* A rotation, row by row, and then a translation. */
+struct rigid_motion {
+    struct vec row[3], shift;
+};
+
+/* A node with points. Places on it are local (x,y) in [0,1], as in limit_patch_of_level(). */
+struct kept_leaf {
+    uint32_t node;
+    uint32_t first_level; /* in kept_surface.levels */
+    uint8_t n_levels;     /* levels that are kept, from level 1 (or 0) on */
+    float area;           /* estimated */
+};
+
+struct kept_surface {
+    const struct limit_tables *tables; /* outlive the surface */
+    struct kept_leaf *leaves;
+    size_t n_leaves;
+    struct limit_patch *levels;
+    size_t n_levels;
+    bool is_moved;
+    struct rigid_motion motion;
+};
+
+/* The most levels of a CORNER that are kept: what lies beyond them is 4^-KEPT_LEVELS of its area. */
+enum { KEPT_LEVELS = 5 };
+
+/* Lists the leaves and makes room for their levels, in at most `most_bytes`: where these are few, fewer levels of
+ * each leaf are kept. False with ERROR_SERVER when one level of each leaf does not fit. */
+bool kept_surface_init(struct kept_surface *surface, const struct limit_tables *tables,
+                       size_t most_bytes, struct error *error);
+void kept_surface_finish(struct kept_surface *surface);
+size_t kept_surface_bytes(const struct kept_surface *surface);
+/* Makes the levels of a leaf and estimates its area. */
+void kept_surface_fill(struct kept_surface *surface, size_t leaf);
+
+static inline const struct limit_node *kept_node(const struct kept_surface *surface, size_t leaf)
+{
+    return &surface->tables->nodes[surface->leaves[leaf].node];
+}
+
+/* The rectangles [x, x + width] x [y, y + height] of a leaf that its kept levels cover, one for each patch; the last
+ * one of a CORNER is the rest about the vertex (is_rest), which consists of many patches. Returns their number. */
+struct kept_part {
+    double x, y, width, height;
+    bool is_rest;
+};
+enum { KEPT_PARTS = 3 * KEPT_LEVELS + 1 };
+unsigned kept_surface_parts(const struct kept_surface *surface, size_t leaf,
+                            struct kept_part parts[KEPT_PARTS]);
+
+/* Gets the patch that contains local (x,y) of a leaf. */
+void kept_surface_patch(const struct kept_surface *surface, size_t leaf, double x, double y,
+                        struct limit_patch *patch);
+
+/* Evaluates local (x,y) of a leaf, which may be a little beyond [0,1]; derivatives are by x and y. At (0,0) of a CORNER
+ * that is the vertex (evaluate.h); nearer to it than its last level, that level's end. */
+void kept_surface_evaluate(const struct kept_surface *surface, size_t leaf, double x, double y,
+                           struct limit_point *out);
+
+struct vec motion_turn(const struct rigid_motion *motion, struct vec v);
+
+/* The face and its (u,v) at local (x,y) of a leaf. */
+void kept_surface_place(const struct kept_surface *surface, size_t leaf, double x, double y,
+                        uint32_t *face, double uv[2]);
+
+/* True if local (x,y) of a leaf, within 1e-6 of a face, lies where the surface ends: at an edge of its face across
+ * which there is no face, or a hole. */
+bool kept_surface_at_border(const struct kept_surface *surface, size_t leaf, double x, double y);
+
+#endif
