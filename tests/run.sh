@@ -177,6 +177,7 @@ oracle() {
     beside deep "$build/tests/test_deep"
     beside sectors "$build/tests/test_sectors"
     beside line_position "$build/tests/test_line_position"
+    beside comparison "$build/tests/test_comparison" $(shapes_of 'catmark_car.obj')
     beside random_cages "$build/tests/test_random_cages"
     car=$shapes/catmark_car.obj
     [ -f "$car" ] || car=tests/models/creases.obj

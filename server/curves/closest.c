@@ -129,32 +129,56 @@ static double enter(const struct search *search, const struct tree_box *box)
     return least > 0 ? least : most < 0 ? -most : 0;
 }
 
-/* The rest about a vertex consists of many levels, and only within a level Newton's method converges: looks for the
- * level whose distance from the vertex is the line's, and begins there. */
-static void meet_rest(struct search *search, const struct rectangle *in)
+/* The rest about a vertex consists of many levels, and only within a level Newton's method converges. */
+struct rest {
+    struct limit_point vertex;
+    double extent; /* about how far it reaches from the vertex */
+};
+
+static struct rest rest_of(const struct kept_surface *surface, const struct rectangle *in)
 {
-    const struct kept_surface *surface = search->tree->surface;
-    struct limit_point vertex, at;
-    kept_surface_evaluate(surface, in->leaf, 0, 0, &vertex);
-    struct vec d = vec_sub(search->p, vertex.s);
-    double away = hypot(vec_dot(search->across[0], d), vec_dot(search->across[1], d)),
-           side = in->width;
-    kept_surface_evaluate(surface, in->leaf, side, side, &at);
-    double extent = vec_length(vec_sub(at.s, vertex.s));
-    if (away <= 1e-8 * extent) {
-        take_met(search, in->leaf, 0, 0, &vertex);
-        return;
-    }
+    struct rest rest;
+    struct limit_point at;
+    kept_surface_evaluate(surface, in->leaf, 0, 0, &rest.vertex);
+    kept_surface_evaluate(surface, in->leaf, in->width, in->height, &at);
+    rest.extent = vec_length(vec_sub(at.s, rest.vertex.s));
+    return rest;
+}
+
+/* The side of the square about the vertex that reaches as far as `away`, and three places to begin with in its outermost
+ * level. */
+static double rest_starts(const struct kept_surface *surface, const struct rectangle *in,
+                          const struct rest *rest, double away, double starts[3][2])
+{
+    double side = in->width, extent = rest->extent;
+    struct limit_point at;
     for (int level = 0; level < LIMIT_MAX_LEVELS && extent > 1.5 * away; level++) {
         side *= 0.5;
         kept_surface_evaluate(surface, in->leaf, side, side, &at);
-        extent = vec_length(vec_sub(at.s, vertex.s));
+        extent = vec_length(vec_sub(at.s, rest->vertex.s));
     }
-    const struct rectangle level = {in->leaf, 0, 0, fmin(2 * side, in->width),
-                                    fmin(2 * side, in->width)};
-    const double starts[3][2] = {{0.7, 0.7}, {0.8, 0.2}, {0.2, 0.8}};
+    const double shares[3][2] = {{0.7, 0.7}, {0.8, 0.2}, {0.2, 0.8}};
+    for (int k = 0; k < 3; k++) {
+        starts[k][0] = shares[k][0] * side;
+        starts[k][1] = shares[k][1] * side;
+    }
+    return side;
+}
+
+static void meet_rest(struct search *search, const struct rectangle *in)
+{
+    const struct kept_surface *surface = search->tree->surface;
+    struct rest rest = rest_of(surface, in);
+    struct vec d = vec_sub(search->p, rest.vertex.s);
+    double away = hypot(vec_dot(search->across[0], d), vec_dot(search->across[1], d)), starts[3][2];
+    if (away <= 1e-8 * rest.extent) {
+        take_met(search, in->leaf, 0, 0, &rest.vertex);
+        return;
+    }
+    double side = fmin(2 * rest_starts(surface, in, &rest, away, starts), in->width);
+    const struct rectangle level = {in->leaf, 0, 0, side, side};
     for (int k = 0; k < 3; k++)
-        meet(search, &level, starts[k][0] * side, starts[k][1] * side);
+        meet(search, &level, starts[k][0], starts[k][1]);
 }
 
 static void meet_pieces(struct search *search, size_t first, size_t end)
@@ -222,6 +246,7 @@ struct near_search {
     const struct closest_rules *rules; /* NULL: any side */
     struct vec p, n;
     struct closest best[AGREEMENTS]; /* distance: never negative */
+    double border;                   /* the least distance of a place where the surface ends */
 };
 
 static double distance_to_box(struct vec p, const struct tree_box *box)
@@ -247,6 +272,11 @@ static void take_near(struct near_search *search, size_t leaf, double x, double 
                       const struct limit_point *at)
 {
     double distance = vec_length(vec_sub(at->s, search->p));
+    if (!(distance < near_limit(search)))
+        return;
+    if (search->rules && distance < search->border &&
+        kept_surface_at_border(search->tree->surface, leaf, x, y))
+        search->border = distance;
     double cosine =
         search->rules && at->has_normal ? search->rules->winding * vec_dot(search->n, at->n) : 1;
     for (int k = cosine >= 0.5 ? AGREES : cosine >= 0 ? SAME_SIDE : ANY_SIDE; k < AGREEMENTS; k++)
@@ -260,11 +290,10 @@ static bool is_held(double x, double least, double most, double downhill)
     return (x <= least && downhill < 0) || (x >= most && downhill > 0);
 }
 
-/* Minimises the distance within a rectangle. */
-static void approach(struct near_search *search, const struct rectangle *in)
+/* Minimises the distance within a rectangle, from (x,y). */
+static void approach(struct near_search *search, const struct rectangle *in, double x, double y)
 {
     const struct kept_surface *surface = search->tree->surface;
-    double x = in->x + 0.5 * in->width, y = in->y + 0.5 * in->height;
     double x1 = in->x + in->width, y1 = in->y + in->height;
     struct limit_point at;
     for (int step = 0; step < MOST_NEAR_STEPS; step++) {
@@ -301,6 +330,20 @@ static void approach(struct near_search *search, const struct rectangle *in)
     take_near(search, in->leaf, x, y, &at);
 }
 
+static void approach_rest(struct near_search *search, const struct rectangle *in)
+{
+    const struct kept_surface *surface = search->tree->surface;
+    struct rest rest = rest_of(surface, in);
+    struct vec d = vec_sub(search->p, rest.vertex.s), n = rest.vertex.n;
+    double away = vec_length(vec_mad(d, -vec_dot(d, n), n)), starts[3][2];
+    take_near(search, in->leaf, 0, 0, &rest.vertex);
+    if (away <= 1e-8 * rest.extent)
+        return;
+    rest_starts(surface, in, &rest, away, starts);
+    for (int k = 0; k < 3; k++)
+        approach(search, in, starts[k][0], starts[k][1]);
+}
+
 static void approach_tree(struct near_search *search)
 {
     const struct surface_tree *tree = search->tree;
@@ -316,8 +359,12 @@ static void approach_tree(struct near_search *search)
             for (size_t i = tree_first(tree, at.depth, at.j); i < end; i++) {
                 const struct tree_piece *piece = &tree->pieces[i];
                 struct rectangle in = rectangle_of(piece);
-                if (distance_to_box(search->p, &piece->box) < near_limit(search))
-                    approach(search, &in);
+                if (!(distance_to_box(search->p, &piece->box) < near_limit(search)))
+                    continue;
+                if (piece->is_rest)
+                    approach_rest(search, &in);
+                else
+                    approach(search, &in, in.x + 0.5 * in.width, in.y + 0.5 * in.height);
             }
             continue;
         }
@@ -337,6 +384,7 @@ static void find_near(struct near_search *search)
 {
     for (int k = 0; k < AGREEMENTS; k++)
         search->best[k] = (struct closest){.kind = CLOSEST_NONE, .distance = DBL_MAX};
+    search->border = DBL_MAX;
     if (search->tree->n_pieces)
         approach_tree(search);
 }
@@ -360,7 +408,8 @@ static void find_on_side(const struct surface_tree *tree, const struct closest_r
         *out = *any;
     if (out->kind == CLOSEST_NONE)
         return;
-    if (kept_surface_at_border(tree->surface, out->leaf, out->x, out->y))
+    /* At a vertex of the border, a face that has only this vertex there may have been found. */
+    if (search.border <= out->distance + rules->tolerance)
         out->kind = CLOSEST_BORDER;
     if (vec_dot(n, vec_sub(out->at.s, p)) < 0)
         out->distance = -out->distance;

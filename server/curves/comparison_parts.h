@@ -1,0 +1,80 @@
+/* What the files of the comparison share. Private to them. */
+#ifndef SHEEN_CURVES_COMPARISON_PARTS_H
+#define SHEEN_CURVES_COMPARISON_PARTS_H
+
+#include "server/curves/align.h"
+#include "server/curves/closest.h"
+#include "server/curves/comparison.h"
+#include "server/curves/samples.h"
+
+/* The worst samples that are refined for each measure, one of each leaf; and how many of them a slice keeps. */
+enum { WORST = 32, WORST_OF_SLICE = 8 };
+
+/* A place of a leaf on one side, and the values there. NAN: not defined. */
+struct comparison_values {
+    struct limit_point from;
+    struct closest to;
+    bool is_covered, is_rewound, is_unlit;
+    double value[COMPARISON_MEASURES];
+};
+
+struct worst_sample {
+    double magnitude; /* -1: none */
+    double value;
+    size_t leaf;
+    double x, y, step; /* step: half the distance of samples */
+    struct closest_start to;
+};
+
+/* What one slice of samples adds up to. */
+struct sample_sums {
+    double area, uncovered, rewound, unlit, largest_uncovered;
+    struct comparison_place uncovered_at;
+    double weight[COMPARISON_MEASURES], square[COMPARISON_MEASURES], out[COMPARISON_MEASURES];
+    struct worst_sample worst[COMPARISON_MEASURES][WORST_OF_SLICE];
+};
+
+/* One side: its samples, which look at the other side. */
+struct comparison_part {
+    struct kept_surface surface;
+    struct surface_tree tree;
+    struct surface_samples samples;
+    float *weights;                     /* [samples] */
+    float *values[COMPARISON_MEASURES]; /* [samples]; NULL: not asked for */
+    size_t *slice_first;                /* [n_slices + 1]: first leaf of each slice of samples */
+    size_t n_slices;
+    struct sample_sums *sums; /* [n_slices] */
+    struct worst_sample worst[COMPARISON_MEASURES][WORST];
+};
+
+struct comparison {
+    struct computation base;
+    unsigned phase; /* that begin() has prepared */
+    struct comparison_setup setup;
+    struct comparison_part part[COMPARISON_SIDES];
+    struct closest_rules rules;
+    struct alignment alignment;
+    struct comparison_result result;
+};
+
+/* The values at local (x,y) of a leaf of a side (comparison_values.c). */
+void comparison_measure_at(const struct comparison *comparison, enum comparison_side side,
+                           size_t leaf, double x, double y, const struct closest_start *start,
+                           struct comparison_values *out);
+/* The place of a side's own point, and of its counterpart. */
+struct comparison_place comparison_place_of(const struct kept_surface *surface, size_t leaf,
+                                            double x, double y, struct vec position);
+
+/* Samples of one slice (comparison_samples.c). */
+void comparison_sample(struct comparison *comparison, enum comparison_side side, size_t slice);
+/* Lists the worst samples of a side, when all its slices have run. */
+void comparison_choose_worst(struct comparison *comparison, enum comparison_side side);
+/* Moves a sample to a local maximum of its measure (comparison_refine.c). */
+void comparison_refine(struct comparison *comparison, enum comparison_side side,
+                       enum comparison_measure measure, size_t i);
+/* Computes the figures of a measure of a side from its samples (comparison_figures.c). */
+void comparison_compute_figures(struct comparison *comparison, enum comparison_side side,
+                                enum comparison_measure measure);
+void comparison_sum_side(struct comparison *comparison, enum comparison_side side);
+
+#endif

@@ -1,0 +1,63 @@
+/* Moves the worst samples to local maxima of their measure, by compass search: steps in eight directions, halved where
+ * none leads upwards. It needs no derivatives, and measures have kinks. */
+#include <math.h>
+
+#include "server/curves/comparison_parts.h"
+
+/* Each halving adds a binary digit; a measure that is smooth at its maximum gets two. */
+enum { HALVINGS = 14, MOST_TRIES = 400 };
+
+/* How far from the border of a leaf a measure of normals stays: beside a crease that lies elsewhere by less than the
+ * limit of the distance, the counterpart of a place is on the crease's other side. */
+static void set_range(const struct comparison *comparison, enum comparison_side side,
+                      enum comparison_measure measure, const struct worst_sample *worst,
+                      double margin[2])
+{
+    margin[0] = margin[1] = 0;
+    if (measure == COMPARISON_DISTANCE)
+        return;
+    struct limit_point at;
+    kept_surface_evaluate(&comparison->part[side].surface, worst->leaf, worst->x, worst->y, &at);
+    double away = 2 * comparison->setup.limit[COMPARISON_DISTANCE];
+    const struct vec *by[2] = {&at.su, &at.sv};
+    for (int k = 0; k < 2; k++)
+        margin[k] = fmin(away / vec_length(*by[k]), 0.4);
+}
+
+void comparison_refine(struct comparison *comparison, enum comparison_side side,
+                       enum comparison_measure measure, size_t i)
+{
+    struct worst_sample *worst = &comparison->part[side].worst[measure][i];
+    if (!(worst->magnitude > 0))
+        return;
+    double margin[2], step = worst->step;
+    set_range(comparison, side, measure, worst, margin);
+    for (int halved = 0, tries = 0; halved < HALVINGS && tries < MOST_TRIES;) {
+        struct worst_sample best = *worst;
+        for (int way = 0; way < 9; way++) {
+            double x = worst->x + (way % 3 - 1) * step, y = worst->y + (way / 3 - 1) * step;
+            x = fmin(fmax(x, margin[0]), 1 - margin[0]);
+            y = fmin(fmax(y, margin[1]), 1 - margin[1]);
+            if (way == 4 || (x == worst->x && y == worst->y) || comparison->base.cancelled)
+                continue;
+            struct comparison_values at;
+            comparison_measure_at(comparison, side, worst->leaf, x, y, &worst->to, &at);
+            tries++;
+            double magnitude = fabs(at.value[measure]);
+            if (magnitude > best.magnitude)
+                best = (struct worst_sample){magnitude,
+                                             at.value[measure],
+                                             worst->leaf,
+                                             x,
+                                             y,
+                                             step,
+                                             {at.to.leaf, at.to.x, at.to.y}};
+        }
+        if (best.magnitude > worst->magnitude) {
+            *worst = best;
+        } else {
+            step *= 0.5;
+            halved++;
+        }
+    }
+}

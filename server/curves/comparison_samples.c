@@ -1,0 +1,136 @@
+/* Samples of the comparison, slice by slice, and the choice of the worst ones. */
+#include <math.h>
+#include <string.h>
+
+#include "server/curves/comparison_parts.h"
+
+/* Enters a sample in a list that is sorted by magnitude, worst first. */
+static void enter_worst(struct worst_sample *list, size_t room, const struct worst_sample *sample)
+{
+    size_t i = room;
+    if (!(sample->magnitude > list[room - 1].magnitude))
+        return;
+    while (i > 0 && sample->magnitude > list[i - 1].magnitude)
+        i--;
+    memmove(list + i + 1, list + i, (room - 1 - i) * sizeof *list);
+    list[i] = *sample;
+}
+
+struct leaf_samples {
+    struct comparison *comparison;
+    enum comparison_side side;
+    size_t leaf, index; /* of the next sample */
+    struct sample_sums *sums;
+    struct worst_sample worst[COMPARISON_MEASURES]; /* of this leaf */
+    struct closest_start last;                      /* counterpart of the sample before */
+};
+
+static void add_measures(struct leaf_samples *to, const struct comparison_values *at, double weight,
+                         double x, double y, double step)
+{
+    const struct comparison_part *part = &to->comparison->part[to->side];
+    for (int k = 0; k < COMPARISON_MEASURES; k++) {
+        double value = at->value[k], magnitude = fabs(value);
+        if (!part->values[k])
+            continue;
+        part->values[k][to->index] = (float)magnitude;
+        if (!isfinite(value))
+            continue;
+        to->sums->weight[k] += weight;
+        to->sums->square[k] += weight * value * value;
+        if (magnitude > to->comparison->setup.limit[k])
+            to->sums->out[k] += weight;
+        if (magnitude > to->worst[k].magnitude)
+            to->worst[k] = (struct worst_sample){
+                magnitude, value, to->leaf, x, y, step, {at->to.leaf, at->to.x, at->to.y}};
+    }
+}
+
+static void add_sample(struct leaf_samples *to, double x, double y, double step, double area)
+{
+    struct comparison *comparison = to->comparison;
+    const struct comparison_part *part = &comparison->part[to->side],
+                                 *other = &comparison->part[!to->side];
+    struct comparison_values at;
+    /* Revisions mostly keep their numbers: the search begins at the same place, until that was wrong. */
+    struct closest_start start = {to->leaf, x, y};
+    if (part->surface.n_leaves != other->surface.n_leaves ||
+        (to->last.leaf != SIZE_MAX && to->last.leaf != to->leaf))
+        start = to->last;
+    comparison_measure_at(comparison, to->side, to->leaf, x, y, &start, &at);
+    double weight = area > 0 ? area : vec_length(vec_cross(at.from.su, at.from.sv)) * -area;
+    if (!isfinite(weight))
+        weight = 0;
+    part->weights[to->index] = (float)weight;
+    to->sums->area += weight;
+    if (at.is_covered) {
+        to->last = (struct closest_start){at.to.leaf, at.to.x, at.to.y};
+        to->sums->rewound += at.is_rewound ? weight : 0;
+        to->sums->unlit += at.is_unlit ? weight : 0;
+    } else {
+        to->sums->uncovered += weight;
+        if (weight > to->sums->largest_uncovered) {
+            to->sums->largest_uncovered = weight;
+            to->sums->uncovered_at = comparison_place_of(&part->surface, to->leaf, x, y, at.from.s);
+        }
+    }
+    add_measures(to, &at, weight, x, y, step);
+    to->index++;
+}
+
+static void sample_leaf(struct leaf_samples *to)
+{
+    const struct comparison_part *part = &to->comparison->part[to->side];
+    struct kept_part parts[KEPT_PARTS];
+    unsigned n = kept_surface_parts(&part->surface, to->leaf, parts), nx, ny;
+    for (int k = 0; k < COMPARISON_MEASURES; k++)
+        to->worst[k].magnitude = -1;
+    if (part->surface.n_leaves == to->comparison->part[!to->side].surface.n_leaves)
+        to->last.leaf = SIZE_MAX;
+    double area_before = to->sums->area, last_level = 0;
+    for (unsigned k = 0; k < n; k++) {
+        surface_samples_grid(&part->samples, to->leaf, &parts[k], &nx, &ny);
+        double dx = parts[k].width / nx, dy = parts[k].height / ny;
+        if (k + 4 == n) /* the three patches before the rest */
+            area_before = to->sums->area;
+        last_level = to->sums->area - area_before;
+        if (parts[k].is_rest) { /* each level is three times what lies inside of it */
+            add_sample(to, 0, 0, 0.5 * parts[k].width, fmax(last_level / 3, 1e-300));
+            continue;
+        }
+        for (unsigned i = 0; i < nx * ny; i++)
+            add_sample(to, parts[k].x + (i % nx + 0.5) * dx, parts[k].y + (i / nx + 0.5) * dy,
+                       0.5 * fmax(dx, dy), -dx * dy);
+    }
+    for (int k = 0; k < COMPARISON_MEASURES; k++)
+        enter_worst(to->sums->worst[k], WORST_OF_SLICE, &to->worst[k]);
+}
+
+void comparison_sample(struct comparison *comparison, enum comparison_side side, size_t slice)
+{
+    struct comparison_part *part = &comparison->part[side];
+    struct leaf_samples to = {.comparison = comparison, .side = side, .sums = &part->sums[slice]};
+    *to.sums = (struct sample_sums){0};
+    for (int k = 0; k < COMPARISON_MEASURES; k++)
+        for (int i = 0; i < WORST_OF_SLICE; i++)
+            to.sums->worst[k][i].magnitude = -1;
+    to.last.leaf = SIZE_MAX;
+    to.index = part->samples.first[part->slice_first[slice]];
+    for (to.leaf = part->slice_first[slice]; to.leaf < part->slice_first[slice + 1]; to.leaf++) {
+        if (comparison->base.cancelled)
+            return;
+        sample_leaf(&to);
+    }
+}
+
+void comparison_choose_worst(struct comparison *comparison, enum comparison_side side)
+{
+    struct comparison_part *part = &comparison->part[side];
+    for (int k = 0; k < COMPARISON_MEASURES; k++) {
+        for (int i = 0; i < WORST; i++)
+            part->worst[k][i].magnitude = -1;
+        for (size_t slice = 0; slice < part->n_slices; slice++)
+            for (int i = 0; i < WORST_OF_SLICE; i++)
+                enter_worst(part->worst[k], WORST, &part->sums[slice].worst[k][i]);
+    }
+}
