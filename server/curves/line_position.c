@@ -212,6 +212,29 @@ double line_shift(const struct line_map *map, const struct line_position *from,
     return (is_flat ? hypot(x, y) : fabs(cos(turn) * x + sin(turn) * y)) / spacing_of(map);
 }
 
+int line_axes(const struct line_map *map)
+{
+    return map->pattern.kind == PATTERN_LATTICE ? 2 : 1;
+}
+
+double line_change(const struct line_map *map, int axis, const struct line_position *from,
+                   const struct line_position *to)
+{
+    const struct pattern *pattern = &map->pattern;
+    double x = difference(from->s, to->s, map->s_wraps) * map->width;
+    double y = difference(from->t, to->t, map->t_wraps) * map->height;
+    double turn = pattern->rotation_deg * (M_PI / 180), change;
+    if (pattern->kind == PATTERN_DISTANCE) {
+        change = to->tau - from->tau;
+    } else if (pattern->kind == PATTERN_CIRCLES) {
+        double at_x = (from->s - 0.5) * map->width, at_y = (from->t - 0.5) * map->height;
+        change = hypot(at_x + x, at_y + y) - hypot(at_x, at_y);
+    } else {
+        change = axis == 0 ? cos(turn) * x + sin(turn) * y : cos(turn) * y - sin(turn) * x;
+    }
+    return change / spacing_of(map);
+}
+
 /* 1 / the distance of x from the line eye or from the light's centre, whichever is nearer; 0 if both are at
  * infinity. */
 static double nearness(const struct line_map *map, struct vec x)
@@ -222,25 +245,33 @@ static double nearness(const struct line_map *map, struct vec x)
     return fmin(fmax(eye, centre), 1e100);
 }
 
+double line_step(const struct line_map *map, struct vec x, struct vec n, struct vec along,
+                 struct vec turn, struct line_position ends[2])
+{
+    /* A step over which neither x nor n changes much; errors are of second order in it. */
+    double change = fmax(vec_length(turn), nearness(map, x)), step = 1e-4 / change;
+    if (!(change > 0))
+        return 0;
+    for (int k = 0; k < 2; k++) {
+        double way = k ? step : -step;
+        ends[k] = line_position_at(map, vec_mad(x, way, along), vec_unit(vec_mad(n, way, turn)));
+    }
+    return 2 * step;
+}
+
 double line_density(const struct line_map *map, struct vec x, struct vec n,
                     const struct vec along[2], const struct vec turn[2])
 {
     double density[2];
     for (int i = 0; i < 2; i++) {
-        /* A step over which neither x nor n changes much; errors are of second order in it. */
-        double change = fmax(vec_length(turn[i]), nearness(map, x)), step = 1e-4 / change;
-        density[i] = 0;
-        if (!(change > 0))
-            continue; /* the ray is the same everywhere */
         struct line_position ends[2];
-        for (int k = 0; k < 2; k++) {
-            double way = k ? step : -step;
-            ends[k] = line_position_at(map, vec_mad(x, way, along[i]),
-                                       vec_unit(vec_mad(n, way, turn[i])));
-        }
+        double length = line_step(map, x, n, along[i], turn[i], ends);
+        density[i] = 0;
+        if (length == 0)
+            continue; /* the ray is the same everywhere */
         if (!ends[0].known || !ends[1].known)
             return 0;
-        density[i] = line_shift(map, &ends[0], &ends[1]) / (2 * step);
+        density[i] = line_shift(map, &ends[0], &ends[1]) / length;
     }
     return hypot(density[0], density[1]);
 }

@@ -51,6 +51,17 @@ struct line_position line_position_at(const struct line_map *map, struct vec x, 
 double line_shift(const struct line_map *map, const struct line_position *from,
                   const struct line_position *to);
 
+/* The same along one of the pattern's axes, and signed: the change of the number of spacings that the lines across
+ * this axis count. Axis 1 exists for lattices alone. */
+int line_axes(const struct line_map *map);
+double line_change(const struct line_map *map, int axis, const struct line_position *from,
+                   const struct line_position *to);
+
+/* The places of two points a little before and behind x along the unit tangent `along`, where the normal changes by
+ * `turn` for each unit of length. Returns their distance; 0 if no place changes. */
+double line_step(const struct line_map *map, struct vec x, struct vec n, struct vec along,
+                 struct vec turn, struct line_position ends[2]);
+
 /* By how many spacings line_shift() grows for each unit of length on the surface about x, in the direction in which
  * it grows fastest: 1 / this is the distance of two lines on the surface. `turn` has the change of the normal along
  * two perpendicular unit tangents, `along`. 0 where the place is not known. */

@@ -1,0 +1,472 @@
+#include "server/curves/breaks_measure.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "server/surface/evaluate.h"
+
+/* Nearer to its ends than this part of an edge no curvature is measured: around an extraordinary vertex it need not
+ * have a bound. */
+static const double LEAST_AT = 1.0 / 256;
+/* Curvatures below this part of 1 / the edge's length count as flat: the jump from one flat side to another is no
+ * percentage. Rounding of the stored points causes 1e-6. */
+static const double FLAT = 1e-3;
+/* The ring on which the curvature around a vertex is measured, in parts of a face. */
+static const double RING = 1.0 / 64;
+
+enum { N_GAUSS = 8, N_PLACES = N_GAUSS + 2, GOLDEN_STEPS = 18, RING_PLACES = 9 };
+/* Places and weights of Gauss and Legendre on [-1, 1]; the other half by symmetry. */
+static const double GAUSS_AT[N_GAUSS / 2] = {0.1834346424956498, 0.5255324099163290,
+                                             0.7966664774136267, 0.9602898564975363};
+static const double GAUSS_WEIGHT[N_GAUSS / 2] = {0.3626837833783620, 0.3137066458778873,
+                                                 0.2223810344533745, 0.1012285362903763};
+
+/* Gauss place i of N_GAUSS on [0, 1], in ascending order. */
+static double gauss_at(int i)
+{
+    return i < N_GAUSS / 2 ? 0.5 - 0.5 * GAUSS_AT[N_GAUSS / 2 - 1 - i]
+                           : 0.5 + 0.5 * GAUSS_AT[i - N_GAUSS / 2];
+}
+
+static double gauss_weight(int i)
+{
+    return 0.5 * GAUSS_WEIGHT[i < N_GAUSS / 2 ? N_GAUSS / 2 - 1 - i : i - N_GAUSS / 2];
+}
+
+/* --- one side of an edge at one place */
+
+struct side {
+    struct vec x, n;
+    struct vec along[2]; /* unit tangents: along the edge, and across it */
+    struct vec turn[2];  /* change of the normal along them */
+    double across;       /* curvature across the edge */
+    double speed;        /* length of the derivative along the edge */
+    bool has_curvature;
+};
+
+/* a and b with a su + b sv = `tangent`, which lies in the tangent plane. */
+static void solve(const struct limit_point *point, struct vec tangent, double out[2])
+{
+    double e = vec_dot(point->su, point->su), f = vec_dot(point->su, point->sv),
+           g = vec_dot(point->sv, point->sv), det = e * g - f * f;
+    double p = vec_dot(tangent, point->su), q = vec_dot(tangent, point->sv);
+    out[0] = (g * p - f * q) / det;
+    out[1] = (e * q - f * p) / det;
+}
+
+/* Fills in a side at `at` of an edge, `inside` parts of the face away from it. The first tangent points to the next
+ * corner. False where there is no normal. */
+static bool side_at(const struct limit_tables *tables, uint32_t face, unsigned edge, double at,
+                    double inside, struct side *side)
+{
+    const struct limit_place place = {.node = face, .corner = edge, .a = at, .b = inside};
+    struct limit_point point;
+    if (!limit_evaluate_at(tables, &place, &point) || !point.has_normal)
+        return false;
+    *side = (struct side){.x = point.s, .n = point.n, .speed = vec_length(point.su)};
+    side->along[0] = vec_unit(point.su);
+    side->along[1] = vec_cross(point.n, side->along[0]);
+    double area = vec_length(vec_cross(point.su, point.sv));
+    side->has_curvature = area > 1e-9 * side->speed * vec_length(point.sv);
+    for (int i = 0; i < 2 && side->has_curvature; i++) {
+        double w[2];
+        solve(&point, side->along[i], w);
+        /* The part of the second form along each derivative; the normal turns against it. */
+        double to_u = w[0] * point.luu + w[1] * point.luv,
+               to_v = w[0] * point.luv + w[1] * point.lvv;
+        double on[2], k[2];
+        for (int j = 0; j < 2; j++) {
+            solve(&point, side->along[j], on);
+            k[j] = on[0] * to_u + on[1] * to_v;
+        }
+        side->turn[i] =
+            vec_scale(vec_mad(vec_scale(side->along[0], k[0]), k[1], side->along[1]), -1);
+        if (i == 1)
+            side->across = k[1];
+    }
+    return true;
+}
+
+/* Turns a side over: its face is wound against the other one. */
+static void flip(struct side *side)
+{
+    side->n = vec_scale(side->n, -1);
+    side->across = -side->across;
+    for (int i = 0; i < 2; i++)
+        side->turn[i] = vec_scale(side->turn[i], -1);
+}
+
+static double angle_between(struct vec a, struct vec b)
+{
+    return atan2(vec_length(vec_cross(a, b)), vec_dot(a, b)) * (180 / M_PI);
+}
+
+/* --- both sides */
+
+struct both {
+    double value[BREAK_MEASURES]; /* NaN: none */
+    uint8_t kink_light, jump_light;
+    double shift;
+    struct vec x;
+    double speed;
+};
+
+/* The direction of a light's lines on one side: along the surface, across the gradient. Zero where it is not known or
+ * where lines have no direction. */
+static struct vec line_tangent(const struct line_map *light, int axis, const struct side *side)
+{
+    struct vec gradient = {0, 0, 0};
+    for (int i = 0; i < 2; i++) {
+        struct line_position ends[2];
+        double length = line_step(light, side->x, side->n, side->along[i], side->turn[i], ends);
+        if (length == 0)
+            continue;
+        if (!ends[0].known || !ends[1].known)
+            return (struct vec){0, 0, 0};
+        double slope = line_change(light, axis, &ends[0], &ends[1]) / length;
+        gradient = vec_mad(gradient, slope, side->along[i]);
+    }
+    return vec_cross(side->n, gradient);
+}
+
+/* Measures kink and jump of one light. */
+static void measure_light(const struct break_setup *setup, uint8_t index,
+                          const struct side sides[2], struct both *both)
+{
+    const struct line_map *light = &setup->lights[index];
+    struct line_position at[2];
+    for (int i = 0; i < 2; i++) {
+        at[i] = line_position_at(light, sides[i].x, sides[i].n);
+        if (!at[i].known)
+            return;
+    }
+    double jump = line_shift(light, &at[0], &at[1]);
+    if (!(both->value[BREAK_JUMP] >= jump)) {
+        both->value[BREAK_JUMP] = jump;
+        both->jump_light = index;
+        double density = sides[0].has_curvature ? line_density(light, sides[0].x, sides[0].n,
+                                                               sides[0].along, sides[0].turn)
+                                                : 0;
+        both->shift = density > 0 ? jump / density : NAN;
+    }
+    for (int axis = 0; axis < line_axes(light); axis++) {
+        struct vec tangent[2];
+        for (int i = 0; i < 2; i++)
+            tangent[i] = sides[i].has_curvature ? line_tangent(light, axis, &sides[i])
+                                                : (struct vec){0, 0, 0};
+        if (vec_length(tangent[0]) == 0 || vec_length(tangent[1]) == 0)
+            continue;
+        double kink = angle_between(tangent[0], tangent[1]);
+        if (!(both->value[BREAK_KINK] >= kink)) {
+            both->value[BREAK_KINK] = kink;
+            both->kink_light = index;
+        }
+    }
+}
+
+/* The distance of both curves: from the first side's point to the nearest one of the second side's curve. */
+static double gap_at(const struct break_setup *setup, const struct surface_edge *edge, double at,
+                     struct vec x, struct side *second)
+{
+    double there = edge->from + edge->by * at;
+    struct side best = *second;
+    for (int step = 0; step < 8; step++) {
+        struct vec between = vec_sub(x, best.x);
+        double move = vec_dot(between, best.along[0]) / best.speed;
+        double next = fmin(fmax(there + move, 0), 1);
+        if (!(best.speed > 0) || next == there ||
+            !side_at(setup->tables, edge->face[1], edge->edge[1], next, 0, &best))
+            break;
+        if (vec_length(vec_sub(x, best.x)) > vec_length(vec_sub(x, second->x)))
+            break; /* the curve bends away: the first point was nearer */
+        there = next;
+        *second = best;
+    }
+    return vec_length(vec_sub(x, second->x));
+}
+
+static void measure_curvature(const struct side sides[2], double length, struct both *both)
+{
+    double a = sides[0].across, b = sides[1].across;
+    if (!sides[0].has_curvature || !sides[1].has_curvature)
+        return;
+    both->value[BREAK_CURVATURE] = fabs(a - b);
+    both->value[BREAK_PERCENT] = 200 * fabs(a - b) / fmax(fabs(a) + fabs(b), FLAT / length);
+}
+
+/* Both sides of an edge of smooth surface: of a semi-sharp crease. The surface has no break there; so the normals are
+ * those on both sides of the crease's rounding, and curvature is compared between the crease and there. */
+static bool measure_rounding(const struct break_setup *setup, const struct surface_edge *edge,
+                             double at, double length, struct both *both)
+{
+    const double width = ldexp(1, -edge->levels);
+    struct side middle, beside[2];
+    for (int i = 0; i < 2; i++)
+        if (!side_at(setup->tables, edge->face[i], edge->edge[i],
+                     i ? edge->from + edge->by * at : at, i ? width * fabs(edge->by) : width,
+                     &beside[i]))
+            return false;
+    if (!side_at(setup->tables, edge->face[0], edge->edge[0], at, 0, &middle))
+        return false;
+    both->x = middle.x;
+    both->speed = middle.speed;
+    both->value[BREAK_ANGLE] = angle_between(beside[0].n, beside[1].n);
+    struct side pair[2] = {middle, beside[0]};
+    if (fabs(beside[1].across - middle.across) > fabs(beside[0].across - middle.across))
+        pair[1] = beside[1];
+    if (at >= LEAST_AT && at <= 1 - LEAST_AT)
+        measure_curvature(pair, length, both);
+    return true;
+}
+
+static bool measure_at(const struct break_setup *setup, const struct surface_edge *edge, double at,
+                       double length, struct both *both)
+{
+    *both = (struct both){.shift = NAN};
+    for (int i = 0; i < BREAK_MEASURES; i++)
+        both->value[i] = NAN;
+    if (edge->levels != LIMIT_BORDER_SHARP)
+        return measure_rounding(setup, edge, at, length, both);
+    struct side sides[2];
+    for (int i = 0; i < 2; i++)
+        if (!side_at(setup->tables, edge->face[i], edge->edge[i],
+                     i ? edge->from + edge->by * at : at, 0, &sides[i]))
+            return false;
+    both->x = sides[0].x;
+    both->speed = sides[0].speed;
+    both->value[BREAK_GAP] = gap_at(setup, edge, at, sides[0].x, &sides[1]);
+    if (edge->is_flipped)
+        flip(&sides[1]);
+    both->value[BREAK_ANGLE] = angle_between(sides[0].n, sides[1].n);
+    if (at < LEAST_AT || at > 1 - LEAST_AT)
+        return true;
+    measure_curvature(sides, length, both);
+    for (uint32_t i = 0; i < setup->n_lights; i++)
+        measure_light(setup, (uint8_t)i, sides, both);
+    return true;
+}
+
+/* --- the worst place */
+
+static void keep_worst(struct break_edge *out, int measure, double at, const struct both *both)
+{
+    struct break_worst *worst = &out->worst[measure];
+    double value = both->value[measure];
+    if (isnan(value) || worst->value >= value)
+        return;
+    *worst = (struct break_worst){value, at, {both->x.x, both->x.y, both->x.z}};
+    if (measure == BREAK_KINK)
+        out->kink_light = both->kink_light;
+    if (measure == BREAK_JUMP) {
+        out->jump_light = both->jump_light;
+        out->shift = both->shift;
+    }
+}
+
+/* The value of a measure at a place, which is kept if it is the worst one. Below 0: none. */
+static double probe(const struct break_setup *setup, const struct surface_edge *edge, int measure,
+                    double at, struct break_edge *out)
+{
+    struct both both;
+    if (!measure_at(setup, edge, at, out->length, &both) || isnan(both.value[measure]))
+        return -1;
+    keep_worst(out, measure, at, &both);
+    return both.value[measure];
+}
+
+/* Looks for the largest value of a measure between two places by golden section search, to 1e-4 of their distance. */
+static void refine(const struct break_setup *setup, const struct surface_edge *edge, int measure,
+                   double low, double high, struct break_edge *out)
+{
+    const double part = 0.6180339887498949;
+    double left = high - part * (high - low), right = low + part * (high - low);
+    double at_left = probe(setup, edge, measure, left, out);
+    double at_right = probe(setup, edge, measure, right, out);
+    for (int step = 0; step < GOLDEN_STEPS; step++) {
+        if (at_left >= at_right) {
+            high = right;
+            right = left;
+            at_right = at_left;
+            left = high - part * (high - low);
+            at_left = probe(setup, edge, measure, left, out);
+        } else {
+            low = left;
+            left = right;
+            at_left = at_right;
+            right = low + part * (high - low);
+            at_right = probe(setup, edge, measure, right, out);
+        }
+    }
+}
+
+/* How many times over their limits the measures are that have one. */
+static double severity_of(const struct break_limits *limits, double gap, double angle_deg,
+                          double percent)
+{
+    double severity = 0; /* NaN counts as nothing */
+    severity = fmax(severity, gap / limits->gap);
+    severity = fmax(severity, angle_deg / limits->angle_deg);
+    return fmax(severity, percent / limits->curvature_percent);
+}
+
+double breaks_severity(const struct break_setup *setup, const struct break_edge *edge)
+{
+    return edge->kind == BREAK_SEMISHARP
+               ? 0 /* the surface is smooth there */
+               : severity_of(&setup->limits, edge->worst[BREAK_GAP].value,
+                             edge->worst[BREAK_ANGLE].value, edge->worst[BREAK_PERCENT].value);
+}
+
+/* The length of the curve of a face's edge. */
+static double length_of(const struct limit_tables *tables, uint32_t face, unsigned edge)
+{
+    double length = 0;
+    for (int i = 0; i < N_GAUSS; i++) {
+        const struct limit_place place = {.node = face, .corner = edge, .a = gauss_at(i)};
+        struct limit_point point;
+        if (limit_evaluate_at(tables, &place, &point))
+            length += gauss_weight(i) * vec_length(point.su);
+    }
+    return length;
+}
+
+/* The part of [0, 1] where a quantity is above 1 that is linear from a to b. */
+static double part_above_1(double a, double b)
+{
+    if (a <= 1 && b <= 1)
+        return 0;
+    return a > 1 && b > 1 ? 1 : (fmax(a, b) - 1) / fabs(a - b);
+}
+
+/* The two ends and the Gauss places between them. */
+static double place_at(int i)
+{
+    return i == 0 ? 0 : i == N_PLACES - 1 ? 1 : gauss_at(i - 1);
+}
+
+/* Samples an edge: the worst of these places for each measure (`at_worst`), and the length that is out of
+ * tolerance. False if no place can be measured. */
+static bool sample(const struct break_setup *setup, const struct surface_edge *edge,
+                   struct break_edge *out, int at_worst[BREAK_MEASURES])
+{
+    struct both before = {.speed = 0}, both;
+    double severity_before = -1;
+    bool any = false;
+    for (int i = 0; i < N_PLACES; i++) {
+        double severity = -1;
+        if (measure_at(setup, edge, place_at(i), out->length, &both)) {
+            any = true;
+            severity = severity_of(&setup->limits, both.value[BREAK_GAP], both.value[BREAK_ANGLE],
+                                   both.value[BREAK_PERCENT]);
+            for (int m = 0; m < BREAK_MEASURES; m++) {
+                double last = out->worst[m].value;
+                keep_worst(out, m, place_at(i), &both);
+                at_worst[m] = !(out->worst[m].value <= last) ? i : at_worst[m];
+            }
+        }
+        if (severity >= 0 && severity_before >= 0) {
+            double length = (place_at(i) - place_at(i - 1)) * 0.5 * (before.speed + both.speed);
+            out->out_length += length * part_above_1(severity_before, severity);
+        }
+        severity_before = severity;
+        before = both;
+    }
+    return any;
+}
+
+bool breaks_measure_edge(const struct break_setup *setup, const struct surface_edge *edge,
+                         uint8_t kind, struct break_edge *out)
+{
+    int at_worst[BREAK_MEASURES] = {0};
+    *out = (struct break_edge){.face = {edge->face[0], edge->face[1]},
+                               .edge = {edge->edge[0], edge->edge[1]},
+                               .kind = kind,
+                               .has_dart = edge->has_dart,
+                               .shift = NAN};
+    for (int m = 0; m < BREAK_MEASURES; m++)
+        out->worst[m] = (struct break_worst){NAN, NAN, {NAN, NAN, NAN}};
+    out->length = length_of(setup->tables, edge->face[0], edge->edge[0]);
+    if (!(out->length > 0) || !sample(setup, edge, out, at_worst))
+        return false;
+    for (int m = 0; m < BREAK_MEASURES; m++)
+        if (out->worst[m].value > 0)
+            refine(setup, edge, m, place_at(at_worst[m] > 0 ? at_worst[m] - 1 : 0),
+                   place_at(at_worst[m] < N_PLACES - 1 ? at_worst[m] + 1 : N_PLACES - 1), out);
+    if (kind == BREAK_SEMISHARP) {
+        out->out_length = 0;
+        return true;
+    }
+    out->out_length = fmin(out->out_length, out->length);
+    out->over = (uint8_t)((out->worst[BREAK_GAP].value > setup->limits.gap) << BREAK_GAP |
+                          (out->worst[BREAK_ANGLE].value > setup->limits.angle_deg) << BREAK_ANGLE |
+                          (out->worst[BREAK_PERCENT].value > setup->limits.curvature_percent)
+                              << BREAK_PERCENT);
+    return true;
+}
+
+double breaks_measure_border(const struct limit_tables *tables, const struct surface_border *border,
+                             struct vec points[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const struct limit_place place = {
+            .node = border->face, .corner = border->edge, .a = 0.5 * i};
+        struct limit_point point = {.s = {NAN, NAN, NAN}};
+        limit_evaluate_at(tables, &place, &point);
+        points[i] = point.s;
+    }
+    return length_of(tables, border->face, border->edge);
+}
+
+/* --- vertices */
+
+/* The principal curvatures of a point. False where its derivatives vanish. */
+static bool curvatures_of(const struct limit_point *point, double k[2])
+{
+    double e = vec_dot(point->su, point->su), f = vec_dot(point->su, point->sv),
+           g = vec_dot(point->sv, point->sv), det = e * g - f * f;
+    if (!point->has_normal || !(det > 1e-18 * e * g))
+        return false;
+    double mean = 0.5 * (e * point->lvv - 2 * f * point->luv + g * point->luu) / det;
+    double gauss = (point->luu * point->lvv - point->luv * point->luv) / det;
+    double half = sqrt(fmax(mean * mean - gauss, 0));
+    k[0] = mean - half;
+    k[1] = mean + half;
+    return isfinite(k[0]) && isfinite(k[1]);
+}
+
+bool breaks_measure_sector(const struct limit_tables *tables, const struct surface_sector *sector,
+                           struct break_vertex *out)
+{
+    struct limit_point vertex, point;
+    uint32_t face = sector->face;
+    unsigned corner = sector->corner;
+    const struct limit_place at = {.node = face, .corner = corner};
+    double n = 0;
+    if (!limit_evaluate_at(tables, &at, &vertex))
+        return false;
+    *out = (struct break_vertex){.face = face,
+                                 .corner = sector->corner,
+                                 .is_inside = sector->is_closed,
+                                 .n_faces = sector->n_faces < UINT16_MAX ? (uint16_t)sector->n_faces
+                                                                         : UINT16_MAX,
+                                 .k_least = INFINITY,
+                                 .k_greatest = -INFINITY,
+                                 .point = {vertex.s.x, vertex.s.y, vertex.s.z}};
+    for (uint32_t i = 0; i < sector->n_faces; i++) {
+        for (int step = 0; step < RING_PLACES; step++) {
+            double angle = 0.5 * M_PI * step / (RING_PLACES - 1), k[2];
+            const struct limit_place place = {face, corner, RING * fabs(cos(angle)),
+                                              RING * fabs(sin(angle))};
+            if (!limit_evaluate_at(tables, &place, &point) || !curvatures_of(&point, k))
+                continue;
+            out->k_least = fmin(out->k_least, k[0]);
+            out->k_greatest = fmax(out->k_greatest, k[1]);
+            out->radius += vec_length(vec_sub(point.s, vertex.s));
+            n++;
+        }
+        if (!surface_next_around(tables, &face, &corner))
+            break;
+    }
+    out->radius /= fmax(n, 1);
+    return n > 0;
+}
