@@ -2,12 +2,10 @@
 
 #include "protocol/limits.h"
 
-#define N_TYPES (MESSAGE_CANCEL + 1)
-
 static const struct {
     const char *name;
     uint32_t max_length;
-} TYPES[N_TYPES] = {
+} TYPES[MESSAGE_TYPES] = {
     [MESSAGE_HELLO] = {"HELLO", PROTOCOL_MAX_SMALL_BODY_BYTES},
     [MESSAGE_HELLO_OK] = {"HELLO_OK", PROTOCOL_MAX_SMALL_BODY_BYTES},
     [MESSAGE_UPLOAD_BEGIN] = {"UPLOAD_BEGIN", PROTOCOL_MAX_SMALL_BODY_BYTES},
@@ -24,6 +22,8 @@ static const struct {
     [MESSAGE_ERROR] = {"ERROR", PROTOCOL_MAX_SMALL_BODY_BYTES},
     [MESSAGE_SUPERSEDED] = {"SUPERSEDED", PROTOCOL_MAX_SMALL_BODY_BYTES},
     [MESSAGE_CANCEL] = {"CANCEL", 0},
+    [MESSAGE_FIND_BREAKS] = {"FIND_BREAKS", PROTOCOL_MAX_LARGE_BODY_BYTES},
+    [MESSAGE_BREAKS] = {"BREAKS", PROTOCOL_MAX_LARGE_BODY_BYTES},
 };
 
 static const uint8_t MAGIC[4] = {'S', 'H', 'E', 'N'};
@@ -68,7 +68,7 @@ enum header_error message_header_decode(struct message_header *header,
     };
     if (header->major != PROTOCOL_MAJOR)
         return HEADER_BAD_MAJOR;
-    if (header->type >= N_TYPES || !TYPES[header->type].name)
+    if (header->type >= MESSAGE_TYPES || !TYPES[header->type].name)
         return HEADER_BAD_TYPE;
     if (header->length > TYPES[header->type].max_length)
         return HEADER_TOO_LONG;
@@ -77,12 +77,12 @@ enum header_error message_header_decode(struct message_header *header,
 
 uint32_t message_max_length(uint8_t type)
 {
-    return type < N_TYPES ? TYPES[type].max_length : 0;
+    return type < MESSAGE_TYPES ? TYPES[type].max_length : 0;
 }
 
 const char *message_type_name(uint8_t type)
 {
-    return type < N_TYPES && TYPES[type].name ? TYPES[type].name : "unknown";
+    return type < MESSAGE_TYPES && TYPES[type].name ? TYPES[type].name : "unknown";
 }
 
 const char *header_error_text(enum header_error error)

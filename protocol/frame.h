@@ -3,7 +3,7 @@
  *   0  u32  magic   "SHEN" (0x53 0x48 0x45 0x4e in this order)
  *   4  u8   major   PROTOCOL_MAJOR
  *   5  u8   type    enum message_type
- *   6  u16  flags   MESSAGE_END on the last DATA of a frame, else 0
+ *   6  u16  flags   MESSAGE_END on the last DATA of an answer, else 0
  *   8  u32  length  bytes that follow
  *   12 u32  seq     chosen by the client; an answer has the number of its request
  *
@@ -16,10 +16,10 @@
 #include <stdint.h>
 
 #define PROTOCOL_MAJOR 1
-#define PROTOCOL_MINOR 4
+#define PROTOCOL_MINOR 5
 #define MESSAGE_HEADER_BYTES 16
 #define MODEL_ID_BYTES 32 /* SHA-256; the first bytes of HELLO's body, at offset 16 of the stream */
-#define MESSAGE_END 1u    /* flags: last DATA of this frame */
+#define MESSAGE_END 1u    /* flags: last DATA of an answer */
 
 enum message_type {
     MESSAGE_HELLO = 1,        /* client: model id, then Hello */
@@ -31,7 +31,7 @@ enum message_type {
     MESSAGE_MODEL_INFO = 7,   /* server: ModelInfo */
     MESSAGE_RENDER = 8,       /* client: Render */
     MESSAGE_FRAME = 9,        /* server: Frame; DATA follows */
-    MESSAGE_DATA = 10,        /* server: raw bytes of the frame's pixels or file */
+    MESSAGE_DATA = 10,        /* server: raw bytes of a frame's pixels or file, or records */
     MESSAGE_PROGRESS = 11,    /* server: Progress, any number before an answer */
     MESSAGE_STATS_QUERY = 12, /* client: empty */
     MESSAGE_STATS = 13,       /* server: Stats */
@@ -39,7 +39,11 @@ enum message_type {
     MESSAGE_SUPERSEDED = 15,  /* server: Superseded, instead of FRAME; minor version 1 */
     /* Client: empty, with the number of the request to cancel; minor version 1. */
     MESSAGE_CANCEL = 16,
+    /* Computations; minor version 5. */
+    MESSAGE_FIND_BREAKS = 17, /* client: FindBreaks */
+    MESSAGE_BREAKS = 18,      /* server: Breaks; DATA follows if there are records */
 };
+enum { MESSAGE_TYPES = MESSAGE_BREAKS + 1 }; /* above every type */
 
 struct message_header {
     uint8_t major;

@@ -10,7 +10,7 @@
 /* The largest bodies in bytes, by message type. They leave room for fields of later minor versions;
  * message.c checks at compile time that those of version 1.0 fit. */
 #define PROTOCOL_MAX_SMALL_BODY_BYTES 2048u    /* all other types */
-#define PROTOCOL_MAX_LARGE_BODY_BYTES 8192u    /* MODEL_INFO: warnings; RENDER, FRAME: lights */
+#define PROTOCOL_MAX_LARGE_BODY_BYTES 8192u    /* MODEL_INFO: warnings; those with lights */
 #define PROTOCOL_MAX_CHUNK_BYTES (256u * 1024) /* UPLOAD_CHUNK */
 #define PROTOCOL_MAX_DATA_BYTES (1024u * 1024) /* DATA */
 

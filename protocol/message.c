@@ -13,6 +13,8 @@ FITS(sheen_ModelQuery_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_ModelInfo_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Render_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Frame_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
+FITS(sheen_FindBreaks_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
+FITS(sheen_Breaks_size, PROTOCOL_MAX_LARGE_BODY_BYTES);
 FITS(sheen_Superseded_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Progress_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
 FITS(sheen_Stats_size, PROTOCOL_MAX_SMALL_BODY_BYTES);
@@ -43,6 +45,10 @@ const pb_msgdesc_t *message_fields(uint8_t type)
         return sheen_Error_fields;
     case MESSAGE_SUPERSEDED:
         return sheen_Superseded_fields;
+    case MESSAGE_FIND_BREAKS:
+        return sheen_FindBreaks_fields;
+    case MESSAGE_BREAKS:
+        return sheen_Breaks_fields;
     default:
         return NULL;
     }

@@ -58,6 +58,9 @@ bool message_check_model_query(const sheen_ModelQuery *query, char text[static M
 bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uint32_t max_height_px,
                           char text[static MESSAGE_TEXT_BYTES]);
 
+/* Requests of computations. The scene is checked as a RENDER, without the device's limits. */
+bool message_check_find_breaks(const sheen_FindBreaks *asked, char text[static MESSAGE_TEXT_BYTES]);
+
 /* The planes that the daemon must draw for a frame: those requested, and those from which its false
  * colour is painted. */
 uint32_t message_render_planes(const sheen_Render *render);

@@ -7,10 +7,11 @@
 #include <string.h>
 
 #include "protocol/codec.h"
+#include "protocol/message_check.h"
 #include "protocol/ranges.h"
 #include "protocol/text.h"
 
-static bool __attribute__((format(printf, 2, 3))) refuse(char *text, const char *format, ...)
+bool check_refuse(char *text, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -48,10 +49,10 @@ void message_make_text(char *text, bool lines)
     *to = 0;
 }
 
-static bool check_text(const char *value, const char *field, char *text)
+bool check_text(const char *value, const char *field, char *text)
 {
     return message_is_text(value, false) ||
-           refuse(text, "%s is not UTF-8 text without control characters", field);
+           check_refuse(text, "%s is not UTF-8 text without control characters", field);
 }
 
 /* Writes, for example: "deadline_ms (--deadline) is 0; it must be from 1 to 3600000
@@ -61,11 +62,11 @@ static bool check_named(double value, const struct range *range, const char *fie
     char wanted[RANGE_TEXT_BYTES];
     const char *option = range->option;
     return range_holds(range, value) ||
-           refuse(text, "%s%s%s%s is %.9g; it must be %s", field, option ? " (" : "",
-                  option ? option : "", option ? ")" : "", value, range_text(range, wanted));
+           check_refuse(text, "%s%s%s%s is %.9g; it must be %s", field, option ? " (" : "",
+                        option ? option : "", option ? ")" : "", value, range_text(range, wanted));
 }
 
-static bool check_number(double value, enum range_name name, char *text)
+bool check_number(double value, enum range_name name, char *text)
 {
     return check_named(value, &RANGES[name], RANGES[name].field, text);
 }
@@ -84,7 +85,8 @@ static bool check_vec3(const sheen_Vec3 *v, const char *field, char *text)
 
 static bool check_enum(unsigned value, unsigned last, const char *field, char *text)
 {
-    return value <= last || refuse(text, "%s is %u; it must be from 0 to %u", field, value, last);
+    return value <= last ||
+           check_refuse(text, "%s is %u; it must be from 0 to %u", field, value, last);
 }
 
 static bool check_colour(const sheen_Colour *colour, const char *field, char *text)
@@ -128,21 +130,23 @@ static bool check_view(const sheen_Camera *camera, char *text)
         (camera->has_up && !check_vec3(&camera->up, "camera.up", text)))
         return false;
     if (camera->has_eye && !camera->has_target)
-        return refuse(text, "camera.eye comes with camera.target");
+        return check_refuse(text, "camera.eye comes with camera.target");
     if (camera->has_eye && camera->has_view && camera->view != sheen_View_VIEW_AROUND)
-        return refuse(text,
-                      "camera.view is of a camera that frames the model: not with camera.eye");
+        return check_refuse(
+            text, "camera.view is of a camera that frames the model: not with camera.eye");
     const sheen_Vec3 view = {camera->target.x - camera->eye.x, camera->target.y - camera->eye.y,
                              camera->target.z - camera->eye.z};
     if (camera->has_eye && is_zero(&view))
-        return refuse(text, "camera.eye and camera.target (--eye, --target) are the same point");
+        return check_refuse(text,
+                            "camera.eye and camera.target (--eye, --target) are the same point");
     static const sheen_Vec3 y_axis = {0, 1, 0};
     if (camera->has_up &&
         (is_zero(&camera->up) || (camera->has_eye && is_parallel(&view, &camera->up))))
-        return refuse(text,
-                      "camera.up (--up) is zero or along the line of sight: give another, as --up "
-                      "%s",
-                      is_parallel(&view, &y_axis) ? "0,0,1" : "0,1,0");
+        return check_refuse(
+            text,
+            "camera.up (--up) is zero or along the line of sight: give another, as --up "
+            "%s",
+            is_parallel(&view, &y_axis) ? "0,0,1" : "0,1,0");
     return true;
 }
 
@@ -151,7 +155,7 @@ static bool check_camera(const sheen_Camera *camera, char *text)
     if (!check_view(camera, text))
         return false;
     if (camera->has_fov_deg && camera->has_ortho_height)
-        return refuse(text, "camera.fov_deg and camera.ortho_height exclude each other");
+        return check_refuse(text, "camera.fov_deg and camera.ortho_height exclude each other");
     return (!camera->has_ortho_height ||
             check_number(camera->ortho_height, RANGE_ORTHO_HEIGHT, text)) &&
            (!camera->has_fov_deg || check_number(camera->fov_deg, RANGE_FOV, text)) &&
@@ -166,7 +170,7 @@ static bool check_whole_camera(const sheen_Camera *camera, char *text)
 {
     if (!camera->has_eye || !camera->has_target || !camera->has_up ||
         (!camera->has_fov_deg && !camera->has_ortho_height))
-        return refuse(text, "camera lacks a field; a frame has them all");
+        return check_refuse(text, "camera lacks a field; a frame has them all");
     return check_camera(camera, text);
 }
 
@@ -196,7 +200,8 @@ static bool check_single_lines(const sheen_Pattern *pattern, char *text)
 {
     bool is_lines = pattern->kind == sheen_PatternKind_PATTERN_LINES;
     if (is_lines != (pattern->at_count > 0))
-        return refuse(text, "pattern.at: the places of 1 to 16 lines belong to a lines pattern and "
+        return check_refuse(text,
+                            "pattern.at: the places of 1 to 16 lines belong to a lines pattern and "
                             "to no other");
     for (size_t i = 0; i < pattern->at_count; i++)
         if (!check_number(pattern->at[i], RANGE_PATTERN_AT, text))
@@ -214,7 +219,8 @@ static bool check_pattern(const sheen_Pattern *pattern, char *text)
     if (pattern->has_background && !check_colour(&pattern->background, "pattern.background", text))
         return false;
     if (pattern->has_image_sha256 != (pattern->kind == sheen_PatternKind_PATTERN_IMAGE))
-        return refuse(text, "pattern.image_sha256 belongs to an image pattern and to no other");
+        return check_refuse(text,
+                            "pattern.image_sha256 belongs to an image pattern and to no other");
     return true;
 }
 
@@ -224,8 +230,9 @@ bool message_check_model_query(const sheen_ModelQuery *query, char text[static M
     if (!query->has_file)
         return true;
     if (memcmp(query->sha256, zeros, sizeof zeros) != 0)
-        return refuse(text, "sha256 and file exclude each other: with file, sha256 is zeros");
-    return (*query->file || refuse(text, "file is empty")) && check_text(query->file, "file", text);
+        return check_refuse(text, "sha256 and file exclude each other: with file, sha256 is zeros");
+    return (*query->file || check_refuse(text, "file is empty")) &&
+           check_text(query->file, "file", text);
 }
 
 static bool check_edge(const sheen_Vec3 *edge, const char *field, char *text)
@@ -246,26 +253,26 @@ static bool check_light(const sheen_Light *light, char *text)
     bool has_sides = !is_tunnel && (light->kind == sheen_LightKind_LIGHT_RECTANGLE ||
                                     light->kind == sheen_LightKind_LIGHT_PLANE);
     if (light->one_sided && !has_sides)
-        return refuse(text,
-                      "light.one_sided is for rectangles and planes; a tunnel and a sphere are "
-                      "seen from inside");
+        return check_refuse(
+            text, "light.one_sided is for rectangles and planes; a tunnel and a sphere are "
+                  "seen from inside");
     if (light->has_centre != light->has_u || light->has_u != light->has_v)
-        return refuse(text, "light.centre, light.u and light.v come together");
+        return check_refuse(text, "light.centre, light.u and light.v come together");
     if (!light->has_centre)
         return true;
     if (!check_vec3(&light->centre, "light.centre", text) ||
         !check_edge(&light->u, "light.u", text) || !check_edge(&light->v, "light.v", text))
         return false;
     return !is_parallel(&light->u, &light->v) ||
-           refuse(text, "light.u and light.v (--light-u, --light-v) span no light: they are "
-                        "parallel");
+           check_refuse(text, "light.u and light.v (--light-u, --light-v) span no light: they are "
+                              "parallel");
 }
 
 static bool check_direction(const sheen_Vec3 *v, const char *field, char *text)
 {
     if (!check_vec3(v, field, text))
         return false;
-    return !is_zero(v) || refuse(text, "%s is 0,0,0, no direction", field);
+    return !is_zero(v) || check_refuse(text, "%s is 0,0,0, no direction", field);
 }
 
 /* Checks the fields of line families. */
@@ -277,9 +284,9 @@ static bool check_lines(const sheen_Lines *lines, char *text)
                            lines->family == sheen_LineFamily_LINES_ZEBRA ||
                            lines->family == sheen_LineFamily_LINES_ENVIRONMENT;
     if (lines->has_direction && !takes_direction)
-        return refuse(text, "lines.direction belongs to isophote, zebra and environment");
+        return check_refuse(text, "lines.direction belongs to isophote, zebra and environment");
     if (lines->has_eye && lines->has_eye_direction)
-        return refuse(text, "lines.eye and lines.eye_direction exclude each other");
+        return check_refuse(text, "lines.eye and lines.eye_direction exclude each other");
     return (!lines->has_direction || check_direction(&lines->direction, "lines.direction", text)) &&
            (!lines->has_eye || check_vec3(&lines->eye, "lines.eye", text)) &&
            (!lines->has_eye_direction ||
@@ -294,9 +301,9 @@ static bool check_distances(const sheen_Lines *lines, const sheen_Light *light, 
     bool near = lines->family == sheen_LineFamily_LINES_REFLECTION ||
                 lines->family == sheen_LineFamily_LINES_HIGHLIGHT;
     return (near && light->kind != sheen_LightKind_LIGHT_SPHERE) ||
-           refuse(text,
-                  "pattern distance needs a light that is not at infinity: rectangle, plane or "
-                  "tunnel, with reflection or highlight lines");
+           check_refuse(
+               text, "pattern distance needs a light that is not at infinity: rectangle, plane or "
+                     "tunnel, with reflection or highlight lines");
 }
 
 static bool check_lights(const sheen_Lines *lines, const sheen_Light *lights, size_t n, char *text)
@@ -327,7 +334,7 @@ static bool check_planes(uint32_t planes, unsigned encoding, char *text)
     if (!check_enum(encoding, sheen_Encoding_ENCODING_TIFF, "encoding", text))
         return false;
     const char *wanted = planes_wanted(planes, encoding);
-    return !*wanted || refuse(text, "planes is %u; it must be %s", planes, wanted);
+    return !*wanted || check_refuse(text, "planes is %u; it must be %s", planes, wanted);
 }
 
 bool message_check_hello(const sheen_Hello *hello, char text[static MESSAGE_TEXT_BYTES])
@@ -342,9 +349,9 @@ bool message_check_upload_begin(const sheen_UploadBegin *begin,
         !check_text(begin->name, "name", text))
         return false;
     return (begin->size_bytes > 0 && begin->size_bytes <= PROTOCOL_MAX_UPLOAD_BYTES) ||
-           refuse(text, "size_bytes is %llu; it must be from 1 to %llu",
-                  (unsigned long long)begin->size_bytes,
-                  (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
+           check_refuse(text, "size_bytes is %llu; it must be from 1 to %llu",
+                        (unsigned long long)begin->size_bytes,
+                        (unsigned long long)PROTOCOL_MAX_UPLOAD_BYTES);
 }
 
 static bool check_surface(const sheen_Render *render, char *text)
@@ -354,8 +361,8 @@ static bool check_surface(const sheen_Render *render, char *text)
         !check_enum(render->surface, sheen_SurfaceKind_SURFACE_WIREFRAME, "surface", text))
         return false;
     if (exact && render->has_surface_level && render->surface_level > 0)
-        return refuse(text, "surface_level is %u; the exact surface has none",
-                      render->surface_level);
+        return check_refuse(text, "surface_level is %u; the exact surface has none",
+                            render->surface_level);
     return !render->has_surface_level || check_number(render->surface_level, RANGE_LEVEL, text);
 }
 
@@ -385,20 +392,22 @@ static bool check_show(const sheen_Render *render, char *text)
                     show->kind == sheen_ShowKind_SHOW_GAUSSIAN ||
                     show->kind == sheen_ShowKind_SHOW_MEAN;
     if (show->has_direction != is_draft)
-        return refuse(text, "show.direction belongs to draft, which needs it, and to no other");
+        return check_refuse(text,
+                            "show.direction belongs to draft, which needs it, and to no other");
     if (is_draft && !check_direction(&show->direction, "show.direction", text))
         return false;
     if (show->has_range && !is_scale)
-        return refuse(text, "show.range (--show-range) is for curvature, gaussian, mean and draft");
+        return check_refuse(text,
+                            "show.range (--show-range) is for curvature, gaussian, mean and draft");
     if (show->has_range &&
         !check_number(show->range, is_draft ? RANGE_SHOW_DRAFT : RANGE_SHOW_CURVATURE, text))
         return false;
     if (show->kind == sheen_ShowKind_SHOW_LINES)
         return true;
     if (!(render->planes & sheen_Plane_PLANE_COLOUR))
-        return refuse(text, "planes is %u; show paints colour, bit 0", render->planes);
+        return check_refuse(text, "planes is %u; show paints colour, bit 0", render->planes);
     return !render->has_surface || render->surface != sheen_SurfaceKind_SURFACE_WIREFRAME ||
-           refuse(text, "show paints surfaces; a wireframe has none");
+           check_refuse(text, "show paints surfaces; a wireframe has none");
 }
 
 static bool check_schedule(const sheen_Render *render, char *text)
@@ -406,8 +415,8 @@ static bool check_schedule(const sheen_Render *render, char *text)
     if (!check_enum(render->request_class, sheen_RequestClass_CLASS_BATCH, "request_class", text))
         return false;
     if (render->has_view && render->request_class == sheen_RequestClass_CLASS_BATCH)
-        return refuse(text, "view is for interactive requests and stills; a batch is never "
-                            "replaced");
+        return check_refuse(text, "view is for interactive requests and stills; a batch is never "
+                                  "replaced");
     return !render->has_deadline_ms || check_number(render->deadline_ms, RANGE_DEADLINE, text);
 }
 
@@ -417,22 +426,23 @@ static bool check_side(uint32_t side_px, uint32_t max_px, unsigned encoding, con
     struct range range = RANGES[RANGE_SIDE];
     range.option = NULL;
     if (range_holds(&range, side_px) && side_px > max_px)
-        return refuse(text, "%s is %u; it must be from 1 to %u pixels, the device's own limit",
-                      name, side_px, max_px);
+        return check_refuse(text,
+                            "%s is %u; it must be from 1 to %u pixels, the device's own limit",
+                            name, side_px, max_px);
     if (!check_named(side_px, &range, name, text))
         return false;
     return encoding != sheen_Encoding_ENCODING_JPEG ||
            range_holds(&RANGES[RANGE_JPEG_SIDE], side_px) ||
-           refuse(text, "%s is %u; a JPEG file has at most %g pixels: ask for another format", name,
-                  side_px, RANGES[RANGE_JPEG_SIDE].greatest);
+           check_refuse(text, "%s is %u; a JPEG file has at most %g pixels: ask for another format",
+                        name, side_px, RANGES[RANGE_JPEG_SIDE].greatest);
 }
 
 static bool check_jpeg(const sheen_Render *render, char *text)
 {
     if ((render->has_jpeg_quality || render->has_jpeg_subsampling) &&
         render->encoding != sheen_Encoding_ENCODING_JPEG)
-        return refuse(text, "jpeg_quality and jpeg_subsampling (--jpeg-quality, "
-                            "--jpeg-subsampling) are for JPEG files");
+        return check_refuse(text, "jpeg_quality and jpeg_subsampling (--jpeg-quality, "
+                                  "--jpeg-subsampling) are for JPEG files");
     if (render->has_jpeg_quality && !check_number(render->jpeg_quality, RANGE_JPEG_QUALITY, text))
         return false;
     return !render->has_jpeg_subsampling ||
@@ -451,9 +461,9 @@ bool message_check_render(const sheen_Render *render, uint32_t max_width_px, uin
     struct codec_layout layout;
     uint32_t planes = message_render_planes(render);
     if (!codec_layout_init(&layout, render->width_px, render->height_px, planes))
-        return refuse(text, "%ux%u px with planes %u is over %llu bytes or %u px a side",
-                      render->width_px, render->height_px, planes,
-                      (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
+        return check_refuse(text, "%ux%u px with planes %u is over %llu bytes or %u px a side",
+                            render->width_px, render->height_px, planes,
+                            (unsigned long long)PROTOCOL_MAX_FRAME_BYTES, PROTOCOL_MAX_SIZE_PX);
     return check_schedule(render, text) &&
            (!render->has_camera || check_camera(&render->camera, text)) &&
            check_lights(&render->lines, render->lights, render->lights_count, text) &&
@@ -467,26 +477,37 @@ static bool check_extreme(const sheen_Frame *frame, const sheen_Extreme *extreme
                           char *text)
 {
     if (!isfinite(extreme->value))
-        return refuse(text, "%s.value is no finite number", field);
+        return check_refuse(text, "%s.value is no finite number", field);
     if (extreme->has_x_px != extreme->has_y_px || extreme->has_x_px != extreme->has_position ||
         extreme->x_px >= frame->width_px || extreme->y_px >= frame->height_px)
-        return refuse(text, "%s has no pixel of the frame, with its position", field);
+        return check_refuse(text, "%s has no pixel of the frame, with its position", field);
     if (extreme->has_face != extreme->has_u || extreme->has_u != extreme->has_v ||
         !(extreme->u >= 0 && extreme->u <= 1 && extreme->v >= 0 && extreme->v <= 1))
-        return refuse(text, "%s: face, u and v come together, u and v from 0 to 1", field);
+        return check_refuse(text, "%s: face, u and v come together, u and v from 0 to 1", field);
     return !extreme->has_position || check_vec3(&extreme->position, field, text);
 }
 
 static bool check_extremes(const sheen_Frame *frame, char *text)
 {
     if (frame->has_show_least != frame->has_show_greatest)
-        return refuse(text, "show_least and show_greatest come together");
+        return check_refuse(text, "show_least and show_greatest come together");
     if (!frame->has_show_least)
         return true;
     return check_extreme(frame, &frame->show_least, "show_least", text) &&
            check_extreme(frame, &frame->show_greatest, "show_greatest", text) &&
            (frame->show_least.value <= frame->show_greatest.value ||
-            refuse(text, "show_least is above show_greatest"));
+            check_refuse(text, "show_least is above show_greatest"));
+}
+
+bool check_whole_scene(const sheen_Camera *camera, const sheen_Lines *lines,
+                       const sheen_Light *lights, size_t n, char *text)
+{
+    if (n == 0)
+        return check_refuse(text, "an answer has a light");
+    for (size_t i = 0; i < n; i++)
+        if (!lights[i].has_centre || !lights[i].has_pattern)
+            return check_refuse(text, "a light lacks a field; an answer has them all");
+    return check_whole_camera(camera, text) && check_lights(lines, lights, n, text);
 }
 
 static bool check_frame(const sheen_Frame *frame, char *text)
@@ -495,16 +516,16 @@ static bool check_frame(const sheen_Frame *frame, char *text)
     if (!check_planes(frame->planes, frame->encoding, text))
         return false;
     if (!codec_layout_init(&layout, frame->width_px, frame->height_px, frame->planes))
-        return refuse(text, "%ux%u px is no frame's size", frame->width_px, frame->height_px);
+        return check_refuse(text, "%ux%u px is no frame's size", frame->width_px, frame->height_px);
     if (frame->data_bytes == 0 || frame->data_bytes > PROTOCOL_MAX_FRAME_BYTES)
-        return refuse(text, "data_bytes is %llu; it must be from 1 to %llu",
-                      (unsigned long long)frame->data_bytes,
-                      (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
+        return check_refuse(text, "data_bytes is %llu; it must be from 1 to %llu",
+                            (unsigned long long)frame->data_bytes,
+                            (unsigned long long)PROTOCOL_MAX_FRAME_BYTES);
     if (frame->has_show_range &&
         !check_named(frame->show_range, &RANGES[RANGE_SHOW_CURVATURE], "show_range", text))
         return false;
     if (frame->has_light_share && !(frame->light_share >= 0 && frame->light_share <= 1))
-        return refuse(text, "light_share is %g; it must be from 0 to 1", frame->light_share);
+        return check_refuse(text, "light_share is %g; it must be from 0 to 1", frame->light_share);
     if ((frame->has_up && !check_direction(&frame->up, "up", text)) ||
         (frame->has_up_source &&
          !check_enum(frame->up_source, sheen_UpSource_UP_GUESSED, "up_source", text)))
@@ -515,13 +536,8 @@ static bool check_frame(const sheen_Frame *frame, char *text)
                        frame->has_empty ? &frame->empty : NULL,
                        frame->has_base ? &frame->base : NULL, text))
         return false;
-    if (frame->lights_count == 0)
-        return refuse(text, "a frame has a light");
-    for (size_t i = 0; i < frame->lights_count; i++)
-        if (!frame->lights[i].has_centre || !frame->lights[i].has_pattern)
-            return refuse(text, "a light lacks a field; a frame has them all");
-    return check_whole_camera(&frame->camera, text) &&
-           check_lights(&frame->lines, frame->lights, frame->lights_count, text) &&
+    return check_whole_scene(&frame->camera, &frame->lines, frame->lights, frame->lights_count,
+                             text) &&
            check_text(frame->device, "device", text) && check_text(frame->driver, "driver", text) &&
            check_text(frame->server, "server", text);
 }
@@ -529,11 +545,11 @@ static bool check_frame(const sheen_Frame *frame, char *text)
 static bool check_model_info(const sheen_ModelInfo *info, char *text)
 {
     if (!message_is_text(info->warnings, true))
-        return refuse(text, "warnings are not lines of UTF-8 text");
+        return check_refuse(text, "warnings are not lines of UTF-8 text");
     for (pb_size_t i = 0; i < info->findings_count; i++)
         if (info->findings[i].count == 0 ||
             (info->findings[i].has_line && info->findings[i].line == 0))
-            return refuse(text, "findings[%u] is of nothing, or on line 0", (unsigned)i);
+            return check_refuse(text, "findings[%u] is of nothing, or on line 0", (unsigned)i);
     return check_text(info->name, "name", text) && check_vec3(&info->box_min, "box_min", text) &&
            check_vec3(&info->box_max, "box_max", text);
 }
@@ -544,8 +560,8 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
     case MESSAGE_HELLO_OK: {
         const sheen_HelloOk *ok = body;
         if (ok->credits == 0 || ok->credits > PROTOCOL_MAX_CREDITS)
-            return refuse(text, "credits is %u; it must be from 1 to %u", ok->credits,
-                          PROTOCOL_MAX_CREDITS);
+            return check_refuse(text, "credits is %u; it must be from 1 to %u", ok->credits,
+                                PROTOCOL_MAX_CREDITS);
         return check_text(ok->server, "server", text) && check_text(ok->device, "device", text) &&
                check_text(ok->driver, "driver", text);
     }
@@ -553,11 +569,13 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
         return true;
     case MESSAGE_SUPERSEDED:
         return ((const sheen_Superseded *)body)->by != 0 ||
-               refuse(text, "by is 0, which is no request's number");
+               check_refuse(text, "by is 0, which is no request's number");
     case MESSAGE_MODEL_INFO:
         return check_model_info(body, text);
     case MESSAGE_FRAME:
         return check_frame(body, text);
+    case MESSAGE_BREAKS:
+        return check_breaks(body, text);
     case MESSAGE_PROGRESS:
         return check_text(((const sheen_Progress *)body)->stage, "stage", text);
     case MESSAGE_STATS: {
@@ -569,11 +587,11 @@ bool message_check_answer(uint8_t type, const void *body, char text[static MESSA
     case MESSAGE_ERROR: {
         const sheen_Error *error = body;
         if (error->code == sheen_ErrorCode_ERROR_NONE)
-            return refuse(text, "code is 0; an error has one");
+            return check_refuse(text, "code is 0; an error has one");
         return check_enum(error->code, sheen_ErrorCode_ERROR_GPU_LOST, "code", text) &&
                check_text(error->text, "text", text);
     }
     default:
-        return refuse(text, "a server sends no %s", message_type_name(type));
+        return check_refuse(text, "a server sends no %s", message_type_name(type));
     }
 }

@@ -36,6 +36,8 @@ NAMES(sheen_Show);
 NAMES(sheen_Render);
 NAMES(sheen_Times);
 NAMES(sheen_Frame);
+NAMES(sheen_FindBreaks);
+NAMES(sheen_Breaks);
 NAMES(sheen_Progress);
 NAMES(sheen_Latency);
 NAMES(sheen_Stats);
@@ -56,7 +58,7 @@ static const struct {
     MESSAGE(sheen_Light),      MESSAGE(sheen_Lines),        MESSAGE(sheen_Show),
     MESSAGE(sheen_Render),     MESSAGE(sheen_Times),        MESSAGE(sheen_Frame),
     MESSAGE(sheen_Progress),   MESSAGE(sheen_Latency),      MESSAGE(sheen_Stats),
-    MESSAGE(sheen_Error),
+    MESSAGE(sheen_FindBreaks), MESSAGE(sheen_Breaks),       MESSAGE(sheen_Error),
 };
 
 #define MAX_TAG 64    /* larger than every tag in sheen.proto */

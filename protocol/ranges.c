@@ -44,6 +44,9 @@ const struct range RANGES[N_RANGES] = {
     [RANGE_JPEG_QUALITY] = {"jpeg_quality", "--jpeg-quality", 1, 100, false, ""},
     [RANGE_LEVEL] = {"surface_level", "--surface", 0, PROTOCOL_MAX_SURFACE_LEVEL, false, ""},
     [RANGE_DEADLINE] = {"deadline_ms", "--deadline", 1, 3600000, false, "milliseconds"},
+    [RANGE_GAP] = {"gap", "--gap", 0, GREATEST, true, "units"},
+    [RANGE_ANGLE] = {"angle_deg", "--angle", 0, 180, true, "degrees"},
+    [RANGE_PERCENT] = {"curvature_percent", "--curvature", 0, 200, true, "percent"},
 };
 
 bool range_holds(const struct range *range, double value)

@@ -33,6 +33,9 @@ enum range_name {
     RANGE_JPEG_QUALITY,   /* libjpeg's scale */
     RANGE_LEVEL,
     RANGE_DEADLINE,
+    RANGE_GAP,
+    RANGE_ANGLE,
+    RANGE_PERCENT,
     N_RANGES
 };
 

@@ -114,9 +114,9 @@ static bool take(struct memory *memory, struct client_quota *quota, const uint8_
     if (class == ACCOUNT_PATIENT && !fits_patient(memory, quota, frame->bytes))
         return false; /* other patient frames use the memory: try later */
     if (frame->bytes > account_room(&quota->account))
-        return refuse_peer(quota, "a frame", frame->bytes, error);
+        return refuse_peer(quota, frame->what, frame->bytes, error);
     if (!store_reserve(memory->store, asker, daemon, ACCOUNT_DEVICE,
-                       frame->bytes + frame->device_bytes, "a frame", ERROR_REQUEST, error))
+                       frame->bytes + frame->device_bytes, frame->what, ERROR_REQUEST, error))
         return false;
     account_refund(daemon, ACCOUNT_DEVICE, frame->bytes);
     account_charge(&quota->account, class, frame->bytes);
@@ -131,7 +131,7 @@ enum memory_result memory_charge_frame(struct memory *memory, struct client_quot
     struct account *daemon = store_account(memory->store);
     struct memory_charge *made = block_cache_take(memory->block_cache, sizeof *made);
     if (!made) {
-        error_set(error, ERROR_SERVER, "no memory for a frame: try again later");
+        error_set(error, ERROR_SERVER, "no memory for %s: try again later", frame->what);
         return MEMORY_FAILED;
     }
     if (!take(memory, quota, asker, class, frame, error)) {

@@ -41,9 +41,11 @@ enum memory_result {
     MEMORY_FAILED,
 };
 
-/* What a frame takes, bytes: its planes and their encoding; and on the device, to be drawn into. */
+/* What a frame takes, bytes: its planes and their encoding; and on the device, to be drawn into. Or what a
+ * computation and its answer take. */
 struct memory_frame {
     uint64_t bytes, device_bytes;
+    const char *what; /* for errors, such as "a frame" */
 };
 
 /* Charges the memory of a frame. `class` is ACCOUNT_INTERACTIVE or ACCOUNT_PATIENT. All patient

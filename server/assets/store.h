@@ -192,6 +192,9 @@ bool store_stop_waiting(struct asset_waiter *waiter);
  * no request waits for them any more. NULL with *error on failure, as for store_reserve(). */
 struct asset *store_find_polygons(struct asset *model, uint32_t level, struct error *error);
 
+/* The slices by which builds share the pool. Other work that takes long joins them. */
+struct slices *store_slices(struct store *store);
+
 /* From now on every build fails soon: the daemon ends. */
 void store_cancel_builds(struct store *store);
 bool store_is_building(const struct store *store);

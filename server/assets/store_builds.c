@@ -156,3 +156,8 @@ void store_queue_build(struct asset *asset, const uint8_t asker[static OWNER_BYT
     TAILQ_INSERT_TAIL(&store->builds, asset, build_link);
     start_builds(store);
 }
+
+struct slices *store_slices(struct store *store)
+{
+    return &store->slices;
+}

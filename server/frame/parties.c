@@ -16,6 +16,7 @@ struct party *party_get(struct parties *parties, const uint8_t identity[static O
         return NULL;
     scheduler_add_party(&party->schedule);
     intake_add_party(&party->intake);
+    party->n_computing = 0;
     memcpy(party->identity, identity, OWNER_BYTES);
     party->references = 1;
     LIST_INSERT_HEAD(bucket, party, link);

@@ -13,6 +13,7 @@
 struct party {
     struct schedule_party schedule;
     struct intake_party intake;
+    unsigned n_computing; /* computations of the party that run now */
     uint8_t identity[OWNER_BYTES];
     unsigned references; /* private to parties.c, like what follows */
     LIST_ENTRY(party) link;

@@ -6,6 +6,7 @@
 
 #include "server/base/clock.h"
 #include "server/base/hex.h"
+#include "server/frame/compute.h"
 #include "server/frame/error_code.h"
 #include "server/frame/request_internal.h"
 
@@ -66,6 +67,9 @@ void request_end(struct request *request)
         LIST_REMOVE(request, parked_link);
     request_state_move(&request->state, REQUEST_ENDED);
     scheduler_finished(&request->host->scheduler, &request->entry);
+    if (request->compute && request->compute->second.asset)
+        store_unuse(request->compute->second.asset);
+    compute_destroy(request->compute);
     party_put(request->party);
     request_drop_frame(request);
     if (request->model.asset)
@@ -102,7 +106,13 @@ static void abandon(struct request *request)
     for (int i = 0; i < MAX_LIGHTS; i++)
         stop_waiting(request, &request->images[i]);
     scheduler_leave(&request->host->scheduler, &request->entry);
-    if (request->n_awaited > 0 || request_state_is_busy(request->state))
+    bool is_busy = request_state_is_busy(request->state);
+    if (request->compute) {
+        stop_waiting(request, &request->compute->second);
+        compute_stop(request->compute);
+        is_busy = compute_is_running(request->compute);
+    }
+    if (request->n_awaited > 0 || is_busy)
         request_state_move(&request->state, REQUEST_ABANDONED);
     else
         request_end(request);
@@ -161,8 +171,8 @@ bool request_is_late(const struct request *request, uint64_t now_us)
 void request_reply_late(struct request *request)
 {
     char text[MESSAGE_TEXT_BYTES];
-    snprintf(text, sizeof text, "not drawn within its deadline_ms of %u",
-             request->render.deadline_ms);
+    snprintf(text, sizeof text, "not %s within its deadline_ms of %u",
+             request->compute ? "done" : "drawn", request->render.deadline_ms);
     refuse_early(request, sheen_ErrorCode_ERROR_DEADLINE, text);
 }
 
@@ -308,6 +318,33 @@ void request_render(struct request_client *client, struct reply *reply, uint32_t
     request_stop_awaiting(request);
 }
 
+void request_compute(struct request_client *client, struct reply *reply, uint32_t seq, uint8_t type,
+                     const union compute_asked *asked)
+{
+    struct request *request = request_create(client, reply, seq);
+    if (!request)
+        return;
+    struct compute *compute = request->compute = compute_create(request, type, asked);
+    if (!compute) {
+        error_set(&request->failure, ERROR_SERVER,
+                  "no memory for another request: try again later");
+        request_fail(request, &request->failure);
+        return;
+    }
+    const uint8_t *second = compute->kind->second ? compute->kind->second(asked) : NULL;
+    request->render = *compute->kind->scene(asked);
+    if (!is_known(request, ASSET_MODEL, request->render.model_sha256) ||
+        (second && !is_known(request, ASSET_MODEL, second)))
+        return;
+    if (request->render.has_deadline_ms)
+        request->deadline_us = request->start_us + request->render.deadline_ms * 1000ull;
+    request->n_awaited = 1; /* until all is asked for */
+    request_acquire(request, &request->model, ASSET_MODEL, request->render.model_sha256);
+    if (second)
+        request_acquire(request, &compute->second, ASSET_MODEL, second);
+    request_stop_awaiting(request);
+}
+
 static void assets_ready(struct request *request)
 {
     if (request->failure.kind != ERROR_NONE)
@@ -316,6 +353,8 @@ static void assets_ready(struct request *request)
         request_end(request);
     else if (request->is_query)
         request_reply_query(request);
+    else if (request->compute)
+        compute_enter_line(request->compute);
     else
         request_queue_frame(request);
 }
@@ -328,16 +367,28 @@ void request_client_finish(struct request_client *client)
         abandon(LIST_FIRST(&client->requests));
 }
 
+/* What the request waits for: builds of its models, then its own computation. False: nothing that is measured. */
+static bool find_progress(const struct request *request, sheen_Progress *progress)
+{
+    const struct asset *const models[2] = {
+        request->model.asset, request->compute ? request->compute->second.asset : NULL};
+    for (int i = 0; i < 2; i++) {
+        const struct asset *asset = models[i];
+        if (!asset || asset->state != ASSET_BUILDING)
+            continue;
+        *progress = (sheen_Progress){.done = atomic_load(&asset->progress.done),
+                                     .total = asset->progress.total};
+        snprintf(progress->stage, sizeof progress->stage, "%s", asset->progress.stage);
+        return true;
+    }
+    return request->compute && compute_progress(request->compute, progress);
+}
+
 void request_report_progress(struct request_client *client)
 {
     const struct request *request;
-    LIST_FOREACH (request, &client->requests, client_link) {
-        const struct asset *asset = request->model.asset;
-        if (!asset || asset->state != ASSET_BUILDING)
-            continue;
-        sheen_Progress progress = {.done = atomic_load(&asset->progress.done),
-                                   .total = asset->progress.total};
-        snprintf(progress.stage, sizeof progress.stage, "%s", asset->progress.stage);
-        client->events->progressed(client->owner, request->reply, &progress);
-    }
+    sheen_Progress progress;
+    LIST_FOREACH (request, &client->requests, client_link)
+        if (find_progress(request, &progress))
+            client->events->progressed(client->owner, request->reply, &progress);
 }

@@ -1,4 +1,4 @@
-/* A request that takes time: the description of a model, or a frame. It waits for assets from the
+/* A request that takes time: the description of a model, a frame, or computed numbers. It waits for assets from the
  * store, for memory, for its turn, for the render thread and for the encoder, and then reports the
  * result to its client's session by events (request_client.h). It knows nothing else of sessions.
  *
@@ -9,6 +9,7 @@
 #ifndef SHEEN_FRAME_REQUEST_H
 #define SHEEN_FRAME_REQUEST_H
 
+#include "server/frame/compute_asked.h"
 #include "server/frame/request_client.h"
 
 /* Lets an identified client make requests. The caller has set all members except `party`, `queue`
@@ -35,6 +36,10 @@ void request_query(struct request_client *client, struct reply *reply, uint32_t 
 void request_render(struct request_client *client, struct reply *reply, uint32_t seq,
                     const sheen_Render *render, uint64_t frame_bytes);
 
+/* Computes numbers. `type` is that of the message; its body has passed its check. */
+void request_compute(struct request_client *client, struct reply *reply, uint32_t seq, uint8_t type,
+                     const union compute_asked *asked);
+
 /* Answers the request of this number with ERROR_CANCELLED. Does nothing if it is answered
  * already. */
 void request_cancel(struct request_client *client, uint32_t seq);
@@ -44,14 +49,14 @@ void request_cancel_all(struct request_client *client);
  * finish them have passed. */
 void request_shut_down_all(struct request_client *client, uint64_t drain_s);
 /* Answers with ERROR_DEADLINE the client's requests whose deadline has passed before they began to
- * be drawn. */
+ * be drawn, or before they were computed. */
 void request_end_late(struct request_client *client, uint64_t now_us);
 /* Call it when the socket has taken the client's interactive frame: sends the held one, if any. */
 void request_send_held(struct request_client *client);
 /* Reports the progress of the builds that the client's requests wait for. */
 void request_report_progress(struct request_client *client);
 
-/* Starts the tiles that the scheduler chooses, until it chooses none. */
+/* Starts the tiles that the scheduler chooses, until it chooses none, and computations. */
 void request_start_next(struct request_host *host);
 
 #endif

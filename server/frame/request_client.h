@@ -15,6 +15,8 @@
 
 struct request;
 LIST_HEAD(request_list, request);
+struct compute;
+TAILQ_HEAD(compute_line, compute);
 
 struct reply; /* the session's record of a reply that it owes; opaque here */
 
@@ -33,12 +35,14 @@ struct request_host {
     struct scheduler scheduler;
     struct parties parties;
     struct costs costs;
-    struct request_list parked; /* requests that wait until other frames free memory */
-    unsigned n_file_loads;      /* files being read from the folder */
+    struct request_list parked;  /* requests that wait until other frames free memory */
+    unsigned n_file_loads;       /* files being read from the folder */
+    struct compute_line in_line; /* computations that wait, in the order of their coming */
+    unsigned n_computing;        /* computations that run */
 };
 
 /* The events by which a request reports to its client's session. Each request calls exactly one of
- * the first three, once, unless the client goes before. They run on the loop's thread. An event may
+ * the first four, once, unless the client goes before. They run on the loop's thread. An event may
  * close the client's connection; it must not call the functions of request.h. */
 struct request_events {
     /* The reply is a message of this type; `body` is the type's struct (message.h). */
@@ -48,7 +52,11 @@ struct request_events {
     /* The reply is a frame with its DATA; the session takes the ownership of `encoded`. */
     void (*drawn)(void *owner, struct reply *reply, enum request_class request_class,
                   const sheen_Frame *frame, struct encoded *encoded);
-    /* A build that the request waits for has made progress. Not a reply. */
+    /* The reply is a message of this type, as in answered(), with DATA behind it; `records` is NULL
+     * without DATA. The session takes the ownership of `records`. */
+    void (*computed)(void *owner, struct reply *reply, uint8_t type, const void *body,
+                     struct encoded *records);
+    /* A build that the request waits for, or its computation, has made progress. Not a reply. */
     void (*progressed)(void *owner, const struct reply *reply, const sheen_Progress *progress);
     /* True while the socket has not taken an earlier interactive frame, so that the next one must
      * wait. */

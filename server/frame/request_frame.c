@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/base/clock.h"
+#include "server/frame/compute.h"
 #include "server/frame/cut.h"
 #include "server/frame/request.h"
 #include "server/frame/request_internal.h"
@@ -306,7 +307,7 @@ static bool take_memory(struct request *request)
     if (request->charge)
         return true;
     const struct memory_frame frame = {request->frame_bytes,
-                                       request_device_bytes(host, &request->render)};
+                                       request_device_bytes(host, &request->render), "a frame"};
     switch (memory_charge_frame(host->memory, request->client->quota, request->asker,
                                 account_class(request), &frame, &request->charge,
                                 &request->failure)) {
@@ -350,4 +351,5 @@ void request_start_next(struct request_host *host)
             render_thread_submit(host->render_thread, &request->task);
         }
     }
+    compute_start_next(host);
 }

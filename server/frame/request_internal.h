@@ -4,6 +4,7 @@
  * request_query.c  the description of a model
  * request_frame.c  how a frame is drawn
  * request_reply.c  how a frame is encoded and answered
+ * compute.h        how numbers are computed
  *
  * Thread: the loop's. */
 #ifndef SHEEN_FRAME_REQUEST_INTERNAL_H
@@ -32,14 +33,15 @@ struct request {
     uint32_t seq;
     uint8_t assets_of[OWNER_BYTES]; /* copied, because the client may go first */
     uint8_t asker[OWNER_BYTES];     /* the client's identity */
-    bool is_query;                  /* a model query; else a frame */
+    bool is_query;                  /* a model query; else a frame, or a computation */
+    struct compute *compute;        /* NULL: no computation */
     uint64_t start_us, deadline_us; /* clock_now_us(); deadline 0: none */
 
     struct needed model, images[MAX_LIGHTS];
     unsigned n_awaited;
     struct error failure; /* of kind ERROR_NONE: no failure yet */
 
-    sheen_Render render;
+    sheen_Render render; /* of a computation: its scene */
     struct frame_request frame_request;
     double up[3]; /* the model's up direction, for defaults */
     sheen_UpSource up_source;
@@ -100,6 +102,8 @@ void request_drop_frame(struct request *request);
 
 /* --- request_reply.c */
 
+/* Hands the charge for the request's memory to what is sent. */
+void request_hand_over_charge(struct request *request, struct encoded *encoded);
 /* Starts to encode a frame that is drawn and painted; moves to REQUEST_ENCODING. */
 void request_start_encoding(struct request *request);
 

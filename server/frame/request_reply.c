@@ -68,8 +68,7 @@ static void reply_frame(struct request *request, struct encoded *encoded)
     request_end(request);
 }
 
-/* Hands the charge for the request's memory to the encoded frame. */
-static void hand_over_charge(struct request *request, struct encoded *encoded)
+void request_hand_over_charge(struct request *request, struct encoded *encoded)
 {
     memory_charge_shrink(request->charge, encoded->size);
     encoded->released = memory_charge_release;
@@ -110,7 +109,7 @@ static void encode_finished(void *owner, struct encoded *encoded, const struct e
         request_fail(request, error);
         return;
     }
-    hand_over_charge(request, encoded);
+    request_hand_over_charge(request, encoded);
     const struct request_client *client = request->client;
     bool interactive = request->entry.request_class == CLASS_INTERACTIVE;
     if (request->state == REQUEST_ABANDONED) {

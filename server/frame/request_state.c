@@ -13,7 +13,9 @@ static const struct {
     unsigned next; /* states that may follow, one bit each */
     bool is_busy;
 } STATES[N_REQUEST_STATES] = {
-    [REQUEST_LOADING] = {"loading", TO(POLYGONS) | TO(QUEUED) | TO(ABANDONED) | TO(ENDED), false},
+    [REQUEST_LOADING] = {"loading",
+                         TO(POLYGONS) | TO(QUEUED) | TO(IN_LINE) | TO(ABANDONED) | TO(ENDED),
+                         false},
     [REQUEST_POLYGONS] = {"polygons", TO(QUEUED) | TO(ENDED), false},
     [REQUEST_QUEUED] = {"queued", TO(PARKED) | TO(DRAWING) | TO(ENDED), false},
     [REQUEST_PARKED] = {"parked", TO(QUEUED) | TO(ENDED), false},
@@ -23,6 +25,8 @@ static const struct {
                          true},
     [REQUEST_PAINTING] = {"painting", TO(ENCODING) | TO(ABANDONED), true},
     [REQUEST_ENCODING] = {"encoding", TO(HELD) | TO(ABANDONED) | TO(ENDED), true},
+    [REQUEST_IN_LINE] = {"in line", TO(COMPUTING) | TO(ENDED), false},
+    [REQUEST_COMPUTING] = {"computing", TO(ABANDONED) | TO(ENDED), true},
     [REQUEST_HELD] = {"held", TO(ENDED), false},
     [REQUEST_ABANDONED] = {"abandoned", TO(ENDED), true},
     [REQUEST_ENDED] = {"ended", 0, false},

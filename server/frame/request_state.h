@@ -7,14 +7,16 @@
 #include <stdbool.h>
 
 enum request_state {
-    REQUEST_LOADING,  /* the initial state: the store builds assets, or a file is read */
-    REQUEST_POLYGONS, /* the store makes polygons for the device */
-    REQUEST_QUEUED,   /* waits until the scheduler lets it draw a tile */
-    REQUEST_PARKED,   /* waits for memory that other frames use */
-    REQUEST_DRAWING,  /* the render thread draws a tile */
-    REQUEST_PAINTING, /* the pool paints false colour */
-    REQUEST_ENCODING, /* the pool or a worker process encodes the frame */
-    REQUEST_HELD,     /* encoded; waits until the socket has taken an earlier frame */
+    REQUEST_LOADING,   /* the initial state: the store builds assets, or a file is read */
+    REQUEST_POLYGONS,  /* the store makes polygons for the device */
+    REQUEST_QUEUED,    /* waits until the scheduler lets it draw a tile */
+    REQUEST_PARKED,    /* waits for memory that other frames use */
+    REQUEST_DRAWING,   /* the render thread draws a tile */
+    REQUEST_PAINTING,  /* the pool paints false colour */
+    REQUEST_ENCODING,  /* the pool or a worker process encodes the frame */
+    REQUEST_IN_LINE,   /* a computation waits for others to end, or for memory */
+    REQUEST_COMPUTING, /* slices of a computation run on the pool */
+    REQUEST_HELD,      /* encoded; waits until the socket has taken an earlier frame */
     /* Answered early or without a client, while a thread or a build still works for it. */
     REQUEST_ABANDONED,
     REQUEST_ENDED, /* its memory is about to be freed */

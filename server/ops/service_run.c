@@ -80,7 +80,7 @@ static void after_batch(void *owner)
     store_cancel_builds(daemon->store);
     workers_stop(&daemon->workers);
     if (!store_is_building(daemon->store) && scheduler_is_idle(&daemon->requests.scheduler) &&
-        daemon->requests.n_file_loads == 0)
+        daemon->requests.n_file_loads == 0 && daemon->requests.n_computing == 0)
         loop_stop(daemon->loop);
     else if (service->single || session_host_overdue_us(&daemon->sessions, clock_now_us()) >
                                     SESSION_LAST_WORDS_US + LAST_WORK_US)

@@ -120,6 +120,7 @@ static void connect_rooms(struct service *service)
         .max_file_bytes = max_upload_bytes,
         .gpu_generation = 1,
     };
+    TAILQ_INIT(&daemon->requests.in_line);
     struct session_host *sessions = &daemon->sessions;
     sessions->loop = daemon->loop;
     sessions->render_thread = daemon->render_thread;

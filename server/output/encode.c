@@ -137,6 +137,21 @@ static bool allocate(struct encoded *encoded, size_t n)
     return encoded->blocks && encoded->pieces;
 }
 
+struct encoded *encoded_of(struct block_cache *block_cache, uint8_t *bytes, size_t size)
+{
+    struct encoded *encoded = block_cache_take(block_cache, sizeof *encoded);
+    if (!encoded)
+        return NULL;
+    *encoded = (struct encoded){.block_cache = block_cache};
+    if (!allocate(encoded, 1)) {
+        encoded_destroy(encoded);
+        return NULL;
+    }
+    encoded->blocks[0] = bytes;
+    add_piece(encoded, bytes, size);
+    return encoded;
+}
+
 /* --- RAW: the planes are the bytes */
 
 static void start_raw(struct encoding *encoding)

@@ -64,6 +64,9 @@ void encode_start(struct pool *pool, struct workers *workers, struct frame *fram
                   void (*finished)(void *owner, struct encoded *encoded, const struct error *error),
                   void *owner);
 
+/* Bytes that need no encoding, as one piece. Takes the ownership of `bytes`, which are of `block_cache`. NULL when
+ * memory is short; the caller keeps the bytes. */
+struct encoded *encoded_of(struct block_cache *block_cache, uint8_t *bytes, size_t size);
 void encoded_destroy(struct encoded *encoded); /* NULL is safe */
 
 #endif

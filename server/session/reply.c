@@ -11,7 +11,7 @@ struct reply {
     bool ready, last;
     uint8_t *message; /* header and body */
     size_t length;
-    struct encoded *encoded; /* a frame's DATA; NULL: none */
+    struct encoded *encoded; /* DATA; NULL: none */
 };
 
 void reply_list_init(struct reply_list *list, struct block_cache *block_cache)
@@ -90,6 +90,14 @@ bool reply_fill_frame(struct reply *reply, const sheen_Frame *frame, struct enco
     return reply_fill(reply, MESSAGE_FRAME, frame);
 }
 
+bool reply_fill_records(struct reply *reply, uint8_t type, const void *body,
+                        struct encoded *records)
+{
+    reply->encoded = records;
+    reply->request_class = CLASS_BATCH; /* whose output may be unsent for long */
+    return reply_fill(reply, type, body);
+}
+
 void reply_mark_last(struct reply *reply)
 {
     reply->last = true;
@@ -159,7 +167,7 @@ static bool is_due(const struct reply_list *list, const struct reply *reply,
         return false;
     if (list->is_ordered || reply->last)
         return reply == TAILQ_FIRST(&list->replies);
-    if (!reply->encoded)
+    if (!reply->encoded || !reply->asks_frame)
         return true;
     bool is_clear = reply->request_class != CLASS_INTERACTIVE || list->unsent == 0;
     return is_clear && !owed[reply->request_class];

@@ -48,6 +48,10 @@ bool reply_fill(struct reply *reply, uint8_t type, const void *body);
 /* As reply_fill() for a FRAME message and the DATA messages behind it. Takes the ownership of
  * `encoded` in any case. */
 bool reply_fill_frame(struct reply *reply, const sheen_Frame *frame, struct encoded *encoded);
+/* As reply_fill(), with the DATA of `records` behind the message; NULL: none. Takes their ownership in any case.
+ * Frames do not wait for such a reply, nor does it wait for them. */
+bool reply_fill_records(struct reply *reply, uint8_t type, const void *body,
+                        struct encoded *records);
 /* Marks the reply as the last: it is sent after all others, and the connection closes after it. */
 void reply_mark_last(struct reply *reply);
 

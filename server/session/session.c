@@ -81,6 +81,7 @@ static void handle_body(struct session *session, const struct message_header *he
         sheen_UploadBegin upload_begin;
         sheen_ModelQuery model_query;
         sheen_Render render;
+        union compute_asked asked;
     } body;
     if (!message_decode(header->type, bytes, header->length, &body)) {
         char text[MESSAGE_TEXT_BYTES];
@@ -97,8 +98,10 @@ static void handle_body(struct session *session, const struct message_header *he
         session_upload_begin(session, header->seq, &body.upload_begin);
     else if (header->type == MESSAGE_MODEL_QUERY)
         session_query(session, header->seq, &body.model_query);
-    else
+    else if (header->type == MESSAGE_RENDER)
         session_render(session, header->seq, &body.render);
+    else
+        session_compute(session, header->seq, header->type, &body.asked);
 }
 
 /* Reads further input only while there is room for another request and for its reply. */
@@ -151,6 +154,7 @@ static void on_message(void *owner, const struct message_header *header, const u
     case MESSAGE_UPLOAD_BEGIN:
     case MESSAGE_MODEL_QUERY:
     case MESSAGE_RENDER:
+    case MESSAGE_FIND_BREAKS:
         handle_body(session, header, body);
         break;
     default:

@@ -5,6 +5,14 @@
 
 /* From this minor version on the number of an unanswered request must not be used again. */
 enum { MINOR_OF_UNIQUE_NUMBERS = 4 };
+/* The first minor version with computations. */
+enum { MINOR_OF_COMPUTATIONS = 5 };
+
+/* True if the type is a message that asks for a computation. */
+static bool asks_computation(uint8_t type)
+{
+    return type == MESSAGE_FIND_BREAKS;
+}
 
 const char *session_find_disorder(const struct session *session,
                                   const struct message_header *header)
@@ -17,6 +25,8 @@ const char *session_find_disorder(const struct session *session,
         return "a second HELLO";
     if (header->type == MESSAGE_CANCEL)
         return session->minor > 0 ? NULL : "a message of minor version 1";
+    if (asks_computation(header->type) && session->minor < MINOR_OF_COMPUTATIONS)
+        return "a message of minor version 5";
     if (header->type == MESSAGE_UPLOAD_CHUNK && header->seq != session->upload_seq)
         return "no upload of its number is under way";
     if (session->minor >= MINOR_OF_UNIQUE_NUMBERS && header->type != MESSAGE_UPLOAD_CHUNK &&

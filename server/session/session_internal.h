@@ -66,6 +66,9 @@ void session_upload_chunk(struct session *session, uint32_t seq, const uint8_t *
                           size_t length);
 void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery *query);
 void session_render(struct session *session, uint32_t seq, sheen_Render *render);
+/* A request of computed numbers, of this type. */
+void session_compute(struct session *session, uint32_t seq, uint8_t type,
+                     const union compute_asked *asked);
 
 /* --- session_stats.c */
 

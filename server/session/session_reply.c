@@ -64,6 +64,18 @@ static void on_drawn(void *owner, struct reply *reply, enum request_class reques
         after_fill(session, filled);
 }
 
+static void on_computed(void *owner, struct reply *reply, uint8_t type, const void *body,
+                        struct encoded *records)
+{
+    struct session *session = owner;
+    if (records)
+        session->output_class = CLASS_BATCH;
+    count_reply(session, reply, type, sheen_ErrorCode_ERROR_NONE);
+    bool filled = reply_fill_records(reply, type, body, records);
+    if (session_may_send(session))
+        after_fill(session, filled);
+}
+
 static void on_progressed(void *owner, const struct reply *reply, const sheen_Progress *progress)
 {
     struct session *session = owner;
@@ -88,8 +100,8 @@ static bool on_is_sending(void *owner)
     return session_is_sending(owner);
 }
 
-const struct request_events session_request_events = {on_answered, on_refused, on_drawn,
-                                                      on_progressed, on_is_sending};
+const struct request_events session_request_events = {on_answered, on_refused,    on_drawn,
+                                                      on_computed, on_progressed, on_is_sending};
 
 static struct reply *or_close(struct session *session, struct reply *reply)
 {

@@ -169,3 +169,23 @@ void session_query(struct session *session, uint32_t seq, const sheen_ModelQuery
     if (reply)
         request_query(&session->requests, reply, seq, query);
 }
+
+static bool check_asked(uint8_t type, const union compute_asked *asked,
+                        char text[static MESSAGE_TEXT_BYTES])
+{
+    (void)type;
+    return message_check_find_breaks(&asked->find_breaks, text);
+}
+
+void session_compute(struct session *session, uint32_t seq, uint8_t type,
+                     const union compute_asked *asked)
+{
+    char text[MESSAGE_TEXT_BYTES];
+    if (!check_asked(type, asked, text)) {
+        session_reply_error_now(session, seq, sheen_ErrorCode_ERROR_REQUEST, text);
+        return;
+    }
+    struct reply *reply = session_expect_reply(session, seq);
+    if (reply)
+        request_compute(&session->requests, reply, seq, type, asked);
+}

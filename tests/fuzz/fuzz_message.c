@@ -20,6 +20,8 @@ union body {
     sheen_Stats stats;
     sheen_Error error;
     sheen_Superseded superseded;
+    sheen_FindBreaks find_breaks;
+    sheen_Breaks breaks;
 };
 
 static void check_render(const sheen_Render *render)
@@ -44,6 +46,8 @@ static void check(uint8_t type, const union body *body)
     char text[MESSAGE_TEXT_BYTES] = "";
     if (type == MESSAGE_RENDER)
         check_render(&body->render);
+    else if (type == MESSAGE_FIND_BREAKS)
+        MUST(message_check_find_breaks(&body->find_breaks, text) || text[0]);
     else if (type == MESSAGE_UPLOAD_BEGIN)
         MUST(message_check_upload_begin(&body->upload_begin, text) || text[0]);
     else if (type == MESSAGE_MODEL_QUERY)

@@ -18,7 +18,8 @@ SEED = int(os.environ.get("SHEEN_FUZZ_SEED", "7"))
 SECONDS = float(os.environ.get("SHEEN_FUZZ_S", "0"))
 SESSIONS = 150  # without SHEEN_FUZZ_S
 PATIENCE_S = 10
-FINAL = {wire.HELLO_OK, wire.UPLOAD_STATE, wire.MODEL_INFO, wire.STATS, wire.ERROR, wire.SUPERSEDED}
+FINAL = {wire.HELLO_OK, wire.UPLOAD_STATE, wire.MODEL_INFO, wire.STATS, wire.ERROR, wire.SUPERSEDED,
+         wire.BREAKS}
 EDGES = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-30, 1e30, -1e300, 5e-324, float("inf"), float("nan"))
 
 
@@ -27,14 +28,14 @@ class Script:
 
     def __init__(self, noise, models):
         self.noise, self.models = noise, models
-        self.minor = noise.choice((0, 1, 2, 3, 4, 4, 4, 9))
+        self.minor = noise.choice((0, 1, 2, 3, 4, 5, 5, 9))
         self.seq, self.parts, self.answers = 1, [], {1: 1}  # number of a request: number of its answers
         self.is_right = True  # False after an invalid message, whose answers are not predicted
         self.parts.append(wire.hello(1, minor=self.minor))
         in_flight = 4 if self.minor == 0 else 16
         for _ in range(noise.randrange(1, in_flight)):
             noise.choice((self.render, self.render, self.render, self.stats, self.query, self.upload,
-                          self.cancel, self.oddity))()
+                          self.breaks, self.cancel, self.oddity))()
             if not self.is_right:
                 break
 
@@ -91,6 +92,22 @@ class Script:
         if noise.random() < 0.2:
             body += field(40, self.one_of(3)) + field(41, noise.randrange(5))
         self.ask(wire.RENDER, body)
+
+    def breaks(self):
+        """A computation; before 1.5 it breaks the protocol."""
+        noise = self.noise
+        if self.minor < 5 and noise.random() < 0.9:
+            return
+        self.is_right = self.minor >= 5
+        scene = field(1, self.model()) + field(2, 64) + field(3, 48) + field(9, 1) + field(10, 0)
+        for _ in range(noise.choice((0, 0, 1, 2))):
+            scene += self.light()
+        if noise.random() < 0.3:
+            scene += field(6, field(1, self.one_of(5)))
+        if noise.random() < 0.2:
+            scene += field(16, noise.choice((0, 1, 60000)))
+        limits = b"".join(field(number, abs(self.number())) for number in (2, 3, 4) if noise.random() < 0.3)
+        self.ask(wire.FIND_BREAKS, field(1, scene) + limits)
 
     def stats(self):
         self.ask(wire.STATS_QUERY, b"")
@@ -202,9 +219,11 @@ class Sequences(unittest.TestCase):
             magic, major, kind, flags, length, seq = struct.unpack("<4sBBHII", header)
             self.assertEqual((magic, major), (wire.MAGIC, 1))
             body = client.read(length)
-            if kind == wire.FRAME:
+            size = wire.decode(body)[{wire.FRAME: 5, wire.BREAKS: 1}[kind]][0] \
+                if kind in (wire.FRAME, wire.BREAKS) else 0
+            if size > 0:
                 self.assertNotIn(seq, left)
-                left[seq] = wire.decode(body)[5][0]
+                left[seq] = size
             elif kind == wire.DATA:
                 left[seq] -= length
                 if flags & 1:

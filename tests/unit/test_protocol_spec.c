@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "protocol/break_records.h"
 #include "protocol/codec.h"
 #include "protocol/message.h"
 #include "protocol/ranges.h"
@@ -34,6 +35,8 @@ static void same_message(uint8_t type, uint32_t seq, const void *body, const uin
         sheen_Stats stats;
         sheen_Error error;
         sheen_Superseded superseded;
+        sheen_FindBreaks find_breaks;
+        sheen_Breaks breaks;
     } decoded;
     assert_int_equal(message_header_decode(&header, bytes), HEADER_OK);
     assert_int_equal(header.type, type);
@@ -324,6 +327,88 @@ static void check_data(const uint8_t *bytes, size_t size)
     assert_memory_equal(colour, "\xff\xff\xff\xff\x00\x00\x00\x00", 8);
 }
 
+static void check_find_breaks(const uint8_t *bytes, size_t size)
+{
+    sheen_FindBreaks asked = {.scene = least_render(sheen_Encoding_ENCODING_PNG),
+                              .has_angle_deg = true,
+                              .angle_deg = 0.05};
+    same_message(MESSAGE_FIND_BREAKS, 12, &asked, bytes, size);
+}
+
+static void check_breaks(const uint8_t *bytes, size_t size)
+{
+    const sheen_Breaks breaks = {.data_bytes = 336,
+                                 .edges = 1,
+                                 .vertices = 1,
+                                 .edges_out = 1,
+                                 .gap = 1e-5,
+                                 .angle_deg = 0.05,
+                                 .curvature_percent = 10,
+                                 .creases = 1,
+                                 .creases_length = 0.5,
+                                 .out_length = 0.5,
+                                 .diagonal = 1,
+                                 .total_us = 1500,
+                                 .camera = CAMERA,
+                                 .lights_count = 1,
+                                 .lights = {{.has_centre = true,
+                                             .centre = {0, 0, 4},
+                                             .has_u = true,
+                                             .u = {4, 0, 0},
+                                             .has_v = true,
+                                             .v = {0, 4, 0},
+                                             .has_pattern = true,
+                                             .pattern = {.kind = sheen_PatternKind_PATTERN_STRIPES,
+                                                         .has_count = true,
+                                                         .count = 20}}},
+                                 .server = "0.1.0"};
+    char text[MESSAGE_TEXT_BYTES];
+    same_message(MESSAGE_BREAKS, 12, &breaks, bytes, size);
+    assert_true(message_check_answer(MESSAGE_BREAKS, &breaks, text));
+}
+
+/* The two records of the answer above. */
+static void check_break_records(const uint8_t *bytes, size_t size)
+{
+    const struct break_edge edge = {.face = {0, 5},
+                                    .edge = {2, 1},
+                                    .kind = BREAK_CREASE,
+                                    .over = 1 << BREAK_ANGLE,
+                                    .kink_light = 0,
+                                    .jump_light = 0,
+                                    .has_dart = true,
+                                    .length = 0.5,
+                                    .out_length = 0.5,
+                                    .worst = {{0, 0, {0, 0, 0}},
+                                              {30, 0.25, {0.5, 0, 1}},
+                                              {0, 0, {0, 0, 0}},
+                                              {0, 0, {0, 0, 0}},
+                                              {12.5, 0.5, {0.5, 0.25, 1}},
+                                              {1.5, 1, {0.5, 0.5, 1}}},
+                                    .shift = 0.125};
+    const struct break_vertex vertex = {.face = 3,
+                                        .corner = 2,
+                                        .is_inside = true,
+                                        .n_faces = 3,
+                                        .radius = 0.015625,
+                                        .k_least = -2,
+                                        .k_greatest = -1.5,
+                                        .point = {1, 2, 3}};
+    uint8_t packed[BREAK_EDGE_BYTES + BREAK_VERTEX_BYTES];
+    struct break_edge edge_read;
+    struct break_vertex vertex_read;
+    assert_int_equal(size, sizeof packed);
+    break_edge_pack(&edge, packed);
+    break_vertex_pack(&vertex, packed + BREAK_EDGE_BYTES);
+    assert_memory_equal(packed, bytes, size);
+    assert_true(break_edge_unpack(bytes, &edge_read));
+    assert_true(break_vertex_unpack(bytes + BREAK_EDGE_BYTES, &vertex_read));
+    assert_memory_equal(edge_read.worst, edge.worst, sizeof edge.worst);
+    break_edge_pack(&edge_read, packed);
+    break_vertex_pack(&vertex_read, packed + BREAK_EDGE_BYTES);
+    assert_memory_equal(packed, bytes, size);
+}
+
 /* Another version of zstd may compress differently: so the example is unpacked, and its pixels,
  * packed anew, must unpack to the same pixels. */
 static void check_zstd_data(const uint8_t *bytes, size_t size)
@@ -419,6 +504,9 @@ static const struct {
     {"stats-query", check_stats_query},
     {"stats", check_stats},
     {"error", check_error},
+    {"find-breaks", check_find_breaks},
+    {"breaks", check_breaks},
+    {"break-records", check_break_records},
 };
 #define N_EXAMPLES (sizeof(EXAMPLES) / sizeof(*EXAMPLES))
 

@@ -374,6 +374,40 @@ static void test_frames_wait_for_frames_of_their_class(void **state)
     assert_int_equal(f->replies.n, 0);
 }
 
+/* The records of a computation leave at once, although an earlier frame of each class is owed, and later frames do not
+ * wait for the records. */
+static void test_records_and_frames_do_not_wait_for_each_other(void **state)
+{
+    struct fixture *f = *state;
+    static uint8_t body[PROTOCOL_MAX_DATA_BYTES];
+    const sheen_Superseded answer = {.by = 7};
+    f->replies.is_ordered = false;
+    struct reply *frame = reply_expect_frame(&f->replies, 1, CLASS_BATCH);
+    struct reply *records = reply_expect(&f->replies, 2), *late = reply_expect(&f->replies, 3);
+    struct reply *other = reply_expect_frame(&f->replies, 4, CLASS_STILL);
+    uint8_t *bytes = malloc(5);
+    memcpy(bytes, "12345", 5);
+    assert_true(
+        reply_fill_records(records, MESSAGE_SUPERSEDED, &answer, encoded_of(NULL, bytes, 5)));
+    reply_send_due(&f->replies, &f->conn);
+    assert_int_equal(read_header(f, body, sizeof body).seq, 2);
+    struct message_header header = read_header(f, body, sizeof body);
+    assert_int_equal(header.type, MESSAGE_DATA);
+    assert_int_equal(header.flags, MESSAGE_END);
+    assert_int_equal(header.length, 5);
+    assert_memory_equal(body, "12345", 5);
+    assert_true(reply_fill(other, MESSAGE_SUPERSEDED, &answer));
+    reply_send_due(&f->replies, &f->conn);
+    assert_int_equal(read_header(f, body, sizeof body).seq, 4);
+    /* Without records there is no DATA. */
+    assert_true(reply_fill_records(late, MESSAGE_SUPERSEDED, &answer, NULL));
+    assert_true(reply_fill(frame, MESSAGE_SUPERSEDED, &answer));
+    reply_send_due(&f->replies, &f->conn);
+    assert_int_equal(read_header(f, body, sizeof body).seq, 1);
+    assert_int_equal(read_header(f, body, sizeof body).seq, 3);
+    expect_silence(f);
+}
+
 static void test_nothing_after_the_last(void **state)
 {
     struct fixture *f = *state;
@@ -424,6 +458,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_frame_is_cut_into_data, setup, teardown),
         cmocka_unit_test_setup_teardown(test_order_of_requests, setup, teardown),
         cmocka_unit_test_setup_teardown(test_frames_wait_for_frames_of_their_class, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(test_records_and_frames_do_not_wait_for_each_other, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(test_nothing_after_the_last, setup, teardown),
         cmocka_unit_test_setup_teardown(test_closed_with_a_frame_unsent, setup, teardown),
