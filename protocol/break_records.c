@@ -36,7 +36,7 @@ static double take_double(const uint8_t **from)
     return value;
 }
 
-void break_edge_pack(const struct break_edge *edge, uint8_t bytes[static BREAK_EDGE_BYTES])
+void break_edge_pack(const struct break_edge *edge, uint8_t bytes[BREAK_EDGE_BYTES])
 {
     uint8_t *to = bytes;
     for (int side = 0; side < 2; side++)
@@ -76,7 +76,7 @@ static bool is_worst(const struct break_worst *worst)
            (is_length(worst->value) && worst->at >= 0 && worst->at <= 1 && is_point(worst->point));
 }
 
-bool break_edge_unpack(const uint8_t bytes[static BREAK_EDGE_BYTES], struct break_edge *edge)
+bool break_edge_unpack(const uint8_t bytes[BREAK_EDGE_BYTES], struct break_edge *edge)
 {
     const uint8_t *from = bytes;
     for (int side = 0; side < 2; side++)
@@ -108,7 +108,7 @@ bool break_edge_unpack(const uint8_t bytes[static BREAK_EDGE_BYTES], struct brea
            is_length(edge->out_length) && (isnan(edge->shift) || is_length(edge->shift));
 }
 
-void break_vertex_pack(const struct break_vertex *vertex, uint8_t bytes[static BREAK_VERTEX_BYTES])
+void break_vertex_pack(const struct break_vertex *vertex, uint8_t bytes[BREAK_VERTEX_BYTES])
 {
     uint8_t *to = put(bytes, vertex->face, 4);
     to = put(to, vertex->corner, 1);
@@ -120,8 +120,7 @@ void break_vertex_pack(const struct break_vertex *vertex, uint8_t bytes[static B
         to = put_double(to, vertex->point[k]);
 }
 
-bool break_vertex_unpack(const uint8_t bytes[static BREAK_VERTEX_BYTES],
-                         struct break_vertex *vertex)
+bool break_vertex_unpack(const uint8_t bytes[BREAK_VERTEX_BYTES], struct break_vertex *vertex)
 {
     const uint8_t *from = bytes;
     vertex->face = (uint32_t)take(&from, 4);

@@ -59,11 +59,10 @@ struct break_vertex {
     double point[3];
 };
 
-void break_edge_pack(const struct break_edge *edge, uint8_t bytes[static BREAK_EDGE_BYTES]);
-void break_vertex_pack(const struct break_vertex *vertex, uint8_t bytes[static BREAK_VERTEX_BYTES]);
+void break_edge_pack(const struct break_edge *edge, uint8_t bytes[BREAK_EDGE_BYTES]);
+void break_vertex_pack(const struct break_vertex *vertex, uint8_t bytes[BREAK_VERTEX_BYTES]);
 /* False if a value is none that a server may send: then *edge or *vertex is undefined. */
-bool break_edge_unpack(const uint8_t bytes[static BREAK_EDGE_BYTES], struct break_edge *edge);
-bool break_vertex_unpack(const uint8_t bytes[static BREAK_VERTEX_BYTES],
-                         struct break_vertex *vertex);
+bool break_edge_unpack(const uint8_t bytes[BREAK_EDGE_BYTES], struct break_edge *edge);
+bool break_vertex_unpack(const uint8_t bytes[BREAK_VERTEX_BYTES], struct break_vertex *vertex);
 
 #endif

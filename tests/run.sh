@@ -178,6 +178,7 @@ oracle() {
     beside sectors "$build/tests/test_sectors"
     beside line_position "$build/tests/test_line_position"
     beside comparison "$build/tests/test_comparison" $(shapes_of 'catmark_car.obj')
+    beside breaks "$build/tests/test_breaks"
     beside random_cages "$build/tests/test_random_cages"
     car=$shapes/catmark_car.obj
     [ -f "$car" ] || car=tests/models/creases.obj

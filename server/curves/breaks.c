@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/curves/breaks_joints.h"
+#include "server/curves/computation.h"
 #include "server/curves/breaks_measure.h"
 
 enum { PHASE_BORDERS, PHASE_EDGES, PHASE_VERTICES, PHASE_SORTING };
@@ -23,7 +24,7 @@ struct breaks {
     size_t n_joints;
     struct break_edge *edges;      /* [list.n_creases + n_joints]; length 0: not measured */
     struct break_vertex *vertices; /* [list.n_sectors]; n_faces 0: not measured */
-    struct breaks_result result;
+    struct breaks_found result;
 };
 
 static bool no_memory(struct error *error)
@@ -253,7 +254,7 @@ struct computation *breaks_create(const struct limit_tables *tables,
     return &breaks->base;
 }
 
-struct breaks_result breaks_result(const struct computation *computation)
+struct breaks_found breaks_result(const struct computation *computation)
 {
     return ((const struct breaks *)computation)->result;
 }

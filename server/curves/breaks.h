@@ -8,9 +8,10 @@
 
 #include "protocol/break_records.h"
 #include "server/curves/break_limits.h"
-#include "server/curves/computation.h"
 #include "server/scene/scene.h"
 #include "server/surface/tables.h"
+
+struct computation; /* computation.h */
 
 /* The lines that kinks and jumps are those of. */
 struct break_lines {
@@ -28,7 +29,7 @@ struct break_counts {
     double creases_length, borders_length, out_length;
 };
 
-struct breaks_result {
+struct breaks_found {
     struct break_counts counts;
     const struct break_edge *edges; /* the worst first; those over a limit before all others */
     size_t n_edges;
@@ -45,6 +46,6 @@ struct computation *breaks_create(const struct limit_tables *tables,
                                   const struct break_lines *lines,
                                   const struct break_limits *limits, struct error *error);
 /* After the last phase. Valid until the computation is destroyed. */
-struct breaks_result breaks_result(const struct computation *computation);
+struct breaks_found breaks_result(const struct computation *computation);
 
 #endif

@@ -14,7 +14,7 @@ static const double FLAT = 1e-3;
 /* The ring on which the curvature around a vertex is measured, in parts of a face. */
 static const double RING = 1.0 / 64;
 
-enum { N_GAUSS = 8, N_PLACES = N_GAUSS + 2, GOLDEN_STEPS = 18, RING_PLACES = 9 };
+enum { N_GAUSS = 8, N_END = 3, N_PLACES = N_GAUSS + 2 * N_END, GOLDEN_STEPS = 18, RING_PLACES = 9 };
 /* Places and weights of Gauss and Legendre on [-1, 1]; the other half by symmetry. */
 static const double GAUSS_AT[N_GAUSS / 2] = {0.1834346424956498, 0.5255324099163290,
                                              0.7966664774136267, 0.9602898564975363};
@@ -338,46 +338,81 @@ static double part_above_1(double a, double b)
     return a > 1 && b > 1 ? 1 : (fmax(a, b) - 1) / fabs(a - b);
 }
 
-/* The two ends and the Gauss places between them. */
+/* The Gauss places, and places near the ends, where curvature grows fast beside an extraordinary vertex. Ascending. */
 static double place_at(int i)
 {
-    return i == 0 ? 0 : i == N_PLACES - 1 ? 1 : gauss_at(i - 1);
+    static const double end[N_END] = {0, LEAST_AT, 4 * LEAST_AT};
+    return i < N_END              ? end[i]
+           : i < N_PLACES - N_END ? gauss_at(i - N_END)
+                                  : 1 - end[N_PLACES - 1 - i];
 }
 
-/* Samples an edge: the worst of these places for each measure (`at_worst`), and the length that is out of
- * tolerance. False if no place can be measured. */
+/* What an edge is measured as at all places; `any` is false where it cannot be measured. */
+struct sampled {
+    struct both at[N_PLACES];
+    bool any[N_PLACES];
+};
+
+/* Samples an edge: keeps the worst of all places. False if no place can be measured. */
 static bool sample(const struct break_setup *setup, const struct surface_edge *edge,
-                   struct break_edge *out, int at_worst[BREAK_MEASURES])
+                   struct break_edge *out, struct sampled *sampled)
 {
-    struct both before = {.speed = 0}, both;
-    double severity_before = -1;
     bool any = false;
     for (int i = 0; i < N_PLACES; i++) {
-        double severity = -1;
-        if (measure_at(setup, edge, place_at(i), out->length, &both)) {
-            any = true;
-            severity = severity_of(&setup->limits, both.value[BREAK_GAP], both.value[BREAK_ANGLE],
-                                   both.value[BREAK_PERCENT]);
-            for (int m = 0; m < BREAK_MEASURES; m++) {
-                double last = out->worst[m].value;
-                keep_worst(out, m, place_at(i), &both);
-                at_worst[m] = !(out->worst[m].value <= last) ? i : at_worst[m];
-            }
-        }
-        if (severity >= 0 && severity_before >= 0) {
-            double length = (place_at(i) - place_at(i - 1)) * 0.5 * (before.speed + both.speed);
-            out->out_length += length * part_above_1(severity_before, severity);
-        }
-        severity_before = severity;
-        before = both;
+        sampled->any[i] = measure_at(setup, edge, place_at(i), out->length, &sampled->at[i]);
+        for (int m = 0; m < BREAK_MEASURES && sampled->any[i]; m++)
+            keep_worst(out, m, place_at(i), &sampled->at[i]);
+        any = any || sampled->any[i];
     }
     return any;
+}
+
+/* The length that is out of tolerance. */
+static double out_length(const struct break_setup *setup, const struct sampled *sampled)
+{
+    double length = 0, last = 0;
+    for (int i = 0; i < N_PLACES; i++) {
+        const struct both *at = &sampled->at[i];
+        if (!sampled->any[i])
+            continue;
+        double severity = severity_of(&setup->limits, at->value[BREAK_GAP], at->value[BREAK_ANGLE],
+                                      at->value[BREAK_PERCENT]);
+        if (i > 0 && sampled->any[i - 1])
+            length += (place_at(i) - place_at(i - 1)) * 0.5 * (at[-1].speed + at->speed) *
+                      part_above_1(last, severity);
+        last = severity;
+    }
+    return length;
+}
+
+/* The value of a measure at a place; below all others where there is none. */
+static double sampled_value(const struct sampled *sampled, int measure, int i)
+{
+    bool has = i >= 0 && i < N_PLACES && sampled->any[i] && !isnan(sampled->at[i].value[measure]);
+    return has ? sampled->at[i].value[measure] : -1;
+}
+
+/* Looks for the worst place about each local maximum of the samples that could hold it. */
+static void refine_all(const struct break_setup *setup, const struct surface_edge *edge,
+                       const struct sampled *sampled, struct break_edge *out)
+{
+    for (int m = 0; m < BREAK_MEASURES; m++) {
+        const double least = out->worst[m].value / 2; /* a peak between samples is rarely higher */
+        for (int i = 0; i < N_PLACES; i++) {
+            double value = sampled_value(sampled, m, i);
+            bool is_peak = value > 0 && value >= sampled_value(sampled, m, i - 1) &&
+                           value >= sampled_value(sampled, m, i + 1);
+            if (is_peak && value >= least)
+                refine(setup, edge, m, place_at(i > 0 ? i - 1 : 0),
+                       place_at(i < N_PLACES - 1 ? i + 1 : i), out);
+        }
+    }
 }
 
 bool breaks_measure_edge(const struct break_setup *setup, const struct surface_edge *edge,
                          uint8_t kind, struct break_edge *out)
 {
-    int at_worst[BREAK_MEASURES] = {0};
+    struct sampled sampled;
     *out = (struct break_edge){.face = {edge->face[0], edge->face[1]},
                                .edge = {edge->edge[0], edge->edge[1]},
                                .kind = kind,
@@ -386,16 +421,12 @@ bool breaks_measure_edge(const struct break_setup *setup, const struct surface_e
     for (int m = 0; m < BREAK_MEASURES; m++)
         out->worst[m] = (struct break_worst){NAN, NAN, {NAN, NAN, NAN}};
     out->length = length_of(setup->tables, edge->face[0], edge->edge[0]);
-    if (!(out->length > 0) || !sample(setup, edge, out, at_worst))
+    if (!(out->length > 0) || !sample(setup, edge, out, &sampled))
         return false;
-    for (int m = 0; m < BREAK_MEASURES; m++)
-        if (out->worst[m].value > 0)
-            refine(setup, edge, m, place_at(at_worst[m] > 0 ? at_worst[m] - 1 : 0),
-                   place_at(at_worst[m] < N_PLACES - 1 ? at_worst[m] + 1 : N_PLACES - 1), out);
-    if (kind == BREAK_SEMISHARP) {
-        out->out_length = 0;
+    refine_all(setup, edge, &sampled, out);
+    if (kind == BREAK_SEMISHARP)
         return true;
-    }
+    out->out_length = out_length(setup, &sampled);
     out->out_length = fmin(out->out_length, out->length);
     out->over = (uint8_t)((out->worst[BREAK_GAP].value > setup->limits.gap) << BREAK_GAP |
                           (out->worst[BREAK_ANGLE].value > setup->limits.angle_deg) << BREAK_ANGLE |

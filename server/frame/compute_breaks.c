@@ -49,7 +49,7 @@ static struct computation *create(const struct compute *compute, struct error *e
     return breaks_create(compute->tables[0], &lines, &limits, error);
 }
 
-static bool pack_records(struct compute *compute, const struct breaks_result *result,
+static bool pack_records(struct compute *compute, const struct breaks_found *result,
                          struct error *error)
 {
     compute->records_bytes =
@@ -70,7 +70,7 @@ static bool pack_records(struct compute *compute, const struct breaks_result *re
 
 static bool pack(struct compute *compute, struct error *error)
 {
-    const struct breaks_result result = breaks_result(compute->computation);
+    const struct breaks_found result = breaks_result(compute->computation);
     const struct break_limits limits = limits_of(compute);
     const struct break_counts *counts = &result.counts;
     const struct frame_request *scene = &compute->scene;

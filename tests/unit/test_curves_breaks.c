@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "server/curves/breaks.h"
+#include "server/curves/computation.h"
 #include "tests/unit/cage_tables.h"
 
 /* A light in the plane z = 30, and an eye that sees the surface from obliquely above. */
@@ -94,7 +95,7 @@ static void build_joint(const struct quadratic *left, const struct quadratic *ri
     build(text, (size_t)used, tables);
 }
 
-static const struct break_worst *worst(const struct breaks_result *result, size_t i,
+static const struct break_worst *worst(const struct breaks_found *result, size_t i,
                                        enum break_measure measure)
 {
     return &result->edges[i].worst[measure];
@@ -110,7 +111,7 @@ static void a_fold_has_its_angle(void **state)
         struct limit_tables tables;
         build_fold(angles[i], 3, 3, 10, &tables);
         struct computation *computation = find(&tables);
-        const struct breaks_result result = breaks_result(computation);
+        const struct breaks_found result = breaks_result(computation);
         assert_int_equal(result.n_edges, 3);
         assert_int_equal(result.counts.creases, 3);
         for (size_t k = 0; k < 3; k++) {
@@ -136,7 +137,7 @@ static void a_smooth_sheet_has_no_edges(void **state)
     struct limit_tables tables;
     build_fold(0.5, 3, 0, 0, &tables);
     struct computation *computation = find(&tables);
-    const struct breaks_result result = breaks_result(computation);
+    const struct breaks_found result = breaks_result(computation);
     assert_int_equal(result.n_edges, 0);
     assert_int_equal(result.counts.borders, 14);
     assert_int_equal(result.n_vertices, 4); /* its corners, where the border is round */
@@ -151,7 +152,7 @@ static void a_dart_ends_a_crease(void **state)
     struct limit_tables tables;
     build_fold(0.5, 4, 2, 10, &tables);
     struct computation *computation = find(&tables);
-    const struct breaks_result result = breaks_result(computation);
+    const struct breaks_found result = breaks_result(computation);
     assert_int_equal(result.n_edges, 2);
     size_t dart = result.edges[0].has_dart ? 0 : 1, other = 1 - dart;
     assert_true(result.edges[dart].has_dart && !result.edges[other].has_dart);
@@ -175,7 +176,7 @@ static void a_semisharp_crease_is_no_break(void **state)
     for (int sharpness = 1; sharpness <= 6; sharpness++) {
         build_fold(0.5, 3, 3, sharpness, &tables);
         struct computation *computation = find(&tables);
-        const struct breaks_result result = breaks_result(computation);
+        const struct breaks_found result = breaks_result(computation);
         assert_int_equal(result.n_edges, 3);
         assert_int_equal(result.counts.semisharp, 3);
         for (size_t k = 0; k < 3; k++) {
@@ -213,7 +214,7 @@ static void a_joint_has_its_curvature_jump(void **state)
         struct limit_tables tables;
         build_joint(left, right, i & 1, &tables);
         struct computation *computation = find(&tables);
-        const struct breaks_result result = breaks_result(computation);
+        const struct breaks_found result = breaks_result(computation);
         assert_int_equal(result.n_edges, 1);
         assert_int_equal(result.edges[0].kind, BREAK_JOINT);
         assert_int_equal(result.counts.joints, 1);
@@ -252,7 +253,7 @@ static void a_joint_has_its_gap(void **state)
         struct limit_tables tables;
         build_joint(&left, &right, false, &tables);
         struct computation *computation = find(&tables);
-        const struct breaks_result result = breaks_result(computation);
+        const struct breaks_found result = breaks_result(computation);
         if (gaps[i] > 10 * LIMITS.gap) { /* too far apart to be one edge */
             assert_int_equal(result.n_edges, 0);
         } else {
@@ -283,7 +284,7 @@ static void pages_of_a_book(void **state)
     struct limit_tables tables;
     build(text, (size_t)used, &tables);
     struct computation *computation = find(&tables);
-    const struct breaks_result result = breaks_result(computation);
+    const struct breaks_found result = breaks_result(computation);
     assert_int_equal(result.counts.borders, 12);
     assert_int_equal(result.n_edges, 3);
     unsigned seen = 0;
@@ -372,7 +373,7 @@ static void kinks_by_the_formula(void **state)
         struct limit_tables tables;
         build_joint(&left, &right, false, &tables);
         struct computation *computation = find(&tables);
-        const struct breaks_result result = breaks_result(computation);
+        const struct breaks_found result = breaks_result(computation);
         assert_int_equal(result.n_edges, 1);
         const struct break_worst *kink = worst(&result, 0, BREAK_KINK);
         struct vec a = line_on(&left, 0, kink->point[1]), b = line_on(&right, 0, kink->point[1]);
@@ -401,7 +402,7 @@ static void a_fold_makes_lines_jump(void **state)
     const double angle = 0.01;
     build_fold(angle, 3, 3, 10, &tables);
     struct computation *computation = find(&tables);
-    const struct breaks_result result = breaks_result(computation);
+    const struct breaks_found result = breaks_result(computation);
     for (size_t k = 0; k < result.n_edges; k++) {
         const struct break_worst *jump = worst(&result, k, BREAK_JUMP);
         struct vec p = vec_of(jump->point), up = {0, 0, 1}, turned = {-sin(angle), 0, cos(angle)};
@@ -433,7 +434,7 @@ static void vertices_of_a_cube(void **state)
     struct limit_tables tables;
     build(CUBE, sizeof CUBE - 1, &tables);
     struct computation *computation = find(&tables);
-    const struct breaks_result result = breaks_result(computation);
+    const struct breaks_found result = breaks_result(computation);
     assert_int_equal(result.n_vertices, 8);
     for (size_t i = 0; i < 8; i++) {
         const struct break_vertex *vertex = &result.vertices[i];
@@ -469,7 +470,7 @@ static void the_order_of_slices_changes_nothing(void **state)
     build_fold(0.3, 20, 20, 10, &tables);
     struct computation *forwards = find(&tables), *backwards = start(&tables, &LIMITS);
     run_backwards(backwards);
-    const struct breaks_result a = breaks_result(forwards), b = breaks_result(backwards);
+    const struct breaks_found a = breaks_result(forwards), b = breaks_result(backwards);
     assert_int_equal(a.n_edges, 20);
     assert_int_equal(b.n_edges, 20);
     for (size_t i = 0; i < 20; i++) {
@@ -506,7 +507,7 @@ static void edges_are_sorted(void **state)
     struct limit_tables tables;
     build_fold(0.4, 6, 4, 10, &tables);
     struct computation *computation = find(&tables);
-    const struct breaks_result result = breaks_result(computation);
+    const struct breaks_found result = breaks_result(computation);
     assert_int_equal(result.n_edges, 4);
     assert_int_equal(result.counts.edges_out, 4);
     double length = 0;
