@@ -84,7 +84,7 @@ SURFACE_SRC := $(wildcard server/surface/*.c server/surface/topology/*.c server/
 # Converts between messages and scenes: only for programs that speak the protocol.
 CONVERT_SRC := $(wildcard server/scene/scene_convert*.c)
 SCENE_SRC := $(filter-out $(CONVERT_SRC),$(wildcard server/scene/*.c))
-CURVES_SRC := $(wildcard server/curves/*.c)
+CURVES_SRC := $(wildcard server/curves/*.c server/curves/*/*.c)
 RENDER_SRC := $(wildcard server/render/*.c server/render/gl/*.c server/render/gl/*/*.c server/render/native/*.c server/render/native/frame/*.c server/render/native/clip/*.c server/render/native/polygons/*.c server/render/native/rays/*.c)
 # These sources are compiled once for each instruction set: its name, its lanes, and its compiler flags.
 LANES_SRC := $(wildcard server/render/native/lanes/*.c)

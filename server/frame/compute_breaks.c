@@ -4,7 +4,7 @@
 
 #include "protocol/break_records.h"
 #include "server/base/clock.h"
-#include "server/curves/breaks.h"
+#include "server/curves/breaks/breaks.h"
 #include "server/frame/compute.h"
 #include "server/scene/scene_convert.h"
 

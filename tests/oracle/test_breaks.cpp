@@ -16,7 +16,7 @@
 #include "tests/oracle/verdict.h"
 
 extern "C" {
-#include "server/curves/breaks.h"
+#include "server/curves/breaks/breaks.h"
 bool computation_run(struct computation *computation, struct error *error);
 void computation_destroy(struct computation *computation);
 }

@@ -1,4 +1,4 @@
-/* test_comparison [CAR.obj]: server/curves/comparison.h against closed forms: equal surfaces from different files, parallel
+/* test_comparison [CAR.obj]: server/curves/compare/comparison.h against closed forms: equal surfaces from different files, parallel
  * surfaces, a moved vertex, a rotated body, a missing face; and pairs with changes of known size around the limits. */
 #include <algorithm>
 #include <atomic>
@@ -16,7 +16,7 @@
 
 using std::atomic_bool; /* what <stdatomic.h> gives C */
 extern "C" {
-#include "server/curves/comparison.h"
+#include "server/curves/compare/comparison.h"
 #include "server/surface/subdivision/build.h"
 }
 

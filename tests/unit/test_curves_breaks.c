@@ -3,7 +3,7 @@
  * are judged by tests/oracle/test_breaks.cpp. */
 #include <string.h>
 
-#include "server/curves/breaks.h"
+#include "server/curves/breaks/breaks.h"
 #include "server/curves/computation.h"
 #include "tests/unit/cage_tables.h"
 

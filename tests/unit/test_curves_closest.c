@@ -1,6 +1,6 @@
 /* Counterparts of random points against a search through fine triangles of every face: no triangle may show a hit that
  * is nearer, and what is found must lie on the surface and on the line. */
-#include "server/curves/closest.h"
+#include "server/curves/compare/closest.h"
 #include "tests/unit/cage_tables.h"
 
 enum { GRID = 16, POINTS = 120 };

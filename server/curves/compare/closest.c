@@ -1,4 +1,4 @@
-#include "server/curves/closest.h"
+#include "server/curves/compare/closest.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "server/curves/comparison_parts.h"
+#include "server/curves/compare/parts.h"
 
 /* Enters a sample in a list that is sorted by magnitude, worst first. */
 static void enter_worst(struct worst_sample *list, size_t room, const struct worst_sample *sample)

@@ -1,4 +1,4 @@
-#include "server/curves/samples.h"
+#include "server/curves/compare/samples.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "server/curves/breaks_measure.h"
+#include "server/curves/breaks/measure.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "server/curves/kept_surface.h"
+#include "server/curves/compare/kept_surface.h"
 
 #include <math.h>
 #include <stdlib.h>

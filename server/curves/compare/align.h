@@ -2,10 +2,10 @@
  * 1992), trimmed. Each round pairs samples of the moved surface with their counterparts, leaves out the tenth with the
  * largest distances, and solves for the motion to which first order makes the sum of squared distances along the
  * normals least. Directions in which the surface can slide along itself are not moved in. */
-#ifndef SHEEN_CURVES_ALIGN_H
-#define SHEEN_CURVES_ALIGN_H
+#ifndef SHEEN_CURVES_COMPARE_ALIGN_H
+#define SHEEN_CURVES_COMPARE_ALIGN_H
 
-#include "server/curves/closest.h"
+#include "server/curves/compare/closest.h"
 
 enum { ALIGN_PAIRS = 20000, ALIGN_PAIRS_OF_SLICE = 250, ALIGN_ROUNDS = 10 };
 

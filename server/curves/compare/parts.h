@@ -1,11 +1,11 @@
 /* What the files of the comparison share. Private to them. */
-#ifndef SHEEN_CURVES_COMPARISON_PARTS_H
-#define SHEEN_CURVES_COMPARISON_PARTS_H
+#ifndef SHEEN_CURVES_COMPARE_PARTS_H
+#define SHEEN_CURVES_COMPARE_PARTS_H
 
-#include "server/curves/align.h"
-#include "server/curves/closest.h"
-#include "server/curves/comparison.h"
-#include "server/curves/samples.h"
+#include "server/curves/compare/align.h"
+#include "server/curves/compare/closest.h"
+#include "server/curves/compare/comparison.h"
+#include "server/curves/compare/samples.h"
 
 /* The worst samples that are refined for each measure, one of each leaf; and how many of them a slice keeps. */
 enum { WORST = 32, WORST_OF_SLICE = 8 };

@@ -1,4 +1,4 @@
-#include "server/curves/surface_tree.h"
+#include "server/curves/compare/surface_tree.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* The limits of breaks. Plain data. */
-#ifndef SHEEN_CURVES_BREAK_LIMITS_H
-#define SHEEN_CURVES_BREAK_LIMITS_H
+#ifndef SHEEN_CURVES_BREAKS_BREAK_LIMITS_H
+#define SHEEN_CURVES_BREAKS_BREAK_LIMITS_H
 
 /* An edge is out of tolerance where it exceeds one of these. All are above 0. */
 struct break_limits {

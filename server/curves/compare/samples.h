@@ -1,10 +1,10 @@
 /* How many samples each part of a surface gets: about equally many for each unit of area, and a least number for each
  * patch. A sample stands for a rectangle of a leaf, and lies in its middle. Plain data of one thread; read-only
  * afterwards. */
-#ifndef SHEEN_CURVES_SAMPLES_H
-#define SHEEN_CURVES_SAMPLES_H
+#ifndef SHEEN_CURVES_COMPARE_SAMPLES_H
+#define SHEEN_CURVES_COMPARE_SAMPLES_H
 
-#include "server/curves/kept_surface.h"
+#include "server/curves/compare/kept_surface.h"
 
 struct surface_samples {
     const struct kept_surface *surface;

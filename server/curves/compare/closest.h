@@ -1,9 +1,9 @@
 /* The counterpart of a point on another surface: where the line along the point's normal meets that surface, nearest
  * to the point; where it misses, the nearest point. Pure, any thread, cannot fail. */
-#ifndef SHEEN_CURVES_CLOSEST_H
-#define SHEEN_CURVES_CLOSEST_H
+#ifndef SHEEN_CURVES_COMPARE_CLOSEST_H
+#define SHEEN_CURVES_COMPARE_CLOSEST_H
 
-#include "server/curves/surface_tree.h"
+#include "server/curves/compare/surface_tree.h"
 
 struct closest_rules {
     /* 1; or -1 where the other surface is wound the other way around as a whole. Surface whose normal, multiplied by

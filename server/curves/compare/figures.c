@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "server/curves/comparison_parts.h"
+#include "server/curves/compare/parts.h"
 
 struct weighted {
     float value, weight;

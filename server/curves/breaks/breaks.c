@@ -1,12 +1,12 @@
-#include "server/curves/breaks.h"
+#include "server/curves/breaks/breaks.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/curves/breaks_joints.h"
+#include "server/curves/breaks/joints.h"
 #include "server/curves/computation.h"
-#include "server/curves/breaks_measure.h"
+#include "server/curves/breaks/measure.h"
 
 enum { PHASE_BORDERS, PHASE_EDGES, PHASE_VERTICES, PHASE_SORTING };
 static const char *const STAGES[] = {"borders", "edges", "vertices", "sorting", NULL};

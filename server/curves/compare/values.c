@@ -1,7 +1,7 @@
 /* The measures at one place: README.md, "Comparing two surfaces". */
 #include <math.h>
 
-#include "server/curves/comparison_parts.h"
+#include "server/curves/compare/parts.h"
 
 /* Rays closer than this to a direction in which s has no value do not count: there the lines of any light run together
  * to a point, and no change is so small that it would not move them. A sine: 3 degrees. */

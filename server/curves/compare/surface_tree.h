@@ -5,10 +5,10 @@
  * how many pieces there are; surface_tree_allocate(); surface_tree_fill() for each leaf; surface_tree_split();
  * surface_tree_sort() for each subtree; surface_tree_join(). Steps for leaves and subtrees may run at the same time;
  * the others are one thread's. A finished tree is read-only. */
-#ifndef SHEEN_CURVES_SURFACE_TREE_H
-#define SHEEN_CURVES_SURFACE_TREE_H
+#ifndef SHEEN_CURVES_COMPARE_SURFACE_TREE_H
+#define SHEEN_CURVES_COMPARE_SURFACE_TREE_H
 
-#include "server/curves/kept_surface.h"
+#include "server/curves/compare/kept_surface.h"
 
 /* An axis-parallel box: least x, y, z, and largest x, y, z. */
 struct tree_box {

@@ -3,11 +3,11 @@
  * place of each edge. README.md has the formulas, and says what is not a break.
  *
  * The computation is made by breaks_create() and runs as computation.h says. Then breaks_result() has its result. */
-#ifndef SHEEN_CURVES_BREAKS_H
-#define SHEEN_CURVES_BREAKS_H
+#ifndef SHEEN_CURVES_BREAKS_BREAKS_H
+#define SHEEN_CURVES_BREAKS_BREAKS_H
 
 #include "protocol/break_records.h"
-#include "server/curves/break_limits.h"
+#include "server/curves/breaks/break_limits.h"
 #include "server/scene/scene.h"
 #include "server/surface/tables.h"
 

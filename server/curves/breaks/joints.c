@@ -1,4 +1,4 @@
-#include "server/curves/breaks_joints.h"
+#include "server/curves/breaks/joints.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "server/curves/align.h"
+#include "server/curves/compare/align.h"
 
 #include <math.h>
 #include <stdlib.h>

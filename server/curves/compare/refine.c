@@ -2,7 +2,7 @@
  * none leads upwards. It needs no derivatives, and measures have kinks. */
 #include <math.h>
 
-#include "server/curves/comparison_parts.h"
+#include "server/curves/compare/parts.h"
 
 /* Each halving adds a binary digit; a measure that is smooth at its maximum gets two. */
 enum { HALVINGS = 14, MOST_TRIES = 400 };

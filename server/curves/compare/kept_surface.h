@@ -4,8 +4,8 @@
  *
  * kept_surface_fill() may run for different leaves at the same time, everything else of kept_surface_init() and
  * kept_surface_finish() by one thread; a filled surface is read-only, and any thread may read it. */
-#ifndef SHEEN_CURVES_KEPT_SURFACE_H
-#define SHEEN_CURVES_KEPT_SURFACE_H
+#ifndef SHEEN_CURVES_COMPARE_KEPT_SURFACE_H
+#define SHEEN_CURVES_COMPARE_KEPT_SURFACE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,11 +2,11 @@
  * its curvature differ, and where it is missing. README.md defines the measures.
  *
  * A struct computation (computation.h). comparison_read() gives the result after computation_run(). */
-#ifndef SHEEN_CURVES_COMPARISON_H
-#define SHEEN_CURVES_COMPARISON_H
+#ifndef SHEEN_CURVES_COMPARE_COMPARISON_H
+#define SHEEN_CURVES_COMPARE_COMPARISON_H
 
 #include "server/curves/computation.h"
-#include "server/curves/kept_surface.h"
+#include "server/curves/compare/kept_surface.h"
 #include "server/curves/line_position.h"
 
 enum comparison_measure {

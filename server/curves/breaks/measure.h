@@ -4,7 +4,7 @@
 #define SHEEN_CURVES_BREAKS_MEASURE_H
 
 #include "protocol/break_records.h"
-#include "server/curves/break_limits.h"
+#include "server/curves/breaks/break_limits.h"
 #include "server/curves/edges.h"
 #include "server/curves/line_position.h"
 

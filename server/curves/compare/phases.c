@@ -1,10 +1,10 @@
-#include "server/curves/comparison.h"
+#include "server/curves/compare/comparison.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
-#include "server/curves/comparison_parts.h"
+#include "server/curves/compare/parts.h"
 
 enum phase {
     PHASE_KEEP,   /* makes the points of both surfaces */
